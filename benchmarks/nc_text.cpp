@@ -1,4 +1,5 @@
-// Time and peak memory of computing the NC text of a job with 10^5 elements. The targets are 10 s and 1 GiB.
+// Measures the time and peak memory of computing the NC text of a job with 10^5 elements. The targets are 10 s and 1
+// GiB.
 
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>

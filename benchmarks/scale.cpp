@@ -1,4 +1,4 @@
-// Peak memory and time of the program as functions of the number of elements.
+// Measures peak memory and time of the program as functions of the number of elements.
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
 #include <sys/wait.h>

@@ -1,5 +1,5 @@
-// Time and memory of the complete program for writing arrays as STEP, STL and OBJ. Each file is written in a separate
-// process, so that its memory is measured separately.
+// Measures time and memory of the complete program for writing arrays as STEP, STL and OBJ. Each file is written in a
+// separate process, so that its memory is measured separately.
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
 #include <sys/wait.h>

@@ -1,4 +1,5 @@
-// Time to reach a standard error of RRE of 0.01 and 0.001 percentage points, for each element kind.
+// Measures the time to reach a standard error of RRE (retroreflective efficiency) of 0.01 and 0.001 percentage points,
+// for each element kind.
 #include <benchmark/benchmark.h>
 
 #include <array>

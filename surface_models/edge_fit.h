@@ -14,8 +14,8 @@ enum class EdgeShape { radius, chamfer };
 struct EdgeFit {
   double radius_um = 0.0;            ///< radius of the best-fitting circle that is tangent to both facets
   double chamfer_um = 0.0;           ///< width of the best-fitting flat, measured across the edge
-  double radius_residual_nm = 0.0;   ///< root mean square vertical residual of the circle, over the degrees of freedom
-  double chamfer_residual_nm = 0.0;  ///< root mean square vertical residual of the flat, over the degrees of freedom
+  double radius_residual_nm = 0.0;   ///< rms vertical residual of the circle; divisor: degrees of freedom
+  double chamfer_residual_nm = 0.0;  ///< rms vertical residual of the flat; divisor: degrees of freedom
   double dihedral_deg = 0.0;  ///< angle between the facets, on the side of the material, 0..360; above 180: a valley
   EdgeShape better = EdgeShape::radius;  ///< shape with the lower residual
   std::vector<double> residual_nm;       ///< measured heights minus the better shape; NaN where nothing was measured

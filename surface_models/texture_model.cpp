@@ -113,8 +113,8 @@ std::optional<double> rough_length_um(const Autocorrelation& r, int dimensions) 
   const std::optional<double> x = correlation_length_um(r, Axis::x);
   if (dimensions == 1) return x;
   const std::optional<double> y = correlation_length_um(r, Axis::y);
-  // Along a lay, heights may be correlated over the whole map, and the length is then undefined. Only the other axis is
-  // used.
+  // Along a lay (preferred direction of the texture), heights may be correlated over the whole map. The correlation
+  // length along this axis is then undefined, and only that along the other axis is used.
   if (!x || !y) return x ? x : y;
   return std::sqrt(*x * *y);
 }
@@ -179,9 +179,9 @@ MeanSquares windowed_squares(const HeightMap& map) {
   return squares;
 }
 
-/// Returns the map without a margin of half a cut-off at its borders, where the filter transmits different fractions of
-/// waves. Along an axis that is shorter than three cut-offs, no margin is removed. If the result would have fewer than
-/// two measured points, the whole map is returned.
+/// Returns the map without a margin of half a cut-off at its borders. In this margin, the fraction of a wave's
+/// amplitude that passes the filter differs from that in the interior. Along an axis that is shorter than three
+/// cut-offs, no margin is removed. If the result would have fewer than two measured points, the whole map is returned.
 HeightMap inner(const HeightMap& map, double cutoff_um) {
   const auto margin = [&](std::size_t points, double pixel_um) {
     return static_cast<double>(points) * pixel_um >= 3.0 * cutoff_um ? 0.5 * cutoff_um : 0.0;

@@ -33,7 +33,7 @@ struct ArraySheet {
 
   /// Returns the indices of all cells of the lattice that may overlap the part.
   IndexRange indices() const;
-  /// Returns the position on the sheet of the lattice's origin after a shift by (i, j) periods.
+  /// Returns the origin of the lattice, shifted by (i, j) periods, as a position on the sheet.
   Vec2 at_mm(std::int64_t i, std::int64_t j) const;
   /// Returns true if a shift along this axis (0: x, 1: y) changes only the height of the substrate. Periods of the
   /// lattice that differ only in their index along this axis then have the same shape.

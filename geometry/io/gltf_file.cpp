@@ -91,7 +91,7 @@ class GltfFile {
                   {"max", vector_json(upper)}});
   }
 
-  /// Adds a mesh of the faces with a role, and its node. Nothing is added if there are no such faces.
+  /// Adds a mesh of all faces with the given role, and its node. Nothing is added if there are no such faces.
   void add_faces(const BoundaryMesh& mesh, FacetRole role, std::string_view name) {
     const std::size_t begin = binary_.size();
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)

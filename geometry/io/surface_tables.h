@@ -41,8 +41,8 @@ inline constexpr schema::Row kRegionSizeRow = {"size_mm", schema::Numbers{2, kRe
 struct TurnedFront {
   FreeformSurface surface;
   bool is_round = true;
-  double radius_mm = 0.0;       ///< for a round region
-  Vec2 size_mm = Vec2::Zero();  ///< for a rectangular region
+  double radius_mm = 0.0;       ///< radius of a round region
+  Vec2 size_mm = Vec2::Zero();  ///< size of a rectangular region
 };
 
 /// Reads the surface and the region from the file of a turned part. Keys about the tool, its path and the required

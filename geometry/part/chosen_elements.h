@@ -61,7 +61,7 @@ class ChosenElements {
   PartSpec spec_;
   ArraySheet sheet_;  ///< made from spec_
   Rectangle part_mm_;
-  Vec2 inwards_;  ///< distance from the border for positions on the outer walls, mm
+  Vec2 inwards_;  ///< distance by which positions on the outer walls are moved inward, mm
   std::vector<std::size_t> first_of_placement_;
   std::vector<bool> facets_;
   std::int64_t count_ = 0;

@@ -90,7 +90,7 @@ class PatchBuilder {
     return kept.size() < 3 ? ring : kept;
   }
 
-  /// Returns the outline with all vertices of other tiles that are on it inserted.
+  /// Returns the outline with additional corners: all vertices of other tiles that are on the outline.
   Ring subdivided(const Ring& outline) const {
     Ring ring;
     for (std::size_t i = 0; i < outline.size(); ++i) {

@@ -10,7 +10,8 @@
 
 namespace retrace::geometry {
 
-/// Triangle mesh with merged vertices and without roles.
+/// Triangle mesh. Vertices at the same position are merged. In contrast to a BoundaryMesh, triangles have no roles
+/// (such as entrance face or side).
 struct TriangleMesh {
   std::vector<Vec3> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;

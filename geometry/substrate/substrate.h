@@ -27,7 +27,7 @@ struct SphereSubstrate {
   double radius_mm = 0.0;  ///< > 0: convex towards the light; < 0: concave
 };
 
-/// Height as a formula of x and y, in mm from the centre of the part.
+/// Height as a formula of x and y. The height, x and y are in mm; x and y are measured from the centre of the part.
 struct FormulaSubstrate {
   std::shared_ptr<const Formula> sag_mm;  ///< never null
 };

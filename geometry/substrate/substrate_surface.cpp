@@ -58,7 +58,7 @@ Sag sag_of(const FormulaSubstrate& formula) {
   return sag;
 }
 
-/// Returns the nearest point at which a circular cross section is not yet vertical.
+/// Returns the point nearest to `p` at which a circular cross section is not yet vertical.
 Vec2 short_of_upright(const SubstrateShape& shape, const Vec2& p) {
   if (const auto* const c = std::get_if<CylinderSubstrate>(&shape)) {
     const double most = kMostSine * std::abs(c->radius_mm);

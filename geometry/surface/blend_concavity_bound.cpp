@@ -185,8 +185,8 @@ double above(std::array<double, kMostDegree> node, int degree, int halvings) {
 }
 
 /// Returns an upper bound of the second derivative on the radial lines in an interval of azimuth.
-/// \param middle radial line at the centre of the interval; with it, only the second-order change of the nodes over the
-///     interval must be enclosed
+/// \param middle radial line at the centre of the interval; with it, only the second-order change of the nodes
+///     (Bernstein coefficients) over the interval must be enclosed
 double largest_bend(const Ray<Interval>& ray, const Ray<double>& middle, double half_rad, int degree) {
   const Interval share(0.0, 1.0);
   const Interval turn(-half_rad, half_rad);

@@ -30,7 +30,7 @@ Json path_json(const OpenedDesign& opened, const Json& request);
 /// Returns the most frequent light paths.
 Json stories_json(const OpenedDesign& opened, const Json& request);
 
-/// Returns the standards whose limits are included.
+/// Returns the photometric standards whose limits retrace contains.
 Json standards_json();
 /// Computes the test points of a standard.
 Json photometry_json(const OpenedDesign& opened, const Json& request, TimeLimit& limit);

@@ -44,7 +44,7 @@ struct DiffractionMeans {
   std::array<double, 2> transmitted{};
 };
 
-/// Light that was diffracted once. It leaves to either side of the facet.
+/// Light that was diffracted once. It may leave to either side of the facet.
 struct DiffractedOnce {
   Vec3 direction;                ///< in the frame of the event
   Vec3 s_axis;                   ///< axis of s, normal to the direction, in the same frame

@@ -1,4 +1,5 @@
-// Replaces the mesh checks, because CGAL is not part of the web engine. Only meshes from files need these checks.
+// Replaces the mesh checks by functions that report an error, because CGAL is not part of the web engine. Only meshes
+// from files need these checks.
 #include "geometry/check/boundary_check.h"
 
 #include "geometry/check/mesh_union.h"

@@ -1,4 +1,5 @@
-// Replaces turned parts and meshes as entrance surfaces. They are read from files, which the live page does not have.
+// Replaces entrance surfaces of turned parts and meshes by a function that reports an error. They are read from files,
+// which the live page does not have.
 #include "live/engine/stand_ins/absent.h"
 #include "studies/design/entrance_of_design.h"
 

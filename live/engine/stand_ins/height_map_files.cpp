@@ -1,4 +1,5 @@
-// Replaces the readers of measured height maps.
+// Replaces the reader of measured height maps by a function that reports an error. The live page has no files besides
+// the design.
 #include "live/engine/stand_ins/absent.h"
 #include "surface_models/io/height_map_reader.h"
 

@@ -1,4 +1,4 @@
-// Replaces the reader of refractiveindex.info records, which needs yaml-cpp.
+// Replaces the reader of refractiveindex.info records, which needs yaml-cpp, by a function that reports an error.
 #include "live/engine/stand_ins/absent.h"
 #include "materials/io/index_record.h"
 

@@ -1,4 +1,4 @@
-// Replaces Monte Carlo photometry.
+// Replaces Monte Carlo photometry by a function that reports an error, because the live page has no Monte Carlo engine.
 #include "live/engine/stand_ins/absent.h"
 #include "studies/photometry/photometer.h"
 

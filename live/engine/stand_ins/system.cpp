@@ -1,4 +1,5 @@
-// Replaces muParser, loaded modules and the search for the program's folder.
+// Replaces the functions that need muParser (formulas) or a loaded module (pictures) by functions that report an error.
+// The folder of the installation is fixed instead of searched.
 #include "core/installation.h"
 #include "core/math/formula.h"
 #include "core/pictures.h"
