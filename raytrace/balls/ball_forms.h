@@ -13,16 +13,18 @@ namespace retrace::raytrace {
 /// from the centre divided by the radius, 0 to 1. Indices are relative to air.
 
 /// Returns the angle in rad between the leaving light and the direction to the source. It is positive if the leaving
-/// light crosses the axis on its way to the source. This is the case for balls whose focus is beyond their mirror.
+/// light crosses the axis (the line through the ball's centre in the direction to the source). Near the axis, this is
+/// the case for balls whose focus is in front of their mirror.
 double return_error_rad(double height, double index, double spacer_index, double mirror_radius_over_radius);
 
 /// Returns the derivative of the return error at height 0. This is the paraxial power 2 (1 - 2 / n + (1 - R / rho) /
-/// m). If it is 0, light near the axis leaves parallel to the axis.
+/// m), with the indices n of the ball and m of the spacer, and the radii R of the ball and rho of the mirror. If it is
+/// 0, light near the axis leaves parallel to the axis.
 double paraxial_error(double index, double spacer_index, double mirror_radius_over_radius);
 
-/// Returns the distance of the mirror from the ball, divided by the radius, at which the mirror is in the paraxial
-/// focus. Returns nothing for n >= 2, because the focus is then not behind the ball. Also returns nothing if the index
-/// of the spacer is too high for a finite distance.
+/// Returns the distance of the mirror from the ball, divided by the radius of the ball, for which the mirror is at the
+/// paraxial focus. Returns nothing for n >= 2, because the focus is then not behind the ball. Also returns nothing if
+/// the index of the spacer is too high for a finite distance.
 std::optional<double> focal_offset_over_radius(double index, double spacer_index);
 
 /// Returns the fraction of the aperture, by area, whose light returns within `half_angle_rad`.
@@ -31,8 +33,8 @@ double share_within(double half_angle_rad, double index, double spacer_index, do
 /// Returns the maximum absolute return error over all heights, in rad.
 double largest_return_error_rad(double index, double spacer_index, double mirror_radius_over_radius);
 
-/// Returns the fraction of the area in projection along z that balls cover: pi / (2 sqrt 3) (diameter / pitch)^2, or 1
-/// for a single ball.
+/// Returns the fraction of the layer's area that the balls cover, in projection along z: pi / (2 sqrt 3) (diameter /
+/// pitch)^2, or 1 for a single ball.
 double packing_share(const BallLayer& layer);
 
 }  // namespace retrace::raytrace

@@ -12,7 +12,8 @@ namespace retrace::raytrace {
 
 using geometry::Vec2, geometry::Vec3;
 
-/// Index of a ball in the lattice of a layer. Rows are parallel to x, and each row is shifted by half a pitch.
+/// Index of a ball in the lattice of a layer. Rows are parallel to x, and each row is shifted by half a pitch relative
+/// to the row before.
 struct BallIndex {
   std::int64_t along = 0;
   std::int64_t row = 0;
@@ -37,8 +38,8 @@ class BallLattice {
   /// reaches the plane z = 0 between the balls.
   struct Way {
     std::optional<Hit> hit;
-    bool leaves = false;       ///< true if the ray rises; it leaves for good if it has no hit
-    bool goes_astray = false;  ///< true if the ray is so close to horizontal that it would pass too many balls
+    bool leaves = false;       ///< true if the ray rises; a rising ray without a hit leaves the layer
+    bool goes_astray = false;  ///< true if the ray is nearly horizontal and was given up after many balls
   };
   /// \param leaving ball from whose surface the ray starts, which is excluded from the search; null for none
   Way follow(const Vec3& origin_mm, const Vec3& direction, const BallIndex* leaving) const;

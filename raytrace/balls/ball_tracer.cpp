@@ -39,8 +39,8 @@ class BallEntry {
   Vec3 up_;
 };
 
-/// Returns the incident light with its polarization along the s axis. The p axis, direction x s, is opposite to the
-/// second axis of the source. The sign of the Stokes parameter U is therefore reversed.
+/// Returns the incident light for tracing. Its s axis is the first axis of `stokes`, source_axis(). Its p axis,
+/// direction x s, is opposite to the second axis of `stokes`. The sign of the Stokes parameter U is therefore reversed.
 Light incident_light(const Stokes& stokes, const Vec3& to_source) {
   Light light;
   light.stokes = stokes;

@@ -19,8 +19,9 @@ class BallTracer {
 
   /// \param optics `lossless_entrance` makes uncoated parts of the balls transmit all light. `mirror_facets`, or an
   ///        opaque layer in `facet_layers`, defines the mirror behind the balls.
-  /// \param score function of the direction of the light that leaves the balls, which is averaged; null for none
-  /// \param progress receives the finished fraction of the work, as in the constructor of Rounds; null for none
+  /// \param score function of the exit direction; its mean over the light that leaves the balls is computed; null for
+  ///        none
+  /// \param progress receives the finished fraction of the work, see the constructor of Rounds; null for none
   MonteCarloResult trace(const Optics& optics, const Illumination& illumination, const std::vector<double>& cones_deg,
                          const Sampling& sampling, const PathPolicy& policy, const Cancellation* cancel = nullptr,
                          const DirectionScore* score = nullptr, Progress* progress = nullptr) const;

@@ -13,10 +13,10 @@
 
 namespace retrace::raytrace {
 
-/// Traces light through a layer of balls and adds its power to the ledger. Both branches of an interface are traced if
-/// each has at least PathPolicy::split_power. Otherwise, one branch is chosen at random and receives the total power.
-/// All surfaces are spheres about the centres of balls, and intersections are computed analytically in double
-/// precision.
+/// Traces light through a layer of balls and adds its power to the ledger. Both branches of an interface (reflected and
+/// transmitted light) are traced if each has at least PathPolicy::split_power. Otherwise, one branch is chosen at
+/// random and receives the total power. All surfaces are spheres about the centres of balls, and intersections are
+/// computed analytically in double precision.
 class BallWalker {
  public:
   BallWalker(const BallLayer& layer, const LightSetup& setup, const PathPolicy& policy, Tally& tally)
@@ -54,7 +54,7 @@ class BallWalker {
   void follow_in_ball(const Ray& ray);
   void follow_in_spacer(const Ray& ray);
   /// Processes a smooth interface between two transparent media. Both branches are queued.
-  /// \param normal unit normal on either side
+  /// \param normal unit normal, which may point to either side
   void meet(const Ray& ray, const Vec3& position_mm, const Vec3& normal, const Interface& between);
   void meet_back(const Ray& ray, const Vec3& position_mm, const Vec3& normal);
   void meet_mirror(Ray ray, const Vec3& position_mm, const Vec3& normal, bool from_ball);

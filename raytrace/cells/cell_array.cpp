@@ -11,8 +11,8 @@ using geometry::Vec2, geometry::Vec3;
 
 namespace {
 
-// Number of periods in which the neighbours of a cell are searched. A cell extends less than one period beyond the
-// period that it belongs to.
+// Number of periods on each side, in x and y, in which the neighbours of a cell are searched. A cell extends less than
+// one period beyond the period that it belongs to.
 constexpr int kReach = 2;
 
 CellArray::Facet facet_of(const geometry::CellFacet& facet, geometry::FacetRole role) {
@@ -113,7 +113,7 @@ std::optional<CellArray> CellArray::make(const geometry::Part& part) {
   if (!part.period_mm) {
     array.inner_ = Inner{*part.lattice_region_mm, part.lattice_anchor_mm};
     for (const geometry::Cell& cell : lattice.cells) {
-      // The margin contains the columns of the border and the columns next to them.
+      // The margin is so wide that it contains the columns at the border of the region and the columns next to them.
       const Vec2 margin = 2.0 * geometry::bounding_box(cell.outline).size();
       array.inner_->where_mm.lower =
           array.inner_->where_mm.lower.cwiseMax(Vec2(part.lattice_region_mm->lower + margin));

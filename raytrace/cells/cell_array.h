@@ -1,7 +1,7 @@
 #pragma once
 
-// Infinite arrays of elements, represented as columns over convex cells. In a column, a ray finds the next facet or
-// neighbour without a search tree.
+// Infinite arrays of elements, represented as columns over convex cells. In a column, a ray finds the next facet or the
+// neighbouring column without a search tree.
 
 #include <optional>
 #include <vector>
@@ -26,7 +26,8 @@ class CellArray {
     geometry::FacetRole role = geometry::FacetRole::retro_facet;
     std::optional<geometry::Vec2> middle_mm = {};  ///< CellFacet::middle_mm
   };
-  /// The column behind an interval of an edge.
+  /// Neighbouring column on the other side of an edge of a cell. An edge may have several neighbours, each along one
+  /// interval of the edge.
   struct Neighbour {
     std::uint32_t column = 0;
     geometry::Vec2 shift_mm = geometry::Vec2::Zero();  ///< added to this column's coordinates to get the neighbour's

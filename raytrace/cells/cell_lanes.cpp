@@ -17,8 +17,8 @@ HWY_INLINE V absorbed(const Rays& rays, std::size_t k, std::size_t count, V way,
   return hn::IfThenElseZero(present(k, count), hn::Sub(before.i, after.i));
 }
 
-/// Length of a path along a ray, as a fraction. Fractions are compared without division. Only the smallest one is
-/// divided.
+/// Length of a path along a ray, as the fraction `over` / `under`. Lengths are compared without division. The division
+/// is done only for the shortest one.
 struct Way {
   V over;   ///< numerator, not negative
   V under;  ///< denominator, not negative; 0 for faces that are never met
@@ -105,7 +105,8 @@ void advance_outside(const Rays& rays, std::size_t count, std::span<const Plane>
     nearest.consider(way_to({-geometry::Vec3::UnitZ(), depth_mm}, p, d), splat(1.0));
     find_border(borders, p, d, nearest);
     V way = nearest.way.length();
-    // A ray enters the convex body at the last plane that it enters, and leaves it at the first plane that it leaves.
+    // A ray enters the convex body at the last plane that it crosses inward, and leaves it at the first plane that it
+    // crosses outward.
     V in = hn::Neg(infinite);
     V out = infinite;
     for (const Plane& facet : facets) {
@@ -237,7 +238,7 @@ std::size_t mark_beyond(const Rays& rays, std::size_t count, const Reach& reach,
 }
 
 /// Wraps the coordinate into [0, period).
-/// \param stands_at array to which the removed periods are added; may be null
+/// \param stands_at array to which the removed multiple of the period is added; may be null
 HWY_INLINE void store_folded(V at, double period, double* to, double* stands_at, std::size_t k) {
   const V periods = hn::Floor(hn::Mul(at, splat(1.0 / period)));
   store(hn::NegMulAdd(periods, splat(period), at), to, k);

@@ -19,9 +19,9 @@ namespace retrace::raytrace::lanes {
 
 inline constexpr std::size_t kPadding = 16;
 
-/// Arrays of rays: position (mm), direction, Stokes parameters (see Light) and their first axis, which may have any
-/// length. Finite parts also have the origin of the period to which the position is relative. If rays have owners, the
-/// last array is the number of the owner.
+/// Arrays of rays: position (mm), direction, Stokes parameters (see Light) and the first axis of the Stokes parameters,
+/// which may have any length. For finite parts, there is also the origin of the period to which the position is
+/// relative. If rays have owners (see CellWalker), the last array contains the numbers of the owners.
 enum RayNumber : std::size_t {
   kX,
   kY,
@@ -70,13 +70,15 @@ struct Met {
   std::array<double*, 3> normal{};
 };
 
-/// Moves rays above the surface of a column to the nearest of its facets, its top and its borders.
+/// Moves each ray above the surface of a column to the nearest of the column's facets, its top and its borders.
 /// \return the power that the material absorbs on the path
 double advance_inside(const Rays& rays, std::size_t count, std::span<const Plane> facets, double top_mm,
                       std::span<const Plane> borders, double absorption_per_mm, const Met& met);
 
-/// Moves rays below the surface of a column to its facets, its borders, or down to z = -depth_mm.
-/// \param facets facets of the column; none for rays that have just left this surface, because it is convex
+/// Moves each ray below the surface of a column to the nearest of the column's facets, its borders and the plane z =
+/// -depth_mm.
+/// \param facets facets of the column; empty for rays that have just left these facets, because a ray cannot meet a
+///        convex surface again after leaving it
 void advance_outside(const Rays& rays, std::size_t count, std::span<const Plane> facets, double depth_mm,
                      std::span<const Plane> borders, const Met& met);
 
@@ -88,13 +90,13 @@ struct Border {
     std::span<const LinearForm> heights;  ///< the height of the surface behind the border is their maximum
   };
   LinearForm along;
-  std::vector<double> limits;  ///< ends of all intervals except the last, ascending
+  std::vector<double> limits;  ///< ends of all intervals along the border except the last, ascending
   std::vector<Stretch> stretches;
   bool inside = true;  ///< true if rays continue above the surface, false if below
 };
 
-/// Determines what rays meet at the border with the number `number`. `which` becomes `to` + 2 k for rays that continue
-/// beyond interval k, and `to` + 2 k + 1 for rays that meet the wall there.
+/// Determines what rays meet at the border with the number `number`. `which` becomes `to` + 2 k for rays that cross
+/// interval k of the border, and `to` + 2 k + 1 for rays that meet a wall at interval k.
 void refine(const Rays& rays, std::size_t count, const Border& border, double number, double to, double* which);
 
 /// Copies the rays whose `which` is `wanted` and returns their number.
@@ -103,11 +105,11 @@ std::size_t select(const double* which, double wanted, std::size_t count, const 
 
 /// Sets `which` to the index of the first polygon that contains the ray, which means that all of its linear forms are
 /// at least 0 at the position of the ray. If there is no such polygon, `which` becomes the number of polygons.
-/// \param first_form index of the first form of each polygon, and the number of forms
+/// \param first_form index of the first form of each polygon, followed by the total number of forms
 void mark_polygon(const Rays& rays, std::size_t count, std::span<const LinearForm> forms,
                   std::span<const std::uint32_t> first_form, double* which);
 
-/// Sets `which` to 1 for rays with less power than `limit`, else to 0. Returns the number of these rays.
+/// Sets `which` to 1 for rays with less power than `limit`, else to 0. Returns the number of rays below the limit.
 std::size_t mark_weak(const Rays& rays, double limit, std::size_t count, double* which);
 
 /// Converts positions to the coordinates of another period.
@@ -118,7 +120,7 @@ void shift(const Rays& rays, std::size_t count, const geometry::Vec2& shift);
 /// function returns the number of marked rays.
 /// \pre rays.have_periods()
 struct Reach {
-  double height_mm = 0.0;  ///< height above the rays to which they are extrapolated along their direction
+  double height_mm = 0.0;  ///< height difference by which rays are extrapolated along their direction; 0 for none
   geometry::Vec2 lower = geometry::Vec2::Zero();
   geometry::Vec2 upper = geometry::Vec2::Zero();
 };
@@ -127,10 +129,11 @@ std::size_t mark_beyond(const Rays& rays, std::size_t count, const Reach& reach,
 
 /// Rays that have met faces of one kind, and the parameters by which branches are chosen. Both branches are traced if
 /// each has at least `split_power`. Otherwise, one branch is chosen in proportion to its power and receives the power
-/// of both. Choices are stratified over the order of the rays. They are unbiased if `start` is uniform in [0, 1).
+/// of both. The choices are stratified over the sequence of rays. They are unbiased if `start` is a uniform random
+/// number in [0, 1).
 struct Meeting {
   Met met;
-  double number = 0.0;         ///< value of `which` of the rays
+  double number = 0.0;         ///< value of `which` by which the rays are selected
   double towards_light = 1.0;  ///< factor by which normals are multiplied so that they face the light
   double split_power = 0.0;
   double start = 0.0;
@@ -149,8 +152,8 @@ Branches meet_faces(const Rays& rays, std::size_t count, const Meeting& meeting,
 /// Reflects rays at perfect mirrors. Returns the number of rays that meet them.
 std::size_t meet_mirrors(const Rays& rays, std::size_t count, const Meeting& meeting, const Rays& reflected);
 
-/// The entrance face, seen from below, at a height above rising rays. Light that leaves is added to the narrowest cone
-/// that contains it, with source_axis() as first axis.
+/// The entrance face, at a given height above the rays that rise to it. The Stokes parameters of light that leaves are
+/// added to the sums of the narrowest cone that contains the light. Their first axis is source_axis().
 struct Entrance {
   double height_mm = 0.0;
   double index = 1.0;
@@ -172,7 +175,8 @@ struct Arrivals {
 Arrivals meet_entrance(const Rays& rays, std::size_t count, const Meeting& meeting, const Entrance& entrance,
                        const Rays& reflected, std::span<Stokes> returned, const Rays* left);
 
-/// Moves rays down by a height to z = `top_mm`, and into the period that starts at the origin.
+/// Moves descending rays along their directions by the height difference `height_mm` to z = `top_mm`. Their positions
+/// are then wrapped into the period that starts at the origin.
 /// \return the power that the material absorbs
 double fall(const Rays& rays, std::size_t count, double height_mm, double top_mm, const geometry::Vec2& period_mm,
             double absorption_per_mm);

@@ -300,7 +300,8 @@ void CellWalker::fall(bool scattered) {
     grow(stream, more);
     left -= more;
   }
-  // All rays should be in a piece, because the pieces fill the period. If rays remain, they are counted as lost.
+  // The pieces fill the period, so that every ray should be in one of them. Rays that are in no piece are counted as
+  // lost.
   tally_->misses += left;
   tally_->other[Account::lost] += static_cast<double>(left);
 }
@@ -421,7 +422,7 @@ void CellWalker::meet_faces(double number, bool inside, std::uint32_t reflected_
     grow(transmitted_to, more.transmitted);
 }
 
-/// Moves rays from the top of the surface up to the entrance face. Reflected rays are moved back down.
+/// Moves rays from the top of the surface up to the entrance face. Rays that are reflected there are moved back down.
 void CellWalker::meet_entrance(bool scattered) {
   const Optics& optics = setup_.optics;
   const double height_mm = setup_.thickness_mm - setup_.top_mm;

@@ -19,7 +19,7 @@
 namespace retrace::raytrace {
 
 /// Returns a vector of a ray.
-/// \param first array of the first of its three components
+/// \param first array of the x component; the arrays of y and z follow
 inline Vec3 vector_of(const lanes::Rays& rays, std::size_t first, std::size_t k) {
   return {rays[first][k], rays[first + 1][k], rays[first + 2][k]};
 }
@@ -79,8 +79,8 @@ class CellWalker {
 
   /// Returns the rays that the last trace() or follow() has not traced to their end. There are none in infinite parts.
   const std::vector<HandedOver>& handed_over() const { return handed_over_; }
-  /// Returns the number of random choices that the last trace() or follow() has made. Each choice uses this number and
-  /// the number of the first point as counters of the random generator.
+  /// Returns the number of random choices that the last trace() or follow() has made. Each choice uses the number of
+  /// earlier choices and the number of the first point as counters of the random generator.
   std::uint32_t choices() const { return choices_; }
 
  private:
@@ -115,7 +115,7 @@ class CellWalker {
     RayStore rays;
     std::vector<std::optional<Crossing>> borders;  ///< set for borders with a single neighbour of the same height
     std::vector<Refinement> refinements;
-    std::vector<Crossing> crossings;  ///< neighbours of the refinements
+    std::vector<Crossing> crossings;  ///< neighbours behind the borders of `refinements`
   };
   struct Shape {
     std::vector<lanes::Plane> facets;
@@ -183,14 +183,14 @@ class CellWalker {
   std::vector<Shape> shapes_;  ///< indexed by column
   std::vector<Stream> streams_;
   std::vector<std::vector<std::uint32_t>> waiting_;  ///< streams, indexed by the bit width of their number of rays
-  std::vector<lanes::LinearForm> pieces_;            ///< edges of the array's pieces
+  std::vector<lanes::LinearForm> pieces_;            ///< edges of CellArray::pieces() as linear forms
   std::vector<std::uint32_t> piece_starts_;
   RayStore moved_;                    ///< rays of the current stream
   RayStore chosen_;                   ///< rays of `moved_` that have met the same kind of face
-  std::array<RayStore, 2> entering_;  ///< rays below a contaminated entrance: not scattered, and scattered
+  std::array<RayStore, 2> entering_;  ///< rays just below a contaminated entrance: [0] unscattered, [1] scattered
   RayStore left_;                     ///< rays that leave through the entrance, if they are scored or observed
   std::vector<double> met_;           ///< number and normal of the face that each ray of `moved_` has met
-  std::vector<double> branches_;      ///< marks of the rays of `chosen_`, or of weak rays
+  std::vector<double> branches_;      ///< marks (`which`) of rays of `chosen_`, or of weak rays of `moved_`
   std::size_t capacity_ = 0;
   std::uint64_t batches_ = 0;
   std::optional<SoiledEntrance> soiled_;  ///< set if the entrance face scatters

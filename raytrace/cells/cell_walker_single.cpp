@@ -19,7 +19,8 @@ std::size_t CellWalker::facet_of(const Stream& stream, const Vec3& normal) const
   return static_cast<std::size_t>(std::ranges::min_element(facets, {}, turned) - facets.begin());
 }
 
-/// Replaces the normals of rays that have met facets with a form by the normals at their positions.
+/// Replaces the normals that are stored for rays at facets with a form. The normal of the facet's plane is replaced by
+/// the normal of the form at the position of the ray.
 void CellWalker::turn_normals(const Stream& stream) {
   const bool inside = stream.place == Place::inside;
   const Shape& shape = shapes_[stream.column];
@@ -142,7 +143,7 @@ void CellWalker::meet_layers_of_entrance(bool scattered) {
   if (!chosen_.empty()) fall(scattered);
 }
 
-/// Returns the rays that leave a scattering entrance face.
+/// Returns the rays, inside and outside the part, into which a scattering entrance face splits the incident ray.
 const SoiledReturn& CellWalker::soiled(const Ray& ray) {
   surface_models::RandomStream random(key_, replicate_, sample_, choices_++);
   from_soiled_.clear();
@@ -152,7 +153,8 @@ const SoiledReturn& CellWalker::soiled(const Ray& ray) {
   return from_soiled_;
 }
 
-/// Adds a ray below the entrance face. The remaining values, such as the owner, are copied from ray `k` of `from`.
+/// Queues a ray that starts just below the entrance face. Values that `place` and `ray` do not contain, such as the
+/// owner, are copied from ray `k` of `from`.
 void CellWalker::put_in(const lanes::Rays& from, std::size_t k, const Vec3& place, const Ray& ray) {
   RayStore& to = entering_[ray.scattered ? 1 : 0];
   to.reserve(to.size() + 1);
@@ -196,7 +198,7 @@ void CellWalker::enter_soiled(std::size_t count) {
   fall_in();
 }
 
-/// Processes rays at a scattering entrance face from inside.
+/// Processes rays that reach a scattering entrance face from inside.
 void CellWalker::meet_soiled_entrance(bool scattered) {
   const double height_mm = setup_.thickness_mm - setup_.top_mm;
   const lanes::Rays rays = moved_.rays();

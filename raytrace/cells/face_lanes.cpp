@@ -20,21 +20,23 @@ HWY_INLINE S turned(const S& light, const V3& direction, const V3& axis, const V
           light.v};
 }
 
-/// Reflected and transmitted light and directions at interfaces of transparent media, as materials::fresnel().
+/// Reflected and transmitted light and directions at interfaces of transparent media. The formulas are those of
+/// materials::fresnel().
 struct Interface {
   S reflected, transmitted;
   V3 mirrored, refracted;
   V3 axis;  ///< first axis of the Stokes parameters of both branches
 };
 
-/// Returns an axis perpendicular to the plane of incidence. At normal incidence, the present axis is returned, because
-/// s and p have equal coefficients.
+/// Returns an axis perpendicular to the plane of incidence. At normal incidence, `axis` is returned unchanged, because
+/// s and p light then have equal coefficients.
 HWY_INLINE V3 axis_at(const V3& d, const V3& axis, const V3& against) {
   const V3 across = cross(d, against);
   return chosen(hn::Lt(dot(across, across), splat(1e-16)), axis, across);
 }
 
-/// Coefficients of a face: the reflected fractions of power of s and p, r_s conj(r_p), and t_s t_p.
+/// Coefficients of a face: the fractions of the power of s and p light that are reflected, the real and imaginary parts
+/// of r_s conj(r_p), and t_s t_p (`passed`).
 struct Shares {
   V power_s, power_p;
   V re, im;
@@ -62,8 +64,8 @@ HWY_INLINE Shares shares(double index_ratio, V ci, V root, V a_s, V b_p, V over,
   const V total_im = hn::IfThenElseZero(hn::Not(grazes), hn::Mul(over, hn::MulAdd(re_s, im_p, hn::Mul(im_s, re_p))));
   return {hn::IfThenElse(total, one, hn::Mul(r_s, r_s)), hn::IfThenElse(total, one, hn::Mul(r_p, r_p)),
           hn::IfThenElse(total, total_re, hn::Mul(r_s, r_p)), hn::IfThenElseZero(total, total_im),
-          // t_s t_p = 4 ratio ci root / ((a_s + root) (ci + b_p)); the squares of t_s and t_p are fractions of the
-          // power
+          // t_s t_p = 4 ratio ci root / ((a_s + root) (ci + b_p)); t_s and t_p are normalized so that their squares are
+          // fractions of the power
           hn::IfThenElseZero(hn::Not(total), hn::Mul(over, hn::Mul(splat(4.0 * index_ratio), hn::Mul(ci, root))))};
 }
 
@@ -85,7 +87,7 @@ HWY_INLINE Interface met(const S& light, const V3& d, const V3& axis, const V3& 
 
   Interface face;
   face.axis = axis_at(d, axis, against);
-  // A single division is used for the factors of both cases, because divisions take most of the time.
+  // 1 / norm and 1 / axes2 are computed from a single division, because divisions take most of the time.
   const V axes2 = hn::Mul(dot(axis, axis), dot(face.axis, face.axis));
   const V sum_s = hn::Add(a_s, root);
   const V sum_p = hn::Add(ci, b_p);
@@ -112,7 +114,7 @@ HWY_INLINE Interface met(const S& light, const V3& d, const V3& axis, const V3& 
   return face;
 }
 
-/// Rays that continue in each branch, for rays that meet a face.
+/// Masks of the rays that continue in the reflected branch and in the transmitted branch of a face.
 struct Chosen {
   M reflected, transmitted;
 };
@@ -128,7 +130,7 @@ HWY_INLINE Chosen choose(const Meeting& meeting, std::size_t k, M here, S& refle
   const V at = hn::MulAdd(number, splat(kGolden), splat(meeting.start));
   const V u = hn::Sub(at, hn::Floor(at));
   const M takes_reflected = hn::Lt(hn::Mul(u, power), r);
-  // If both branches of all rays continue, or no light is transmitted, no random choice is needed.
+  // No random choice is needed if, for every ray, both branches continue or no light is transmitted.
   if (hn::AllTrue(D(), hn::Or(hn::Or(both, hn::Not(here)), hn::Le(t, hn::Zero(D())))))
     return {here, hn::And(here, both)};
   // The chosen branch receives the power of both.
@@ -213,7 +215,8 @@ Arrivals meet_entrance(const Rays& rays, std::size_t count, const Meeting& meeti
     const M is_total = hn::Le(face.transmitted.i, zero);
     Chosen take{here, here};
     if (entrance.is_lossless) {
-      // Beyond the critical angle, the light ends here.
+      // Beyond the critical angle, the light is not traced further. Its power is added to the light outside of all
+      // cones.
       const V axes2 = hn::Mul(dot(axis, axis), dot(face.axis, face.axis));
       face.transmitted = turned(light, d, axis, face.axis, hn::Div(splat(1.0), axes2));
       returned.back().i += total(hn::IfThenElseZero(hn::And(here, is_total), light.i));

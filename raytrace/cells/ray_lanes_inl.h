@@ -98,7 +98,8 @@ HWY_INLINE Stokes total(const S& s) {
   return {total(s.i), total(s.q), total(s.u), total(s.v)};
 }
 
-/// Appends the selected lanes. Highway's Compress is not used, because it copies its tables to the stack with GCC 12.
+/// Writes the lanes selected by `mask` to `to`, without gaps. Highway's Compress is not used, because it copies its
+/// tables to the stack with GCC 12.
 HWY_INLINE void append(V values, M mask, double* to) {
 #if HWY_TARGET <= HWY_AVX3
   hn::StoreU(V{_mm512_maskz_compress_pd(mask.raw, values.raw)}, D(), to);
@@ -118,7 +119,7 @@ HWY_INLINE void append3(const V3& v, M mask, const Rays& to, std::size_t first, 
 }
 
 /// Appends the selected rays.
-/// \param from arrays with the remaining values of the rays, at index k
+/// \param from arrays with the values that have no parameter of their own (period, owner), at index k
 /// \param to passed by value, so that the compiler need not reload the pointers after each store
 HWY_INLINE void append_ray(const V3& place, const V3& direction, const S& light, const V3& axis, M mask,
                            const Rays& from, std::size_t k, const Rays to, std::size_t found) {

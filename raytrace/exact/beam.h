@@ -65,7 +65,7 @@ struct EntryPoint {
 
 /// Identity and position of a cell (an element or a flat area) of the back surface.
 struct CellPlace {
-  std::uint64_t id = 0;           ///< identical for all copies of a patch, or for all cells of identical shape
+  std::uint64_t id = 0;           ///< identical for all copies of a cell, or for all cells of identical shape
   Vec2 offset_mm = Vec2::Zero();  ///< displacement of this copy
 
   friend bool operator==(const CellPlace& a, const CellPlace& b) {
@@ -102,7 +102,8 @@ struct TexturedHit {
   Eigen::Matrix3d slope = Eigen::Matrix3d::Identity();
   surface_models::PhaseTexture phase;
   FacetFrame frame;              ///< frame in which the form of the facet is defined
-  double path_per_height = 0.0;  ///< change of the optical path per height out of the part; 0 for facets without form
+  double path_per_height = 0.0;  ///< change of the optical path per height of the form, which is positive out of the
+                                 ///< part; 0 for facets without form
 
   Vec3 of(const Vec3& p) const { return constant_mm + slope * p; }
 
@@ -124,7 +125,7 @@ using BeamPlaces = std::vector<Vec2>;
 struct Beam {
   Corners corners;  ///< corners of the polygon on the plane where the beam starts
   Vec3 direction = Vec3::UnitZ();
-  CoherentLight light;    ///< light without the absorption in the material
+  CoherentLight light;    ///< light, not reduced by the absorption in the material; see `transmission`
   double phase_mm = 0.0;  ///< phase of the plane wave, extrapolated to the origin, as an optical path length
   CellTrail trail;
   double share = 1.0;  ///< fraction of the area of the entrance face through which the light of this beam entered
@@ -134,7 +135,8 @@ struct Beam {
   double power = 0.0;      ///< power at the start of the beam, as a fraction of the incident power
   PathLength path_length;  ///< length of the path in the material
   EntryPoint entry;        ///< point of the entrance face where the light entered
-  /// Facets that the light has met, in order: those with a form and, with BeamPolicy::keeps_phases, textured facets.
+  /// Facets that the light has met, in order. The list contains the facets with a form and, if BeamPolicy::keeps_phases
+  /// is set, the textured facets.
   std::vector<TexturedHit> hits;
   Plane start;  ///< the beam is in the half space start.height(p) >= 0
   bool inside = true;
@@ -163,7 +165,7 @@ using WaitingBeams =
 struct ScatterSite {
   Corners corners;  ///< corners of the illuminated polygon on the facet
   Vec3 direction = Vec3::UnitZ();
-  Light light;                  ///< incident light without the absorption in the material
+  Light light;                  ///< incident light, not reduced by the absorption in the material
   PathLength path_length;       ///< length of the path in the material
   Vec3 normal = Vec3::UnitZ();  ///< normal of the facet, which points out of the part
   double share = 0.0;           ///< fraction of the area of the entrance face through which this light entered

@@ -32,7 +32,7 @@ Beam BeamWalk::arrived(const Beam& from, const Frame& frame, const FlatPolygon& 
 }
 
 /// Queues a beam that starts at an interface.
-/// \param ahead normal of the plane, on the side into which the beam travels
+/// \param ahead normal of the plane, which points to the side into which the beam travels
 void BeamWalk::send(Beam&& beam, const Plane& plane, const Vec3& ahead, const Vec3& direction,
                     const CoherentLight& light, bool inside) {
   // The field is continuous on the plane. The wave vectors before and after therefore differ only along the normal.
@@ -83,7 +83,7 @@ void BeamWalk::meet_facet(const Beam& from, const Frame& frame, const Candidate&
 }
 
 /// Adds a scattering site, or adds the scattered power to `truncated` if sites are not collected.
-/// \param beam beam that arrives, with its light along the s and p axes of the facet
+/// \param beam beam that arrives; its light is expressed in the s and p axes of the facet
 void BeamWalk::book_scattered(const Beam& beam, const Plane& plane, double power) {
   if (sites_ == nullptr) {
     book(Account::truncated, power);
@@ -108,7 +108,8 @@ void BeamWalk::keep_phases(Beam& beam, const Candidate& candidate, const materia
   if (has_texture) hit.phase = phase_texture(setup_.optics, beam.inside, cos_incidence, lobe);
   if (has_form) {
     hit.frame = FacetFrame(hit.plane.normal, hit.plane.offset_mm, *candidate.middle_mm);
-    // The path difference is the normal component of the wave vector before the facet minus that after the facet.
+    // The path difference per height is the normal component of the wave vector before the facet minus that after the
+    // facet, in units of the vacuum wave number.
     const double before = index_at(beam.inside) * cos_incidence;
     const double behind = lobe == Lobe::reflection ? -before : index_at(!beam.inside) * f.cos_refracted;
     hit.path_per_height = (beam.inside ? 1.0 : -1.0) * (before - behind);

@@ -18,7 +18,8 @@ struct Span {
   std::vector<double> shifts;
 };
 
-/// Divides a side into intervals, with `steps` intervals per period. The last interval may be shorter.
+/// Divides a side of the entrance face into intervals, with `steps` intervals per period. Intervals that are a multiple
+/// of the period apart are one Span. The last interval of the side may be shorter and is then a Span of its own.
 std::vector<Span> spans(double lower, double upper, double period, int steps) {
   std::vector<Span> all;
   const double step = period / steps;
@@ -157,8 +158,9 @@ PlanBox BeamWalk::sweep_of(const Beam& beam) const {
 }
 
 /// Splits the copies of a beam into groups that meet the same facets in the next step. The beam keeps its own group,
-/// and the other groups are queued as new beams. All groups may use the same horizon. No border is within the horizon
-/// along an axis on which the groups differ, and along the other axis the borders are equal.
+/// and the other groups are queued as new beams. The horizon (the length of the next step) is the same for all groups.
+/// Along an axis in which the positions of two groups differ, no border of the part is within the horizon. Along the
+/// other axis, both groups have the same distance from the border.
 void BeamWalk::keep_equal_places(Beam& beam) {
   if (setup_.infinite()) return;
   work_ += beam.places->size() / kPlacesPerWork;

@@ -29,8 +29,8 @@ inline constexpr double kFinestGoal = 1e-10;
 struct WeakBeams {
   std::uint32_t seed = 1;
   std::uint32_t replicates = 16;  ///< >= 2
-  /// Maximum power of a survivor as a multiple of the cut-off. It is large, because strong beams are traced one time
-  /// and survivors in every replicate.
+  /// Maximum power of a survivor as a multiple of the cut-off. It is large, because each strong beam is traced only one
+  /// time, but survivors are traced in every replicate.
   double thinning = 32.0;
 };
 
@@ -62,8 +62,8 @@ struct BeamResult {
   std::vector<Ledger> ledgers;  ///< one per acceptance cone, in the order given
   std::vector<Stokes> stokes;   ///< Stokes vectors of the retroreflected light per cone; first axis: source_axis()
   /// Standard error of the RRE (retroreflective efficiency) per cone. An interval of +-1.96 standard errors has a
-  /// confidence of 95 %. It is 0 without WeakBeams. Its minimum is the power of one survivor divided by the number of
-  /// replicates, because beams that no replicate has traced may have this power.
+  /// confidence of 95 %. It is 0 without WeakBeams. It is at least the power of one survivor divided by the number of
+  /// replicates. This allows for light that no replicate has traced.
   std::vector<double> std_error;
   std::uint64_t beams = 0;
   std::uint32_t depth = 0;  ///< number of interfaces on the longest path
@@ -90,9 +90,9 @@ struct ReturnedBeam {
   Eigen::Affine2d entry_from_exit = Eigen::Affine2d::Identity();
   double index = 1.0;  ///< refractive index of the part
   /// Jones matrix of the field. Its inputs are the amplitudes along the axes of the source. Its outputs are the
-  /// amplitudes along source_axis() of `direction` and along the axis perpendicular to both.
+  /// amplitudes along source_axis() of `direction`, and along the axis perpendicular to `direction` and source_axis().
   JonesMatrix jones = JonesMatrix::Identity();
-  double transmission = 0.0;  ///< power of the beam, as a fraction of the incident power, if `jones` were unitary
+  double transmission = 0.0;  ///< power of the beam, as a fraction of the incident power, without the losses in `jones`
   /// Index of the replicate if the beam was resampled (WeakBeams). Results of such beams are averaged over the
   /// replicates. Beams that were traced exactly have no replicate.
   std::optional<std::uint32_t> replicate;
@@ -121,10 +121,10 @@ using BeamObserver = std::function<void(const ReturnedBeam&)>;
 /// number of beams, so that no sampling is needed. Power below the cut-off, or lost between polygons by rounding, is
 /// added to `truncated`. Weak beams can be resampled instead (BeamPolicy::weak).
 ///
-/// Facets with a form are treated as planes, and the points where beams meet them are recorded. Each of these points
-/// belongs to a single facet only if BeamPolicy::by_cell is set. At textured facets, only the mean field is traced
-/// (mean_field(), mean_field_share()). The scattered power is added to `truncated`, except with
-/// BeamPolicy::keeps_phases. All threads may share one tracer.
+/// Facets with a form are treated as planes, and the points where beams meet them are recorded. Coplanar facets of
+/// neighbouring cells are joined, so that a recorded point may belong to several facets. It belongs to a single facet
+/// if BeamPolicy::by_cell is set. At textured facets, only the mean field is traced (mean_field(), mean_field_share()).
+/// The scattered power is added to `truncated`, except with BeamPolicy::keeps_phases. All threads may share one tracer.
 class BeamTracer {
  public:
   enum class Elements { each_by_itself, equal_at_once };
@@ -135,9 +135,9 @@ class BeamTracer {
 
   /// Traces the beams above the cut-off. If BeamPolicy::weak is set, the beams below it are resampled, and their mean
   /// over the replicates is added to the result.
-  /// \param progress receives the finished fraction of the expected work; null, or with BeamPolicy::weak: nothing is
-  ///        reported
-  /// \throw BudgetError if `max_beams` is reached; the message contains the power that was accounted for
+  /// \param progress receives the finished fraction of the expected work; may be null; not used if BeamPolicy::weak is
+  ///        set
+  /// \throw BudgetError if `max_beams` is reached; the message contains the power that was not accounted for
   BeamResult trace(const Optics& optics, const Illumination& illumination, const std::vector<double>& cones_deg,
                    const BeamPolicy& policy, const Cancellation* cancel = nullptr, const BeamObserver& observer = {},
                    Progress* progress = nullptr) const;
