@@ -72,7 +72,7 @@ BeamResult BeamTracer::trace(const Optics& optics, const Illumination& illuminat
 namespace {
 
 /// Combines the result of the strong beams, which are traced exactly, with the replicates of the weak beams.
-/// \param unseen minimum of the standard error: power that may be in beams that no replicate has traced
+/// \param unseen minimum of the standard error; it allows for power in beams that no replicate has traced
 BeamResult with_replicates(const BeamWalk& strong, const std::vector<BeamWalk>& replicates,
                            const std::vector<double>& cones_deg, double unseen) {
   BeamResult result = strong.result();

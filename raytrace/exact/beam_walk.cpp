@@ -27,15 +27,15 @@ constexpr double kReachInElements = 4.0;
 constexpr double kReachOfShared = 2.0;
 // Limit of the distance, in element sizes, that a slowly descending beam travels until all of its corners are in the
 // layer of elements. If the distance is longer, a step is measured from the point where the lowest corner enters the
-// layer. A horizontal beam above the layer meets no facet.
+// layer. A horizontal beam above the layer never enters it and meets no facet.
 constexpr double kFarInElements = 64.0;
 constexpr std::uint32_t kMaxLevelSteps = 1000;
 constexpr double kLastCutoff = 1e-25;
 // Number of facets of an element above which the incident light is divided into several fragments. Each fragment then
 // meets about this number of facets.
 constexpr double kFacetsOfPiece = 30.0;
-// Factors by which the cut-off decreases between passes. A pass traces all beams above the present cut-off. The gentle
-// factor is used for coarse goals, because one pass with the other factor may trace much more than is needed.
+// Factors by which the cut-off decreases between passes. A pass traces all beams above the present cut-off. kGentleFall
+// is used for coarse goals, because a single pass after a decrease by kFall may trace much more than is needed.
 constexpr double kFall = 0.1;
 constexpr double kGentleFall = 0.3;
 // Measured work of clipping two polygons, and the constant work per beam. The unit is a test of a bounding box.
@@ -222,8 +222,8 @@ BeamWalk::End BeamWalk::run(std::uint64_t most_work, const Cancellation* cancel)
 /// Returns true if the trace may stop. With a falling cut-off, this is the case if the power of the beams not yet
 /// traced (the open power) is at most the goal. Until `spare_work` has been done, the finest goal is used instead. The
 /// function may be called at any time, because the open power never increases. For the finest goals, the sum
-/// `pending_.power` is too inaccurate, and the queue itself is tested. With the other approaches, the trace stops when
-/// the queue is empty.
+/// `pending_.power` is too inaccurate, and the trace stops when the queue is empty and the power below the cut-off is
+/// at most the goal. With the other approaches, the trace stops when the queue is empty.
 bool BeamWalk::may_stop() const {
   if (approach_ != Approach::falling) return pending_.beams.empty();
   if (policy_.truncated_goal <= kFinestGoal) return pending_.beams.empty() && deferred_.power <= policy_.truncated_goal;

@@ -64,7 +64,7 @@ geometry::Polygon entrance_outline(const geometry::Part& part);
 /// Traces beams through a part until the remaining power is small enough. It is used for one BeamTracer::trace().
 class BeamWalk {
  public:
-  /// \param equal symmetry of the array, with which identical beams are traced one time; null if not used
+  /// \param equal symmetry of the array; if given, identical beams are traced as one beam; null if not used
   BeamWalk(const geometry::Part& part, const Vec2& centre_mm, const CellIndex& cells, const LightSetup& setup,
            const BeamPolicy& policy, BeamObserver observer, const EqualPlaces* equal = nullptr);
 

@@ -16,7 +16,7 @@ double turn(const Vec2& a, const Vec2& b, const Vec2& c) {
 using Points = boost::container::small_vector<Vec2, 24>;
 
 /// Sorts points by x. Points whose x coordinates differ only by rounding are sorted by y. Without this rule, points on
-/// a vertical side would be in random order, and convex_hull() could remove an end point of the side as collinear.
+/// a vertical side would be in arbitrary order, and convex_hull() could remove an end point of the side as collinear.
 /// \param least_area tolerance: corners are collinear if twice the area of their triangle is at most this value
 void sort_along_x(Points& points, double least_area) {
   std::sort(points.begin(), points.end(), [](const Vec2& p, const Vec2& q) { return p.x() < q.x(); });
@@ -32,8 +32,8 @@ void sort_along_x(Points& points, double least_area) {
 }
 
 /// Returns the convex hull of two polygons by Andrew's monotone chain algorithm.
-/// \param least_area corners at which twice the area of the triangle with both neighbours is at most this value are
-///        omitted
+/// \param least_area a corner is omitted if twice the area of the triangle that it forms with its two neighbours is at
+///        most this value
 FlatPolygon convex_hull(const FlatPolygon& a, const FlatPolygon& b, double least_area) {
   Points points(a.begin(), a.end());
   points.insert(points.end(), b.begin(), b.end());

@@ -45,7 +45,7 @@ struct Overlay::Hidden {
 
   double merge_mm;
   double least_area;
-  std::vector<ValuedPolygon> pieces;  ///< an empty polygon marks an entry that was divided into others
+  std::vector<ValuedPolygon> pieces;  ///< an empty polygon marks an entry that was divided into new entries
   Tree tree;
 
   void add(FlatPolygon polygon, double value) {
@@ -67,7 +67,8 @@ struct Overlay::Hidden {
     from = std::move(left);
   }
 
-  /// Divides a stored polygon into the part that `polygon` covers and the rest. Returns false if they do not overlap.
+  /// Divides a stored polygon into the part that `polygon` covers and the rest. `value` is added to the covered part.
+  /// Returns false if the two polygons do not overlap.
   bool divide(const Entry& entry, const FlatPolygon& polygon, double value) {
     const ValuedPolygon before = pieces[entry.second];
     FlatPolygon common = intersection(before.polygon, polygon, merge_mm);
@@ -235,7 +236,7 @@ class Fusion {
 
   double near_mm_;
   double value_tolerance_;
-  std::vector<ValuedPolygon> pieces_;  ///< an empty polygon marks an entry that was joined to another
+  std::vector<ValuedPolygon> pieces_;  ///< an empty polygon marks an entry that was joined to another entry
   PointLookup<Edge> edges_;
   std::deque<std::size_t> open_;
 };

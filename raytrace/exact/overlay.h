@@ -1,7 +1,7 @@
 #pragma once
 
 // Overlay of convex polygons with values. The result is a set of disjoint polygons with summed values, which is used
-// for footprints.
+// for footprints (the regions of the entrance face from which light returns).
 
 #include <memory>
 #include <vector>

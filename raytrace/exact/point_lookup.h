@@ -1,6 +1,7 @@
 #pragma once
 
-// Search of values by points within a tolerance, for example of beams with the same direction.
+// Lookup of values that are stored at points in space. Coordinates are compared with a tolerance. The lookup finds, for
+// example, beams with nearly the same direction.
 
 #include <array>
 #include <cmath>

@@ -105,7 +105,7 @@ bool RepeatRegion::is_of_lattice(const PlacedCell& cell, const std::vector<Place
   });
 }
 
-/// Excludes a box from the region by moving one side inward. The side is selected for the smallest displacement.
+/// Excludes a box from the region by moving one side inward. The side that needs the smallest displacement is selected.
 void RepeatRegion::leave_out(const Rectangle& box_mm) {
   Side* nearest = nullptr;
   double least_loss = std::numeric_limits<double>::infinity();

@@ -30,13 +30,14 @@ class RepeatRegion {
   const geometry::Polygon& outline_mm() const { return outline_mm_; }
   bool repeats() const { return !sides_.empty(); }
 
-  /// Tiles of the entrance face above the region. Tiles inside the region repeat with the periods.
+  /// Tiles (rectangular pieces of the entrance face above the region) that are whole periods apart from each other.
+  /// Tiles inside the region are lit and act identically.
   struct Tiles {
     geometry::Polygon first;  ///< first tile found that is completely within the outline
     BeamPlaces inner;         ///< displacements from `first` to all repetitions within the outline, including 0
     std::vector<geometry::Polygon> at_border;
   };
-  /// \param most_step_mm maximum side lengths of a tile
+  /// \param most_step_mm approximate side lengths of a tile; each period is divided into a whole number of tiles
   std::vector<Tiles> tiles(const Vec2& most_step_mm) const;
 
   /// Divides the copies of a beam into groups, see EqualPlaces::divided(). All copies whose sweep is inside the region

@@ -199,9 +199,9 @@ void ScatteredRays::launch_one(const ScatterSite& site, double power) {
     walker_.resume(start, ray, key_, replicate_, number, choices);
 }
 
-/// Traces an ordinary ray from a site for which score() has traced a ray to the source. That ray already represents the
-/// light that is diffracted one time and reaches the cones. If the ordinary ray ends in a cone as well, its power is
-/// therefore added to the light outside of the cones.
+/// Traces an ordinary ray from a site for which score() has traced a ray to the source. The ray to the source already
+/// represents the light that is diffracted one time and reaches the cones. If the ordinary ray ends in a cone, its
+/// power is therefore added to the light outside of the cones.
 void ScatteredRays::follow_scored(const Vec3& position, const Ray& ray, std::uint32_t number, std::uint32_t& choices) {
   apart_.clear();
   walker_apart_.resume(position, ray, key_, replicate_, number, choices);
@@ -212,7 +212,7 @@ void ScatteredRays::follow_scored(const Vec3& position, const Ray& ray, std::uin
 
 /// Traces a ray that represents all light of this site that is diffracted one time towards the widest cone. The same
 /// light is added to the light outside of the cones by follow_scored(). The power of this ray that reaches a cone is
-/// therefore subtracted there.
+/// therefore subtracted from the light outside of the cones.
 void ScatteredRays::score(const WayToSource& way, const Vec3& position, const Vec3& normal, const Ray& met,
                           double power, std::uint32_t number, std::uint32_t& choices) {
   surface_models::RandomStream random(key_, replicate_, number, choices++);

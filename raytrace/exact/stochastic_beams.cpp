@@ -30,10 +30,11 @@ constexpr double kGentlestFall = 0.5;
 constexpr double kMargin = 0.8;
 // Maximum number of beams that are kept for the replicates. They take about 100 MB.
 constexpr std::size_t kMostKept = 200'000;
-// Maximum power of a ray of scattered light in the first round, and in the last round.
+// Maximum power of a ray of scattered light: in the first round, and the limit at which the rounds end.
 constexpr double kFirstRayPower = 1e-3;
 constexpr double kLastRayPower = 1e-10;
-// Fraction of the target error that is allowed for beams and for rays each, if there are both.
+// Fraction of the target error that is allowed for each of two errors, if facets scatter light: the error of the beams,
+// and the error of the rays of scattered light. The two errors add in quadrature.
 constexpr double kShareOfTarget = 0.7;
 // Work of tracing a ray segment, in units of BeamTrace::work().
 constexpr std::uint64_t kLooksPerSegment = 25;
@@ -146,7 +147,8 @@ double StochasticBeams::expected_work() const {
   if (result_.reached_target) return work();
   const double next = next_threshold();
   // Kept beams that are also weaker than the next threshold are resampled again. The number of their survivors is
-  // inversely proportional to the threshold. In an array with many elements, all beams may be so weak.
+  // inversely proportional to the threshold. In an array with many elements, all beams may be weaker than the next
+  // threshold.
   double still_weak = 0.0;
   for (const Beam& beam : strong_->kept())
     if (strong_->strength_of(beam) < next) still_weak += beam.total_power();

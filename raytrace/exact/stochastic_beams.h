@@ -36,8 +36,8 @@ class BeamGeneration;
 class StochasticBeams {
  public:
   static constexpr std::uint32_t kReplicates = 16;
-  /// Ratio of the maximum power of a survivor to the threshold. It is large, because strong beams are traced one time
-  /// and survivors in every replicate.
+  /// Ratio of the maximum power of a survivor to the threshold. It is large, because each strong beam is traced only
+  /// one time, but survivors are traced in every replicate.
   static constexpr double kThinning = 32.0;
 
   /// Returns true if the facets leave enough specular light in the beams. This is the case for smooth facets, and for
@@ -58,7 +58,7 @@ class StochasticBeams {
   /// \return true if no further round is needed or possible, or if tracing was cancelled
   /// \throw BudgetError if the first round exceeds the memory budget
   bool advance();
-  /// Returns the result of the last round, without the number of rays. An interval of +-1.96 standard errors has a
+  /// Returns the result of the last round. The number of rays in it is 0. An interval of +-1.96 standard errors has a
   /// confidence of 95 %.
   const MonteCarloResult& result() const { return result_; }
   std::uint64_t beams() const;  ///< number of beams traced so far

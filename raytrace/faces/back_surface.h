@@ -26,7 +26,9 @@ class BackSurface {
   BackSurface& operator=(const BackSurface&) = delete;
   ~BackSurface();
 
-  /// Returns the first facet that the ray meets on the side from which it comes, up to the distance `t_max`.
+  /// Returns the first facet that the ray meets up to the distance `t_max`. Only the side of a facet from which the ray
+  /// comes counts: rays inside the part meet facets through which they leave, and rays outside meet facets through
+  /// which they enter.
   std::optional<SurfaceHit> first_hit(const SurfaceRay& ray) const;
 
   /// Returns the first facet for a ray that must meet the surface. If first_hit() finds no facet, the search is

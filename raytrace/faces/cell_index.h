@@ -90,7 +90,8 @@ class CellIndex {
   geometry::Vec2 origin_ = geometry::Vec2::Zero();
   double bucket_mm_ = 1.0;
   std::int64_t count_[2] = {1, 1};
-  std::vector<std::uint32_t> first_;  ///< index of the first entry of each bucket, and the number of entries
+  std::vector<std::uint32_t> first_;  ///< index of the first entry of each bucket, followed by the total number of
+                                      ///< entries
   std::vector<Entry> entries_;
 };
 

@@ -26,7 +26,8 @@ class EntranceFace {
   EntranceFace& operator=(const EntranceFace&) = delete;
   virtual ~EntranceFace() = default;
 
-  /// Returns the first intersection with the entrance surface on the side from which the ray comes, up to `t_max`.
+  /// Returns the first point, up to `t_max`, at which the ray crosses the entrance surface from the side on which it
+  /// starts. This is the lower side for rays inside the part, otherwise the upper side.
   /// \pre the intersection is within the outline of the part
   virtual std::optional<EntranceHit> first_hit(const SurfaceRay& ray) const = 0;
 

@@ -10,8 +10,8 @@
 
 namespace retrace::raytrace {
 
-/// The planes and outlines of the back surface in double precision. Its own search takes time proportional to the
-/// number of cells near the ray. BackSurface finds these cells faster.
+/// The planes and outlines of the back surface in double precision. first_hit() tests the boxes of all patches.
+/// BackSurface is faster, because it finds the boxes near a ray with Embree.
 class ExactSurface {
  public:
   using Facet = geometry::PatchFacet;
@@ -29,17 +29,18 @@ class ExactSurface {
 
   const Facet& facet(FacetRef ref) const { return part_->patches[placements_[ref.placement].patch].facets[ref.facet]; }
 
-  /// Returns the first facet that the ray meets on the side from which it comes, up to `t_max`. Rays inside the part
-  /// meet facets through which they leave. Rays outside meet facets through which they enter.
+  /// Returns the first facet that the ray meets up to the distance `t_max`. Only the side of a facet from which the ray
+  /// comes counts: rays inside the part meet facets through which they leave, and rays outside meet facets through
+  /// which they enter.
   std::optional<SurfaceHit> first_hit(const SurfaceRay& ray) const;
 
   /// Replaces `best` if the ray meets a facet of `range` at a smaller distance than `best`. The result does not depend
-  /// on the order of searches. Values of t slightly below 0 are preserved.
+  /// on the order of searches. Distances slightly below 0, which rounding may cause, are preserved.
   /// \param tolerance_mm distance by which facets are enlarged
   void search(const SurfaceRay& ray, std::uint32_t placement, const FacetRange& range, double tolerance_mm,
               SurfaceHit& best) const;
 
-  /// Returns the hit found by searches, or nothing if they have found none.
+  /// Returns the hit found by calls of search(), or nothing if they have found none. A distance below 0 becomes 0.
   static std::optional<SurfaceHit> settled(SurfaceHit best);
 
   /// Returns the placements of the patches, relative to the origin of rays.

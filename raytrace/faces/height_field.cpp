@@ -88,8 +88,8 @@ HeightField::Cell HeightField::cell_between(const std::array<const EntranceSurfa
 }
 
 /// Enlarges the bounds of the cells. The largest curvature may be just outside of the cell in which it was estimated.
-/// Each cell therefore receives the maximum of its neighbours. The range of heights is enlarged by the error of
-/// bilinear interpolation at this curvature.
+/// Each cell therefore receives the maximum of its own bound and the bounds of its neighbours. The range of heights is
+/// enlarged by the error of bilinear interpolation at this curvature.
 void HeightField::widen_bends() {
   std::vector<Cell> wide = cells_;
   const double square = cell_mm_.squaredNorm();
@@ -116,7 +116,8 @@ struct HeightField::Search {
   double sign = 1.0;         ///< -1 for a ray inside the part, which is below the surface
   double across2 = 0.0;      ///< squared length of the direction in projection along z
   double same_mm = 0.0;      ///< heights that differ by less are treated as equal
-  double last_clear = -1.0;  ///< largest t at which the ray is known to be on its side; negative if there is none
+  double last_clear = -1.0;  ///< largest t at which the ray is known not to have crossed the surface; negative if none
+                             ///< is known
 
   struct Gap {
     double value = 0.0;
@@ -175,7 +176,8 @@ std::optional<EntranceHit> HeightField::Search::within(const Cell& cell, double 
     if (!(t + step < to)) return std::nullopt;
     t += step;
     g = gap(t);
-    // The curvature may exceed the bound of the cell. The step is then halved until the ray is on its side.
+    // The curvature may exceed the bound of the cell. The step is then halved until the ray is on the side from which
+    // it comes.
     double clear = t;
     for (int k = 0; g.value <= 0.0 && k < kMostIterations; ++k) {
       clear = 0.5 * (from + clear);
@@ -233,7 +235,7 @@ std::optional<std::array<double, 2>> HeightField::span_of(const SurfaceRay& ray,
   const double z = ray.origin.z();
   const double near_mm = ray.inside ? lowest_mm() - room_mm : highest_mm() + room_mm;
   const double far_mm = ray.inside ? highest_mm() + room_mm : lowest_mm() - room_mm;
-  const double way = ray.inside ? 1.0 : -1.0;  // sign of the z direction in which the entrance surface is
+  const double way = ray.inside ? 1.0 : -1.0;  // sign of the z direction from the ray towards the entrance surface
   if (way * dz > 0.0) {
     const bool starts_on = ray.source.placement != FacetRef::kNone;
     const double from = starts_on ? 0.0 : std::max(0.0, (near_mm - z) / dz);

@@ -8,7 +8,7 @@
 
 namespace retrace::raytrace {
 
-/// An entrance surface of plane triangles. The search for the first triangle is that of BackSurface.
+/// An entrance surface of plane triangles. A BackSurface finds the first triangle that a ray meets.
 class MeshEntrance : public EntranceFace {
  public:
   MeshEntrance(const geometry::SurfacePatch& patch, const geometry::Polygon& outline, const Vec2& centre_mm);
@@ -16,8 +16,8 @@ class MeshEntrance : public EntranceFace {
   std::optional<EntranceHit> first_hit(const SurfaceRay& ray) const override;
 
  private:
-  /// Returns true if the ray passes through the whole range of heights of the surface, from its side, before `t_max`.
-  /// It then meets the surface, except for gaps between triangles that are caused by rounding.
+  /// Returns true if the ray passes through the whole range of heights of the surface before `t_max`, from the side on
+  /// which it starts. It then meets the surface, except for gaps between triangles that are caused by rounding.
   bool crosses(const SurfaceRay& ray) const;
 
   geometry::Part part_;  ///< heights are relative to the lowest point of the surface
