@@ -55,7 +55,7 @@ StandingFacet mirror_image(StandingFacet facet, Eigen::Index axis, double about_
   return facet;
 }
 
-/// All facets of a part, with a search by their centroids.
+/// All facets of a part. A facet can be looked up by its centroid.
 class FacetsByPlace {
  public:
   explicit FacetsByPlace(const Part& part) : near_mm_(kSamePlace * part.size_mm), by_middle_(near_mm_) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// Rays for the search of a surface, and references to the facets where they start and end.
+// Rays for the search for intersections with a surface, and references to the facets where the rays start and end.
 
 #include <cstdint>
 #include <limits>

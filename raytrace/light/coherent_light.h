@@ -16,7 +16,7 @@ namespace retrace::raytrace {
 /// materials::FresnelCoefficients.
 using JonesMatrix = Eigen::Matrix2cd;
 
-/// Light with its field. Interfaces change the amplitudes in the same way as the Stokes parameters. The rows of the
+/// Light with its field. Each interface changes the amplitudes together with the Stokes parameters. The rows of the
 /// matrix refer to s and p, the columns to the two axes of the source.
 struct CoherentLight : Light {
   JonesMatrix jones = JonesMatrix::Identity();

@@ -32,8 +32,8 @@ struct Haze {
   double spread = 0.0;  ///< > 0 if `share` is > 0
 };
 
-/// Fine scratches. Light that meets a scratch is deflected in the same way as by Haze, but only perpendicular to the
-/// scratch.
+/// Fine scratches. Light that meets a scratch is deflected: its direction cosine perpendicular to the scratch is
+/// shifted by a random number with the density exp(-shift^2 / spread^2).
 struct FineScratches {
   double coverage = 0.0;                   ///< fraction of the face under scratches, 0 to 1
   double spread = 0.0;                     ///< > 0 if `coverage` is > 0

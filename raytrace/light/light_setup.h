@@ -80,7 +80,7 @@ struct Tally {
   void add(const Tally& more);
   /// Sets all sums to 0.
   void clear();
-  /// Returns the ledger for one cone, in units of the tally.
+  /// Returns the ledger for one cone. Its powers have the unit of the sums of this tally.
   /// \param cone index into the cones of the set-up
   Ledger ledger(std::size_t cone) const;
   /// Returns the Stokes parameters of the light that is retroreflected into one cone.
@@ -88,8 +88,8 @@ struct Tally {
 };
 
 /// Returns the first axis of the Stokes parameters of light above the part that travels along `direction` or against
-/// it. It is the projection of +x perpendicular to `direction`. The second axis is `direction` x first axis. Both axes
-/// are defined as seen from the source.
+/// it. It is the projection of +x perpendicular to `direction`. The second axis is `direction` x first axis. Seen from
+/// the source, the first axis points to the right and the second axis up.
 /// \pre `direction` is not parallel to x
 Vec3 source_axis(const Vec3& direction);
 
@@ -112,7 +112,7 @@ materials::FresnelCoefficients fresnel_at_back(const Optics& optics, geometry::F
                                                double cos_incidence);
 
 /// Returns the Fresnel coefficients of the entrance face for light from inside or outside the part. For
-/// `lossless_entrance`, only the directions are valid.
+/// `lossless_entrance`, only the angle of refraction is valid, and the amplitudes must not be used.
 materials::FresnelCoefficients fresnel_at_entrance(const Optics& optics, bool inside, double cos_incidence);
 
 /// Returns the Fresnel coefficients of the entrance face under a drop of water. The face has its layers except for the

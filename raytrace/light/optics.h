@@ -33,7 +33,8 @@ struct Optics {
   surface_models::ScatterModel facet_scatter;  ///< scattering by the texture of retro facets
   surface_models::FacetForm facet_form;        ///< deviation of retro facets from their planes
   double wavelength_nm = 587.56;               ///< in vacuum; used only for scattering
-  std::shared_ptr<const WetBack> wet;          ///< elements with a different medium behind them; null if there are none
+  std::shared_ptr<const WetBack> wet;          ///< elements whose medium behind the back has another index than
+                                               ///< `back_index`; null if there are none
 
   /// Returns the refractive index before a face of the back surface divided by the index after the face.
   double ratio_at_back(bool inside) const { return inside ? index / back_index : back_index / index; }
@@ -45,17 +46,20 @@ struct Optics {
   bool has_plane_facets() const { return is_smooth() && facet_form.is_plane(); }
   /// Returns true if the medium behind all elements is the same.
   bool has_one_back() const { return wet == nullptr; }
-  /// Returns true if no face of the part scatters, and retro facets are plane with the same medium behind them.
+  /// Returns true if no face of the part scatters, all retro facets are plane, and the same medium is behind all of
+  /// them.
   bool keeps_beams() const { return has_plane_facets() && has_one_back() && !entrance.scatters(); }
   /// Returns true if there are no layers on the entrance face.
   bool has_bare_entrance() const { return entrance_layers.empty() && entrance.layers.empty(); }
   bool entrance_absorbs() const { return entrance_layers.absorbs() || entrance.absorbs(); }
 };
 
-/// Elements with a different medium behind them. The boundary between the media is not modelled. Light that travels
-/// behind the part from one element to another meets each facet in the medium of that facet.
+/// Elements that have another medium behind them, such as water, than the other elements of the part. The boundary
+/// between the two media is not modelled. Light that travels behind the part from one element to another meets each
+/// facet in the medium of that facet.
 struct WetBack {
-  Optics optics;  ///< optics of these elements; they differ only by the index behind the back and its consequences
+  Optics optics;  ///< optics of these elements; only `back_index` and values that depend on it differ from the other
+                  ///< elements
   std::shared_ptr<const geometry::ChosenElements> elements;
 };
 

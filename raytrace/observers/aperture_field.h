@@ -28,7 +28,7 @@ class ApertureField {
   bool empty() const { return fields_.empty(); }
   /// Returns the power of the mean field per unit area of direction cosines. Each row belongs to a direction. The first
   /// column is the power of beams that were traced exactly. The other columns are the replicates divided by the number
-  /// of replicates, so that the sum of a row is the mean. Rows are 0 if the computation was cancelled.
+  /// of replicates, so that the sum of a row is the mean power. Rows are 0 if the computation was cancelled.
   Eigen::ArrayXXd per_cosines(std::span<const geometry::Vec2> cosines, const Cancellation* cancel) const;
 
  private:

@@ -40,8 +40,8 @@ constexpr std::size_t kPathsTogether = 4096;
 // Number of the training pass of a PixelGuide. A pass traces kPointsPerPass paths through every pixel. The passes of a
 // picture have smaller numbers.
 constexpr std::uint32_t kFirstPass = 0xffffffff;
-// Minimum side length of a tile in pixels, and maximum number of tiles along a side of the picture. A PixelGuide has
-// one map per tile.
+// The picture is divided into rectangular tiles, and a PixelGuide has one map per tile. These are the minimum side
+// length of a tile in pixels and the maximum number of tiles along a side of the picture.
 constexpr std::size_t kTilePixels = 100;
 constexpr std::size_t kMostTiles = 8;
 
@@ -214,9 +214,9 @@ struct CameraTracer::Hidden {
   double radius_mm = 0.0;
   std::size_t tiles_along;          ///< number of tiles of the guide along a side of the picture
   std::optional<PixelGuide> guide;  ///< set after the training pass, which is not part of the picture
-  bool has_learnt_all = false;      ///< true if pass 0 has also trained the guide
+  bool has_learnt_all = false;      ///< true if the guide has been trained with the training pass and with pass 0
   std::vector<bool> has_guide;      ///< indexed by pixel: true if the guide selects points of this pixel
-  std::vector<float> levels;        ///< indexed by pixel: typical luminance, see level_of()
+  std::vector<float> levels;        ///< indexed by pixel: typical luminance, see Lesson::level_of()
 };
 
 /// Training samples for a PixelGuide, collected during one pass.
@@ -267,8 +267,8 @@ struct CameraTracer::Hidden::Lesson {
   }
 };
 
-/// Returns the contact with the entrance face or the sides of a finite part's plate: the nearest face that faces the
-/// ray.
+/// Returns the point at which a ray enters the plate of a finite part, through the entrance face or a side. Returns
+/// nothing if the ray meets neither of them from outside.
 std::optional<Contact> CameraTracer::Hidden::contact_with_plate(const WorldRay& ray) const {
   const PathSetup& setup = setups.front();
   const auto is_within = [&](const Vec3& p, std::size_t except) {
@@ -480,7 +480,7 @@ std::optional<CameraPass> CameraTracer::Hidden::trace(std::uint32_t number, cons
       const Look& look = block.looks[k];
       const std::size_t pixel = first + k / kPointsPerPass;
       // The weights of a pixel's points add up to 1 only on average. The weights are therefore applied to the
-      // difference from the typical luminance of the pixel, so that their sum causes little noise.
+      // difference from the typical luminance of the pixel, so that deviations of their sum from 1 cause little noise.
       const double level = is_guided(pixel) ? static_cast<double>(levels[pixel]) : 0.0;
       const double luminance = level / kPointsPerPass + look.weight * (look.luminance - level);
       result[pixel] += luminance;

@@ -47,7 +47,8 @@ struct Surroundings {
 struct Film {
   double width_mm = 0.0;            ///< size along x, around the cylinder
   double height_mm = 0.0;           ///< size along y, the axis of the cylinder
-  std::optional<double> radius_mm;  ///< cylinder radius: > 0 convex towards the light, < 0 concave; none: plane
+  std::optional<double> radius_mm;  ///< cylinder radius: > 0 if convex towards the light, < 0 if concave; plane film if
+                                    ///< not set
 };
 
 /// Method of averaging over the discs of lamp and pupil: analytically with ApertureKernel, or by sampling points.
@@ -68,8 +69,8 @@ struct WeighedOptics {
 };
 
 /// Result of one pass over a picture. It first contains the luminance (cd/m^2) of each pixel, row by row from the top,
-/// and then the fraction of each pixel that shows the part. The last element is the sum of the luminances that show the
-/// part.
+/// and then the fraction of each pixel that shows the part. The last element is the sum over all pixels of the
+/// luminance that comes from paths through the part.
 using CameraPass = std::vector<double>;
 
 /// A picture that becomes more accurate with each pass. The passes are independent of each other.
@@ -101,16 +102,18 @@ struct CameraImage {
   double own_variance(std::size_t pixel) const { return squares[pixel] / (passes - 1.0) / passes; }
 };
 
-/// Path policy of cameras. Both branches of an interface are traced down to much lower power than for efficiencies. The
-/// lamp is about 1e5 times as bright as its surroundings, so that branches with 1e-4 of the power are important.
+/// Path policy of cameras. Both branches of an interface (reflected and transmitted light) are traced down to a much
+/// lower power than in calculations of efficiencies. The lamp is about 1e5 times as bright as its surroundings, so that
+/// branches with 1e-4 of the power are important.
 inline constexpr PathPolicy kCameraPolicy{.split_power = 1e-4};
 
 /// Engine that traces the paths. `fastest` uses the cell engine where possible (CellArray::make()) and Embree for paths
 /// that meet borders. `embree` traces all paths one by one.
 enum class CameraEngine { fastest, embree };
 
-/// Traces light backwards from the pupil through the part, with the same walkers as other light. By reciprocity, a path
-/// transmits the same fraction of light in both directions (docs/theory/images.md).
+/// Traces light backwards from the pupil through the part. It uses the same walkers (PathWalker, CellWalker) as for
+/// light that starts at a source. By reciprocity, a path transmits the same fraction of light in both directions
+/// (docs/theory/images.md).
 class CameraTracer {
  public:
   /// Number of points per pixel and pass. The points are evenly distributed.
@@ -132,7 +135,7 @@ class CameraTracer {
   /// \pre no other call is running
   /// \throw BudgetError if power is lost
   std::optional<CameraPass> pass(std::uint32_t number, const Cancellation* cancel = nullptr) const;
-  /// Adds the next pass. Returns false, without adding anything, if it was cancelled.
+  /// Traces the next pass and adds it to `image`. Returns false if tracing was cancelled; the image is then unchanged.
   bool add_pass(CameraImage& image, const Cancellation* cancel = nullptr) const;
 
  private:

@@ -75,8 +75,8 @@ class Luminaire {
     intensity_ = lamp.illuminance_lx * distance * distance;
   }
 
-  /// Returns the luminance of the lamp along a ray, in cd/m^2. It is averaged over the discs of lamp and pupil with
-  /// DiscAverage::kernel.
+  /// Returns the luminance of the lamp along a ray, in cd/m^2. With DiscAverage::kernel, it is the average over the
+  /// discs of lamp and pupil.
   double luminance(const Vec3& from, const Vec3& direction) const {
     if (!(intensity_ > 0.0)) return 0.0;
     return discs_ == DiscAverage::kernel ? averaged(from, direction) : met(from, direction);

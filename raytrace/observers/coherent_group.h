@@ -1,6 +1,7 @@
 #pragma once
 
-// Coherent parts of the returned light: plane waves through polygons that one cell returns.
+// Coherent parts of the returned light. Each part consists of plane waves that one cell returns and that leave through
+// polygons of the entrance face.
 
 #include <Eigen/Core>
 #include <cstdint>

@@ -44,7 +44,8 @@ struct DetectorMaps {
   bool complete = true;
 };
 
-/// Computes the maps from beams of polygonal cross-section. Pixels contain the exact area that polygons cover.
+/// Computes the maps from beams of polygonal cross-section. The area of a pixel that a polygon covers is computed
+/// exactly.
 /// \throw BudgetError in the same cases as BeamTracer::trace()
 DetectorMaps exact_detector_maps(const geometry::Part& part, const Optics& optics, const Illumination& illumination,
                                  const DetectorSetting& setting, const BeamPolicy& policy,

@@ -18,7 +18,8 @@ class DirectionGrid {
   enum class Layout { square, polar };
   /// \param half_width_rad half width of the square, or radius of the disc; > 0
   /// \param rows rows of the square, or rings of the disc
-  /// \param columns columns of the square, or sectors of the disc, from "right" towards "up"
+  /// \param columns columns of the square, or sectors of the disc, counted from ReturnFrame::right towards
+  ///        ReturnFrame::up
   DirectionGrid(Layout layout, double half_width_rad, std::size_t rows, std::size_t columns)
       : layout_(layout), half_width_rad_(half_width_rad), rows_(rows), columns_(columns) {}
 

@@ -89,7 +89,8 @@ std::optional<ErrorFreeExit> error_free_exit(const ReturnedBeam& beam, const Vec
   if (ideal->reversed.cols() == 0 || leaving_ideal.z() < kLargestError_rad) return std::nullopt;
 
   // Let P be the point at the distance `length_mm` from the entry point along `entering`. Without reflections, the
-  // light would reach P. The isometry x -> M x + t maps P to the exit point, for which the origin is chosen here.
+  // light would reach P. The isometry x -> M x + t maps P to the exit point. The light whose exit point is the origin
+  // determines t.
   const Vec2& entered = entry_from_exit.translation();
   const double length_mm = (beam.phase_mm + to_source.head<2>().dot(entered)) / beam.index;
   const Vec3 t = -length_mm * leaving - m.leftCols<2>() * entered;

@@ -15,17 +15,18 @@ namespace {
 
 using geometry::Vec2, std::numbers::pi;
 
-// Number of lattice points per finest detail. It is sufficient because the density is band-limited.
+// Number of lattice points per finest detail of the diffracted power density. It is sufficient, because this density is
+// band-limited.
 constexpr double kPointsToADetail = 1.5;
-// Number of lattice points per radius of a cone. More points are needed there, because the lattice approximates the
-// edge of the cone in steps.
+// Number of lattice points per radius of a cone. A cone needs more points than a detail, because the lattice
+// approximates the edge of the cone in steps.
 constexpr double kPointsToARadius = 48.0;
 // Number of points for the integral of the density outside of a cone. kTailKey is the key of their scramble.
 constexpr std::uint32_t kTailPoints = 1U << 15;
-// Maximum distance of these points from the axis of the cone, in the plane of direction cosines.
+// Maximum distance of the kTailPoints points from the axis of the cone, in the plane of direction cosines.
 constexpr double kFarthestCosine = 20.0;
 // Distance from the axis of the cone, in units of the largest deflection by facet forms, beyond which forms are
-// neglected. The density there is low, and forms change it only by a small fraction.
+// neglected. At larger distances, the density is low, and forms change it only by a small fraction.
 constexpr double kFarInBends = 4.0;
 constexpr std::uint64_t kTailKey = 0x2545f4914f6cdd1dU;
 

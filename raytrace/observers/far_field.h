@@ -30,8 +30,8 @@ struct FarFieldPolicy {
   /// If there are few polygons, all beams are diffracted.
   double undiffracted_share = 1e-4;
   std::size_t most_polygons = 20'000;  ///< maximum number of diffracted polygons; weaker ones are not diffracted
-  /// Minimum width of diffraction patterns that are computed. Larger cells have narrower patterns. Their light is not
-  /// diffracted, because averaging over the discs of source and receiver hides the pattern.
+  /// Minimum width of diffraction patterns that are computed. Light of cells with narrower patterns (larger cells) is
+  /// not diffracted, because averaging over the discs of source and receiver hides these patterns.
   double finest_detail_rad = 0.0;
   /// Number of replicates of WeakBeams, or 0 without weak beams. A resampled beam does not interfere with other beams.
   std::uint32_t replicates = 0;
@@ -47,7 +47,7 @@ struct FarFieldPolicy {
 /// Undiffracted light, which has a single direction.
 struct FarFieldRay {
   Vec3 direction;
-  double power = 0.0;                           ///< power; for a replicate divided by the number of replicates
+  double power = 0.0;                           ///< power; if `replicate` is set, divided by the number of replicates
   std::optional<std::uint32_t> replicate = {};  ///< set for resampled beams
 };
 
@@ -61,9 +61,10 @@ struct FarFieldIntensity {
 /// Angular distribution of the light that leaves the entrance face, for one direction of incidence and one wavelength.
 /// Powers are fractions of the incident power.
 ///
-/// The fields of beams of one cell are added. The intensities of different cells are added. The reason is that their
-/// heights differ by more than the wavelength, and that the light of a lamp is coherent over less than a cell. By
-/// Fraunhofer diffraction at the entrance face, the far field of a beam is the Fourier transform of its polygon.
+/// The fields of beams of one cell are added. The intensities of different cells are added. The reason is that the
+/// heights of cells differ by more than the wavelength, and that the light of a lamp is coherent over less than the
+/// width of a cell. By Fraunhofer diffraction at the entrance face, the far field of a beam is the Fourier transform of
+/// its polygon.
 ///
 /// For beams that have met textures (ReturnedBeam::hits), the mean field is diffracted and the scattered light is added
 /// (ScatteredField; docs/theory/photometry.md). Both are averages over all possible heights of the texture.
@@ -86,8 +87,8 @@ class FarField {
   /// solid angle of the bin.
   std::vector<double> binned(const ReturnFrame& frame, const DirectionGrid& grid) const;
 
-  /// Power inside and outside of the cone about the direction to the source. Both are integrated independently.
-  /// `outside` includes the power that the theory predicts beyond the horizon.
+  /// Power inside and outside of the cone about the direction to the source. The two values are integrated
+  /// independently of each other. `outside` includes the power that the theory predicts beyond the horizon.
   struct Split {
     double inside = 0.0;
     double outside = 0.0;
@@ -120,8 +121,9 @@ class FarField {
   double wavelength_mm_ = 0.0;
   Eigen::Matrix2cd coherency_ = 0.5 * Eigen::Matrix2cd::Identity();
   std::vector<CoherentGroup> groups_;
-  /// Diffracted groups for plane facets, used if facets have a form that deflects light by at most `bend_`. Far from
-  /// the axis, their field is nearly that of `groups_`, and they have fewer polygons.
+  /// The groups of `groups_` as if all facets were plane. They are stored only if facets have a form, which deflects
+  /// light by at most `bend_`. Far from the direction to the source, their field is nearly that of `groups_`, and they
+  /// have fewer polygons.
   std::vector<CoherentGroup> plane_groups_;
   ApertureField field_;        ///< field of groups_
   ApertureField plane_field_;  ///< field of plane_groups_
@@ -148,7 +150,8 @@ class FarFieldCollector {
   FarField finish();
 
  private:
-  /// A beam in the window. It is moved, together with its cell, to the position of the first copy of the cell.
+  /// A beam in the window (FarFieldPolicy::window_rad). It is moved, together with its cell, to the position of the
+  /// first copy of the cell.
   struct Piece {
     geometry::Polygon outline_mm;
     Vec3 direction;
@@ -201,7 +204,7 @@ class FarFieldCollector {
   std::uint64_t alone_ = 0;  ///< number of waves and beams with a Place of their own
   /// Place::beam for each pair of CellTrail::met and a wave.
   std::map<std::pair<std::uint64_t, WaveKey>, std::uint64_t> mixed_;
-  PointLookup<std::size_t> directions_;  ///< indices into the rays
+  PointLookup<std::size_t> directions_;  ///< indices into FarField::rays()
 };
 
 }  // namespace retrace::raytrace

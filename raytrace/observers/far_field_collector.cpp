@@ -86,14 +86,15 @@ Signature signature_of(const CoherentGroup& group, double size_mm) {
       all.push_back(step_of(unit.imag(), 1e3 * kAmplitudeStep));
     }
     add_form_keys(p.hits, size_mm, all);
-    // A resampled beam is compared by its polygon as well, because its centroid is the origin of its coordinates.
+    // For resampled beams, the corners are compared in addition. The centroid of such a beam is the origin of its
+    // coordinates, so that comparing centroids does not distinguish beams.
     if (group.replicate) add_corner_keys(p.transform.polygon(), size_mm, all);
   }
   return all;
 }
 
-/// Returns the number of copies of `group` that have the same power as `other`, for two groups of the same shape. The
-/// powers of resampled beams are arbitrary.
+/// Returns the number of copies of `group` that together have the power of `other`. Both groups have the same shape,
+/// but resampled beams may have any power. The number is therefore not always an integer.
 double copies_in(const CoherentGroup& group, const CoherentGroup& other) {
   return other.power() * group.copies / group.power();
 }
@@ -267,7 +268,8 @@ FarFieldCollector::WaveKey FarFieldCollector::wave_of(const Piece& p) const {
     key[3 + 2 * k] = step_of(a.real(), kAmplitudeStep);
     key[4 + 2 * k] = step_of(a.imag(), kAmplitudeStep);
   }
-  // Light of one wave may have met different points of the facets, or the facets in a different order.
+  // Beams with equal directions and fields may have met the facets at different points or in a different order. They
+  // are then different waves.
   for (const FieldHit& hit : p.hits) {
     for (const double cosine : hit.normal) key.push_back(step_of(cosine, kCosineStep));
     for (const double length : hit.constant_mm) key.push_back(step_of(length, kHitStep * size_mm_));

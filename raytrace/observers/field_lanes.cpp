@@ -76,7 +76,8 @@ void transform(const Outline& outline, const Block& block_x, const Block& block_
       phase_from = phase_to;
       wave_from = wave_to;
     }
-    // If the phase varies by less than 1e-5 over the polygon, the result is the area times the phase at the centroid.
+    // If the phase varies by less than 1e-5 over the polygon, the result is the area times the phase factor at the
+    // centroid.
     const auto is_flat = hn::Lt(hn::Mul(square, splat(outline.size_mm * outline.size_mm)), splat(1e-10));
     const V over = hn::Div(splat(1.0), hn::IfThenElse(is_flat, splat(1.0), square));
     const V re = hn::IfThenElse(is_flat, splat(outline.area_mm2), hn::Neg(hn::Mul(over, sum.im)));

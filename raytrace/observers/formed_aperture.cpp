@@ -48,7 +48,8 @@ struct FormPhase {
   }
 };
 
-/// Linear function that is the best approximation of the phase over a polygon, and the error along two axes.
+/// Linear function that is the best approximation of the phase over a polygon, and measures of its error along two
+/// axes.
 struct LinearPhase {
   struct Axis {
     Vec2 direction = Vec2::UnitX();
@@ -83,7 +84,7 @@ struct LinearPhase {
     };
     for (std::size_t k = 2; k < polygon.size(); ++k) add(polygon[0], polygon[k - 1], polygon[k]);
     middle /= sum;
-    // Coordinates are relative to `middle`, where the constant of the linear function is the mean phase.
+    // Coordinates are relative to `middle`, where the linear function is equal to the mean phase.
     Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
     Eigen::Matrix2d turned = Eigen::Matrix2d::Zero();  // second moments of the gradient
     Vec2 mean_gradient = Vec2::Zero();

@@ -27,8 +27,8 @@ struct FormedPolicy {
 };
 
 /// Returns the field including the phases of the facets with a form that the light has met (docs/theory/form.md). Every
-/// polygon is divided into convex polygons, each with a plane wave. Powers and amplitudes are unchanged. The new
-/// polygons have no hits.
+/// polygon is divided into convex polygons, each with a plane wave. Powers and amplitudes are unchanged.
+/// FieldPolygon::hits of the new polygons is empty.
 /// \throw BudgetError if more than FormedPolicy::most_pieces polygons are needed
 CoherentGroup formed(const CoherentGroup& group, const surface_models::FacetForm& form, const FormedPolicy& policy);
 

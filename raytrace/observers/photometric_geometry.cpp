@@ -21,8 +21,8 @@ Eigen::Matrix3d lab_from_part(const PhotometricGeometry& g) {
          rotation_about(Vec3::UnitZ(), g.epsilon);
 }
 
-/// Returns the angle in the range (-pi, pi]. A value within 1e-12 of -pi becomes pi, so that rounding does not change
-/// it.
+/// Returns the angle in the range (-pi, pi]. A value within 1e-12 of -pi becomes pi, so that rounding errors do not
+/// decide between -pi and pi.
 Angle wrapped(double angle_rad) {
   double turned = std::remainder(angle_rad, 2.0 * pi);
   if (turned < 1e-12 - pi) turned += 2.0 * pi;

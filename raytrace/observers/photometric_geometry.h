@@ -8,9 +8,9 @@
 
 namespace retrace::raytrace {
 
-/// The goniometer system of CIE 54.2 and ASTM E808. The source is fixed, and the observer is located `alpha` above it.
-/// The part is rotated by `beta1` about the horizontal first axis, then by `beta2` about the second axis, which moves
-/// with the part, and then by `epsilon` about its normal.
+/// The goniometer system of CIE 54.2 and ASTM E808. The source is fixed, and the direction to the observer is at the
+/// angle `alpha` above the direction to the source. The part is rotated by `beta1` about the horizontal first axis,
+/// then by `beta2` about the second axis, which moves with the part, and then by `epsilon` about its normal.
 ///
 /// The part's datum mark is its +y axis, which points upwards at epsilon = 0. A positive beta1 tilts the normal towards
 /// the observer, and a positive beta2 tilts it towards +x. A positive epsilon rotates the part counter-clockwise as
@@ -45,8 +45,9 @@ PhotometricGeometry geometry_from(const EntranceAngles& entrance, Angle alpha, A
 EntranceAngles entrance_angles(const PhotometricGeometry& geometry);
 
 PhotometricDirections directions_of(const PhotometricGeometry& geometry);
-/// Returns the inverse of directions_of(). At alpha = 0, the observation half-plane is not unique. It is then chosen to
-/// contain the datum mark, so that epsilon is 0 if possible.
+/// Returns the inverse of directions_of(). The observation half-plane starts at the line to the source and contains the
+/// observer. At alpha = 0, the directions do not determine it. It is then chosen to contain the datum mark, so that
+/// epsilon is 0 if possible.
 PhotometricGeometry geometry_of(const PhotometricDirections& directions);
 
 SourceAngles source_angles(const geometry::Vec3& to_source);

@@ -8,7 +8,8 @@ namespace {
 
 using geometry::Polygon, geometry::Rectangle, geometry::Vec2;
 
-/// Returns the indices of the first and the last of `count` steps, starting at `from`, that an interval overlaps.
+/// Returns the indices of the first and the last step that the interval from `low` to `high` overlaps. There are
+/// `count` steps of equal length, and the first one starts at `from`.
 std::pair<std::size_t, std::size_t> steps_over(double low, double high, double from, double step, std::size_t count) {
   const double last = static_cast<double>(count - 1);
   const double first_step = std::clamp(std::floor((low - from) / step), 0.0, last);

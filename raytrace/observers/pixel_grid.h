@@ -25,7 +25,8 @@ class PixelGrid {
   double pixel_area_mm2() const { return pixel_mm_.prod(); }
   geometry::Rectangle pixel_mm(std::size_t column, std::size_t row) const;
 
-  /// Returns the pixel that contains a point, or nothing outside. The right and lower borders belong to the grid.
+  /// Returns the pixel that contains a point, or nothing if the point is outside of the grid. All borders belong to the
+  /// grid.
   std::optional<std::size_t> pixel_at(const geometry::Vec2& point_mm) const;
 
   /// Calls `add(pixel, area_mm2)` for every pixel that a convex polygon covers, with the covered area. The areas are

@@ -41,7 +41,8 @@ Pyramid pyramid(PixelGuide::Bins finest) {
 
 /// Returns the estimated means of the bins at each resolution of `found`. An estimate is a weighted mean of the samples
 /// in the bin and of an expected value. The expected value is the mean of the coarser bin that contains the bin. If
-/// `like` is not null, it is multiplied by the ratio of both bins in `like`.
+/// `like` is not null, the expected value is multiplied by the mean of the bin in `like` divided by the mean of the
+/// coarser bin in `like`.
 std::vector<std::vector<double>> means_of(const Pyramid& found,
                                           const std::vector<std::vector<double>>* like = nullptr) {
   std::vector<std::vector<double>> means(found.size());

@@ -19,7 +19,7 @@ struct PixelPlace {
   geometry::Vec2 corner_mm = geometry::Vec2::Zero();
   geometry::Vec2 along_row_mm = geometry::Vec2::Zero();     ///< vector from the left to the right side of the pixel
   geometry::Vec2 along_column_mm = geometry::Vec2::Zero();  ///< vector from the upper to the lower side of the pixel
-  std::uint32_t tile = 0;                                   ///< index of the tile of the picture
+  std::uint32_t tile = 0;                                   ///< index of the tile (rectangular area of the picture)
 };
 
 /// Importance map over one period of an array. Paths are sorted into bins by the position where they start. The value

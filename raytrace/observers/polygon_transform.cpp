@@ -9,7 +9,7 @@ namespace {
 using geometry::Vec2;
 using Complex = std::complex<double>;
 
-// If the phase varies by less than this value over a polygon, its transform is the area times the phase at the
+// If the phase varies by less than this value over a polygon, its transform is the area times the phase factor at the
 // centroid. The relative error is the square of this value.
 constexpr double kFlat = 1e-5;
 // If the phase varies by less than this value along an edge, a series is used, because differences would cancel.

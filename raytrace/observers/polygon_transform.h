@@ -1,6 +1,6 @@
 #pragma once
 
-// Fourier transform of a polygonal aperture in closed form, which is its diffraction pattern.
+// Fourier transform of a polygonal aperture in closed form. The transform is the diffraction pattern of the aperture.
 
 #include <complex>
 #include <vector>

@@ -82,8 +82,8 @@ struct ScatteredField::Moves {
   Vec2 shift_mm;
   double stretch = 0.0;            ///< largest singular value of `matrix`
   bool is_folded = false;          ///< true if the map is nearly a reflection at a line
-  Vec2 from_line = Vec2::UnitX();  ///< direction perpendicular to that line
-  Vec2 direction = Vec2::UnitX();  ///< direction of the displacement of points next to that line
+  Vec2 from_line = Vec2::UnitX();  ///< direction perpendicular to the line of reflection
+  Vec2 direction = Vec2::UnitX();  ///< direction of the displacement of points next to the line of reflection
 
   explicit Moves(const Shared& shared);
 
@@ -99,7 +99,6 @@ struct ScatteredField::Moves {
     double sum = 0.0;
     for (int k = -kStrips; k < kStrips; ++k) {
       // The strip contains the points whose displacement is between k and k + 1 steps.
-      // Moves from k to k + 1 steps.
       FlatPolygon strip = polygon;
       const Vec2 across = stretch * from_line;
       clip(strip, {across.x(), across.y(), (k + 1) * step_mm - at_line}, 0.0);

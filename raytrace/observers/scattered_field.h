@@ -34,8 +34,8 @@ class ScatteredField {
                  const std::vector<CoherentGroup>& groups, std::uint32_t replicates);
 
   /// Adds the lobes and fringes of a group. A resampled beam has no fringes, because it does not interfere with others.
-  /// \param with_fringes false omits the fringes. It is used for wide cells, whose fringes are finer than the discs of
-  ///        source and receiver.
+  /// \param with_fringes if false, fringes are omitted; this is used for wide cells, whose fringes are finer than the
+  ///        discs of source and receiver
   void add(const CoherentGroup& group, bool with_fringes);
 
   /// Returns the power of the scattering lobes per unit area of direction cosines.

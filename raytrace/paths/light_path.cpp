@@ -112,7 +112,7 @@ class Follower {
   }
 
   /// Splits the light at a face and continues with the stronger branch.
-  /// \param out normal of the face on the far side
+  /// \param out normal of the face that points to the side away from the incoming light
   bool split(const Vec3& out, geometry::FacetRole role, const materials::FresnelCoefficients& f, double ratio) {
     const double cosine = out.dot(direction_);
     light_.turn_to(direction_, out);

@@ -18,7 +18,8 @@ namespace retrace::raytrace {
 enum class PathEvent {
   enters,            ///< through the entrance face from outside
   total_reflection,  ///< at a facet, a wall, a side or the entrance face
-  reflection,        ///< at one of these faces, but not total: Fresnel reflection, a film or a mirror
+  reflection,        ///< at a facet, a wall, a side or the entrance face, but not total: Fresnel reflection, a film or
+                     ///< a mirror
   leaves,            ///< through the entrance face; the path ends
   exits,             ///< through a facet or wall into the air behind the part
   enters_again,      ///< through a facet from the air behind the part
@@ -42,7 +43,7 @@ struct LightPath {
   std::vector<PathStep> steps;
   double power = 0.0;          ///< power at the end of the path over the incident power
   double deviation_deg = 0.0;  ///< angle between the leaving light and the direction to the source
-  bool is_returned = false;    ///< true if it leaves through the entrance face within `cone_deg`
+  bool is_returned = false;    ///< true if the light leaves through the entrance face within `cone_deg`
 };
 
 /// Function that returns the first facet that a ray meets, or nothing if it meets none.

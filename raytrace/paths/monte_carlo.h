@@ -24,8 +24,8 @@ struct PathSetup;
 /// Random numbers of a Monte Carlo run and the criteria that end it.
 struct Sampling {
   /// Method of choosing entry points and branches. `stratified` uses Sobol points and splits rays at interfaces.
-  /// `plain` uses pseudo-random points and one random branch per interface. It is slower, serves for comparisons, and
-  /// requires Engine::embree.
+  /// `plain` uses pseudo-random points and one random branch per interface. `plain` is slower, is meant for
+  /// comparisons, and requires Engine::embree.
   enum class Kind { stratified, plain };
   Kind kind = Kind::stratified;
   std::uint32_t seed = 1;
@@ -41,13 +41,14 @@ class MonteCarlo {
   /// Method of finding the facets that rays meet.
   enum class Engine {
     embree,  ///< rays one by one, with a bounding volume hierarchy; for any part
-    cell     ///< many rays with equal histories together, cell by cell; requires cell_serves()
+    cell     ///< many rays in the same cell together, cell by cell; requires cell_serves()
   };
   /// Returns true if Engine::cell can be used: for infinite parts, and for finite arrays of identical elements with an
   /// inner region. Rays at the borders of such arrays are traced with Embree.
   static bool cell_serves(const geometry::Part& part);
 
-  /// Number of independent scrambles. The estimate is their mean, and its standard error is computed from their spread.
+  /// Number of independent scrambles of the points. The estimate is the mean of the results of all scrambles, and its
+  /// standard error is computed from their spread.
   static constexpr std::uint32_t kReplicates = 32;
 
   /// \param part must outlive the tracer
@@ -61,7 +62,7 @@ class MonteCarlo {
 
   /// Traces rays with the TBB threads of the calling thread's arena.
   /// \param score function of the directions in which light leaves the entrance face; null for none
-  /// \param progress receives the finished fraction of the work, as in the constructor of Rounds; null for none
+  /// \param progress receives the finished fraction of the work, see the constructor of Rounds; null for none
   /// \pre cell_serves() is true if Engine::cell is used
   /// \throw BudgetError if power is lost because a ray inside the part missed every face
   MonteCarloResult trace(const Optics& optics, const Illumination& illumination, const std::vector<double>& cones_deg,

@@ -3,7 +3,7 @@
 
 namespace retrace::raytrace {
 
-/// Returns the rays that leave a scattering entrance face.
+/// Returns the rays, inside and outside the part, into which a scattering entrance face splits the incident ray.
 const SoiledReturn& PathWalker::soiled(const Ray& ray) {
   surface_models::RandomStream random(key_, replicate_, sample_, choices_++);
   from_soiled_.clear();

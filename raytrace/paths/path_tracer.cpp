@@ -15,8 +15,8 @@ namespace {
 
 using geometry::FacetRole;
 
-// Maximum number of stored tiles of an infinite surface that a straight ray may cross (see PathSetup::tile_half_mm). A
-// ray that crosses more tiles counts as trapped.
+// Maximum number of tiles (regions of an infinite surface, see PathSetup::tile_half_mm) that a straight ray may
+// cross. A ray that crosses more tiles counts as trapped.
 constexpr int kMaxWraps = 1000;
 // Maximum number of reflections in mirrors_to_entrance(). Paths in prisms and cube corners have at most three.
 constexpr int kMostMirrors = 8;
@@ -41,7 +41,8 @@ PathSetup::PathSetup(const geometry::Part& part, const BackSurface& back, const 
       clearance_mm(part.top_mm + std::min(0.01 * part.element_depth_mm, 0.5 * (part.thickness_mm - part.top_mm))) {
   if (part.period_mm) {
     period_mm = *part.period_mm;
-    // The tile is half a period smaller than the surface, because the outermost cells do not fill their periods.
+    // On each side, the tile is one period smaller than the stored surface, because the outermost cells do not fill
+    // their periods.
     tile_half_mm = (part.periods_beyond - 0.5) * period_mm;
   }
   if (how.entrance.scatters()) soiled.emplace(how);
@@ -371,7 +372,8 @@ void PathWalker::tell(Account account, const State& state, const Vec3& direction
   if (observer_ != nullptr) observer_->leaves({account, state.position, direction, light, state.shift_mm});
 }
 
-/// Returns the optics of the element to which a facet belongs. They differ if the back of the element is wet.
+/// Returns the optics of the element to which a facet belongs. They differ from those of other elements if the back of
+/// the element is wet (WetBack).
 const Optics& PathWalker::optics_of(const FacetRef& facet) const {
   const WetBack* const wet = setup_.optics.wet.get();
   return wet != nullptr && wet->elements->has(facet.placement, facet.facet) ? wet->optics : setup_.optics;

@@ -32,7 +32,7 @@ struct PathSetup : LightSetup {
   Vec2 centre_mm = Vec2::Zero();     ///< origin of positions, in the part frame
   double clearance_mm = 0.0;         ///< maximum z at which the back surface is searched
   Vec2 period_mm = Vec2::Zero();     ///< period of an infinite part
-  Vec2 tile_half_mm = Vec2::Zero();  ///< infinite part: half size of the tile of the surface that is stored
+  Vec2 tile_half_mm = Vec2::Zero();  ///< infinite part: half size of the tile, the region in which rays are traced
 };
 
 /// Traces light through a part, with refraction and reflection at every interface including polarization. If both
@@ -69,13 +69,13 @@ class PathWalker {
  private:
   struct State : Ray {
     Vec3 position = Vec3::Zero();
-    FacetRef source;                                                      ///< facet that the path has just left
-    FacetRef entrance_source;                                             ///< facet of a curved entrance face just left
-    bool above = false;                                                   ///< in the air above a curved entrance face
-    bool entered = false;                                                 ///< has passed a curved entrance face
+    FacetRef source;           ///< facet that the path has just left
+    FacetRef entrance_source;  ///< facet just left, on a curved entrance face
+    bool above = false;        ///< in the air above a curved entrance face
+    bool entered = false;      ///< has passed a curved entrance face
     geometry::FacetRole left_through = geometry::FacetRole::retro_facet;  ///< last face through which light left
     std::uint32_t events = 0;
-    Vec2 shift_mm = Vec2::Zero();  ///< infinite part: vector from `position`, in the central period, to the true one
+    Vec2 shift_mm = Vec2::Zero();  ///< infinite part: vector from `position` (in the central period) to the real one
   };
   enum class End { facet, entrance, side, escape, miss, trapped };
   struct Step {

@@ -27,7 +27,7 @@ struct IncidentRay {
   Vec3 position_mm = Vec3::Zero();
   Vec3 direction = -Vec3::UnitZ();  ///< unit vector
   Light light;                      ///< light of any power >= 0; `s_axis` is perpendicular to `direction`
-  std::uint32_t optics = 0;         ///< wavelength: a number that RayTracer::add() has returned
+  std::uint32_t optics = 0;         ///< number of the wavelength, as returned by RayTracer::add()
 };
 
 /// A ray that leaves the part and does not meet it again.
@@ -59,7 +59,7 @@ struct RayLedger {
   double std_error() const;
 };
 
-/// Results of some rays.
+/// Results of the rays of one call of RayTracer::trace().
 struct TracedRays {
   std::vector<LeavingRay> leaving;    ///< leaving rays, in the order of the incident rays
   std::vector<std::uint32_t> missed;  ///< indices of the incident rays that never met the part

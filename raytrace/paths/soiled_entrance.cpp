@@ -113,7 +113,8 @@ void SoiledEntrance::meet_clean(const Ray& ray, Event& event) const {
   pass_haze(ray, event, [&](const Ray& passed) { meet_face(passed, event); });
 }
 
-/// Processes a ray at the face itself, between the haze and the body. Both branches are traced, as at a facet.
+/// Processes a ray at the face itself, between the haze and the body. Both branches are traced if each has enough
+/// power, as at a facet.
 void SoiledEntrance::meet_face(const Ray& ray, Event& event) const {
   if (optics_.entrance.is_rough()) {
     const TexturedReturn back = meet_textured_facet(as_facet_, Vec3::UnitZ(), ray, event.split_power, event.random);
@@ -196,8 +197,8 @@ void SoiledEntrance::meet_dust(Ray ray, Event& event) const {
   event.result.truncated += ray.light.power();
 }
 
-/// Processes a ray at a position under a scratch. The scratch changes the direction of the ray on both sides of the
-/// face.
+/// Processes a ray at a position under a scratch. The scratch changes the direction of the ray in the air, before the
+/// ray meets the face and after it leaves the face.
 void SoiledEntrance::meet_scratch(Ray ray, Event& event) const {
   const FineScratches& scratches = optics_.entrance.scratches;
   const double along = scratches.azimuth_rad ? *scratches.azimuth_rad : pi * event.random.next();

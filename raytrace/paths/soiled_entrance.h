@@ -25,8 +25,8 @@ class SoiledEntrance {
   /// \pre optics.entrance.scatters()
   explicit SoiledEntrance(const Optics& optics);
 
-  /// Appends the rays after a ray has met the face to `result`. The power is preserved: the power of the rays, the
-  /// absorbed and the truncated power add up to the power of the ray.
+  /// Appends to `result` the rays into which the face splits an incident ray. The power is preserved: the power of the
+  /// rays, the absorbed and the truncated power add up to the power of the ray.
   /// \param split_power minimum power of the branches of a clean face at which both are traced, see PathPolicy
   void meet(const Ray& ray, double split_power, surface_models::RandomStream& random, SoiledReturn& result) const;
 
@@ -47,7 +47,7 @@ class SoiledEntrance {
   Ray one_of(Branches branches, Event& event) const;
 
   Optics optics_;
-  Optics as_facet_;  ///< the rough face as a facet with air behind it
+  Optics as_facet_;  ///< optics in which the rough face is a facet, see entrance_as_facet()
 };
 
 /// Returns the optics of a part whose facets are the rough entrance face, with air behind them. The functions of

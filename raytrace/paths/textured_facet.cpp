@@ -23,12 +23,13 @@ surface_models::ScatterEvent event_of(const Optics& optics, bool inside, const V
   return {direction, from, to, optics.wavelength_nm, inside};
 }
 
-/// Returns the scattering event of a ray in the facet's frame. The surface patch that the ray meets is not set.
+/// Returns the scattering event of a ray in the facet's frame. The surface patch that the ray meets (`piece`) is not
+/// set.
 /// \param normal unit normal of the facet, which points out of the part
 LocalEvent event_at(const Optics& optics, const Vec3& normal, const Ray& ray) {
   LocalEvent local;
   const Vec3 z = ray.inside ? Vec3(-normal) : normal;
-  // Chamfered roots have a vertical normal. Their x axis is the roof edge of a prism.
+  // Chamfered roots have a vertical normal. Their x axis is parallel to the roof edge of the prism.
   const Vec3 level = normal.cross(Vec3::UnitZ());
   const Vec3 x = level.norm() > 1e-9 ? level.normalized() : normal.cross(Vec3::UnitX()).normalized();
   local.world_from_local << x, z.cross(x), z;

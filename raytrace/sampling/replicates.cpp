@@ -83,8 +83,8 @@ Rounds::Rounds(const Sampling& sampling, std::vector<double> cones_deg, std::siz
           (sampling.rays.value_or(sampling.max_rays) + kReplicates - 1) / kReplicates, kMostRaysPerReplicate))),
       replicates_(kReplicates, Tally(cones_deg_.size(), score_size)) {}
 
-/// Returns the number of rays per replicate after the next round. It is doubled each time, because the first 2^k points
-/// of a Sobol sequence are best distributed.
+/// Returns the number of rays per replicate after the next round. It is doubled in each round, because the points of a
+/// Sobol sequence are best distributed if their number is a power of 2.
 std::uint32_t Rounds::next_end() const {
   if (done_ == 0) return std::min(goal_, kFirstRound);
   return done_ > goal_ / 2 ? goal_ : 2 * done_;

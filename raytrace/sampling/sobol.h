@@ -9,7 +9,7 @@ namespace retrace::raytrace {
 
 /// Digits of a nested scramble. The upper digits form kScrambleBlocks blocks of kScrambleLevels digits, and one hash
 /// gives the random bits of a block. No two points in a block of 2^25 consecutive points, aligned to a multiple of
-/// 2^25, have all of these digits in common. One hash is therefore sufficient for the remaining digits.
+/// 2^25, have all upper digits in common. One hash is therefore sufficient for the remaining digits.
 inline constexpr int kScrambleLevels = 5;
 inline constexpr int kScrambleBlocks = 5;
 inline constexpr int kScrambleRest = 32 - kScrambleLevels * kScrambleBlocks;
