@@ -90,7 +90,8 @@ TEST(AngleErrors, AgreeWithTheReference) {
   }
 }
 
-// Parts have random facet tilts. Both engines agree, and less light returns into smaller cones.
+// Parts have random facet tilts. The exact engine and the Monte Carlo engine agree, and less light returns into smaller
+// cones.
 TEST(RandomTilts, EnginesAgree) {
   for (PartSpec spec : {finite(RtpElement{0.5, 0.4, 90.0}, Arrangement::offset, 2.1, 1.7, 0.4),
                         finite(HexagonalCube{0.7}, Arrangement::honeycomb, 2.1, 1.7, 0.4)}) {

@@ -47,7 +47,8 @@ double distance_to_triangles(const Part& part, const Vec2& centre, const Surface
   return least;
 }
 
-/// Traces rays from inside the plate downwards, and from each hit point to either side of the facet.
+/// Compares the results of the searches. Rays start inside the plate and travel downwards. From each hit point, a new
+/// ray starts on a random side of the facet.
 void compare_searches(const PartSpec& spec, int count) {
   const Part part = build_part(spec);
   const Rectangle box = bounding_box(part.outline);

@@ -92,7 +92,7 @@ TEST(BeamTracer, TotalReflectionLimitOfCubeCorners) {
     optics.index = index;
     optics.lossless_entrance = true;
     BeamPolicy policy;
-    policy.cutoff = 1e-9;  // light that passes from cell to cell does not return to the source
+    policy.cutoff = 1e-9;  // weaker beams have passed from cell to cell and do not return to the source
     for (const PartSpec& spec : {infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 0.7),
                                  infinite(TriangularCube{1.0}, Arrangement::triangular, 0.7)}) {
       const bool is_honeycomb = spec.array.arrangement == Arrangement::honeycomb;

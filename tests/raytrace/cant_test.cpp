@@ -97,8 +97,9 @@ bool in_polygon(const Polygon& outline, const Vec2& p) {
   return true;
 }
 
-/// Share of a regular outline whose light meets all three planes of an unbounded cube, and the entrance face at either
-/// end, over that outline. In the cube's coordinates each plane turns one sign.
+/// Returns the fraction of a regular outline whose light meets all three planes of an unbounded cube, and finally the
+/// entrance face, at points within the outline. In the coordinates along the cube's edges, each reflection reverses one
+/// component of the direction.
 double share_by_points(const Polygon& outline, const Cant& cant, double depth_mm, double thickness_mm,
                        const Vec3& to_source) {
   constexpr int kSteps = 500;
@@ -121,7 +122,8 @@ double share_by_points(const Polygon& outline, const Cant& cant, double depth_mm
         const Vec3 at = edges * (start - t * d).cwiseAbs();
         all = all && in_polygon(outline, at.head<2>());
       }
-      // Straight through the apex's mirror space, then up to the entrance face again.
+      // After three reflections, the path is the incident path reflected at the apex. It then continues up to the
+      // entrance face.
       const Vec3 end = edges * (-start + *std::max_element(times.begin(), times.end()) * d);
       const double up = (thickness_mm + depth_mm - end.z()) / to_source.z();
       back += all && in_polygon(outline, (end + up * to_source).head<2>()) ? 1 : 0;

@@ -215,8 +215,8 @@ std::vector<RoughCase> rough_cases() {
 
 class CellEngineOfRough : public ::testing::TestWithParam<std::size_t> {};
 
-// The exact engine does not support all surface textures. Instead, the two engines that find facets in different ways
-// must give the same ledgers.
+// The exact engine does not support all surface textures. Instead, the cell engine and Embree, which find facets in
+// different ways, must give the same ledgers.
 TEST_P(CellEngineOfRough, AgreesWithEmbree) {
   const RoughCase c = rough_cases()[GetParam()];
   const Part part = build_part(c.spec);

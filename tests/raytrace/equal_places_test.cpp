@@ -41,8 +41,8 @@ Part patchwork() {
   return build_part(ZonedSpec{{18.0, 10.0}, 1.0, {left, middle, right}});
 }
 
-/// Returns an array of triangular cube corners. Every third column has dihedral errors; if `in_turn` is false, randomly
-/// chosen elements have them.
+/// Returns an array of triangular cube corners. If `in_turn` is true, every third column has dihedral errors.
+/// Otherwise, randomly chosen elements have dihedral errors.
 Part columns(bool in_turn) {
   PartZone first = {{}, 0.0, finite(TriangularCube{1.0}, Arrangement::triangular, 1.0, 1.0, 1.0)};
   PartZone other = first;
@@ -141,7 +141,7 @@ const ApertureKernel& discs() {
   return kernel;
 }
 
-/// The far fields must also agree if each element is traced separately or equal elements are traced only one time.
+/// The far field must be the same if each element is traced separately and if equal elements are traced only one time.
 TEST(EqualPlaces, FarFieldsAreThoseOfEachByItself) {
   for (const Question& question : questions()) {
     const Part& part = question.part;

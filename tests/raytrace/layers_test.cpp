@@ -24,8 +24,9 @@ std::array<double, 2> absorbed(const FresnelCoefficients& f) {
   return {1.0 - std::norm(f.r_s) - std::norm(f.t_s), 1.0 - std::norm(f.r_p) - std::norm(f.t_p)};
 }
 
-// All light that enters is reflected along the normal by mirrors. Multiple reflections give the RRE R + T^2 / (1 - R'),
-// where R' is the reflectance of the coated face from inside.
+// All light that enters is reflected along the normal by mirrors. Multiple reflections give the RRE R + T^2 / (1 - R').
+// R and T are the reflectance and transmittance of the coated face for light from outside. R' is its reflectance for
+// light from inside.
 TEST(Layers, CoatedEntranceBeforeMirrors) {
   const Part part = build_part(single(RtpElement{0.5, 0.5, 90.0}, 0.5));
   for (const LayerStack& stack : {anti_reflection(), thin_aluminium(), LayerStack{{{2.3, 0.1}, {1.46, 0.2}}}}) {

@@ -86,7 +86,7 @@ TEST_P(LedgerOf, AddsUpToOne) {
 
 INSTANTIATE_TEST_SUITE_P(Designs, LedgerOf, ::testing::Range(std::size_t{0}, all_designs().size()));
 
-// A higher cut-off increases the account `truncated` only.
+// Power below the cut-off is added to the account `truncated`, and the accounts still add up to 1.
 TEST(Ledger, CutoffIsBookedAsTruncated) {
   const Part part = build_part(single(HexagonalCube{1.0}, 0.5));
   Optics optics = pmma();

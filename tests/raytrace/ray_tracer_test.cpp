@@ -30,7 +30,7 @@ PathPolicy every_branch() {
   return policy;
 }
 
-/// Returns a policy with which each ray gives at most one ray.
+/// Returns a policy with which each incident ray gives at most one leaving ray.
 PathPolicy one_branch() {
   PathPolicy policy;
   policy.split_power = 1.0;
@@ -100,7 +100,7 @@ std::vector<Named> parts() {
           {"honeycomb", finite(HexagonalCube{1.0}, Arrangement::honeycomb, 2.3, 1.9, 0.4)}};
 }
 
-/// Fixture with rays towards points of a box around a part. Both engines trace these rays.
+/// Fixture with rays towards points of a box around a part. The ray tracer and the reference engine trace these rays.
 class RayByRay : public ::testing::TestWithParam<std::size_t> {
  protected:
   void compare(const Vec3& origin, const Vec3& direction, bool inside, const Optics& optics, const std::string& what) {
@@ -191,7 +191,7 @@ TEST(RayTracer, ManyRaysAreABeamOnAnEndlessPart) {
     EXPECT_LE(traced.leaving.size(), 40000U);
     const MonteCarloResult known = MonteCarlo(part).trace(absorbing, light, {0.5}, rays(65536), {});
     expect_same_accounts(traced.ledger, known.cones[0].ledger);
-    // The standard error is that of a fraction, slightly reduced by absorption.
+    // The standard error is that of a binomial fraction, slightly reduced by absorption.
     const double rre = known.cones[0].rre;
     EXPECT_NEAR(traced.ledger.std_error() / std::sqrt(rre * (1.0 - rre) / 40000.0), 0.95, 0.08);
   }
@@ -318,7 +318,8 @@ TEST(RayTracer, RaysThatPassThePartAreMissed) {
 }
 
 // Every face of this prism reflects the ray totally: the cosine of each angle of incidence is at most 0.702, and the
-// critical angle has a cosine of 0.742. The path therefore has to end without a loss of power.
+// critical angle has a cosine of 0.742. The path therefore never leaves the part. It must end at the maximum number of
+// events, and its power must be added to `truncated`.
 TEST(RayTracer, ATrappedPathEndsAsTruncated) {
   const Part part = build_part(single(RtpElement{0.5, 0.5, 90.0}, 0.3));
   PathPolicy policy;

@@ -51,8 +51,8 @@ TEST(ReturnedBeams, AddUpToTheLedger) {
   }
 }
 
-// A cube corner returns a beam at the point opposite to its entry, rotated by 180 degrees about a center. The entry
-// region is on the entrance face.
+// On the entrance face, the region where a beam leaves a cube corner is the region where it entered, rotated by 180
+// degrees about a center.
 TEST(ReturnedBeams, CubeCornerTurnsTheEntryAboutItsAxis) {
   const Part part = build_part(single(HexagonalCube{kCubeAperture}, 0.4));
   const Vec2 centre = centroid(part.outline);
@@ -61,7 +61,7 @@ TEST(ReturnedBeams, CubeCornerTurnsTheEntryAboutItsAxis) {
     if (beam.depth != 4 || beam.cone != 0) continue;
     ++seen;
     EXPECT_NEAR(area(beam.entered_mm), area(beam.left_mm), 1e-12);
-    // The center is the projection of the apex onto the face, along the direction of the light inside.
+    // This center is the projection of the apex onto the face, along the direction of the light inside.
     const double shift =
         (part.thickness_mm + part.element_depth_mm) * std::tan(std::asin(std::sin(12.0 * kDeg) / kPmma));
     const Vec2 axis = centre + shift * Vec2(std::cos(40.0 * kDeg), std::sin(40.0 * kDeg));

@@ -46,7 +46,7 @@ class Grooves {
     Vec normal;  ///< out of the part
   };
 
-  /// Returns the first face that a ray hits from its own side.
+  /// Returns the first face that a ray hits from the side on which the ray is (inside or outside the part).
   Hit first_hit(Vec from, Vec along, bool inside) const {
     Hit best;
     // The surface is in the layer between the roots and z = 0.

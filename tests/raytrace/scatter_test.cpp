@@ -133,7 +133,7 @@ TEST(RoughFacets, EveryModelClosesTheLedger) {
   }
 }
 
-// Absorbing walls absorb all light that would leave or be reflected there. Both engines must agree.
+// Absorbing walls absorb all light that would leave or be reflected there. The exact engine and Monte Carlo must agree.
 TEST(AbsorbingWalls, EnginesAgree) {
   const Part part = build_part(finite(RtpElement{0.5, 0.4, 90.0}, Arrangement::offset, 1.9, 1.4, 0.3));
   Optics optics = pmma();

@@ -39,8 +39,8 @@ double volume_mm3(const PartSpec& spec) {
 }
 
 // At normal incidence, light hits both facets at the same position along the roof edge. A scratch of either facet
-// therefore makes its width of the whole prism ineffective. Deflected light may return by a second scratch, which is an
-// effect of second order.
+// therefore makes a strip of its width ineffective, across the whole prism. Deflected light may return after it meets a
+// second scratch, which is an effect of second order.
 TEST(Scratches, TakeTheirWidthOfAPrism) {
   const PartSpec smooth = infinite(RtpElement{kBase, kWidth, 90.0}, Arrangement::aligned, 1.0);
   Optics lossless = pmma();

@@ -196,8 +196,8 @@ TEST(SoiledEntrance, AHazeMeterReadsTheHaze) {
   }
 }
 
-// Scratches scatter into lobes across their direction, with the error function erfc of the angle. Along the scratches,
-// nothing is scattered.
+// Scratches scatter light perpendicular to their direction. The fraction beyond an angle is given by the complementary
+// error function erfc. In the direction of the scratches, no light is scattered.
 TEST(SoiledEntrance, ScratchesThrowLightAcross) {
   EntranceCondition condition;
   condition.scratches = {0.25, sin_deg(8.0), 0.3};
@@ -406,8 +406,9 @@ TEST(SoiledEntrance, RoughnessOfTheFaceDims) {
   EXPECT_NEAR(specular.mean, kept * materials::reflectance(1.0 / kPmma, 1.0), 2e-3 * specular.mean + 1e-9);
 }
 
-// An entrance face has layers and is half wet. Mirrors behind it return all light along the normal. The RRE is R + T^2
-// / (1 - R'), with the exact engine and by rays.
+// An entrance face has layers and is half wet. Mirrors behind it return all light along the normal. The exact engine
+// and the ray tracer must give the RRE R + T^2 / (1 - R'). R and T are the reflectance and transmittance of the face
+// for light from outside, and R' is its reflectance for light from inside.
 TEST(SoiledEntrance, LayersAndFilmBeforeMirrors) {
   const Part part = build_part(single(RtpElement{0.5, 0.5, 90.0}, 0.5));
   EntranceCondition condition = wet(0.5);
@@ -439,8 +440,8 @@ TEST(SoiledEntrance, LayersAndFilmBeforeMirrors) {
   EXPECT_NEAR(sampled.rre, expected, 4.0 * sampled.std_error + 1e-6);
 }
 
-// Both Monte Carlo engines must agree for infinite and finite parts. Faces with only layers and films are also traced
-// by the exact engine.
+// The Monte Carlo engines (Embree, and cell by cell) must agree for infinite and finite parts. Faces with only layers
+// and films are also traced by the exact engine.
 TEST(SoiledEntrance, EnginesAgreeAndLedgersClose) {
   const std::vector<PartSpec> parts = {infinite(RtpElement{0.5, 0.5, 90.0}, Arrangement::offset, 0.5),
                                        finite(HexagonalCube{0.5}, Arrangement::honeycomb, 3.5, 3.0, 0.8)};

@@ -93,7 +93,7 @@ std::vector<PartSpec> planar() {
           finite(TriangularCube{1.0}, Arrangement::triangular, 2.4, 2.3, 2.0)};
 }
 
-// With the same seed, both parts trace the same rays.
+// With the same seed, the rays through the planar array and through the array on the plane formula are the same.
 TEST(PlaneAsFormula, SendsBackWhatThePlanarArrayDoes) {
   for (const PartSpec& plain : planar())
     for (const double t : {0.0, 7.0, 30.0}) {

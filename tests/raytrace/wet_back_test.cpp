@@ -34,7 +34,7 @@ PartSpec prisms(Arrangement arrangement = Arrangement::aligned) {
   return finite(RtpElement{0.5, 0.5, 90.0}, arrangement, 8.0, 8.0, 0.4);
 }
 
-/// Returns arrays of all kinds, with cut elements, land and margins.
+/// Returns arrays of all kinds, with cut elements, land (flat areas between elements) and margins.
 std::vector<PartSpec> arrays() {
   std::vector<PartSpec> all = {finite(RtpElement{0.5, 0.5, 90.0}, Arrangement::offset, 2.5, 2.6, 0.4),
                                finite(RtpElement{0.5, 0.5, 90.0}, Arrangement::checker, 2.5, 2.0, 0.4),
@@ -194,7 +194,8 @@ TEST(ChosenElements, WallsHaveTheMediumOfTheirNeighbour) {
   EXPECT_GT(unlike, 10);
 }
 
-// Another index behind every element one by one, and behind none, are the index of the whole back, to the last bit.
+// If another index is set behind all elements one by one, the results equal those of a part with this index behind its
+// whole back. If it is set behind no element, the results equal those of the dry part. Both are equal to the last bit.
 TEST(WetBack, OfAllElementsAndOfNoneAreTheBacksOwn) {
   for (const PartSpec& spec : arrays()) {
     const Part part = build_part(spec);
@@ -214,9 +215,9 @@ TEST(WetBack, OfAllElementsAndOfNoneAreTheBacksOwn) {
 }
 
 // At normal incidence, the light that a dry prism returns never leaves this prism. Light that leaves a wet prism enters
-// its neighbours. It returns only through a third prism that is also wet, which a single wet prism or a single column
-// of wet prisms does not have. Sobol points are distributed equally over the 16 x 16 elements. The mean over the
-// elements is therefore exact except for 2e-9 that returns by other paths.
+// its neighbours. It returns only through a further prism that is also wet. With a single wet prism, or a single column
+// of wet prisms, there is no such prism. Sobol points are distributed equally over the 16 x 16 elements. The mean over
+// the elements is therefore exact except for 2e-9 that returns by other paths.
 TEST(WetBack, PrismsReturnTheMeanOverTheirElements) {
   const Part part = build_part(prisms());
   const double dry = returned_by_prism(kPmma, 1.0);

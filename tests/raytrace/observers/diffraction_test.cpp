@@ -54,7 +54,8 @@ Vec3 tilted(double x, double y = 0.0) {
   return {x, y, std::sqrt(1.0 - x * x - y * y)};
 }
 
-// Integrates over triangles by Gauss rules, which are accurate for smooth functions.
+// Returns the integral of exp(-i kappa . r) over a polygon. It is computed with Gauss rules over triangles, which are
+// accurate for smooth functions.
 Complex quadrature(const Polygon& polygon, const Vec2& kappa) {
   const GaussRule rule = gauss_legendre(24);
   Complex sum = 0.0;

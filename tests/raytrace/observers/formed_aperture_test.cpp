@@ -168,8 +168,9 @@ TEST(FormedAperture, PowerStaysAndNoHeightChangesNothing) {
                 1e-9 * plane.diffracted_per_sr(Vec3::UnitZ()));
 }
 
-// Cells that are too wide to be diffracted send rays along the slopes of their forms. The intensities within the discs
-// must agree with Monte Carlo, for oblique light that passes from cell to cell.
+// The light of cells that are too wide to be diffracted is represented by rays, whose directions depend on the slopes
+// of the form. The intensities averaged over the discs must agree with Monte Carlo, for oblique light that passes from
+// cell to cell.
 TEST(FormedAperture, WideCellsSendRaysWhereMonteCarloDoes) {
   const PartSpec spec = infinite(HexagonalCube{3.0}, Arrangement::honeycomb, 2.0);
   const double radius = 1.5 / std::sqrt(4.0 / 3.0);

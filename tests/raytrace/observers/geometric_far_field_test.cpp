@@ -190,8 +190,8 @@ TEST(DiffractedFarField, PathsThroughACubeCornerAreEquallyLong) {
   EXPECT_GE(count, 6);
 }
 
-// At normal incidence, light stays within its cell. An infinite array of equal cells has the far field of one cell. A
-// finite array counts equal cells (EqualCellsOfAFiniteArrayAreCounted).
+// At normal incidence, light stays within its cell. An infinite array of equal cells has the far field of one cell.
+// Finite arrays are tested by EqualCellsOfAFiniteArrayAreCounted.
 TEST(DiffractedFarField, EndlessArrayShowsThePatternOfOneCell) {
   const Optics optics = ideal();
   const FarField one = trace(build_part(single(HexagonalCube{0.6}, 0.5)), optics, {}, {}).field;
@@ -284,8 +284,8 @@ TEST(Coefficients, MirrorShowsTheLamp) {
   EXPECT_EQ(kernel.per_sr(0.12 * kDeg), 0.0);
 }
 
-// The Monte Carlo engines, with both methods of finding hit points, give the same spots as the exact engine with the
-// same discs.
+// The Monte Carlo engines (Embree, and cell by cell) give the same spots as the exact engine, for the same discs of
+// source and receiver.
 TEST(GeometricFarField, MonteCarloAgreesWithTheExactEngine) {
   const Part part = build_part(cubes(3.0));
   const Illumination light = from(8.0, 25.0);

@@ -278,8 +278,8 @@ class Aperture {
   const std::vector<Screens::Ray>& rays() const { return rays_; }
   double bin_width() const { return kWave / (static_cast<double>(points_) * step_); }
 
-  /// Adds |field|^2, with a factor for every pixel, to the pattern. The incident light is unpolarised and has the power
-  /// 1.
+  /// Adds |field|^2 to the pattern. The field of each pixel is multiplied by one of `factors`. The incident light is
+  /// unpolarised and has the power 1.
   void add(const std::vector<Complex>& factors, double weight, Pattern& pattern) {
     pattern.bins.resize(points_ * points_, 0.0);
     pattern.nodes.resize(nodes_.size(), 0.0);

@@ -24,8 +24,9 @@ struct IntrinsicGeometry {
   Angle beta;     ///< entrance angle, between the normal and the illumination axis; 0 to 180 degrees
   Angle gamma;    ///< presentation angle: about the illumination axis, from the half plane of the normal to that of the
                   ///< observer, counter-clockwise as seen from the source; -180 to 180 degrees
-  Angle omega_s;  ///< orientation angle: about the normal, from the trace of the half plane of the normal - which
-                  ///< points away from the source - to the datum mark, counter-clockwise likewise
+  Angle omega_s;  ///< orientation angle: about the normal, from the trace of the half plane of the normal (in the
+                  ///< direction away from the source) to the datum mark, counter-clockwise as seen from the end of the
+                  ///< normal
 };
 
 // Directions count as parallel if the sine of the angle between them is below this value.
@@ -159,7 +160,8 @@ TEST(PhotometricGeometry, PublishedRelationsHold) {
   }
 }
 
-// A turn by epsilon moves source and observer backwards about the part's normal, and its datum mark with them.
+// In the part frame, a rotation of the part by epsilon moves the source and the observer by -epsilon about the normal.
+// The orientation angle increases by epsilon.
 TEST(PhotometricGeometry, EpsilonTurnsThePartAboutItsNormal) {
   PhotometricGeometry g{Angle::from_deg(0.33), Angle::from_deg(-10.0), Angle::from_deg(20.0), Angle()};
   const auto still = directions_of(g);

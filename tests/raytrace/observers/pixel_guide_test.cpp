@@ -56,7 +56,7 @@ Vec2 place_of(const PixelPlace& pixel, const Vec2& within) {
 
 struct Mean {
   double mean = 0.0;
-  double variance = 0.0;  ///< variance of one pass, which takes one sample of the pixel
+  double variance = 0.0;  ///< variance of the luminance that one pass gives for the pixel
   double error() const { return std::sqrt(variance / kPasses); }
 };
 

@@ -1,5 +1,5 @@
-// Tests of diffraction with roughness against phase screens. Facets have random heights. Rays are traced one by one,
-// and the fields of all paths are added over the aperture by fast Fourier transforms.
+// Tests of diffraction with roughness against a reference in which facets with random heights are phase screens. The
+// reference traces rays one by one. It adds the fields of all paths over the aperture by fast Fourier transforms.
 #include <gtest/gtest.h>
 
 #include <vector>
