@@ -65,8 +65,8 @@ struct Resampling {
   double offset(std::uint32_t generation) const;
 };
 
-/// Traces the survivors of a generation, then the survivors of the beams into which these split, and so on. It ends
-/// when the remaining power is negligible, and adds this power to `truncated`.
+/// Traces the survivors of a generation, then the survivors of the beams into which these split, and so on. The
+/// function ends when the remaining power is negligible, and adds this power to `truncated`.
 /// \param after_each is called after each generation
 /// \return false if the trace was cancelled
 bool follow_survivors(BeamWalk& walk, const geometry::Part& part, const BeamGeneration& first, const Resampling& how,

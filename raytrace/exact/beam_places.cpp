@@ -123,7 +123,8 @@ void BeamWalk::enter_regions(const Beam& whole, double parts) {
   book_rest(whole, 1.0 - entered);
 }
 
-/// Starts the beams that enter one period of an infinite part. If its two halves are identical, one half is traced.
+/// Starts the beams that enter one period of an infinite part. If the two halves of the period are identical, only one
+/// half is traced.
 void BeamWalk::enter_within_period(const Beam& whole, double parts) {
   Beam half = whole;
   if (const auto& by = equal_->within_period_mm()) {

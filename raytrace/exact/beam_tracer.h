@@ -45,8 +45,8 @@ struct BeamPolicy {
   /// \pre `cutoff` is set and all facets are plane; rough facets require `keeps_phases`
   std::optional<WeakBeams> weak;
   double truncated_goal = kFinestGoal;
-  /// Amount of BeamTrace::work() up to which tracing continues even after `truncated_goal` is reached. It then ends
-  /// when the truncated power is at most `kFinestGoal`. Fast traces become more accurate in this way.
+  /// Amount of BeamTrace::work() up to which tracing continues even after `truncated_goal` is reached. Tracing then
+  /// ends when the truncated power is at most `kFinestGoal`. Fast traces become more accurate in this way.
   std::uint64_t spare_work = 0;
   std::uint64_t max_beams = 100'000'000;  ///< maximum number of traced beams, including the search for the cut-off
   /// If true, facets of neighbouring cells are treated separately even if they are in one plane. Every returned beam
@@ -62,8 +62,8 @@ struct BeamResult {
   std::vector<Ledger> ledgers;  ///< one per acceptance cone, in the order given
   std::vector<Stokes> stokes;   ///< Stokes vectors of the retroreflected light per cone; first axis: source_axis()
   /// Standard error of the RRE (retroreflective efficiency) per cone. An interval of +-1.96 standard errors has a
-  /// confidence of 95 %. It is 0 without WeakBeams. It is at least the power of one survivor divided by the number of
-  /// replicates. This allows for light that no replicate has traced.
+  /// confidence of 95 %. Without WeakBeams, it is 0. With WeakBeams, it is at least the power of one survivor divided
+  /// by the number of replicates. This allows for light that no replicate has traced.
   std::vector<double> std_error;
   std::uint64_t beams = 0;
   std::uint32_t depth = 0;  ///< number of interfaces on the longest path

@@ -12,7 +12,7 @@
 
 namespace retrace::raytrace {
 
-/// Values at points. A search finds all points within a tolerance in each coordinate.
+/// Values that are stored at points in space. A search finds all points within a tolerance in each coordinate.
 template <class Value>
 class PointLookup {
  public:

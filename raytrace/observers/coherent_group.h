@@ -22,8 +22,8 @@ struct FieldHit {
   Vec3 constant_mm = Vec3::Zero();
   Eigen::Matrix<double, 3, 2> slope = Eigen::Matrix<double, 3, 2>::Zero();
   surface_models::PhaseTexture phase;
-  /// The same point in the frame of the facet's form is form_constant_mm + form_slope r. `path_per_height` is the
-  /// change of the optical path per height of the form; it is 0 for facets without a form.
+  /// The point where the light met the facet, in the frame of the facet's form, is form_constant_mm + form_slope r.
+  /// `path_per_height` is the change of the optical path per height of the form; it is 0 for facets without a form.
   Vec2 form_constant_mm = Vec2::Zero();
   Eigen::Matrix2d form_slope = Eigen::Matrix2d::Zero();
   double path_per_height = 0.0;

@@ -60,7 +60,7 @@ struct Fringes {
   Eigen::Matrix2d spread_mm2;                  ///< second moments of the covariance; a symmetric matrix
   /// Second moments of a term that is subtracted where r and turn r + shift_mm nearly coincide; a symmetric matrix.
   Eigen::Matrix2d dip_mm2;
-  double dip_mm2_of_places;  ///< area of the points r from which that term is subtracted
+  double dip_mm2_of_places;  ///< area of the points r from which the term of `dip_mm2` is subtracted
 };
 
 /// Adds the power of the fringes to `sum`, per unit area of direction cosines.

@@ -53,9 +53,9 @@ class PathWalker {
   void resume(const Vec3& position, const Ray& ray, RandomKey key, std::uint32_t replicate, std::uint32_t sample,
               std::uint32_t& choices);
 
-  /// Predicts the path from a point inside the part to the entrance face if every face on it only reflects. Returns the
-  /// product of the reflection matrices, which maps the direction at the point to the direction at the entrance face.
-  /// Returns nothing if the path has more than kMostMirrors reflections.
+  /// Predicts the path from a point inside the part to the entrance face if every face on the path only reflects.
+  /// Returns the product of the reflection matrices, which maps the direction at the point to the direction at the
+  /// entrance face. Returns nothing if the path has more than kMostMirrors reflections.
   /// \pre all faces are plane
   std::optional<Eigen::Matrix3d> mirrors_to_entrance(const Vec3& position, const Vec3& direction) const;
 

@@ -13,8 +13,8 @@
 
 namespace retrace::raytrace {
 
-/// Monte Carlo tracers use MonteCarlo::kReplicates independent scrambles of the same points. The estimate is the mean
-/// of these replicates, and its error is computed from their spread.
+/// Monte Carlo tracers use MonteCarlo::kReplicates independent scrambles of the same points. The result of one scramble
+/// is a replicate. The estimate is the mean of the replicates, and its error is computed from their spread.
 
 /// Numbers of the Philox random streams: for the scrambles of entry points, and for the choices along a path.
 inline constexpr std::uint32_t kScrambleStream = 1;
