@@ -47,7 +47,7 @@ constexpr std::size_t kMostColumns = 161;
 constexpr double kShareOfGrid = 0.5;
 // Factor by which the number of grid points along each side grows if the interpolation error is too large.
 constexpr double kFinerGrid = 1.5;
-// Maximum number of grid points along a side for which the grid is still refined.
+// Number of grid points along a side above which a grid is not refined further.
 constexpr std::size_t kMostColumnsForError = 121;
 // Azimuth of the test light by which back_of() distinguishes prisms from cube corners. At this azimuth, prisms and cube
 // corners return light into clearly different directions.
@@ -55,8 +55,9 @@ constexpr double kAsideDeg = 30.0;
 // Maximum extents, in entrance angle and azimuth, of the initial cells of the table, which are then halved.
 constexpr double kFirstEntranceDeg = 20.0;
 constexpr double kFirstAzimuthDeg = 30.0;
-// Maximum number of times that an initial cell is halved. An initial cell has 3 x 2^8 steps of the lattice of light
-// directions along each side. Neighbouring cells can therefore share the directions on their common sides.
+// Maximum number of times that an initial cell is halved. The side of an initial cell is 3 x 2^8 steps of the lattice
+// of light directions. After all halvings, the directions of a cell are therefore still lattice points, so that
+// neighbouring cells share the directions on their common sides.
 constexpr int kMostHalvings = 8;
 // Minimum ratio between the third differences of the values along the two sides of a cell. A cell is halved along a
 // side only if the third difference along it is at least this fraction of the larger one.
@@ -87,6 +88,7 @@ void check(const AppearanceRequest& request) {
   check(arcmin_of(request.apertures.receiver), discs, "--receiver-arcmin");
 }
 
+/// Returns the settings of the photometer for the table.
 /// \param back value of ReflectionTable::back
 PhotometryRequest photometry_of(const AppearanceRequest& request, const Vec2& back) {
   PhotometryRequest photometry;
@@ -498,7 +500,7 @@ class TableMaker {
     return table_.half_width * Vec2(2.0 * unit_interval(x) - 1.0, 2.0 * unit_interval(y) - 1.0);
   }
 
-  /// Returns the maximum R_A of the table for one direction of light, weighted by the eye's response.
+  /// Returns the maximum of R_A over the grid points of the table, for the eye's response and one direction of light.
   double most_of(const Vec3& to_source) const {
     const auto among = table_.at(to_source).value();
     double most = 0.0;
@@ -551,7 +553,7 @@ class TableMaker {
   Eigen::Matrix3d rgb_of_shares_;
   ReflectionTable table_;
   std::vector<PlannedCell> cells_;
-  std::map<LatticePlace, std::size_t> known_;  ///< index in the table's directions
+  std::map<LatticePlace, std::size_t> known_;  ///< index of each lattice position in the table's list of directions
   std::size_t first_directions_ = 0;           ///< number of directions of the first cells; 0 until they are computed
 };
 

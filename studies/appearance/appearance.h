@@ -1,7 +1,7 @@
 #pragma once
 
-// Reflection of a part as a material for renderers and for simulators of lidar. `retrace export` uses this study to
-// write material files.
+// Computes the light that a part reflects, as a table over the directions of light and view. Renderers and lidar
+// simulators use the table as the material of a surface. `retrace export` uses this study to write material files.
 
 #include <cstdint>
 #include <string>
@@ -27,8 +27,8 @@ struct AppearanceRequest {
 };
 
 /// Errors of a table, or of lobes that are fitted to it, compared with the photometer at random directions of light and
-/// view. Each error is relative to the value, or to the fraction kFloor of the maximum value for the same light if the
-/// value is smaller.
+/// view. Each error is relative to the photometer's value. If this value is below the fraction kFloor of the maximum
+/// value for the same light, the error is relative to this fraction of the maximum.
 struct AppearanceError {
   static constexpr double kFloor = 0.01;
   std::size_t geometries = 0;

@@ -16,7 +16,7 @@ using geometry::Vec2, geometry::Vec3;
 
 constexpr int kIterations = 300;
 // Ring of initial lobes. Distance from the centre and spread are in units of the standard deviation of the mean
-// pattern; `count` is the number of lobes.
+// pattern, which is the sum of the table's grids over all directions of light. `count` is the number of lobes.
 struct Ring {
   double distance, spread;
   int count;
@@ -167,7 +167,8 @@ class Fit {
     of_light_ *= (ratio.matrix().transpose() * densities.matrix()).array();
   }
 
-  /// Sets the colour of each lobe to that of its part of the power, divided as in improve().
+  /// Sets the colour of each lobe to the colour of its part of the power. The power at each grid point is divided among
+  /// the lobes in the same way as in improve().
   void colour() {
     const ArrayXXd densities = lobe_densities();
     const ArrayXXd model = model_of(densities);

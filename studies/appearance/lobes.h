@@ -19,9 +19,9 @@ struct Lobe {
   geometry::Vec2 spread = geometry::Vec2::Zero();  ///< variances along x and y
   double covariance = 0.0;
   Rgb colour{};  ///< colour of the lobe's light, normalized so that luminous() = 1
-  /// Coefficients of the polynomial for the fraction of the incident power. Its variables are x and y of the direction
-  /// to the source, divided by ReflectionLobes::scale. The power of a single lobe may be negative. If the sum over all
-  /// lobes is negative, it counts as 0.
+  /// Coefficients of the polynomial for the lobe's power, as a fraction of the incident power. Its variables are x and
+  /// y of the direction to the source, divided by ReflectionLobes::scale. The power of a single lobe may be negative.
+  /// If the sum over all lobes is negative, it counts as 0.
   std::array<double, kTerms> power{};
 
   double determinant() const { return spread.x() * spread.y() - covariance * covariance; }
@@ -29,8 +29,9 @@ struct Lobe {
   double peak() const;
 };
 
-/// Sum of lobes as a BRDF: colour times power times density of the Gaussian at the deviation. If the table has mirror
-/// symmetries, directions are first mirrored into the range that the table covers.
+/// BRDF that is a sum of lobes. Each lobe contributes its colour times its power times its Gaussian density at the
+/// deviation from the central direction of view. If the table has mirror symmetries, directions are first mirrored into
+/// the range that the table covers.
 struct ReflectionLobes {
   std::vector<Lobe> lobes;
   double scale = 1.0;  ///< sine of the maximum entrance angle

@@ -20,7 +20,7 @@ using Rgb = std::array<double, 3>;
 /// Returns CIE Y, the luminous component, of linear red, green and blue.
 double luminous(const Rgb& rgb);
 
-/// Number of points of a cubic, which is also the number of directions along each side of a cell.
+/// Number of points that determine a cubic polynomial. It is also the number of directions along each side of a cell.
 inline constexpr std::size_t kPerSide = 4;
 
 /// Table of the coefficient of retroreflection R_A, in cd/(lx m^2), for views close to a central direction. For cube
@@ -69,7 +69,8 @@ struct ReflectionTable {
 
   /// Directions of light and their weights, from which the grid for another direction is interpolated.
   struct Weighted {
-    /// Signs that mirror a deviation into the grids of these directions.
+    /// Signs by which x and y of a deviation are multiplied before the deviation is looked up in the grids of these
+    /// directions. -1 mirrors the deviation.
     geometry::Vec2 signs = geometry::Vec2::Ones();
     std::array<std::size_t, kPerSide * kPerSide> directions{};
     std::array<double, kPerSide * kPerSide> weights{};

@@ -1,6 +1,6 @@
 #pragma once
 
-// Reflection table as a tensor tree: the leaves of Radiance's BSDF files with variable resolution.
+// Converts a reflection table to a tensor tree, which is the content of Radiance's BSDF files with variable resolution.
 
 #include <cstdint>
 #include <utility>
@@ -12,8 +12,8 @@ namespace retrace::studies {
 
 /// BRDF over the directions of light and view. The x and y components of a direction are a point in the unit disc.
 /// Shirley and Chiu's map converts it to a point in the unit square. For light, the direction is -to_source; for view,
-/// it is to_observer. Equal areas of the square are equal projected solid angles; the whole square is pi. Leaves are
-/// hypercubes with the side 2^-level. The BRDF is 0 outside the listed leaves.
+/// it is to_observer. Equal areas of the square are equal projected solid angles; the area of the whole square
+/// corresponds to pi. Leaves are hypercubes with the side 2^-level. The BRDF is 0 outside the listed leaves.
 struct TensorTree {
   int level = 0;
   /// Numbers and values of all leaves that are not 0, in ascending order. The hexadecimal digits of a number are the

@@ -41,8 +41,9 @@ struct MeasuredParts {
 /// Estimate of a quantity of the set-up.
 struct CalibratedQuantity {
   const fabrication::SetupQuantity* quantity = nullptr;
-  bool is_told = false;      ///< true if the measurements determine the quantity
-  double value = 0.0;        ///< deviation from the job's machine, um or arcsec; not unique if is_told is false
+  bool is_told = false;  ///< true if the measurements determine the quantity
+  /// deviation from the job's machine, um or arcsec; not determined by the measurements if is_told is false
+  double value = 0.0;
   double uncertainty = 0.0;  ///< standard uncertainty; if is_told is false, only of its observable part
 };
 

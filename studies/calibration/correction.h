@@ -14,8 +14,8 @@ namespace retrace::studies {
 
 /// Maximum deviations of the measured facets.
 struct FacetOutlook {
-  double distance_nm = 0.0;  ///< distance of a facet's centre along its normal
-  double tilt_arcsec = 0.0;  ///< tilt in either direction
+  double distance_nm = 0.0;  ///< deviation of a facet's centre from the design, along the normal
+  double tilt_arcsec = 0.0;  ///< tilt about either axis of the facet
 };
 
 struct Correction {
@@ -27,8 +27,8 @@ struct Correction {
   std::vector<FacetWave> waves;
   std::vector<FacetMark> marks;  ///< common marks of the facets; they are reported, not corrected
   std::size_t facets = 0;        ///< number of facets that were searched for waves and marks
-  /// Expected deviations after correction: twice the standard uncertainty of the deviations that programs for the
-  /// calibrated machine leave.
+  /// Expected maximum deviations of a part whose programs are made for the calibrated machine: twice the standard
+  /// uncertainty of these deviations.
   FacetOutlook after;
 };
 

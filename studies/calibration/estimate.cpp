@@ -9,7 +9,7 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-/// Maximum component of an observable unknown in the unobservable combinations.
+/// An unknown counts as observable if the norm of its components in the unobservable combinations is below this value.
 constexpr double kLeastShare = 1e-3;
 /// Minimum component of a combination that its text mentions, relative to the largest component.
 constexpr double kLeastShareInWords = 0.02;

@@ -28,12 +28,13 @@ using geometry::Vec2, geometry::Vec3;
 /// Number of points that registration uses for the coarse search and for the refinement.
 constexpr std::size_t kCoarsePoints = 300;
 constexpr std::size_t kFinePoints = 4000;
-/// Positions that the coarse search tries across an element, along each axis, and rotations that it tries.
+/// Number of positions that the coarse search tries across an element, along each axis, and the rotations that it
+/// tries.
 constexpr int kPlaces = 12;
 constexpr double kTurnsDeg[] = {-2.0, -1.0, 0.0, 1.0, 2.0};
 /// Number of the best poses of the coarse search that are refined.
 constexpr std::size_t kFollowed = 4;
-/// Maximum number of refinement steps, with all points and with points away from edges.
+/// Maximum number of refinement steps with all points, and then with only the points away from edges.
 constexpr int kMostMoves = 20;
 constexpr double kRoughMove = 1e-6;  ///< length of the last step with all points, in mm or rad
 /// Length of the last step with points away from edges, in mm or rad. Smaller changes have no effect, because
@@ -47,7 +48,7 @@ constexpr std::size_t kLeastPoints = 30;
 /// larger one applies.
 constexpr double kMargin = 0.05;
 constexpr double kMarginPixels = 2.0;
-/// Deviation above which points are left out, in median deviations.
+/// Deviation from the plane above which points are left out, in median deviations.
 constexpr double kFarOff = 6.0;
 
 /// Region of the design's surface: a facet of an element, or the blank's face.
@@ -91,7 +92,8 @@ class DesignSurface {
   const std::vector<Groove>& grooves() const { return grooves_; }
 
  private:
-  /// Returns true if a point is in the region. For prisms with a vertical axis, the dimensions of the element decide.
+  /// Returns true if a point is in the region. For prisms with a vertical axis, the region is the rectangle that
+  /// follows from the dimensions of the element.
   bool lies_in(const Region& r, double x_mm, double y_mm) const {
     if (r.is_face) return !map_.at(x_mm, y_mm);
     const Groove& groove = grooves_[r.element];
@@ -367,7 +369,7 @@ std::optional<RegionFit> fitted_facet(const std::vector<Vec3>& points, const Edg
   return waves.empty() ? fit : fitted(unmarked, waves);
 }
 
-/// Returns the distance of neighbouring points of a map along a direction of the part.
+/// Returns the distance between neighbouring points of a map along a direction of the part.
 double pitch_mm(const FacetMap& map, const RigidMotion& part_from_map, const Vec3& along) {
   const Vec3 seen = part_from_map.rotation.transpose() * along;
   return 1e-3 * std::min(map.heights.x_pixel_um / std::max(std::abs(seen.x()), 1e-6),

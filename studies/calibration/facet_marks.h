@@ -45,8 +45,8 @@ struct FacetRest {
   geometry::Vec2 high_mm = geometry::Vec2::Zero();
   geometry::Vec2 pitch_mm = geometry::Vec2::Zero();  ///< distances between points of the map
   std::vector<surface_models::SpectralPeak> waves;   ///< waves along x (the edge) or along y (up the facet)
-  /// Marks that run along y (the cut) or along x (the edge). Positions count from the centre of the edge, or from the
-  /// last position of its tip.
+  /// Marks that run along y (the cut) or along x (the edge). Positions along x count from the centre of the edge.
+  /// Positions along y count from the last position of the edge's tip.
   std::vector<surface_models::Scratch> marks;
 
   /// Returns true if a position is inside a mark or so close that the flanks of the mark may extend to it.
@@ -73,7 +73,7 @@ struct FacetWave {
 struct FacetMark {
   bool is_along_cut = false;  ///< true: along the cut; false: along the edge
   bool is_of_edge = false;    ///< true: the edge causes the mark, which most facets with this position have
-  /// Position along the edge from its centre, or up the facet from the last position of the tip.
+  /// Position along the edge, from its centre, or up the facet, from the last position of the edge's tip.
   double place_um = 0.0;
   double height_nm = 0.0;  ///< mean height; negative: a groove
   double width_um = 0.0;   ///< full width at half of the height

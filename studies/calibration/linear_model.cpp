@@ -12,8 +12,8 @@ using fabrication::Machine, fabrication::SetupQuantity, fabrication::kNmPerMm;
 
 /// Step of the difference quotients, in um and arcsec. Measurements are smooth over millions of such steps.
 constexpr double kStep = 1.0;
-/// Numbers of unknowns of a part's pose: three rotations, then shifts along X, Y and Z. The rotations of the face about
-/// X and Y follow.
+/// Numbers of unknowns of a part's pose. The first kTurns unknowns are rotations. Shifts along X, Y and Z follow, so
+/// that there are kPose unknowns. The indices kPose and kPose + 1 are the rotations of the face about X and Y.
 constexpr Index kTurns = 3;
 constexpr Index kPose = 6;
 constexpr double kUmInMm = 1e3;

@@ -17,10 +17,10 @@ namespace retrace::studies {
 /// measurement.
 struct LinearModel {
   Eigen::MatrixXd of_setup;  ///< derivatives with respect to the quantities of setup_quantities()
-  /// Derivatives with respect to the poses of the parts. Each part has shifts along X and Y and three rotations.
-  /// Heights are relative to the face on which the tool was touched off. Its height is therefore that of the programs.
-  /// For height maps, the height is unknown as well; the figures of the face determine it. The two rotations of the
-  /// face in the machine are common to all maps of a part.
+  /// Derivatives with respect to the poses of the parts. Each part has shifts along X and Y and three rotations. The
+  /// height of a part is no unknown, because measured heights are relative to the face on which the tool was touched
+  /// off. For height maps, the height is an unknown as well; the figures of the blank's face determine it. The two
+  /// rotations of the face in the machine are common to all maps of a part.
   Eigen::MatrixXd of_poses;
   Eigen::VectorXd residual;  ///< measured values minus the values that the machine would produce
 };

@@ -21,8 +21,9 @@ namespace retrace::studies {
 
 inline constexpr double kArcsecPerRad = 180.0 * 3600.0 / std::numbers::pi;
 
-/// Measured quantity of a facet, as the deviation from the design. Distances are positive if material is left. For a
-/// cube corner, the horizontal line of a facet replaces the root.
+/// Measured quantity of a facet, as the deviation from the design. Distances are positive if material is left. The root
+/// is the line at the bottom of a groove, where its two facets meet. For a cube corner, the horizontal line of a facet
+/// replaces the root.
 enum class FacetQuantity {
   distance,  ///< distance of the facet's center along its outward normal, nm
   up,        ///< tilt, positive if the facet rises away from the root, arcsec
@@ -49,7 +50,8 @@ struct Measurement {
   FacetQuantity what = FacetQuantity::distance;
   double value = 0.0;        ///< measured value, in the unit of the quantity
   double uncertainty = 1.0;  ///< standard uncertainty, in the unit of the quantity; > 0
-  /// Reference facet, from whose value the measured value is the difference. For `angle`, the other facet of the angle.
+  /// Reference facet: the measured value is the difference from the value of this facet. For `angle`, it is the other
+  /// facet of the angle.
   std::optional<FacetPlace> from;
   double along_edge = 0.0;  ///< for `end`: position along the edge; -1 and 1 at its ends, 0 at its centre
   int line = 0;             ///< line in the file; 0 for values from height maps
@@ -74,7 +76,7 @@ struct PartPose {
   /// `turn_arcsec`.
   geometry::Vec2 face_turn_arcsec = geometry::Vec2::Zero();
 
-  /// These functions return the rotation of the face and of the facets.
+  /// Rotation matrices of the blank's face (face_rotation()) and of the facets (rotation()).
   Eigen::Matrix3d face_rotation() const;
   Eigen::Matrix3d rotation() const;
 };

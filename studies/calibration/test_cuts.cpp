@@ -19,8 +19,8 @@ namespace {
 using namespace fabrication;
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-/// Apex angles of the test prisms. Axis A is at half of each angle. A chisel with a wedge angle of 50 degrees and a
-/// clearance of 3 degrees can cut all of them.
+/// Apex angles of the test prisms. While a prism is cut, axis A is at half of its apex angle. A chisel with a wedge
+/// angle of 50 degrees and a clearance of 3 degrees can cut all of them.
 constexpr double kApexAnglesDeg[] = {90.0, 70.0, 105.0};
 /// Distance between neighbouring prisms. It is the lever arm for angular errors, and is within the travel of a
 /// microscope's stage.

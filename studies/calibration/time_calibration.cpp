@@ -119,7 +119,7 @@ class Fit {
     return result;
   }
 
-  /// Returns the derivatives. Columns of unknowns that are at their bound and would fall below it are 0.
+  /// Returns the derivatives. The columns of unknowns that are at their lower bound and would fall below it are 0.
   Eigen::MatrixXd free_derivatives(const Unknowns& unknowns, const VectorXd& left) const {
     Eigen::MatrixXd result = derivatives(unknowns);
     for (Index k = 0; k < kUnknowns; ++k)
@@ -209,7 +209,8 @@ void warn_of_misses(TimeCalibration& result, const Estimate& fitted) {
   for (std::size_t k = 0; k < result.residuals.size(); ++k) {
     const auto row = static_cast<Index>(k);
     const double spare = 1.0 - fitted.leverage[row];
-    // A row that no other row checks has a residual of 0, unless no machine can take so long.
+    // If no other row checks a row, the leverage of the row is 1 and its residual is 0. The residual is above 0 only if
+    // no machine within the bounds of the unknowns can take so long; it is then used as it is.
     const double deviations = std::abs(result.residuals[k]) / (spare > 1e-6 ? std::sqrt(spare) : 1.0);
     if (deviations > kManyDeviations)
       result.warnings.push_back(

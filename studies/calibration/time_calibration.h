@@ -16,7 +16,7 @@
 
 namespace retrace::studies {
 
-/// Number of equal moves, which take the same time.
+/// Move that occurs several times. All occurrences take the same time.
 struct AlikeMoves {
   fabrication::NcMotion motion;
   std::int64_t count = 0;

@@ -177,8 +177,8 @@ bool has_flares(const VerificationRun& run) {
   return run.result.border_overcut_mm3 > 0.0 && run.job.array.arrangement != geometry::Arrangement::single;
 }
 
-/// Checks a part on a base, which a design describes by equal elements and without a table of planes. Adds warnings
-/// about the differences.
+/// Checks the as-machined part of a job on a base. The design describes such a part by equal elements, without a table
+/// of planes. Adds warnings about the differences between the elements.
 /// \throw InputError if an element is not cut
 void check_on_substrate(const VerificationRun& run, const Unlikeness& unlike, AsMachined& part) {
   if (unlike.missing > 0)

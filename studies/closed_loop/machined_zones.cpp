@@ -156,7 +156,8 @@ ZonedPart machined_zones(const fabrication::Job& job, const std::filesystem::pat
   std::size_t cut = 0;
   double spread_arcmin = 0.0;
   for (std::size_t z = 0; z < angles.size(); ++z) {
-    // Remove changes of [surface] from the zone, because programs do not cut edge radii and random errors.
+    // Remove changes of [surface] and of partial_elements from the zone. Programs do not cut edge radii and random
+    // errors, angle errors are set below, and an as-machined part has no partial elements.
     std::erase_if(part.changes[z], [](const std::string& change) {
       return change.find("surface.") != std::string::npos || change.find("partial_elements") != std::string::npos;
     });

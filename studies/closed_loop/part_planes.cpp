@@ -44,8 +44,8 @@ geometry::HeightPlane height_plane(const PartFrame& frame, const CutPlane& cut, 
   return plane;
 }
 
-/// Returns the planes of an element. Their heights are those at the centre of the element's aperture, which is on the
-/// blank's face or on its base.
+/// Returns the planes of an element. The height of each plane is given at the centre of the element's aperture, which
+/// is on the blank's face or on its base.
 geometry::ElementPlanes planes_of(const PartFrame& frame, const CutElement& element, const ElementCutPlanes& cuts,
                                   bool is_prism) {
   geometry::ElementPlanes planes;
@@ -94,8 +94,9 @@ MachinedBody machined_body(const Job& job, const fs::path& job_file, Warnings& w
 
 geometry::PartSpec machined_elements(const Job& job, bool has_planes) {
   geometry::PartSpec part = part_on_substrate(job);
-  // Cube corners with individual facet planes have flares that extend into the margins. Their array therefore has no
-  // margins, and the table of planes determines the positions of the elements.
+  // The cavities of cube corners with individual facet planes extend beyond their outlines into the margins around the
+  // array. The design therefore describes the array without margins. The table of planes determines the positions of
+  // the elements.
   if (!has_planes || is_prism(job)) {
     part.array.x_offset_mm = job.array.x_offset_mm;
     part.array.y_offset_mm = job.array.y_offset_mm;

@@ -16,7 +16,8 @@ namespace {
 
 using namespace fabrication;
 
-/// Returns the programs of the job for all stages before the given one.
+/// Returns the programs of the job for all stages before the given one. A stage is one step of machining with its own
+/// program, such as roughing.
 std::vector<NcProgram> programs_before(const std::string& stage, const Job& job, const Machine& machine) {
   constexpr std::string_view dialect = "rs274ngc";
   PlanOptions options;

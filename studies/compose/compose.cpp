@@ -51,7 +51,7 @@ class CellReader {
     for (const auto& [quantity, price] : request.price) prices_.emplace_back(index_of(study, quantity), price);
   }
 
-  /// Returns nothing if the design is infeasible or a quantity has no value.
+  /// Returns the cell for an evaluated design. Returns nothing if the design is infeasible or a quantity has no value.
   std::optional<FamilyCell> cell_of(const Variant& variant) const {
     if (!variant.feasible()) return std::nullopt;
     FamilyCell cell{variant.number, variant.values, {}};
@@ -153,8 +153,8 @@ class Composer {
   }
 
   /// Adds cells with a positive gain (see gain() in mixture.h). The search uses the dual prices of the best mixture
-  /// without a limit on the number of zones. If the limit lowers the merit, a second search uses the prices with the
-  /// limit.
+  /// without a limit on the number of zones. If the limit lowers the merit, a second search uses the dual prices of the
+  /// best mixture with the limit.
   void search_by_prices(Composition& composition) {
     for (std::size_t round = 0; round < request_.rounds; ++round) {
       const Mixture relaxed = mixture_of(composition, relaxed_rules());
@@ -185,7 +185,7 @@ class Composer {
 
   /// Searches for cells with a positive gain. The search starts from the cells of the mixture and from the cells with
   /// the highest gain.
-  /// \return true if such a cell was found
+  /// \return true if a cell with a positive gain was found
   bool search(Composition& composition, const Mixture& mixture) {
     if (!has_intervals(study_)) return false;
     const OptimiseRequest pricing = pricing_request(mixture);
@@ -200,7 +200,7 @@ class Composer {
                                [&](const FamilyCell& cell) { return gain(mixture.prices, cell.mixed) > least_gain; });
   }
 
-  /// Returns the starting points of a search. The cells of the mixture come first, in descending order of their zones.
+  /// Returns the starting points of a search. The cells of the mixture come first, in descending order of their areas.
   /// The cells with the highest gain follow. Cells near an earlier starting point are left out.
   std::vector<PointValues> starts_of(const Composition& composition, const Mixture& mixture) const {
     std::vector<std::size_t> order;
@@ -295,8 +295,8 @@ class Composer {
     if (mixture.is_there()) composition.by_zones.push_back({zones_of(composition, mixture), mixture, zones});
   }
 
-  /// Adds to `by_zones` the best part with one more zone than allowed, or with one more zone than the best part has. It
-  /// shows how much a further zone improves the merit.
+  /// Adds to `by_zones` the best part of at most n + 1 zones. n is the number of zones of the best part, or the maximum
+  /// number of zones in `by_zones` if it is larger. The added part shows how much a further zone improves the merit.
   void count_zones(Composition& composition) const {
     const PartOfZones& last = composition.by_zones.empty() ? *composition.best : composition.by_zones.back();
     add_by_zones(composition, std::max(last.most_zones, composition.best->zones.size()) + 1);

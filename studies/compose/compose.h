@@ -21,7 +21,7 @@ struct ErrorSpread {
   double cell_sigma_arcmin = 0.0;  ///< from cell to cell; these errors average out over a zone
   double zone_sigma_arcmin = 0.0;  ///< from zone to zone; all cells of a zone have the same error
   std::size_t parts = 1024;        ///< number of random parts
-  /// Fraction of the random parts that counts as the worst. If it is given, a further part is optimized for these
+  /// Fraction of the random parts that counts as the worst. If it is given, a further part is optimized for these worst
   /// parts.
   std::optional<double> worst_share;
 };
@@ -31,13 +31,13 @@ struct ComposeRequest {
   std::vector<Constraint> of_cells;                   ///< constraints that each cell of the family must satisfy
   std::vector<Constraint> of_part;                    ///< constraints on means over the part
   std::vector<std::pair<std::string, double>> price;  ///< quantity, and reduction of the merit per unit of its mean
-  std::optional<FrontAxis> front;                     ///< mean for the Pareto front against the minimum goal
+  std::optional<FrontAxis> front;  ///< quantity on the Pareto front, whose mean is compared with the minimum goal
   std::size_t front_points = 9;
   std::optional<double> least_goal;  ///< minimum goal that a part must reach
   double least_share = 0.0;          ///< minimum fraction of the area for a zone
   double most_share = 1.0;
   std::optional<std::size_t> most_zones;  ///< maximum number of zones; none: no limit
-  std::size_t scan = 65;                  ///< cells of the first scan, per combination of discrete values
+  std::size_t scan = 65;                  ///< number of cells of the first scan, per combination of discrete values
   std::size_t rounds = 4;                 ///< maximum number of searches with dual prices
   std::size_t starts = 3;                 ///< number of cells from which each such search starts
   int looks = 20;                         ///< maximum number of cells that are evaluated from each start
@@ -48,7 +48,7 @@ struct ComposeRequest {
 struct FamilyCell {
   std::uint64_t point = 0;  ///< number of the point in the store
   PointValues values;
-  MixedCell mixed;  ///< goals in the order of the request; means of `of_part`, then the mean of the front
+  MixedCell mixed;  ///< goals in the order of the request; means in the order of `of_part`, then that of the front
 };
 
 struct Zone {
@@ -74,7 +74,7 @@ struct FrontPart {
 struct PartYield {
   std::vector<double> leasts;           ///< minimum goal of each part, in ascending order
   std::optional<std::size_t> good;      ///< number of parts that reach ComposeRequest::least_goal
-  std::optional<double> mean_of_worst;  ///< mean over the worst parts, whose fraction is worst_share
+  std::optional<double> mean_of_worst;  ///< mean of the minimum goal over the fraction worst_share of the parts
 };
 
 /// Composition that is optimized for the worst random parts: the mean of the minimum goal over these parts is maximal.

@@ -1,6 +1,7 @@
 #pragma once
 
-// Linear programmes with bounds, their optimum and dual prices. Only this file uses GLPK.
+// Solves linear programmes with bounds, and returns their optimum and dual prices. Only this file uses the library
+// GLPK.
 
 #include <cstddef>
 #include <limits>

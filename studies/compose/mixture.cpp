@@ -11,7 +11,7 @@ namespace {
 
 /// Fraction of the area below which a cell is not part of a mixture.
 constexpr double kNoShare = 1e-12;
-/// Minimum improvement of the merit, relative to its size, that counts.
+/// Minimum improvement of the merit that counts, relative to 1 + |merit|.
 constexpr double kAsGood = 1e-10;
 
 double as_good(double merit) {
@@ -100,7 +100,8 @@ Mixture mixture_of(const std::vector<MixedCell>& cells, const CellSet& set, cons
 class PriceBound {
  public:
   PriceBound(const std::vector<MixedCell>& cells, const MixtureRules& rules, const MixturePrices& prices) {
-    // Constant part of all merits: prices of the bounds on means, each at its active limit, and of the whole area.
+    // Part of the merit that is equal for all cells: the price of each active bound on a mean times this bound, and the
+    // price of the whole area.
     double constant = prices.share;
     for (std::size_t k = 0; k < rules.means.size(); ++k)
       if (prices.means[k] != 0.0)
@@ -251,8 +252,8 @@ class SetSearch {
     if (mixture.is_there() && mixture.merit > to_beat()) best_ = std::move(mixture);
   }
 
-  /// Searches all sets that contain this set and no excluded cell, unless bounds show that they cannot be better than
-  /// the best.
+  /// Searches all sets that contain this set and no cell that is marked in is_out_. Sets that cannot be better than the
+  /// best mixture according to the bounds are left out.
   /// \param mixture best mixture of the set; without cells for an empty set
   void grow(const std::vector<std::size_t>& set, const Mixture& mixture) {
     if (set.size() >= most_zones_) return;
@@ -288,8 +289,8 @@ class SetSearch {
     return std::ranges::all_of(bounds_, [&](const PriceBound& bound) { return bound.lets_pass(set, to_beat()); });
   }
 
-  /// Returns cells of which every better extension of this set contains at least one. Each stored bound gives such a
-  /// list of cells; the shortest list is returned.
+  /// Returns a list of cells. Every extension of this set that is better than the best mixture contains at least one
+  /// cell of the list. Each stored bound gives such a list; the shortest list is returned.
   std::vector<std::size_t> candidates(const std::vector<std::size_t>& set, const Mixture& mixture) const {
     const PriceBound* fewest = nullptr;
     std::size_t least = cells_.size() + 1;

@@ -32,7 +32,7 @@ struct MixtureRules {
 struct MixturePrices {
   std::vector<double> goals;  ///< price of each goal of the part; the sum is 1
   std::vector<double> means;  ///< price of each active bound of a mean; 0 if no bound is active
-  double share = 0.0;         ///< price of the whole area
+  double share = 0.0;         ///< price of the constraint that the fractions add up to 1
 };
 
 /// Returns the gain of a cell: the increase of the mixture's merit per unit of area that the cell replaces, at the
@@ -59,15 +59,15 @@ struct Mixture {
   double bound = 0.0;            ///< upper bound of the merit of any allowed mixture of these cells
   std::vector<double> goals;     ///< goals of the mixture
   std::vector<double> means;
-  /// Dual prices. They hold for the cells of the mixture. If the rules have no limit on zones and no minimum fraction,
-  /// they hold for all cells.
+  /// Dual prices. They are optimal among the cells of the mixture. If the rules have no limit on zones and no minimum
+  /// fraction, they are optimal among all cells.
   MixturePrices prices;
   bool is_there() const { return kind == Kind::optimal || kind == Kind::best_found; }
 };
 
 /// Computes the mixture with the largest merit: the minimum goal minus the cost. A limit on zones and a minimum
-/// fraction are enforced by branch and bound over sets of cells. At any prices, a better set contains a cell with a
-/// positive gain.
+/// fraction are enforced by branch and bound over sets of cells. The search uses that, at any prices, a set that is
+/// better than the best set found so far contains a cell with a positive gain.
 /// \param most_sets maximum number of tried sets
 /// \pre all cells have the same number of goals, at least one, and as many means as the rules
 Mixture best_mixture(const std::vector<MixedCell>& cells, const MixtureRules& rules,

@@ -41,8 +41,8 @@ std::optional<std::vector<double>> best_shares(const DrawnParts& parts, double w
 /// Cells and their fractions of the area, the largest first.
 using CellShares = std::vector<std::pair<std::size_t, double>>;
 
-/// Searches for the set of at most `most_zones` cells, and their fractions of the area, for which best_shares() has the
-/// best result. All sets of cells are tried, so that there must be few cells.
+/// Searches for the set of at most `most_zones` cells, and their fractions of the area, for which the mean minimum goal
+/// of the worst parts is largest. All sets of cells are tried, so that there must be few cells.
 /// \param parts random parts with one zone for each cell
 /// \return nothing if the computation was cancelled or no set is allowed
 std::optional<CellShares> best_set(const DrawnParts& parts, double worst_share, std::size_t most_zones,

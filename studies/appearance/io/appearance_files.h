@@ -1,6 +1,7 @@
 #pragma once
 
-// Writes the reflection of a part as a material for renderers and simulators, and the document of `retrace export`.
+// Writes the reflection of a part in formats that renderers and simulators use as materials. Also writes the document
+// and the table of `retrace export`.
 
 #include <optional>
 #include <string>
@@ -11,15 +12,15 @@ namespace retrace::studies {
 
 enum class AppearanceFormat { table, radiance, glsl };
 
-/// Returns the format for which the ending of a file's name stands, in lower or upper case: .json, .xml or .glsl.
-/// Returns nothing for other endings.
+/// Returns the format that belongs to the ending of a file name: .json, .xml or .glsl, in lower or upper case. Returns
+/// nothing for other endings.
 std::optional<AppearanceFormat> appearance_format(const std::string& file);
 
 /// Material in a file format: contents of its files, and its error compared with the photometer.
 struct AppearanceText {
   std::string text;
-  std::string values;                    ///< CSV file that belongs to a table; empty for other formats
-  std::string what;                      ///< one line on how the format approximates the table; empty for the table
+  std::string values;  ///< CSV file that belongs to a table; empty for other formats
+  std::string what;    ///< one line on how the format approximates the table; empty if the format is the table itself
   std::optional<AppearanceError> error;  ///< error of the fitted lobes
 };
 
@@ -31,7 +32,7 @@ AppearanceText appearance_text(const AppearanceResult& result, AppearanceFormat 
 /// Returns the document `retrace.export/1` of a material.
 std::string appearance_json(const AppearanceResult& result, const AppearanceText& text, const std::string& file);
 
-/// Returns the figures of a material as a table for the terminal.
+/// Returns the main values of a material as a table for the terminal.
 std::string appearance_table(const AppearanceResult& result, const AppearanceText& text);
 
 }  // namespace retrace::studies

@@ -1,6 +1,7 @@
 #pragma once
 
-// Tensor tree as a BSDF file of Radiance.
+// Writes a tensor tree, a BRDF on a four-dimensional grid of variable resolution, as a BSDF file for the renderer
+// Radiance.
 
 #include <string>
 
@@ -8,9 +9,10 @@
 
 namespace retrace::studies {
 
-/// Returns the BSDF as XML for the programs of Radiance, on the basis LBNL/Shirley-Chiu. It contains the reflection of
-/// light from the side of the normal, weighted by the eye's response. The normal in Radiance is the part's +z axis, and
-/// up is +y. Radiance calls this side front, but the file format, which comes from WINDOW, calls it back.
+/// Returns the BSDF as XML for the programs of Radiance, on the basis LBNL/Shirley-Chiu. The BSDF is weighted by the
+/// eye's response. It contains only the reflection of light that arrives from the side of the normal. The normal in
+/// Radiance is the part's +z axis, and up is +y. Radiance calls this side front. The file format calls it back, because
+/// it comes from the program WINDOW, which has the opposite convention.
 /// \param name name of the material, on one line
 std::string radiance_text(const TensorTree& tree, const std::string& name);
 

@@ -25,7 +25,8 @@ std::vector<std::string> quantities_of(const Study& study, const std::string& na
   return found;
 }
 
-/// Checks that the value of a mixture is the area-weighted mean of the quantity's values.
+/// Checks that the quantity adds up: its value for a mixture of cells must be the area-weighted mean of its values for
+/// the cells.
 /// \return `name`
 std::string checked_mean(const Study& study, const std::string& name, const InputLocation& where) {
   checked_quantity(study, name, where);
@@ -83,6 +84,7 @@ void check_cells(const Study& study) {
   check_taken(cell->design(), {.what = "retrace compose", .wet_backs = true});
 }
 
+/// Reads the standard deviations of angle errors. Returns nothing if the study has none.
 /// \throw InputError if cells have no angles between facets
 std::optional<ErrorSpread> read_errors(const Document& document, const Study& study) {
   const auto cells = document.number_if("compose.cell_sigma_arcmin");

@@ -20,7 +20,7 @@ namespace {
 using geometry::Rectangle, geometry::Vec2;
 
 constexpr std::string_view kTurn = "analysis.rotation_deg";
-/// Minimum height of a row of a zone, in elements, so that most elements fit into the row as a whole.
+/// Minimum height of a row of a zone, in elements. With this height, most elements in the row are whole.
 constexpr double kElementsOfRow = 8.0;
 /// Maximum number of rows of all zones, limited by what a design file can contain.
 constexpr double kMostRows = 120.0;
@@ -90,14 +90,14 @@ std::string changes_text(const Study& study, const PointValues& values) {
   return text.empty() ? text : fmt::format("set = [{}]\n", text);
 }
 
-/// Returns the command-line option that sets this key in the design of the whole part.
+/// Returns the command-line option that sets the given key in the design of the whole part.
 std::string_view option_of(std::string_view key) {
   if (key == "array.x_length_mm") return "--x-length-mm";
   return key == "array.y_length_mm" ? "--y-length-mm" : "--design";
 }
 
-/// Returns the design of the whole part, with the elements of these parameter values everywhere. The part is finite and
-/// has the size of the request.
+/// Returns the design of the whole part, with elements that have the given parameter values everywhere. The part is
+/// finite and has the size of the request.
 Design whole_design(const Study& study, const PointValues& values, const ZonedDesignRequest& request) {
   const Design design = make_candidate(study, values).design();
   if (!request.size_mm) return design;

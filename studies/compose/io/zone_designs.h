@@ -33,13 +33,13 @@ inline constexpr std::string_view kZoneLayouts[] = {"stripes", "blocks", "rows"}
 /// \throw InputError at --layout
 ZoneLayout read_zone_layout(const std::string& word);
 
-/// Arrangement and size of the part of zones.
+/// Arrangement of the zones of a part, and size of the part.
 struct ZonedDesignRequest {
   ZoneLayout layout = ZoneLayout::stripes;
   std::optional<geometry::Vec2> size_mm;  ///< none: size in the study's design
 };
 
-/// Checks that a part of zones can be written as one design.
+/// Checks that a part with zones can be written as one design.
 /// \throw InputError if the size is missing, or if a parameter may not differ between the zones of a part
 void check_zoned_design(const Study& study, const ZonedDesignRequest& request);
 
