@@ -24,6 +24,7 @@ bool is_regular(const geometry::PartSpec& part) {
          !part.substrate;
 }
 
+/// Returns the symmetry of an array of cube corners. Returns nothing if they are canted.
 /// \param cube complete cube corner, which is mirror-symmetric to three planes through its axis
 template <class Cube>
 std::optional<AzimuthSymmetry> of_cubes(const Cube& cube, double period_deg) {
@@ -42,7 +43,7 @@ std::optional<AzimuthSymmetry> symmetry_of(const geometry::PartSpec& part) {
                                },
                                [&](const geometry::HexagonalCube& cube) { return of_cubes(cube, 120.0); },
                                [&](const geometry::TriangularCube& cube) {
-                                 // Every second cell is rotated by 180 degrees.
+                                 // In an array, every second cell is rotated by 180 degrees.
                                  return of_cubes(cube, array.arrangement == Arrangement::single ? 120.0 : 60.0);
                                }},
                     part.element);

@@ -1,6 +1,7 @@
 #pragma once
 
-// Symmetries of RRE over the azimuth of the light, as they follow from the symmetry of a design.
+// Symmetries of RRE (the retroreflective efficiency) with respect to the azimuth of the light. They follow from the
+// symmetry of a design.
 
 #include <optional>
 

@@ -64,7 +64,7 @@ struct HeightMapTexture {
   std::string name;  ///< name of the file, as given
   /// Path of the file, from the working directory; make_model() checks the file when it reads it.
   std::filesystem::path file;
-  /// Axis of the map that is horizontal on a facet: along the roof edge of a prism.
+  /// Axis of the map that is horizontal on a facet. For a prism, it is parallel to the roof edge.
   HeightMapAxis level_axis = HeightMapAxis::x;
   int form_degree = 1;  ///< degree of the polynomial that is removed from the map, 1..8
 };
@@ -100,8 +100,8 @@ struct SpectralAbsorption {
 
   bool operator==(const SpectralAbsorption&) const = default;
 };
-/// Napierian absorption coefficient for power: that of the material, a number per mm, or a table with linear
-/// interpolation. The wavelengths of the table ascend.
+/// Napierian absorption coefficient for power. The alternatives are the value of the material, a number per mm, and a
+/// table with linear interpolation. The wavelengths of the table ascend.
 using Absorption = std::variant<std::monostate, double, std::vector<SpectralAbsorption>>;
 
 /// Light of more than one wavelength, as the design specifies it.
@@ -166,10 +166,10 @@ struct ElementsOfZone {
 
 /// Plate with zones of different elements. The zones are either regions of the plate or sets of elements of one array.
 struct ZonedPart {
-  geometry::PartSpec base;                        ///< elements of zones without changes
+  geometry::PartSpec base;                        ///< elements of the design, before the changes of a zone are applied
   std::vector<std::vector<std::string>> changes;  ///< changes of each zone, as KEY=VALUE
   std::vector<ElementsOfZone> elements;           ///< elements of each zone; empty if the zones are regions
-  geometry::ZonedSpec spec;                       ///< part_of_design() determines the cells of masks
+  geometry::ZonedSpec spec;  ///< zones in detail; part_of_design() adds the cells that masks select
 
   bool has_masks() const {
     return std::ranges::any_of(elements, [](const ElementsOfZone& of_zone) { return of_zone.mask.has_value(); });
@@ -184,7 +184,8 @@ struct EntranceFile {
   std::string name;            ///< name of the file, as given
   std::filesystem::path file;  ///< path of the file, from the working directory; entrance_of_design() reads the file
   bool is_mesh = false;        ///< true: an STL file; false: the file of a turned part
-  bool mesh_bottom = false;    ///< true: the mesh is the counterpart, and its downward triangles are the entrance face
+  /// true: the mesh is the part above the entrance face (its counterpart), and its downward triangles are the face
+  bool mesh_bottom = false;
   /// Position in the part frame of the origin of the file's frame. Default: the centre of the part.
   std::optional<std::array<double, 2>> centre_mm;
 };
@@ -290,6 +291,7 @@ struct Light {
 
   /// Returns the spectrum, or null if the light has only one wavelength.
   const LightSpectrum* spectrum() const { return std::get_if<LightSpectrum>(&colour); }
+  /// Returns the wavelength in vacuum.
   /// \pre the light has only one wavelength
   double wavelength_nm() const { return std::get<double>(colour); }
 };
@@ -315,7 +317,7 @@ struct Design {
   /// Document of the design file. Null if the design was not read from a file.
   std::shared_ptr<const schema::Document> document;
 
-  /// Returns the paths, from the working directory, of all files that keys of the design name.
+  /// Returns the paths, from the working directory, of all files whose names are values of keys of the design.
   std::vector<std::filesystem::path> files() const;
   /// Returns a warning for each key of the design file that has no effect because of another key.
   Warnings warnings() const;
@@ -358,7 +360,7 @@ struct Design {
   bool needs_total_reflection() const { return !idealisation.mirror_facets && !surface.coating.has_opaque_facets(); }
 };
 
-/// Kinds of designs that a study supports, other than plane arrays of elements with a plane entrance face.
+/// Kinds of designs that a study supports. Every study supports plane arrays of elements with a plane entrance face.
 struct Takes {
   std::string_view what;  ///< name of the study for messages, such as "retrace job"
   bool balls = false;

@@ -1,7 +1,7 @@
 #pragma once
 
-// Part of a design that consists of elements, after its mask and its table of facet planes are applied. Also designs
-// with only one of its elements.
+// Builds the part of a design that consists of elements, and applies its mask and its table of facet planes. Also makes
+// designs with only one element of another design.
 
 #include "geometry/part/part.h"
 #include "studies/design/design.h"
@@ -13,7 +13,8 @@ namespace retrace::studies {
 /// \throw InputError under the same conditions as geometry::build_part(), and for an invalid table or mask
 geometry::Part part_of(const Design& design);
 
-/// Returns a design with only one element of the array, on the piece of plate that belongs to the element.
+/// Returns a design with only one element of the array. Its plate is the piece of the design's plate that belongs to
+/// this element.
 /// \pre the design consists of elements
 Design single_element_of(const Design& design);
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Optical model of the state of a design's entrance face.
+// Converts the state of a design's entrance face (contamination and damage) to an optical model.
 
 #include "raytrace/light/optics.h"
 #include "studies/design/design.h"

@@ -1,6 +1,7 @@
 #pragma once
 
-// Form of a design's facets: the table [form] as a polynomial over a facet.
+// Computes the form of a design's facets, which is their deviation from planes, as a polynomial over a facet. The table
+// [form] of the design determines it.
 
 #include <string>
 #include <vector>
@@ -12,7 +13,8 @@
 
 namespace retrace::studies {
 
-/// Reads a measured map of a design. Its axis that is horizontal on a facet becomes the x axis. Warnings are appended.
+/// Reads a measured map of a design. The axis of the map that is horizontal on a facet becomes the x axis. Warnings are
+/// appended.
 /// \param source name of the design, for messages
 /// \throw InputError that names the file
 surface_models::HeightMap level_map_of(const std::filesystem::path& file, HeightMapAxis level_axis,

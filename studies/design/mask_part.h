@@ -8,7 +8,7 @@
 namespace retrace::studies {
 
 /// Returns the elements that the mask selects, with nominal planes. These include angle errors that all elements have
-/// in common. The cells are those of a fabrication job, so that partial elements are missing.
+/// in common. The elements are those that a fabrication job would cut, so that partial elements are missing.
 /// \pre design.mask()
 /// \throw InputError if the mask cannot be read or does not have one pixel for each cell, and for random tilts
 geometry::FacetPlanes elements_of_mask(const Design& design);

@@ -328,7 +328,7 @@ void warn_of_temperature(const Design& design, const materials::Material& materi
 /// \param name beginning of the warnings
 /// \param texture function that returns the texture of the face at one wavelength
 /// \param behind function that returns the index of the medium on the other side of the face
-/// \throw InputError at `where` if the texture is beyond the range of every model
+/// \throw InputError at `where` if the texture is outside the range of every model
 template <class Texture, class Behind>
 void add_texture_warnings(const std::string& name, const InputLocation& where, const Texture& texture,
                           const Behind& behind, OpticalModel& model) {

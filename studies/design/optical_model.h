@@ -61,13 +61,14 @@ class OpticsOfDesign {
   OpticsOfDesign(const Design& design, const materials::MaterialLibrary& library, Warnings& warnings);
   ~OpticsOfDesign();
 
-  /// Returns the properties at a wavelength for a part without wet elements, which have another medium behind them.
+  /// Returns the properties at a wavelength for a part without wet elements, which are elements with another medium
+  /// behind them.
   /// \throw InputError if there are no data for this wavelength
   raytrace::Optics at(double wavelength_nm) const;
   /// Returns the properties at a wavelength, with another medium behind selected elements.
   /// \param chosen selected elements, for example OpticalModel::wet_elements
   raytrace::Optics at(double wavelength_nm, const std::shared_ptr<const geometry::ChosenElements>& chosen) const;
-  /// Returns true if the index of the body at this wavelength is within its data.
+  /// Returns true if this wavelength is within the range of the index data of the body.
   bool is_backed_at(double wavelength_nm) const;
   /// Returns the material of the body.
   const materials::Material& material() const;

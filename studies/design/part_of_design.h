@@ -1,6 +1,6 @@
 #pragma once
 
-// Part of any design, which is built from elements or from a plate, or read from a mesh and checked.
+// Builds the part of any design from its elements or its plate, or reads it from a mesh and checks the mesh.
 
 #include <string>
 #include <vector>

@@ -11,8 +11,8 @@ namespace retrace::studies {
 namespace {
 
 /// Returns the directions, inside the part, from which light is incident normally on a facet. There is one direction
-/// for each facet and each order of reflections. Light that has been reflected by other facets is incident on the facet
-/// as unreflected light would be on its mirror image.
+/// for each facet and each order of reflections. A facet that light hits after reflections is replaced by its mirror
+/// image, which unreflected light hits at the same angle.
 std::vector<geometry::Vec3> square_directions(const geometry::PartSpec& part) {
   std::vector<geometry::Vec3> normals;
   for (const geometry::CellFacet& facet : geometry::element_cell(part.element, part.angle_errors).facets)

@@ -125,8 +125,8 @@ void check_zones(const ZonedPart& part, const std::function<InputLocation(const 
   if (fault->what != Of::elements)
     throw InputError(where(fault->what == Of::rotation ? zone + ".rotation_deg" : zone), fault->text);
   if (!part.changes[fault->zone].empty()) throw InputError(where(zone + ".set"), fault->text);
-  // The faulty zone uses the elements of the design unchanged. Zone 1 is therefore the zone with changed elements, and
-  // the message names the `set` key of zone 1.
+  // The faulty zone has no changes. The fault is a difference from zone 1, so that the changes of zone 1 must cause it.
+  // The message therefore names the `set` key of zone 1.
   throw InputError(where(schema::path_of_entry("zone", 0) + ".set"),
                    fmt::format("must keep the outlines and positions of the elements of zone {}", fault->zone + 1));
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-// Assignment of elements to zones, for zones that are rows, columns or masks of elements and not regions.
+// Assigns the elements of an array to zones, if zones are rows, columns or masks of elements and not regions.
 
 #include <functional>
 #include <string>

@@ -44,7 +44,7 @@ std::vector<Edge> edges_of(const std::vector<Vec3>& vertices, const std::vector<
   return edges;
 }
 
-/// Appends a convex face that belongs to no patch, with its outline.
+/// Appends a convex face, with its outline. The face is not part of a SurfacePatch.
 void add_face(DesignView& view, const std::vector<Vec3>& corners, FacetRole role) {
   const auto first = static_cast<std::uint32_t>(view.mesh.vertices.size());
   const auto count = static_cast<std::uint32_t>(corners.size());

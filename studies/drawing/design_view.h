@@ -12,10 +12,11 @@
 
 namespace retrace::studies {
 
-/// View of a part.
+/// Mesh of a part for a picture.
 struct DesignView {
   std::string title;
-  geometry::BoundaryMesh mesh;                      ///< whole surface; patches of the back are not connected
+  /// whole surface; patches of the back (SurfacePatch) share no vertices with other faces
+  geometry::BoundaryMesh mesh;
   std::vector<std::array<std::uint32_t, 2>> edges;  ///< edges between faces of different directions
   std::vector<std::string> remarks;                 ///< differences from the design
 };

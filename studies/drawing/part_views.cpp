@@ -86,7 +86,7 @@ class LineSet {
   std::set<std::array<std::int64_t, 4>> known_;
 };
 
-/// Adds the faces and lines of one cell of a patch.
+/// Adds the faces and lines of one cell of a SurfacePatch.
 class CellDrawer {
  public:
   CellDrawer(const SurfacePatch& patch, const geometry::PatchCell& cell, const Vec2& offset)

@@ -28,7 +28,7 @@ struct ForcesResult {
 };
 
 /// Returns the forces over one cycle of a job's roughing, or over one layer of a bidirectional job. They are computed
-/// from the shipped measurements.
+/// from measured forces, which are shipped with the program.
 /// \throw InputError for an invalid job or request
 ForcesResult cutting_forces(const ForcesRequest& request);
 

@@ -61,8 +61,8 @@ double LuminousIntensity::cd(const geometry::Vec3& direction) const {
                    (plane_deg - planes_deg_[k - 1]) / (planes_deg_[k] - planes_deg_[k - 1]));
 }
 
-/// Returns the luminous flux per radian of rotation of a plane. The length of a ring is proportional to the sine of
-/// gamma, or to the cosine of the angle in planes of type A and B.
+/// Returns the luminous flux per radian of rotation of a plane. The circle that a direction describes during the
+/// rotation has a length proportional to sin(gamma), or to the cosine of the angle in planes of type A and B.
 double LuminousIntensity::flux_of_plane(std::size_t plane) const {
   const double from_axis_deg = kind_ == Planes::c ? 90.0 : 0.0;
   const double* const row = cd_.data() + plane * angles_deg_.size();

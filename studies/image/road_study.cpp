@@ -237,7 +237,7 @@ PhotometryRequest photometry_at(const RoadRequest& r, const RoadScene& s, double
   return request;
 }
 
-/// Measures with the exact engine, or by Monte Carlo if the exact engine needs too many beams.
+/// Measures the reflectors with the exact engine, or by Monte Carlo if the exact engine needs too many beams.
 std::optional<std::vector<PhotometerReading>> measured(Photometer& photometer,
                                                        const std::vector<PhotometerSetting>& settings,
                                                        Progress* progress, const Cancellation* cancel) {

@@ -5,6 +5,7 @@
 namespace retrace::studies {
 namespace {
 
+/// Returns the report on the coating of a face, averaged over the wavelengths of the light.
 /// \param at_wavelength function that returns the coefficients of the face at normal incidence
 template <class Face>
 CoatingReport report_of(const std::vector<CoatingLayer>& layers, const materials::LayerStack& stack,

@@ -14,7 +14,7 @@ namespace retrace::studies {
 /// hits facets from inside the body and the entrance face from the air. The facets of balls are their mirrors.
 struct CoatingReport {
   std::vector<CoatingLayer> layers;
-  materials::LayerStack stack;  ///< layers at the traced wavelength that is nearest to that of the light
+  materials::LayerStack stack;  ///< layers at the traced wavelength that is nearest to OpticalModel::wavelength_nm
   double reflectance = 0.0;
   double transmittance = 0.0;
   double absorptance = 0.0;

@@ -22,8 +22,8 @@ namespace {
 // is checked, because CGAL would need many seconds.
 constexpr double kElementsToCheck = 1000.0;
 
-/// Returns a finite part with the same elements that CGAL can check quickly. If the design is small, returns the design
-/// itself.
+/// Returns a finite part with the same elements, which is small enough for a quick check with CGAL. If the design is
+/// small, returns the design itself.
 /// \param is_whole receives true if the part is the design itself
 geometry::PartSpec part_to_check(const geometry::PartSpec& spec, double element_mm, bool& is_whole) {
   geometry::PartSpec small = spec;

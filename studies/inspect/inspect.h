@@ -30,7 +30,8 @@ struct BallFigures {
   double paraxial_error = 0.0;
   std::optional<double> focal_offset_mm;  ///< mirror offset for which the paraxial error is 0; none if there is none
   double largest_return_error_deg = 0.0;  ///< maximum over the aperture, due to spherical aberration
-  /// Fraction of the aperture within the narrowest cone; by geometry only, without Fresnel losses.
+  /// Fraction of the aperture whose light returns within the narrowest acceptance cone of the detector. It follows from
+  /// geometry only, without Fresnel losses.
   double share_within_acceptance = 0.0;
   double mirror_half_angle_deg = 0.0;
 };

@@ -32,9 +32,9 @@ struct ZonesReport {
   std::vector<ZoneCrossing> crossings;
 };
 
-/// Computes the figures of the zones with single rays from a grid of points on the entrance face. At every interface,
-/// only the stronger branch is traced. The figures are accurate to a few percent of their values. Rough facets are
-/// treated as smooth.
+/// Computes the figures of the zones with single rays from low-discrepancy points on the entrance face. At every
+/// interface, only the stronger branch is traced. The figures are accurate to a few percent of their values. Rough
+/// facets are treated as smooth.
 /// \pre design.zoned()
 ZonesReport report_zones(const Design& design, const OpticalModel& model);
 

@@ -31,6 +31,7 @@ class Keys {
   }
   void set(std::string_view key, Value value) { document_.set(schema::path_in(table_, key), std::move(value)); }
   void set_word(std::string_view key, std::string_view word) { set(key, text_of(word)); }
+  /// Sets a key to one of its allowed words.
   /// \param index index of the word among the words that the key allows at this point
   template <class Enum>
   void set_choice(std::string_view key, Enum index) {
@@ -129,8 +130,8 @@ void set_balls(Document& document, const raytrace::BallLayer& balls) {
   array.set("gap_mm", *balls.pitch_mm - balls.diameter_mm);
 }
 
-/// Writes the regions of a zone. Rectangles are written as [[x_from, y_from, x_to, y_to], ...]. A zone of another shape
-/// has only one region, whose corners are written.
+/// Writes the regions of a zone. Rectangles are written as [[x_from, y_from, x_to, y_to], ...]. A zone that is no
+/// rectangle has only one region, whose corners are written.
 void set_regions(Keys& keys, const std::vector<geometry::Polygon>& regions) {
   std::vector<std::vector<double>> boxes;
   for (const geometry::Polygon& region : regions) {

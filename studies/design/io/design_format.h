@@ -1,6 +1,6 @@
 #pragma once
 
-// Format of design files (retrace.design/1), as rows that are used by readers, writers and the documentation.
+// Format of design files (retrace.design/1). Readers, writers and the documentation use this description of all keys.
 
 #include "core/schema/schema.h"
 

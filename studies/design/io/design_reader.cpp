@@ -184,7 +184,7 @@ std::variant<double, LightSpectrum> read_colour(const Document& document) {
 
 raytrace::Stokes read_polarisation(const Document& document) {
   constexpr std::string_view key = "light.polarisation";
-  if (document.is_list(key)) {  // Stokes parameters relative to i
+  if (document.is_list(key)) {  // Stokes parameters, which are divided by i
     const std::vector<double> given = document.numbers(key);
     return {1.0, given[1] / given[0], given[2] / given[0], given[3] / given[0]};
   }
@@ -253,7 +253,7 @@ std::optional<WetElements> read_wet_back(const Document& document) {
   return wet;
 }
 
-/// Returns the design of a document. Files that it names are not read.
+/// Returns the design of a document. Files that are named in the document are not read.
 Design resolved(std::shared_ptr<const Document> given) {
   const Document& document = *given;
   schema::check(document, design_format().root, "", &document);
@@ -420,8 +420,8 @@ Design with(const Design& design, std::span<const std::string> overrides) {
   return changed;
 }
 
-/// Keys of files in the order in which the stores of studies list the files of a design. The order determines the
-/// identity of a study, so that new keys must be appended at the end.
+/// Keys whose values are names of files, in the order in which the stores of studies list the files of a design. The
+/// order determines the identity of a study, so that new keys must be appended at the end.
 constexpr std::array<std::string_view, 9> kFilesOfStores = {"part.mesh",   "array.mask",     "surface.height_map",
                                                             "part.facets", "light.spectrum", "front.turned",
                                                             "front.mesh",  "body.catalogue", "form.map"};

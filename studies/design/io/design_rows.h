@@ -1,6 +1,7 @@
 #pragma once
 
-// Rows of the tables of design files, with their common words and ranges. Internal to studies/design.
+// Rows for the tables of design files, each of which describes a key, and the words and ranges that several tables use.
+// Internal to studies/design.
 
 #include <span>
 #include <string_view>

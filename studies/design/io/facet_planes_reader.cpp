@@ -93,8 +93,8 @@ class Reader {
   bool is_prism() const { return std::holds_alternative<geometry::RtpElement>(spec_.element); }
   bool is_hexagonal() const { return std::holds_alternative<geometry::HexagonalCube>(spec_.element); }
 
-  /// Returns true if a plane is similar to that of the nominal facet. A flare lies in the plane of the facet across its
-  /// edge.
+  /// Returns true if a plane is similar to the nominal plane. For a facet, this is the plane of the nominal facet. A
+  /// flare has the slope of the facet that is opposite to the flare's corner.
   /// \param rotated true: compare with the rotated element: by 90 degrees in a checker, 180 degrees in a triangular
   ///        array
   bool resembles(const FacetRow& row, bool rotated) const {

@@ -1,7 +1,7 @@
 #pragma once
 
-// Reads and writes tables of facet planes (CSV), by which individual elements of an array differ from the nominal
-// element.
+// Reads and writes tables (CSV) with the facet planes of individual elements, which may differ from the planes of the
+// nominal element.
 
 #include <cstddef>
 #include <string>

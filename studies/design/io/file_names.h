@@ -1,6 +1,6 @@
 #pragma once
 
-// Checks and units of the files whose names are values of keys in a design.
+// Checks that a design names no files, and determines the units of the STL files that it names.
 
 #include <string_view>
 

@@ -33,7 +33,7 @@ std::size_t count_opaque(const Document& document, std::string_view list) {
 
 }  // namespace
 
-/// Checks that every rms height comes with its length.
+/// Checks that every rms height comes with its correlation length or period.
 void check_lengths(const Document& document) {
   for (const auto& [height, length] : {std::pair(kRoughness, kRoughnessLength), {kWaviness, kWavinessLength}})
     if (document.number(height) > 0.0 && !(document.number(length) > 0.0))

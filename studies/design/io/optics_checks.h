@@ -1,6 +1,7 @@
 #pragma once
 
-// Rules of designs between keys of material, texture, layers and light. Rules of parts are in design_rules.cpp.
+// Checks of keys of a design that depend on each other: material, texture, layers and light. Checks of the part are in
+// design_rules.cpp.
 
 #include <string_view>
 
@@ -18,10 +19,10 @@ inline constexpr std::string_view kEntranceLayers = "coating.entrance";
 inline constexpr std::string_view kEntranceFace = "entrance";
 inline constexpr std::string_view kThickLayers = "entrance.layers";
 
-/// Checks that every roughness or waviness has its length.
+/// Checks that every roughness comes with its correlation length and every waviness with its period.
 /// \throw InputError that names file, line and key, like all following functions
 void check_lengths(const schema::Document& document);
-/// Checks that the model of the texture uses the given heights.
+/// Checks that the texture's model uses every height that is given.
 void check_heights(const schema::Document& document);
 /// Checks that a material is given.
 void check_material(const schema::Document& document);
@@ -33,7 +34,7 @@ void check_lines(const schema::Document& document);
 void check_stokes(const schema::Document& document);
 /// Checks that balls with a bowl behind them have a mirror.
 void check_ball_mirror(const schema::Document& document);
-/// Checks that wet elements are in a finite array on a plane, and that their region has a size.
+/// Checks that wet elements belong to a finite array on a plane, and that the region that selects them is not empty.
 void check_wet_back(const schema::Document& document);
 /// Checks that at most one layer on the facets is opaque, and no layer on the entrance face.
 void check_layers(const schema::Document& document);

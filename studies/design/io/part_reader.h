@@ -1,6 +1,6 @@
 #pragma once
 
-// Reads the shape of a design, elements with their array or balls, from its document.
+// Reads the shape of a design from its document: elements with their array, or balls.
 
 #include "core/schema/document.h"
 #include "geometry/elements/part_spec.h"

@@ -86,14 +86,15 @@ void check_changes(const Document& document, std::size_t zone) {
   }
 }
 
-/// Returns the design without its elements. Zones with another kind of element start from the defaults.
+/// Returns a design file that contains only the size and the thickness of the part. A zone with another kind of element
+/// starts from this file, so that all other keys have their defaults.
 std::string text_without_elements(const Document& document) {
   return fmt::format("[array]\nx_length_mm = {}\ny_length_mm = {}\n[body]\nthickness_mm = {}\n",
                      shortest(document.number("array.x_length_mm")), shortest(document.number("array.y_length_mm")),
                      shortest(document.number("body.thickness_mm")));
 }
 
-/// Returns the document of a zone as if it covered the whole part.
+/// Returns the document of a zone: the design of the whole part with the elements of this zone everywhere.
 Document document_of_zone(const Document& document, std::size_t zone) {
   const std::string key = entry_of(zone) + ".set";
   const auto changes = document.has(key) ? document.texts(key) : std::vector<std::string>();

@@ -15,10 +15,10 @@ namespace retrace::studies {
 /// changes
 ZonedPart read_zones(const schema::Document& document);
 
-/// Returns true if the design is a part of zones.
+/// Returns true if the design is a part with zones.
 bool has_zones(const schema::Document& document);
 
-/// Returns true if zones may differ in this key of the design.
+/// Returns true if the value of this key of the design may differ between zones.
 bool may_set_in_zone(std::string_view key);
 
 /// Checks that the zones of a design, if there are any, can be read.

@@ -54,7 +54,7 @@ class Lines {
   }
   void leave_line() { word_ = std::string_view::npos; }
 
-  // Reads whole numbers like number() and word().
+  // These functions read whole numbers in the same way as number() and word() read numbers.
   std::size_t count(std::string_view key, double least, double most) { return whole(key, number(key, least, most)); }
   std::size_t count_word(std::string_view key, double least, double most) { return whole(key, word(key, least, most)); }
 

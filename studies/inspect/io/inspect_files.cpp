@@ -120,6 +120,7 @@ std::string layer_text(const CoatingLayer& layer) {
   return layer.thickness_nm ? fmt::format("{} {} nm", name, shortest(*layer.thickness_nm)) : name + ", opaque";
 }
 
+/// Returns the lines on the coating of a face. Empty if it has none.
 /// \param label text of at most 20 characters
 std::string coating_text(std::string_view label, const std::optional<CoatingReport>& face) {
   if (!face) return {};

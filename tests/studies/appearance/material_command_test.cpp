@@ -17,9 +17,9 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// Returns a design with cube corners whose errors of angle cause six spots.
+/// Returns a design with cube corners whose errors of angle cause six spots of returned light.
 /// \param aperture_mm size of the elements: 0.5 causes visible diffraction; with 20, diffraction is negligible compared
-/// with the discs
+///        with the discs of source and receiver
 std::string cubes(const std::string& aperture_mm) {
   return "[element]\nkind = \"hexagonal_icc\"\naperture_mm = " + aperture_mm +
          "\n[array]\narrangement = \"honeycomb\"\nextent = \"infinite\"\n[body]\nthickness_mm = 1\n"
@@ -258,7 +258,8 @@ TEST(Material, LobesOfAShaderAreAsFarOffAsTheySay) {
   }
   const std::vector<double> errors = errors_of(truth, told);
   EXPECT_LT(errors[errors.size() * 95 / 100], 0.05);
-  // These errors are measured at other random geometries, which extend to larger angles.
+  // The errors of the lobes in the file were measured at other random geometries. Those geometries extend to larger
+  // angles than the readings.
   EXPECT_LT(errors[errors.size() / 2], 2.0 * json.at("error_of_lobes").at("median").get<double>());
   EXPECT_GT(json.at("error_of_lobes").at("greatest"), json.at("error").at("greatest"));
 }

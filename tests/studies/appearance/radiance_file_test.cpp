@@ -1,4 +1,4 @@
-// Tests that BSDF files of Radiance are well-formed XML for every title of a design.
+// Tests that BSDF files of Radiance are well-formed XML, whatever characters the title of the design contains.
 
 #include "studies/appearance/io/radiance_file.h"
 

@@ -36,7 +36,7 @@ std::string job_text(double apex_angle_deg) {
 
 const std::vector<double> kApexAngles = {90.0, 70.0, 105.0};
 
-/// The three jobs, with the contents of their programs.
+/// Jobs of the three test parts, with the contents of their programs.
 struct TestCuts {
   std::vector<FabricationResult> plans;
   std::vector<std::vector<NcProgram>> programs;
@@ -95,7 +95,7 @@ std::vector<std::string> told(const Calibration& found) {
   return keys;
 }
 
-/// Facets determine only three quantities by themselves. The other quantities are known only in combinations, or not at
+/// Facets determine only three quantities individually. The other quantities are known only in combinations, or not at
 /// all. Examples are errors that move the edge along itself or in the plane of the facet, the clearance, and a common
 /// shift of all axes.
 TEST(Calibration, SaysWhatFacetsDoNotTell) {
@@ -194,8 +194,8 @@ std::string refusal_of(const MeasuredParts& parts) {
 }
 
 /// On one part, the user enters the tilts along the roots of rotated prisms with the wrong sign. Only 4 of 72 rows are
-/// wrong, which are too few outliers to refuse the table for. Without them, however, no measurement of this quantity
-/// remains, so that the table is refused.
+/// wrong, which would not be too many outliers. Without these rows, however, no measurement of this quantity remains,
+/// so that the table is refused.
 TEST(Calibration, RefusesAWrongSignOfAllThatWasMeasuredOfAFacet) {
   const Machine& ideal = test_cuts().plans.front().machine;
   const Machine real = with_error(ideal, *setup_quantity(Tilt::table, "tool_turn_z_arcsec"), 60.0);

@@ -16,9 +16,9 @@
 #include "studies/calibration/time_programs.h"
 #include "tests/support/refusals.h"
 
-// Tests of the calibration of times. The accelerations and settling times of a machine differ from its file. The test
-// computes the time of each move independently. From the times of programs, with noise, the calibration must determine
-// the machine.
+// Tests of the calibration of times. The accelerations and settling times of the real machine differ from the values in
+// its machine file. The test computes the time of each move independently. From the times of programs, with noise, the
+// calibration must determine the values of the real machine.
 
 namespace retrace::studies::time_calibration_test {
 namespace {

@@ -44,7 +44,8 @@ class Analytic : public Quantity {
 
 using Functions = std::vector<std::pair<std::string, Analytic::Function>>;
 
-/// Returns the value at a point of a lobe with its center at x. The lobe is narrower and higher for larger y.
+/// Returns a function of the center x and the sharpness y of a lobe: the value of the lobe at the given point. The lobe
+/// is narrower and higher for larger y.
 Analytic::Function lobe_at(double point) {
   return [point](double x, double y) { return y * std::exp(-std::pow(y * (x - point), 2.0)); };
 }
