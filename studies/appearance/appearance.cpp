@@ -217,8 +217,8 @@ class TableMaker {
       instruments_[response] = std::make_unique<Instrument>(photometer_of(design, photometry_, response, kParts));
     const materials::SpectralCurve lamp = lamp_power(photometry_.light);
     const materials::Tristimulus sent = materials::tristimulus(lamp, materials::shipped_colour_matching());
-    // The readings of a photometer are relative to its response to the incident light. The matrix therefore contains
-    // this response, `sent`.
+    // Readings of a photometer are divided by its response to the incident light. The matrix therefore multiplies the
+    // readings by this response, `sent`.
     rgb_of_shares_ = rgb_from_xyz(sent) * Eigen::Vector3d(sent[0], sent[1], sent[2]).asDiagonal() / sent[1];
     table_.back = back;
     table_.half_width = std::sin(Angle::from_deg(request.window_deg).rad());
@@ -393,9 +393,9 @@ class TableMaker {
     return true;
   }
 
-  /// Returns the finished fraction of the work. The first cells count as one half, and the refinement as the other
-  /// half, because its amount is not known in advance.
-  /// \param first number of directions of the first cells, while these are computed
+  /// Returns the finished fraction of the work. The first cells count as one half of the work, because the amount of
+  /// refinement after them is not known in advance.
+  /// \param first number of directions of the first cells; used only while these directions are computed
   double share_done(std::size_t first) const {
     const auto done = static_cast<double>(table_.directions.size());
     if (first_directions_ == 0) return 0.5 * done / static_cast<double>(first);

@@ -43,8 +43,9 @@ void check(const MeasuredParts& measured, const std::vector<CutPart>& parts) {
 }
 
 /// Returns the covariance of the observable combinations that is due to the unobservable ones. Unobservable errors
-/// change the measurements by second-order products with themselves and with the observable errors. The covariance is
-/// the mean over random machines with the assumed deviations kUntoldArcsec and kUntoldUm.
+/// change the measurements by terms of second order: products of two unobservable errors, or of an unobservable and an
+/// observable error. The covariance is the mean over random machines with the assumed deviations kUntoldArcsec and
+/// kUntoldUm.
 Eigen::MatrixXd spread_of_untold(const std::vector<CutPart>& parts, const MeasuredParts& measured,
                                  const Estimate& fitted, const Estimate& first, const std::vector<PartPose>& poses) {
   constexpr int kMachines = 64;
@@ -81,7 +82,7 @@ Estimate fit(const std::vector<CutPart>& parts, const MeasuredParts& measured) {
   const Machine& nominal = measured.plans.front().machine;
   std::vector<PartPose> poses(parts.size());
   LinearModel model = linear_model(parts, measured.measurements, nominal, measured.map_faces, poses);
-  // Observability is determined from the measurements only, before priors are added.
+  // Observability is determined from the measurements only, before the priors on the poses are added.
   Estimate result = estimate(model.of_setup, model.of_poses, model.residual, kSetUpByEye);
   model = with_poses_by_eye(std::move(model), poses);
   const Estimate first = result;

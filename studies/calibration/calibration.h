@@ -28,8 +28,8 @@ struct MeasuredParts {
   std::string file;               ///< name of the measurement file, for messages
   std::vector<std::string> jobs;  ///< names of the jobs, as given in the file
   std::vector<FabricationResult> plans;
-  /// Figures of the blank's face in each height map, if all `parts` are height maps of one part (the first plan). Empty
-  /// if the parts are measured relative to their face, which is then the reference.
+  /// Height and tilts of the blank's face in each height map, if all `parts` are height maps of one part (the first
+  /// plan). Empty if the parts are measured relative to their face, which is then the reference.
   std::vector<std::optional<FaceFigures>> map_faces;
   std::vector<Measurement> measurements;
   std::size_t empty_rows = 0;  ///< number of rows without a value
@@ -44,7 +44,8 @@ struct CalibratedQuantity {
   bool is_told = false;  ///< true if the measurements determine the quantity
   /// deviation from the job's machine, um or arcsec; not determined by the measurements if is_told is false
   double value = 0.0;
-  double uncertainty = 0.0;  ///< standard uncertainty; if is_told is false, only of its observable part
+  /// standard uncertainty; if is_told is false, only that of the observable part of the quantity
+  double uncertainty = 0.0;
 };
 
 struct Calibration {

@@ -15,8 +15,8 @@ struct Estimate {
   Eigen::MatrixXd told;        ///< observable combinations as orthonormal columns; x is a combination of them
   Eigen::MatrixXd untold;      ///< unobservable combinations as orthonormal columns
   Eigen::VectorXd residual;    ///< residuals of the observations, in their standard uncertainties
-  /// Leverages of the observations: the fraction of each observation that the unknowns adapt to. If it is 1, no other
-  /// observation checks the observation.
+  /// Leverages of the observations: derivative of the fitted value of an observation with respect to the observed
+  /// value. If it is 1, no other observation checks the observation.
   Eigen::VectorXd leverage;
 
   /// Returns true if the observations determine an unknown, independently of all other unknowns.
@@ -29,8 +29,8 @@ struct Estimate {
 Estimate estimate(const Eigen::MatrixXd& derivatives, const Eigen::MatrixXd& of_nuisance,
                   const Eigen::VectorXd& observations, double most_uncertain);
 
-/// Returns combinations that span the same space in a form that is easy to read. Each column has an element 1 where all
-/// other columns have 0. Small elements are set to 0.
+/// Returns combinations that span the same space as the given ones, in a form that is easy to read. Each column has an
+/// element 1 where all other columns have 0. Small elements are set to 0.
 Eigen::MatrixXd reduced_combinations(const Eigen::MatrixXd& untold);
 
 }  // namespace retrace::studies

@@ -31,7 +31,8 @@ struct RegisteredMap {
   std::vector<FacetRest> rests;            ///< waves and marks of the measured facets
 };
 
-/// Registers a map to the design and measures its facets. Marks of chips and scratches are excluded from the figures.
+/// Registers a map to the design and measures its facets. Points on marks of chips and scratches are left out of the
+/// measurement.
 /// \param plan plan of the programs that cut the part
 /// \throw InputError for a map that fits no position on the design, or shows no facet
 RegisteredMap registered(const FacetMap& map, const FabricationResult& plan);

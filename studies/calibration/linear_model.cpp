@@ -31,7 +31,7 @@ void move_one(PartPose& pose, Index unknown, double amount) {
     (unknown < kTurns ? pose.turn_arcsec[unknown] : pose.shift_um[unknown - kTurns]) += amount;
 }
 
-/// Returns the height and tilts of the face that a map with this pose shows.
+/// Returns the height and tilts of the face that a map would show if the part had this pose.
 geometry::Vec3 predicted_face(const FaceFigures& face, const PartPose& pose) {
   const geometry::Vec3 normal = pose.face_rotation().col(2);
   const geometry::Vec3 shift = pose.shift_um / kUmInMm;

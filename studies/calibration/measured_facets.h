@@ -30,7 +30,7 @@ enum class FacetQuantity {
   along,     ///< tilt, positive if the facet rises along the root, arcsec
   angle,     ///< angle to another facet, measured through the groove, arcsec
   depth,     ///< depth of the root or apex, nm; positive: deeper
-  end        ///< height of the end of the last cut above the other facet, at a position along the edge, nm
+  end        ///< height of the end of the last cut above the element's other facet, at a position along the edge, nm
 };
 inline constexpr std::string_view kFacetQuantityWords[] = {"distance_nm",  "up_arcsec", "along_arcsec",
                                                            "angle_arcsec", "depth_nm",  "end_nm"};

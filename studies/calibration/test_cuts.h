@@ -16,7 +16,7 @@ struct PlannedQuantity {
   const fabrication::SetupQuantity* quantity = nullptr;
   bool is_told = false;
   double uncertainty = 0.0;        ///< expected standard uncertainty, um or arcsec
-  std::vector<std::size_t> needs;  ///< needed parts: without one of them, the quantity is unobservable
+  std::vector<std::size_t> needs;  ///< parts that are needed: if one of them is missing, the quantity is unobservable
 };
 
 struct TestCuts {

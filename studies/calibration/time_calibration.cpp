@@ -209,8 +209,8 @@ void warn_of_misses(TimeCalibration& result, const Estimate& fitted) {
   for (std::size_t k = 0; k < result.residuals.size(); ++k) {
     const auto row = static_cast<Index>(k);
     const double spare = 1.0 - fitted.leverage[row];
-    // If no other row checks a row, the leverage of the row is 1 and its residual is 0. The residual is above 0 only if
-    // no machine within the bounds of the unknowns can take so long; it is then used as it is.
+    // If no other row checks a row, the leverage of the row is 1 and its residual is usually 0. The residual is above 0
+    // only if no machine within the bounds of the unknowns can take so long. In this case, the residual is not scaled.
     const double deviations = std::abs(result.residuals[k]) / (spare > 1e-6 ? std::sqrt(spare) : 1.0);
     if (deviations > kManyDeviations)
       result.warnings.push_back(

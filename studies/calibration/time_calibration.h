@@ -77,9 +77,9 @@ struct TimeCalibration {
   Warnings warnings;
 };
 
-/// Estimates the quantities by least squares with Gauss-Newton steps. Settling and ramp have the lower bound 0. If the
-/// residuals are larger than the uncertainties of the rows, the uncertainties of the results are enlarged by the same
-/// factor.
+/// Estimates the quantities by least squares with Gauss-Newton steps. Settling and ramp have the lower bound 0. If
+/// TimeCalibration::scatter is above 1, the residuals are larger than the uncertainties of the rows explain. The
+/// uncertainties of the results are then multiplied by it.
 /// \throw InputError if there are no rows
 TimeCalibration calibrate_times(TimedPrograms programs, const fabrication::Machine& machine);
 

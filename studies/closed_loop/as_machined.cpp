@@ -150,7 +150,7 @@ geometry::FacetPlanes facet_planes_of(const VerificationRun& run) {
   return part_planes(run.job, planes);
 }
 
-/// Adds warnings about the differences that a design with equal elements leaves out.
+/// Adds warnings about the differences between elements that a design with equal elements cannot represent.
 /// \param where end of the warning, such as "on a base"
 void warn_of(const Unlikeness& unlike, AsMachined& part, const char* where) {
   if (unlike.along_arcmin > kShownArcmin)
@@ -171,8 +171,8 @@ void warn_of(const Unlikeness& unlike, AsMachined& part, const char* where) {
 
 namespace {
 
-/// Returns true if cavities extend beyond hexagonal elements at the border. A part with a single element has no
-/// material there, because it ends with the aperture.
+/// Returns true if cavities extend beyond the outlines of hexagonal elements at the border of the array. A part with a
+/// single element has no material there, because it ends with the aperture.
 bool has_flares(const VerificationRun& run) {
   return run.result.border_overcut_mm3 > 0.0 && run.job.array.arrangement != geometry::Arrangement::single;
 }

@@ -222,8 +222,8 @@ class Composer {
     return starts;
   }
 
-  /// Returns true if two cells are so similar that one search covers both. All their parameters differ by at most one
-  /// first step.
+  /// Returns true if two cells are so similar that one search covers both. Parameters with an interval may differ by
+  /// the fraction kFirstStep of the interval. All other parameters must be equal.
   bool are_near(const PointValues& a, const PointValues& b) const {
     for (std::size_t k = 0; k < a.size(); ++k) {
       const std::optional<Interval>& interval = study_.parameters[k].interval;
@@ -302,8 +302,8 @@ class Composer {
     add_by_zones(composition, std::max(last.most_zones, composition.best->zones.size()) + 1);
   }
 
-  /// Computes the parts of the Pareto front. Their means are equally spaced from the best possible mean to the mean of
-  /// the best part.
+  /// Computes the parts of the Pareto front. The bounds of the front's mean are equally spaced, from the best value of
+  /// a single cell to the mean of the best part.
   void draw_front(Composition& composition) const {
     if (!request_.front) return;
     const double sign = request_.front->largest ? 1.0 : -1.0;

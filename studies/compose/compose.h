@@ -31,7 +31,8 @@ struct ComposeRequest {
   std::vector<Constraint> of_cells;                   ///< constraints that each cell of the family must satisfy
   std::vector<Constraint> of_part;                    ///< constraints on means over the part
   std::vector<std::pair<std::string, double>> price;  ///< quantity, and reduction of the merit per unit of its mean
-  std::optional<FrontAxis> front;  ///< quantity on the Pareto front, whose mean is compared with the minimum goal
+  /// quantity whose mean is one axis of the Pareto front; the minimum goal is the other axis
+  std::optional<FrontAxis> front;
   std::size_t front_points = 9;
   std::optional<double> least_goal;  ///< minimum goal that a part must reach
   double least_share = 0.0;          ///< minimum fraction of the area for a zone
@@ -39,7 +40,7 @@ struct ComposeRequest {
   std::optional<std::size_t> most_zones;  ///< maximum number of zones; none: no limit
   std::size_t scan = 65;                  ///< number of cells of the first scan, per combination of discrete values
   std::size_t rounds = 4;                 ///< maximum number of searches with dual prices
-  std::size_t starts = 3;                 ///< number of cells from which each such search starts
+  std::size_t starts = 3;                 ///< number of cells from which each search with dual prices starts
   int looks = 20;                         ///< maximum number of cells that are evaluated from each start
   std::optional<ErrorSpread> errors;
 };
@@ -92,7 +93,9 @@ struct ErrorEffects {
   std::vector<std::vector<double>> slopes;
   PartYield yield;
   std::optional<PartForWorst> for_worst;
-  double missed_by = 0.0;  ///< maximum error of the polynomials, found by comparison with computed goals
+  /// Error of the part's goals because polynomials in the angle errors replace computed goals. It is the area-weighted
+  /// mean of the maximum errors that were found for the cells of the zones.
+  double missed_by = 0.0;
 };
 
 /// Proof of optimality of the part.

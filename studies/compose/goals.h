@@ -22,7 +22,7 @@ bool are_margins(const Study& study, const ComposeRequest& request);
 /// over all zones is 1 + margin.
 double given_by(const Zone& zone, std::size_t goal, bool is_margin);
 
-/// Returns true if a price is not zero within rounding errors.
+/// Returns true if a price differs from zero by more than rounding errors.
 bool is_price(double price);
 
 /// Returns the decrease of the minimum goal per unit by which the limit of a margin is raised. Returns nothing for

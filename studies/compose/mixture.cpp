@@ -95,8 +95,8 @@ Mixture mixture_of(const std::vector<MixedCell>& cells, const CellSet& set, cons
   return mixture;
 }
 
-/// Upper bound of the merit by dual prices. The merit of a mixture is at most the maximum of its cells' merits at these
-/// prices.
+/// Upper bound of the merit of mixtures, which follows from dual prices. A mixture has at most the maximum merit of its
+/// cells, if the merits of the cells are evaluated at these prices.
 class PriceBound {
  public:
   PriceBound(const std::vector<MixedCell>& cells, const MixtureRules& rules, const MixturePrices& prices) {
@@ -137,8 +137,8 @@ class PriceBound {
 };
 
 /// Branch and bound over small sets of cells. At any dual prices, a set that is better than the best mixture found so
-/// far contains a cell whose merit is above that of the best mixture. Sets are extended by such cells, at the prices
-/// for which there are fewest of them.
+/// far contains a cell with a higher merit than this mixture. Sets are therefore extended by such cells only. Of all
+/// stored dual prices, those with the smallest number of such cells are used.
 class SetSearch {
  public:
   SetSearch(const std::vector<MixedCell>& cells, const MixtureRules& rules, const Cancellation* cancel,

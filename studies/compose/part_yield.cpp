@@ -97,8 +97,8 @@ std::optional<std::vector<double>> best_shares(const DrawnParts& parts, double w
   std::vector<double> shares(zones, 1.0 / static_cast<double>(zones));
   std::set<PartGoal> rows;
   for (std::size_t part = 0; part < parts.size(); ++part) rows.emplace(part, worst_goal(parts[part], shares));
-  // Rows that the current solution violates are added until there are none. The rows that were not added would then not
-  // be active.
+  // Rows that the current solution violates are added until there are none. The solution then satisfies all rows,
+  // including those that were never added.
   for (;;) {
     const LinearOptimum optimum = solve(yield_programme(parts, worst_share, bounds, rows), cancel);
     if (optimum.kind != LinearOptimum::Kind::optimal) return std::nullopt;

@@ -32,7 +32,8 @@ namespace retrace::studies {
 struct Idealisation {
   bool mirror_facets = false;  ///< retro facets reflect all light at every angle
   bool lossless_entrance =
-      false;  ///< the entrance face transmits all light; beyond the critical angle, light from inside ends there
+      /// the entrance face transmits all light, except that light from inside beyond the critical angle is lost
+      false;
 };
 
 enum class HeightMapAxis { x, y };

@@ -15,12 +15,13 @@ struct ArrayFigures {
   geometry::Vec2 size_mm = geometry::Vec2::Zero();     ///< size of one element in plan
   geometry::Vec2 pitch_mm = geometry::Vec2::Zero();    ///< prisms: distance between neighbours; cube corners: period
   geometry::Vec2 element_mm = geometry::Vec2::Zero();  ///< corner (cube corners: apex) of the dimensioned element
-  geometry::Vec2 root_mm = geometry::Vec2::Zero();     ///< point on the root of this element, where the facets meet
-  double section_y_mm = 0.0;                           ///< y of the section across this root
-  double shift_mm = 0.0;                               ///< shift of every second row
-  bool element_is_shifted = false;                     ///< true: the dimensioned element is in a shifted row
-  double aperture_mm = 0.0;                            ///< aperture of cube corners
-  bool has_neighbours = false;                         ///< true: there are elements in the next column
+  /// point on the root of the dimensioned element, where its facets meet
+  geometry::Vec2 root_mm = geometry::Vec2::Zero();
+  double section_y_mm = 0.0;        ///< y of the section, which goes through root_mm
+  double shift_mm = 0.0;            ///< shift of every second row
+  bool element_is_shifted = false;  ///< true: the dimensioned element is in a shifted row
+  double aperture_mm = 0.0;         ///< aperture of cube corners
+  bool has_neighbours = false;      ///< true: there are elements in the next column
 };
 
 /// Returns the figures of an array.

@@ -32,7 +32,8 @@ struct PlanView {
 /// \pre for an infinite part, the window is within the periods that its surface covers
 PlanView plan_view(const geometry::Part& part, const geometry::Rectangle& window_mm);
 
-/// Returns the approximate number of faces in a plan of the window: those of all placements that overlap with it.
+/// Returns the approximate number of faces in a plan of the window. It counts all faces of each patch of the back
+/// surface that overlaps with the window.
 std::size_t faces_near(const geometry::Part& part, const geometry::Rectangle& window_mm);
 
 /// Section of a part with a plane of constant y.

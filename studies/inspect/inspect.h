@@ -25,8 +25,8 @@ namespace retrace::studies {
 /// Figures of a layer of balls, or of a single ball, for light along its axis, in closed form (docs/theory/beads.md).
 struct BallFigures {
   double packing_share = 0.0;  ///< fraction of the plan that balls cover
-  /// Derivative of the return error with respect to height / radius, at the axis, in rad. If it is 0, light near the
-  /// axis returns parallel to it.
+  /// Derivative of the return error with respect to h / radius at h = 0, in rad. h is the distance of the light from
+  /// the axis of the ball. If the derivative is 0, light near the axis returns parallel to it.
   double paraxial_error = 0.0;
   std::optional<double> focal_offset_mm;  ///< mirror offset for which the paraxial error is 0; none if there is none
   double largest_return_error_deg = 0.0;  ///< maximum over the aperture, due to spherical aberration
@@ -39,15 +39,16 @@ struct BallFigures {
 /// Figures of a base under the elements.
 struct SubstrateReport {
   geometry::SubstrateMeasures measures;
-  double element_mm = 0.0;     ///< width of an element; the base must have at least this radius
+  /// width of an element; the minimum radius of curvature of the base must be at least as large
+  double element_mm = 0.0;
   geometry::InnerWalls walls;  ///< walls between neighbours, seen along the normal at the centre of the base
 };
 
 /// Elements with another medium behind them.
 struct WetReport {
-  std::int64_t elements = 0;  ///< number of these elements, including partial ones
+  std::int64_t elements = 0;  ///< number of elements with another medium behind them, including partial elements
   std::int64_t of_all = 0;
-  /// Limit of total reflection for these elements, defined like Inspection::tir_limit_deg.
+  /// Limit of total reflection for elements with this medium behind them, defined like Inspection::tir_limit_deg.
   std::optional<double> tir_limit_deg;
 };
 

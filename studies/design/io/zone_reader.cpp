@@ -21,7 +21,7 @@ using geometry::Polygon, geometry::Vec2, schema::Document;
 
 constexpr std::string_view kZone = "zone";
 constexpr std::array<std::string_view, 3> kRegions = {"share", "rectangles_mm", "polygon_mm"};
-/// Maximum number of elements of a part of zones. The limit keeps memory small, because the back of such a part is
+/// Maximum number of elements of a part with zones. The limit keeps memory small, because the back of such a part is
 /// stored without using the periodicity of its arrays.
 constexpr double kMostElements = 1e5;
 constexpr std::size_t kMostRegions = 1000;

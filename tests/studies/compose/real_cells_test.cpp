@@ -103,7 +103,7 @@ TEST(RealCells, OfOneZoneAreWhatOptimiseFinds) {
   const Composition composition = composed(study);
   ASSERT_TRUE(composition.best && composition.single);
   ASSERT_EQ(composition.best->zones.size(), 1U);
-  // `optimize` maximizes the minimum RRE of the same directions, which is defined as a single quantity.
+  // `optimize` maximizes a single quantity, which is defined as the minimum RRE of the same directions.
   const Study least = study_of_corners(
       "[[quantity]]\nkind = \"rre\"\nname = \"least\"\nover_directions = \"least\"\nincidence_deg = 35\n"
       "azimuth_deg = [0, 60, 120, 210]\n[optimize]\nmaximize = \"least\"\n");
