@@ -12,7 +12,7 @@ namespace retrace::studies {
 struct Estimate {
   Eigen::VectorXd value;       ///< estimated values of the unknowns
   Eigen::MatrixXd covariance;  ///< covariance matrix of the observable part of the unknowns
-  Eigen::MatrixXd told;        ///< observable combinations as orthonormal columns; x is a combination of them
+  Eigen::MatrixXd told;        ///< observable combinations as orthonormal columns; `value` is a combination of them
   Eigen::MatrixXd untold;      ///< unobservable combinations as orthonormal columns
   Eigen::VectorXd residual;    ///< residuals of the observations, in their standard uncertainties
   /// Leverages of the observations: derivative of the fitted value of an observation with respect to the observed

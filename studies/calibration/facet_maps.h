@@ -27,7 +27,7 @@ struct RegisteredMap {
   fabrication::RigidMotion part_from_map;  ///< transformation of points relative to the centre of the map
   double rms_nm = 0.0;                     ///< rms deviation from the design after registration
   std::vector<Measurement> figures;        ///< distance and both tilts of every facet that the map shows
-  std::optional<FaceFigures> face;         ///< figures of the blank's face; none: the map shows too little of it
+  std::optional<FaceFigures> face;         ///< figures of the blank's face; none if the map shows too little of it
   std::vector<FacetRest> rests;            ///< waves and marks of the measured facets
 };
 

@@ -75,7 +75,7 @@ struct FacetMark {
   bool is_of_edge = false;    ///< true: the edge causes the mark, which most facets with this position have
   /// Position along the edge, from its centre, or up the facet, from the last position of the edge's tip.
   double place_um = 0.0;
-  double height_nm = 0.0;  ///< mean height; negative: a groove
+  double height_nm = 0.0;  ///< mean height; negative for a groove
   double width_um = 0.0;   ///< full width at half of the height
   std::vector<FacetPlace> facets;
   std::size_t shown = 0;  ///< number of facets whose measured area contains the position

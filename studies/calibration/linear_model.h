@@ -28,7 +28,8 @@ struct LinearModel {
 /// Returns the linear model.
 /// \param parts measured parts, in the order of Measurement::part
 /// \param map_faces value of MeasuredParts::map_faces; each face adds three rows after the rows of all measurements
-/// \param poses pose of each part at which the derivatives are taken; empty: the poses in the programs
+/// \param poses pose of each part at which the derivatives are taken; if it is empty, the poses in the programs are
+///        used
 LinearModel linear_model(const std::vector<CutPart>& parts, std::span<const Measurement> measurements,
                          const fabrication::Machine& machine,
                          const std::vector<std::optional<FaceFigures>>& map_faces = {},

@@ -29,7 +29,7 @@ enum class FacetQuantity {
   up,        ///< tilt, positive if the facet rises away from the root, arcsec
   along,     ///< tilt, positive if the facet rises along the root, arcsec
   angle,     ///< angle to another facet, measured through the groove, arcsec
-  depth,     ///< depth of the root or apex, nm; positive: deeper
+  depth,     ///< depth of the root or apex, positive if it is too deep, nm
   end        ///< height of the end of the last cut above the element's other facet, at a position along the edge, nm
 };
 inline constexpr std::string_view kFacetQuantityWords[] = {"distance_nm",  "up_arcsec", "along_arcsec",
@@ -55,8 +55,8 @@ struct Measurement {
   std::optional<FacetPlace> from;
   double along_edge = 0.0;  ///< for `end`: position along the edge; -1 and 1 at its ends, 0 at its centre
   int line = 0;             ///< line in the file; 0 for values from height maps
-  /// For `distance`: position on the facet, up the facet from the root and along the root. None: the centre of the
-  /// facet.
+  /// For `distance`: position on the facet, up the facet from the root and along the root. If it is empty, the distance
+  /// is measured at the centre of the facet.
   std::optional<geometry::Vec2> place_mm = {};
 };
 
@@ -84,7 +84,7 @@ struct PartPose {
 /// Facets of a part as its programs cut them. They are used to predict the measurements for any machine.
 class CutPart {
  public:
-  /// \param elements numbers of the elements to use, in ascending order; empty: all elements
+  /// \param elements numbers of the elements to use, in ascending order; all elements if it is empty
   CutPart(const FabricationResult& result, const std::vector<std::size_t>& elements);
 
   /// Returns the reason why a measurement is not possible for this part. Empty if it is possible.

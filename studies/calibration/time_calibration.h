@@ -59,7 +59,7 @@ inline constexpr std::array<TimeQuantityWords, kTimeQuantities> kTimeQuantityWor
 
 struct CalibratedTime {
   bool is_told = false;
-  double value = 0.0;  ///< value; that of the machine file if the times do not determine the quantity
+  double value = 0.0;  ///< estimated value, or the value in the machine file if is_told is false
   double uncertainty = 0.0;
 };
 

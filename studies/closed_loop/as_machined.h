@@ -32,8 +32,8 @@ struct AsMachined {
   /// Mean tilts of the facets, positive if they open the element. Prism: facets towards -x and +x of the part. Cube
   /// corner: in the order of its facets.
   std::vector<double> facet_tilt_arcmin;
-  std::optional<geometry::FacetPlanes> planes;  ///< individual planes of all facets; empty: mean tilts are used
-  /// Zones as machined, for a job with zones. They replace the two members above. Empty: a job without zones.
+  std::optional<geometry::FacetPlanes> planes;  ///< individual planes of all facets; if empty, mean tilts are used
+  /// Zones as machined, which replace the two members above. Empty if the job has no zones.
   std::optional<ZonedPart> zones;
   double root_radius_um = 0.0, root_chamfer_um = 0.0;
   PredictedTexture texture;

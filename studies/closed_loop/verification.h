@@ -22,9 +22,9 @@ struct VerificationRequest {
   std::string job;                     ///< job file
   std::vector<std::string> programs;   ///< names as for fabrication::program_name(), in the order of execution
   std::string dialect = "auto";        ///< name in fabrication::kNcDialectWords; "auto": recognised from the text
-  std::optional<double> tolerance_nm;  ///< tolerance for facet planes; empty: fabrication::usual_tolerance_nm()
+  std::optional<double> tolerance_nm;  ///< tolerance for facet planes; fabrication::usual_tolerance_nm() if empty
   /// Name of a stage, which is one step of machining with its own program, such as roughing. All stages before it count
-  /// as already cut by the programs of the job. Empty: the blank is uncut.
+  /// as already cut by the programs of the job. If the name is empty, the blank is uncut.
   std::string standing;
   FileTexts texts = {};  ///< contents of files that are used instead of reading these files
 };

@@ -37,7 +37,7 @@ struct ComposeRequest {
   std::optional<double> least_goal;  ///< minimum goal that a part must reach
   double least_share = 0.0;          ///< minimum fraction of the area for a zone
   double most_share = 1.0;
-  std::optional<std::size_t> most_zones;  ///< maximum number of zones; none: no limit
+  std::optional<std::size_t> most_zones;  ///< maximum number of zones; no limit if empty
   std::size_t scan = 65;                  ///< number of cells of the first scan, per combination of discrete values
   std::size_t rounds = 4;                 ///< maximum number of searches with dual prices
   std::size_t starts = 3;                 ///< number of cells from which each search with dual prices starts
@@ -60,7 +60,7 @@ struct Zone {
 /// Best part with a limited number of zones.
 struct PartOfZones {
   std::vector<Zone> zones;     ///< the largest first
-  Mixture mixture;             ///< its cells are indices in the catalogue
+  Mixture mixture;             ///< mixture whose cells are indices in Composition::catalogue
   std::size_t most_zones = 0;  ///< maximum number of zones
 };
 
@@ -108,10 +108,10 @@ enum class Proof {
 struct Composition {
   std::vector<FamilyCell> catalogue;  ///< all cells that satisfy the constraints, in the order of their evaluation
   std::optional<PartOfZones> best;    ///< none if no mixture satisfies the bounds
-  std::string none_because;           ///< if there is no best part: the bounds that exclude all mixtures
+  std::string none_because;           ///< bounds that exclude all mixtures; empty if there is a best part
   std::optional<FamilyCell> single;   ///< cell of the best part with only one kind of cell, as found by `optimise`
   Proof proof = Proof::none;
-  bool has_converged = false;         ///< true if the last search by dual prices found no cell that gains
+  bool has_converged = false;         ///< true if the last search by dual prices found no cell with a positive gain
   double unlimited = 0.0;             ///< merit without limits on the number and the areas of zones
   std::vector<PartOfZones> by_zones;  ///< best parts of at most 1, 2, ... zones, up to one zone more than `best` has
   std::vector<FrontPart> front;

@@ -31,9 +31,8 @@ namespace retrace::studies {
 /// Optical idealisations that a design may request, for comparison with theory.
 struct Idealisation {
   bool mirror_facets = false;  ///< retro facets reflect all light at every angle
-  bool lossless_entrance =
-      /// the entrance face transmits all light, except that light from inside beyond the critical angle is lost
-      false;
+  /// True if the entrance face transmits all light. Light from inside beyond the critical angle is then lost.
+  bool lossless_entrance = false;
 };
 
 enum class HeightMapAxis { x, y };
@@ -47,7 +46,8 @@ struct HarveyShackTexture {
   double waviness_sq_nm = 0.0;
   double waviness_length_um = 0.0;  ///< period of the waviness
   /// Correlation length along the line of steepest descent of the facet, if it differs from correlation_length_um. In
-  /// this case, correlation_length_um applies to the horizontal direction. 0: the same in both directions.
+  /// this case, correlation_length_um applies to the horizontal direction. If the value is 0, correlation_length_um
+  /// applies to both directions.
   double down_correlation_length_um = 0.0;
 };
 /// BSDF = a / (b + |dbeta|^g), per sr.
@@ -131,7 +131,7 @@ struct FacetPlanesFile {
   std::string name;  ///< name of the file, as given
   /// Path of the file, from the working directory; part_of() checks the file when it reads it.
   std::filesystem::path file;
-  /// Planes that replace those of the file; null: the file is read.
+  /// Planes that replace those of the file. If the pointer is null, the file is read.
   std::shared_ptr<const geometry::FacetPlanes> planes = {};
 };
 
@@ -147,7 +147,7 @@ struct PartMesh {
   std::string name;            ///< name of the STL file, as given
   std::filesystem::path file;  ///< path of the file, from the working directory; part_of_design() reads the file
   bool allow_open = false;     ///< true: a mesh that is not closed is traced; its openings are closed by flat pieces
-  std::optional<double> thickness_mm;  ///< thickness that the mesh must have; none: not checked
+  std::optional<double> thickness_mm;  ///< thickness that the mesh must have; not checked if empty
 };
 
 /// Plate whose flat back, the plane z = 0, is its retro facet.
@@ -204,9 +204,9 @@ std::optional<GlassCatalogueFile> from_anywhere(const std::optional<GlassCatalog
 /// Material of the part, and medium behind its retro facets.
 struct Substance {
   std::string material = "PMMA";
-  std::optional<GlassCatalogueFile> catalogue;  ///< catalogue that contains the material; none: the shipped materials
+  std::optional<GlassCatalogueFile> catalogue;  ///< catalogue that contains the material; empty for shipped materials
   std::optional<double> refractive_index;  ///< takes precedence over the index of the material; relative to air, >= 1
-  std::optional<double> temperature_c;     ///< temperature of part and air; none: that of the material's data
+  std::optional<double> temperature_c;     ///< temperature of part and air; if empty, that of the material's data
   Absorption absorption_per_mm;
   double back_index = 1.0;  ///< refractive index of the medium behind the facets, relative to air; 1..3
 
@@ -215,16 +215,16 @@ struct Substance {
 
 /// Selected elements of a finite array that have another medium behind them.
 struct WetElements {
-  double index = 1.333;  ///< refractive index of this medium, relative to air; 1..3
+  double index = 1.333;  ///< refractive index of the medium behind these elements, relative to air; 1..3
   geometry::ElementChoice where;
 };
 
 /// Layer of a coating, as the design specifies it.
 struct CoatingLayer {
-  std::string material;  ///< name of a material or metal in the library; empty: the index is given
+  std::string material;  ///< name of a material or metal in the library; if empty, the index is given
   double refractive_index = 1.0;
   double extinction_coefficient = 0.0;
-  std::optional<double> thickness_nm;  ///< none: the layer is opaque
+  std::optional<double> thickness_nm;  ///< thickness; if empty, the layer is opaque
 
   bool operator==(const CoatingLayer&) const = default;
 };
@@ -259,7 +259,7 @@ struct EntranceState {
   std::optional<double> dust_forward_share;
   double scratch_coverage = 0.0;
   std::optional<double> scratch_spread_deg;
-  std::optional<double> scratch_azimuth_deg;  ///< none: scratches in all directions
+  std::optional<double> scratch_azimuth_deg;  ///< azimuth of the scratches; if empty, they have all directions
   double haze = 0.0;                          ///< fraction of the light that is scattered by more than 2.5 degrees
   std::optional<double> haze_spread_deg;
   double roughness_sq_nm = 0.0;
@@ -308,7 +308,7 @@ struct Design {
   std::string source;  ///< file name as given, "-" for standard input
   std::string title;   ///< empty if no title was given
   Shape shape;
-  std::optional<EntranceFile> entrance;  ///< none: the plane z = thickness_mm; balls and infinite arrays have none
+  std::optional<EntranceFile> entrance;  ///< curved entrance face; empty for plane faces, balls and infinite arrays
   Substance substance;
   std::optional<WetElements> wet_back;
   Surface surface;

@@ -30,7 +30,7 @@ struct OpticalModel {
   /// Elements with another medium behind them. Null if there are none. If only some elements are wet, `optics` refers
   /// to this object.
   std::shared_ptr<const geometry::ChosenElements> wet_elements;
-  std::optional<geometry::Entrance> entrance;  ///< curved entrance face; none: plane entrance face
+  std::optional<geometry::Entrance> entrance;  ///< curved entrance face; if empty, the face is plane
   double wavelength_nm = 0.0;                  ///< wavelength of the light; for a spectrum, its centroid
   raytrace::Optics optics;  ///< properties at the traced wavelength that is nearest to `wavelength_nm`
   /// Properties at the traced wavelengths, in ascending order; the weights add up to 1.

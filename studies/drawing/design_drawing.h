@@ -19,7 +19,7 @@ struct Dimension {
   geometry::Vec2 from_mm = geometry::Vec2::Zero();
   geometry::Vec2 to_mm = geometry::Vec2::Zero();
   std::string name;       ///< name of the length, such as "base"
-  double value_mm = 0.0;  ///< value in the design, or of the part if the design does not give it
+  double value_mm = 0.0;  ///< value in the design; if the design does not give it, value of the part
 };
 
 /// Dimension of an angle between two directions in a section.

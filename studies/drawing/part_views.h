@@ -17,7 +17,7 @@ using PlanLine = std::pair<geometry::Vec2, geometry::Vec2>;
 struct PlanFace {
   geometry::Polygon outline_mm;
   geometry::FacetRole role = geometry::FacetRole::retro_facet;
-  double azimuth_deg = 0.0;  ///< azimuth of its outward normal; 0 to below 360
+  double azimuth_deg = 0.0;  ///< azimuth of the outward normal of the face; 0 to below 360
 };
 
 /// Back surface of a part within a window, as seen from the light.

@@ -16,7 +16,7 @@ struct ForcesRequest {
   std::string job;                         ///< name of the job file
   std::string configuration = "isolated";  ///< configuration, a word of fabrication::kConfigurationWords
   int facet = 1;                           ///< number of the facet in a bidirectional job: 1 or 2
-  double plunge_mm = 0.0;                  ///< length of the plunge; 0: length of the last cut
+  double plunge_mm = 0.0;                  ///< length of the plunge; if 0, the length of the last cut
 };
 
 struct ForcesResult {

@@ -45,13 +45,13 @@ struct CameraRequest {
   double backlight_lx = 0.0;  ///< illuminance by uniform light from behind and around the part
   std::size_t columns = 400;
   std::size_t rows = 300;
-  std::optional<double> field_mm;  ///< width of the field of view at the part; none: the part and a margin
+  std::optional<double> field_mm;  ///< width of the field of view at the part; if empty, the part and a margin
   /// Width and height, in mm, of the sheet that the picture shows for an infinite part. Default: kUsualFilmMm. Not
   /// allowed for finite parts.
   std::optional<std::array<double, 2>> film_mm;
-  std::optional<double> cylinder_mm;    ///< radius of the cylinder on which the sheet is bent; < 0: on its inside
+  std::optional<double> cylinder_mm;    ///< radius of the cylinder on which the sheet is bent; negative for its inside
   double noise = 0.02;                  ///< target for the relative noise of a pixel
-  std::optional<std::uint32_t> passes;  ///< number of passes; replaces the noise
+  std::optional<std::uint32_t> passes;  ///< fixed number of passes; if given, `noise` has no effect
   std::uint32_t seed = 1;
   raytrace::DiscAverage discs = raytrace::DiscAverage::kernel;
 
@@ -88,8 +88,8 @@ class CameraStudy {
 
   /// Computes the picture.
   /// \param after_pass function that receives the picture after every pass; one call at a time
-  /// \param share function that distributes the passes among several processes with equal studies; none: this process
-  ///        traces all
+  /// \param share function that distributes the passes among several processes with equal studies. Without it, this
+  ///        process traces all passes.
   CameraResult run(Progress* progress = nullptr, const Cancellation* cancel = nullptr,
                    const std::function<void(const raytrace::CameraImage&)>& after_pass = {},
                    const ShareTasks& share = {}) const;

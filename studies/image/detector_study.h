@@ -27,7 +27,7 @@ struct DetectorRequest {
   double window_deg = 1.0;            ///< half-width of the angular map; > 0, up to 90
   Engine engine = Engine::automatic;  ///< any engine except stochastic and cell
   std::optional<double> cutoff;       ///< exact engine: minimum power of a beam, as a fraction of the incident power
-  std::optional<std::uint64_t> rays;  ///< Monte Carlo: number of rays; empty: kUsualDetectorRays
+  std::optional<std::uint64_t> rays;  ///< Monte Carlo: number of rays; kUsualDetectorRays if empty
   std::uint32_t seed = 1;
 };
 

@@ -49,7 +49,7 @@ struct PhotometricLamp {
   std::string name;   ///< name of the file, as given
   std::string title;  ///< title in the file; empty if there is none
   LuminousIntensity intensity;
-  double printed_lumens = 0.0;  ///< luminous flux as given in the file; 0: not given
+  double printed_lumens = 0.0;  ///< luminous flux as given in the file; 0 if it is not given
 };
 
 /// Transforms a direction to the frame of a lamp whose axis is rotated downwards (negative: upwards). Both frames have

@@ -24,7 +24,7 @@ struct RoadScene {
   double lamp_half_gap = 0.6;  ///< distance of each headlamp from the centre of the car
   double lamp_diameter = 0.15;
   double eye_height = 1.2;
-  double eye_right = -0.35;  ///< negative: the driver is on the left side
+  double eye_right = -0.35;  ///< x of the eyes from the centre of the car; negative if the driver is on the left side
   double eye_behind = 1.8;   ///< distance of the eyes behind the headlamps
   double pupil_diameter = 0.007;
   double reflector_height = 0.6, reflector_half_gap = 0.72;
@@ -39,7 +39,7 @@ struct RoadRequest {
   std::optional<PhotometricLamp> lamp;  ///< photometric data of each headlamp
   double lamp_height_m = 0.65;          ///< height of the headlamps' centres; 0.2 to 3
   double lamp_aim_deg = 0.0;            ///< angle by which a lamp's axis is rotated downwards; -45 to 45
-  std::string dye;                      ///< name of the reflectors' dye: red, amber or another; empty: none
+  std::string dye;                      ///< name of the reflectors' dye, such as red or amber; empty if they have none
   materials::SpectralCurve dye_absorption_per_mm;
   std::size_t columns = 480;  ///< number of pixels of each picture
   std::size_t rows = 330;

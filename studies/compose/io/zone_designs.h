@@ -36,7 +36,7 @@ ZoneLayout read_zone_layout(const std::string& word);
 /// Arrangement of the zones of a part, and size of the part.
 struct ZonedDesignRequest {
   ZoneLayout layout = ZoneLayout::stripes;
-  std::optional<geometry::Vec2> size_mm;  ///< none: size in the study's design
+  std::optional<geometry::Vec2> size_mm;  ///< size of the part; if empty, the size in the study's design
 };
 
 /// Checks that a part with zones can be written as one design.

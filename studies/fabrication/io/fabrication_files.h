@@ -16,7 +16,7 @@ std::string job_table(const MadeJob& made);
 
 /// These functions return the result of `retrace fabricate` as JSON (retrace.fabrication/1), as CSV with one line for
 /// each stage, and as a table.
-/// \param setup value of the key `setup`; null: the key is omitted
+/// \param setup value of the key `setup`; the key is omitted if it is null
 std::string fabrication_json(const FabricationResult& result, const nlohmann::ordered_json& setup = nullptr);
 std::string stages_csv(const FabricationResult& result);
 std::string fabrication_table(const FabricationResult& result);
