@@ -181,10 +181,11 @@ class Registration {
     if (!(least < most))
       throw InputError(
           {map.file, 0, ""},
-          fmt::format("lies nowhere on the part within half an element of {}, {} mm: at best, half of its points are "
-                      "more than {} nm off the design, and {} are allowed. Rows must be parallel to X of the workpiece",
-                      shortest(map.middle_mm.x()), shortest(map.middle_mm.y()), fixed(1e6 * least, 0),
-                      fixed(1e6 * most, 0)));
+          fmt::format(
+              "fits no position on the part within half an element of x = {}, y = {} mm: at best, half of its "
+              "points are more than {} nm from the design, but {} nm are allowed. Rows must be parallel to X of "
+              "the workpiece",
+              shortest(map.middle_mm.x()), shortest(map.middle_mm.y()), fixed(1e6 * least, 0), fixed(1e6 * most, 0)));
     return best;
   }
 

@@ -190,7 +190,8 @@ void check_on_substrate(const VerificationRun& run, const Unlikeness& unlike, As
     part.warnings.push_back(
         {"rim_overcut",
          fmt::format(
-             "cuts of neighbours go up to {} um under rims that stand at different heights: the design has walls there",
+             "cuts of neighbouring elements, whose rims are at other heights, remove up to {} um below the rims of an "
+             "element: the design has walls there",
              fixed(run.result.rim_overcut_um_max, 3))});
   if (has_flares(run))
     part.warnings.push_back(
