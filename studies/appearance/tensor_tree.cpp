@@ -35,7 +35,7 @@ Vec2 square_from_disc(const Vec2& disc) {
   if (radius == 0.0) return Vec2::Constant(0.5);
   constexpr double kEighth = std::numbers::pi / 4.0;
   const bool is_wide = std::abs(disc.x()) > std::abs(disc.y());
-  // Angle from the nearest half axis, between minus and plus 45 degrees.
+  // Angle of the point from the nearest coordinate axis, between minus and plus 45 degrees.
   const double across = is_wide ? std::atan(disc.y() / disc.x()) : std::atan(disc.x() / disc.y());
   const double along = std::copysign(radius, is_wide ? disc.x() : disc.y());
   const Vec2 ab = is_wide ? Vec2(along, along * across / kEighth) : Vec2(along * across / kEighth, along);

@@ -42,9 +42,9 @@ struct MeasuredParts {
 struct CalibratedQuantity {
   const fabrication::SetupQuantity* quantity = nullptr;
   bool is_told = false;  ///< true if the measurements determine the quantity
-  /// deviation from the job's machine, um or arcsec; not determined by the measurements if is_told is false
+  /// Deviation from the job's machine, um or arcsec. The measurements do not determine it if is_told is false.
   double value = 0.0;
-  /// standard uncertainty; if is_told is false, only that of the observable part of the quantity
+  /// Standard uncertainty. If is_told is false, it is that of the observable part of the quantity only.
   double uncertainty = 0.0;
 };
 

@@ -219,7 +219,7 @@ class Registration {
   }
 
   /// Returns the median distance of points on facets from the design. Points on the blank's face are ignored, because
-  /// the face fits itself in any position.
+  /// they fit the flat face in any position of the map.
   double off_mm(const RigidMotion& pose) const {
     std::vector<double> off;
     for (const Vec3& p : fine_) {

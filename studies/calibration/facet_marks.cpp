@@ -64,7 +64,7 @@ Eigen::Index across(MapAxis along) {
   return along == MapAxis::y ? 0 : 1;
 }
 
-/// Wave or mark of a facet, used for collecting common ones.
+/// Wave or mark of a facet. It is used to collect the waves and marks that facets have in common.
 template <class Thing>
 struct Found {
   const FacetRest* rest = nullptr;
@@ -211,7 +211,7 @@ std::vector<FacetMark> common_marks(const std::vector<FacetRest>& rests) {
     }
   std::vector<FacetMark> marks;
   for (const auto& group : groups) marks.push_back(gathered(group, rests));
-  // Remove false marks next to a chip mark, on facets that show only a part of the chip mark.
+  // Remove false marks, which are found next to a chip mark on facets whose map shows only a part of the chip mark.
   const std::vector<FacetMark> all = marks;
   std::erase_if(marks, [&](const FacetMark& mark) {
     return std::ranges::any_of(all, [&](const FacetMark& chip) {

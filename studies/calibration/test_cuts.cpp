@@ -111,8 +111,8 @@ class Chooser {
            });
   }
 
-  /// Takes the measurement that reduces the uncertainties of the observable quantities most, each relative to its
-  /// uncertainty with all measurements.
+  /// Takes the measurement that reduces the uncertainties of the observable quantities most. Each uncertainty is
+  /// divided by the uncertainty of the quantity with all possible measurements.
   Index take() {
     Index best = 0;
     double most = -1.0;

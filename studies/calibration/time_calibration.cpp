@@ -74,7 +74,7 @@ Unknowns of_machine(const Machine& machine) {
 
 Machine with_times(Machine machine, const Unknowns& unknowns) {
   machine.settling_s.value = value_of(unknowns, TimeQuantity::settling);
-  // The ramps of the axes keep their ratios. If the machine file has no jerks, all ramps are equal.
+  // The ratios between the ramps of the axes do not change. If the machine file has no jerks, all ramps are equal.
   const double longest_before = longest_ramp_s(machine);
   const double longest = value_of(unknowns, TimeQuantity::linear_ramp);
   for (LinearAxis* axis : {&machine.x, &machine.y, &machine.z}) {

@@ -69,8 +69,8 @@ PredictedTexture predicted_texture(const Job& job) {
 namespace {
 
 /// Returns the scratches that chips of the tool's edge leave on the facets of the part. The edge is parallel to the
-/// roof edge. For facet 2, it is rotated by 180 degrees if the facet is plunged; if the facet is ploughed, the tool
-/// keeps the orientation of facet 1.
+/// roof edge. For facet 2, the tool is rotated by 180 degrees if the facet is plunged. If the facet is ploughed, the
+/// tool keeps the orientation of facet 1.
 std::vector<geometry::Scratch> scratches_of(const Job& job) {
   const bool is_direct = job.workpiece.kind == WorkpieceKind::direct;
   const double scale = 1.0 / blank_scale(job.workpiece);

@@ -33,7 +33,7 @@ struct AsMachined {
   /// corner: in the order of its facets.
   std::vector<double> facet_tilt_arcmin;
   std::optional<geometry::FacetPlanes> planes;  ///< individual planes of all facets; if empty, mean tilts are used
-  /// Zones as machined, which replace the two members above. Empty if the job has no zones.
+  /// Zones as machined, which replace `facet_tilt_arcmin` and `planes`. Empty if the job has no zones.
   std::optional<ZonedPart> zones;
   double root_radius_um = 0.0, root_chamfer_um = 0.0;
   PredictedTexture texture;

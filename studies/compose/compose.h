@@ -1,7 +1,7 @@
 #pragma once
 
-// Composes a part of zones with different cells. The study selects designs of a family and their fractions of the area,
-// so that the minimum of all goals is as large as possible. `retrace compose` runs this study.
+// Composes a part whose zones have different cells. The study selects designs of a family and their fractions of the
+// area, so that the minimum of all goals is as large as possible. `retrace compose` runs this study.
 
 #include <cstddef>
 #include <optional>
@@ -31,7 +31,7 @@ struct ComposeRequest {
   std::vector<Constraint> of_cells;                   ///< constraints that each cell of the family must satisfy
   std::vector<Constraint> of_part;                    ///< constraints on means over the part
   std::vector<std::pair<std::string, double>> price;  ///< quantity, and reduction of the merit per unit of its mean
-  /// quantity whose mean is one axis of the Pareto front; the minimum goal is the other axis
+  /// Quantity whose mean is one axis of the Pareto front. The minimum goal is the other axis.
   std::optional<FrontAxis> front;
   std::size_t front_points = 9;
   std::optional<double> least_goal;  ///< minimum goal that a part must reach
@@ -64,7 +64,7 @@ struct PartOfZones {
   std::size_t most_zones = 0;  ///< maximum number of zones
 };
 
-/// Part on the Pareto front of a mean and the minimum goal.
+/// Part on the Pareto front of two values: the mean of a quantity, and the minimum goal.
 struct FrontPart {
   double mean = 0.0;
   double least = 0.0;
@@ -85,7 +85,7 @@ struct PartForWorst {
   PartYield yield;
 };
 
-/// Effects of errors of the angles between facets on a part.
+/// Effects on a part if the angles between its facets have errors.
 struct ErrorEffects {
   std::vector<double> goals;  ///< goals of the part with errors from cell to cell only
   /// Derivatives of the minimum goal with respect to the angle errors, per arcmin, indexed by zone and angle. They
@@ -93,8 +93,8 @@ struct ErrorEffects {
   std::vector<std::vector<double>> slopes;
   PartYield yield;
   std::optional<PartForWorst> for_worst;
-  /// Error of the part's goals because polynomials in the angle errors replace computed goals. It is the area-weighted
-  /// mean of the maximum errors that were found for the cells of the zones.
+  /// Error of the part's goals that arises because the goals of cells are approximated by polynomials in the angle
+  /// errors. It is the area-weighted mean of the maximum errors that were found for the cells of the zones.
   double missed_by = 0.0;
 };
 

@@ -24,7 +24,7 @@ constexpr std::size_t kChecked = 2;
 /// small because all sets of candidates are tried.
 constexpr std::size_t kMostCells = 8;
 
-/// Returns the largest error, in minutes of arc, for which goals are computed.
+/// Returns the largest angle error, in minutes of arc, for which goals are computed.
 double step_of(const ErrorSpread& spread) {
   return std::max(kLeastStep, kStepOfSpread * std::max(spread.cell_sigma_arcmin, spread.zone_sigma_arcmin));
 }

@@ -154,6 +154,7 @@ class SetSearch {
     }
   }
 
+  /// Returns the best mixture that the search finds.
   /// \param relaxed best mixture without a limit on zones and without a minimum fraction
   Mixture run(const Mixture& relaxed) {
     bounds_.emplace_back(cells_, rules_, relaxed.prices);

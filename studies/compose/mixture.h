@@ -59,8 +59,8 @@ struct Mixture {
   double bound = 0.0;            ///< upper bound of the merit of any allowed mixture of these cells
   std::vector<double> goals;     ///< goals of the mixture
   std::vector<double> means;
-  /// Dual prices. They are optimal among the cells of the mixture. If the rules have no limit on zones and no minimum
-  /// fraction, they are optimal among all cells.
+  /// Dual prices of the linear programme that has only the cells of the mixture. If the rules have no limit on zones
+  /// and no minimum fraction, they are also dual prices of the linear programme with all cells.
   MixturePrices prices;
   bool is_there() const { return kind == Kind::optimal || kind == Kind::best_found; }
 };

@@ -185,7 +185,8 @@ struct EntranceFile {
   std::string name;            ///< name of the file, as given
   std::filesystem::path file;  ///< path of the file, from the working directory; entrance_of_design() reads the file
   bool is_mesh = false;        ///< true: an STL file; false: the file of a turned part
-  /// true: the mesh is the part above the entrance face (its counterpart), and its downward triangles are the face
+  /// True if the mesh is the counterpart of the part, which is above the entrance face. The downward triangles of the
+  /// mesh are then the entrance face.
   bool mesh_bottom = false;
   /// Position in the part frame of the origin of the file's frame. Default: the centre of the part.
   std::optional<std::array<double, 2>> centre_mm;

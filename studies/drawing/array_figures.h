@@ -16,7 +16,7 @@ struct ArrayFigures {
   geometry::Vec2 pitch_mm = geometry::Vec2::Zero();  ///< prisms: distance of neighbours; cube corners: period
   /// Position of the dimensioned element: the corner of a prism, or the apex of a cube corner.
   geometry::Vec2 element_mm = geometry::Vec2::Zero();
-  /// point on the root of the dimensioned element, where its facets meet
+  /// Point on the root of the dimensioned element, where its facets meet.
   geometry::Vec2 root_mm = geometry::Vec2::Zero();
   double section_y_mm = 0.0;        ///< y of the section, which goes through root_mm
   double shift_mm = 0.0;            ///< shift of every second row

@@ -15,7 +15,7 @@ namespace retrace::studies {
 /// Mesh of a part for a picture.
 struct DesignView {
   std::string title;
-  /// whole surface; patches of the back (SurfacePatch) share no vertices with other faces
+  /// Whole surface. Patches of the back (SurfacePatch) share no vertices with other faces.
   geometry::BoundaryMesh mesh;
   std::vector<std::array<std::uint32_t, 2>> edges;  ///< edges between faces of different directions
   std::vector<std::string> remarks;                 ///< differences from the design

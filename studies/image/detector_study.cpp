@@ -20,7 +20,7 @@ constexpr std::size_t kMostPixels = 8192;
 constexpr std::size_t kMostAnglePixels = 2049;
 // Fraction of the power that beams may leave untraced. It is too small to be visible in a picture.
 constexpr double kTruncatedGoal = 1e-5;
-// Maximum number of beams for which the engine `auto` traces exactly. They take some seconds.
+// Maximum number of beams for which the engine `auto` traces exactly. Tracing this number takes some seconds.
 constexpr std::uint64_t kBeamsOfAutomatic = 1'000'000;
 
 void check(const DetectorRequest& request) {

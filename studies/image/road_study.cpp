@@ -137,7 +137,7 @@ Seen seen_along(const RoadScene& s, const RoadRequest& r, const RoadView& view, 
   return {road_reflectance(s, ground) / pi * illuminance(r, lamps, ground, Vec3::UnitY()), 0.0};
 }
 
-/// Adds the veil of light from the reflectors that is scattered in the eye.
+/// Adds the veil, which is light from the reflectors that is scattered in the eye.
 void add_veil(const RoadScene& s, const RoadRequest& r, RoadView& view, double degrees_per_pixel,
               const std::function<Vec2(const Vec3&)>& pixel_of) {
   const Vec3 eye = eye_at(s, view.distance_m);

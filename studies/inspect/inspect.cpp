@@ -90,8 +90,8 @@ std::string circumstances(const Inspection& result) {
   return text;
 }
 
-/// Returns the incidence at which total reflection begins for light from the opposite azimuth. Empty if it never
-/// begins.
+/// Returns a text about light from the azimuth opposite to that of the limit of total reflection. The text contains the
+/// incidence at which total reflection begins for this light. Empty if it never begins.
 std::string where_it_begins(const Inspection& result) {
   const geometry::PartSpec& part = result.design.part();
   if (std::holds_alternative<geometry::RtpElement>(part.element)) return {};

@@ -39,7 +39,7 @@ struct BallFigures {
 /// Figures of a base under the elements.
 struct SubstrateReport {
   geometry::SubstrateMeasures measures;
-  /// width of an element; the minimum radius of curvature of the base must be at least as large
+  /// Width of an element. The minimum radius of curvature of the base must be at least as large.
   double element_mm = 0.0;
   geometry::InnerWalls walls;  ///< walls between neighbours, seen along the normal at the centre of the base
 };

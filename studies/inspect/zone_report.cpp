@@ -31,7 +31,7 @@ class Wanderer {
     optics_.facet_scatter = surface_models::Smooth{};
   }
 
-  /// Sums over the returned light from one direction that first hits the back in a certain zone.
+  /// Sums over the returned light from one direction. Only light that first hits the back in one certain zone counts.
   struct Way {
     double power = 0.0;
     double power_times_mm = 0.0;

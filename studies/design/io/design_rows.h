@@ -1,7 +1,7 @@
 #pragma once
 
-// Rows for the tables of design files, each of which describes a key, and the words and ranges that several tables use.
-// Internal to studies/design.
+// Rows that describe the keys in the tables of design files, and the words and ranges that several tables use. Internal
+// to studies/design.
 
 #include <span>
 #include <string_view>

@@ -27,7 +27,7 @@ std::string cubes(const std::string& aperture_mm) {
 }
 
 /// Returns the arguments of an export.
-/// \param window_deg half-width of the window; it must include the spots, widened by the discs
+/// \param window_deg half-width of the window; it must include the spots, widened by the discs of source and receiver
 Arguments export_of(const std::string& file, const std::string& window_deg = "0.4", const std::string& error = "0.02") {
   return {"export",   "d.toml",
           file,       "--entrance-deg",

@@ -28,8 +28,8 @@ namespace {
 using namespace fabrication;
 using test::hidden_errors, test::measured_of, test::planned, test::prism_job, test::programs_of;
 
-/// Returns a job with prisms 10 mm apart. Their facets are cut at C = 0, 90, 180 and 270, and at the A of their apex
-/// angle.
+/// Returns a job with prisms 10 mm apart. Their facets are cut at C = 0, 90, 180 and 270, and at the position of axis A
+/// that belongs to their apex angle.
 std::string job_text(double apex_angle_deg) {
   return prism_job({apex_angle_deg, 9.5, 30.0, 1});
 }
