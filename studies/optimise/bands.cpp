@@ -20,8 +20,8 @@ std::optional<double> nominal_of(const std::string& key, const Design& design) {
   return design.document->number_if(key);
 }
 
-/// Returns the first step of the search for the end of a band. It causes only a small loss. It depends on the unit in
-/// the key's name.
+/// Returns the first step of the search for the end of a tolerance band. The step is so small that the objective hardly
+/// changes. Its size depends on the unit at the end of the key's name.
 double first_step(const std::string& key, double nominal) {
   if (key.ends_with("_arcmin") || key.ends_with("_um") || key.ends_with("_nm")) return 0.01;
   if (key.ends_with("_deg")) return 1e-4;
@@ -80,8 +80,10 @@ class OffDesign {
   std::optional<std::size_t> parameter_;
 };
 
-/// Returns the maximum change in one direction for which the relative loss of the quantity stays below `loss`. Returns
-/// nothing if designs become invalid before this loss is reached.
+/// Returns the maximum change of the key in one direction for which the relative loss of the quantity stays below
+/// `loss`. Returns nothing if designs become invalid before this loss is reached, or if the largest tested change
+/// causes a smaller loss.
+/// \param direction 1 for an increase of the value, -1 for a decrease
 std::optional<double> band_to(const OffDesign& off, double nominal, double direction, double step, double loss) {
   constexpr int most_doublings = 40;
   constexpr int bisections = 30;

@@ -53,8 +53,9 @@ class Evaluator {
   ResultStore& store_;
   OptimiseObserver* observer_;
   const Cancellation* cancel_;
-  std::map<std::string, std::size_t> numbers_;  ///< index in `seen_` for the parameter values of a design
-  std::map<std::string, StoredPoint> stored_;   ///< points of an earlier run, for the parameter values of a design
+  /// Index in `seen_` of each evaluated design; the key is a text of its parameter values.
+  std::map<std::string, std::size_t> numbers_;
+  std::map<std::string, StoredPoint> stored_;  ///< points of an earlier run; the key is a text of the parameter values
   std::vector<Variant> seen_;
   std::set<std::uint64_t> taken_;  ///< numbers of the points in the store
   std::size_t ran_out_ = 0;

@@ -17,7 +17,7 @@
 namespace retrace::studies {
 namespace {
 
-/// Number of combinations of discrete values that are refined.
+/// Number of combinations of discrete values for which the best design of the first scan is refined.
 constexpr std::size_t kRefined = 3;
 /// Maximum loss of the objective that rounding the parameters may cause, as a fraction of the objective.
 constexpr double kForRoundness = 1e-6;
@@ -266,7 +266,7 @@ std::string why_not(const Variant& variant, const Variant& best, const OptimiseR
   return fmt::format("objective lower by {:.3g}", less);
 }
 
-/// Returns the best of the designs that were excluded, such as by constraints.
+/// Returns the best of the excluded designs, for example of the designs that violate a constraint.
 /// \param excluded function that returns true if a design was excluded
 template <class Excluded>
 std::optional<Variant> best_excluded(const Evaluator& evaluator, Excluded excluded) {
@@ -291,8 +291,8 @@ std::vector<Rejected> excluded_designs(const OptimiseRequest& request, const Eva
   return rejected;
 }
 
-/// Returns the values of the front's axes, with signs so that larger is better. Returns nothing if a quantity has no
-/// value.
+/// Returns the values of a design on the axes of the Pareto front. Values that should be small are negated, so that
+/// larger is always better. Returns nothing if a quantity has no value.
 std::optional<std::vector<double>> merits(const Variant& variant, const OptimiseRequest& request,
                                           const Evaluator& evaluator) {
   std::vector<double> merits;
@@ -334,8 +334,9 @@ std::vector<Variant> entrance_of(const OptimiseRequest& request, const Evaluator
   return front;
 }
 
-/// Returns a design of the front that loses at most 1 % of the objective and is best on an axis that is not part of the
-/// objective.
+/// Considers the first axis of the Pareto front that is not part of the objective. Among the designs of the front that
+/// lose at most 1 % of the objective, returns the best one on this axis. Returns nothing if its gain on this axis is
+/// too small.
 std::optional<Variant> cheaper_than(const Optimum& optimum, const OptimiseRequest& request,
                                     const Evaluator& evaluator) {
   const auto axis = std::find_if(request.front.begin(), request.front.end(), [&](const FrontAxis& a) {

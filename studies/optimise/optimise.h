@@ -36,7 +36,7 @@ struct OptimiseRequest {
   std::vector<FrontAxis> front;
   std::size_t scan = 65;              ///< number of designs in the first scan, for each combination of discrete values
   std::vector<std::string> bands_of;  ///< keys whose tolerance bands are requested
-  double band_loss = 0.01;            ///< relative loss of the objective that ends a band
+  double band_loss = 0.01;            ///< relative loss of the objective at which a tolerance band ends
 };
 
 /// Evaluated design with its results.
@@ -62,7 +62,8 @@ struct Rejected {
 struct ToleranceBand {
   std::string key;
   double nominal = 0.0;
-  /// Maximum decrease of the value. None if a decrease is not possible or causes no loss within the tested range.
+  /// Maximum decrease of the value (`down`) and maximum increase (`up`). None if the value cannot be changed so far
+  /// that the objective loses `band_loss`.
   std::optional<double> down;
   std::optional<double> up;
 };
@@ -72,7 +73,9 @@ struct Optimum {
   std::string none_because;     ///< why no design is feasible; empty if there is a best design
   std::vector<Variant> front;   ///< feasible designs that no other design dominates
   std::vector<Rejected> rejected;
-  std::optional<Variant> cheaper;  ///< loses at most 1 % of the objective and is best on the front's other axes
+  /// Design of the front that loses at most 1 % of the objective and is best on the first axis that is not part of the
+  /// objective.
+  std::optional<Variant> cheaper;
   std::vector<ToleranceBand> bands;
   std::string method;  ///< method of the refinement: "exact slopes" or "no slopes"
   std::size_t evaluations = 0;

@@ -16,8 +16,8 @@ namespace retrace::studies {
 using TableOfDesign =
     std::function<std::optional<std::vector<PhotometricPoint>>(const Design& design, std::size_t parts, double enough)>;
 
-/// Returns the minimum of value divided by limit over all points. Undetermined points count with at most 1. Returns
-/// infinity if there are no points.
+/// Returns the minimum of value divided by limit over all points. The ratio of an undetermined point counts as at most
+/// 1. Returns infinity if there are no points.
 double least_ratio(const std::vector<PhotometricPoint>& points);
 
 /// Searches for a change of one parameter with which a failing design passes. The first parameter tried is the error of

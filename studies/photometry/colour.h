@@ -9,13 +9,14 @@
 
 namespace retrace::studies {
 
-/// Returns the request for measuring one tristimulus value. Each of the three measurements traces one third of the rays
-/// of a direction.
+/// Returns the request for measuring one of the three tristimulus values. The requested number of rays per direction is
+/// divided evenly among the three measurements.
 /// \param response index of the colour matching function: 0 for x, 1 for y, 2 for z
 PhotometryRequest request_of_response(const PhotometryRequest& request, std::size_t response);
 
-/// Measures the colour in the geometry of the standard, or at its first test point. The tristimulus values are measured
-/// separately, each with its own wavelengths. Returns nothing if the measurement was cancelled.
+/// Measures the colour in the geometry for which the standard defines colour boundaries. If it defines none, the colour
+/// is measured in the geometry of the first test point. The tristimulus values are measured separately, each with its
+/// own wavelengths. Returns nothing if the measurement was cancelled.
 /// \param photometer photometer of the design and the request; the colour is measured with its engine
 /// \param v_deg angles V at which the colour is measured; the worst result counts
 /// \pre the light is a CIE illuminant, and the test plan has points

@@ -11,8 +11,8 @@
 
 namespace retrace::studies {
 
-/// Direction of incidence that uses the traced light of the group's first direction. Multiplying x and y by `signs`
-/// transforms directions of view into those of the traced light.
+/// Direction of incidence in a group of directions that share one trace. It uses the traced light of the group's first
+/// direction. Multiplying x and y by `signs` transforms directions of view into those of the traced light.
 struct SharedDirection {
   std::size_t index = 0;
   geometry::Vec2 signs = geometry::Vec2::Ones();

@@ -56,8 +56,8 @@ void check_balls(const Design& design, const PhotometryRequest& request) {
     throw InputError({"", 0, "--engine"}, "must be auto or montecarlo for balls");
 }
 
-/// Returns the width of the cells whose edges diffract light. 0 if the width is not known, as for meshes, and for
-/// curved entrance faces that divide the light into cells of their own.
+/// Returns the width of the cells whose edges diffract light. Returns 0 if the width is not known, for example for
+/// meshes. Also returns 0 for curved entrance faces, because they divide the light into cells of their own.
 double cell_width_mm(const Design& design) {
   if (design.balls()) return design.balls()->diameter_mm;
   if (!design.elements() || design.entrance) return 0.0;
@@ -258,8 +258,8 @@ PhotometerReading Photometer::reading_of(const PhotometerSetting& setting, const
   for (std::size_t k = 0; k < setting.observation_deg.size(); ++k) {
     double per_sr = 0.0;
     double squares = 0.0;
-    double missing = 0.0;  // linear sum instead of a root of squares, because the missing light is similar for all
-                           // wavelengths
+    // Linear sum instead of a root of squares, because the missing light is similar for all wavelengths.
+    double missing = 0.0;
     for (std::size_t w = 0; w < pieces.size(); ++w) {
       per_sr += weights_[w] * pieces[w].per_sr[k];
       if (!pieces[w].missing_per_sr.empty()) missing += weights_[w] * pieces[w].missing_per_sr[k];

@@ -96,9 +96,10 @@ class Photometer {
   /// Returns the smallest cell width, in mm, for which diffraction is not significant.
   double least_undiffracted_mm() const;
   /// Returns a photometer that measures, with diffraction, only the mean field of a part with rough facets: the field
-  /// averaged over the random heights, without scattered light. The full photometer has measured the part without
-  /// diffraction. The mean field is nowhere brighter than the part (docs/theory/photometry.md). Returns nothing for
-  /// other parts, and if the request selects another engine or no diffraction.
+  /// averaged over the random heights, without scattered light. This photometer measures the part by rays, without
+  /// diffraction. The mean field is nowhere brighter than the light that the part really returns, so that its readings
+  /// are lower bounds (docs/theory/photometry.md). Returns nothing for other parts, and if the request selects another
+  /// engine or no diffraction.
   std::optional<Photometer> mean_field() const;
   /// Makes later measurements use Monte Carlo.
   void leave_exact() { is_exact_ = false; }

@@ -20,11 +20,11 @@ using raytrace::ReturnFrame;
 // truncated or does not interfere, changes readings by up to 5e-4. The choice of wavelengths changes them by up to
 // 1e-3.
 constexpr double kCutoff = 1e-5;
-// Default cut-off power for finite parts whose weak beams are resampled. It is higher because many elements take much
-// time.
+// Default cut-off power for finite parts whose weak beams are resampled. It is higher than kCutoff, because tracing
+// many elements takes much time.
 constexpr double kCutoffOfFinite = 5e-5;
-// Minimum default cut-off power for such parts, as a fraction of all light. It applies to parts with very many
-// elements.
+// Minimum default cut-off power for finite parts whose weak beams are resampled, as a fraction of all light. It applies
+// to parts with very many elements.
 constexpr double kCutoffOfAll = 5e-7;
 constexpr std::uint32_t kReplicates = 16;
 // Number of replicates for a photometer that only guides a search. Such readings have errors of about 1e-3 unless
@@ -39,8 +39,8 @@ constexpr std::uint64_t kMostBeams = 4'000'000;
 // Minimum trace of the matrix ReturnedBeam::entry_from_exit (entry position as a function of exit position) for which a
 // beam counts as mirror image of the light. The trace is 2 for a plane mirror and at most 0 for retroreflection.
 constexpr double kLeastMirrorTrace = 1.0;
-// Maximum number of lattice points inside the window of directions for which the power in the window is still
-// integrated.
+// Maximum number of grid points at which the far field is evaluated to integrate the power inside the window of
+// directions. If more points are needed, this power is not computed.
 constexpr double kMostLatticePoints = 300'000.0;
 
 // Maximum truncated power, as a fraction of the incident power, that is neglected. If more power is truncated,

@@ -95,8 +95,8 @@ struct PhotometricPoint {
 struct PhotometricDirection {
   double v_deg = 0.0, h_deg = 0.0, rotation_deg = 0.0;
   double incidence_deg = 0.0, azimuth_deg = 0.0;
-  double rre = 0.0;        ///< RRE for the design's widest acceptance cone, without diffraction, in the light of the
-                           ///< photometer
+  /// RRE for the design's widest acceptance cone, without diffraction, at the wavelengths of the photometer.
+  double rre = 0.0;
   double std_error = 0.0;  ///< standard error of the RRE
   double truncated = 0.0;  ///< maximum power that the RRE may lack because weak beams were truncated
   /// Power that leaves the entrance face inside and outside of the window, at one wavelength. Not computed by Monte
@@ -126,7 +126,8 @@ struct ObservationCurve {
   std::vector<double> r_a;
 };
 
-/// Change of a design with which it passes, or else the best change tried.
+/// Change of one parameter with which a failing design passes. If no change is sufficient, this is the best of the
+/// changes that were tried.
 struct PhotometricChange {
   std::string key;  ///< key of the design file
   double from = 0.0;
@@ -152,8 +153,8 @@ struct PhotometricColour {
   std::optional<materials::Chromaticity> chromaticity;  ///< none if no light returns
   materials::Chromaticity std_error;                    ///< standard errors of x and y
   std::vector<ColourPoint> boundaries;                  ///< empty if the boundaries of the standard are not known
-  bool lacks_diffraction = false;                       ///< true: diffraction is significant but not included in the
-                                                        ///< result
+  /// True: diffraction is significant but not included in the result.
+  bool lacks_diffraction = false;
   bool is_of_another_light = false;  ///< true: the light is not CIE A, for which the boundaries are defined
   std::string reason;                ///< reason of an undetermined verdict; empty otherwise
 
@@ -176,8 +177,8 @@ struct PhotometryResult {
   Verdict verdict = Verdict::fail;
   std::string reason;                       ///< reason of undetermined points; empty if there are none
   std::optional<PhotometricColour> colour;  ///< colour, which has its own verdict
-  std::optional<PhotometricChange>
-      change;  ///< for a failing design: a change with which it passes, or else the best change tried
+  /// For a failing design: a change with which it passes, or else the best change that was tried.
+  std::optional<PhotometricChange> change;
   std::vector<FarFieldMap> maps;
   std::vector<ObservationCurve> curves;
   double elapsed_s = 0.0;

@@ -10,8 +10,8 @@
 namespace retrace::studies {
 namespace {
 
-/// Checks that a lathe has spindle_start texts if the dialect has no words for the spindle.
-/// \throw InputError if it has none
+/// Checks that a lathe gives `spindle_start` if the dialect has no words that start the spindle.
+/// \throw InputError if `spindle_start` is missing
 void check_spindle(const fabrication::PlanedPart& part, const std::string& dialect) {
   if (!part.lathe || !fabrication::has_own_texts(fabrication::dialect_of(dialect, {}, {}))) return;
   if (part.lathe->spindle_start.empty())

@@ -86,7 +86,8 @@ double seconds_per_element(const geometry::RtpElement& element, const MachiningP
   const double plough_mm = process.plough_length_um / kUmPerMm;
   const double deepest_mm = facet_length_mm(element) - allowance_mm(process);
   const double cuts = roughing_cuts(element, process);
-  // The last cut is the deepest. The first cut has the remaining depth.
+  // Each cut is one depth of cut deeper than the cut before it, and the last cut reaches deepest_mm. The first cut may
+  // therefore be shallower than one depth of cut.
   const double depths_mm = cuts * deepest_mm - 0.5 * cuts * (cuts - 1.0) * depth_of_cut_mm;
   const double roughing_s =
       plunges_s(cuts, depths_mm, plough_mm + depth_of_cut_mm, process.roughing_feed_mm_per_min, process) +

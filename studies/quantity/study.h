@@ -64,11 +64,11 @@ struct Study {
   std::string source;  ///< name of the file as given
   std::string title;
   std::shared_ptr<const schema::Document> document;  ///< document of the study file
-  std::string design_file;                           ///< path of the base design's file, relative to the working
-                                                     ///< directory
-  std::map<std::string, std::string> design_texts;   ///< texts of the design files, by name of the file
-  std::vector<std::string> files;      ///< all files that are read: the study, its designs, and the files that the
-                                       ///< designs and quantities name
+  /// Path of the base design's file, relative to the working directory.
+  std::string design_file;
+  std::map<std::string, std::string> design_texts;  ///< texts of the design files, by name of the file
+  /// All files that are read: the study, its designs, and the files that the designs and quantities name.
+  std::vector<std::string> files;
   std::vector<std::string> overrides;  ///< values of the option --set
   std::uint32_t seed = 1;
   std::vector<Parameter> parameters;

@@ -14,10 +14,11 @@ namespace retrace::studies {
 struct RaySpans {
   std::span<const double> origins_mm;  ///< three numbers per ray
   std::span<const double> directions;  ///< three numbers per ray; any length above 0
-  std::span<const double> stokes;      ///< four numbers per ray, of which the first is the power; or four numbers for
-                                       ///< all rays
-  std::span<const double> axes;        ///< three numbers per ray, perpendicular to the direction; empty: the projected
-                                       ///< x axis
+  /// Four numbers per ray, of which the first is the power; or four numbers for all rays.
+  std::span<const double> stokes;
+  /// Three numbers per ray, perpendicular to the direction; empty: the x axis, projected perpendicular to the
+  /// direction.
+  std::span<const double> axes;
   std::span<const double> wavelengths_nm;  ///< one number per ray, one for all rays, or none
 };
 

@@ -41,18 +41,19 @@ inline constexpr std::size_t kRayTexts = 9;
 /// Data of the whole set of rays.
 struct RaySetInfo {
   std::optional<std::uint64_t> rays;  ///< number of rays; none: not known before they are read
-  bool has_radiant = true;            ///< radiant flux, in W
-  bool has_luminous = false;          ///< luminous flux, in lm; at least one of both fluxes is present
-  bool has_tristimulus = false;       ///< X and Z in addition to the luminous flux
+  bool has_radiant = true;            ///< rays have radiant flux, in W
+  bool has_luminous = false;          ///< rays have luminous flux, in lm; if false, has_radiant is true
+  bool has_tristimulus = false;       ///< rays have the tristimulus values X and Z in addition to the luminous flux
   bool has_stokes = false;
   RaySpectrum spectrum = RaySpectrum::unknown;
   double wavelength_nm = 0.0;                    ///< wavelength of all rays for RaySpectrum::one_wavelength
   std::vector<materials::SpectralCurve> tables;  ///< relative power per nm
   std::optional<double> radiant_w;               ///< total flux that the set claims
   std::optional<double> luminous_lm;
-  std::string date;                             ///< date as given; empty: none
-  std::array<std::u32string, kRayTexts> texts;  ///< empty: unknown
-  std::vector<std::string> more_items;          ///< names of additional items of each ray
+  std::string date;  ///< date as given; empty: none
+  /// Descriptions of the set, indexed by RayText; an empty text is unknown.
+  std::array<std::u32string, kRayTexts> texts;
+  std::vector<std::string> more_items;  ///< names of additional items of each ray
 
   const std::u32string& text(RayText which) const { return texts[static_cast<std::size_t>(which)]; }
   std::u32string& text(RayText which) { return texts[static_cast<std::size_t>(which)]; }

@@ -20,7 +20,8 @@
 namespace retrace::studies {
 namespace {
 
-// Number of rays that are read and traced together. It limits the memory, because about as many rays leave the part.
+// Number of rays that are read and traced together. It limits the memory, because about as many rays leave the part as
+// enter it.
 constexpr std::size_t kRaysAtATime = 16384;
 // Minimum number of rays that are traced together.
 constexpr std::size_t kFewestAtATime = 1024;

@@ -44,7 +44,8 @@ class RayWavelengths {
 
   RaySpectrum kind_;
   double one_nm_ = 0.0;
-  std::vector<Choice> choices_;  ///< one for each table, or one for the design's light
+  /// One entry for each spectral table of the set, or one entry for the light of the design.
+  std::vector<Choice> choices_;
   std::uint32_t seed_;
   Add add_;
   std::map<double, std::uint32_t> known_;

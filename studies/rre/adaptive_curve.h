@@ -55,9 +55,9 @@ class AdaptiveCurve {
   /// Gap between two neighbouring points.
   struct Gap {
     double low = 0.0, high = 0.0;
-    double miss = 0.0;                 ///< interpolation error at the centre of the wider gap that was divided into
-                                       ///< this gap and its neighbour
-    bool is_half_of_straight = false;  ///< true: this error was within the tolerance
+    /// Interpolation error at the centre of the wider gap that was divided into this gap and its neighbour.
+    double miss = 0.0;
+    bool is_half_of_straight = false;  ///< `miss` was within the allowed error
   };
 
   void begin(const CurveSpan& span, const std::vector<double>& kinks);

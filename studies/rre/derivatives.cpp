@@ -59,8 +59,8 @@ double value_of(const TracedDirection& at, RreParameter parameter) {
 struct Traced {
   std::vector<double> rre;  ///< indexed by acceptance cone
   double truncated = 0.0;
-  double noise = 0.0;  ///< uncertainty by which `rre` and `truncated` vary between traces at neighbouring parameter
-                       ///< values
+  /// Uncertainty by which `rre` and `truncated` vary between traces at neighbouring values of a parameter.
+  double noise = 0.0;
 
   Sample rre_sample(std::size_t cone) const { return {rre[cone], noise}; }
   Sample truncated_sample() const { return {truncated, noise}; }

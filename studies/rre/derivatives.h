@@ -30,8 +30,8 @@ std::vector<RreParameter> parameters_of(const Design& design);
 std::vector<std::string> keys_of(RreParameter parameter, const Design& design);
 
 /// Returns the value of a parameter in a design.
-/// \pre the parameter applies to the design, and the design contains its value; the index of a named material is not
-/// contained
+/// \pre the parameter applies to the design, and the design itself contains its value; this excludes the refractive
+/// index of a named material
 double value_of(const Design& design, RreParameter parameter);
 
 /// Returns the design with another value of a parameter.

@@ -16,9 +16,9 @@ struct FarFieldSpot {
   /// Azimuth of the spot around the direction back to the source, from the first axis of raytrace::source_axis()
   /// towards the second.
   Angle orientation;
-  raytrace::Stokes stokes;        ///< Stokes parameters with respect to the axes of the spot's direction
-  std::uint32_t least_depth = 0;  ///< number of interfaces on the shortest path inside the part; 0: reflected at the
-                                  ///< outside of the entrance face
+  raytrace::Stokes stokes;  ///< Stokes parameters with respect to the axes of the spot's direction
+  /// Number of interfaces on the shortest path inside the part; 0: reflected at the outside of the entrance face.
+  std::uint32_t least_depth = 0;
 };
 
 /// Directions in which light leaves the entrance face, for one direction of incidence.

@@ -24,7 +24,7 @@ struct Footprint {
   static constexpr double kLeastEfficiency = 1e-3;
 
   std::vector<ActiveRegion> regions;  ///< disjoint, ordered from bottom to top and from left to right
-  double entrance_area_mm2 = 0.0;     ///< for infinite parts: area of one period
+  double entrance_area_mm2 = 0.0;     ///< area of the entrance face, or of one period of it for infinite parts
   double active_area_mm2 = 0.0;
 
   double active_share() const { return active_area_mm2 / entrance_area_mm2; }

@@ -37,17 +37,17 @@ Engine engine_from_name(std::string_view name);
 raytrace::Sampling::Kind sampling_from_name(std::string_view name);
 std::string_view engine_name(Engine engine);
 
-/// Engines of RRE (retroreflective efficiency) that trace rays. A request may give a number of rays only for these
-/// engines.
+/// Engines that compute RRE (retroreflective efficiency) by tracing rays. A request may give a number of rays only for
+/// these engines.
 inline constexpr Engine kRayEngines[] = {Engine::automatic, Engine::montecarlo, Engine::cell, Engine::embree};
-/// Engines of photometry and pictures that trace rays.
+/// Engines that trace rays and are available for photometry and pictures.
 inline constexpr Engine kRayEnginesOfParts[] = {Engine::automatic, Engine::montecarlo, Engine::embree};
 /// Engines that may trace all light as beams instead of random rays.
 inline constexpr Engine kExactEngines[] = {Engine::exact, Engine::automatic};
-/// Engines of RRE that stop tracing light below a cut-off power.
+/// Engines that stop tracing light below a cut-off power when they compute RRE.
 inline constexpr Engine kCutoffEngines[] = {Engine::automatic, Engine::exact, Engine::montecarlo, Engine::cell,
                                             Engine::embree};
-/// Engines of RRE that trace until a target error is reached. This also holds if the request gives a cut-off power.
+/// Engines that compute RRE until a target error is reached, even if the request gives a cut-off power.
 inline constexpr Engine kTargetEngines[] = {Engine::automatic, Engine::stochastic, Engine::montecarlo, Engine::cell,
                                             Engine::embree};
 /// Returns true if `engine` is one of `engines`.
@@ -58,7 +58,8 @@ bool is_one_of(Engine engine, std::span<const Engine> engines);
 void check_has_effect(const char* option, bool is_given, Engine engine, std::span<const Engine> engines);
 
 /// Checks a fraction of the power.
-/// \throw InputError with the location `option` unless the value is between 0 and 1
+/// \param zero_allowed true: 0 is also a valid value
+/// \throw InputError with the location `option` unless the value is above 0 and below 1
 void check_share(double value, bool zero_allowed, const char* option);
 
 /// Default of RreRequest::target_error, as a fraction of the incident power.
@@ -78,7 +79,7 @@ struct RreRequest {
   std::vector<CurveSpan> incidence_spans;
   std::vector<double> azimuth_deg = {0.0};
   Engine engine = Engine::automatic;
-  std::optional<std::uint64_t> rays;  ///< number of rays per point; none: until target_error is reached
+  std::optional<std::uint64_t> rays;  ///< number of rays per point; none: rays are traced until target_error is reached
   /// Maximum standard error (Monte Carlo) or maximum truncated power (exact engine), as a fraction of the incident
   /// power. The default is kUsualTargetError, or half of kCurveTolerance if incidences are chosen automatically. It is
   /// 1e-10 if the exact engine is requested by name or needed for other results.

@@ -19,8 +19,9 @@ namespace {
 
 // Expected times of the tracers, as measured by benchmarks/engine_choice.cpp. Methods are chosen from counted work and
 // these times, and not from clocks, so that the choice is the same on every machine.
-/// Time of one ray segment, and additional time for each facet of an element. In finite arrays, Embree traces rays near
-/// the borders.
+
+/// Time of one ray segment, and additional time for each facet of an element. For the engine `cell`, segments take
+/// longer in finite arrays (kCellOfFinite), because Embree traces the rays near the borders.
 struct SegmentCost {
   double ns = 0.0;
   double ns_per_facet = 0.0;

@@ -1,7 +1,7 @@
 #pragma once
 
-// Traces the directions of a request. Each is traced with the requested engine, or with the engine that is expected to
-// be faster. Internal to studies/rre.
+// Traces the directions of a request. Each direction is traced with the requested engine, or with the engine that is
+// expected to be fastest. Internal to studies/rre.
 
 #include <memory>
 #include <optional>

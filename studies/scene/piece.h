@@ -53,14 +53,15 @@ class Piece {
   const geometry::Vec2& centre_mm() const { return centre_mm_; }
 
   /// Returns the position in the piece that corresponds to a position of the whole part at z = 0. If several positions
-  /// correspond to it, returns the one nearest to the centre.
+  /// in the piece are equivalent, returns the one nearest to the centre of the piece.
   geometry::Vec2 like_place(const geometry::Vec2& at_mm) const;
   /// Returns the point at which light must enter the piece in order to hit the same points of elements as light that
   /// enters the whole part at `at_mm`. The two plates may have different thicknesses.
   geometry::Vec2 entry_of(const SceneLight& light, const geometry::Vec2& at_mm) const;
   /// Returns the path of light that enters at a point.
   raytrace::LightPath path(const SceneLight& light, const geometry::Vec2& entry_mm) const;
-  /// Returns up to three kinds of paths for light that hits the element in the centre, the most frequent kind first.
+  /// Returns a path of each of up to three kinds, the most frequent kind first. The light enters in an area as large as
+  /// one element around the centre of the piece.
   std::vector<ScenePath> stories(const SceneLight& light) const;
 
  private:

@@ -47,8 +47,8 @@ Job patch_of(Job job) {
   return job;
 }
 
-/// Finds the last cut of each facet. If parallel passes side by side are needed, it is the pass closest to the center
-/// of the facet.
+/// Finds the last cut of each facet. If a facet needs several parallel passes side by side, the last cut is that of the
+/// pass closest to the center of the facet.
 class LastCuts {
  public:
   LastCuts(const Job& job, const Machine& machine) : grooves_(designed_grooves(job)) {

@@ -26,24 +26,24 @@ struct AxisTravel {
 struct BlankSetup {
   geometry::Vec2 array_mm = geometry::Vec2::Zero();  ///< size of the array along X and Y at A = 0 and C = 0
   double deepest_mm = 0.0;                           ///< maximum depth of roots or apexes below the face
-  double stock_mm = 0.0;                             ///< thickness of the material above the tops of the elements
-                                                     ///< (rims), for parts on a substrate
-  std::string base;                                  ///< description of the shape of a face that is not flat; empty if
-                                                     ///< it is flat
-  std::vector<std::string> zones;                    ///< for each zone: description of its elements
+  /// For parts on a substrate: thickness of the material above the tops of the elements (rims).
+  double stock_mm = 0.0;
+  /// Description of the shape of a face that is not flat; empty if the face is flat.
+  std::string base;
+  std::vector<std::string> zones;  ///< for each zone: description of its elements
   /// Height of blank and fixture together, from the machine's bodies below the workpiece to the zero point. Empty if
   /// the machine file has no such bodies.
   std::optional<double> fixture_height_mm;
-  double free_radius_mm = 0.0;  ///< maximum radius about C of a face that can be rotated and tilted below the retracted
-                                ///< tool
+  /// Maximum radius about C of a face that can be rotated and tilted below the retracted tool.
+  double free_radius_mm = 0.0;
 };
 
 /// Set-up of the tool.
 struct ToolSetup {
-  std::optional<double> free_length_mm;  ///< distance from the cutting edge up to the holder; empty if the machine file
-                                         ///< has no holder
+  /// Distance from the cutting edge up to the holder; empty if the machine file has no holder.
+  std::optional<double> free_length_mm;
   double plunge_rake_deg = 0.0;
-  std::optional<double> plough_rake_deg;  ///< chisels only
+  std::optional<double> plough_rake_deg;  ///< empty for V-shaped tools
 };
 
 /// Expected measurements after a stage (group of cuts in one pose). The programs do not check them.

@@ -30,15 +30,15 @@ inline constexpr std::int64_t kMostSolidElements = 200'000;
 
 struct SolidRequest {
   SolidKind what = SolidKind::array;
-  std::optional<double> block_mm;  ///< thickness of the mould below its deepest point, > 0; none: thickness of the
-                                   ///< plate
+  /// Thickness of the mould below its deepest point, > 0; none: thickness of the plate.
+  std::optional<double> block_mm;
 };
 
 /// Closed boundary of a solid, with its measures.
 struct Solid {
   Design design;
   SolidKind what = SolidKind::array;
-  double block_mm = 0.0;  ///< only for moulds
+  double block_mm = 0.0;  ///< thickness of a mould below its deepest point; 0 for other solids
   geometry::BoundaryMesh mesh;
   std::int64_t elements_full = 0;
   std::int64_t elements_partial = 0;

@@ -49,7 +49,7 @@ struct MailboxState {
   bool ended = false;
   int rank = 0;
   int size = 1;
-  std::deque<Letter> posted;  ///< `rank` is the receiver
+  std::deque<Letter> posted;  ///< messages that wait to be sent; `rank` is the receiver
   std::deque<Letter> arrived;
   bool sending = false;  ///< true: messages are being sent
   std::set<int> forgotten;
@@ -127,8 +127,8 @@ bool MailboxState::receive() {
     MPI_Irecv(transfer.bytes.data(), bytes, MPI_BYTE, transfer.rank, transfer.tag, MPI_COMM_WORLD, &transfer.request);
   }
   bool any = false;
-  std::set<int> unfinished;  // ranks with a message that is not complete; later messages of these ranks wait, to keep
-                             // the order
+  // Ranks with a message that is not complete; later messages of these ranks wait, to keep the order.
+  std::set<int> unfinished;
   for (auto transfer = incoming.begin(); transfer != incoming.end();) {
     if (unfinished.contains(transfer->rank) || !is_done(*transfer)) {
       unfinished.insert(transfer->rank);

@@ -38,7 +38,8 @@ constexpr std::chrono::seconds kPatience{10};
 // than a second.
 constexpr std::chrono::milliseconds kLastCall{500};
 constexpr std::chrono::milliseconds kLook{20};
-/// Computing time of a batch of tasks below which the next batch is requested before this batch is computed.
+/// Limit of the computing time of a batch of tasks. If the last batch took less time, a rank requests the next batch
+/// before it computes the current one.
 constexpr std::chrono::seconds kQuick{1};
 
 enum Tag : int {
@@ -106,7 +107,7 @@ struct MpiSession::State {
   void end_other();
 };
 
-/// Sends the message to end to all ranks. Ranks that do not answer within kPatience are given up.
+/// Sends all ranks the message `go`, with which they may end. Ranks that do not answer within kPatience are given up.
 void MpiSession::State::end_rank_0() {
   for (const int rank : there) mailbox->post(rank, Tag::go, lost_ranks ? "" : std::string(kAllAreThere));
   const auto deadline = Clock::now() + kPatience;

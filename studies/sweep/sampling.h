@@ -34,8 +34,8 @@ class UnitSamples {
   std::size_t dimensions_;
   std::uint64_t count_;
   std::uint32_t seed_;
-  std::vector<std::vector<std::uint32_t>> permutations_;  ///< permutations of the intervals, indexed by axis; only for
-                                                          ///< the Latin hypercube
+  /// Permutations of the intervals, indexed by axis; only for the Latin hypercube.
+  std::vector<std::vector<std::uint32_t>> permutations_;
 };
 
 }  // namespace retrace::studies

@@ -23,7 +23,7 @@ struct SobolIndex {
 /// independent points A and B, and further points that are equal to A except for one coordinate, which is that of B.
 struct SaltelliRow {
   double a = 0.0, b = 0.0;
-  std::vector<double> mixed;  ///< for each parameter: value at A with the parameter of B
+  std::vector<double> mixed;  ///< for each parameter: value at the point A with only this parameter taken from B
 };
 
 /// Returns the Sobol indices of the parameters. Formulas: Saltelli et al. (2010) for first-order indices, Jansen (1999)

@@ -18,8 +18,8 @@ namespace retrace::studies {
 
 /// Request for a tolerance study.
 struct ToleranceRequest {
-  std::uint64_t samples = 256;  ///< number of rows; with Sobol indices, a row consists of 2 parts and of one more point
-                                ///< for each parameter
+  /// Number of rows; with Sobol indices, a row consists of 2 parts and of one more point for each parameter.
+  std::uint64_t samples = 256;
   UnitSamples::Kind sampling = UnitSamples::Kind::sobol;
   bool indices = true;
   double confidence = 0.95;             ///< confidence level of all intervals
@@ -58,11 +58,11 @@ struct QuantityTolerance {
   std::size_t parts = 0;    ///< number of parts with a value
   std::size_t without = 0;  ///< number of parts that could not be computed or have no value
   std::optional<Spread> spread;
-  std::vector<std::pair<double, double>> percentiles;  ///< pairs of a fraction of the parts and the value below which
-                                                       ///< it lies
-  std::vector<SobolIndex> indices;  ///< Sobol indices, in the order of the parameters; empty if they were not requested
-                                    ///< or are not defined
-  std::size_t rows = 0;             ///< number of rows from which the indices were computed
+  /// Pairs of a fraction of the parts and the value below which this fraction lies.
+  std::vector<std::pair<double, double>> percentiles;
+  /// Sobol indices, in the order of the parameters; empty if they were not requested or are not defined.
+  std::vector<SobolIndex> indices;
+  std::size_t rows = 0;  ///< number of rows from which the indices were computed
   /// Root mean square of the values' standard errors, divided by their standard deviation. It shows how much of the
   /// spread is noise.
   std::optional<double> noise;

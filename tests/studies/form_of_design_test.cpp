@@ -245,7 +245,8 @@ TEST(FormOfDesign, PhotometryIsContinuousInTheSink) {
   Design design = photometric_requests::design_of(honeycomb(0.0, 0.5));
   PhotometryRequest request = request_of(points_at({0.2}, 100.0));
   request.diffraction = true;
-  request.engine = Engine::exact;  // truncates weak beams of plane facets, as for facets with a form
+  // With this engine, weak beams are truncated for plane facets, too, and not only for facets with a form.
+  request.engine = Engine::exact;
   const auto r_a = [&](double sink_um) {
     design.surface.form.sink_um = sink_um;
     const Photometer photometer(design, request, 1);

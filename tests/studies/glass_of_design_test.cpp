@@ -45,7 +45,7 @@ TEST(GlassOfDesign, IsTheShippedGlassOfThatName) {
     shipped.push_back("body.material=N-BK7");
     EXPECT_EQ(inspected(with_glass("n-bk7", more)).refractive_index, inspected(shipped).refractive_index);
   }
-  // n_d of the record NM.
+  // The expected value is the index n_d, which the record NM of the catalogue contains.
   EXPECT_NEAR(inspected(with_glass("BASF5")).refractive_index, 1.603233, 2e-6);
   EXPECT_EQ(facts_of(inspected(with_glass("BASF5", {"light.wavelength_nm=300"})).warnings.at(0)),
             "index_extrapolated at d.toml");

@@ -321,7 +321,7 @@ TEST(Photometry, DyeTakesItsShareOfTheFlux) {
   }
 }
 
-// Monte Carlo with the same discs agrees within its standard error.
+// Monte Carlo with the same apertures of source and receiver agrees with the exact engine within its standard error.
 TEST(Photometry, MonteCarloAgreesWithTheExactEngine) {
   const Design design = design_of(honeycomb(4.0));
   PhotometryRequest request = request_of(r150("IA", "red"));

@@ -86,7 +86,8 @@ PhotometryRequest diffracted_request(double share_of_limits) {
 TEST(PhotometryVerdict, IsContinuousInTheRoughness) {
   const Design smooth = design_of(honeycomb(0.75, 0.5));
   PhotometryRequest request = diffracted_request(0.5);
-  request.engine = Engine::exact;  // truncates weak beams of smooth facets, as for rough facets
+  // With this engine, weak beams are truncated for smooth as well as for rough facets.
+  request.engine = Engine::exact;
   request.rays.reset();
   const PhotometryResult before = run(smooth, request);
   const PhotometryResult after = run(rough(smooth, 0.1), request);

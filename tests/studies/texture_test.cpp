@@ -39,9 +39,10 @@ const std::string kCubes =
 const std::string kTriangles =
     "[element]\nkind = \"triangular_icc\"\naperture_mm = 1.0\n[array]\nextent = \"infinite\"\n[body]\nthickness_mm = "
     "0.5\n";
-/// A cut-off whose truncated power is negligible in these tests. Cube corners divide light into very many beams.
+/// Cut-off whose truncated power is negligible in these tests. A lower cut-off takes much longer, because cube corners
+/// divide light into very many beams.
 constexpr double kExactCutoff = 1e-7;
-/// The cone is so narrow that it contains no scattered light.
+/// Acceptance cone that is so narrow that it contains no scattered light.
 const std::string kNarrow = "detector.acceptance_half_angle_deg=0.001";
 /// With mirrors, only the phase of the reflected light counts, for any correlation length of the heights.
 const std::string kMirrors = "idealisation.facets=mirror";
@@ -151,7 +152,8 @@ TEST(DesignTexture, SpecularSharesOfTwoFacetsMultiply) {
   const Folder folder;
   const double index = index_of(kPrism);
   HeightMap map = testing::gaussian_surface(192, 192, 12.0, 12.0, 5);
-  map.x_pixel_um = map.y_pixel_um = 0.25;  // correlation length of 3 um; resolves half a wavelength
+  // The correlation length is 3 um; the pixels are small enough to resolve half a wavelength.
+  map.x_pixel_um = map.y_pixel_um = 0.25;
   folder.write("map.txt", map);
   const double map_sq_nm = surface_models::height_parameters(surface_models::without_form(map, 1).heights_nm).sq_nm;
   const std::string source = (folder.path() / "d.toml").string();

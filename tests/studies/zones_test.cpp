@@ -300,8 +300,8 @@ TEST(ZonedDesign, TheSumOfZonesIsThePartAsFarAsTheyAreWide) {
 }
 
 // If all columns have equal elements, the part equals the array. In the other designs, every second column is rotated
-// by 180 degrees. A part with an odd number of columns that is rotated about its center has the rotated columns at the
-// positions of the other columns.
+// by 180 degrees. If such a part has an odd number of columns and is rotated by 180 degrees about its center, the
+// rotated columns become the others, and the other columns become the rotated ones.
 TEST(ZonedDesign, ColumnsInTurnAreTheArrayAndTurnWithIt) {
   const std::string lengths = "x_length_mm = 20; y_length_mm = 20";
   const std::string canted = "; cant_deg = 8; cant_azimuth_deg = 40";

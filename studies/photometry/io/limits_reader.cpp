@@ -193,7 +193,8 @@ bool names_source(std::string_view content) {
   return false;
 }
 
-/// Sets the source of a line.
+/// Sets the member `source` of a line of the limits file from the column of this name. It stays empty if the file does
+/// not have this column.
 template <class Line>
 Line with_source(Line line, const CsvReader& row, bool has_source) {
   if (has_source) line.source = printable(row[kSource], std::string::npos);

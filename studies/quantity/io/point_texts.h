@@ -1,6 +1,7 @@
 #pragma once
 
-// Point of a study as overrides of its design file and its study file, from which a candidate is made.
+// Converts a point of a study to texts: the name of its design file, and overrides of keys in the design file and in
+// the study file. A candidate (design with settings) is then made from these texts.
 
 #include <filesystem>
 #include <span>
@@ -19,10 +20,10 @@ bool is_setting(std::string_view key);
 /// Returns the key of an override.
 std::string key_of(const std::string& override_text);
 
-/// Returns the overrides of the study file if `study` is true, otherwise the overrides of designs.
+/// Selects overrides by the file to which they apply: the study file if `study` is true, otherwise design files.
 std::vector<std::string> overrides_for(std::span<const std::string> overrides, bool study);
 
-/// Point of a study as files and their overrides.
+/// Point of a study: its design file, and the overrides with which the design file and the study file are read.
 struct PointTexts {
   std::string design;                   ///< name of the design file
   std::vector<std::string> for_design;  ///< overrides of the design file
@@ -34,7 +35,8 @@ struct PointTexts {
 PointTexts texts_at(const Study& study, std::span<const ParameterValue> values);
 
 /// Returns the files that the designs of a study name, without duplicates. If a parameter of the study sets the key of
-/// a file, the files of all values of the parameter are included. Their position is that of the parameter.
+/// a file, the files of all values of the parameter are included. For messages, such files have the position of the
+/// parameter.
 std::vector<NamedFile> files_of_designs(const Study& study);
 
 }  // namespace retrace::studies

@@ -16,7 +16,7 @@ constexpr NumberRange kIncidence{.low = -90.0, .low_included = false, .high = 90
 constexpr NumberRange kHalfAngle{.low = 0.0, .low_included = false, .high = 90.0};
 constexpr NumberRange kPercent{.low = 0.0, .high = 100.0};
 
-// Keys of the varied parameters.
+// Keys that describe the varied parameters, and the words and conditions of these keys.
 
 constexpr Words kDistributions = {"normal", "uniform", "triangular"};
 constexpr Words kNormal = {"normal"};
@@ -49,7 +49,7 @@ constexpr Row kParameterRows[] = {
     {"sigma", Number{kAboveZero}, kRequired, "Standard deviation.", kOfNormal},
     {"mode", Number{}, kRequired, "Its most frequent value, from `from` to `to`.", kOfTriangular}};
 
-// Keys of the quantities that are computed for every design.
+// Keys that describe the quantities that are computed for every design, with their words and conditions.
 
 constexpr Words kKinds = {"rre",
                           "ledger",
@@ -128,7 +128,7 @@ constexpr Row kQuantityRows[] = {
     {"far_field", Word{kFarFields}, "diffracted", "`\"geometric\"` is quicker.", kOfPhotometry},
     {"dye", Text{}, kOfCommand, "Of a coloured lens.", kOfPhotometry}};
 
-// Keys of the settings of the analysis.
+// Keys of the tables [analysis] and [machining], with their words and conditions.
 
 constexpr Words kEngines = {"auto", "exact", "stochastic", "montecarlo", "cell", "embree"};
 constexpr Words kRayEngineWords = {"auto", "montecarlo", "cell", "embree"};
@@ -201,7 +201,7 @@ constexpr Row kMachiningRows[] = {
      "of the edge, whatever the design says; `--set` and parameters of the study count more.",
      access_by<surface, set_surface>}};
 
-// Keys of the sweep, the tolerance study and the optimization.
+// Keys of the sweep, the tolerance study and the optimization, with their words and conditions.
 
 constexpr Words kCombinations = {"grid", "zipped", "sobol", "latin_hypercube", "monte_carlo"};
 constexpr Words kSampled = {"sobol", "latin_hypercube", "monte_carlo"};

@@ -1,6 +1,6 @@
 #pragma once
 
-// Format of study files, as rows that are used by readers and for the documentation.
+// Format of study files, as one row for each key. The readers and the documentation use these rows.
 
 #include "core/schema/schema.h"
 

@@ -50,8 +50,8 @@ class RayCsvSource : public RaySource {
   RaySetInfo info_;
 };
 
-/// Writes a table of rays. Each line contains the number of the incident ray and the account of the ray's power in the
-/// ledger.
+/// Writes a table of rays. Each line contains the number of the incident ray and the account of the ledger (category of
+/// power) to which the ray's power belongs.
 class RayCsvSink : public RaySink {
  public:
   /// \throw OutputError if the file cannot be written

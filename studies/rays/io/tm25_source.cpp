@@ -267,7 +267,8 @@ SetRay Tm25Source::ray_at(const char* record, std::uint64_t byte) {
     ray.tristimulus_x = flux_of("a tristimulus value");
     ray.tristimulus_z = flux_of("a tristimulus value");
   }
-  // With the other kinds of spectra, each ray has a wavelength, which is more precise than the spectral tables.
+  // The index of a spectral table is read only if the rays have no wavelengths of their own. Such wavelengths are more
+  // precise than spectral tables.
   if (info_.spectrum == RaySpectrum::table_of_each) {
     const double table = next("a spectrum index");
     if (!(table >= 1.0 && table <= static_cast<double>(info_.tables.size())) || table != std::floor(table))

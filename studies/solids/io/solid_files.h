@@ -23,7 +23,8 @@ std::string solid_text(const Solid& solid, SolidFormat format);
 /// \param file name of the written file; empty if there is none
 std::string solid_json(const Solid& solid, const std::string& file);
 
-/// Returns the figures of a solid as a table for the terminal.
+/// Returns the numbers of elements and triangles, the size, the volume and the surface area of a solid as a table for
+/// the terminal.
 std::string solid_table(const Solid& solid);
 
 }  // namespace retrace::studies

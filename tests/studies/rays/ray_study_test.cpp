@@ -1,5 +1,5 @@
-// Tests of a set of rays that hits a part. Positions, wavelengths, polarisation and accounts are compared with closed
-// forms and with beams.
+// Tests of a set of rays that hits a part. Positions, wavelengths, polarisation and accounts of the ledger (categories
+// of power) are compared with closed forms and with beams.
 #include "studies/rays/ray_study.h"
 
 #include <gtest/gtest.h>
@@ -268,8 +268,9 @@ TEST(RayStudy, BothFluxesAndTristimulusValuesShrinkAlike) {
   }
 }
 
-// Collimated light from an emitter has the same accounts as the beam of `retrace rre`, except for rays that do not hit
-// the part. Those rays count as missed.
+// The power of collimated light from an emitter is divided among the accounts (categories) of the ledger in the same
+// proportions as the power of the beam of `retrace rre`. Rays that do not hit the part count as missed and are excluded
+// from the comparison.
 TEST(RayStudy, AnEmitterThatCoversThePartIsTheBeamOfRre) {
   const Design design = parse_design(
       "[element]\nkind = \"rtp\"\nbase_mm = 1\nwidth_mm = 1\n[array]\narrangement = \"offset\"\nx_length_mm = "

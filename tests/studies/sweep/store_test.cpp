@@ -43,7 +43,8 @@ class Store : public ::testing::Test {
   std::string message(const StoreLayout& layout, IfExists if_exists) const {
     return refusal_of([&] { const ResultStore store(file(), layout, if_exists); });
   }
-  /// The same for stores that are damaged at random, whose messages are those of SQLite.
+  /// Returns the place that the error reports if the store is refused. Used for stores that are damaged at random:
+  /// their messages come from SQLite and are not recorded.
   std::string unrecorded_message(const StoreLayout& layout, IfExists if_exists) const {
     return unrecorded_refusal_of([&] { const ResultStore store(file(), layout, if_exists); });
   }
