@@ -17,13 +17,14 @@ namespace {
 
 using namespace surface_models;
 
-/// Rows of a map that an edge is fitted to; of more, evenly spread ones are taken. A fit takes some milliseconds.
+/// Maximum number of rows of a map to which an edge is fitted. Of more rows, evenly spaced ones are selected. The fit
+/// of one row takes some milliseconds.
 constexpr std::size_t kMostEdgeProfiles = 256;
-/// Fewer points to a cut-off do not sample the filter.
+/// Minimum number of points per cut-off length. With fewer points, the filter is not sampled.
 constexpr double kLeastPointsPerCutoff = 2.0;
 constexpr double kMissingShareToTell = 0.05;
 constexpr double kLeastPointsPerLength = 2.0;
-/// How far a scratch is compared with what lies beside it, in cut-offs.
+/// Range on each side of a scratch with which the scratch is compared, in cut-off lengths.
 constexpr double kBesideScratch = 0.25;
 
 void check(const MetrologyRequest& request, const HeightMap& map) {
@@ -38,7 +39,7 @@ void check(const MetrologyRequest& request, const HeightMap& map) {
     throw InputError({"", 0, "--feed-mm-per-min"}, fmt::format("must be > 0, got {}", *request.feed_mm_per_min));
 }
 
-/// Every n-th row, so that at most kMostEdgeProfiles are left.
+/// Returns every n-th row of a map, with the smallest n for which at most kMostEdgeProfiles rows remain.
 HeightMap thinned(const HeightMap& map) {
   const std::size_t stride = (map.rows + kMostEdgeProfiles - 1) / kMostEdgeProfiles;
   HeightMap thin{map.columns, 0, map.x_pixel_um, map.y_pixel_um * static_cast<double>(stride), {}};
@@ -47,7 +48,7 @@ HeightMap thinned(const HeightMap& map) {
   return thin;
 }
 
-/// Fits every row and puts the heights less the edge into the result.
+/// Fits an edge to every row, and stores the heights minus the fitted edge in the result.
 void measure_edge(MetrologyResult& result, const HeightMap& whole) {
   const HeightMap map = thinned(whole);
   if (map.rows < whole.rows)
@@ -97,7 +98,7 @@ void warn(MetrologyResult& result, const HeightMap& map) {
     result.warnings.push_back(
         {"cutoff_too_long", fmt::format("the cut-off of {} um is longer than half of the map's shorter side of {} um",
                                         shortest(result.request.cutoff_um), shortest(std::min(x_um, y_um)))});
-  if (result.edge) return;  // what is left of an edge describes no facet
+  if (result.edge) return;  // the heights minus the edge do not describe the texture of a facet
   const auto& length = result.texture.correlation_length_um;
   if (!length && result.of_roughness.sq_nm > 0.0)
     result.warnings.push_back({"no_correlation_length", "the roughness has no correlation length within the cut-off"});

@@ -1,7 +1,7 @@
 #pragma once
 
-// Measured height maps: roughness, waviness and edge radii in the terms that designs take. The study behind `retrace
-// metrology`.
+// Evaluates measured height maps: roughness, waviness and edge radii, in the quantities with which designs describe
+// surfaces. This study is behind `retrace metrology`.
 
 #include <cstddef>
 #include <optional>
@@ -21,32 +21,36 @@
 
 namespace retrace::studies {
 
-/// What to measure, and how.
+/// Height map that is evaluated, and the settings of the evaluation.
 struct MetrologyRequest {
   std::string file;
   surface_models::HeightMapOptions reading;
-  int form_degree = 1;  ///< of the polynomial that is removed; 0: none
+  int form_degree = 1;  ///< degree of the polynomial that is removed; 0: none
   double cutoff_um = 80.0;
-  std::optional<double> feed_mm_per_min;  ///< of the cut along the waves, for their frequency in time
-  bool edge = false;  ///< rows are profiles across an edge; its shape is removed in place of the form
+  /// Feed of the cut along the waves, from which their frequency in time is computed.
+  std::optional<double> feed_mm_per_min;
+  /// True: rows are profiles across an edge, and the fitted edge is removed instead of a polynomial.
+  bool edge = false;
 };
 
-/// An edge, over the profiles (rows) of a map.
+/// Edge that is fitted to each profile (row) of a map. Summaries and medians are over all profiles.
 struct EdgeResult {
   surface_models::Summary radius_um;
   surface_models::Summary chamfer_um;
   surface_models::Summary dihedral_deg;
-  double radius_residual_nm = 0.0;                                       ///< median over the profiles
-  double chamfer_residual_nm = 0.0;                                      ///< likewise
-  surface_models::EdgeShape better = surface_models::EdgeShape::radius;  ///< of the lower median residual
+  /// Median of the residual of the fit with a radius.
+  double radius_residual_nm = 0.0;
+  /// Median of the residual of the fit with a chamfer.
+  double chamfer_residual_nm = 0.0;
+  surface_models::EdgeShape better = surface_models::EdgeShape::radius;  ///< shape with the lower median residual
 };
 
-/// A measured surface.
+/// Result of the evaluation of a height map.
 struct MetrologyResult {
   MetrologyRequest request;
   std::string format;
-  std::size_t missing = 0;            ///< points without a height
-  surface_models::HeightMap surface;  ///< less its form
+  std::size_t missing = 0;            ///< number of points without a height
+  surface_models::HeightMap surface;  ///< heights after removal of the form or of the edge
   surface_models::Split split;
   surface_models::HeightParameters of_surface;
   surface_models::HeightParameters of_roughness;
@@ -54,8 +58,8 @@ struct MetrologyResult {
   surface_models::Spectrum along_x;
   surface_models::Spectrum along_y;
   surface_models::Spectrum radial;
-  std::vector<surface_models::SpectralPeak> peaks;  ///< strongest first
-  std::optional<double> x_correlation_length_um;    ///< of the roughness, as it is after the filter
+  std::vector<surface_models::SpectralPeak> peaks;  ///< peaks of the spectrum, the strongest first
+  std::optional<double> x_correlation_length_um;    ///< correlation length along x of the filtered roughness
   std::optional<double> y_correlation_length_um;
   surface_models::TextureModel texture;
   std::vector<surface_models::Scratch> scratches;
@@ -63,17 +67,21 @@ struct MetrologyResult {
   Warnings warnings;
 };
 
-/// The degree that a word names: `none`, `plane`, `poly2` to `poly8`. \throw InputError naming --form
+/// Returns the degree of a form from its name: `none`, `plane`, `poly2` to `poly8`.
+/// \throw InputError whose location is the option --form
 int form_degree_of(std::string_view name);
 std::string form_name(int degree);
 
-/// The frequency in time of a wave that was cut at that feed.
+/// Returns the frequency, in Hz, with which waves pass the tool at a feed.
 double frequency_hz(double frequency_per_mm, double feed_mm_per_min);
 
-/// Measures a surface that was read. \param request its file and reading are not looked at \throw InputError likewise
+/// Measures a surface that has already been read.
+/// \param request request; its file is only used in messages, and its reading options are ignored
+/// \throw InputError for an invalid request
 MetrologyResult measure_surface(const MetrologyRequest& request, surface_models::HeightMapFile file);
 
-/// Reads and measures a surface. \throw InputError for a file or a request that makes no sense
+/// Reads a height map and measures its surface.
+/// \throw InputError for an invalid file or request
 MetrologyResult measure_surface(const MetrologyRequest& request);
 
 }  // namespace retrace::studies

@@ -189,7 +189,8 @@ class TraceByParameter {
 
 std::string why_not(const Derivative& derivative) {
   if (derivative.converged()) return {};
-  constexpr double kShows = 0.2;  // noise also increases the error of the differences
+  // Fraction of the error above which noise is given as the reason; noise also increases the error itself.
+  constexpr double kShows = 0.2;
   return derivative.noise > kShows * derivative.error ? "what is cut off hides it" : "RRE has a kink or a jump here";
 }
 

@@ -70,7 +70,7 @@ inline constexpr double kCurveTolerance = 1e-3;
 /// Engine of a result to which several engines have contributed.
 inline constexpr std::string_view kMixedEngines = "mixed";
 
-/// A request for retroreflective efficiency over a grid of directions.
+/// Request for the retroreflective efficiency over a grid of directions.
 struct RreRequest {
   std::vector<double> incidence_deg = {0.0};  ///< each in (-90, 90)
   /// Intervals in (-90, 90) in which further incidences are chosen automatically. They are the same for all designs and

@@ -21,7 +21,7 @@ using geometry::Vec3;
 
 constexpr double kArcminPerRad = 180.0 * 60.0 / std::numbers::pi;
 
-/// A cut of a facet with its plane.
+/// Cut of a facet, with the plane that it cuts.
 class PlacedCut {
  public:
   PlacedCut(const Machine& machine, const FacetEdgeCut& cut, const Groove& groove)
@@ -29,7 +29,8 @@ class PlacedCut {
     plane_ = cut_plane(machine, cut.cut, design().normal);
   }
 
-  /// By how much the facet rises over a place of the design, mm per unit.
+  /// Returns the distance by which the facet rises above a position of the design, in mm per unit of the set-up
+  /// quantity.
   double height_mm(const PlaneChange& change, const Vec3& at) const {
     return change.height_mm(plane_, at, design().normal);
   }
@@ -63,10 +64,11 @@ FacetEffect effect_of(const PlacedCut& placed, const PlaneChange& change) {
   return effect;
 }
 
-/// The cuts of a job by element and facet, each list in the order of time.
+/// Cuts of a job, by indices of element and facet. Each list is in the order of time.
 using CutsOfFacets = std::map<std::pair<std::size_t, std::size_t>, std::vector<PlacedCut>>;
 
-/// By how much the chip of any but the first cut of a facet changes: what the one before leaves, less what it takes.
+/// Returns the maximum change of the chip thickness over all cuts of a facet except the first. The chip is the material
+/// between the planes of the previous cut and of the current one.
 double chip_change_nm(const std::vector<PlacedCut>& cuts, const SetupQuantity& quantity) {
   double most = 0.0;
   std::optional<double> before;
@@ -79,7 +81,8 @@ double chip_change_nm(const std::vector<PlacedCut>& cuts, const SetupQuantity& q
   return kNmPerMm * most;
 }
 
-/// Where the ends of the edge stand when a cut ends, in the workpiece frame; of a V its tip.
+/// Returns the positions of the ends of the cutting edge at the end of a cut, in the workpiece frame. For a V-shaped
+/// tool, returns only its tip.
 std::vector<Vec3> edge_ends(const Machine& machine, const EdgeCut& cut, double half_width_mm) {
   const RigidMotion back = machine_from_workpiece(machine, rotary_pose(machine, cut.at)).inverse();
   const Vec3 tip = machine_point(machine, cut.at) + edge_frame(machine) * cut.tip_mm;
@@ -139,7 +142,8 @@ void tell_walls(const Machine& machine, const PlacedCut& ending, double half_wid
     row.wall_nm = std::max(row.wall_nm, kNmPerMm * std::abs(ending.groove().root_direction.dot(after[k] - before[k])));
 }
 
-/// \param ways_up of a V, which sweep the other part of their facets
+/// Returns the effects of one set-up quantity.
+/// \param ways_up upward cuts of a V-shaped tool, which machine the other part of their facets
 Sensitivity row_of(const Machine& machine, double half_width_mm, const SetupQuantity& quantity,
                    const CutsOfFacets& cuts, const CutsOfFacets& ways_up, const std::vector<CutElement>& elements,
                    const std::vector<FacetKind>& kinds) {

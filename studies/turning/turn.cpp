@@ -25,7 +25,8 @@ namespace {
 namespace turning = fabrication::turning;
 using geometry::Vec2;
 
-/// ASCII without what a comment of some dialect could not hold.
+/// Returns the first 60 characters of a text. Spaces replace all characters except ASCII letters, digits and commas, so
+/// that the text is valid in a comment of every dialect.
 std::string comment_of(const std::string& text) {
   std::string result;
   for (const char c : text.substr(0, 60))
@@ -68,7 +69,8 @@ void write_programs(TurningResult& r) {
   r.servo_csv = csv.text();
 }
 
-/// Sums of increments differ in their last digits, and C of a Fanuc has a digit less than that of others.
+/// Tolerances within which the positions of two programs are equal. Sums of increments differ in their last digits, and
+/// the C axis has one digit less in Fanuc programs than in those of other dialects.
 constexpr double kSameMm = 1e-9;
 constexpr double kSameRad = 1e-8;
 
@@ -77,7 +79,8 @@ bool near(const std::vector<double>& a, const std::vector<double>& b, double mos
                     [most](double one, double other) { return std::abs(one - other) <= most; });
 }
 
-/// Of the ends of blocks: pieces of a cubic are as many as rounded velocities make them.
+/// Returns the values at the ends of blocks. Other points are ignored, because the number of pieces into which a cubic
+/// is divided depends on rounded velocities.
 std::vector<double> at_ends(const turning::CutPass& pass, const std::vector<double>& values) {
   std::vector<double> ends;
   for (std::size_t i = 0; i < values.size(); ++i)
@@ -95,7 +98,8 @@ bool same_cuts(const std::vector<turning::CutPass>& a, const std::vector<turning
   });
 }
 
-/// Judges the programs by cubics, or the others: the first of them; the rest must read as the same.
+/// Checks the programs that consist of cubics (`by_cubics`), or those that consist of straight moves. Only the first
+/// program is checked in full. The cuts of all further programs must be equal to its cuts.
 turning::TurningCheck check_text(const TurningResult& r, bool by_cubics, fabrication::FindingList& findings) {
   std::optional<turning::TurningCuts> reference;
   std::string file;
@@ -116,7 +120,8 @@ turning::TurningCheck check_text(const TurningResult& r, bool by_cubics, fabrica
   return turning::check_turning(r.part, std::move(*reference), strokes, findings);
 }
 
-/// Two turns round the largest jump of Z's acceleration.
+/// Stores the motion of Z, or of the fast tool servo, around the largest jump of its acceleration. The stretch is two
+/// revolutions long for spirals, and the whole pass otherwise.
 void find_stretch(TurningResult& r) {
   const turning::Pass& pass = r.passes[r.passes.size() / 2];
   const std::vector<turning::AxisState> states =
@@ -136,7 +141,8 @@ void find_stretch(TurningResult& r) {
     if (std::abs(states[i].time_s - states[at].time_s) <= half_s) r.stretch.z.push_back(states[i]);
 }
 
-/// Deviation along the x axis over eight cuts, half-way out.
+/// Stores the deviation of the machined surface along the x axis over eight cuts, halfway between the center and the
+/// rim.
 void find_profile(TurningResult& r, const turning::Envelope& envelope) {
   constexpr int kPoints = 400;
   const double extent =

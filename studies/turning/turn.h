@@ -1,7 +1,7 @@
 #pragma once
 
-// The studies behind `retrace turn` and `retrace verify` of turned parts: plans a turned part, writes its programs, and
-// judges the text of programs.
+// Studies behind `retrace turn` and `retrace verify` for turned parts. They plan a turned part, write its programs, and
+// check the text of programs.
 
 #include <array>
 #include <optional>
@@ -19,67 +19,71 @@
 
 namespace retrace::studies {
 
-/// A program of one dialect.
+/// Program in one dialect.
 struct TurningText {
   std::string dialect;
-  std::string file;  ///< its name
+  std::string file;  ///< name of the program's file
   std::string text;
 };
 
-/// One point of a short stretch of the path, for plots.
+/// Short stretches of the path and of the machined surface, for plots.
 struct TurningStretch {
-  std::vector<fabrication::turning::AxisState> z;  ///< round the largest jump of its acceleration
-  std::vector<geometry::Vec2> profile;             ///< (distance along the radius mm, deviation nm) of a few cuts
+  /// States of the Z axis (or the servo) around the largest jump of its acceleration.
+  std::vector<fabrication::turning::AxisState> z;
+  /// Points of a profile over a few cuts: (distance along the radius in mm, deviation in nm).
+  std::vector<geometry::Vec2> profile;
 };
 
-/// What controls that join points by cubics get in place of straight moves.
+/// Tool path for controls that join points by cubics instead of straight moves.
 struct TurnedByCubics {
   fabrication::turning::CubicPath path;
   fabrication::turning::TurningCheck check;
-  std::string file;                ///< the first of the programs by cubics
-  std::size_t bytes = 0;           ///< of it
-  std::size_t straight_bytes = 0;  ///< that it would have of straight moves
+  std::string file;                ///< name of the first program that consists of cubics
+  std::size_t bytes = 0;           ///< size of this program
+  std::size_t straight_bytes = 0;  ///< size that this program would have with straight moves
 };
 
 struct TurningResult {
-  std::string file;  ///< of the part
+  std::string file;  ///< name of the part file
   fabrication::turning::TurnedPart part;
   std::vector<fabrication::turning::Pass> passes;
   std::size_t points = 0;
   double time_s = 0.0;
   fabrication::turning::ClearanceFigures clearance;
   fabrication::turning::FinishFigures finish;
-  std::array<fabrication::turning::AxisFigures, 4> axes;  ///< X, Y, Z, servo
+  std::array<fabrication::turning::AxisFigures, 4> axes;  ///< X, Y, Z and the servo
   std::vector<TurningText> programs;
-  std::string machined_stl;  ///< what is moulded in the surface that is left; empty unless the part asks for it
-  std::string servo_csv;     ///< strokes of a fast tool servo; empty without
+  /// STL file of a part that is moulded from the machined surface; empty unless the part file requests it.
+  std::string machined_stl;
+  std::string servo_csv;  ///< table of strokes of a fast tool servo; empty if the part has no such servo
   fabrication::turning::TurningCheck check;
   TurningStretch stretch;
-  std::optional<TurnedByCubics> cubics;        ///< where the part asks for them
-  std::vector<fabrication::Finding> findings;  ///< none: the programs pass
+  std::optional<TurnedByCubics> cubics;        ///< path with cubics; none unless the part file requests it
+  std::vector<fabrication::Finding> findings;  ///< findings of the checks; empty if the programs pass
 
   bool passes_inspection() const { return findings.empty(); }
-  /// Whether the program of a dialect goes by cubics.
+  /// Returns true if the program of this dialect consists of cubics.
   bool has_cubics(std::string_view dialect) const;
 };
 
-/// Plans the path of a part, writes its programs, reads their text back and inspects what it leaves.
-/// \throw InputError for a part file that makes no sense
+/// Plans the path of a part and writes its programs. Then reads the text of the programs back and checks the surface
+/// that they machine.
+/// \throw InputError for an invalid part file
 TurningResult turn(const std::string& part_file);
 
-/// What to verify.
+/// Programs that are verified, and the part for which they were made.
 struct TurningRequest {
-  std::string part;                   ///< file
-  std::vector<std::string> programs;  ///< files, in the order in which they run
-  std::string dialect = "auto";       ///< of all of them, or told from the text
-  std::string servo;                  ///< table of strokes of a fast tool servo; empty: none
+  std::string part;                   ///< name of the part file
+  std::vector<std::string> programs;  ///< program files, in the order in which they run
+  std::string dialect = "auto";       ///< dialect of all programs; `auto`: determined from the text
+  std::string servo;                  ///< file with the strokes of a fast tool servo; empty: none
 };
 
-/// Programs from files, and what they were found to do.
+/// Programs from files, and the results of checking them.
 struct TurningVerification {
   TurningRequest request;
   fabrication::turning::TurnedPart part;
-  std::vector<fabrication::NcProgram> programs;  ///< as they were read
+  std::vector<fabrication::NcProgram> programs;  ///< programs as they were read
   fabrication::turning::TurningCheck check;
   std::vector<fabrication::Finding> findings;
 
@@ -87,8 +91,8 @@ struct TurningVerification {
   const Warnings& part_warnings() const { return part.warnings; }
 };
 
-/// \throw InputError for a file that cannot be read or understood, with its line, and for a table of strokes that the
-/// part's servo does not take, or does without
+/// \throw InputError that names the line, for a file that cannot be read or is invalid. Also thrown if a table of
+/// strokes is missing, or is given although the servo of the part needs none.
 TurningVerification verify_turning(const TurningRequest& request);
 
 }  // namespace retrace::studies

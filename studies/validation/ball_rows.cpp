@@ -1,4 +1,4 @@
-// Balls with mirrors behind.
+// Validation rows for balls with mirrors on their backs.
 
 #include <cmath>
 #include <numbers>
@@ -15,7 +15,8 @@ using raytrace::BallLayer, raytrace::return_error_rad;
 
 constexpr const char* kBeads = "docs/theory/beads.md";
 
-/// Ledger of ideal balls - mirrors on their backs, no Fresnel - for light along the axis.
+/// Returns the result for ideal balls and light along the axis. The balls have mirrors on their backs, and their
+/// entrance faces have no Fresnel losses.
 raytrace::ConeResult traced(const BallLayer& layer, double index, const Cancellation* cancel) {
   raytrace::Optics optics;
   optics.index = index;
@@ -25,7 +26,7 @@ raytrace::ConeResult traced(const BallLayer& layer, double index, const Cancella
   return raytrace::BallTracer(layer).trace(optics, {}, {0.5}, sampling, {}, cancel).cones[0];
 }
 
-/// Where a function that falls or rises through 0 between two places is 0.
+/// Returns the zero of a function that changes its sign one time between two positions.
 template <class Function>
 double root_of(double low, double high, const Function& f) {
   const bool is_positive = f(low) > 0.0;
@@ -66,7 +67,7 @@ std::vector<ValidationRow> ball_validation() {
        .allowed = 1e-4,
        .why = "fifth order in h",
        .compute = [](auto) { return 1e6 * return_error_rad(0.01, 2.0, 1.0, 1.0); }});
-  // The height at which 2 asin h - 4 asin(h / 2) is 0.5 degrees.
+  // Height h of the incident ray, in ball radii, at which the return error 2 asin h - 4 asin(h / 2) is 0.5 degrees.
   const double edge = root_of(0.0, 0.9, [](double h) {
     return 2.0 * std::asin(h) - 4.0 * std::asin(0.5 * h) - 0.5 * std::numbers::pi / 180.0;
   });

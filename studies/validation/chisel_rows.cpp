@@ -1,4 +1,4 @@
-// Machines whose axes are off, cuts of prisms and cube corners, and the time that they take.
+// Validation rows for machines with misaligned axes, for cuts of prisms and cube corners, and for machining times.
 
 #include <fmt/format.h>
 
@@ -28,7 +28,7 @@ Machine machine_of(const char* name) {
   return fabrication::load_machine(name, {});
 }
 
-/// Outward normal of facet 1 or 2 of a right-angled prism on the blank.
+/// Returns the outward normal of facet 1 or 2 of a right-angled prism on the blank.
 Vec3 normal_of(int facet) {
   return Vec3(0.0, facet == 1 ? -1.0 : 1.0, 1.0).normalized();
 }
@@ -123,7 +123,8 @@ void add_poses(std::vector<ValidationRow>& rows) {
          .why = "two decimals",
          .compute = [solved](auto) { return pose_of(solved.machine, solved.facet).root_tilt.rad() * kArcminPerRad; }});
   }
-  // Planning for ideal axes on the paper's machine: the normals that facets then get.
+  // Returns the normal of a facet that is cut on the misaligned machine of the paper with axis positions planned for
+  // ideal axes.
   const auto cut_normal = [](int facet) {
     const Machine machine = machine_of("paper");
     const fabrication::RotaryPose pose = {45.0, facet == 1 ? 0.0 : 180.0};
@@ -160,7 +161,8 @@ void add_poses(std::vector<ValidationRow>& rows) {
        }});
 }
 
-/// Prisms of one size as the thesis cut them in acrylic, by a tool that fits: n x n in brick rows, or a single one.
+/// Returns the job for prisms of one size, as the thesis cut them in acrylic. The tool is as wide as a prism. There are
+/// n x n prisms in brick rows, or a single prism for n = 1.
 Job job_of(double base_mm, int n, double depth_um, Strategy strategy) {
   Job job;
   fabrication::prism_of(job) = {base_mm, base_mm, 90.0};
@@ -172,7 +174,7 @@ Job job_of(double base_mm, int n, double depth_um, Strategy strategy) {
   return job;
 }
 
-/// The thesis's square of 25 x 25 prisms, planned for its machine.
+/// Returns the plan for the square array of 25 x 25 prisms of the thesis, on the machine of the thesis.
 fabrication::Plan plan_of_the_thesis() {
   return fabrication::make_plan(job_of(0.451, 25, 15.0, Strategy::two_step), machine_of("thesis"));
 }
@@ -214,8 +216,8 @@ void add_cuts_and_times(std::vector<ValidationRow>& rows) {
                       return roughing_cuts({c.base_mm, c.base_mm, 90.0}, process);
                     }});
   }
-  // Every cut: down and along the root at 50 mm/min (finishing: 20, without the plough), back at 200, 0.1 s at the
-  // root.
+  // Sums the times of all cuts. A roughing cut goes down the facet and ploughs along the root at 50 mm/min. A finishing
+  // cut goes down at 20 mm/min and does not plough. Both kinds dwell for 0.1 s at the root and return at 200 mm/min.
   const double facet_mm = 0.451 / std::numbers::sqrt2;
   const double approach_mm = 0.2 * std::numbers::sqrt2;
   double path_s = 0.0;
@@ -282,7 +284,7 @@ void add_cuts_and_times(std::vector<ValidationRow>& rows) {
 
 void add_reach(std::vector<ValidationRow>& rows) {
   constexpr double kWidthMm = 0.2;
-  // Triangles of 1 mm: the cube's edge, and the area of a facet.
+  // Length of the dihedral edges of a triangular cube corner with an aperture of 1 mm, and the area of a facet.
   const double edge_mm = 1.0 / (2.0 * std::sqrt(2.0 / 3.0));
   const double facet_mm2 = 0.5 * edge_mm * edge_mm;
   const auto reach = [] {

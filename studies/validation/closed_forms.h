@@ -1,7 +1,7 @@
 #pragma once
 
-// Closed forms of the light that cube corners send back, derived in docs/theory/closed_forms.md and polarisation.md.
-// Nothing of the tracer is in them.
+// Closed forms for the light that cube corners return. They are derived in docs/theory/closed_forms.md and
+// polarisation.md, and do not use the tracer.
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -13,8 +13,9 @@ namespace retrace::studies::closed_forms {
 
 inline constexpr double kDeg = std::numbers::pi / 180.0;
 
-/// Direction cosines inside a cube corner (axis -z, one dihedral edge over +x) to its three edges, for light that comes
-/// from (incidence, azimuth) outside and is refracted by a flat face of index n; ascending.
+/// Returns the cosines of the angles between the light inside a cube corner and the three dihedral edges, in ascending
+/// order. The axis of the cube corner is -z, and one dihedral edge has the azimuth of +x. The light comes from the
+/// direction (incidence, azimuth) and is refracted by a plane face of index n.
 inline std::array<double, 3> edge_cosines(double incidence_deg, double azimuth_deg, double n) {
   const double inner = std::asin(std::sin(incidence_deg * kDeg) / n);
   const double p = azimuth_deg * kDeg;
@@ -30,8 +31,9 @@ inline std::array<double, 3> edge_cosines(double incidence_deg, double azimuth_d
   return cosines;
 }
 
-/// Share of the aperture of a triangular cube corner that sends light back: projected active area for unit legs over
-/// the projected aperture sqrt(3)/2. Eckhardt, Appl. Opt. 10, 1559 (1971); docs/theory/closed_forms.md, 3.
+/// Returns the fraction of the aperture of a triangular cube corner that returns light. This is the projected active
+/// area for dihedral edges of length 1, divided by the projected aperture sqrt(3)/2 cos_inner. Eckhardt, Appl. Opt. 10,
+/// 1559 (1971); docs/theory/closed_forms.md, 3.
 inline double triangular_share(const std::array<double, 3>& cosines, double cos_inner) {
   const auto [l, m, k] = cosines;
   if (l <= 0.0) return 0.0;
@@ -40,7 +42,7 @@ inline double triangular_share(const std::array<double, 3>& cosines, double cos_
   return active / (0.5 * std::sqrt(3.0) * cos_inner);
 }
 
-/// The same for a full cube with its hexagonal aperture.
+/// Returns the fraction of the hexagonal aperture of a full cube corner that returns light.
 inline double hexagonal_share(const std::array<double, 3>& cosines, double cos_inner) {
   const auto [l, m, k] = cosines;
   if (l <= 0.0) return 0.0;
@@ -48,26 +50,29 @@ inline double hexagonal_share(const std::array<double, 3>& cosines, double cos_i
   return active / (std::sqrt(3.0) * cos_inner);
 }
 
-/// Cosine of the angle inside a plate.
+/// Returns the cosine of the angle of refraction inside a plate.
 inline double cos_inner(double incidence_deg, double n) {
   const double s = std::sin(incidence_deg * kDeg) / n;
   return std::sqrt(1.0 - s * s);
 }
 
-/// RRE of an infinite honeycomb of mirror cubes under a lossless face.
+/// Returns the RRE of an infinite honeycomb of cube corners with mirrors behind a lossless face.
 inline double honeycomb_rre(double incidence_deg, double azimuth_deg, double n) {
   return hexagonal_share(edge_cosines(incidence_deg, azimuth_deg, n), cos_inner(incidence_deg, n));
 }
 
-/// The same of an infinite triangular array: every second cell is turned.
+/// Returns the RRE of an infinite triangular array with mirrors behind a lossless face. Every second cell is rotated by
+/// 180 degrees.
 inline double triangular_rre(double incidence_deg, double azimuth_deg, double n) {
   const double c = cos_inner(incidence_deg, n);
   return 0.5 * (triangular_share(edge_cosines(incidence_deg, azimuth_deg, n), c) +
                 triangular_share(edge_cosines(incidence_deg, azimuth_deg + 180.0, n), c));
 }
 
-/// Intensity that a solid cube corner without coating sends straight back, over that of the same one with mirrors:
-/// diffracted, normal incidence, all six sub-beams (docs/theory/polarisation.md). \pre n >= sqrt(3/2)
+/// Returns the diffracted intensity that an uncoated solid cube corner returns exactly towards the source, divided by
+/// that of the same cube corner with mirrors. It applies to normal incidence and includes all six sub-beams
+/// (docs/theory/polarisation.md).
+/// \pre n >= sqrt(3/2)
 inline double total_reflection_peak(double n) {
   const double retardance = 2.0 * std::atan(std::sqrt(2.0 / 3.0 - 1.0 / (n * n)) / std::sqrt(3.0) / (2.0 / 3.0));
   const double c = std::cos(0.5 * retardance);

@@ -1,4 +1,5 @@
-// Cutting forces: what the model was calibrated on, what it predicts, and what it does not.
+// Validation rows for cutting forces: values with which the model was calibrated, values that it predicts, and values
+// that it does not reproduce.
 
 #include <fmt/format.h>
 
@@ -14,12 +15,14 @@ namespace {
 
 using fabrication::CutConditions, fabrication::ForceEvents, fabrication::ForceModel;
 
-/// Experiment 1: prisms of 1 mm, third last of 142 cuts at 5 um and second last of 71 at 10 um.
+/// Returns the conditions of experiment 1, with prisms of 1 mm. They are those of the third last of 142 cuts at a depth
+/// of 5 um, and of the second last of 71 cuts at 10 um.
 CutConditions experiment_1(double depth_um) {
   CutConditions cut;
   cut.depth_of_cut_um = depth_um;
   cut.width_mm = 0.982;
-  cut.plunge_mm = (5.23 - 1.0) * 10.0 / 60.0;  // from first contact to the root, as recorded, at 10 mm/min
+  // From first contact to the root: recorded times in s, and a feed of 10 mm/min.
+  cut.plunge_mm = (5.23 - 1.0) * 10.0 / 60.0;
   cut.plough_mm = 0.25;
   return cut;
 }

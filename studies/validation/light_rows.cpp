@@ -1,4 +1,4 @@
-// Light in prisms and cube corners, by the exact engine: it has no noise.
+// Validation rows for light in prisms and cube corners. They use the exact engine, because it has no noise.
 
 #include <fmt/format.h>
 
@@ -24,9 +24,9 @@ using namespace geometry;
 using namespace raytrace;
 using closed_forms::kDeg;
 
-/// Index of PMMA with which the closed form meets the array-size study.
+/// Index of PMMA with which the closed form agrees with the published study of array sizes.
 constexpr double kPmma = 1.4917;
-/// Of cube corners with an edge of 1 mm: 2 sqrt(2/3).
+/// Aperture, in mm, of cube corners with dihedral edges of 1 mm: 2 sqrt(2/3).
 constexpr double kCubeAperture = 1.6329931618554521;
 
 constexpr const char* kClosedForms = "docs/theory/closed_forms.md, ";
@@ -58,7 +58,7 @@ Optics real(double index = kPmma) {
   return optics;
 }
 
-/// Under a lossless face: facets reflect by Fresnel's formulas.
+/// Returns the optics of a part with a lossless entrance face. The facets reflect according to Fresnel's formulas.
 Optics lossless(double index = kPmma) {
   Optics optics = real(index);
   optics.lossless_entrance = true;
@@ -91,7 +91,8 @@ double rre_of(const PartSpec& spec, const Optics& optics, const Incidence& light
   return ledger_of(spec, optics, light, policy, cancel)[Account::retroreflected];
 }
 
-/// The incidence above which something is lost, by bisection. \pre not at `low`, but at `high`
+/// Returns the incidence above which light is lost, by bisection.
+/// \pre is_lost(low) is false and is_lost(high) is true
 template <class IsLost>
 double knee_deg(double low, double high, const IsLost& is_lost) {
   for (int step = 0; step < 30; ++step) {
@@ -101,18 +102,19 @@ double knee_deg(double low, double high, const IsLost& is_lost) {
   return 0.5 * (low + high);
 }
 
-/// Of one prism, across its roof, where light first leaves through a facet.
+/// Returns the incidence, across the roof edge of a single prism, above which light leaves through a facet.
 double knee_of_a_prism_deg(const Cancellation* cancel) {
   const PartSpec spec = single(RtpElement{0.45, 0.45, 90.0}, 0.5);
   return knee_deg(1.0, 10.0,
                   [&](double deg) { return ledger_of(spec, real(), {deg}, {}, cancel)[Account::transmitted] > 1e-9; });
 }
 
-/// Of an endless honeycomb, towards a dihedral edge, where what real facets send back falls below what mirrors do.
+/// Returns the incidence, towards a dihedral edge of an infinite honeycomb, above which real facets return less light
+/// than mirrors.
 double knee_of_cubes_deg(double index, double cant_deg, const Cancellation* cancel) {
   const PartSpec spec = endless(HexagonalCube{1.0, {cant_deg, 180.0}}, Arrangement::honeycomb, 5.0);
   BeamPolicy policy;
-  policy.cutoff = 1e-9;  // what wanders from cell to cell does not come back to the source
+  policy.cutoff = 1e-9;  // light that passes from cell to cell does not return to the source
   return knee_deg(1.0, 40.0, [&](double deg) {
     const Incidence light = {deg, 0.0, 0.01};
     return rre_of(spec, mirrors(index), light, cancel, policy) - rre_of(spec, lossless(index), light, cancel, policy) >
@@ -120,7 +122,8 @@ double knee_of_cubes_deg(double index, double cant_deg, const Cancellation* canc
   });
 }
 
-/// By how much the light that three or two facets send back misses the source, in arc minutes: mean by power.
+/// Returns the angle, in minutes of arc, between returned light and the direction to the source, as a mean weighted by
+/// power. Only light that has met the given number of interfaces counts.
 double deviation_arcmin(const PartSpec& spec, std::uint32_t interfaces, const Cancellation* cancel) {
   const Part part = build_part(spec);
   double power = 0.0;
@@ -145,7 +148,8 @@ PartSpec with_edges(PartSpec spec, const EdgeShape& edges) {
 
 constexpr double kWavelengthNm = 550.0;
 
-/// Intensity that one full cube sends straight back, over that of its aperture without any aberration.
+/// Returns the intensity that one full cube corner returns exactly towards the source, divided by that of an
+/// aberration-free mirror with the same aperture.
 double on_axis_peak(const Optics& optics, const Cancellation* cancel) {
   const Part part = build_part(single(HexagonalCube{0.5}, 0.3));
   FarFieldPolicy policy;
@@ -159,7 +163,8 @@ double on_axis_peak(const Optics& optics, const Cancellation* cancel) {
   return collector.finish().diffracted_per_sr(Vec3::UnitZ()) * wavelength_mm * wavelength_mm / area(part.outline);
 }
 
-/// First dark ring of a disc in wavelengths over its diameter: of a polygon of 2000 corners, by golden section.
+/// Returns the radius of the first dark diffraction ring of a disc, in units of the wavelength divided by the diameter.
+/// The disc is a polygon with 2000 corners, and the minimum is found by golden-section search.
 double dark_ring(const Cancellation*) {
   const Part part = build_part(single(HexagonalCube{1.0}, 1.0));
   FarFieldPolicy policy;
@@ -192,7 +197,8 @@ double dark_ring(const Cancellation*) {
   return 0.5 * (low + high);
 }
 
-/// f + (1 - f) 2 R / (1 + R), f the share of whole elements.
+/// Returns the RRE of an array in brick rows: f + (1 - f) 2 R / (1 + R), where f is the fraction of whole elements and
+/// R the reflectance of a face.
 double brick_rre(double full_share) {
   const double r = materials::reflectance(1.0 / kPmma, 1.0);
   return full_share + (1.0 - full_share) * 2.0 * r / (1.0 + r);
@@ -202,7 +208,8 @@ void add_table_1(std::vector<ValidationRow>& rows) {
   struct Printed {
     double base_mm, full, rre_percent;
   };
-  // Ten by ten millimetres, 50 % overlap, rows 1, 3, ... shifted, plate of 2 mm, light along the normal.
+  // The arrays are 10 mm x 10 mm on a plate of 2 mm. Rows 1, 3, ... are shifted by half an element. Light falls along
+  // the normal.
   for (const auto& [base_mm, full, rre_percent] :
        {Printed{10, 1, 99.99}, {5, 3, 76.88}, {2, 22, 88.90}, {1, 95, 95.37}, {0.5, 390, 97.68}}) {
     PartSpec spec = finite(RtpElement{base_mm, base_mm, 90.0}, Arrangement::offset, 10.0, 2.0);
@@ -302,7 +309,8 @@ void add_apertures(std::vector<ValidationRow>& rows) {
     }
 }
 
-/// Means over azimuths of full Fresnel in endless arrays, found by brute force.
+/// Adds rows for the RRE of infinite arrays with Fresnel reflection at all faces. The expected values come from
+/// independent ray tracing with many rays; most are means over azimuths.
 void add_cells(std::vector<ValidationRow>& rows) {
   struct Kind {
     const char* name;

@@ -1,6 +1,6 @@
 #pragma once
 
-// The rows of the validation by what they are about. Each file has its own.
+// Functions that return the validation rows of each topic. Each function is in a file of its own.
 
 #include <vector>
 
@@ -8,17 +8,17 @@
 
 namespace retrace::studies {
 
-/// Retroreflective efficiency, total reflection, apertures, errors of angle, diffraction.
+/// Returns rows for retroreflective efficiency, total reflection, apertures, angle errors and diffraction.
 std::vector<ValidationRow> light_validation();
-/// Balls with mirrors.
+/// Returns rows for balls with mirrors.
 std::vector<ValidationRow> ball_validation();
-/// Materials, roughness of facets, scatter.
+/// Returns rows for materials, roughness of facets and scatter.
 std::vector<ValidationRow> surface_validation();
-/// Kinematics, cuts, machining times.
+/// Returns rows for kinematics, cuts and machining times.
 std::vector<ValidationRow> chisel_validation();
-/// Cutting forces.
+/// Returns rows for cutting forces.
 std::vector<ValidationRow> force_validation();
-/// Turned and planed surfaces.
+/// Returns rows for turned and planed surfaces.
 std::vector<ValidationRow> turning_validation();
 
 }  // namespace retrace::studies

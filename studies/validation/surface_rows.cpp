@@ -1,4 +1,4 @@
-// Materials, what texture does to light, and published means of measured facets.
+// Validation rows for materials, for the scatter of textured facets, and for published means of measured facets.
 
 #include <fmt/format.h>
 
@@ -34,7 +34,7 @@ void add_materials(std::vector<ValidationRow>& rows) {
                       const auto library = materials::MaterialLibrary::shipped();
                       return materials::index_relative_to_air(library.find(name), library.air(), 587.56);
                     }});
-  // Edlen's older formula for standard air.
+  // Edlen's formula of 1953 for standard air, which is older than the formula that the program uses.
   const double s2 = 1.0 / (0.58756 * 0.58756);
   rows.push_back({.topic = kTopic,
                   .quantity = "air at 587.56 nm: (n - 1) times 1e6",
@@ -71,7 +71,8 @@ void add_facets(std::vector<ValidationRow>& rows) {
     const char* process;
     double roughness_sa_nm, waviness_sa_nm;
   };
-  // For the lens's waviness the text has 62.4, the mean of the printed means 33.4, 99.4 and 54.3.
+  // For the waviness of the lens, the text of the thesis gives 62.4, which is the mean of the printed means 33.4, 99.4
+  // and 54.3.
   for (const auto& [process, roughness_nm, waviness_nm] :
        {Means{"pin", 2.7, 13.2}, {"die", 9.5, 32.9}, {"lens", 9.2, 62.3}, {"uspic", 19.7, 29.9}})
     for (const bool is_roughness : {true, false})
@@ -107,7 +108,9 @@ void add_facets(std::vector<ValidationRow>& rows) {
                     }});
 }
 
-/// Share in percent that one reflection scatters, from what comes back from a cube corner (three) or a prism (two).
+/// Returns the percentage of light that one reflection scatters. It is computed from the light that an element returns
+/// after several reflections.
+/// \param reflections number of reflections: 3 for a cube corner, 2 for a prism
 double scattered_percent(const geometry::Element& element, double sq_nm, double wavelength_nm, double reflections,
                          const Cancellation* cancel) {
   geometry::PartSpec spec;

@@ -1,4 +1,4 @@
-// Turned surfaces, and flat lenses that are planed.
+// Validation rows for turned surfaces and for planed flat lenses.
 
 #include <fmt/format.h>
 
@@ -18,12 +18,14 @@ namespace {
 
 using namespace fabrication::turning;
 
-/// Cusps of a nose of 0.25 mm at a feed of 1 um on a flat: of the circle itself, by integration.
+/// Returns the finish of a plane surface that is cut with a nose radius of 0.25 mm at a feed of 1 um. The cusps are
+/// those of the exact circle, integrated numerically.
 FinishFigures measured_finish() {
   return exact_finish({.nose_radius_mm = 0.25}, 1e-3);
 }
 
-/// Slopes of a convex circular cylinder along y within a round part at whose rim it is as steep as that.
+/// Returns slopes of a convex circular cylinder along y at the rim of a round part.
+/// \param edge_rad maximum slope angle at the rim
 std::vector<SlopeSample> cylinder_slopes(double edge_rad) {
   std::vector<SlopeSample> samples;
   for (int turn = 0; turn < 3600; ++turn) {
@@ -121,7 +123,8 @@ void add_planing(std::vector<ValidationRow>& rows) {
          const fabrication::ProfilePoint& end = points[fabrication::longest_chords(points, 0.01).at(1)];
          return std::hypot(end.x_mm, end.z_mm);
        }});
-  // Of focal length F behind a step of at most w / (n - 1), r - F - n d is a whole number of wavelengths.
+  // For a zone lens of focal length F with steps of at most w / (n - 1), the path difference r - F - n d is a whole
+  // number of wavelengths w. Here, d is the depth of the profile, and r the distance from the profile to the focus.
   for (const auto& [x_mm, zone] : {std::pair{100.0, 1.0}, {150.0, 4.0}, {200.0, 7.0}})
     add({.quantity = fmt::format("F 500 mm, wavelength 5 mm, n 1.52, {} mm from the middle: path beyond that of the "
                                  "middle, in wavelengths",

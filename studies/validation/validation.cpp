@@ -12,7 +12,7 @@ namespace retrace::studies {
 
 std::optional<bool> ValidatedRow::holds() const {
   if (!row.allowed) return std::nullopt;
-  return std::abs(difference()) <= *row.allowed;  // not so of what is no number
+  return std::abs(difference()) <= *row.allowed;  // false if the computed value is NaN
 }
 
 bool ValidationResult::holds() const {

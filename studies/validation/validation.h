@@ -1,7 +1,7 @@
 #pragma once
 
-// Figures that others have published, closed forms and independent computations, each held against what retrace
-// computes. The study behind `retrace validate`.
+// Compares values that retrace computes with published values, closed forms and independent computations. This study is
+// behind `retrace validate`.
 
 #include <cstddef>
 #include <functional>
@@ -14,54 +14,55 @@
 
 namespace retrace::studies {
 
-/// What a figure is that retrace is held against.
+/// Origin of an expected value.
 enum class Reference {
   published,    ///< printed in a publication, as theory or as a measurement
-  closed_form,  ///< a formula that docs/theory derives, evaluated apart from what is held against it
-  independent   ///< by a program or a formula that shares nothing with what is held against it
+  closed_form,  ///< from a formula that docs/theory derives; evaluated independently of the compared computation
+  independent   ///< from a program or a formula that has nothing in common with the compared computation
 };
 inline constexpr std::string_view kReferenceWords[] = {"published", "closed_form", "independent"};
 
-/// One figure, and how retrace computes it.
+/// Expected value of one quantity, and the function with which retrace computes the quantity.
 struct ValidationRow {
   std::string topic = {};  ///< rows of one topic follow each other
   std::string quantity = {};
-  std::string unit = {};  ///< empty: none
+  std::string unit = {};  ///< unit; empty if the quantity has none
   Reference reference = Reference::closed_form;
   double expected = 0.0;
-  std::string source = {};  ///< a publication, or where docs/theory derives the formula
-  /// Largest |difference| that counts as reproduced, >= 0; none: the figure is known not to be reproduced, and shown
-  /// without a verdict.
+  std::string source = {};  ///< publication, or section of docs/theory that derives the formula
+  /// Maximum absolute difference with which the expected value counts as reproduced, >= 0. None if it is known that the
+  /// value is not reproduced; it is then shown without a verdict.
   std::optional<double> allowed = 0.0;
-  std::string why = {};  ///< what that difference comes from
-  /// The figure as retrace computes it, in `unit`. Once it is cancelled any number will do.
+  std::string why = {};  ///< cause of the allowed difference
+  /// Function that computes the quantity, in `unit`. If the computation is cancelled, it may return any number.
   std::function<double(const Cancellation*)> compute = {};
 };
 
-/// A row that was computed.
+/// Row with its computed value.
 struct ValidatedRow {
   ValidationRow row;
   double computed = 0.0;
 
   double difference() const { return computed - row.expected; }
-  /// Whether the difference is allowed; none where none is.
+  /// Returns true if the difference is allowed. Returns nothing if the row has no allowed difference.
   std::optional<bool> holds() const;
 };
 
 struct ValidationResult {
-  std::vector<ValidatedRow> rows;  ///< those that were computed, in the order given
+  std::vector<ValidatedRow> rows;  ///< computed rows, in the order in which they were requested
   std::size_t requested = 0;
   double elapsed_s = 0.0;
-  bool complete = true;  ///< false if it was cancelled
+  bool complete = true;  ///< false if the validation was cancelled
 
-  /// Whether no row lies outside of what it is allowed.
+  /// Returns true if no row has a difference larger than allowed.
   bool holds() const;
 };
 
-/// Every figure that retrace is held against, topic by topic.
+/// Returns all rows of the validation, ordered by topic.
 std::vector<ValidationRow> validation_rows();
 
-/// Computes rows at the same time, in the calling thread's TBB arena. \throw Error what a row's computation throws
+/// Computes rows in parallel, in the TBB arena of the calling thread.
+/// \throw Error of the computation of a row
 ValidationResult validate(const std::vector<ValidationRow>& rows, Progress* progress = nullptr,
                           const Cancellation* cancel = nullptr);
 

@@ -70,7 +70,7 @@ Json edge_json(const EdgeResult& edge) {
           {"profiles", edge.radius_um.count}};
 }
 
-/// The keys of a design's [surface] with their values, in the order of the format.
+/// Returns the keys of the table [surface] of a design and their values, in the order of the design format.
 std::vector<std::pair<std::string, double>> surface_keys(const MetrologyResult& result) {
   std::vector<std::pair<std::string, double>> keys;
   if (result.edge) {
@@ -89,12 +89,12 @@ std::vector<std::pair<std::string, double>> surface_keys(const MetrologyResult& 
   return keys;
 }
 
-/// Five significant digits: more than any surface has.
+/// Rounds a value to five significant digits. No surface is measured more accurately.
 double rounded(double value) {
   return std::stod(fmt::format("{:.5g}", value));
 }
 
-/// A file's name as a comment may hold it.
+/// Returns the name of a file without its folder, as printable text for a comment.
 std::string printable_name(const std::string& file) {
   return printable(std::filesystem::path(file).filename().string(), std::string::npos);
 }

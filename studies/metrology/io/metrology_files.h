@@ -1,6 +1,7 @@
 #pragma once
 
-// Documents and tables of `retrace metrology`, and the [surface] of a design that fits the measurement.
+// Output documents and tables of `retrace metrology`, and the table [surface] of a design file that describes the
+// measured surface.
 
 #include <string>
 
@@ -8,16 +9,17 @@
 
 namespace retrace::studies {
 
-/// The result as a `retrace.metrology/1` document.
+/// Returns the result as a document of the format `retrace.metrology/1`.
 std::string metrology_json(const MetrologyResult& result);
 
-/// The same as lines for a terminal, the design's table at their end.
+/// Returns the result as lines for the terminal. The last lines are the table [surface] of a design file.
 std::string metrology_text(const MetrologyResult& result);
 
-/// The table `[surface]` of a design file that describes this surface, or the radius of its edge.
+/// Returns the table [surface] of a design file, which describes the measured surface or the radius or chamfer of the
+/// measured edge.
 std::string surface_toml(const MetrologyResult& result);
 
-/// The spectra, one line a frequency: `direction,frequency_per_mm,psd,unit`.
+/// Returns the spectra as CSV with one line for each frequency and the columns `direction,frequency_per_mm,psd,unit`.
 std::string spectra_csv(const MetrologyResult& result);
 
 }  // namespace retrace::studies

@@ -1,6 +1,6 @@
 #pragma once
 
-// What fabrication.json says of the set-up.
+// Set-up data in the output document fabrication.json.
 
 #include <nlohmann/json.hpp>
 
@@ -8,7 +8,7 @@
 
 namespace retrace::studies {
 
-/// The object `setup` of retrace.fabrication/1.
+/// Returns the object `setup` of the document `retrace.fabrication/1`.
 nlohmann::ordered_json setup_json(const FabricationResult& result, const SetupSheet& sheet);
 
 }  // namespace retrace::studies

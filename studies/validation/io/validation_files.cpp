@@ -25,7 +25,7 @@ constexpr const char* kIntroduction =
     "of what is allowed it is\n  marked, and the command ends with exit code 1.\n"
     "- Figures without an allowed difference are published ones that retrace does not reproduce.\n";
 
-/// What of published figures is no row, and why.
+/// Published values that are not compared, and the reasons.
 constexpr const char* kLeftOut =
     "\n## Published, and not compared\n\n"
     "- Luminance of prisms over that of cube corners, 5.6 : 10 (Milliken 2017, 3.3.3): the observation angle of the "
@@ -34,20 +34,20 @@ constexpr const char* kLeftOut =
     "- 7.2 and 8.2 seconds a frame of a planed lens (Bulatov et al.): neither focal length, wavelength, feed nor "
     "tolerance are published\n  ([theory/planing.md](theory/planing.md)).\n";
 
-/// Decimals that show a hundredth of what is allowed, at most 9.
+/// Returns the number of decimals that shows a hundredth of the allowed difference. It is at most 9.
 int decimals_of(double allowed) {
   return std::clamp(static_cast<int>(std::ceil(1.0 - std::log10(allowed) - 1e-9)), 0, 9);
 }
 
-/// A number to as many decimals as the row tells differences by.
+/// Returns a number with enough decimals to show differences of the row's allowed size.
 std::string value_text(const ValidationRow& row, double value) {
   if (!row.allowed) return fixed(value, 2);
   return *row.allowed > 0.0 ? fixed(value, decimals_of(*row.allowed)) : shortest(value);
 }
 
-/// Printed figures as they are printed.
+/// Returns the expected value as text. Published values have the digits of the publication.
 std::string expected_text(const ValidationRow& row) {
-  constexpr std::size_t kPrinted = 15;  // characters: more are of a formula that was evaluated
+  constexpr std::size_t kPrinted = 15;  // maximum length of a printed value; longer values were computed from a formula
   const std::string text = shortest(row.expected);
   return row.reference == Reference::closed_form || text.size() > kPrinted ? value_text(row, row.expected) : text;
 }

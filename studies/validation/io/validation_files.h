@@ -1,6 +1,6 @@
 #pragma once
 
-// The page and the document of `retrace validate`.
+// Output page and document of `retrace validate`.
 
 #include <string>
 
@@ -9,14 +9,14 @@
 
 namespace retrace::studies {
 
-/// A page of Markdown with a table for each topic. The same bytes wherever it is computed: numbers are rounded to about
-/// a hundredth of the difference that is allowed, and neither time nor version stands in it.
+/// Returns a page in Markdown with a table for each topic. The text is identical on all machines, because numbers are
+/// rounded to about a hundredth of the allowed difference, and the page contains neither times nor the version.
 std::string validation_markdown(const ValidationResult& result);
 
-/// The document `retrace.validation/1`.
+/// Returns the document `retrace.validation/1`.
 std::string validation_json(const ValidationResult& result);
 
-/// A line for each row that is outside of what it is allowed.
+/// Returns a warning for each row whose difference is larger than allowed.
 Warnings validation_warnings(const ValidationResult& result);
 
 }  // namespace retrace::studies
