@@ -1,4 +1,5 @@
-// Curves whose angles of incidence are chosen: straight lines between the points follow them, with few points.
+// Tests of curves of RRE with automatically chosen angles of incidence. Linear interpolation between a small number of
+// points must follow the curves.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -47,7 +48,7 @@ RreRequest chosen(double low, double high, Engine engine) {
   return request;
 }
 
-/// The same at these incidences alone.
+/// Returns the request with these incidences instead of automatically chosen ones.
 RreRequest fixed(RreRequest request, std::vector<double> incidence_deg) {
   request.incidence_spans.clear();
   request.incidence_deg = std::move(incidence_deg);
@@ -60,7 +61,8 @@ std::vector<double> grid(double low, double high, double step) {
   return places;
 }
 
-/// On the straight line between the neighbours. \pre one design, azimuth and cone
+/// Returns the RRE by linear interpolation between the neighbouring points.
+/// \pre the points have one design, one azimuth and one cone
 double line_at(const std::vector<RrePoint>& points, double incidence_deg) {
   const auto right =
       std::find_if(points.begin(), points.end(), [&](const RrePoint& p) { return p.incidence_deg >= incidence_deg; });
@@ -70,7 +72,8 @@ double line_at(const std::vector<RrePoint>& points, double incidence_deg) {
   return (1.0 - share) * left->rre + share * right->rre;
 }
 
-/// Straight lines follow the curve. \return how many points
+/// Expects that linear interpolation between the chosen points agrees with a dense curve.
+/// \return number of chosen points
 std::size_t expect_followed(const Design& given, RreRequest request, double step_deg) {
   const CurveSpan span = request.incidence_spans.front();
   const RreResult curve = RreStudy({given}, request).run();
@@ -85,8 +88,8 @@ std::size_t expect_followed(const Design& given, RreRequest request, double step
   return curve.points.size();
 }
 
-/// Farther from their knee endless prisms have features narrower than 0.6 degrees. An even grid as good at the knee
-/// would have 1300 points.
+/// The knee is the incidence at which total reflection ends. Beyond it, the curve of infinite arrays of prisms has
+/// features narrower than 0.6 degrees. An equally spaced grid that is as accurate at the knee would have 1300 points.
 TEST(AdaptiveCurve, FollowsPrismsPastTheirKnee) {
   EXPECT_LT(expect_followed(prisms(), chosen(-2, 11, Engine::exact), 0.05), 350U);
 }
@@ -108,12 +111,13 @@ TEST(AdaptiveCurve, FollowsAHoneycomb) {
   expect_followed(honeycomb(), request, 0.25);
 }
 
-/// Closed form: light meets the facet that it falls on most squarely at 45 degrees less its angle inside.
+/// Closed form: at the facet with the smaller angle of incidence, this angle is 45 degrees minus the angle of
+/// refraction inside the plate.
 TEST(AdaptiveCurve, KneeOfPrismsIsWhereTotalReflectionEnds) {
   const double limit_deg =
       std::asin(kIndex * std::sin(std::numbers::pi / 4.0 - std::asin(1.0 / kIndex))) / testing::kDeg;
   const RreResult curve = RreStudy({prisms()}, chosen(0, 20, Engine::exact)).run();
-  // The steepest fall begins at the knee.
+  // The steepest fall of the curve begins at the knee.
   double steepest = 0.0;
   double knee_deg = 0.0;
   for (std::size_t i = 1; i < curve.points.size(); ++i) {
@@ -136,7 +140,8 @@ TEST(AdaptiveCurve, KinksOfPrismsComeInPairsAboutTheNormal) {
   EXPECT_NEAR(edges.front(), -edges.back(), 1e-12);
 }
 
-/// Several designs and azimuths share the incidences; the numbers are those of a list, at any number of threads.
+/// All designs and azimuths share the chosen incidences. The values equal those for a list of the same incidences, with
+/// any number of threads.
 TEST(AdaptiveCurve, ValuesAreThoseOfAList) {
   RreRequest request = chosen(-3, 3, Engine::montecarlo);
   request.azimuth_deg = {30.0, 0.0};
@@ -187,7 +192,7 @@ TEST(AdaptiveCurve, FootprintsAndFarFieldsFollowThePoints) {
     EXPECT_EQ(result.returned[i].at.incidence_deg, result.points[i].incidence_deg);
 }
 
-/// Curves that are known, without a tracer.
+/// Returns all points that `curve` requests for a known function, without a tracer.
 template <typename Function>
 std::vector<double> places_for(AdaptiveCurve& curve, const Function& f) {
   std::vector<double> all;
@@ -210,7 +215,7 @@ TEST(AdaptiveCurve, NoPlaceIsLookedAtTwice) {
   EXPECT_EQ(curve.worst_left(), 0.0);
 }
 
-/// 100 steps ask for more places than there may be: the search ends and says so.
+/// A function with 100 steps requires more points than allowed. The search ends and reports the remaining error.
 TEST(AdaptiveCurve, EndsAtTheMostPlacesAndSaysWhatIsLeft) {
   AdaptiveCurve curve({{0, 100}}, {}, {}, 1e-3);
   const auto places = places_for(curve, [](double x) { return CurveValue{std::floor(x + 0.05) / 100.0, 0.0}; });
@@ -221,7 +226,7 @@ TEST(AdaptiveCurve, EndsAtTheMostPlacesAndSaysWhatIsLeft) {
 TEST(AdaptiveCurve, NoiseIsNotFollowed) {
   AdaptiveCurve curve({{0, 20}}, {}, {}, 1e-3);
   const auto places = places_for(curve, [](double x) { return CurveValue{0.01 * std::sin(1e4 * x), 0.01}; });
-  EXPECT_EQ(places.size(), 33U);  // ends of eight gaps, halved twice
+  EXPECT_EQ(places.size(), 33U);  // ends of eight gaps that are halved twice
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// Derivatives of RRE by the parameters of a design: closed forms, symmetry, and where there is none.
+// Tests of derivatives of RRE with respect to parameters of a design: closed forms, symmetry, and cases without a
+// derivative.
 #include "studies/rre/derivatives.h"
 
 #include <gtest/gtest.h>
@@ -52,7 +53,7 @@ RreDerivative by(RreParameter parameter, const RrePoint& point) {
   return {};
 }
 
-/// Within the tolerance, and within the error reported.
+/// Expects a derivative within the tolerance and within the reported error.
 void expect_derivative(const RrePoint& point, RreParameter parameter, double expected, double tolerance = 1e-6) {
   const RreDerivative found = by(parameter, point);
   EXPECT_EQ(found.left_out, "") << parameter_name(parameter);
@@ -61,7 +62,7 @@ void expect_derivative(const RrePoint& point, RreParameter parameter, double exp
   EXPECT_LE(error, found.derivative.error) << parameter_name(parameter);
 }
 
-/// Of a closed form: differences of sixth order, good to 1e-11 here.
+/// Returns the derivative of a closed form from differences of sixth order. Their error is about 1e-11 in these tests.
 double slope(const std::function<double(double)>& f, double x, double step = 2e-3) {
   const auto difference = [&](double k) { return (f(x + k * step) - f(x - k * step)) / (2.0 * k * step); };
   return 1.5 * difference(1) - 0.6 * difference(2) + 0.1 * difference(3);
@@ -101,7 +102,8 @@ TEST(RreDerivatives, IndexAndIncidenceOfAnIdealHoneycomb) {
   }
 }
 
-// share = 2 - (4/3) / cos^2 t' up to t' = 19.47 degrees, whatever the azimuth.
+// The fraction of returned light is 2 - (4/3) / cos^2 t' up to t' = 19.47 degrees, at any azimuth. t' is the angle
+// inside the plate.
 TEST(RreDerivatives, IncidenceOfAnIdealTriangularArray) {
   Design design = idealised(design_of(infinite(TriangularCube{kCubeAperture}, Arrangement::triangular, 1.0)));
   design.detector.acceptance_half_angle_deg = {0.01};
@@ -115,7 +117,7 @@ TEST(RreDerivatives, IncidenceOfAnIdealTriangularArray) {
   }
 }
 
-// RRE = exp(-a (2 h + base)), whatever the width: docs/theory/closed_forms.md, section 5.
+// RRE = exp(-a (2 h + base)) for any width of the prism: docs/theory/closed_forms.md, section 5.
 TEST(RreDerivatives, ThicknessAndSizeOfAnAbsorbingPrism) {
   for (const double a : {0.01, 0.3, 2.0}) {
     Design design = idealised(design_of(single(RtpElement{0.6, 0.4, 90.0}, 0.7)));
@@ -128,7 +130,8 @@ TEST(RreDerivatives, ThicknessAndSizeOfAnAbsorbingPrism) {
   }
 }
 
-// Along the roof edge RRE is even in the incidence, and smooth until light leaves the cone.
+// For incidence along the roof edge, RRE is an even function of the incidence. It is smooth until light leaves the
+// cone.
 TEST(RreDerivatives, VanishesBySymmetry) {
   Design design = design_of(infinite(RtpElement{1.0, 1.0, 90.0}, Arrangement::aligned, 1.0));
   design.substance.absorption_per_mm = 0.05;
@@ -140,10 +143,10 @@ TEST(RreDerivatives, VanishesBySymmetry) {
   EXPECT_NEAR(by(RreParameter::incidence_deg, point_of(design, request)).derivative.value, 0.0, 1e-5);
 }
 
-// Its own mirror image about x = 0, the array sends back as much from -t as from t.
+// The array is symmetric about x = 0. It therefore returns the same light for the incidences t and -t.
 TEST(RreDerivatives, IsOddInTheIncidence) {
   Design design = design_of(infinite(RtpElement{1.0, 1.0, 90.0}, Arrangement::aligned, 1.0));
-  design.substance.absorption_per_mm = 0.5;  // ends deep beams
+  design.substance.absorption_per_mm = 0.5;  // limits the number of beams by absorbing light on long paths
   const RreDerivative from_right = by(RreParameter::incidence_deg, point_of(design, exactly(23.0)));
   const RreDerivative from_left = by(RreParameter::incidence_deg, point_of(design, exactly(-23.0)));
   ASSERT_EQ(from_right.left_out + from_left.left_out, "");
@@ -152,7 +155,7 @@ TEST(RreDerivatives, IsOddInTheIncidence) {
   EXPECT_GT(std::abs(from_right.derivative.value), 1e-4);
 }
 
-/// A size and a thickness of which a common factor changes nothing.
+/// Expects that RRE does not change if size and thickness are multiplied by a common factor.
 void expect_in_proportion(const RrePoint& point, double size_mm, double thickness_mm) {
   const RreDerivative size = by(RreParameter::size_mm, point);
   const RreDerivative thickness = by(RreParameter::thickness_mm, point);
@@ -162,14 +165,15 @@ void expect_in_proportion(const RrePoint& point, double size_mm, double thicknes
   EXPECT_GT(std::abs(size.derivative.value), 1e-3);
 }
 
-// Lengths have no scale: with everything of one length in proportion, a transparent part returns the same.
+// RRE has no length scale. If all lengths of a transparent part are multiplied by one factor, RRE does not change.
 TEST(RreDerivatives, SizeAndThicknessAreInProportion) {
   const Design design = design_of(single(RtpElement{0.45, 0.6, 90.0}, 0.5));
   const RrePoint point = point_of(design, exactly(-11.0, 20.0));
   expect_in_proportion(point, 0.45, 0.5);
 }
 
-// Straight down and up again through the plate, whatever happens below it: exp(-2 a h) times what does not know of h.
+// All light passes the plate of thickness h perpendicularly, two times. RRE is therefore exp(-2 a h) times a factor
+// that does not depend on h.
 TEST(RreDerivatives, ThicknessAboveCantedCubes) {
   for (const double cant_deg : {4.0, 12.0}) {
     Design design = idealised(design_of(infinite(HexagonalCube{1.0, {cant_deg, 25.0}}, Arrangement::honeycomb, 0.9)));
@@ -186,7 +190,8 @@ TEST(RreDerivatives, SizeAndThicknessOfACantedCubeAreInProportion) {
   expect_in_proportion(point, 0.8, 0.5);
 }
 
-// A canted rim close under the entrance face: thinner plates and larger cubes than that are no parts.
+// The highest rim of the canted cube corners almost touches the entrance face. Parts with thinner plates or larger cube
+// corners are therefore invalid.
 TEST(RreDerivatives, EndAtPartsThatCannotBeBuilt) {
   const HexagonalCube cube{1.0, {10.0, 0.0}};
   const double top_mm = element_top_mm(cube, {});
@@ -218,7 +223,7 @@ TEST(RreDerivatives, DihedralErrorAgainstRoughDifferences) {
   EXPECT_GT(std::abs(rough), 1e-3);
 }
 
-// Beyond the knee RRE falls like the square root of the angle.
+// Beyond the knee, where total reflection ends, RRE falls like the square root of the angle to the knee.
 TEST(RreDerivatives, KneeOfTotalReflectionIsLeftOut) {
   const Design design = design_of(single(RtpElement{0.45, 0.45, 90.0}, 0.5));
   const double knee = std::asin(kPmma * std::sin(45.0 * kDeg - std::asin(1.0 / kPmma))) / kDeg;
@@ -229,13 +234,13 @@ TEST(RreDerivatives, KneeOfTotalReflectionIsLeftOut) {
     EXPECT_EQ(by(RreParameter::incidence_deg, point_of(design, exactly(at))).left_out, "") << at;
 }
 
-// Either way from the normal the sides take light away.
+// At any tilt from the normal, light is lost through the sides of the single prism, so that RRE has a kink.
 TEST(RreDerivatives, KinkAtNormalIncidenceIsLeftOut) {
   const Design design = design_of(single(RtpElement{0.45, 0.45, 90.0}, 0.5));
   EXPECT_EQ(by(RreParameter::incidence_deg, point_of(design, exactly(0.0))).left_out, "RRE has a kink or a jump here");
 }
 
-// Against those with next to nothing cut off.
+// The reference derivatives are computed with a negligible cut-off.
 TEST(RreDerivatives, ErrorEstimateCoversTheCutOff) {
   Design prism = design_of(single(RtpElement{0.45, 0.45, 90.0}, 0.5));
   Design prisms = design_of(infinite(RtpElement{1.0, 1.0, 90.0}, Arrangement::aligned, 1.0));

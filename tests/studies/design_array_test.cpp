@@ -1,4 +1,4 @@
-// What designs say of elements and arrays.
+// Tests of the keys of designs for elements and arrays.
 #include "studies/design/io/design_reader.h"
 
 #include <gtest/gtest.h>
@@ -65,7 +65,8 @@ TEST(DesignReader, ArrayMustHoldOneElement) {
   EXPECT_EQ(complaint(with_line(7, "x_length_mm = 0.3")), "d.toml:7: array.x_length_mm");
   EXPECT_EQ(set_complaint({"array.y_offset_mm=4.9"}), "d.toml:8: array.y_length_mm");
   EXPECT_EQ(complaint(design_of(kRtp, "x_length_mm = 0.9999999999; y_length_mm = 1")), "");
-  // A hexagon or triangle of radius 1 with its apex at the centre of the extent: 2 by sqrt(3).
+  // The array must contain one hexagon or triangle with a circumscribed radius of 1 whose apex is at the centre. The
+  // smallest such array is 2 x sqrt(3).
   for (const std::string& cube : {kHexagonal, kTriangular}) {
     EXPECT_EQ(complaint(design_of(cube, "x_length_mm = 2; y_length_mm = 1.7320508075688772")), "");
     EXPECT_EQ(complaint(design_of(cube, "x_length_mm = 2; y_length_mm = 1.73")), "d.toml:6: array.y_length_mm");

@@ -7,7 +7,8 @@
 #include "tests/support/documents.h"
 #include "tests/support/key_table.h"
 
-// Design files by their rows: what is written reads back the same, and the documentation says what the rows say.
+// Tests of the rows that define the format of design files. Written designs are read back unchanged, and the
+// documentation agrees with the rows.
 
 namespace retrace::studies::design_format_test {
 namespace {

@@ -1,4 +1,4 @@
-// What designs say of light and of what absorbs it.
+// Tests of the keys of designs for light and absorption.
 #include "studies/design/io/design_reader.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What designs say of facets: errors, textures, edges, scratches.
+// Tests of the keys of designs for facets: errors, textures, edges and scratches.
 #include "studies/design/io/design_reader.h"
 
 #include <gtest/gtest.h>

@@ -12,7 +12,7 @@
 
 namespace retrace::studies {
 
-/// The lines of a valid design, so that tests can speak of line numbers.
+/// Lines of a valid design, so that tests can refer to line numbers.
 inline const std::vector<std::string> kLines = {
     "[element]",                 // 1
     "kind = \"rtp\"",            // 2
@@ -32,7 +32,7 @@ inline std::string joined(const std::vector<std::string>& lines) {
   return text;
 }
 
-/// The valid design with line `number` (from 1) replaced; number 11 appends.
+/// Returns the valid design with line `number` (from 1) replaced. The number 11 appends a line.
 inline std::string with_line(std::size_t number, const std::string& line) {
   std::vector<std::string> lines = kLines;
   lines.resize(std::max(lines.size(), number));
@@ -40,12 +40,12 @@ inline std::string with_line(std::size_t number, const std::string& line) {
   return joined(lines);
 }
 
-/// What reading `text` complains of; empty if it does not.
+/// Returns the place of the error when `text` is read. Empty if there is no error.
 inline std::string complaint(const std::string& text, const std::vector<std::string>& overrides = {}) {
   return refusal_of([&] { parse_design(text, "d.toml", overrides); });
 }
 
-/// What a valid design complains of when `key=value` is set.
+/// Returns the place of the error when the valid design is read with overrides of the form `key=value`.
 inline std::string set_complaint(const std::vector<std::string>& overrides) {
   return complaint(joined(kLines), overrides);
 }
@@ -54,7 +54,8 @@ inline Design set(const std::vector<std::string>& overrides) {
   return parse_design(joined(kLines), "d.toml", overrides);
 }
 
-/// A design of one element kind: `element` and `array` hold the lines of these tables, separated by "; ".
+/// Returns a design with elements of one kind.
+/// \param element, array lines of the tables [element] and [array], separated by "; "
 inline std::string design_of(std::string element, std::string array) {
   const auto in_lines = [](std::string text) {
     for (std::size_t at; (at = text.find("; ")) != std::string::npos;) text.replace(at, 2, 1, '\n');

@@ -1,4 +1,4 @@
-// Which engine `auto` takes, and what exact values are worth that leave some power behind.
+// Tests of the engine that `auto` selects, and of the accuracy of exact values if some power is truncated.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -108,7 +108,8 @@ TEST(EngineChoice, IsTheSameAtAnyNumberOfThreads) {
   EXPECT_EQ(text(5), alone);
 }
 
-// Light that is trapped runs nearly level, and was looked for as far as it may go: thousands of kilometres.
+// Trapped light travels almost parallel to the entrance face. In an infinite part, it may travel thousands of
+// kilometres, so that an unlimited search for its next hit would not end.
 TEST(EngineChoice, AWetBackAtNormalIncidenceEnds) {
   for (const char* index : {"body.back_index=1.2", "body.back_index=1.333", "body.back_index=1.45"}) {
     RreRequest beams = at({0.0}, Engine::exact, std::nullopt);

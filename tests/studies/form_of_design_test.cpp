@@ -141,7 +141,7 @@ TEST(FormOfDesign, MapGivesItsPolynomial) {
   const MapFolder folder([](double x_um, double y_um) {
     return 30.0 + 0.2 * x_um - 0.1 * y_um + 5e-3 * x_um * x_um - 3e-3 * x_um * y_um + 4e-5 * y_um * y_um * y_um;
   });
-  FacetForm expected;  // in mm
+  FacetForm expected;  // coefficients in mm
   expected.add(2, 0, 5e-3);
   expected.add(1, 1, -3e-3);
   expected.add(0, 3, 4e-2);

@@ -1,4 +1,4 @@
-// The designs that `retrace init` writes.
+// Tests of the designs that `retrace init` writes.
 #include "studies/design/io/init_templates.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,8 @@ TEST(InitTemplates, EveryKindParsesAndIsCommented) {
       std::holds_alternative<TriangularCube>(parse_design(design_template("triangular_icc"), "t", {}).part().element));
 }
 
-/// The lines that show a default must be valid when their "#" is taken away.
+/// Lines with a default value are commented out. They must be valid, and equal to the default, when their "#" is
+/// removed.
 TEST(InitTemplates, CommentedDefaultsAreValidAndTheDefaults) {
   for (const std::string_view kind : design_kinds()) {
     std::istringstream lines(design_template(kind));

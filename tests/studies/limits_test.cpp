@@ -1,4 +1,4 @@
-// Limits files, shipped ones and what is refused, and what their programmes say.
+// Tests of limits files: shipped files, refused files, and the test plans that are selected from them.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -31,7 +31,7 @@ TEST(Limits, ShippedProgrammesHoldTheirPoints) {
   EXPECT_EQ(ia.points[0].status, LimitStatus::read);
   EXPECT_EQ(ia.points[0].v_beside_deg, (std::vector<double>{5.0, -5.0})) << "UN R3: where the face mirrors";
   EXPECT_TRUE(ia.points[1].v_beside_deg.empty());
-  // Both signs of V, and four combinations of signs.
+  // Test points are made for both signs of V, and for the four combinations of signs of V and H.
   EXPECT_EQ(ia.points[1].v_deg, 10.0);
   EXPECT_EQ(ia.points[2].v_deg, -10.0);
   EXPECT_EQ(ia.points[6].v_deg, -5.0);
@@ -45,7 +45,8 @@ TEST(Limits, ShippedProgrammesHoldTheirPoints) {
     EXPECT_THROW(programme_of(shipped(), std::string(standard.in_table), {}, "no such"), InputError) << standard.name;
 }
 
-/// The limits of a colour are so many times those of another, at its points.
+/// Expects that the limits of a colour (`other`) are `factor` times the limits of another colour (`of`), at the same
+/// points.
 void expect_multiple(const TestProgramme& other, double factor, const TestProgramme& of) {
   ASSERT_EQ(other.points.size(), of.points.size());
   for (std::size_t k = 0; k < of.points.size(); ++k) {
@@ -90,7 +91,7 @@ TEST(Limits, FactorsAreNoBetterConfirmedThanTheirLine) {
   EXPECT_EQ(programme_of(table, {}, {}, "amber").points[0].status, LimitStatus::recalled);
 }
 
-// R_A in cd/(lx m2) at beta1 = -4 and 30 degrees, which are V = 4 and -30.
+// The limits of R_A, in cd/(lx m2), are for beta1 = -4 and 30 degrees, which are V = 4 and V = -30.
 TEST(Limits, SheetingIsMeasuredInTheCoplanarGeometry) {
   const TestProgramme two = programme_of(shipped(), "ASTM D4956", "II", "white");
   ASSERT_EQ(two.points.size(), 4U);
@@ -112,7 +113,7 @@ TEST(Limits, SheetingIsMeasuredInTheCoplanarGeometry) {
   EXPECT_EQ(sign.points[5].minimum, 60.0);
 }
 
-/// How far a colour is inside its boundaries; below 0: outside.
+/// Returns the minimum distance of a colour from its boundaries. It is negative outside of the boundaries.
 double least_margin(const TestProgramme& programme, double x, double y) {
   double least = 1.0;
   for (const ColourBoundary& b : programme.boundaries) least = std::min(least, b.most - b.of_x * x - b.of_y * y);
@@ -168,7 +169,7 @@ TEST(Limits, BoundariesAreLinesInThePlaneOfColours) {
   EXPECT_EQ(refusal_of([&] { programme_of(two, {}, {}, {}); }), "l.csv:4");
 }
 
-// What is not from memory names where it was read.
+// Every limit whose status is not `recalled` names its source.
 TEST(Limits, EveryShippedLineNamesItsSource) {
   const LimitTable table = shipped();
   const auto check = [](const auto& lines) {
@@ -209,7 +210,7 @@ TEST(Limits, UnitsAreThoseOfTheStandards) {
   EXPECT_NEAR(in_mcd_per_lx(1.0, PhotometricUnit::cd_per_fc, 1.0), 92.903, 5e-4);
   EXPECT_EQ(in_mcd_per_lx(2.0, PhotometricUnit::cd_per_lx, 1.0), 2000.0);
   EXPECT_EQ(in_mcd_per_lx(2.0, PhotometricUnit::mcd_per_lx, 5.0), 2.0);
-  // 100 cd/(lx m^2) of 30 cm^2.
+  // A limit of 100 cd/(lx m^2) for an area of 30 cm^2 is 300 mcd/lx.
   EXPECT_NEAR(in_mcd_per_lx(100.0, PhotometricUnit::cd_per_lx_per_m2, 30.0), 300.0, 1e-12);
 }
 

@@ -10,7 +10,7 @@
 #include "tests/support/closed_forms.h"
 #include "tests/support/designs.h"
 
-// Designs and requests of the tests of photometry.
+// Designs and requests for tests of photometry.
 
 namespace retrace::studies::photometric_requests {
 
@@ -37,7 +37,7 @@ inline geometry::PartSpec honeycomb(double error_arcmin = 0.0, double aperture_m
   return spec;
 }
 
-/// One limit of R_A at each observation angle, at normal incidence.
+/// Returns a test plan with one limit of R_A for each observation angle, at normal incidence.
 inline TestProgramme points_at(const std::vector<double>& observation_deg, double minimum_r_a) {
   TestProgramme programme;
   for (const double a : observation_deg)
@@ -46,7 +46,7 @@ inline TestProgramme points_at(const std::vector<double>& observation_deg, doubl
   return programme;
 }
 
-/// Of the design's own light, without diffraction.
+/// Returns a request with the design's own light, without diffraction.
 inline PhotometryRequest request_of(TestProgramme programme) {
   PhotometryRequest request;
   request.programme = std::move(programme);

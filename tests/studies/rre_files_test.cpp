@@ -22,7 +22,7 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-/// A result with numbers that no short text holds, and others that one does.
+/// Returns a result with some numbers that have a short decimal text and some that need all digits.
 RreResult some_result() {
   RreResult result;
   result.designs.resize(2);

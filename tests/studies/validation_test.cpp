@@ -10,8 +10,8 @@
 #include "studies/validation/io/validation_files.h"
 #include "tests/support/refusals.h"
 
-// The judge of figures: what is outside of what it is allowed is found, said and marked. The figures themselves are
-// held by tests/app/validate_test.cpp.
+// Tests of the comparison with expected values: differences larger than allowed are detected, reported and marked. The
+// values themselves are tested in tests/app/validate_test.cpp.
 
 namespace retrace::studies::validation_test {
 namespace {

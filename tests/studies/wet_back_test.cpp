@@ -1,4 +1,5 @@
-// What designs say of elements with another medium behind them, and who takes such designs.
+// Tests of designs with a medium other than air behind some elements: the keys, and the engines and studies that accept
+// such designs.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -74,7 +75,8 @@ TEST(WetBackDesign, DesignsAreWrittenAsTheyWereRead) {
   }
 }
 
-// Nothing wet, and everything: bytes and engines of the plain designs.
+// If no element or every element is wet, results and engines are the same as for a design with a uniform medium behind
+// all elements.
 TEST(WetBackDesign, NoShareAndAllAreTheWholeBack) {
   expect_same(rre(read("index = 1.333\nshare = 0")), rre(set({})));
   expect_same(rre(read("index = 1.333\nshare = 1")), rre(set({"body.back_index=1.333"})));
@@ -86,7 +88,8 @@ TEST(WetBackDesign, PartlyWetBacksAreTracedByRays) {
   const Design design = read("index = 1.333\nhalf_plane = [5, 5, 0]");
   const RreResult result = rre(design);
   for (const RrePoint& point : result.points) EXPECT_EQ(point.engine, "embree");
-  // Half the elements of 20 columns return as dry ones, half as wet ones; rows are shifted over the border.
+  // Of 20 columns of elements, half return light like dry elements, and half like wet ones. Near the border, this is
+  // only approximate, because rows are shifted.
   const double dry = rre(set({})).points[0].rre, wet = rre(set({"body.back_index=1.333"})).points[0].rre;
   EXPECT_NEAR(result.points[0].rre, 0.5 * (dry + wet), 0.03 * (dry - wet));
   for (const Engine engine : {Engine::exact, Engine::cell})
@@ -96,7 +99,8 @@ TEST(WetBackDesign, PartlyWetBacksAreTracedByRays) {
   EXPECT_EQ(refusal_of([&] { RreStudy({design}, footprint); }), "d.toml:12: wet_back.index");
 }
 
-// Rows 1 and 3 have 10 elements there; 2 and 4, shifted, 10 up to the one over x = 5, and one that the border cuts.
+// Rows 1 and 3 have 10 wet elements each. Rows 2 and 4 are shifted and have 11 each: 10 up to the element at x = 5, and
+// one that the border of the part cuts.
 TEST(WetBackDesign, InspectionTellsWhichElementsAreWet) {
   const auto library = materials::MaterialLibrary::shipped();
   const Inspection some = inspect(read("index = 1.333\nrectangle_mm = [0, 0, 5, 2]"), library);
@@ -112,8 +116,8 @@ TEST(WetBackDesign, InspectionTellsWhichElementsAreWet) {
   EXPECT_EQ(json["wet_back"]["elements"], some.wet_back->elements);
   EXPECT_EQ(json["wet_back"]["refractive_index"], 1.333);
   EXPECT_EQ(json["design"]["wet_back"]["index"], 1.333);
-  EXPECT_TRUE(some.tir_limit_deg);             // of the dry ones
-  EXPECT_FALSE(some.wet_back->tir_limit_deg);  // 1.333 > n sin 45
+  EXPECT_TRUE(some.tir_limit_deg);             // limit of the dry elements
+  EXPECT_FALSE(some.wet_back->tir_limit_deg);  // no total reflection, because 1.333 > n sin 45 degrees
   EXPECT_FALSE(inspect(set({}), library).wet_back);
   EXPECT_FALSE(inspect(read("index = 1.333\nshare = 1"), library).tir_limit_deg);
 }

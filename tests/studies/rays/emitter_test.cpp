@@ -1,4 +1,4 @@
-// Emitters: rays are spread by the laws that they are said to follow.
+// Tests of emitters: the rays follow the distributions that the documentation gives.
 #include "studies/rays/emitter.h"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ double share_of(const std::vector<SetRay>& rays, const std::function<bool(const 
   return static_cast<double>(std::ranges::count_if(rays, is_in)) / static_cast<double>(rays.size());
 }
 
-/// Four standard errors of a share.
+/// Returns four standard errors of a fraction of the rays.
 double error_of(double share) {
   return 4.0 * std::sqrt(share * (1.0 - share) / kRays) + 1e-12;
 }
@@ -39,7 +39,8 @@ double angle_deg(const SetRay& ray) {
   return std::atan2(std::hypot(ray.direction.x(), ray.direction.y()), ray.direction.z()) * 180.0 / std::numbers::pi;
 }
 
-/// The shares within some angles and radii are what the laws say, and no azimuth is preferred.
+/// Expects that the fractions of rays within several angles and radii follow the given distributions, and that no
+/// azimuth is preferred.
 void expect_law(const Emitter& emitter, const std::function<double(double)>& within_angle,
                 const std::function<double(double)>& within_radius) {
   const std::vector<SetRay> rays = rays_of(emitter);

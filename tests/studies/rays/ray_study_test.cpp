@@ -74,7 +74,7 @@ TEST(RayStudy, APlateSplitsLightAsItsSeriesSays) {
   request.cutoff = 1e-9;
   Kept kept;
   const RayResult result = traced(plate(), request, Given({}, {down_at(4, 5)}), kept);
-  const double r = 0.04;  // (0.5 / 2.5)^2
+  const double r = 0.04;  // reflectance for n = 1.5: (0.5 / 2.5)^2
   // r is the reflectance of a face. The upward rays have the powers r and (1 - r)^2 r^(2k - 1) for k = 1, 2, ...; the
   // downward rays have the powers (1 - r)^2 r^(2k) for k = 0, 1, ...
   ASSERT_GE(kept.rays.size(), 4U);
@@ -374,7 +374,7 @@ TEST(RayStudy, SourcesAreMovedAndTurned) {
   request.placement.aim_mm = {{4.0, 5.0, 2.0}};
   const RayStudy aimed(plate(), request);
   SetRay ray;
-  ray.direction = {0, 0, 1};  // along the axis of its source
+  ray.direction = {0, 0, 1};  // along the z axis of its source
   ray.radiant_w = 1.0;
   Given source({}, {ray});
   Kept kept;

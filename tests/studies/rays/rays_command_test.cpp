@@ -1,4 +1,4 @@
-// retrace rays: its files, which a reader of the tests' own reads, and what it refuses.
+// Tests of the command `retrace rays`: its files, which an independent reader reads, and the inputs that it refuses.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -19,7 +19,8 @@ const std::string kBricks =
     "[element]\nkind = \"rtp\"\nbase_mm = 1\nwidth_mm = 1\n[array]\narrangement = \"offset\"\nx_length_mm = "
     "6\ny_length_mm = 4\n[body]\nthickness_mm = 1\nmaterial = \"PMMA\"\n";
 
-/// Rays of a lamp of three above the middle of the part, every one with all that a set of wavelengths may hold.
+/// Returns a ray file with 300 rays of a lamp above the center of the part. Each ray has all items that are possible in
+/// a set with wavelengths.
 File lamp() {
   File file;
   file.radiant = 6.0F;
@@ -91,7 +92,8 @@ TEST_F(Rays, WhatIsWrittenCanBeASource) {
   ASSERT_EQ(retrace(folder_, {"rays", "bricks.toml", "--source=lamp.tm25ray", "-o", "once.tm25ray"}).code, 0);
   const Json again =
       retrace_json(folder_, {"rays", "bricks.toml", "--source=once.tm25ray", "--keep-missed", "-o", "twice.csv"});
-  // What has left the part does not meet it again, although its places are known to single precision alone.
+  // Rays that have left the part do not hit it again, although the file stores their positions only in single
+  // precision.
   EXPECT_EQ(again["ledger"]["missed"], 1.0);
   const Json json = retrace_json(folder_, {"rays", "bricks.toml", "--source=twice.csv"});
   EXPECT_EQ(json["rays"], again["out"]["rays"]);

@@ -1,6 +1,7 @@
 #pragma once
 
-// Ray files of TM-25 made and read byte by byte: what the tests know of the format, shared with nothing of the program.
+// Writes and reads TM-25 ray files byte by byte. This implementation of the format is used only by tests and shares no
+// code with the program.
 
 #include <array>
 #include <cstdint>
@@ -13,7 +14,7 @@
 
 namespace retrace::testing::tm25_bytes {
 
-/// A file as its parts are in it.
+/// Contents of a file, in the order of the file.
 struct File {
   std::string magic = "TM25";
   std::int32_t version = 2013;
@@ -25,13 +26,14 @@ struct File {
   float wavelength = 0.0F;
   float least_wavelength = 0.0F;
   float greatest_wavelength = 0.0F;
-  /// Position, direction, radiant flux, wavelength, luminous flux, Stokes, tristimulus, spectrum index.
+  /// Flags for the items of each ray: position, direction, radiant flux, wavelength, luminous flux, Stokes parameters,
+  /// tristimulus values, spectrum index.
   std::array<std::int32_t, 8> flags = {1, 1, 1, 0, 0, 0, 0, 0};
   std::array<std::u32string, 9> texts;
   std::vector<std::vector<std::pair<float, float>>> tables;
   std::vector<std::u32string> items;
   std::u32string more;
-  std::vector<std::vector<float>> values;  ///< a row for each ray
+  std::vector<std::vector<float>> values;  ///< values of each ray
 
   std::size_t columns() const {
     static constexpr std::array<std::size_t, 8> width = {3, 3, 1, 1, 1, 6, 2, 1};
@@ -91,7 +93,8 @@ inline std::string bytes_of(const File& file) {
   return bytes;
 }
 
-/// \pre the file is right and has no spectral tables
+/// Reads a file.
+/// \pre the file is valid and has no spectral tables
 inline File file_of(const std::string& bytes) {
   std::size_t at = 0;
   const auto take = [&]<class Value>(Value& value) {

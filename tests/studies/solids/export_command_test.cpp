@@ -5,7 +5,7 @@
 
 #include "tests/app/program.h"
 
-// `retrace export` as users meet it.
+// Tests of the command `retrace export`.
 
 namespace retrace::test::export_command_test {
 namespace {

@@ -18,7 +18,8 @@ namespace {
 using test::array_part;
 using test::single_part;
 
-/// Sum over faces of the divergence theorem: independent of how faces are split into triangles.
+/// Returns the volume by the divergence theorem, as a sum over faces. It does not depend on the division of faces into
+/// triangles.
 double volume(const FacetedSolid& solid) {
   double volume = 0.0;
   for (const SolidFace& face : solid.faces) {
@@ -31,7 +32,8 @@ double volume(const FacetedSolid& solid) {
   return volume;
 }
 
-/// Every edge has two faces that pass it in opposite directions, and all of a face lies in its plane.
+/// Expects that each edge belongs to two faces, which run through it in opposite directions, and that all vertices of a
+/// face are in its plane.
 void expect_sound(const FacetedSolid& solid) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> passed;
   for (const SolidFace& face : solid.faces)
@@ -49,13 +51,14 @@ void expect_sound(const FacetedSolid& solid) {
 }
 
 TEST(FacetedSolid, AnElementHasTheFacesOneCounts) {
-  // Entrance, four sides with gables merged into two of them, two facets.
+  // The faces are the entrance face, four sides (two of which include the triangular ends of the prism), and two
+  // facets.
   const BoundaryMesh prism = closed_boundary(build_part(single_part(RtpElement{0.5, 0.4, 90.0})));
   const FacetedSolid solid = faceted_solid(prism);
   EXPECT_EQ(solid.faces.size(), 7U);
   EXPECT_EQ(solid.vertices.size(), 10U);
   expect_sound(solid);
-  // Entrance, six sides, three squares.
+  // The faces are the entrance face, six sides and three square facets.
   const FacetedSolid cube = faceted_solid(closed_boundary(build_part(single_part(HexagonalCube{1.6}))));
   EXPECT_EQ(cube.faces.size(), 10U);
   expect_sound(cube);
@@ -102,7 +105,7 @@ TEST(Mould, IsClosedAndFillsWhatThePartLeaves) {
     const BoundaryMesh mesh = mould_boundary(part, block_mm);
     const BoundaryReport report = check_boundary(mesh);
     EXPECT_TRUE(report.ok());
-    // Part and mould together fill the block from its bottom to the entrance face.
+    // Together, part and mould fill the volume from the bottom of the block to the entrance face.
     const double whole_mm3 = part.entrance_area_mm2 * (part.thickness_mm + part.element_depth_mm + block_mm);
     EXPECT_NEAR(volume_mm3(mesh) + volume_mm3(closed_boundary(part)), whole_mm3, 1e-12 * whole_mm3);
   }
@@ -121,7 +124,7 @@ TEST(FacetedSolid, OpenMeshesAreRefused) {
 }
 
 TEST(WeldedPart, IsOnePatchAndHoldsWhatTheSharedOnesDo) {
-  // Beyond 2048 elements build_part() shares pieces.
+  // For more than 2048 elements, build_part() places the same patch several times.
   const PartSpec spec = array_part(RtpElement{0.1, 0.1, 90.0}, Arrangement::aligned, 5.0, 5.0);
   EXPECT_GT(build_part(spec).placements.size(), 1U);
   const Part part = build_welded_part(spec);

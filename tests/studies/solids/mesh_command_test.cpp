@@ -55,7 +55,7 @@ TEST(MeshPart, SendsBackWhatTheDesignItWasMadeOfDoes) {
   const auto expected = rre(folder, direct);
   const auto found = rre(folder, mesh);
   ASSERT_EQ(found.size(), expected.size());
-  ASSERT_EQ(found.size(), 4U);  // two directions, two cones
+  ASSERT_EQ(found.size(), 4U);  // two directions with two cones each
   // A beam that hits a single triangle is weaker than a beam that hits a whole facet. The mesh and the design therefore
   // have different beams below the cut-off.
   for (std::size_t k = 0; k < found.size(); ++k) EXPECT_NEAR(found[k], expected[k], 2e-4);

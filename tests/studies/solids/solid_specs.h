@@ -16,23 +16,25 @@ inline geometry::PartSpec array_part(const geometry::Element& element, geometry:
   return testing::finite(element, arrangement, x_mm, y_mm, 0.7);
 }
 
-/// Below z = 0, in closed form: a prism of base b and width w holds b^2 w / 4.
+/// Returns the volume of a prism below z = 0 in closed form: b^2 w / 4 for the base b and the width w.
 inline double prism_volume_mm3(double base_mm, double width_mm) {
   return 0.25 * base_mm * base_mm * width_mm;
 }
 
-/// A full cube corner of edge a leaves a^3 below the plane of its highest rims: its three squares' mean depth is
-/// a / sqrt(3) over the hexagon's sqrt(3) a^2. The circle round the hexagon has the diameter 2 a sqrt(2/3).
+/// Returns the volume of a full cube corner below the plane of its highest rims: a^3 for the edge a. This is the mean
+/// depth of its three square facets, a / sqrt(3), times the area of the hexagon, sqrt(3) a^2. The circumscribed circle
+/// of the hexagon has the diameter 2 a sqrt(2/3).
 inline double hexagonal_volume_mm3(double aperture_mm) {
   return std::pow(aperture_mm / (2.0 * std::sqrt(2.0 / 3.0)), 3.0);
 }
 
-/// A tetrahedron cut off a cube: a^3 / 6, with the side a sqrt(2) and the circle's diameter 2 a sqrt(2/3).
+/// Returns the volume of a triangular cube corner: a^3 / 6 for the edge a. It is the tetrahedron that a plane cuts off
+/// a cube. Its base has the side a sqrt(2) and a circumscribed circle with the diameter 2 a sqrt(2/3).
 inline double triangular_volume_mm3(double aperture_mm) {
   return hexagonal_volume_mm3(aperture_mm) / 6.0;
 }
 
-/// Of the apertures: regular polygons in a circle.
+/// Returns the area of a regular hexagon whose circumscribed circle has the diameter `aperture_mm`.
 inline double hexagon_area_mm2(double aperture_mm) {
   return 6.0 * std::sqrt(3.0) / 4.0 * std::pow(0.5 * aperture_mm, 2.0);
 }

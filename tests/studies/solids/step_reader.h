@@ -4,15 +4,15 @@
 
 namespace retrace::test {
 
-/// What OpenCASCADE finds in a STEP file.
+/// Data that OpenCASCADE finds in a STEP file.
 struct StepFindings {
   bool is_read = false;
-  int roots = 0;  ///< shapes at the top level
+  int roots = 0;  ///< number of shapes at the top level
   int solids = 0;
   int shells = 0;
   int faces = 0;
   bool is_valid = false;  ///< BRepCheck
-  int free_edges = 0;     ///< edges that are not of two faces
+  int free_edges = 0;     ///< number of edges that do not belong to two faces
   double volume_mm3 = 0.0;
   double area_mm2 = 0.0;
 };

@@ -11,7 +11,8 @@
 #include "tests/studies/solids/solid_specs.h"
 #include "tests/studies/solids/step_reader.h"
 
-// What is written, OpenCASCADE reads back: one valid solid without free edges, of the volume that closed forms give.
+// Tests of STEP files. OpenCASCADE reads them back as one valid solid without free edges. Its volume is that of closed
+// forms.
 
 namespace retrace::geometry::step_test {
 namespace {
@@ -62,7 +63,8 @@ TEST(Step, PrismArraysWithGapsMarginsAndMouldsHaveTheirVolume) {
 }
 
 TEST(Step, BrickRowsWithCutElementsHaveTheirVolume) {
-  // Six rows of six; every second one is shifted by half an element, which leaves two halves of a prism at its ends.
+  // The array has six rows with six prisms each. Every second row is shifted by half a prism and therefore has half a
+  // prism at each end.
   const Part part = build_part(array_part(RtpElement{0.5, 0.5, 90.0}, Arrangement::offset, 3.0, 3.0));
   expect_solid(closed_boundary(part), 9.0 * 0.7 + 36.0 * test::prism_volume_mm3(0.5, 0.5));
 }
@@ -75,7 +77,7 @@ TEST(Step, CubeCornerArraysAreSolids) {
   }
 }
 
-// 390 prisms as one solid: 15 x 26 of 0.5 x 0.3 mm.
+// The solid has 15 x 26 = 390 prisms of 0.5 mm x 0.3 mm.
 TEST(Step, ThreeHundredAndNinetyElementsAreOneSolid) {
   const Part part = build_welded_part(array_part(RtpElement{0.5, 0.3, 90.0}, Arrangement::aligned, 7.5, 7.8));
   ASSERT_EQ(part.elements_full, 390);

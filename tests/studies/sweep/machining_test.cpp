@@ -25,10 +25,10 @@ TEST(Machining, SumOfCutsOneByOne) {
 TEST(Machining, AWiderToolSavesPassesAndWidthAloneCostsNothing) {
   MachiningProcess process;
   const double one_pass_s = seconds_per_element({0.451, 0.451, 90.0}, process);
-  EXPECT_EQ(seconds_per_element({0.451, 0.902, 90.0}, process), one_pass_s);  // a tool that fits
+  EXPECT_EQ(seconds_per_element({0.451, 0.902, 90.0}, process), one_pass_s);  // the tool is as wide as the element
   process.tool_width_mm = 0.451;
   EXPECT_EQ(seconds_per_element({0.451, 0.902, 90.0}, process), 2.0 * one_pass_s);
-  process.tool_width_mm = 0.9019995;  // within a nanometre
+  process.tool_width_mm = 0.9019995;  // narrower than the element by less than a nanometre
   EXPECT_EQ(seconds_per_element({0.451, 0.902, 90.0}, process), one_pass_s);
 }
 

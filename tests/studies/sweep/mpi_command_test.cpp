@@ -1,4 +1,5 @@
-// `mpirun -np 3 retrace sweep`: the same table as alone, whatever becomes of a rank.
+// Tests of `mpirun -np 3 retrace sweep`. The table is the same as that of a single process, even if a rank is killed or
+// interrupted.
 
 #include <gtest/gtest.h>
 
@@ -26,7 +27,7 @@ class SweepByMpi : public ByMpi {
     return folder_.read("alone/sweep.csv");
   }
   std::size_t stored() const { return stored_points(folder_.path() / "out/sweep.sqlite").size(); }
-  /// Kills a rank at work, once some points are stored.
+  /// Kills a rank during the computation, after some points have been stored.
   void kill_rank(const Child& child, int rank) {
     ASSERT_TRUE(comes_about(child, [this] { return stored() >= 10; })) << "no points were stored";
     ASSERT_TRUE(is_running(rank)) << "the sweep was over too soon";

@@ -1,6 +1,6 @@
 #pragma once
 
-// Runs of the program as ranks of a job under MPI, and what becomes of their processes.
+// Runs the program as ranks of an MPI job, and observes their processes.
 
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -14,16 +14,17 @@
 
 namespace retrace::test {
 
-/// For anything under MPI to come about.
+/// Maximum time that tests wait for an event of an MPI job.
 inline constexpr std::chrono::seconds kMpiLimit = patient(60);
-/// A rank that is silent for so long is given up.
+/// Time, in s, without messages after which a rank is given up.
 inline constexpr int kMpiSilenceS = 3;
 
-/// Starts the program on ranks, each of which leaves its number as a process in a file. \param options of mpirun
+/// Returns the command that runs the program on several ranks. Each rank writes its process number to a file.
+/// \param options options of mpirun
 inline Arguments on_ranks(int ranks, const std::string& arguments, const std::string& options = "") {
   return {"/bin/sh", "-c",
           "export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_plm=isolated "
-          // What Open MPI itself leaves behind is no leak of ours.
+          // Leaks of Open MPI itself are not errors of this program.
           "ASAN_OPTIONS=detect_leaks=0 RETRACE_MPI_SILENCE_S=" +
               std::to_string(kMpiSilenceS) + "; exec '" + std::string(RETRACE_MPIRUN) +
               "' --oversubscribe --bind-to none " + options + " -np " + std::to_string(ranks) +
@@ -32,19 +33,19 @@ inline Arguments on_ranks(int ranks, const std::string& arguments, const std::st
 
 class ByMpi : public ::testing::Test {
  protected:
-  /// No rank is left behind, whatever becomes of a test.
+  /// Kills all ranks that still run, even if a test has failed.
   ~ByMpi() override {
     for (int rank = 0; rank < 3; ++rank)
       if (const pid_t process = process_of(rank); process > 0 && is_running(rank)) ::kill(process, SIGKILL);
   }
 
-  /// 0 if the rank has not started.
+  /// Returns the process number of a rank. 0 if the rank has not started.
   pid_t process_of(int rank) const {
     std::ifstream file(folder_.path() / ("pid." + std::to_string(rank)));
     pid_t process = 0;
     return file >> process ? process : 0;
   }
-  /// Whether the rank runs; a process that has ended and that nobody has asked after does not.
+  /// Returns true if a rank runs. A zombie process, which has ended without having been waited for, does not count.
   bool is_running(int rank) const {
     std::ifstream file("/proc/" + std::to_string(process_of(rank)) + "/stat");
     std::string line;
@@ -52,7 +53,8 @@ class ByMpi : public ::testing::Test {
     const std::size_t name_end = line.rfind(") ");
     return name_end != std::string::npos && line[name_end + 2] != 'Z' && line.find("(retrace)") != std::string::npos;
   }
-  /// Waits for something that must come about while `child` runs. \return whether it has
+  /// Waits for a condition that must become true while `child` runs.
+  /// \return true if the condition became true in time
   template <class Condition>
   static bool comes_about(const Child& child, Condition condition) {
     const auto deadline = std::chrono::steady_clock::now() + kMpiLimit;
@@ -62,7 +64,7 @@ class ByMpi : public ::testing::Test {
     }
     return true;
   }
-  /// Whether a rank has ended in time; mpirun may go on for reasons of its own.
+  /// Returns true if a rank ends in time. The process mpirun may continue to run.
   bool ends(int rank) const {
     const auto deadline = std::chrono::steady_clock::now() + kMpiLimit;
     while (is_running(rank) && std::chrono::steady_clock::now() < deadline)

@@ -1,4 +1,5 @@
-// `mpirun -np N retrace` with the commands beside `sweep` that ranks share: the same files as alone.
+// Tests of `mpirun -np N retrace` with commands other than `sweep` whose work is shared by ranks. The files are the
+// same as those of a single process.
 
 #include <gtest/gtest.h>
 
@@ -48,7 +49,8 @@ class CommandsByMpi : public ByMpi {
     }
     EXPECT_EQ(files, count);
   }
-  /// One rank and three make what one process does. \param files that it writes, but for stores
+  /// Expects the same files from one rank, from three ranks, and from a process without MPI.
+  /// \param files number of files that the command writes, without stores
   void expect_same_by_ranks(const std::string& arguments, std::size_t files) {
     run_alone(arguments + " --quiet -o alone");
     run(on_ranks(1, arguments + " --quiet -o one"));
@@ -56,7 +58,8 @@ class CommandsByMpi : public ByMpi {
     expect_same_files("alone", "one", files);
     expect_same_files("alone", "three", files);
   }
-  /// Ends a rank while there is work. \return what was said
+  /// Sends a signal to a rank during the computation.
+  /// \return text that the job has written to standard error
   std::string outcome_without_rank(int rank, int signal, const std::string& arguments, const std::string& options) {
     Child child(folder_.path(), on_ranks(3, arguments + " --threads 1 -o out", options));
     EXPECT_TRUE(comes_about(child, [this] { return fs::exists(folder_.path() / "out"); })) << "nothing was begun";
@@ -68,7 +71,7 @@ class CommandsByMpi : public ByMpi {
   }
 };
 
-/// Some seconds in all.
+/// Command that takes some seconds.
 const std::string kLongRoughness =
     "roughness d.toml --sa 5,10,15,20,25,30,35,40,50,60 --correlation-length-um 5 --facets facets.csv --samples 60000";
 
@@ -78,7 +81,7 @@ TEST_F(CommandsByMpi, RoughnessIsTheSame) {
 }
 
 TEST_F(CommandsByMpi, RoughnessWarnsOfTheSame) {
-  // The model is out of its range.
+  // For the larger values of Sa, the scatter model is outside of its range.
   expect_same_by_ranks(
       "roughness d.toml --sa 0,300,400 --correlation-length-um 5 --facets facets.csv --target-error 1e-2", 4);
   EXPECT_FALSE(folder_.json("three/roughness.json")["warnings"].empty());
@@ -104,7 +107,8 @@ TEST_F(CommandsByMpi, InterruptedRoughnessKeepsWhatIsFinished) {
   EXPECT_EQ(folder_.json("out/roughness.json")["complete"], false);
 }
 
-/// Discrete values with continuous ones, and feasible designs that end within the line.
+/// Study with a discrete and a continuous parameter. The limit of feasibility is inside the interval of the continuous
+/// parameter.
 const std::string kOptimum =
     "design = \"d.toml\"\n[[parameter]]\nkey = \"array.arrangement\"\nvalues = [\"offset\", \"aligned\"]\n"
     "[[parameter]]\nkey = \"body.thickness_mm\"\nfrom = 1\nto = 3\n[[quantity]]\nkind = \"rre\"\n"
@@ -114,7 +118,8 @@ const std::string kOptimum =
 TEST_F(CommandsByMpi, OptimizeIsTheSame) {
   folder_.write("study.toml", kOptimum);
   expect_same_by_ranks("optimize study.toml", 2);
-  // What ranks have looked at is there for one process, and the other way round.
+  // A single process can resume from a store that ranks have written, and ranks can resume from the store of a single
+  // process.
   run_alone("optimize study.toml --quiet --resume -o three");
   expect_same_files("alone", "three", 2);
   const auto points = stored_points(folder_.path() / "alone/optimum.sqlite").size();
@@ -136,7 +141,7 @@ TEST_F(CommandsByMpi, CameraIsTheSame) {
 }
 
 TEST_F(CommandsByMpi, CameraThatLooksAtItsNoiseIsTheSame) {
-  // More passes are dealt than it needs.
+  // More passes are dealt out than the requested noise requires.
   expect_same_by_ranks("image d.toml --camera --pixels 24x18 --film-mm 5x5 --noise 0.2", 3);
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 using Kind = UnitSamples::Kind;
 
-/// Whether the points fill `bins` equal parts of an axis evenly.
+/// Expects the same number of points in each of `bins` equal parts of an axis.
 void expect_even(const UnitSamples& samples, std::uint64_t count, std::size_t axis, std::uint64_t bins) {
   std::vector<std::uint64_t> hits(bins, 0);
   for (std::uint64_t k = 0; k < count; ++k) {
@@ -42,7 +42,7 @@ TEST(Sampling, IndependentPointsAreSpreadAsChanceHasIt) {
     double chi_square = 0.0;
     const double expected = static_cast<double>(count) / bins;
     for (const double hit : hits) chi_square += (hit - expected) * (hit - expected) / expected;
-    // 15 degrees of freedom, 0.1 % on either side.
+    // Chi-squared has 15 degrees of freedom. The limits exclude 0.1 % on each side.
     EXPECT_LT(chi_square, 37.7);
     EXPECT_GT(chi_square, 3.5) << "too even for chance";
   }
@@ -56,7 +56,7 @@ TEST(Sampling, SobolFillsThePlaneEvenlyWhateverTheSeed) {
       const auto u = samples.at(k);
       cells.emplace(static_cast<int>(16 * u[0]), static_cast<int>(16 * u[1]));
     }
-    EXPECT_EQ(cells.size(), 256U);  // a (0, 8, 2)-net
+    EXPECT_EQ(cells.size(), 256U);  // the points form a (0, 8, 2)-net
   }
 }
 
@@ -81,7 +81,8 @@ TEST(Sampling, SobolIntegratesASmoothFunctionFarBetterThanChance) {
     for (const double u : samples.at(k)) product *= 1.5 * std::sqrt(u);
     sum += product;
   }
-  // The product has mean 1 and variance (9/8)^4 - 1: chance would miss by 0.012.
+  // The product has the mean 1 and the variance (9/8)^4 - 1. The mean of random points would have a standard error of
+  // 0.012.
   EXPECT_NEAR(sum / count, 1.0, 1e-3);
 }
 

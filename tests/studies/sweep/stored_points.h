@@ -10,14 +10,14 @@
 
 namespace retrace::test {
 
-/// A study whose points take a few milliseconds each.
+/// Returns a study whose points take a few milliseconds each.
 inline std::string sweep_study(int points, int samples = 8000) {
   return "schema = \"retrace.study/1\"\ndesign = \"" + example("honeycomb_infinite.toml") +
          "\"\n[[parameter]]\nkey = \"analysis.incidence_deg\"\nfrom = 0\nto = 40\ncount = " + std::to_string(points) +
          "\n[[quantity]]\nkind = \"rre\"\n[analysis]\nengine = \"cell\"\nsamples = " + std::to_string(samples) + "\n";
 }
 
-/// What the store of a run holds, read beside it: the time that each point took, by number.
+/// Returns the computing time of each point in a store, by the number of the point. The store may be in use by a run.
 inline std::map<int, double> stored_points(const std::filesystem::path& file) {
   std::map<int, double> points;
   try {
@@ -25,7 +25,7 @@ inline std::map<int, double> stored_points(const std::filesystem::path& file) {
     SQLite::Statement query(database, "SELECT point, elapsed_s FROM points");
     while (query.executeStep()) points[query.getColumn(0).getInt()] = query.getColumn(1).getDouble();
   } catch (const SQLite::Exception&) {
-    return {};  // not made yet
+    return {};  // the store does not exist yet
   }
   return points;
 }

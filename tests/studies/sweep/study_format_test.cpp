@@ -23,7 +23,7 @@ using namespace schema;
 
 const std::string kRoot = RETRACE_SOURCE_DIR;
 
-/// The files of a folder of the repository whose names end in .toml.
+/// Returns the files in a folder of the repository whose names end with .toml.
 std::vector<std::filesystem::path> files_in(const std::string& folder) {
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(kRoot + "/" + folder))
@@ -31,7 +31,8 @@ std::vector<std::filesystem::path> files_in(const std::string& folder) {
   return files;
 }
 
-/// Written as TOML, and as JSON made TOML, it is the same document.
+/// Expects that a document does not change if it is written as TOML and read back, or written as JSON, converted to
+/// TOML and read back.
 void expect_round_trips(const Format& format, const std::string& text) {
   const Document document = read_document(format, text, "d.toml");
   const std::string written = document_text(format, document);
@@ -62,7 +63,7 @@ RC_GTEST_PROP(StudyFormat, DocumentsReadBackTheSame, ()) {
   documents_test::expect_random_document_to_read_back(study_format());
 }
 
-/// Everything that a study can say.
+/// The study contains every form of a value that the format allows.
 TEST(StudyFormat, EveryFormOfAValueReadsBackTheSame) {
   expect_round_trips(
       study_format(),
@@ -76,7 +77,7 @@ TEST(StudyFormat, EveryFormOfAValueReadsBackTheSame) {
       "[machining]\nstrategy = \"unidirectional\"\n");
 }
 
-/// A design that is written is the design that was read, whatever was given and whatever holds by default.
+/// A written design is equal to the design that was read, both in given values and in defaults.
 TEST(StudyFormat, DesignsAreWrittenAsTheyAre) {
   for (const std::string folder : {"examples", "examples/fronts"})
     for (const auto& file : files_in(folder)) {

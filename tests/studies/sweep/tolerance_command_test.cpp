@@ -1,4 +1,4 @@
-// `retrace tolerance` and `retrace optimize --job` as users meet them, and what the progress bar tells.
+// Tests of the commands `retrace tolerance` and `retrace optimize --job`, and of the progress bar.
 
 #include <gtest/gtest.h>
 
@@ -33,7 +33,7 @@ TEST(ToleranceCommand, WritesSpreadYieldAndContributors) {
   EXPECT_EQ(json["parts"], 64);
   EXPECT_EQ(json["failed"], 0);
   EXPECT_EQ(json["complete"], true);
-  // Plates of 1 to 3 mm and prisms 0.5 mm deep: three quarters are thin enough.
+  // The plates are 1 to 3 mm thick, and the prisms are 0.5 mm deep. Three quarters of the parts are thin enough.
   EXPECT_NEAR(json["yield"]["value"].get<double>(), 0.75, 0.06);
   EXPECT_LT(json["yield"]["low"].get<double>(), 0.75);
   EXPECT_GT(json["yield"]["high"].get<double>(), 0.75);
@@ -74,7 +74,7 @@ TEST(ToleranceCommand, ResumesWithoutComputingAnythingAgain) {
   folder.write("study.toml", tolerance_study("[tolerance]\nsamples = 16\n"));
   const Outcome changed = retrace(folder, resume);
   EXPECT_EQ(refused_at(changed), "study.toml");
-  // A store of a sweep is none of a tolerance study.
+  // The command `sweep` must not resume in the output folder of a tolerance study.
   folder.write("study.toml", study);
   EXPECT_EQ(retrace(folder, {"sweep", "study.toml", "-o", "out", "--quiet", "--resume"}).code, 2);
 }
@@ -119,7 +119,7 @@ std::string optimize_study(const std::string& keys = "") {
          keys;
 }
 
-/// The job of the chosen design is that of `retrace job` for the design written out.
+/// The job of the chosen design is the same as the job that `retrace job` makes from the written design.
 TEST(OptimizeJob, IsThatOfTheChosenDesign) {
   const TemporaryFolder folder;
   folder.write("study.toml", optimize_study("[machining]\ntool_width_mm = 0.9\n"));
@@ -161,7 +161,7 @@ TEST(OptimizeJob, NeedsATool) {
   EXPECT_FALSE(fs::exists(folder.path() / "j.toml"));
 }
 
-/// What a command draws on a terminal, which `script` stands for.
+/// Returns the output of a command on a terminal, which the program `script` simulates.
 std::string on_a_terminal(const TemporaryFolder& folder, const std::string& arguments) {
   const Outcome outcome = Child(folder.path(), {"/usr/bin/script", "-qec",
                                                 "'" + std::string(RETRACE_PROGRAM) + "' " + arguments, "/dev/null"})
