@@ -1,6 +1,6 @@
 #pragma once
 
-// Refines a design by local optimization. Only this file uses NLopt.
+// Refines a design by local optimization. Only refine.cpp uses NLopt.
 
 #include "studies/optimise/evaluator.h"
 

@@ -87,8 +87,8 @@ Design dyed(Design design, const PhotometryRequest& request) {
   return design;
 }
 
-/// Returns a map after averaging over the discs of source and receiver. The kernel is evaluated at the pixels of the
-/// map.
+/// Returns a map after averaging over the discs (apertures) of source and receiver. The kernel is evaluated at the
+/// pixels of the map.
 std::vector<double> blurred(const std::vector<double>& map, std::size_t columns, double step_rad,
                             const raytrace::ApertureKernel& kernel) {
   const auto reach = static_cast<std::ptrdiff_t>(std::ceil(kernel.reach_rad() / step_rad));

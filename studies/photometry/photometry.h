@@ -54,7 +54,7 @@ struct PhotometryRequest {
   std::optional<std::uint64_t> rays;  ///< Monte Carlo: number of rays per direction; empty: kUsualRaysOfDirection
   std::uint32_t seed = 1;
   bool pictures = false;  ///< true: maps and curves are computed
-  /// True: the power inside and outside the window is integrated. This check is slow.
+  /// True: the power in directions inside and outside of the window (see window_deg) is integrated. This check is slow.
   bool window_power = false;
   bool advice = true;   ///< true: if the design fails, a change with which it passes is searched for
   bool colour = false;  ///< true: the chromaticity of the returned light is computed; not for the design's own light
@@ -99,8 +99,8 @@ struct PhotometricDirection {
   double rre = 0.0;
   double std_error = 0.0;  ///< standard error of the RRE
   double truncated = 0.0;  ///< maximum power that the RRE may lack because weak beams were truncated
-  /// Power that leaves the entrance face inside and outside of the window, at one wavelength. Not computed by Monte
-  /// Carlo, and not for large cells, which would take too long.
+  /// Power that leaves the entrance face in directions inside and outside of the window (cone with the half-angle
+  /// window_deg), at one wavelength. Not computed by Monte Carlo, and not for large cells, which would take too long.
   struct Split {
     double wavelength_nm = 0.0;
     double window = 0.0;
