@@ -25,7 +25,7 @@ struct CommonOptions {
   std::optional<std::uint32_t> threads;
   std::optional<double> memory_gib;  ///< memory budget of beams and elements in GiB; empty: 1 GiB
   std::uint32_t seed = 1;
-  std::vector<std::string> overrides;  ///< texts KEY=VALUE of --set
+  std::vector<std::string> overrides;  ///< arguments of --set, each in the form KEY=VALUE
   bool quiet = false;
 };
 
@@ -36,8 +36,8 @@ using Words = std::vector<std::string>;
 struct Condition {
   enum class Kind { given, absent, value };
 
-  /// Kind of the condition: `option` is on the command line (given), is not on it (absent), or has one of `values`
-  /// (value). For the last kind, the default of the option counts as well.
+  /// Kind of the condition. `given`: `option` is on the command line. `absent`: it is not. `value`: the value of
+  /// `option`, which may be its default, is one of `values`.
   Kind kind = Kind::given;
   std::string option;
   Words values = {};
@@ -56,14 +56,16 @@ std::string text_of(const Need& need);
 
 /// Properties of an argument that restrict its value and its combination with other options.
 struct Traits {
-  /// Function that returns possible values for shell completion. A word that ends with "=" is continued by the user.
+  /// Function that returns possible values for shell completion. A word that ends with "=", such as a key, is only the
+  /// beginning of a value.
   std::function<Words()> words = {};
-  /// Extension of allowed files. "" allows any file, and "/" allows folders. If there is no extension, the argument is
-  /// not a file.
+  /// Extension of allowed files. "" allows any file, and "/" allows folders. No value means that the argument is not a
+  /// file.
   std::optional<std::string> files = {};
   std::uint64_t least = 0;                      ///< minimum of a whole number
   std::uint64_t most = std::uint64_t{1} << 36;  ///< maximum of a whole number
-  bool required = false;         ///< true if an option must be given; positional arguments are required by their type
+  /// True if the argument must be given; for positional arguments, the type of the target variable decides as well.
+  bool required = false;
   std::string excludes = {};     ///< name of an option that cannot be given together with this option
   std::vector<Need> needs = {};  ///< requirements, which must all be met
 };
@@ -123,9 +125,9 @@ struct Command {
   std::function<Invocation()> begin = {};
 };
 
-/// Returns the function Command::begin of a command that has its own options.
-/// \param arguments function that returns the arguments. The parser stores their values in the parameter of this
-/// function.
+/// Returns a function for Command::begin. The function creates an object of class Options and connects its members to
+/// the arguments.
+/// \param arguments function that returns the arguments; the parser writes their values into the given options
 /// \param run function that runs the command and returns the exit code or throws retrace::Error
 template <class Options>
 std::function<Invocation()> begins(std::vector<Argument> (*arguments)(Options&),

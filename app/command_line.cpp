@@ -44,7 +44,7 @@ CLI::Validator real_number() {
   return {check, "", "REAL"};
 }
 
-/// Returns a check that refuses empty file names. They usually come from an unset shell variable.
+/// Returns a check that refuses empty file names. An empty name usually comes from an unset shell variable.
 CLI::Validator not_empty() {
   return {[](const std::string& text) { return text.empty() ? "must not be empty" : ""; }, "", "NAME"};
 }
@@ -110,8 +110,8 @@ class GivenOptions {
 
   bool is_given(const std::string& name) const { return option(name).count() > 0; }
 
-  /// Returns the value of an option on the command line, or else its default. Returns an empty text if there is no
-  /// default.
+  /// Returns the value of an option as given on the command line. If the option is not given, returns its default, or
+  /// an empty text if it has none.
   std::string value(const std::string& name) const {
     if (is_given(name)) return option(name).results().back();
     for (const Argument& argument : arguments_)
@@ -174,8 +174,8 @@ std::string in_words(std::span<const Command> all) {
   return text;
 }
 
-/// Returns the message if a command or one of its arguments is missing. If the command line contains an unknown option
-/// or command, the message names it.
+/// Returns the error message for a command line in which the command or a required argument is missing. If the command
+/// line contains an unknown option or command, the message names this word.
 /// \param otherwise message if the command line contains no unknown word
 std::string missing(const CLI::App& app, const std::string& otherwise) {
   const std::vector<std::string> unknown = app.remaining(true);

@@ -39,8 +39,8 @@ extern "C" void end_now(int) {
 }
 
 extern "C" void on_interrupt(int) {
-  // The process ends immediately if no OrderlyInterrupt exists, for example while it waits for standard input. The
-  // second interrupt always ends it immediately.
+  // The process ends immediately if no OrderlyInterrupt exists, for example while the process waits for standard input.
+  // The second interrupt always ends the process immediately.
   if (!is_orderly.load() || cancellation_asked.requested()) end_now(0);
   cancellation_asked.request();
   set_deadline(kPatience);

@@ -1,7 +1,7 @@
 #pragma once
 
-// Handles Ctrl-C, SIGTERM and SIGHUP. Long computations stop and write their finished results. Otherwise the process
-// ends immediately.
+// Handles Ctrl-C, SIGTERM and SIGHUP. A long computation stops and its finished results are written. If no long
+// computation is running, the process ends immediately.
 
 #include <functional>
 #include <optional>
@@ -25,8 +25,9 @@ class OrderlyInterrupt {
   OrderlyInterrupt(const OrderlyInterrupt&) = delete;
   OrderlyInterrupt& operator=(const OrderlyInterrupt&) = delete;
 
-  /// Runs a computation that regularly checks whether it is requested to stop. If it does not stop within one second
-  /// after the interrupt, the program ends and writes no results. Writing the results afterwards has no time limit.
+  /// Runs a computation that regularly checks whether it is requested to stop. If the computation does not stop within
+  /// one second after the interrupt, the program ends and writes no results. If it stops in time, writing its results
+  /// has no time limit.
   /// \param threads number of threads; empty or 0: number of cores
   /// \param work computation; its parameter is the request to stop
   void run(std::optional<unsigned> threads, const std::function<void(const Cancellation*)>& work) const;

@@ -50,7 +50,8 @@ std::string name_from(const fs::path& folder, const fs::path& file) {
   const fs::path base = folder.empty() ? fs::path(".") : folder;
   const fs::path direct =
       fs::absolute(file).lexically_normal().lexically_relative(fs::absolute(base / "").lexically_normal());
-  // The lexical path is correct only if it leads to the file. If a folder is a symbolic link, ".." leads elsewhere.
+  // `direct` is computed from the names of the folders only. It is wrong if a folder is a symbolic link, because ".."
+  // then leads to the parent of the link's target.
   if (!direct.empty() && fs::equivalent(base / direct, file, error)) return direct.string();
   const fs::path followed = fs::relative(file, base, error);
   return error || followed.empty() ? fs::absolute(file).string() : followed.string();

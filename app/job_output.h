@@ -36,7 +36,8 @@ std::vector<std::string> files_of_making(const MakingOptions& options);
 std::string name_from(const std::filesystem::path& folder, const std::filesystem::path& file);
 
 /// Returns the text of a job file. The paths of the design and of the machine file are made relative to the job file.
-/// \param file job file; empty: the job is printed, and the design is given by its file name without a folder
+/// \param file path of the job file. If it is empty, the job is printed instead, and the job contains only the name of
+/// the design file, without its folder.
 std::string job_text_at(studies::MadeJob& made, const std::filesystem::path& file);
 
 }  // namespace retrace::app

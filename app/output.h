@@ -45,8 +45,8 @@ class ResultFiles {
   using Content = std::function<std::string()>;
 
   /// \param inputs every file that the command reads
-  /// \param document name of the file in the output folder with the same content as --json; empty: there is no such
-  /// file
+  /// \param document name of the JSON document in the output folder, which has the same content as the file of --json.
+  /// If empty, no such document is written.
   ResultFiles(CommonOptions options, std::vector<std::string> inputs, const std::string& document = {});
 
   /// Adds a file in the output folder.
@@ -57,7 +57,7 @@ class ResultFiles {
   /// \param plot function that returns the plot
   template <class Plot>
   void add_drawing(const std::string& name, Plot plot);
-  /// Adds a file in the output folder that is checked here but written elsewhere.
+  /// Adds a file in the output folder that this class checks but does not write. The caller writes it.
   /// \return path of the file; empty if there is no output folder
   std::filesystem::path reserve(const std::string& name);
   /// Adds the file that an option names. Does nothing if `file` is empty.
@@ -85,12 +85,12 @@ class ResultFiles {
   struct File {
     std::string option;
     std::filesystem::path path;
-    Content content;  ///< function that returns the content; empty: the file is written elsewhere
+    Content content;  ///< function that returns the content; empty if the caller writes the file
   };
 
   CommonOptions options_;
   std::vector<std::string> inputs_;
-  std::filesystem::path document_;  ///< JSON document in the output folder; empty: none
+  std::filesystem::path document_;  ///< JSON document in the output folder; empty if there is no such document
   std::vector<File> files_;
 };
 

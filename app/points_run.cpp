@@ -44,7 +44,7 @@ class PointsBar : public studies::SweepObserver {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// Returns `code`, or ExitCode::answer_is_no with a message if the computation of every point failed.
+/// Returns `code` unless every point failed. In that case, writes a message and returns ExitCode::answer_is_no.
 ExitCode exit_code_of(const std::vector<studies::StoredPoint>& points, ExitCode code) {
   const auto failed = [](const studies::StoredPoint& point) { return point.failed; };
   if (points.empty() || !std::all_of(points.begin(), points.end(), failed)) return code;

@@ -1,7 +1,7 @@
 #pragma once
 
-// Common implementation of `retrace sweep` and `retrace tolerance`. Computes the points of a study that are not yet in
-// its store, optionally under MPI, and writes the result.
+// Common implementation of `retrace sweep` and `retrace tolerance`. Computes the points of a study that are missing in
+// its store (an SQLite file), optionally under MPI, and writes the result.
 
 #include <functional>
 #include <optional>

@@ -1,6 +1,7 @@
 #pragma once
 
-// Shows the progress of a computation on standard error: a bar on a terminal, and one line if it will take long.
+// Shows the progress of a computation on standard error: a bar on a terminal, and one line of text if the computation
+// will take long.
 
 #include <chrono>
 #include <functional>
@@ -37,7 +38,7 @@ class ProgressBar : public Progress {
   /// Shows the progress of a computation of unknown length, for which the fraction is unknown.
   /// \param done text about the finished work, such as "65 designs evaluated"
   void count(const std::string& done);
-  /// Starts a group of tasks within a computation of unknown length. The length of the group is known.
+  /// Starts a group of tasks within a computation of unknown length. The number of tasks in the group is known.
   /// \param share fraction of the group that was finished in an earlier run
   void begin_group(double share);
   /// Reports the finished fraction of the group. The notice about a long run is based on this fraction.
@@ -46,7 +47,8 @@ class ProgressBar : public Progress {
 
   /// Sets a function that is called after the notice about a long run. The function must not use the bar, because the
   /// mutex of the bar is locked during the call.
-  /// \param action function with the estimated remaining time in seconds as its parameter; empty: no function is called
+  /// \param action function with the estimated remaining time in seconds as its parameter. If it is empty, nothing is
+  /// called.
   void after_notice(std::function<void(double)> action);
   /// Writes lines to standard error. Removes the bar first; the next update draws it again. Control characters are
   /// printed as escapes.

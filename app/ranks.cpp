@@ -12,7 +12,8 @@ namespace retrace::app {
 namespace {
 
 /// Runs a rank other than 0: computes the tasks assigned by rank 0 and prints nothing. If this rank fails, rank 0
-/// reports it and continues without it. The exit code is always 0, because mpirun would otherwise end the whole job.
+/// reports the failure and continues without this rank. The exit code is always 0, because mpirun would otherwise end
+/// the whole job.
 ExitCode serve(const CommonOptions& common, std::size_t at_a_time, const std::function<ComputeTask()>& help,
                studies::MpiSession& session) {
   try {

@@ -39,7 +39,7 @@ Argument dye_argument(Name& dye, const std::string& help) {
 /// \param of_rre true: all engines of `retrace rre`; false: only the engines of pictures and photometry
 Words engine_words(bool of_rre);
 
-/// Options for reading height maps. They give information that the files may lack.
+/// Options for reading height maps. They supply information that is missing in some files, such as units.
 struct MapOptions {
   std::optional<std::string> pixel_um;  ///< spacing of the points: one number, or two numbers separated by a comma
   std::optional<std::string> height_unit;

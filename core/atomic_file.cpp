@@ -56,8 +56,8 @@ void remove_if_abandoned(const fs::path& file) {
   ::close(descriptor);
 }
 
-/// Removes temporary files that were left in the folder of `target` by processes that were killed while they wrote
-/// `target`.
+/// Removes temporary files from the folder of `target` that earlier processes left behind. Such a process was killed
+/// while it wrote `target`.
 void remove_abandoned(const fs::path& target) {
   const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
   const std::string prefix = temporary_prefix(target);
@@ -74,7 +74,7 @@ struct TemporaryName {
   std::array<char, 4096> name{};
 };
 /// Maximum number of temporary files that a signal handler can remove when it ends the process. If more files are open
-/// at that time, the others remain until a later run writes the same output files.
+/// at that time, the additional files remain until a later run writes the same output files.
 constexpr std::size_t kMaxTemporaryNames = 16;
 std::array<TemporaryName, kMaxTemporaryNames> temporary_names;
 
@@ -106,7 +106,7 @@ class KnownName {
   }
 
  private:
-  TemporaryName* entry_ = nullptr;  ///< entry in `temporary_names`; null: no name is registered
+  TemporaryName* entry_ = nullptr;  ///< entry in `temporary_names`; null if no name is registered
 };
 
 /// A new file with a random temporary name. move_to() renames it to its final name. If move_to() is not called, the
@@ -120,8 +120,8 @@ class TemporaryFile {
     const bool is_replacement = ::stat(target.c_str(), &before) == 0;
     const mode_t mode = is_replacement ? before.st_mode & 0777 : 0666;
     make(target, mode);
-    // The umask limits the mode of a new file. If the file replaces an existing file, it gets the mode of that file. A
-    // failure of fchmod is ignored because some file systems do not store modes.
+    // The umask limits the mode of a new file. A file that replaces an existing file gets the mode of the existing
+    // file. A failure of fchmod is ignored because some file systems do not store modes.
     if (is_replacement) static_cast<void>(::fchmod(descriptor_, mode));
   }
   TemporaryFile(const TemporaryFile&) = delete;
@@ -156,7 +156,8 @@ class TemporaryFile {
     throw OutputError(fmt::format("{}: cannot be written: {}", target.string(), reason(errno)));
   }
 
-  /// Creates and locks a new file. If another process removes the file before it is locked, creates another one.
+  /// Creates and locks a new file. If another process removes the file before it is locked, the function creates
+  /// another file.
   void make(const fs::path& target, mode_t mode) {
     constexpr int kMaxAttempts = 100;
     for (int attempt = 0; attempt < kMaxAttempts; ++attempt) {
@@ -241,7 +242,8 @@ void remove_temporary_files() noexcept {
 void write_file_atomically(const fs::path& path, std::string_view content) {
   std::error_code ignored;
   if (fs::exists(path, ignored) && !fs::is_regular_file(path, ignored)) {
-    // Devices such as /dev/null and pipes cannot be replaced by another file. They are written directly.
+    // Devices such as /dev/null and pipes cannot be replaced by a regular file. The content is written directly to
+    // them.
     if (fs::is_directory(path, ignored)) throw OutputError(path.string() + ": cannot be written: it is a folder");
     std::ofstream stream(path, std::ios::binary);
     stream << content << std::flush;
@@ -254,7 +256,8 @@ void write_file_atomically(const fs::path& path, std::string_view content) {
   file.move_to(target);
 }
 
-/// Implementation of GrowingFile. Collects appended bytes in a buffer, because many of them are short.
+/// Implementation of GrowingFile. Collects appended bytes in a buffer, because many calls of append() have only few
+/// bytes.
 class GrowingFile::Hidden {
  public:
   explicit Hidden(fs::path target) : target_(std::move(target)), file_(target_) {}

@@ -16,14 +16,15 @@ namespace retrace {
 /// \throw OutputError with the path and the reason; `path` is then unchanged
 void write_file_atomically(const std::filesystem::path& path, std::string_view content);
 
-/// Output file of any length that is written in parts. It appears under its name when finish() is called.
+/// Output file of any length that is written in parts. The bytes go to a temporary file, which gets its final name in
+/// finish().
 class GrowingFile {
  public:
   /// \throw OutputError if the file cannot be written, or if `path` exists and is not a regular file
   explicit GrowingFile(const std::filesystem::path& path);
   GrowingFile(const GrowingFile&) = delete;
   GrowingFile& operator=(const GrowingFile&) = delete;
-  /// Removes the file unless finish() was called.
+  /// Removes the temporary file unless finish() was called.
   ~GrowingFile();
 
   /// \throw OutputError
@@ -57,8 +58,8 @@ std::string read_file(const std::filesystem::path& path, std::size_t most_bytes 
 /// \throw InputError if standard input cannot be read or has more than `most_bytes` bytes
 std::string read_standard_input(std::size_t most_bytes);
 
-/// Checks the size of a file before another library reads the file. Accepts a file that does not exist, because that
-/// library reports it.
+/// Checks the size of a file before another library reads the file. Accepts a file that does not exist, because the
+/// library that reads the file reports this error.
 /// \throw InputError if the file is not a regular file or has more than `most_bytes` bytes
 void require_short_file(const std::filesystem::path& path, std::size_t most_bytes);
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Converts bytes to text, for documents that embed files.
+// Converts bytes to Base64 text, for documents that embed files.
 
 #include <string>
 #include <string_view>

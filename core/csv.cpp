@@ -41,7 +41,7 @@ bool CsvReader::next() {
   return true;
 }
 
-/// Splits the next line that is neither empty nor a comment into values.
+/// Reads the next line that is neither empty nor a comment, and splits it into values.
 bool CsvReader::next_line() {
   while (!rest_.empty()) {
     const std::size_t end = std::min(rest_.find('\n'), rest_.size());

@@ -29,8 +29,8 @@ class RETRACE_API Error : public std::runtime_error {
   ExitCode exit_code_;
 };
 
-/// Position in an input. An empty file, an empty key or the line 0 means that this part is unknown; it is omitted in
-/// messages.
+/// Position in an input. An empty file, an empty key or the line 0 means that this part of the position is unknown.
+/// Messages omit unknown parts.
 struct InputLocation {
   std::string file;
   int line = 0;

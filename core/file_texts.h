@@ -1,6 +1,6 @@
 #pragma once
 
-// Texts that are used instead of the contents of files, for callers that have the contents in memory.
+// Contents of files that a caller has in memory. They are used instead of the files of the same names.
 
 #include <map>
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace retrace {
 
-/// Contents of files by file name. Files with these names are not read.
+/// Contents of files by file name. If a name is in the map, the file of this name is not read.
 using FileTexts = std::map<std::string, std::string>;
 
 /// Returns the content of a file, from `texts` if it contains the file, and otherwise from the file system.

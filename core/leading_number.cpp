@@ -14,7 +14,7 @@ std::optional<LeadingNumber> leading_number(std::string_view text) {
   const std::string_view read = text.substr(0, number.length);
   const std::string_view mantissa = read.substr(0, read.find_first_of("eE"));
   const bool has_digits = mantissa.find_first_of("123456789") != std::string_view::npos;
-  // The number is beyond the range of doubles: it was read as infinite, or as 0 although it is not 0.
+  // The number is outside the range of doubles. It was read as infinity, or as 0 although its text is not 0.
   if (has_digits && (std::isinf(number.value) || number.value == 0.0)) return std::nullopt;
   return number;
 }

@@ -69,7 +69,8 @@ void BeamMemory::require_shared() {
   if (!is_shared_) return;
   const std::uint64_t now = bytes_.load(std::memory_order_relaxed);
   if (now > reported_bytes_ + kReportedStep || now + kReportedStep < reported_bytes_) {
-    shared_bytes.fetch_add(now - reported_bytes_);  // unsigned arithmetic: a negative difference is added modulo 2^64
+    // A negative difference wraps around; addition modulo 2^64 is still correct.
+    shared_bytes.fetch_add(now - reported_bytes_);
     reported_bytes_ = now;
   }
   if (reported_bytes_ > 0 && shared_bytes.load(std::memory_order_relaxed) > beam_memory_bytes())

@@ -36,7 +36,7 @@ std::uint64_t beam_memory_bytes();
 std::string memory_budget_text();
 
 /// Exception that is thrown if traces that run in parallel together exceed their common memory limit. The trace that
-/// throws it need not exceed its own limit and can be repeated alone.
+/// throws it need not exceed its own limit. It can be repeated while no other trace runs.
 struct SharedMemoryShort {};
 
 /// Scope in which traces of the current thread are subject to the common memory limit of parallel traces.

@@ -89,7 +89,8 @@ std::string alternatives(std::span<const std::string_view> names) {
 }
 
 std::string_view closest(std::string_view given, std::span<const std::string_view> names) {
-  constexpr std::size_t longest = 64;  // all known names are shorter; limits the time for long inputs
+  // Maximum length of a word in bytes; all known names are shorter, and the limit bounds the computation time.
+  constexpr std::size_t longest = 64;
   if (given.empty() || given.size() > longest) return {};
   std::size_t best = std::max<std::size_t>(1, given.size() / 3) + 1;
   std::string_view found;

@@ -17,7 +17,8 @@ struct BytePicture {
   std::size_t columns = 0;
   std::size_t rows = 0;
   std::size_t channels = 0;
-  int alpha_channel = -1;  ///< index of the alpha channel; -1: none. The other channels are premultiplied by alpha
+  /// Index of the alpha channel, or -1 if there is none; the other channels are premultiplied by alpha.
+  int alpha_channel = -1;
   std::vector<std::uint8_t> values;
 };
 
@@ -31,7 +32,7 @@ struct FloatPicture {
 };
 
 /// Reads and writes picture files. If a file cannot be read or created, all functions throw std::runtime_error with the
-/// message of the library.
+/// message of OpenImageIO.
 class PictureFiles {
  public:
   struct Size {

@@ -25,12 +25,13 @@ class TaskLedger {
   virtual ~TaskLedger() = default;
   /// Returns the next task and marks it as taken. Returns nothing if no task is available at present.
   virtual std::optional<std::uint64_t> take() = 0;
-  /// Makes a task that was taken available again.
+  /// Returns a task, which was taken but not finished, to the list of available tasks.
   virtual void give_back(std::uint64_t task) = 0;
   /// Stores the result of a task that was taken.
   /// \param bytes result of ComputeTask
   virtual void finish(std::uint64_t task, const std::string& bytes) = 0;
-  /// Returns true if all tasks are finished. If further tasks become necessary, take() returns them.
+  /// Returns true if all tasks are finished. If it returns false, take() returns the tasks that are to be computed
+  /// next.
   /// \pre no task is taken
   virtual bool is_finished() = 0;
 };

@@ -13,7 +13,8 @@ struct SinCos {
 
 /// Returns the sine and the cosine of an angle. At multiples of 15 degrees, both are the doubles nearest to the exact
 /// values. For example, the sine of 180 degrees is exactly 0, whereas std::sin returns 1.2e-16. An angle is regarded as
-/// a multiple of 15 degrees if it differs from it only by the rounding errors of a conversion to radians and back.
+/// a multiple of 15 degrees if it differs from such a multiple only by the rounding errors of a conversion to radians
+/// and back.
 SinCos sin_cos(Angle angle);
 
 /// Returns the sine and the cosine of an angle in degrees.

@@ -11,8 +11,8 @@
 
 namespace retrace {
 
-/// Reports the progress of one part of a computation as progress of the whole computation. The progress 0 to 1 of the
-/// part is mapped linearly to `from` to `to`.
+/// Reports the progress of one part of a computation as progress of the whole computation. The progress of the part, 0
+/// to 1, is mapped linearly to the range from `from` to `to`.
 class PartOfProgress : public Progress {
  public:
   /// \param whole receiver of the progress of the whole computation; null: nothing is reported
@@ -26,8 +26,8 @@ class PartOfProgress : public Progress {
   double from_, to_;
 };
 
-/// Progress of a computation that may be aborted and started again with another method. The progress 0 to 1 of the new
-/// attempt is mapped to the range from the last reported value to 1, so that reported values do not decrease.
+/// Progress of a computation that may be aborted and started again with another method. The progress of the new
+/// attempt, 0 to 1, is mapped to the range from the last reported value to 1, so that reported values do not decrease.
 class AttemptProgress : public Progress {
  public:
   /// \param whole receiver of the reported values; null: nothing is reported

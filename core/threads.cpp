@@ -17,7 +17,7 @@ void run_with_threads(unsigned threads, const std::function<void()>& work) {
     return;
   }
   const unsigned useful = std::min(threads, std::max(8U, 4 * std::thread::hardware_concurrency()));
-  // The default limit of TBB is the number of cores. A larger number is allowed.
+  // By default, TBB limits the number of threads to the number of cores. This object allows a larger number.
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, useful);
   tbb::task_arena arena(static_cast<int>(useful));
   arena.execute(work);
@@ -41,7 +41,7 @@ struct Loop {
   std::atomic<unsigned> handed_back{0};
 };
 
-/// A part of a loop that one thread executes, until it is finished or throws.
+/// Marks the execution of a part of a loop by one thread. The destructor marks its end, also if the part throws.
 class Piece {
  public:
   explicit Piece(Loop& loop) : loop_(loop) { static_cast<void>(loop_.handed_out.load(std::memory_order_acquire)); }
@@ -57,11 +57,13 @@ class Piece {
 
 void for_each_in_parallel(std::size_t count, const std::function<void(std::size_t)>& work) {
   Loop loop(work);
-  // A thread that waits for other threads may execute parts of this loop, but not of an enclosing parallel loop.
+  // While a thread waits for other threads of this loop, isolate() lets it execute only parts of this loop. It must not
+  // start parts of an enclosing parallel loop.
   tbb::this_task_arena::isolate([&loop, count] {
     using Range = tbb::blocked_range<std::size_t>;
-    // The lambda captures one pointer, which TBB copies without memcpy. Larger captures would cause calls of memcpy,
-    // which tests/tsan.supp could not distinguish from other calls.
+    // The lambda captures one pointer, which TBB copies without memcpy. Larger captures would be copied with memcpy.
+    // ThreadSanitizer would report these copies, and tests/tsan.supp could not suppress them without also suppressing
+    // other calls of memcpy.
     tbb::parallel_for(Range(0, count), [&loop](const Range& range) {
       const Piece piece(loop);
       for (std::size_t k = range.begin(); k < range.end(); ++k) loop.work(k);

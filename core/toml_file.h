@@ -110,9 +110,9 @@ class TomlTable {
   std::shared_ptr<Hidden> hidden_;
 };
 
-/// Maximum size in bytes of a text whose lines may have any number of dots. toml++ uses one level of recursion for each
-/// level of a tree when it destroys the tree, and two bytes of a dotted key `a.a.a...` make one level. 64 KiB of such a
-/// key exceed a stack of 8 MiB. Longer texts may therefore have few dots per line.
+/// Maximum size in bytes of a text whose lines may have any number of dots. In a longer text, the number of dots in a
+/// line is limited. toml++ uses one level of recursion for each level of a tree when it destroys the tree. Two bytes of
+/// a dotted key `a.a.a...` make one level, so 64 KiB of such a key exceed a stack of 8 MiB.
 inline constexpr std::size_t kShortTomlBytes = 16384;
 inline constexpr std::size_t kMostDesignBytes = std::size_t{1} << 20;  ///< designs and studies
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Warnings: doubts about a result that the user should know.
+// Warnings: reasons to doubt a result, which are reported to the user.
 
 #include <string>
 #include <string_view>
@@ -8,7 +8,7 @@
 
 namespace retrace {
 
-/// Doubt about a result. The text is for people and may change between versions; programs and tests read the
+/// Reason to doubt a result. The text is for people and may change between versions. Programs and tests use the
 /// identifier.
 struct Warning {
   std::string_view id;  ///< such as "index_extrapolated"; refers to a text that lives as long as the program

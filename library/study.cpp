@@ -38,7 +38,7 @@ studies::IfExists if_exists_of(const StudyRequest& request) {
   throw InputError({"", 0, "if_exists"}, "must be refuse, resume or overwrite, got " + in_quotes(request.if_exists));
 }
 
-/// Reports the progress of a sweep to a Progress object. Values that decrease are not reported.
+/// Reports the progress of a sweep to a Progress object. A value that is smaller than an earlier one is not reported.
 class Share : public studies::SweepObserver {
  public:
   explicit Share(Progress* progress) : progress_(progress) {}

@@ -10,7 +10,7 @@
 namespace retrace::report {
 namespace {
 
-/// Largest magnitude of values. The difference of two larger values could overflow.
+/// Maximum magnitude of values that are drawn. The difference of two larger values could overflow.
 constexpr double kLargest = 1e300;
 /// Minimum width of a range, relative to its values. Narrower ranges are rounding noise.
 constexpr double kNarrowest = 1e-9;
@@ -103,7 +103,7 @@ Range drawable(Range range) {
 Ticks make_ticks(Range range, int most) {
   range = drawable(range);
   NiceStep step = nice_step(range.span(), most);
-  // A step that is larger than the range could give no tick at all.
+  // If the step is larger than the range, there may be no tick in the range.
   if (step.times(1.0) > range.span()) step = step.previous();
   Ticks ticks;
   ticks.step = step.times(1.0);

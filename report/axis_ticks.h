@@ -41,14 +41,15 @@ std::optional<Range> extent_of(std::span<const double> values);
 /// Returns a range that can be drawn: ordered, limited to allowed values, and widened if its width is (nearly) zero.
 Range drawable(Range range);
 
-/// Returns the ticks within `range`, which is made drawable first.
+/// Returns the ticks within `range`, after the range has been changed by drawable().
 /// \param most approximate maximum number of intervals
 /// \pre most >= 1
 Ticks make_ticks(Range range, int most);
 
-/// Returns an axis range whose ends are on ticks for `most` intervals. If the values are positive and their spread
-/// exceeds half of the maximum, the range starts at 0, so that heights can be compared. Otherwise the range fits
-/// closely. Error bars that extend beyond the range by less than a twentieth of a step are ignored.
+/// Returns an axis range whose ends are ticks. The step of the ticks divides the data into at most about `most`
+/// intervals. If the values are positive and their spread exceeds half of the maximum, the range starts at 0, so that
+/// heights can be compared. Otherwise the range fits the values closely. Error bars that extend beyond the range by
+/// less than a twentieth of a step are ignored.
 /// \param data range of the values
 /// \param with_errors range of the values with their error bars
 Range rounded_range(Range data, Range with_errors, int most);

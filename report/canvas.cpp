@@ -15,7 +15,7 @@
 #include "core/message_text.h"
 #include "core/text.h"
 
-#if defined(__has_feature)  // only clang, with which sanitizer builds are made
+#if defined(__has_feature)  // only clang defines it, and sanitizer builds are made with clang
 #if __has_feature(address_sanitizer)
 // Suppresses reports of the leak checker about Fontconfig, which keeps its font cache until the process ends.
 extern "C" const char* __lsan_default_suppressions();
@@ -64,8 +64,8 @@ std::vector<std::string> characters(std::string_view text) {
   return result;
 }
 
-/// Removes the ids of surfaces, to which nothing in the SVG refers. Cairo numbers the surfaces of the whole process, so
-/// equal plots would otherwise give different files.
+/// Removes the ids of surfaces, which are not used in the SVG. Cairo numbers all surfaces of the process consecutively,
+/// so equal plots would otherwise give different files.
 std::string without_surface_ids(std::string svg) {
   constexpr std::string_view start = " id=\"surface";
   for (std::size_t at = svg.find(start); at != std::string::npos; at = svg.find(start, at)) {
@@ -76,8 +76,8 @@ std::string without_surface_ids(std::string svg) {
   return svg;
 }
 
-/// Renumbers the ids of images, and the references to them, from 1. Cairo numbers the images of the whole process, so
-/// equal plots would otherwise give different files.
+/// Renumbers the ids of images, and the references to them, from 1. Cairo numbers all images of the process
+/// consecutively, so equal plots would otherwise give different files.
 std::string with_own_image_ids(std::string svg) {
   std::vector<std::string> known;
   for (const std::string_view mark : {" id=\"image", "\"#image"})
@@ -282,7 +282,7 @@ void Canvas::hatch(const std::vector<Point>& polygon, double spacing, const Stro
 
 void Canvas::marker(Point centre, Marker shape, double radius, Colour colour) {
   cairo_t* const context = hidden_->context.get();
-  // The corners are scaled such that all shapes appear equally large.
+  // The coordinates of the corners below make all shapes appear equally large.
   const auto polygon = [&](const std::vector<Point>& corners) {
     for (const Point corner : corners)
       cairo_line_to(context, centre.x + radius * corner.x, centre.y + radius * corner.y);

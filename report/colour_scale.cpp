@@ -8,7 +8,8 @@ namespace retrace::report {
 namespace {
 
 constexpr double kWhiteShare = 0.999;
-// Luminance, as a fraction of the maximum, below which a pixel counts as dark and is ignored in the mean.
+// Luminance, as a fraction of the maximum, below which a pixel counts as dark. Dark pixels are not included in the
+// mean.
 constexpr double kDark = 1e-5;
 
 /// Returns the value below which the given fraction of all values is located.

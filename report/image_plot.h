@@ -16,11 +16,12 @@ struct ImagePanel {
   std::string value_label;  ///< name of the values with their unit, such as "relative irradiance"
   std::size_t columns = 1;
   std::size_t rows = 1;
-  std::vector<double> values;   ///< row by row from the top, each >= 0
-  double width = 1.0;           ///< width of the picture, in `length_unit`
-  std::string length_unit;      ///< "mm", "°"; empty: no scale bar
-  double full_value = 0.0;      ///< value at the upper end of the colour scale; 0: the largest value
-  bool is_logarithmic = false;  ///< true: the colour scale is logarithmic, with four decades below its upper end
+  std::vector<double> values;  ///< row by row from the top, each >= 0
+  double width = 1.0;          ///< width of the picture, in `length_unit`
+  std::string length_unit;     ///< "mm", "°"; empty: no scale bar
+  double full_value = 0.0;     ///< value at the upper end of the colour scale; 0: the largest value
+  /// True: the colour scale is logarithmic and covers the four decades below its upper end.
+  bool is_logarithmic = false;
 };
 
 /// Panels next to each other under one title, with lines of remarks.

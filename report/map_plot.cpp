@@ -16,7 +16,7 @@ using geometry::Polygon, geometry::Rectangle, geometry::Vec2;
 
 constexpr Colour kRest{0.945, 0.945, 0.945};
 constexpr Colour kHatch{0.80, 0.80, 0.80};
-constexpr Colour kLine{0.55, 0.55, 0.55};  ///< visible on the palest and on the darkest region
+constexpr Colour kLine{0.55, 0.55, 0.55};  ///< grey that is visible on the palest and on the darkest region
 
 // Colour scale YlGnBu of ColorBrewer (Harrower and Brewer 2003). Its lightness changes monotonically, and it is
 // suitable for colour-blind readers.
@@ -170,7 +170,8 @@ Plan plan_of(const MapPanel& panel, const MapLayout& layout, Point box_corner) {
           {{shown.lower.y(), shown.upper.y()}, top + size.height, top}};
 }
 
-/// Returns the displacements of the copies of a periodic panel. If the panel is not periodic, returns only zero.
+/// Returns the displacements of the copies of a periodic panel. If the panel is not periodic, returns only the zero
+/// vector.
 std::vector<Vec2> copies_of(const MapPanel& panel) {
   if (!panel.is_periodic) return {Vec2::Zero()};
   const Vec2 period = geometry::bounding_box(panel.outline).size();

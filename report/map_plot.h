@@ -26,9 +26,9 @@ struct MapPanel {
   geometry::Polygon outline;
   bool is_periodic = false;         ///< true if the rectangular outline repeats periodically; its surroundings are
                                     ///< drawn paler
-  std::vector<MapLine> lines;       ///< lines, which are not drawn if they are too close together
-  std::vector<MapLine> fine_lines;  ///< likewise
-  std::vector<MapRegion> regions;   ///< coloured regions; the rest of the outline is hatched
+  std::vector<MapLine> lines;       ///< lines that are not drawn if they are too close together
+  std::vector<MapLine> fine_lines;  ///< finer lines, which are also not drawn if they are too close together
+  std::vector<MapRegion> regions;   ///< coloured regions; the remaining area of the outline is hatched
 };
 
 /// Plans next to each other, with one colour scale. Texts are UTF-8; texts that are too long are shortened with an
@@ -38,7 +38,7 @@ struct MapPlot {
   std::string axis_unit;    ///< unit of the axes; "mm" gives the labels "x (mm)" and "y (mm)"
   std::string value_label;  ///< label of the colour bar, which starts at 0
   std::string rest_label;   ///< meaning of hatched areas
-  double full_value = 1.0;  ///< upper end of the colour bar if a value exceeds half of it
+  double full_value = 1.0;  ///< upper end of the colour bar; a lower end is chosen if all values are below half of it
   std::vector<MapPanel> panels;
 };
 

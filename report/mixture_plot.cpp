@@ -58,8 +58,8 @@ void draw_zones(Canvas& canvas, const MixturePlot& plot) {
   }
 }
 
-/// Matrix with one row for each goal. A row contains the contribution of each zone, shaded by its fraction, the total
-/// and the price.
+/// Matrix with one row for each goal. A row contains the contributions of all zones, the total and the price of the
+/// goal (its shadow price in the linear program). The larger the fraction that a zone contributes, the darker its cell.
 class GoalMatrix {
  public:
   GoalMatrix(Canvas& canvas, const MixturePlot& plot)

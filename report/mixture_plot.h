@@ -1,6 +1,7 @@
 #pragma once
 
-// Plots of a part that consists of zones: its plan, and the matrix of the contributions of each zone to each goal.
+// Plots of a part that consists of zones: the plan of the part, and a matrix that shows how much each zone contributes
+// to each goal.
 
 #include <string>
 #include <vector>
@@ -20,7 +21,7 @@ struct MixtureGoal {
   std::string label;
   std::vector<double> given;  ///< contribution of each zone
   std::string total;          ///< value of the whole part
-  double price = 0.0;         ///< price of the goal; 0: the goal is not an active constraint
+  double price = 0.0;         ///< shadow price of the goal; 0 if the goal is not an active constraint
 };
 
 /// Plot of a part with zones. Zones are stripes of the plan, from bottom to top. Texts are UTF-8; texts that are too

@@ -44,7 +44,7 @@ constexpr std::size_t kMostMarkers = 45;  ///< maximum number of points of a ser
                                           ///< drawn as lines only
 constexpr int kMostXTicks = 9;
 constexpr int kMostYTicks = 7;
-/// Minimum half length of an error bar. A shorter one would be hidden by the marker or the line.
+/// Minimum half length of an error bar. The marker or the line would hide a shorter error bar.
 constexpr double kShortestErrorBar = 1.5;
 
 /// Appearance of a series, which depends on its index in the plot.
@@ -92,7 +92,7 @@ std::pair<Range, Range> axis_ranges(const LinePlot& plot) {
   if (plot.y_range) return {drawable(x), drawable(*plot.y_range)};
   const Range data = extent_of(ys).value_or(Range{0.0, 1.0});
   Range y = rounded_range(data, extent_of(with_errors).value_or(data), kMostYTicks);
-  // Axes in percent are limited to 0 to 100.
+  // Axes in percent are limited to the range from 0 to 100.
   if (plot.y_label.find('%') != std::string::npos && data.low >= 0.0 && data.high <= 100.0)
     y = drawable({std::max(y.low, 0.0), std::min(y.high, 100.0)});
   return {drawable(x), y};
@@ -158,7 +158,7 @@ double widest(const std::vector<std::string>& labels, const Canvas& canvas) {
   return width;
 }
 
-/// Returns the maximum number of ticks whose labels do not overlap.
+/// Returns as many ticks as possible without an overlap of their labels.
 Ticks x_ticks_that_fit(Range range, const Canvas& canvas) {
   for (int most = kMostXTicks;; --most) {
     Ticks ticks = make_ticks(range, most);

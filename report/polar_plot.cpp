@@ -21,7 +21,7 @@ constexpr Size kPolarCell{290.0, 304.0};
 constexpr double kBarRoom = 96.0;
 constexpr double kPolarBarWidth = 14.0;
 constexpr std::size_t kMostAbreast = 3;
-/// Number of decades below the largest value that the colours show.
+/// Number of decades that the colour scale covers, downwards from the largest value.
 constexpr double kPolarDecades = 4.0;
 
 std::vector<Point> circle(Point centre, double radius) {
@@ -34,7 +34,7 @@ std::vector<Point> circle(Point centre, double radius) {
   return points;
 }
 
-/// Returns the range of the colour scale in decades, below the largest value.
+/// Returns the range of the colour scale as decimal logarithms. It ends at the largest value and covers kPolarDecades.
 Range decades_of(const PolarPlot& plot) {
   double largest = 0.0;
   for (const PolarPanel& panel : plot.panels)

@@ -19,7 +19,8 @@ namespace {
 
 struct CalibrateOptions {
   std::optional<std::string> measurements;
-  std::string times;  ///< machine on which programs were timed; empty: the table contains measurements of parts
+  /// Machine on which programs were timed; if empty, the table contains measurements of parts instead of times.
+  std::string times;
   std::string dialect = "rs274ngc";
 };
 
@@ -31,7 +32,7 @@ std::vector<Argument> arguments(CalibrateOptions& options) {
        "of its axes are estimated. Without MEASUREMENTS: write programs to be timed",
        &options.times, machine_traits()}};
   all.push_back(dialect_argument(options.dialect));
-  // Programs are only written if --times is given without a table. A table of times refers to existing program files.
+  // The dialect is needed only for writing programs. Programs are written if --times is given without a table.
   all.back().traits.needs = {any_given({"--times"}), absent("MEASUREMENTS")};
   return all;
 }

@@ -35,7 +35,7 @@ std::string bash_value(const std::string& pattern, const Argument& argument) {
 }
 
 /// Returns the cases of a bash `case` statement for the arguments of a command.
-/// \param command name of the command; "*": the arguments that all commands have
+/// \param command name of the command, or "*" for the arguments that all commands have
 std::string bash_values(const std::string& command, const std::vector<Argument>& arguments) {
   std::string cases;
   int place = 0;
@@ -226,7 +226,7 @@ std::string zsh_script() {
 }
 
 /// Returns the fish `complete` lines of an argument.
-/// \param condition condition of fish under which the lines apply; empty: always
+/// \param condition condition in fish syntax under which the lines apply; if empty, they always apply
 std::string fish_argument(const std::string& condition, const Argument& argument) {
   const auto quoted = [](const std::string& text) {
     return "'" + replaced(replaced(text, '\\', "\\\\"), '\'', "\\'") + "'";

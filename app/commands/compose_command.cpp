@@ -27,7 +27,7 @@
 namespace retrace::app {
 namespace {
 
-/// Returns the design of the cells of a zone, or an empty text if the part has fewer zones.
+/// Returns the design of the cells of the zone with index `zone`, or an empty text if there is no such zone.
 std::string zone_design(const studies::Study& study, const std::vector<studies::Zone>& zones, std::size_t zone) {
   return zone < zones.size() ? studies::zone_design_text(study, zones, zone) : "";
 }
@@ -96,7 +96,7 @@ struct WholePart {
 };
 
 /// Returns the design and the fabrication job of the whole part, if they are requested.
-/// \param warnings receives the reason if one of them cannot be made; the other results are still written
+/// \param warnings receives the reason if the design or the job cannot be made; all other results are still written
 WholePart whole_part_of(const ComposeOptions& options, const studies::Study& study,
                         const std::vector<studies::Zone>& zones, const studies::ZonedDesignRequest& zoned,
                         Warnings& warnings) {

@@ -42,7 +42,7 @@ std::vector<Argument> arguments(CorrectOptions& options) {
                    "must say where its middle lies, as in facets.txt@0.25,-0.5, got " + in_quotes(text));
 }
 
-/// Returns a facet map without heights, with the file and position from a text.
+/// Reads the file name and the position of a height map from a text. The returned map does not contain heights yet.
 /// \param text FILE@X,Y or FILE@X,Y,TURN
 studies::FacetMap place_of(const std::string& text) {
   constexpr double kFarthestMm = 1e4;
@@ -62,8 +62,8 @@ studies::FacetMap place_of(const std::string& text) {
   return map;
 }
 
-/// Returns the job for the corrected machine file, which is in the same folder. The design is not moved. Its path is
-/// made relative to this folder.
+/// Returns a copy of the job that uses the corrected machine file. The job and the machine file are both written to
+/// `folder`. The design file stays where it is, and its path in the job is made relative to `folder`.
 fabrication::Job corrected_job(fabrication::Job job, const fs::path& file, const fs::path& folder) {
   job.machine = "machine.toml";
   std::error_code error;

@@ -27,7 +27,8 @@ std::vector<Argument> arguments(ExploreOptions& options) {
 
 constexpr std::string_view kTitle = "retrace: prism arrays and their light";
 
-/// Returns the initial design of the page. The text is that of the design file, byte for byte, unless --set changes it.
+/// Returns the design that the page shows first. Its text is the content of the design file, byte for byte, unless
+/// --set changes it.
 report::LiveStart start_of(const studies::Design& design) {
   studies::check_names_no_file(design, "which a page by itself does not have");
   const schema::Document& document = *design.document;

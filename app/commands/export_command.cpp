@@ -83,8 +83,8 @@ studies::AppearanceRequest appearance_request(const ExportOptions& options) {
   return request;
 }
 
-/// Computes the reflection of a design as a material and writes it. The format `table` consists of two files: the
-/// values are in a CSV file in the same folder.
+/// Computes how a design reflects light and writes the result as a material for other programs. The format `table`
+/// consists of two files: the values are in a CSV file in the same folder.
 ExitCode run_material(const ExportOptions& options, const CommonOptions& common, const std::string& file,
                       studies::AppearanceFormat format) {
   const studies::Design design = studies::read_design(options.design, common.overrides);
@@ -96,8 +96,8 @@ ExitCode run_material(const ExportOptions& options, const CommonOptions& common,
   files.add_named("--out", file, [&] { return text.text; });
   if (format == studies::AppearanceFormat::table) files.add_named("--out", values, [&] { return text.values; });
   files.prepare();
-  // The interrupt handler exists only during the computation. Later interrupts end the program immediately, because
-  // there is nothing to finish.
+  // The temporary OrderlyInterrupt exists only during the computation. A later interrupt ends the program immediately,
+  // because only the writing of the files remains.
   const RunText running{
       "material", {fmt::format("give a larger --error (now {:g})", request.error), "give fewer --most-directions"}};
   OrderlyInterrupt().run(common, running, [&](Progress* bar, const Cancellation* cancel) {

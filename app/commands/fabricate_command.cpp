@@ -76,7 +76,8 @@ ExitCode run(const FabricateOptions& options, const CommonOptions& common) {
   request.options.stop_every = options.stop_every;
   request.options.split_hours = options.split_hours;
   const studies::FabricationResult result = studies::fabricate(request);
-  // The effect of errors on the light is traced only if the sheet is written to a file or to JSON.
+  // The sheet can also contain how machining errors change the returned light. These changes are traced only if the
+  // sheet is written to a file or to JSON.
   const studies::SetupSheet sheet = studies::setup_sheet(result, !common.out.empty() || !common.json.empty());
 
   std::vector<std::string> inputs = {options.job};

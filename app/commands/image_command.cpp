@@ -44,7 +44,7 @@ struct ImageOptions {
   bool camera = false;
   bool road = false;
 
-  // Requests for each kind of picture. Many options set a member of these directly.
+  // Requests for each kind of picture. Many options write their value directly into a member of one of these requests.
   studies::DetectorRequest detected;
   studies::CameraRequest photographed;
   studies::RoadRequest driven;
@@ -166,7 +166,7 @@ std::vector<Argument> arguments(ImageOptions& options) {
 }
 
 /// Parses a list of numbers.
-/// \param count required number of numbers
+/// \param count number of elements that the list must have
 /// \param form description of the expected text, for messages
 /// \throw InputError with the name of the option if `text` is not a list of `count` numbers
 std::vector<double> numbers_of(const std::string& text, char separator, std::size_t count, const std::string& option,
@@ -178,9 +178,9 @@ std::vector<double> numbers_of(const std::string& text, char separator, std::siz
   return numbers;
 }
 
-/// Parses `count` numbers of pixels, separated by "x".
+/// Parses `count` pixel counts that are separated by "x", such as 400x300.
 /// \param form description of the expected text, for messages
-/// \throw InputError if a number is not a non-negative integer
+/// \throw InputError if a pixel count is not a non-negative integer
 std::vector<std::size_t> pixels_of(const std::string& text, std::size_t count, const std::string& form) {
   std::vector<std::size_t> pixels;
   for (const double n : numbers_of(text, 'x', count, "--pixels", form)) {
@@ -277,7 +277,8 @@ std::string camera_png(const raytrace::CameraImage& image) {
   return report::png_file(image.columns, image.rows, report::tone_mapped_pixels(image.luminance));
 }
 
-/// Writes a preview of the unfinished camera picture to the output folder, at most every kPreview.
+/// Writes a preview of the unfinished camera picture to the output folder, at most one time in each period of length
+/// kPreview.
 class Preview {
  public:
   explicit Preview(const CommonOptions& common) : out_(common.out) {}

@@ -17,9 +17,11 @@ namespace {
 
 struct JobOptions : MakingOptions {
   std::string design;
-  /// Output file for a design with the facets that a chisel can cut instead of ideal cube corners; empty: not written.
+  /// Output file for a design that has the facets that a chisel can cut, in place of ideal cube corners. If empty, no
+  /// such design is written.
   std::string reachable;
-  std::string test_cuts;  ///< output folder for jobs of test cuts, from which the machine is calibrated; empty: none
+  /// Output folder for jobs of test cuts, from which the machine is calibrated; no test cuts if empty.
+  std::string test_cuts;
 };
 
 std::vector<Argument> arguments(JobOptions& options) {
@@ -42,8 +44,8 @@ std::vector<std::string> inputs_of(const JobOptions& options, const studies::Des
   return inputs;
 }
 
-/// Writes a design with the facets that a chisel can cut instead of ideal cube corners. It consists of the design file,
-/// such as part.toml, and the table of its facet planes, such as part_facets.csv.
+/// Writes a design that has the facets that a chisel can cut, in place of ideal cube corners. The output is a design
+/// file, such as part.toml, and the table of its facet planes, such as part_facets.csv.
 ExitCode write_reachable(const JobOptions& options, const CommonOptions& common, const studies::Design& design) {
   if (!common.out.empty()) throw InputError({"", 0, "--out"}, "makes a job: not allowed together with --reachable");
   const fs::path file = options.reachable;

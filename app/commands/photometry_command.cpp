@@ -130,7 +130,7 @@ studies::PhotometryRequest with_options(studies::PhotometryRequest request, cons
 }
 
 /// Adds the output files of the command.
-/// \param result result of the computation, which is available when the files are written
+/// \param result result of the computation; it is filled before the files are written
 void add_files(ResultFiles& files, const studies::PhotometryResult& result) {
   files.add("photometry.csv", [&] { return studies::photometry_csv(result); });
   files.add("far_field.csv", [&] { return studies::far_field_map_csv(result); });

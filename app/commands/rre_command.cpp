@@ -97,7 +97,7 @@ void warn_of_panels(studies::RreResult& result) {
 }
 
 /// Adds the output files of the command.
-/// \param result result of the computation, which is available when the files are written
+/// \param result result of the computation; it is filled before the files are written
 void add_files(ResultFiles& files, const studies::RreRequest& asked, const studies::RreResult& result) {
   files.add("rre.csv", [&] { return studies::rre_csv(result); });
   files.add_drawing("rre", [&] { return report::rre_plot(result); });

@@ -30,9 +30,9 @@ namespace {
 
 struct VerifyOptions {
   studies::VerificationRequest request;
-  std::string as_machined;  ///< output file for the design of the machined part; empty: not written
-  std::string map;          ///< output file for the error map (PNG); empty: not written
-  std::string servo;        ///< input file with a table of strokes; empty: no file
+  std::string as_machined;  ///< output file for the design of the machined part; not written if empty
+  std::string map;          ///< output file for the error map (PNG); not written if empty
+  std::string servo;        ///< input file with a table of strokes; no table if empty
 };
 
 Words dialects() {
@@ -71,8 +71,8 @@ auto timed(const CommonOptions& common, double& elapsed_s, const Study& study) {
   return *std::move(run);
 }
 
-/// Kinds of files against which programs can be verified. If a file has no schema, its kind is determined by the tables
-/// of its machine.
+/// Kinds of files against which programs can be verified. A file without the key `schema` is a planed part if it has a
+/// table `mill` or `lathe`, and a job otherwise.
 enum class Kind { job, planed_part, turned_part };
 constexpr std::string_view kSchemas[] = {"retrace.job/1", "retrace.planed_part/1", "retrace.turned_part/1"};
 
@@ -86,7 +86,7 @@ Kind kind_of(const std::string& file) {
   return static_cast<Kind>(found - std::begin(kSchemas));
 }
 
-/// Refuses options that do not apply to this kind.
+/// Refuses options that do not apply to files of kind `kind`.
 void refuse_others(const VerifyOptions& options, Kind kind) {
   const auto refuse = [&](const char* option, const char* whom) {
     throw InputError({"", 0, option}, fmt::format("is for {}; {} is none", whom, options.request.job));

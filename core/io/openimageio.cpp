@@ -1,4 +1,5 @@
-// Module for picture files, which is loaded at its first use. Only this file uses OpenImageIO.
+// Reads and writes picture files with OpenImageIO. This code is a separate shared library, which is loaded at its first
+// use. No other file uses OpenImageIO.
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
@@ -12,8 +13,8 @@
 namespace retrace {
 namespace {
 
-/// Throws an error with the message of the library.
-/// \param why message of the library, which may be empty
+/// Throws an error.
+/// \param why message of OpenImageIO, which may be empty
 [[noreturn]] void fail(const std::string& why) {
   throw std::runtime_error(why.empty() ? "it ends early or is damaged" : why);
 }
@@ -28,7 +29,7 @@ std::unique_ptr<OIIO::ImageInput> opened(const std::filesystem::path& file) {
 }
 
 /// Returns the content of a picture file of the format `name`.
-/// \param pixels values of type `type`, with the channels of a pixel next to each other
+/// \param pixels values of type `type`; all channels of a pixel are stored next to each other
 std::string encoded(const char* name, const OIIO::ImageSpec& spec, OIIO::TypeDesc type, const void* pixels) {
   std::vector<unsigned char> bytes;
   OIIO::Filesystem::IOVecOutput memory(bytes);
@@ -67,7 +68,7 @@ class OpenImageIo final : public PictureFiles {
     spec.channelnames.clear();
     for (const auto& [name, values] : channels) spec.channelnames.push_back(name);
     spec.attribute("compression", "zip");
-    spec.attribute("DateTime", "");  // the default is the current time, which would make equal pictures different files
+    spec.attribute("DateTime", "");  // The default is the current time. With it, files of equal pictures would differ.
     for (const auto& [key, value] : picture.texts) spec.attribute(key, value);
     for (const auto& [key, value] : picture.numbers) spec.attribute(key, static_cast<float>(value));
     const std::size_t pixels = picture.columns * picture.rows;

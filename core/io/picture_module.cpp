@@ -1,4 +1,4 @@
-// Loads the module for picture files.
+// Loads the shared library that reads and writes picture files (core/io/openimageio.cpp).
 #include "core/module.h"
 #include "core/pictures.h"
 

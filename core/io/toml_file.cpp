@@ -16,13 +16,14 @@
 namespace retrace {
 namespace {
 
-/// Maximum number of dots in a line, apart from decimal points. toml++ destroys a tree recursively, so very long dotted
-/// keys could exceed the stack.
+/// Maximum number of dots in a line. Decimal points are not counted. toml++ destroys a tree recursively, so very long
+/// dotted keys could exceed the stack.
 constexpr std::size_t kMostDotsInALine = 64;
 constexpr std::size_t kLongestOverride = 4096;
 constexpr std::string_view kBareKeyCharacters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-.";
 
-/// Returns true if the dot at position `i` is a decimal point: there are only digits on both sides and no further dot.
+/// Returns true if the dot at position `i` is the decimal point of a number. Between the dot and the nearest
+/// delimiters, such as blanks, commas or an exponent, there may be only digits.
 bool is_decimal_point(std::string_view text, std::size_t i) {
   constexpr std::string_view digits = "0123456789_";
   const std::size_t before = text.find_last_not_of(digits, i == 0 ? 0 : i - 1);
@@ -63,7 +64,8 @@ toml::table parse_file(std::string_view text, const std::string& file) {
   }
 }
 
-/// Parses an override KEY=VALUE as TOML. If VALUE is not a TOML value, it is taken as a string without quotes.
+/// Parses an override KEY=VALUE as TOML. If VALUE is not a TOML value, it is used as a string, so that texts can be
+/// given without quotes.
 /// \param label name of the override in messages
 toml::table parse_override(const std::string& text, const std::string& label) {
   const auto refuse = [&](std::string_view why) { return InputError(InputLocation{label, 0, ""}, why); };
@@ -75,7 +77,7 @@ toml::table parse_override(const std::string& text, const std::string& label) {
     toml::table table = toml::parse(text, std::string_view(label));
     if (table.size() == 1 && trimmed(text).front() != '[') return table;
   } catch (const toml::parse_error&) {
-    // The value is taken as a string below.
+    // VALUE is not a TOML value. The code below uses it as a string.
   }
   const std::size_t equals = text.find('=');
   const std::string_view key = trimmed(std::string_view(text).substr(0, equals));
@@ -128,7 +130,8 @@ std::string shown_node(const toml::node& node) {
 struct TomlSource {
   std::string file;
   toml::table root;
-  std::vector<toml::source_path_ptr> paths;  ///< source names of toml++: the file, followed by the overrides
+  /// Names that toml++ stores as the source of a value: the file name, followed by names for the overrides.
+  std::vector<toml::source_path_ptr> paths;
 
   /// Returns 0 for a value from the file; otherwise the number of its override, from 1.
   std::size_t index_of(const toml::node& node) const {
@@ -147,9 +150,9 @@ struct TomlSource {
 /// Data of a TomlTable.
 struct TomlTable::Hidden {
   std::shared_ptr<const TomlSource> source;
-  const toml::table* table = nullptr;        ///< null: the file has no such table
-  std::string name;                          ///< path of the table; empty: the root
-  int line = 0;                              ///< line of the table's header; 0: unknown
+  const toml::table* table = nullptr;        ///< null if the file has no such table
+  std::string name;                          ///< path of the table; empty for the root
+  int line = 0;                              ///< line of the table's header; 0 if unknown
   std::set<std::string, std::less<>> taken;  ///< keys that have been requested
   std::vector<TomlTable> handed_out;         ///< tables within this table that have been requested
 

@@ -9,15 +9,16 @@ namespace retrace {
 namespace {
 
 constexpr int kRows = 12;
-constexpr int kLeastRows = 4;  ///< minimum number of rows; entries of fewer rows may agree by chance
-/// Relative error at which the extrapolation stops.
+/// Minimum number of rows before the result is accepted; in fewer rows, entries may agree by chance.
+constexpr int kLeastRows = 4;
+/// Relative error below which the extrapolation stops.
 constexpr double kGoal = 1e-5;
 
 /// Richardson extrapolation of difference quotients to step 0. The step is halved from row to row.
 class Tableau {
  public:
-  /// \param order increase of the error's power of the step from column to column: 2 for central differences, 1 for
-  /// one-sided differences
+  /// \param order exponent by which the error decreases from column to column: each column removes an error term in
+  /// step^2 for central differences (2), or in step for one-sided differences (1)
   explicit Tableau(int order) : ratio_(order == 2 ? 4.0 : 2.0) {}
 
   void add(const Sample& quotient) {
@@ -67,7 +68,8 @@ class BothSides {
     Derivative best = central_.best();
     const Derivative& above = above_.best();
     const Derivative& below = below_.best();
-    // At a kink, central differences converge to the mean of the two slopes, which is not a derivative.
+    // At a kink, central differences converge to the mean of the left and the right slope. This mean is not a
+    // derivative.
     const double apart = std::abs(above.value - below.value) - above.error - below.error;
     if (apart > 0.0) best.error = std::max(best.error, 0.5 * apart);
     return best;
@@ -94,7 +96,7 @@ class OneSide {
 /// Decides when smaller steps cannot improve the result.
 class Patience {
  public:
-  /// \param noise noise of the next difference quotient
+  /// \param noise bound on the noise of the next difference quotient
   bool ends_after(int row, const Derivative& best, double noise) {
     constexpr int kIdleRows = 2;
     idle_rows_ = best.error > 0.5 * error_ ? idle_rows_ + 1 : 0;
@@ -122,8 +124,8 @@ Derivative extrapolate(Differences differences, double step, double noise, const
 }  // namespace
 
 Derivative differentiate(const std::function<Sample(double)>& f, double x, const DifferenceRange& range) {
-  // Minimum room on the narrower side, relative to the first step, for central differences. With less room, differences
-  // on the wider side are better.
+  // Minimum distance from x to the nearer end of the range, relative to the first step, for central differences. If x
+  // is closer to this end, one-sided differences into the other direction are more accurate.
   constexpr double kNarrow = 1.0 / 8.0;
   const double room_below = x - range.lower;
   const double room_above = range.upper - x;

@@ -32,12 +32,13 @@ struct Derivative {
 
 /// Computes the derivative of `f` at `x` by central differences. The steps are halved, beginning with
 /// `range.first_step`, and the differences are extrapolated to step 0 in a Neville tableau. The error is estimated by
-/// comparing entries of the tableau (Ridders, Adv. Eng. Software 4, 75, 1982). One-sided differences are extrapolated
-/// as well. If they differ by more than their errors, `f` has a kink, and half of their difference is the error. If
-/// `range` has too little room on one side of x, only the differences on the other side are used.
+/// comparing entries of the tableau (Ridders, Adv. Eng. Software 4, 75, 1982). One-sided differences on both sides of x
+/// are extrapolated as well. If the left and the right slope differ by more than their errors, `f` has a kink at x, and
+/// half of the difference is reported as the error. If `range` has too little room on one side of x, only the
+/// differences on the other side are used.
 ///
-/// A kink or jump that is closer to x than the smallest step, 1/2048 of the first, is not resolved. The result has then
-/// not converged.
+/// A kink or jump that is closer to x than the smallest step, 1/2048 of the first, is not resolved. The result has not
+/// converged in that case.
 /// \pre range.lower <= x <= range.upper
 /// \pre `f` can be called for all values within the range; it is called at most 25 times
 Derivative differentiate(const std::function<Sample(double)>& f, double x, const DifferenceRange& range);

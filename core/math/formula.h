@@ -64,8 +64,9 @@ bool is_binary(Formula::Step step);
 inline constexpr std::size_t kLongestFormula = 2000;
 
 /// Parses a formula. It may contain numbers, pi, the variables, + - * / ^, brackets and the functions sqrt exp log sin
-/// cos tan asin acos atan atan2 sinh cosh tanh abs. Powers have the highest precedence and associate to the right,
-/// followed by signs: -x^2 is -(x^2). Angles are in radians. Constant subexpressions are evaluated.
+/// cos tan asin acos atan atan2 sinh cosh tanh abs. Powers have the highest precedence and associate to the right.
+/// Signs have a lower precedence than powers: -x^2 is -(x^2). Angles are in radians. Constant subexpressions are
+/// evaluated.
 /// \param where position of the formula in the input, for messages
 /// \throw InputError with the position in the formula at which parsing failed
 Formula parse_formula(const std::string& text, const std::vector<std::string>& variables, const InputLocation& where);

@@ -1,6 +1,7 @@
 #pragma once
 
-// Evaluates formulas. Include this header only in .cpp files that evaluate formulas for their own number types.
+// Defines Formula::evaluate(). Include this header only in .cpp files that evaluate formulas for their own number
+// types.
 
 #include <array>
 #include <cmath>
@@ -38,7 +39,7 @@ T hyperbolic_cosine(const T& a) {
   using std::exp;
   return (exp(a) + exp(-a)) * 0.5;
 }
-/// Computes the hyperbolic tangent from the exponential that does not overflow.
+/// Computes the hyperbolic tangent. Uses exp(-2 |a|), which cannot overflow.
 template <class T>
 T hyperbolic_tangent(const T& a) {
   using std::exp;
@@ -48,7 +49,8 @@ T hyperbolic_tangent(const T& a) {
   return (is_negative ? e - one : one - e) / (one + e);
 }
 
-/// Returns a to a power that is not an integer. Number types with a better method overload this function.
+/// Returns `a` to the power `exponent`, which is not an integer. Number types with a better method overload this
+/// function.
 template <class T>
 T constant_power(const T& a, double exponent) {
   using std::exp;

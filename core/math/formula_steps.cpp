@@ -1,4 +1,4 @@
-// Properties of formulas that do not depend on the parser.
+// Functions on formulas that are independent of the parser (muParser).
 #include "core/math/formula.h"
 
 namespace retrace {

@@ -2,8 +2,8 @@
 
 // Interval arithmetic from Boost, for proofs that a function keeps within a bound over a whole region.
 
-// These are the headers of <boost/numeric/interval.hpp> without the rounding modes of processors, which are not
-// available on every processor.
+// These are the headers that <boost/numeric/interval.hpp> includes, without the headers for the rounding modes of
+// processors. Those modes are not available on every processor.
 #include <boost/limits.hpp>
 #include <boost/numeric/interval/arith.hpp>
 #include <boost/numeric/interval/arith2.hpp>
@@ -20,8 +20,9 @@
 
 namespace retrace {
 
-/// Intervals that enclose real numbers, for proofs. Their bounds are not rounded outwards. The rounding errors, below
-/// 1e-9 of typical values here, must be covered by the margins of the proofs. Only for .cpp files.
+/// Intervals that enclose real numbers, for proofs. Their bounds are not rounded outwards. The margins of the proofs
+/// must therefore cover the rounding errors, which are below 1e-9 of typical values here. Include this header only in
+/// .cpp files.
 using Interval = boost::numeric::interval<
     double, boost::numeric::interval_lib::policies<boost::numeric::interval_lib::save_state_nothing<
                                                        boost::numeric::interval_lib::rounded_transc_exact<double>>,

@@ -19,7 +19,7 @@ inline constexpr int kMostOrder = 9;
 /// Template argument for a series whose order is known only at run time.
 inline constexpr int kAnyOrder = -1;
 
-/// Order of a series, fixed by the type (N >= 0) or stored in the object (kAnyOrder).
+/// Order of a series. It is fixed by the type (N >= 0) or stored in the object (N = kAnyOrder).
 template <int N>
 struct Length {
   static constexpr int order = N;
@@ -213,7 +213,8 @@ template <class T, int N>
 Series<T, N> integral(const T& start, const Series<T, N>& slope, int order) {
   Series<T, N> r(order);
   r[0] = start;
-  const int last = std::min(r.order, static_cast<int>(r.c.size()) - 1);  // a bound that the compiler cannot derive
+  // Equals r.order; the constant bound helps the compiler, which cannot derive it.
+  const int last = std::min(r.order, static_cast<int>(r.c.size()) - 1);
   for (int k = 1; k <= last; ++k) r[k] = slope[k - 1] / static_cast<double>(k);
   return r;
 }
@@ -289,7 +290,8 @@ inline double binomial(int n, int k) {
   return b;
 }
 
-/// Returns a to an integer power >= 0. The result is exact even if a is 0.
+/// Returns `a` raised to the power `exponent`, an integer >= 0. The derivatives are also correct if the value of `a` is
+/// 0.
 template <class T>
 T power(const T& a, int exponent) {
   T result = constant_like(a, 1.0);

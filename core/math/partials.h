@@ -168,7 +168,7 @@ Partials<Order> atan2(const Partials<Order>& y, const Partials<Order>& x) {
   }
   return r;
 }
-/// Returns a^n. At a = 0, it gives derivatives where those of exp(n log a) do not exist.
+/// Returns a^n. At a = 0, the result has all derivatives that exist, whereas exp(n log a) is undefined there.
 template <int Order>
 Partials<Order> constant_power(const Partials<Order>& a, double n) {
   const auto term = [&](double factor, double exponent) {

@@ -1,7 +1,8 @@
 #pragma once
 
-// Makes the functions with which the rows and tables of a format read and set members of C++ objects. They are made
-// from pointers to members, or from functions of the object's type.
+// Functions that read and set members of C++ objects for a file format (see core/schema/schema.h). The rows and tables
+// of the format contain pointers to these functions. The functions are generated from pointers to members, or from
+// functions of the object's type.
 
 #include <type_traits>
 
@@ -97,16 +98,17 @@ template <auto member>
 void* child_of(void* parent) {
   return &(static_cast<typename MemberTypes<decltype(member)>::Object*>(parent)->*member);
 }
-/// Access to an inner table that is a member of the object. It always exists.
+/// Access to the object of an inner table. It is a member of the object of the outer table, so it always exists.
 template <auto member>
 inline constexpr Child child = {[](const void*) -> std::size_t { return 1; }, child_at<member>, child_of<member>};
 
-/// Access to an inner table that is read but never written, because its member is written as another table.
+/// Access to an inner table that is only read from files. When the object is written, the data of this table are
+/// written in the form of another table.
 template <auto member>
 inline constexpr Child child_only_read = {[](const void*) -> std::size_t { return 0; }, child_at<member>,
                                           child_of<member>};
 
-/// Access to a list of tables that is a vector of objects.
+/// Access to a list of tables. Their objects are in a vector, which is a member of the object of the outer table.
 template <auto member>
 inline constexpr Child children = {
     [](const void* parent) {

@@ -1,7 +1,8 @@
 #pragma once
 
-// Short functions that make the conditions under which a key or table of a format has an effect. `refusal` is the
-// message if a key is given although its condition does not hold. If it is empty, a message is made from the condition.
+// Functions that create conditions. A condition states when a key or table of a format has an effect. The parameter
+// `refusal` is the message for a key that is given although its condition does not hold. If `refusal` is empty, the
+// message is made from the condition.
 
 #include <algorithm>
 

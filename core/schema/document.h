@@ -27,7 +27,7 @@ class Document {
     std::vector<std::string> overrides;  ///< texts of the form KEY=VALUE or KEY=
   };
 
-  /// \param table root table of the paths; it must outlive the document
+  /// \param table description of the table to which the paths are relative; it must outlive the document
   /// \param place position of this table in the file, for messages
   /// \param folder folder to which relative file names in the document refer
   explicit Document(const Table& table, InputLocation place = {}, std::filesystem::path folder = {});
@@ -88,7 +88,7 @@ class Document {
   /// Returns true if all conditions of a key or table hold.
   /// \param around path of the table that contains the key or table
   bool holds(When when, std::string_view around) const { return refused_by(when, around) == nullptr; }
-  /// Returns the first condition that does not hold, or null if all hold.
+  /// Returns the first condition that does not hold, or null if all conditions hold.
   const Condition* refused_by(When when, std::string_view around) const;
 
   /// Records that the input contains a key, a table or an entry of a list.
@@ -97,7 +97,8 @@ class Document {
   /// \param place file and line of the key
   /// \param source 0 if the key comes from the file; otherwise the number, from 1, of the override that sets it
   void set(const std::string& path, Value value, InputLocation place = {}, std::size_t source = 0);
-  /// Returns the number, from 1, of the override that sets a key. Returns 0 if the file sets the key or nothing does.
+  /// Returns the number, from 1, of the override that sets a key. Returns 0 if the key is set by the file or is not
+  /// set.
   std::size_t source_of(std::string_view path) const;
   /// Removes a key, which then counts as not given.
   /// \pre the key was given

@@ -129,15 +129,17 @@ Json row_json(const Row& row) {
   return json;
 }
 
-/// A table during the traversal from the root, with the conditions that depend on keys of this table.
+/// A table that contains the current table of the traversal, or this table itself. `conditions` collects the parts of
+/// the schema that depend on keys of the table.
 struct Place {
   const Table& table;
   Place* around;
   Json conditions = Json::array();
 };
 
-/// Returns true if a condition may hold when its key is not given. If rows of the key have different defaults, the
-/// schema cannot decide this exactly, and the reader of the format checks the condition.
+/// Returns true if a condition may hold when its key is not given. If the rows (descriptions) of the key have different
+/// defaults, the schema cannot decide whether the condition holds. The result is then true, and the reader of the
+/// format checks the condition.
 bool holds_by_default(const Condition& condition, const Table& table, std::string_view key) {
   using Is = Condition::Is;
   if (condition.is == Is::given || condition.is == Is::absent) return condition.is == Is::absent;
@@ -180,7 +182,7 @@ Json met_json(const Table& table, const Condition& condition, std::string_view k
 }
 
 /// Returns the innermost table that contains the keys of all conditions.
-/// \param from table at which the search begins
+/// \param from table at which the search begins; the search then proceeds to the tables that contain it
 /// \throw std::logic_error if there is no such table
 Place& decider(When when, Place& from) {
   for (Place* place = &from; place != nullptr; place = place->around)
@@ -220,7 +222,8 @@ void add_meaning(std::string_view meaning, Json& json) {
   json["description"] = fmt::format("{} {}", json["description"].get<std::string>(), meaning);
 }
 
-/// Appends the rules that involve a key to its description. Rules of its table and of all outer tables are included.
+/// Appends all rules that involve a key to the description of this key. The rules of its table and of all outer tables
+/// are considered.
 void add_ties(const Place& place, std::string_view key, Json& json) {
   std::string path(key);
   for (const Place* at = &place; at != nullptr; at = at->around) {
@@ -294,7 +297,8 @@ void add_rule(const OneOf& rule, Json& json) {
   for (const std::string_view key : rule.keys) one_of.push_back({{"required", {key}}});
   json["oneOf"] = std::move(one_of);
 }
-/// Adds rules on a whole table to its description. Rules on single keys are added to the descriptions of these keys.
+/// Adds a rule about a whole table to the description of this table. Rules about single keys are added to the
+/// descriptions of these keys instead.
 void add_rule(const Check& rule, Json& json) {
   if (rule.keys.empty()) add_meaning(rule.meaning, json);
 }

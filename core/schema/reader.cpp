@@ -18,7 +18,7 @@ namespace {
 
 using Shape = TomlTable::Shape;
 
-// Names: records the keys and tables that the file gives, and refuses unknown ones.
+// First step of reading: class Names records the keys and tables that the file contains, and refuses unknown ones.
 
 std::vector<std::string_view> names_in(const Table& table, bool with_keys) {
   std::vector<std::string_view> names;
@@ -323,9 +323,9 @@ class Values {
                    fmt::format("{}, got {}", refusal(*document_.refused_by(row.when, path)), source.shown(row.key)));
   }
 
-  /// Checks a word that is allowed only under other conditions. The message states for which value of the other key the
-  /// allowed words apply.
-  /// \throw InputError if the word is not allowed, but is allowed by another row of the key
+  /// Refuses a word that the row `served`, which applies, does not allow although another row of the key allows it. The
+  /// message names the key and value on which the choice of the row depends, and the allowed words.
+  /// \throw InputError if only another row of the key allows the word
   void check_word(const Table& table, const Row& served, const std::string& path, const TomlTable& source) {
     const Word* const word = std::get_if<Word>(&served.kind);
     if (word == nullptr || served.when.empty() || source.shape_of(served.key) != Shape::text) return;

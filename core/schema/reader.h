@@ -28,8 +28,8 @@ Document read_document(const Format& format, std::string_view text, const std::s
 /// \throw InputError
 Document with(const Format& format, const Document& document, std::span<const std::string> overrides);
 
-/// Reads the names and texts of a document that may be invalid, without checks. Returns the part that can be read. The
-/// result is used to find the files that the document refers to.
+/// Reads a document that may be invalid, without checks of its values. Returns the keys that can be read, with the
+/// values of keys whose value is a text. The result is used to find the files that the document refers to.
 Document unchecked_names(const Format& format, std::string_view text, const std::string& source_name,
                          std::size_t most_bytes, std::span<const std::string> overrides);
 

@@ -12,7 +12,8 @@
 namespace retrace::schema {
 namespace {
 
-/// Suffixes of names and their units. A suffix that ends with another suffix precedes it.
+/// Suffixes of names, and the units that they stand for. If one suffix is the end of another, the longer one comes
+/// first.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 14> kUnits = {{{"_mm_per_min", "mm/min"},
                                                                                    {"_mm_per_s2", "mm/s^2"},
                                                                                    {"_mm_per_s3", "mm/s^3"},

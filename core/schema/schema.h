@@ -19,13 +19,14 @@ namespace retrace::schema {
 /// Table of named numbers or words. The author of the file chooses the names.
 using Named = std::map<std::string, std::variant<double, std::string>>;
 
-/// Value of a key. Words are stored as std::string and whole numbers as double. std::monostate: the key is not given.
+/// Value of a key. Words are stored as std::string and whole numbers as double. std::monostate means that the key is
+/// not given.
 using Value = std::variant<std::monostate, bool, double, std::string, std::vector<double>,
                            std::vector<std::vector<double>>, std::vector<std::string>, Named>;
 
-/// Functions that read the value of a key from a C++ object and store it there. Both are made by core/schema/access.h.
-/// In these functions, a word is represented by its index in the list of words of the key. Formats that are only read
-/// as documents have no such functions.
+/// Functions that read the value of a key from a C++ object and store it there. They are created with
+/// core/schema/access.h. In these functions, a word is represented by its index in the list of words of the key.
+/// Formats that are only read as documents have no such functions.
 struct Access {
   Value (*get)(const void* object) = nullptr;  ///< returns std::monostate if the object has no value for the key
   void (*set)(void* object, const Value& value) = nullptr;  ///< \pre the value is of the key's kind
@@ -35,8 +36,8 @@ struct Access {
 
 struct Number {
   NumberRange range;
-  /// Range outside of which numbers have too few significant digits. It is mentioned only in the message for a number
-  /// outside of it.
+  /// Narrower range of reasonable numbers. Numbers outside of it are also refused, because computations with them would
+  /// have too few significant digits. Only the message about such a number mentions this range.
   NumberRange sane = {};
 };
 /// An integer.
@@ -90,7 +91,8 @@ struct Pairs {
   NumberRange first;
   NumberRange second;
   std::string_view shape;  ///< text for a pair in messages, such as "[wavelength_nm, power]"
-  std::size_t least = 1;   ///< minimum number of pairs in JSON Schema; the reader of the format checks it itself
+  /// Minimum number of pairs for the JSON Schema; the code that reads the format has its own check.
+  std::size_t least = 1;
 };
 /// A list of one or more texts.
 struct Texts {};
@@ -103,7 +105,7 @@ struct Anything {};
 /// A table with one or more numbers or words.
 struct ByName {
   std::variant<Number, Word> each;               ///< kind of each value
-  std::span<const std::string_view> names = {};  ///< required names; empty: the file chooses the names
+  std::span<const std::string_view> names = {};  ///< required names; if empty, the author of the file chooses the names
   std::string_view what = "a table";             ///< text for the allowed values in messages
 };
 using Kind = std::variant<Number, Whole, Flag, Word, Text, File, WordOrFile, NumberOrNumbers, Numbers, Terms,
@@ -118,11 +120,11 @@ bool takes(const Kind& kind, Form form);
 struct Required {};
 /// Marks a key without a default value: if the key is not given, its member of the object is not changed.
 struct None {};
-/// Marks a key whose default is computed elsewhere.
+/// Marks a key without a constant default. Other code computes its default value.
 struct Computed {
   std::string_view sentence;  ///< description of the default for the documentation
 };
-/// Default value of a key. The default of a word is the word itself.
+/// Default value of a key. For a key whose value is a word, the default is the text of the word.
 using Default = std::variant<Required, None, Computed, bool, double, std::string_view, std::span<const double>>;
 inline constexpr Required kRequired;
 inline constexpr None kNone;
@@ -134,7 +136,8 @@ struct Condition {
   std::string_view key;  ///< path of the other key
   Is is = Is::one_of;
   std::span<const std::string_view> words = {};  ///< words for one_of and none_of
-  std::string_view refusal = {};                 ///< message if the condition does not hold; empty: a standard message
+  /// Message if the condition does not hold; if empty, a standard message is used.
+  std::string_view refusal = {};
 };
 /// List of conditions, all of which must hold.
 using When = std::span<const Condition>;
@@ -167,14 +170,15 @@ struct OneOf {
   std::string_view complaint;  ///< message if none of the keys is given
 };
 /// Function that throws an InputError about a key.
-/// \param key path of the key relative to the table of the rule; empty: the first key of the rule that is given, or
-/// else the table
+/// \param key path of the key relative to the table of the rule. If it is empty, the error is about the first key of
+/// the rule that is given. If none is given, the error is about the table.
 /// \param complaint message
 using Refuse = std::function<void(std::string_view key, const std::string& complaint)>;
 /// Rule on a combination of values, each of which is allowed by itself.
 struct Check {
-  std::span<const std::string_view> keys;  ///< keys in the rule; paths relative to the table; empty: the whole table
-  std::string_view meaning;                ///< the rule in one sentence, for the documentation
+  /// Paths of the keys in the rule, relative to the table; if empty, the rule is about the whole table.
+  std::span<const std::string_view> keys;
+  std::string_view meaning;  ///< the rule in one sentence, for the documentation
   /// Function that checks the rule.
   /// \param object object of the table; for formats that are only read as documents, the document
   void (*check)(const void* object, const Refuse& refuse);
@@ -215,7 +219,7 @@ struct Child {
 
 /// Description of a table of a file. The root table is the whole file.
 struct Table {
-  std::string_view name;     ///< name of the table; empty: the root
+  std::string_view name;     ///< name of the table; empty for the root table
   std::string_view meaning;  ///< description for the documentation, one sentence
   std::span<const Row> rows = {};
   std::span<const Table> tables = {};
@@ -249,7 +253,7 @@ Value default_value(const Row& row);
 
 /// A path of a key or table, split into two parts.
 struct SplitPath {
-  std::string_view around;  ///< path of the table that contains the key or table; empty: the root
+  std::string_view around;  ///< path of the table that contains the key or table; empty for the root table
   std::string_view name;    ///< name of the key or table
 };
 /// Splits a path such as "element.base_mm" at its last dot.

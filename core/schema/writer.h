@@ -14,18 +14,19 @@ namespace retrace::schema {
 /// \pre the value is that of a single key and fits on one line
 std::string override_text(std::string_view path, const Value& value);
 
-/// Returns the text of a document's file, which contains only the given keys. Reading this text gives the same
+/// Converts a document to the text of a file, which contains only the given keys. Reading this text gives the same
 /// document.
 std::string document_text(const Format& format, const Document& document);
 
 /// Returns the document without keys that have their default value, and without tables that become empty.
 Document without_defaults(Document document);
 
-/// Returns the document of an object of the format's root table.
+/// Converts an object to a document.
+/// \param object object of the root table of the format
 /// \pre the rows of the format have access functions
 Document document_of(const Format& format, const void* object);
 
-/// Returns the text of an object's file. Reading this text gives an equal object.
+/// Converts an object to the text of a file. Reading this text gives an equal object.
 std::string object_text(const Format& format, const void* object);
 
 }  // namespace retrace::schema

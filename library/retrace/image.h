@@ -43,14 +43,16 @@ struct CameraRequest {
   std::optional<std::array<double, 3>> lamp_mm = {};  ///< position of the lamp, instead of distance and angles
   double lamp_arcmin = 10.0;                          ///< angular diameter of the lamp
   double pupil_arcmin = 10.0;                         ///< angular diameter of the pupil of the eye
-  double illuminance_lx = 10.0;         ///< illuminance by the lamp at the part, on a plane normal to the light
-  double ambient_lx = 0.0;              ///< illuminance of the face by uniform light from the front
-  double backlight_lx = 0.0;            ///< uniform light from behind and around the part
-  std::size_t columns = 400;            ///< width of the picture in pixels
-  std::size_t rows = 300;               ///< height of the picture in pixels
-  std::optional<double> field_mm = {};  ///< width of the picture, measured at the part; empty: the part and a margin
+  double illuminance_lx = 10.0;  ///< illuminance by the lamp at the part, on a plane normal to the light
+  double ambient_lx = 0.0;       ///< illuminance of the face by uniform light from the front
+  double backlight_lx = 0.0;     ///< illuminance by uniform light from behind and around the part
+  std::size_t columns = 400;     ///< width of the picture in pixels
+  std::size_t rows = 300;        ///< height of the picture in pixels
+  /// Width of the picture, measured at the part; if empty, the picture shows the whole part with a margin.
+  std::optional<double> field_mm = {};
   std::array<double, 2> film_mm = {100.0, 100.0};  ///< width and height of the sheet that shows an infinite design
-  std::optional<double> cylinder_mm = {};    ///< radius of the cylinder around which the sheet is bent; < 0: inside it
+  /// Radius of the cylinder around which the sheet is bent; if < 0, the sheet is on the inside of the cylinder.
+  std::optional<double> cylinder_mm = {};
   double noise = 0.02;                       ///< intended relative noise of pixels
   std::optional<std::uint32_t> passes = {};  ///< number of passes, instead of `noise`
   std::filesystem::path lamp = {};           ///< photometric file of the lamp (.ies, .ldt), instead of illuminance_lx

@@ -15,7 +15,7 @@ struct Inspection {
   Warnings warnings;
   std::string json;   ///< JSON document retrace.inspect/1
   std::string table;  ///< summary as text
-  Drawing plan;       ///< SVG, like `section` and `front`; drawings that do not apply to the design are empty
+  Drawing plan;       ///< SVG; like `section` and `front`, empty if it does not apply to the design
   Drawing section;
   Drawing front;  ///< profile of a curved entrance face
   Drawing view;   ///< view in three dimensions; PNG

@@ -22,8 +22,9 @@ struct MetrologyRequest {
   std::optional<std::string> height_unit = {};   ///< unit of the heights in a file: m, mm, um, nm or pm
   std::optional<std::string> lateral_unit = {};  ///< unit of lengths in a file: m, mm, um, nm or pm
   std::optional<std::size_t> channel = {};       ///< channel of a GWY file; empty: the first
-  std::optional<double> feed_mm_per_min = {};    ///< feed of the cut, to give waves in Hz
-  bool edge = false;                             ///< true: the rows are profiles across an edge
+  /// Feed of the cut; if given, frequencies of waves are also given in Hz.
+  std::optional<double> feed_mm_per_min = {};
+  bool edge = false;  ///< true: the rows are profiles across an edge
 };
 
 /// Heights on a grid.

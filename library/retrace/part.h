@@ -1,6 +1,7 @@
 #pragma once
 
-// Writes elements, parts and moulds as closed solids, and the reflection of a part as a material.
+// Writes files for other programs: elements, parts and moulds as closed solids, and materials that reflect light in the
+// same way as a part.
 
 #include <array>
 #include <cstdint>
@@ -51,7 +52,7 @@ struct ExportResult {
 RETRACE_API ExportResult export_solid(const Design& design, const std::filesystem::path& file,
                                       const SolidRequest& request = {});
 
-/// Settings for the reflection of a part as a material (docs/theory/appearance.md).
+/// Settings of export_material(): a material that reflects light in the same way as a part (docs/theory/appearance.md).
 struct MaterialRequest {
   double entrance_deg = 20.0;           ///< largest entrance angle; 1 to 40
   double window_deg = 1.0;              ///< largest angle between view and source; 0.1 to 5
@@ -68,8 +69,9 @@ struct MaterialResult {
   std::string table;     ///< summary as text
 };
 
-/// Writes the reflection of a part as a material. The extension of the file name selects the format: a table (.json,
-/// with its values in a .csv file in the same folder), a BSDF of Radiance (.xml) or lobes in a shader (.glsl).
+/// Computes how a part reflects light and writes the result as a material. The extension of the file name selects the
+/// format: a table (.json, with its values in a .csv file in the same folder), a BSDF of Radiance (.xml) or lobes in a
+/// shader (.glsl).
 /// \throw InputError for other extensions, for settings out of range, and for designs that the exact engine cannot
 /// trace
 /// \throw OutputError

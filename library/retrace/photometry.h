@@ -20,7 +20,8 @@ struct PhotometryRequest {
   std::string standard = {};                   ///< name of a standard, such as "r150", or a limits file
   std::optional<std::string> part_class = {};  ///< class of the part; required if the standard has several classes
   std::optional<std::string> colour = {};      ///< colour of the part; required if the standard has several colours
-  double area_cm2 = 0.0;                       ///< area of the part, > 0; the design may show a smaller area
+  /// Area of the whole part, > 0; the design may contain only a section of the part.
+  double area_cm2 = 0.0;
   std::optional<std::vector<double>> rotation_deg = {};  ///< rotations of the part about its normal
   std::optional<std::string> dye = {};                   ///< none, red, amber or a file
   std::optional<double> source_arcmin = {};              ///< angular diameter of the source

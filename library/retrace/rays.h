@@ -39,8 +39,9 @@ struct RaysRequest {
 };
 
 struct RaysResult {
-  std::map<std::string, double> ledger;  ///< fraction of the incident power by account (fate of the light)
-  double power = 0.0;                    ///< incident power of all rays
+  /// Fraction of the incident power for each account (fate of the light, such as absorption).
+  std::map<std::string, double> ledger;
+  double power = 0.0;  ///< incident power of all rays
   Warnings warnings;
   bool complete = true;
   std::string json;   ///< JSON document retrace.rays/1
@@ -55,14 +56,15 @@ RETRACE_API RaysResult rays(const Design& design, const RaysRequest& request, co
 struct RayArrays {
   std::vector<double> origins_mm;  ///< three numbers per ray
   std::vector<double> directions;  ///< three numbers per ray; vectors of any length > 0
-  std::vector<double> stokes;      ///< four per ray, of which the first is the power; or four for all rays
+  /// Stokes parameters: four for each ray, the first of which is its power; or four that apply to all rays.
+  std::vector<double> stokes;
   /// Reference axes of the Stokes parameters, three numbers per ray. If it is empty, each axis is +x, projected normal
   /// to the direction of the ray.
   std::vector<double> axes;
   std::vector<double> wavelengths_nm;  ///< one per ray, or one for all rays; empty: wavelengths of the design
 };
 
-/// Settings of trace(). They have the same meaning as in RaysRequest.
+/// Settings of trace(). Each member has the same meaning as the member of RaysRequest with the same name.
 struct TraceRequest {
   double split = 1.0;
   double cutoff = 1e-10;
@@ -74,7 +76,7 @@ struct TraceRequest {
 struct TracedRays {
   std::vector<double> origins_mm;       ///< points at which the rays leave, three numbers per ray
   std::vector<double> directions;       ///< unit vectors, three numbers per ray
-  std::vector<double> stokes;           ///< four per ray, of which the first is the power
+  std::vector<double> stokes;           ///< Stokes parameters: four for each ray, the first of which is its power
   std::vector<double> axes;             ///< long axes of the polarisation ellipses, three numbers per ray
   std::vector<double> wavelengths_nm;   ///< one per ray
   std::vector<std::uint8_t> accounts;   ///< one per ray: index in ray_accounts()

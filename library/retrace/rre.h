@@ -1,6 +1,7 @@
 #pragma once
 
-// Computes the retroreflective efficiency (RRE) over the angle of incidence, and a ledger of all other light.
+// Computes the retroreflective efficiency (RRE) over the angle of incidence, and a ledger with the fate of all incident
+// light.
 
 #include <array>
 #include <cstdint>
@@ -19,7 +20,8 @@ namespace retrace {
 /// Settings of the computation. They correspond to the options of `retrace rre` (docs/commands.md).
 struct RreRequest {
   std::vector<double> incidence_deg = {0.0};  ///< angles of incidence, each in (-90, 90)
-  /// Ranges within (-90, 90) in which further angles of incidence are selected automatically, as by `start:stop:auto`.
+  /// Ranges within (-90, 90) in which further angles of incidence are selected automatically, in the same way as for
+  /// `start:stop:auto` on the command line.
   std::vector<std::array<double, 2>> incidence_spans_deg = {};
   std::vector<double> azimuth_deg = {0.0};    ///< azimuths of the source
   std::string engine = "auto";                ///< auto, exact, stochastic, montecarlo, cell or embree
@@ -42,9 +44,10 @@ struct RrePoint {
   double acceptance_half_angle_deg = 0.0;
   double rre = 0.0;  ///< fraction of the incident power, 0 to 1
   double std_error = 0.0;
-  std::string engine;                    ///< engine that was used
-  std::map<std::string, double> ledger;  ///< fraction of the incident power by account (fate of the light)
-  bool missed_target = false;            ///< true if `std_error` is above the target error
+  std::string engine;  ///< engine that was used
+  /// Fraction of the incident power for each account (fate of the light, such as absorption).
+  std::map<std::string, double> ledger;
+  bool missed_target = false;  ///< true if `std_error` is above the target error
 };
 
 struct RreResult {

@@ -43,7 +43,7 @@ struct StudyResult {
   std::string json;   ///< JSON document retrace.sweep/1, retrace.tolerance/1 or retrace.optimum/1
   std::string csv;    ///< one line per point; after an optimisation, the Pareto front
   std::string table;  ///< summary as text
-  Drawing drawing;    ///< after a tolerance study: fraction of parts below a value
+  Drawing drawing;    ///< plot of the fraction of parts below a value, after a tolerance study; otherwise empty
 };
 
 /// Computes designs and directions over ranges of parameters.

@@ -1,6 +1,6 @@
 #pragma once
 
-// Verifies what NC programs cut against their fabrication job.
+// Verifies NC programs: compares the surface that they cut with the fabrication job.
 
 #include <cstdint>
 #include <filesystem>
@@ -22,8 +22,8 @@ struct VerificationRequest {
   std::vector<std::string> programs =
       {};  ///< files in the order in which they run; FILE@LINE: the program was stopped after this line
   std::string dialect = "auto";  ///< rs274ngc, sinumerik, fanuc, pmac, a3200, automation1, or auto
-  /// Maximum deviation of facet planes from the design. The default is 10, or the deviation that the increments of a
-  /// Fanuc control cause if it is larger.
+  /// Maximum deviation of facet planes from the design. If no value is given, the limit is 10, or the deviation that
+  /// the increments of a Fanuc control cause if this deviation is larger.
   std::optional<double> tolerance_nm = {};
   std::string standing = {};  ///< stage that comes next: all stages before it have been cut; empty: the blank is uncut
   std::filesystem::path as_machined = {};  ///< output file for the design of the machined part; empty: not written

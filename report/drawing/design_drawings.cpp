@@ -24,7 +24,7 @@ std::string profile_svg(const studies::Design& design, const studies::EntranceRe
 
 DesignDrawings design_drawings(const studies::Inspection& inspection) {
   const studies::Design& design = inspection.design;
-  if (design.balls()) return {};  // balls have no planes that could be drawn
+  if (design.balls()) return {};  // balls have no plane facets, but the drawings show planes
   if (inspection.entrance) return {.entrance = profile_svg(design, *inspection.entrance)};
   if (design.elements() && design.part().substrate) return {.view = view_png(studies::view_of(design))};
   const studies::DesignDrawing drawing = studies::draw_design(design, studies::part_of_design(design, nullptr));

@@ -21,7 +21,7 @@ struct DesignDrawings {
 
 /// Returns the plan, the section and the view of a design. A design with a curved front has a profile instead of
 /// section and view, which require a plane entrance face. A design with balls has no drawings. A design with elements
-/// on a substrate has only the view, because its lengths are not in a plane.
+/// on a curved substrate has only the view, because the plan cannot show their true lengths.
 DesignDrawings design_drawings(const studies::Inspection& inspection);
 
 }  // namespace retrace::report

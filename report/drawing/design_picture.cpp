@@ -16,7 +16,8 @@ constexpr double kScale = 2.0;
 constexpr double kAxisLength = 34.0;
 constexpr Font kRemarkFont{11.5, false};
 
-/// Returns a view direction from below, so that the elements are in front. The y axis points to the right and away.
+/// Returns a view direction from below, so that the elements are in front. The y axis of the part points to the right
+/// and away from the viewer.
 ViewDirection from_below() {
   return {Vec3(-0.48, -0.62, -0.72).normalized(), -Vec3::UnitZ()};
 }

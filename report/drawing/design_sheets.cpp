@@ -20,9 +20,9 @@ constexpr double kWholeWidth = 520.0;  ///< maximum width of the figure of a pan
 constexpr double kWholeHeight = 460.0;
 constexpr double kSheetMargin = 26.0, kPanelGap = 44.0;
 constexpr double kArrowLength = 8.0, kArrowHalf = 2.6;
-/// Distance between lines of elements, in units, below which the lines are drawn finer.
+/// Distance between adjacent borders of elements, in drawing units, below which the lines of the plan are drawn finer.
 constexpr double kFineLines = 14.0;
-/// Ratio of plate thickness to element depth above which the plate is drawn interrupted.
+/// Ratio of plate thickness to element depth above which the central part of the plate is omitted from the section.
 constexpr double kThickPlate = 3.2;
 constexpr double kBreakGap = 12.0;
 
@@ -91,7 +91,7 @@ void draw_faces(SvgGroup& group, const studies::PlanView& view, const ToPaper& a
 }
 
 /// Returns true if the lines of the plan are so close together that they are drawn finer. The mean length of the rims
-/// serves as an estimate of the distance.
+/// (borders of elements) serves as an estimate of their distance.
 bool has_fine_lines(const studies::PlanView& view, double units_per_mm) {
   if (view.rims_mm.size() < 200) return false;
   double sum = 0.0;
@@ -146,7 +146,7 @@ Panel plan_panel(const PlanPanel& panel) {
   }
   if (panel.section_y_mm)
     draw_section_marks(group, {lower.x, at({0.0, *panel.section_y_mm}).y}, {upper.x, at({0.0, *panel.section_y_mm}).y});
-  // The marks of the section are placed between the figure and the first dimension lines.
+  // The marks of the section line are placed between the figure and the first dimension lines.
   const double marks = panel.section_y_mm ? 12.0 : 0.0;
   draw_dimensions(group, panel.dimensions, at, {lower.x - marks, lower.y}, {upper.x + marks, upper.y});
   return result;
@@ -212,7 +212,7 @@ void draw_angle(SvgGroup& group, const studies::AngleDimension& angle, const ToP
   group.arc("dim", apex, radius, std::atan2(angle.right.y(), angle.right.x()),
             std::atan2(angle.left.y(), angle.left.x()));
   const std::string text = fmt::format("{:.6g}°", angle.deg);
-  // The text is placed in the material above the root, inside the arc if there is enough room.
+  // The text is placed in the material, just above the arc of the angle.
   const double half = 0.5 * sheet_text_width(text, kSheetTextSize);
   group.text("value", {apex.x, apex.y - radius - 5.0}, text, Align::centre);
   group.reserve({apex.x - half, apex.y - radius - 5.0 - kSheetTextSize}, {2.0 * half, kSheetTextSize});

@@ -15,7 +15,8 @@ constexpr double kOver = 4.0;  ///< length of an extension line beyond the dimen
 constexpr double kClear = 3.0, kTextGap = 4.0;
 constexpr int kMostLevels = 16;
 
-/// Interval of a coordinate of one side: along the dimension line, or away from the figure.
+/// Interval of one coordinate in the frame of a side of the figure. The coordinates are the position along the
+/// dimension line and the distance away from the figure.
 struct Span {
   double from = 0.0, to = 0.0;
 };

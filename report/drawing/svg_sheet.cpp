@@ -10,8 +10,8 @@
 namespace retrace::report {
 namespace {
 
-// Style with light colours, and dark colours if the reader prefers a dark scheme. Facets whose normals point to the
-// upper left are lighter.
+// Style sheet of the SVG. It has light colours, or dark colours if the reader has selected a dark colour scheme. Facets
+// whose normals point to the upper left are lighter.
 constexpr std::string_view kStyle = R"css(
 text{font-family:"DejaVu Sans",Verdana,Arial,sans-serif;font-size:12px;fill:#1d2530}
 .title{font-size:17px;font-weight:bold}.panel{font-size:13.5px;font-weight:bold}.remark{fill:#55606e}

@@ -1,6 +1,7 @@
 #pragma once
 
-// Private to the page: one function for each kind of document, which makes its section. Documents on light come first.
+// Functions that make the sections of the page, one for each kind of result document. This header is private to the
+// page. Functions for documents about light come first.
 
 #include "report/page/page.h"
 #include "report/page/result_folder.h"

@@ -45,7 +45,7 @@ ChartSeries& series_of(PageChart& chart, const std::string& label);
 /// Returns the style of a verdict: "good", "bad" or "open".
 std::string verdict_style(const std::string& verdict);
 std::string name_of_design(const Json& design);
-/// Returns the keys of the first objects of a list, in their order.
+/// Returns the keys that occur in the first objects of a list, in the order in which they first occur.
 std::vector<std::string> keys_of(const Json& rows);
 /// Returns the texts in a list.
 std::vector<std::string> words(const Json& values);

@@ -1,4 +1,4 @@
-// Sections on pictures of a detector, of a camera and of a road at night.
+// Sections of the page for the pictures of `retrace image`: detector maps, camera pictures and roads at night.
 #include <fmt/format.h>
 
 #include "report/page/document_sections.h"

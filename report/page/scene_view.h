@@ -8,11 +8,11 @@
 
 namespace retrace::report {
 
-/// Converts a scene for the page. The events of each path become text.
+/// Converts a scene (a design with light paths) to the content of the view. The events of each path become text.
 SceneView scene_view(const studies::DesignScene& scene);
 
-/// Adds the view of the design to a page, with the light of the results. If the view cannot be made, the page is kept
-/// without it.
+/// Adds a three-dimensional view of the design to a page. It shows light paths for directions that occur in the
+/// results. If the view cannot be made, the page keeps its other content.
 /// \return reasons why there is no view
 Warnings add_scene(Page& page, const ResultFolder& folder);
 

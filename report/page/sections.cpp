@@ -22,7 +22,8 @@ using namespace document;
 
 using MakeSection = PageSection (*)(const ResultDocument&, const ResultFolder&);
 
-/// Returns the functions that make sections, in the order of the page. It is the order in which a study proceeds.
+/// Returns the functions that make sections, in the order of the page. The order follows the work on a part: from its
+/// light to its fabrication and verification.
 const std::vector<std::pair<std::string, MakeSection>>& makers() {
   static const std::vector<std::pair<std::string, MakeSection>> all = {{"inspect", inspect_section},
                                                                        {"rre", rre_section},
@@ -82,7 +83,7 @@ void add_pictures(PageSection& section, const ResultDocument& document, const Re
 
 /// Appends the efficiency of one design at normal incidence and its greatest efficiency to `facts`.
 /// \param design index of the design
-/// \param whose end of the names of the facts, see Subjects
+/// \param whose text that is appended to the names of the facts, see Subjects
 void add_efficiencies(const Json& points, double design, const std::string& whose, std::vector<PageFact>& facts) {
   const Json* best = nullptr;
   const Json* normal = nullptr;
@@ -97,8 +98,8 @@ void add_efficiencies(const Json& points, double design, const std::string& whos
                      percent(number(*best, "rre")), ""});
 }
 
-/// Determines the ends of the names of the facts in the summary. If the folder has several designs or several jobs, the
-/// name of a fact ends with the name of its design or job, such as "Machining time: job.toml".
+/// Determines the texts that are appended to the names of the facts in the summary. If the folder has several designs
+/// or several jobs, the name of a fact ends with the name of its design or job, such as "Machining time: job.toml".
 class Subjects {
  public:
   explicit Subjects(const ResultFolder& folder) : names_(folder) {

@@ -7,8 +7,8 @@
 
 namespace retrace::report {
 
-/// Returns the page for the results in a folder. The summary comes first, and the list of sources last. If a document
-/// lacks values, they are omitted. Page::scene is empty and must be set by the caller.
+/// Returns the page for the results in a folder. The summary comes first, and the list of sources last. Values that a
+/// document lacks are omitted. Page::scene is empty and must be set by the caller.
 /// \param title title of the page; empty: title of the design
 Page study_page(const ResultFolder& folder, const std::string& title);
 

@@ -46,7 +46,8 @@ std::string tilt_word(const FabricationResult& result) {
   return std::string(1, result.machine.tilt_letter());
 }
 
-/// Returns a text with the maximum geometric errors that are caused by an error of one unit of a quantity.
+/// Returns a text about a quantity that the operator sets, such as the height of the tool. It contains the maximum
+/// geometric errors that are caused if this quantity is wrong by one unit.
 /// \param key key of the quantity, such as "tool_z_um"
 std::string cost(const SetupSheet& sheet, std::string_view key) {
   for (const Sensitivity& row : sheet.sensitivities.rows)
@@ -303,8 +304,8 @@ std::string effect_text(const studies::FacetEffect& effect) {
                      angle(effect.along_arcmin));
 }
 
-/// Returns a relative change in percent.
-/// \param least relative change below which "< ..." is returned
+/// Returns the change relative to `of`, in percent.
+/// \param least magnitude of the relative change below which the result is "< ..."
 std::string change_text(double change, double of, double least) {
   if (!(of > 0.0)) return "-";
   const double share = change / of;

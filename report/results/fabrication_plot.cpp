@@ -26,14 +26,15 @@ Polygon rectangle(const Vec2& low, const Vec2& high) {
   return {low, {high.x(), low.y()}, high, {low.x(), high.y()}};
 }
 
-/// Returns half of the width and the height of the section in which the tool path is drawn. The width is measured at
-/// the face of the blank.
+/// Returns the size of the section in which the tool path is drawn: half of its width, and its full height. The width
+/// is measured at the face of the blank.
 std::pair<double, double> section_of(const fabrication::Job& job) {
   if (job.strategy != fabrication::Strategy::dmc) {
     const geometry::RtpElement prism = fabrication::blank_prism(job);
     return {0.5 * prism.base_mm, fabrication::root_depth_mm(prism)};
   }
-  // A dihedral edge of length sqrt(3) rises by 1. It is at 45 degrees to the line of steepest slope of the facet.
+  // A dihedral edge of a cube corner with length sqrt(3) rises by 1. It is at 45 degrees to the line of steepest slope
+  // of the facet.
   const double edge_mm = std::numbers::sqrt3 * geometry::element_depth_mm(fabrication::blank_element(job));
   const double up_mm = edge_mm / std::numbers::sqrt2;
   return {up_mm, up_mm};
@@ -102,7 +103,7 @@ namespace {
 struct DrawnElements {
   Polygon outline;
   std::size_t count = 1;    ///< number of elements
-  std::int64_t places = 0;  ///< sum of the positions of the elements in the order of cutting
+  std::int64_t places = 0;  ///< sum of the positions of the elements in the order of cutting, for their mean
 };
 
 /// Returns the element `first`, or a group of adjacent prisms that begins with it if there are more than

@@ -23,7 +23,7 @@ LinePlot plot_over_distance(const studies::PlaningResult& result, const std::str
   return plot;
 }
 
-/// Returns the distance between drawn samples, such that a drawing has a few thousand points.
+/// Returns the number of samples from one drawn sample to the next. With it, a drawing has some thousand points.
 std::size_t stride_of(std::size_t samples) {
   constexpr std::size_t kPoints = 6000;
   return std::max<std::size_t>(1, samples / kPoints);
@@ -74,7 +74,7 @@ LinePlot planing_error_plot(const studies::PlaningResult& result) {
   for (const fabrication::ProfileSample& s : result.check.profile) {
     const std::size_t here = profile.zone_of(s.x_mm);
     if (here != zone) error.add(kBreak, kBreak);
-    // Near a vertical wall, samples within one grid step may be on either side of the wall. They are omitted.
+    // Samples within one grid step of a vertical wall are omitted, because they may be on either side of the wall.
     if (here == zone && s.x_mm < result.part.lens.half_width_mm - result.part.mill->grid_mm)
       error.add(s.x_mm, s.design_mm - s.left_mm);
     zone = here;

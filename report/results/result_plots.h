@@ -1,6 +1,6 @@
 #pragma once
 
-// Makes the plots of results. The classes of plots draw them.
+// Converts results to the content of plots. Other headers of report/, such as report/plot.h, draw this content.
 
 #include <cstddef>
 #include <string>
@@ -58,23 +58,25 @@ MapPlot footprint_plot(const studies::RreResult& result);
 /// facets as points.
 LinePlot roughness_plot(const studies::RoughnessResult& result);
 
-/// Returns a plot of R_A around the direction to the source, with the test points, for each map of a result.
+/// Returns a plot of R_A around the direction to the source, with the test points. It has one panel for each map of the
+/// result.
 PolarPlot far_field_plot(const studies::PhotometryResult& result);
 
 /// Returns a plot of R_A over the observation angle, with one curve for each entrance angle.
 LinePlot observation_plot(const studies::PhotometryResult& result);
 
-/// Returns a plot of the fraction of parts below a value of the study's first quantity, with its nominal value and its
-/// limits.
+/// Returns a plot of the distribution of the study's first quantity: the fraction of parts whose value is below the
+/// value on the axis. The nominal value and the limits are marked.
 LinePlot tolerance_plot(const studies::Study& study, const studies::ToleranceRequest& request,
                         const studies::ToleranceResult& result);
 
-/// Returns a plot of the zones of a part and their contributions to each goal. If there is no part, the plot has no
-/// zones.
+/// Returns a plot of the zones of a part and their contributions to each goal. If the search found no part, the plot
+/// has no zones.
 MixturePlot composition_plot(const studies::Study& study, const studies::ComposeRequest& request,
                              const studies::Composition& composition);
 
-/// Returns a plot of a measured surface without its form, its roughness, its waviness and its power spectral densities.
+/// Returns a plot with four panels: the measured surface without its form, its roughness, its waviness, and its power
+/// spectral densities.
 SurfacePlot metrology_plot(const studies::MetrologyResult& result);
 
 // Plots and pictures of a detector and a camera.
@@ -113,7 +115,7 @@ PathPlot tool_path_plot(const studies::FabricationResult& result, bool roughing)
 /// elements of a row are drawn as one.
 MapPlot arrangement_plot(const studies::FabricationResult& result);
 
-/// Returns a plan of the array, coloured by the material that the programs leave above the facets.
+/// Returns a plan of the array, coloured by the height of the material that the programs leave above the facets.
 SurfacePlot error_map_plot(const studies::ErrorMap& map);
 
 /// Returns a plot of the forces on the tool over time, with one curve for each axis of the machine.
@@ -126,12 +128,14 @@ LinePlot turning_profile_plot(const studies::TurningResult& result);
 /// Returns maps of the height of the surface, and of the magnitude of the deviation after the programs.
 ImagePlot turning_maps(const studies::TurningResult& result);
 
-/// Returns a plot of the depth over the distance from the centre: the design, and the surface after the programs (for a
-/// lathe, its chords).
+/// Returns a plot of the depth over the distance from the centre. It shows the design and the surface after the
+/// programs. For a lathe, this surface consists of the straight chords that the programs cut.
 LinePlot planing_profile_plot(const studies::PlaningResult& result);
-/// Returns a plot of the strokes of a mill, by set of programs, or of the ends of the chords of a lathe.
+/// Returns a plot of the end points of cuts. For a mill, it shows the strokes, coloured by the set of programs that
+/// contains them. For a lathe, it shows the ends of the chords.
 LinePlot planing_zones_plot(const studies::PlaningResult& result);
-/// Returns a plot of the material that remains above the design over the distance from the centre. Only for mills.
+/// Returns a plot of the material that remains above the design over the distance from the centre.
+/// \pre the part is cut on a mill
 LinePlot planing_error_plot(const studies::PlaningResult& result);
 
 }  // namespace retrace::report

@@ -37,7 +37,7 @@ LinePlot roughness_plot(const studies::RoughnessResult& result) {
     const auto [it, is_new] = series_of.try_emplace(label, plot.series.size());
     if (is_new) plot.series.push_back(Series{label, {}, {}, {}});
     Series& series = plot.series[it->second];
-    // Measured facets are not connected by a line.
+    // Points without coordinates interrupt the line, so that measured facets are not connected by it.
     if (p.measured && !is_new) series.add(kNone, kNone, 0.0);
     series.add(p.roughness_sa_nm, 100.0 * p.rre, 100.0 * p.std_error);
   }

@@ -21,7 +21,7 @@ def hash_of(content):
     return hashlib.sha256(content).hexdigest()
 
 
-# Literals of C++, in which // and /* begin no comment, and comments.
+# Matches a comment or a literal of C++. Literals are matched because // and /* do not begin a comment in them.
 LITERAL_OR_COMMENT = re.compile(
     r'R"(?P<delimiter>[^\s()\\]*)\(.*?\)(?P=delimiter)"'  # raw string
     r'|"(?:[^"\\\n]|\\.)*"'  # string
