@@ -20,8 +20,8 @@ namespace retrace::app {
 
 /// Options that all commands have.
 struct CommonOptions {
-  std::string json;  ///< file for the JSON document; "-": standard output; empty: no document is written
-  std::string out;   ///< output folder, or output file of some commands; empty: no files are written
+  std::string json;  ///< file for the JSON document, or "-" for standard output; if empty, no document is written
+  std::string out;   ///< output folder, or output file of some commands; if empty, no files are written
   std::optional<std::uint32_t> threads;
   std::optional<double> memory_gib;  ///< memory budget of beams and elements in GiB; empty: 1 GiB
   std::uint32_t seed = 1;
@@ -64,14 +64,15 @@ struct Traits {
   std::optional<std::string> files = {};
   std::uint64_t least = 0;                      ///< minimum of a whole number
   std::uint64_t most = std::uint64_t{1} << 36;  ///< maximum of a whole number
-  /// True if the argument must be given; for positional arguments, the type of the target variable decides as well.
+  /// True if the argument must be given. A positional argument can also be required by the type of its target variable.
   bool required = false;
   std::string excludes = {};     ///< name of an option that cannot be given together with this option
   std::vector<Need> needs = {};  ///< requirements, which must all be met
 };
 
 /// Returns the traits of an argument that is one of a set of words.
-/// \param files extension of files that are allowed as well; no value: files are not allowed
+/// \param files extension of files that are allowed in addition to the words; if there is no value, files are not
+/// allowed
 Traits one_of(std::function<Words()> words, std::optional<std::string> files = {});
 Traits one_of(Words words, std::optional<std::string> files = {});
 /// Returns the traits of an argument that is a file.

@@ -32,7 +32,7 @@ studies::JobRequest job_request(const MakingOptions& options, double tool_width_
 std::vector<std::string> files_of_making(const MakingOptions& options);
 
 /// Returns the path of a file relative to the folder of a job.
-/// \param folder folder of the job; empty: the working directory
+/// \param folder folder of the job; if empty, the working directory
 std::string name_from(const std::filesystem::path& folder, const std::filesystem::path& file);
 
 /// Returns the text of a job file. The paths of the design and of the machine file are made relative to the job file.

@@ -26,7 +26,7 @@ class CsvReader {
   /// Reads the column names.
   /// \param text text of the table; it must outlive the reader
   /// \param file name of the file in messages
-  /// \param columns required column names; empty: any names are allowed
+  /// \param columns required column names; if empty, any names are allowed
   /// \throw InputError if the column names are invalid or the text is longer than `most_bytes`
   CsvReader(std::string_view text, std::string file, std::size_t most_bytes,
             std::span<const std::string_view> columns = {});

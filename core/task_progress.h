@@ -15,7 +15,7 @@ namespace retrace {
 /// to 1, is mapped linearly to the range from `from` to `to`.
 class PartOfProgress : public Progress {
  public:
-  /// \param whole receiver of the progress of the whole computation; null: nothing is reported
+  /// \param whole receiver of the progress of the whole computation; if null, nothing is reported
   PartOfProgress(Progress* whole, double from, double to) : whole_(whole), from_(from), to_(to) {}
   void at(double share) override {
     if (whole_ != nullptr) whole_->at(std::lerp(from_, to_, share));
@@ -30,7 +30,7 @@ class PartOfProgress : public Progress {
 /// attempt, 0 to 1, is mapped to the range from the last reported value to 1, so that reported values do not decrease.
 class AttemptProgress : public Progress {
  public:
-  /// \param whole receiver of the reported values; null: nothing is reported
+  /// \param whole receiver of the reported values; if null, nothing is reported
   explicit AttemptProgress(Progress* whole) : whole_(whole) {}
   void at(double share) override {
     reported_ = std::lerp(begin_, 1.0, share);
@@ -48,7 +48,7 @@ class AttemptProgress : public Progress {
 /// reported. Reported values do not decrease, even if a task is repeated.
 class TaskProgress {
  public:
-  /// \param whole receiver of the mean progress; null: nothing is reported
+  /// \param whole receiver of the mean progress; if null, nothing is reported
   /// \param count number of tasks, > 0
   TaskProgress(Progress* whole, std::size_t count) : whole_(whole), count_(static_cast<double>(count)) {}
 

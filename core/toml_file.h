@@ -92,7 +92,8 @@ class TomlTable {
   std::vector<std::string> sorted_names() const;
   /// Position of a value in the input. Positions compare in the order in which the values were written.
   struct Position {
-    std::size_t source = 0;  ///< 0: the file; otherwise the number of the override, from 1
+    /// 0 for a value in the file; for a value in an override, the number of the override, from 1.
+    std::size_t source = 0;
     std::size_t line = 0;
     std::size_t column = 0;
     friend auto operator<=>(const Position&, const Position&) = default;

@@ -33,7 +33,7 @@ struct Font {
 struct Stroke {
   Colour colour;
   double width = 1.0;
-  std::vector<double> dashes;  ///< alternating lengths of dashes and gaps; empty: solid line
+  std::vector<double> dashes;  ///< alternating lengths of dashes and gaps; empty for a solid line
 };
 
 enum class Align { left, centre, right };

@@ -18,8 +18,8 @@ struct ImagePanel {
   std::size_t rows = 1;
   std::vector<double> values;  ///< row by row from the top, each >= 0
   double width = 1.0;          ///< width of the picture, in `length_unit`
-  std::string length_unit;     ///< "mm", "°"; empty: no scale bar
-  double full_value = 0.0;     ///< value at the upper end of the colour scale; 0: the largest value
+  std::string length_unit;     ///< such as "mm" or "°"; if empty, there is no scale bar
+  double full_value = 0.0;     ///< value at the upper end of the colour scale; 0 means the largest value
   /// True: the colour scale is logarithmic and covers the four decades below its upper end.
   bool is_logarithmic = false;
 };

@@ -13,7 +13,7 @@ namespace retrace::report {
 
 /// A curve. A point whose x or y is not finite is omitted and interrupts the line.
 struct Series {
-  std::string label;  ///< text in the legend; empty: no entry in the legend
+  std::string label;  ///< text in the legend; if empty, the curve is not in the legend
   std::vector<double> x;
   std::vector<double> y;        ///< as many as x
   std::vector<double> y_error;  ///< standard errors, as many as `x`, or none
@@ -34,8 +34,8 @@ struct LinePlot {
   std::string x_label;
   std::string y_label;
   std::vector<Series> series;
-  std::optional<Range> x_range;  ///< range of the x axis; no value: range of the points
-  std::optional<Range> y_range;  ///< range of the y axis; no value: rounded_range() of the points
+  std::optional<Range> x_range;  ///< range of the x axis; by default, the range of the points
+  std::optional<Range> y_range;  ///< range of the y axis; by default, rounded_range() of the points
 };
 
 /// Draws the plot. render_svg() and render_png() call this function.

@@ -36,7 +36,7 @@ struct ComposeOptions : StudyOptions {
   std::string design;
   std::string layout = "stripes";
   bool for_worst = false;
-  std::string job;  ///< fabrication job file of the whole part that is to be written; empty: no job is written
+  std::string job;  ///< fabrication job file of the whole part that is to be written; if empty, no job is written
   MakingOptions making;
   std::optional<double> x_length_mm;
   std::optional<double> y_length_mm;
@@ -90,8 +90,8 @@ studies::ZonedDesignRequest zoned_design_of(const ComposeOptions& options) {
 
 /// Output files that describe the whole part with its zones.
 struct WholePart {
-  std::string design;                   ///< text of the design file; empty: not requested
-  std::optional<studies::MadeJob> job;  ///< fabrication job; empty: not requested
+  std::string design;                   ///< text of the design file; empty if not requested
+  std::optional<studies::MadeJob> job;  ///< fabrication job; no value if not requested
   bool is_complete = true;              ///< false if a requested file cannot be made
 };
 

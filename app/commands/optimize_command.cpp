@@ -21,7 +21,7 @@ namespace retrace::app {
 namespace {
 
 struct OptimizeOptions : StudyOptions {
-  std::string job;  ///< fabrication job file of the chosen design that is to be written; empty: no job is written
+  std::string job;  ///< fabrication job file of the chosen design that is to be written; if empty, no job is written
   MakingOptions making;
 };
 

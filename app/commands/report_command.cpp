@@ -20,7 +20,7 @@ using Json = nlohmann::ordered_json;
 
 struct ReportOptions {
   std::string folder;
-  std::string title;  ///< title of the page; empty: title of the design
+  std::string title;  ///< title of the page; if empty, the title of the design is used
   Words read;         ///< files and folders outside the result folder that the command may read
 };
 

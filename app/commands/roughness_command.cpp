@@ -24,7 +24,7 @@ struct RoughnessOptions {
   std::string design;
   std::string sa = "0,2,5,10,15,20,30,40,50,75,100,150,200";
   std::string correlation_length_um = "5,20,50";
-  std::vector<std::string> facets;    ///< tables of measured facets; empty: the shipped tables
+  std::vector<std::string> facets;    ///< tables of measured facets; if empty, the shipped tables are used
   studies::RoughnessRequest request;  ///< all other options
 };
 

@@ -17,8 +17,8 @@ constexpr double kGoal = 1e-5;
 /// Richardson extrapolation of difference quotients to step 0. The step is halved from row to row.
 class Tableau {
  public:
-  /// \param order exponent by which the error decreases from column to column: each column removes an error term in
-  /// step^2 for central differences (2), or in step for one-sided differences (1)
+  /// \param order 2 for central differences, whose error is a series in powers of step^2; 1 for one-sided differences,
+  /// whose error is a series in powers of step
   explicit Tableau(int order) : ratio_(order == 2 ? 4.0 : 2.0) {}
 
   void add(const Sample& quotient) {

@@ -37,7 +37,7 @@ struct Access {
 struct Number {
   NumberRange range;
   /// Narrower range of reasonable numbers. Numbers outside of it are also refused, because computations with them would
-  /// have too few significant digits. Only the message about such a number mentions this range.
+  /// have too few significant digits. Messages about numbers outside of `range` do not mention this range.
   NumberRange sane = {};
 };
 /// An integer.

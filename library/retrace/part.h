@@ -18,8 +18,9 @@ namespace retrace {
 
 /// Selects a solid of a design.
 struct SolidRequest {
-  std::string what = "array";           ///< element, array, or mould (the block behind the part's back)
-  std::optional<double> block_mm = {};  ///< thickness of a mould below its deepest point; empty: thickness of the plate
+  std::string what = "array";  ///< element, array, or mould (the block behind the part's back)
+  /// Thickness of a mould below its deepest point; by default, the thickness of the plate.
+  std::optional<double> block_mm = {};
 };
 
 /// Kind of a face of a part, see CONVENTIONS.md.

@@ -19,7 +19,7 @@ namespace retrace {
 
 /// Settings of a ray trace. They correspond to the options of `retrace rays` (docs/commands.md).
 struct RaysRequest {
-  std::filesystem::path source = {};  ///< file of rays (.tm25ray, .csv); empty: the rays come from `emitter`
+  std::filesystem::path source = {};  ///< file of rays (.tm25ray, .csv); if empty, the rays come from `emitter`
   std::string emitter = {};           ///< lambertian, gaussian or collimated, instead of `source`
   std::optional<double> disc_mm = {};
   std::optional<double> half_angle_deg = {};
@@ -34,7 +34,7 @@ struct RaysRequest {
   double cutoff = 1e-10;
   bool stokes = false;
   bool keep_missed = false;
-  std::filesystem::path out = {};  ///< output file (.tm25ray, .csv); empty: rays are not written
+  std::filesystem::path out = {};  ///< output file (.tm25ray, .csv); if empty, rays are not written
   std::uint32_t seed = 1;
 };
 
@@ -61,7 +61,8 @@ struct RayArrays {
   /// Reference axes of the Stokes parameters, three numbers per ray. If it is empty, each axis is +x, projected normal
   /// to the direction of the ray.
   std::vector<double> axes;
-  std::vector<double> wavelengths_nm;  ///< one per ray, or one for all rays; empty: wavelengths of the design
+  /// One per ray, or one for all rays; if empty, the wavelengths of the design are used.
+  std::vector<double> wavelengths_nm;
 };
 
 /// Settings of trace(). Each member has the same meaning as the member of RaysRequest with the same name.

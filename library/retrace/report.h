@@ -23,7 +23,7 @@ struct ReportPage {
 
 /// Returns an HTML page of results.
 /// \param parts result documents and drawings
-/// \param title title of the page; empty: title of the design
+/// \param title title of the page; if empty, the title of the design is used
 /// \param readable files and folders that the function may read, such as the mesh of a design. It reads no other files.
 /// \throw InputError if `parts` contains no result document, if a document is not valid JSON, or if a file or folder of
 /// `readable` does not exist

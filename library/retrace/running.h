@@ -9,10 +9,10 @@ namespace retrace {
 
 /// Settings for running a computation. They do not change its result.
 struct Running {
-  Progress* progress = nullptr;  ///< receives the finished fraction; null: no reports
+  Progress* progress = nullptr;  ///< receives the finished fraction; if null, progress is not reported
   /// Request to stop, which is checked regularly; if null, the computation cannot be stopped.
   const Cancellation* cancellation = nullptr;
-  unsigned threads = 0;  ///< maximum number of threads; 0: number of cores
+  unsigned threads = 0;  ///< maximum number of threads; 0 means the number of cores
 };
 
 /// Returns the version of the loaded library, such as "0.1.0".

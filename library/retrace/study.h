@@ -31,7 +31,7 @@ struct Study {
 struct StudyRequest {
   std::vector<std::string> overrides = {};  ///< texts `key=value` for keys of designs, [analysis] and [machining]
   std::uint32_t seed = 1;
-  std::filesystem::path store = {};  ///< SQLite file in which finished points are kept; empty: there is no such file
+  std::filesystem::path store = {};  ///< SQLite file in which finished points are kept; if empty, they are not kept
   std::string if_exists = "refuse";  ///< action if the store exists already: refuse, resume or overwrite
 };
 

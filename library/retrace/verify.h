@@ -25,16 +25,17 @@ struct VerificationRequest {
   /// Maximum deviation of facet planes from the design. If no value is given, the limit is 10, or the deviation that
   /// the increments of a Fanuc control cause if this deviation is larger.
   std::optional<double> tolerance_nm = {};
-  std::string standing = {};  ///< stage that comes next: all stages before it have been cut; empty: the blank is uncut
-  std::filesystem::path as_machined = {};  ///< output file for the design of the machined part; empty: not written
+  /// Name of the next stage of the job. All stages before it have already been cut. If it is empty, the blank is uncut.
+  std::string standing = {};
+  std::filesystem::path as_machined = {};  ///< output file for the design of the machined part; not written if empty
   std::map<std::string, std::string> texts = {};  ///< texts of job and programs by file name, used instead of files
 };
 
 /// A fault of a program.
 struct Finding {
   std::string kind;     ///< kind of fault, such as "gouge"; docs/commands.md lists all kinds
-  std::string program;  ///< program file; empty: the finding concerns no file or all files together
-  int line = 0;         ///< line of the NC text; 0: the finding concerns no line
+  std::string program;  ///< program file; empty if the finding concerns no file or all files together
+  int line = 0;         ///< line of the NC text; 0 if the finding concerns no line
   std::string message;
   double value = 0.0;  ///< measured value, in the unit that the message contains
   double limit = 0.0;  ///< limit of the value, in the same unit

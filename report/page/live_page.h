@@ -11,7 +11,7 @@ namespace retrace::report {
 
 /// Initial state of a live page.
 struct LiveStart {
-  std::string toml;    ///< text of the design; empty: the page offers templates
+  std::string toml;    ///< text of the design; if empty, the page offers templates
   std::string source;  ///< name of the design in messages
 };
 

@@ -17,7 +17,7 @@ namespace retrace::report {
 /// Cell of a table: the text that is shown, and the full value for the CSV file if it differs.
 struct PageCell {
   std::string text;
-  std::string full;   ///< value for the CSV file; empty: same as `text`
+  std::string full;   ///< value for the CSV file; if empty, `text` is used
   std::string style;  ///< "good", "bad", "open" or none
 
   PageCell() = default;
@@ -53,7 +53,7 @@ struct PageChart {
   std::string x_label;
   std::string y_label;
   std::vector<ChartSeries> series;
-  std::optional<double> y_from;  ///< lower end of the y axis; no value: determined by the data
+  std::optional<double> y_from;  ///< lower end of the y axis; if there is no value, it is determined by the data
 };
 
 /// Straight tool moves of one kind, in mm.
@@ -73,7 +73,7 @@ struct PagePath {
 /// A drawing (SVG made by retrace) or a picture from a file of the result folder.
 struct PageFigure {
   std::string caption;
-  std::string svg;               ///< drawing as markup; empty: the figure is a picture
+  std::string svg;               ///< drawing as markup; empty if the figure is a picture
   std::string media_type;        ///< of the picture, such as "image/png"
   std::string bytes;             ///< content of the picture file
   std::string alternative_text;  ///< description of the figure for screen readers

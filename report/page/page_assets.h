@@ -7,7 +7,7 @@
 namespace retrace::report {
 
 struct PageAssets {
-  std::string script;  ///< script; empty: a page for printing, without charts and views
+  std::string script;  ///< script; empty for a page that is printed, which has no charts and views
   std::string style;
   std::string licences;
   // The following members are for live pages. They are empty for other pages.

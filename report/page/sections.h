@@ -9,7 +9,7 @@ namespace retrace::report {
 
 /// Returns the page for the results in a folder. The summary comes first, and the list of sources last. Values that a
 /// document lacks are omitted. Page::scene is empty and must be set by the caller.
-/// \param title title of the page; empty: title of the design
+/// \param title title of the page; if empty, the title of the design is used
 Page study_page(const ResultFolder& folder, const std::string& title);
 
 /// Returns the design of the first document that contains one, as JSON, or null if there is none.
