@@ -29,7 +29,7 @@ Traits machine_traits();
 Argument engine_argument(std::string& engine, const std::string& help);
 /// Returns the requirement that --engine is one of `engines`.
 Need engine_need(std::span<const studies::Engine> engines);
-/// Returns the option --dye, which is "none", the name of a shipped dye, or a file.
+/// Returns the option --dye, the colour filter of the part. Its value is "none", the name of a shipped dye, or a file.
 template <class Name>
 Argument dye_argument(Name& dye, const std::string& help) {
   return {"--dye NAME|FILE", help, &dye, one_of(Words{"none", "red", "amber"}, ".csv")};

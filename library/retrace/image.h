@@ -53,10 +53,11 @@ struct CameraRequest {
   std::array<double, 2> film_mm = {100.0, 100.0};  ///< width and height of the sheet that shows an infinite design
   /// Radius of the cylinder around which the sheet is bent; if < 0, the sheet is on the inside of the cylinder.
   std::optional<double> cylinder_mm = {};
-  double noise = 0.02;                       ///< intended relative noise of pixels
-  std::optional<std::uint32_t> passes = {};  ///< number of passes, instead of `noise`
-  std::filesystem::path lamp = {};           ///< photometric file of the lamp (.ies, .ldt), instead of illuminance_lx
-  double lamp_aim_deg = 0.0;                 ///< downward tilt of the axis of the lamp in `lamp`, in degrees
+  double noise = 0.02;  ///< intended relative noise of pixels
+  /// Number of passes (four light paths per pixel each); if given, `noise` is not used.
+  std::optional<std::uint32_t> passes = {};
+  std::filesystem::path lamp = {};  ///< photometric file of the lamp (.ies, .ldt), instead of illuminance_lx
+  double lamp_aim_deg = 0.0;        ///< downward tilt of the axis of the lamp in `lamp`, in degrees
   std::uint32_t seed = 1;
 };
 

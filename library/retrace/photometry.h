@@ -35,8 +35,9 @@ struct PhotometryRequest {
   std::uint32_t seed = 1;
   bool diffraction = true;
   bool window_power = false;  ///< true: compute the power inside and outside of the far field's window, as a check
-  bool advice = true;         ///< true: search for a change of the design that passes if a point fails
-  bool pictures = false;      ///< true: make the drawings of the result
+  /// True: if a test point fails, search for a change of the design with which all points pass.
+  bool advice = true;
+  bool pictures = false;  ///< true: make the drawings of the result
 };
 
 struct PhotometricPoint {

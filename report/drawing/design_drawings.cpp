@@ -9,7 +9,7 @@
 namespace retrace::report {
 namespace {
 
-/// Returns the profile of a curved front along two lines through its centre.
+/// Returns the profile of a curved entrance face along two lines through its centre.
 std::string profile_svg(const studies::Design& design, const studies::EntranceReport& entrance) {
   LinePlot plot;
   plot.title = studies::short_name(design) + ": front";

@@ -15,13 +15,14 @@ struct DesignDrawings {
   std::string plan = {};      ///< SVG
   std::string section = {};   ///< SVG
   std::string view = {};      ///< PNG
-  std::string entrance = {};  ///< SVG: profile of a curved front
+  std::string entrance = {};  ///< SVG: profile of a curved entrance face
   Warnings warnings = {};
 };
 
-/// Returns the plan, the section and the view of a design. A design with a curved front has a profile instead of
-/// section and view, which require a plane entrance face. A design with balls has no drawings. A design with elements
-/// on a curved substrate has only the view, because the plan cannot show their true lengths.
+/// Returns the plan, the section and the view of a design. For a design with a curved entrance face, returns only the
+/// profile of this face, because the other drawings require a plane entrance face. A design with balls has no drawings.
+/// A design with elements on a substrate (a curved surface) has only the view, because the plan and the section cannot
+/// show true lengths.
 DesignDrawings design_drawings(const studies::Inspection& inspection);
 
 }  // namespace retrace::report

@@ -255,8 +255,8 @@ PageSection footprint_section(const ResultDocument& document, const ResultFolder
 
 namespace {
 
-/// Draws the directions of returned light as spots. The centre of the drawing is the direction to the source. The area
-/// of a spot is proportional to its power.
+/// Draws one spot for each direction in which light is returned. The centre of the drawing is the direction to the
+/// source. The area of a spot is proportional to the power in its direction.
 /// \param direction entry of the list `directions` of a far-field document
 /// \param of_design beginning of the caption, see prefix_of()
 PageFigure far_field_panel(const Json& direction, const std::string& of_design) {
