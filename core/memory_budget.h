@@ -35,8 +35,8 @@ std::uint64_t beam_memory_bytes();
 /// of 1 GiB (--memory-gib)".
 std::string memory_budget_text();
 
-/// Exception that is thrown if traces that run in parallel together exceed their common memory limit. The trace that
-/// throws it need not exceed its own limit. It can be repeated while no other trace runs.
+/// Exception that a trace throws if all traces that run in parallel exceed their common memory limit. The trace may be
+/// within its own limit. The caller can therefore repeat the trace while no other trace runs.
 struct SharedMemoryShort {};
 
 /// Scope in which traces of the current thread are subject to the common memory limit of parallel traces.

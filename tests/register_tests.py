@@ -20,7 +20,8 @@ MAX_TESTS = 12
 COSTS = json.loads(pathlib.Path(__file__).with_name("costs.json").read_text(encoding="utf-8"))
 # Suites whose parameters are registered separately, as FOLDER/SUITE/PARAMETER: documents, which take a minute or more.
 SPLIT_BY_PARAMETER = {"app/Docs/Pages", "app/Docs/Tutorials"}
-# Tests with the label `slow`: runs under MPI and of installations.
+# Names of tests that get the label `slow`: tests that run under MPI, tests of an installation, and the tutorial on
+# clusters.
 SLOW = re.compile(r"/\w*ByMpi(:\d+)?$|/Installed\w*(:\d+)?$|^app/Docs/Tutorials/cluster$")
 # Timeouts of a suite in seconds. Sanitizers make suites about ten times slower.
 TIMEOUTS = {"plain": 1200, "sanitized": 12000}

@@ -58,7 +58,7 @@ enum class NextEdge {
 
 /// Diamond tool. For prisms, it is a chisel with a straight edge (single-point inverted cutting, thesis 2.1). For cube
 /// corners, it is a V-shaped tool with two edges that meet in the tip (diamond micro chiseling, thesis 1.4.2). The
-/// clearance face is next to the facet that is cut. The clearance angle is set by the mounting of the tool.
+/// clearance face faces the facet that is cut. The clearance angle is set by the mounting of the tool.
 struct Tool {
   double width_mm = 0.0;    ///< chisel: length of the edge, 0.1..2; V-shaped: distance between ends of edges, 0.01..10
   double wedge_deg = 50.0;  ///< angle between clearance face and rake face; 65 by default for a V-shaped tool

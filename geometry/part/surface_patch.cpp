@@ -160,7 +160,9 @@ class PatchBuilder {
     return id;
   }
 
-  /// Returns the height at which the plate's side begins above a tile on the border.
+  /// Returns the height of the lower end of the plate's side at a vertex of a tile on the border. If the tile is below
+  /// z = 0 there, a border wall extends from the tile up to z = 0, and the side begins at z = 0. Otherwise the side
+  /// begins at the tile.
   double rim_height(std::uint32_t tile, std::uint32_t vertex) const { return std::max(0.0, height(tile, vertex)); }
 
   void collect_heights() {

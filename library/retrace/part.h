@@ -38,7 +38,7 @@ struct Mesh {
 };
 
 /// Returns the mesh of a solid.
-/// \throw InputError for an infinite array, of which only an element is allowed, or if there are too many elements
+/// \throw InputError if the array is infinite, unless `request.what` is "element"; also if there are too many elements
 RETRACE_API Mesh mesh(const Design& design, const SolidRequest& request = {});
 
 struct ExportResult {

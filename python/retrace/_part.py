@@ -88,7 +88,7 @@ class ExportResult(Result):
 
 
 class MaterialResult(Result):
-    """Result of writing the reflection of a part to a file as a material."""
+    """Result of writing a file with a material that reflects light in the same way as a part."""
 
     _told = ("file", "directions")
 
@@ -142,9 +142,9 @@ def export_material(
     threads: int | None = None,
     progress: Progress = None,
 ) -> MaterialResult:
-    """Writes the reflection of a part as a material for renderers and simulators, as `retrace
-    export`. The formats are a table (.json and a .csv file), a BSDF for Radiance (.xml), and lobes
-    in a shader (.glsl)."""
+    """Writes a material that reflects light in the same way as a part, for renderers and
+    simulators. `retrace export` does the same. The formats are a table (.json and a .csv file), a
+    BSDF for Radiance (.xml), and lobes in a shader (.glsl)."""
     taken = design_of(design)
     request = give(
         _core.MaterialRequest(),

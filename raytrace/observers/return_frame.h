@@ -1,6 +1,7 @@
 #pragma once
 
-// Angles to the right and upwards around the direction to the source. They are the axes of far fields and angular maps.
+// Converts between directions and angles from the direction to the source. The two angles, to the right and upwards,
+// are the coordinates of far fields and angular maps.
 
 #include <Eigen/Geometry>
 #include <cmath>

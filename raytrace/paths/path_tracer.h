@@ -35,9 +35,9 @@ struct PathSetup : LightSetup {
   Vec2 tile_half_mm = Vec2::Zero();  ///< infinite part: half size of the tile, the region in which rays are traced
 };
 
-/// Traces light through a part, with refraction and reflection at every interface including polarization. If both
-/// branches are strong, both are traced. Otherwise, one branch is chosen at random and receives the total power. One
-/// walker serves one thread.
+/// Traces polarized light through a part. At every interface, a path splits into a refracted and a reflected branch. If
+/// both branches are strong, both are traced. Otherwise, one branch is chosen at random and receives the total power.
+/// One walker serves one thread.
 class PathWalker {
  public:
   /// \param observer receives all light that leaves the part; null for none

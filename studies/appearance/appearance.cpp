@@ -59,8 +59,9 @@ constexpr double kFirstAzimuthDeg = 30.0;
 // of light directions. After all halvings, the directions of a cell are therefore still lattice points, so that
 // neighbouring cells share the directions on their common sides.
 constexpr int kMostHalvings = 8;
-// Minimum ratio between the third differences of the values along the two sides of a cell. A cell is halved along a
-// side only if the third difference along it is at least this fraction of the larger one.
+// Threshold for halving a cell along a side. The mean third difference of the values is computed along each of the two
+// sides. A cell is halved along a side if the third difference along it is at least this fraction of the larger third
+// difference, or if the cell cannot be halved along its other side.
 constexpr double kLeastBend = 0.3;
 // Number of directions of light that are computed in parallel.
 constexpr std::size_t kBatch = 16;

@@ -42,7 +42,8 @@ struct MeasuredParts {
 struct CalibratedQuantity {
   const fabrication::SetupQuantity* quantity = nullptr;
   bool is_told = false;  ///< true if the measurements determine the quantity
-  /// Deviation from the job's machine, um or arcsec. The measurements do not determine it if is_told is false.
+  /// Estimated difference of the real machine from the machine file of the job, in um or arcsec. The measurements do
+  /// not determine it if is_told is false.
   double value = 0.0;
   /// Standard uncertainty. If is_told is false, it is that of the observable part of the quantity only.
   double uncertainty = 0.0;

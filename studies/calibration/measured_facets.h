@@ -28,7 +28,7 @@ enum class FacetQuantity {
   distance,  ///< distance of the facet's center along its outward normal, nm
   up,        ///< tilt, positive if the facet rises away from the root, arcsec
   along,     ///< tilt, positive if the facet rises along the root, arcsec
-  angle,     ///< angle to another facet, measured through the groove, arcsec
+  angle,     ///< angle between this facet and another facet, measured outside of the material, arcsec
   depth,     ///< depth of the root or apex, positive if it is too deep, nm
   end        ///< height of the end of the last cut above the element's other facet, at a position along the edge, nm
 };

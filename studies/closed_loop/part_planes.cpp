@@ -94,9 +94,9 @@ MachinedBody machined_body(const Job& job, const fs::path& job_file, Warnings& w
 
 geometry::PartSpec machined_elements(const Job& job, bool has_planes) {
   geometry::PartSpec part = part_on_substrate(job);
-  // If cube corners have individual facet planes, cavities extend beyond the outlines of the elements into the margins
-  // around the array. The design therefore contains no margins, and the table of planes determines the positions of the
-  // elements.
+  // Margins of a design are flat, but the machined cavities of cube corners extend into them. If cube corners have
+  // individual facet planes, cells of the array therefore cover the margins as well. The table of planes determines
+  // which cells are elements, and which are land with cuts of neighbouring cavities.
   if (!has_planes || is_prism(job)) {
     part.array.x_offset_mm = job.array.x_offset_mm;
     part.array.y_offset_mm = job.array.y_offset_mm;

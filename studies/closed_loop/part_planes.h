@@ -1,6 +1,7 @@
 #pragma once
 
-// Computes the part that is moulded in a blank, if each facet of the blank has an individual plane.
+// Computes the part that is moulded from a machined blank. Each facet of the blank has its own plane, which follows
+// from the cuts.
 
 #include <filesystem>
 #include <optional>
@@ -35,7 +36,7 @@ std::optional<Design> design_beside(const fabrication::Job& job, const std::file
 MachinedBody machined_body(const fabrication::Job& job, const std::filesystem::path& job_file, Warnings& warnings);
 
 /// Returns the specification of the job's elements.
-/// \param has_planes true: each facet has an individual plane; false: all elements are equal
+/// \param has_planes true: each facet has its own plane; false: all elements are equal
 geometry::PartSpec machined_elements(const fabrication::Job& job, bool has_planes);
 
 /// Planes of the facets of an element as cut, in the workpiece frame, in the order of the facets of its groove. Empty

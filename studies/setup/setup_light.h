@@ -44,7 +44,8 @@ struct SetupLight {
 /// Returns the reason why the light of a job is not computed, or an empty text if it is computed.
 std::string why_no_setup_light(const fabrication::Job& job);
 
-/// Computes the light for a machine without errors, and the changes due to errors.
+/// Computes the light that a part from a machine without errors retroreflects. Also computes how this light changes if
+/// one set-up quantity of the machine has an error.
 /// \param job_file job file, whose folder contains the design
 /// \param warnings receives a warning if the design does not exist
 /// \pre why_no_setup_light() is empty

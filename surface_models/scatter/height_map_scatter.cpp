@@ -158,7 +158,7 @@ struct HeightMapScatter::Band {
   double wave_um;         ///< wavelength in the medium to which the lobe goes
   double y_sign;          ///< sign of the map's y axis along the event's y axis
   std::size_t cells = 0;  ///< number of cells that scatter
-  Cumulative sum;         ///< cumulative values at the last of these cells
+  Cumulative sum;         ///< sums over the cells that scatter
   double sq_nm = 0.0;
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< covariance of the shift by one diffraction
 

@@ -221,9 +221,10 @@ Job wide_job() {
   return job;
 }
 
-/// On machine `paper`, the ploughed facet rises by 596.9 nm along the edge of the tool. The tip of one cut ends 0.894
-/// um below the rim, the upper end of the facet. Half-way from there to the rim, the face of the blank is only 446.8 nm
-/// above the design facet. The ploughed facet therefore leaves the blank below the rim, which is not a gouge.
+/// On machine `paper`, the ploughed facet is tilted. It rises by 596.9 nm from one end of the tool's edge to the other.
+/// The tip of one cut ends 0.894 um below the rim (the upper end of the facet). Half-way between this tip and the rim,
+/// the face of the blank is only 446.8 nm above the design facet, which is less than the rise. The ploughed facet
+/// therefore meets the face of the blank below the rim and ends there. This is not a gouge.
 TEST(PlannedJobs, APloughedFacetThatLeavesTheBlankBelowItsRimIsNoGouge) {
   const Job job = wide_job();
   const Machine paper = machine("paper");

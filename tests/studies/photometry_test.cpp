@@ -291,7 +291,8 @@ TEST(Photometry, DyeTakesItsShareOfTheFlux) {
   const double way_mm = 2.0 * 2.25;
   request.dye_absorption_per_mm = {{380.0, 780.0}, {0.2, 0.2}};
   EXPECT_NEAR(run(design, request).points[0].r_a / clear, std::exp(-0.2 * way_mm), 1e-9);
-  // The shipped dyes are compared with the sum over the table of lamp and luminous efficiency.
+  // For the shipped dyes, the flux is compared with a sum over wavelengths. Each term is the product of the spectrum of
+  // illuminant A, the luminous efficiency and the transmittance of the dye.
   const materials::CieTable cie =
       materials::read_cie_table(std::string(RETRACE_SOURCE_DIR) + "/data/cie_v_a_d65_5nm.csv");
   for (const std::string name : {"red", "amber"}) {

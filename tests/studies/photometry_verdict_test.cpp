@@ -116,8 +116,9 @@ TEST(PhotometryVerdict, RoughPartsPassAndFailByTheirDiffractedValue) {
   }
 }
 
-// In a perfect cube corner of mirrors at normal incidence, every path hits three facets at 54.74 degrees. In every
-// direction, the mean field is the field of smooth facets times the specular fractions. Scattered light is added to it.
+// In a perfect cube corner of mirrors at normal incidence, every path hits three facets at 54.74 degrees. Without
+// scattered light, R_A in every direction would be that of smooth facets times the three specular fractions. Scattered
+// light increases R_A above this value.
 TEST(PhotometryVerdict, RoughPartsShowTheirSpecularShareAndWhatTheyScatter) {
   const Design smooth = design_of(honeycomb(0.0, 0.5), true);
   PhotometryRequest request = request_of(points_at({0.05}, 1e-3));

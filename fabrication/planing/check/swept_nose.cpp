@@ -25,7 +25,8 @@ std::vector<double> with_fillets(std::vector<double> places, const SectionLine& 
     const double middle = dz > 0.0 ? centres[i - 1].x_mm : centres[i].x_mm;
     const double side = dz > 0.0 ? nose_mm : -nose_mm;
     for (int k = 1; k < kFillet; ++k) places.push_back(middle + side * std::sin(0.5 * std::numbers::pi * k / kFillet));
-    // Add the ends of the surface that the segment itself produces, and the ends of the discs at its end points.
+    // The nose is a disc. While its center moves along the segment, it produces a line that is tangent to the discs at
+    // both end points of the segment. Add positions at the two ends of this line, and at one side of each disc.
     const double from = centres[i - 1].x_mm + nose_mm * dz / std::hypot(dx, dz);
     for (const double end : {from, from + dx, centres[i - 1].x_mm + side, centres[i].x_mm + side}) {
       places.push_back(end - kBeside);

@@ -75,7 +75,8 @@ class NoseCompensation {
   double end_rad_;  ///< angle of the ends of the sharp arc, on both sides
 };
 
-/// Motion of an axis over a path, computed by difference quotients of its positions.
+/// Range of the positions of an axis over a path, and maxima of its speed, acceleration and jerk. The maxima are
+/// computed from finite differences of the positions.
 struct AxisFigures {
   double low_mm = 0.0;
   double high_mm = 0.0;

@@ -32,7 +32,7 @@ export class Engine {
   constructor() {
     this.workers = { quick: [], slow: [] }; // workers with their numbers of jobs: {worker, jobs}
     this.lanes = { quick: [], slow: [] };
-    this.waiting = new Map(); // running jobs by the number of the job
+    this.waiting = new Map(); // running jobs; the key is the number of the job
     this.count = 0;
     this.failed = () => {};
   }

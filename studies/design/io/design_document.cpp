@@ -130,8 +130,9 @@ void set_balls(Document& document, const raytrace::BallLayer& balls) {
   array.set("gap_mm", *balls.pitch_mm - balls.diameter_mm);
 }
 
-/// Writes the regions of a zone. Rectangles are written as [[x_from, y_from, x_to, y_to], ...]. A zone that is no
-/// rectangle has only one region, whose corners are written.
+/// Writes the regions of a zone. If all regions are rectangles, they are written as
+/// [[x_from, y_from, x_to, y_to], ...]. Otherwise, the zone has only one region, and the corners of this polygon are
+/// written.
 void set_regions(Keys& keys, const std::vector<geometry::Polygon>& regions) {
   std::vector<std::vector<double>> boxes;
   for (const geometry::Polygon& region : regions) {

@@ -59,7 +59,7 @@ std::string stripped(std::string text, const char* of) {
   return text.erase(0, text.find_first_not_of(of));
 }
 
-/// Returns the key of a change KEY=VALUE. Empty if the text is no change.
+/// Returns the key of a change KEY=VALUE. Returns an empty text if `change` contains no equals sign.
 std::string key_of(const std::string& change) {
   const std::size_t equals = change.find('=');
   return equals == std::string::npos ? std::string() : stripped(change.substr(0, equals), " \t");

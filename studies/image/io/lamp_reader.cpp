@@ -42,7 +42,7 @@ class Lines {
     std::replace(text.begin(), text.end(), ',', '.');
     return checked(number_in(text), text, key, least, most);
   }
-  /// Reads the next number. Numbers may continue on the following lines.
+  /// Reads the next number of a list. The list may contain several numbers per line and continue over several lines.
   double word(std::string_view key, double least, double most) {
     constexpr const char* kBetween = " \t\r,";
     while (word_ == std::string_view::npos) word_ = next(key).find_first_not_of(kBetween);

@@ -24,8 +24,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Returns the title as one line, without the character ' that ends a text in STEP and without line breaks, which end a
-/// line in OBJ.
+/// Returns the title as one line of ASCII characters. It contains no line breaks, because they end a comment in OBJ. It
+/// contains no apostrophes, because they end a text in STEP.
 std::string title_of(const Solid& solid) {
   std::string title = printable(short_name(solid.design), 60) + ", " + name_of(solid.what);
   std::replace(title.begin(), title.end(), '\'', ' ');

@@ -39,8 +39,8 @@ Angle wrapped(double angle_rad) {
   return Angle::from_rad(turned);
 }
 
-/// Returns the angle from the plane through `axis` and `from` to the plane through `axis` and `to`. It is
-/// counter-clockwise as seen from the end of the axis.
+/// Returns the angle from the plane through `axis` and `from` to the plane through `axis` and `to`. The angle is
+/// positive if the rotation is counter-clockwise for a viewer towards whom `axis` points.
 double turn_about(const Vec3& axis, const Vec3& from, const Vec3& to) {
   return std::atan2(axis.dot(from.cross(to)), from.dot(to) - axis.dot(from) * axis.dot(to));
 }

@@ -84,7 +84,8 @@ double plan_value(const DesignDrawing& drawing, const std::string& name) {
   return NAN;
 }
 
-/// Every point of the part is drawn exactly one time, and facets have the areas of their projections.
+/// The faces in the plan add up to the area of the part. The area of a drawn facet is the projection of the facet onto
+/// the plan.
 TEST(DesignDrawing, FacesCoverThePart) {
   for (const std::string& text : finite_designs()) {
     const Drawn d = drawn(text);

@@ -44,8 +44,8 @@ TEST(SetupSheet, TheLargestErrorsComeFirst) {
   ASSERT_EQ(sheet.sensitivities.kinds.size(), 4U);
   for (std::size_t k = 1; k < sheet.sensitivities.rows.size(); ++k)
     EXPECT_GE(sheet.sensitivities.rows[k - 1].largest_nm(), sheet.sensitivities.rows[k].largest_nm());
-  // If the center of C is displaced by 1 um, facet 2 is shifted. The facets of rotated elements that face in the
-  // opposite direction are also shifted.
+  // Facet 1 is cut at C = 0, so that a displacement of the center of C by 1 um does not shift it. Facet 2 is cut at C =
+  // 180 degrees, where the workpiece is displaced by 2 um. This shifts facet 2 by sqrt(2) um along its normal.
   const Sensitivity& centre = row_of(sheet, "c_y_um");
   EXPECT_NEAR(centre.facets[0].distance_nm, 0.0, 1e-9);
   EXPECT_NEAR(centre.facets[1].distance_nm, 1000.0 * std::numbers::sqrt2, 1e-9);
@@ -53,8 +53,8 @@ TEST(SetupSheet, TheLargestErrorsComeFirst) {
   EXPECT_FALSE(sheet.light.has_value());
 }
 
-/// An error of the tool along Z moves the end of the cut but not the facets. The cut ends before it reaches the other
-/// facet, or enters it.
+/// A displacement of the tool along Z does not shift the plane of a cut, but shifts the end of the cut at the root.
+/// Depending on the sign of the displacement, the cut ends above the other facet or gouges it.
 TEST(SetupSheet, RootsAreWhatTheVerifierFinds) {
   const FabricationResult result = made();
   const SetupSheet sheet = setup_sheet(result, false);

@@ -17,8 +17,8 @@ using geometry::Vec3;
 constexpr int kTangents = 32;
 /// Maximum distance from a dihedral edge up to which cuts are searched, in radii of the nose.
 constexpr double kFurthest = 40.0;
-/// Maximum height, in radii, above the facets at which a cut ends. Cuts that end higher do not reach the dihedral
-/// edges.
+/// Maximum height of the tool's tip above the facets at the lower end of a cut, in radii of the nose. Cuts that stay
+/// higher do not reach the dihedral edges and are ignored.
 constexpr double kNear = 20.0;
 
 /// Returns the normalized component of a vector that is perpendicular to a unit vector.
