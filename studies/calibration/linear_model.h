@@ -18,9 +18,9 @@ namespace retrace::studies {
 struct LinearModel {
   Eigen::MatrixXd of_setup;  ///< derivatives with respect to the quantities of setup_quantities()
   /// Derivatives with respect to the poses of the parts. Each part has shifts along X and Y and three rotations. The
-  /// height of a part is no unknown, because measured heights are relative to the face on which the tool was touched
-  /// off. For height maps, the height is an unknown as well; the figures of the blank's face determine it. The two
-  /// rotations of the face in the machine are common to all maps of a part.
+  /// height of a part is not an unknown, because measured heights are relative to the face on which the tool was
+  /// touched off. For height maps, the height is an unknown as well; the figures of the blank's face determine it. The
+  /// two rotations of the face in the machine are common to all maps of a part.
   Eigen::MatrixXd of_poses;
   Eigen::VectorXd residual;  ///< measured values minus the values that the machine would produce
 };

@@ -26,7 +26,7 @@ double given_by(const Zone& zone, std::size_t goal, bool is_margin);
 bool is_price(double price);
 
 /// Returns the decrease of the minimum goal per unit by which the limit of a margin is raised. Returns nothing for
-/// goals that are no margins.
+/// goals that are not margins.
 std::optional<double> cost_of_limit(const Quantity& quantity, const Mixture& mixture, std::size_t goal);
 
 /// Returns the goals to show. If a test point has several readings, only the minimum is shown. Names of goals from the

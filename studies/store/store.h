@@ -56,7 +56,7 @@ enum class IfExists { refuse, resume, overwrite };
 class ResultStore {
  public:
   /// \param file empty: the store is in memory and only this process can access it
-  /// \throw InputError if the file exists although it must not, is no store, is damaged, belongs to another study or
+  /// \throw InputError if the file exists although it must not, is not a store, is damaged, belongs to another study or
   /// has a newer version. Nothing is written then.
   /// \throw OutputError if the file cannot be written
   ResultStore(const std::filesystem::path& file, const StoreLayout& layout, IfExists if_exists);

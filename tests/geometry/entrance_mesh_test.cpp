@@ -201,7 +201,8 @@ TEST(EntranceMesh, StepsAreRefused) {
   expect_refused(message(stepped(0.0, false), outline), {"the height jumps"}, {1.0, 1.0}, 1e-3);
   expect_refused(message(stepped(0.2, true), outline), {"a triangle hangs over"}, {0.9, 1.0}, 0.2);
   EXPECT_EQ(message(stepped(-0.2, true), outline), "") << "a slope";
-  // Of the side that is no entrance surface nothing is asked: a level lid over the steps.
+  // Only the entrance surface is checked. Here the side with the steps is not the entrance surface, because a
+  // horizontal lid covers the steps.
   TriangleMesh body = turned_over(stepped(0.0, true));
   for (const Vec2& p : outline) body.vertices.emplace_back(p.x(), p.y(), 2.0);
   body.triangles.insert(body.triangles.end(), {{8, 9, 10}, {8, 10, 11}});

@@ -219,7 +219,7 @@ TEST(FacetPlanes, CapsLeaveACoreOverTheApex) {
 TEST(FacetPlanes, PlanesOfNoElementAreRefused) {
   const PartSpec spec = prisms(Arrangement::offset);
   EXPECT_THROW(build_part(spec, FacetPlanes({planes_at({0.25, 0.25}), planes_at({5.25, 0.25})}, 0.5)), InputError);
-  // Half an element at the border of a shifted row is no whole one.
+  // The half element at the border of a shifted row is not a whole element.
   EXPECT_THROW(build_part(spec, FacetPlanes({planes_at({0.25, 0.25}), planes_at({0.0, 0.75})}, 0.5)), InputError);
   EXPECT_THROW(FacetPlanes({planes_at({0.25, 0.25}), planes_at({0.25, 0.25})}, 0.5), InputError);
 }

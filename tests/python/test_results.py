@@ -212,7 +212,7 @@ class Designs(unittest.TestCase):
         self.assertTrue(np.all(vertices[faces[labels == rt.FaceKind.ENTRANCE]][..., 2] == 2))
         for array in made:
             self.assertFalse(array.flags.writeable)
-            self.assertFalse(array.flags.owndata)  # the array is no copy
+            self.assertFalse(array.flags.owndata)  # the array is not a copy
         del made
         self.assertGreater(vertices.max(), 0)  # the array stays valid
 

@@ -3,7 +3,7 @@
     python3 site.py SOURCE PROGRAM BUILD
 
 Pages stand in BUILD/site_pages as they do in the repository, so that links between them hold. Files that a page links to
-and that are no pages - examples, data, sources - become pages that show them. Every example gets a page with a picture
+and that are not pages - examples, data, sources - become pages that show them. Every example gets a page with a picture
 that PROGRAM makes of it. The site is BUILD/site.
 """
 

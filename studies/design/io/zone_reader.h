@@ -11,8 +11,8 @@ namespace retrace::studies {
 
 /// Reads the zones of a design.
 /// \pre has_zones(document)
-/// \throw InputError if zones overlap or leave parts uncovered, if regions are no convex polygons, and for invalid
-/// changes
+/// \throw InputError if zones overlap or leave parts uncovered, if regions are not convex polygons, and for
+/// invalid changes
 ZonedPart read_zones(const schema::Document& document);
 
 /// Returns true if the design is a part with zones.

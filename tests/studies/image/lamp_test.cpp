@@ -194,7 +194,7 @@ TEST(Lamp, FactorsCountAsTheFilesEditionSays) {
     return parse_ies(ies(1, {0}, {0, 90}, kPlain, first, factors), "a.ies").intensity.largest_cd();
   };
   EXPECT_NEAR(largest("IESNA:LM-63-2002\n", "0.9 1 60"), 90.0, 1e-9);
-  EXPECT_NEAR(largest("IES:LM-63-2019\n", "0.9 1.10000 60"), 90.0, 1e-9);  // in LM-63-2019, 1.1 is no factor
+  EXPECT_NEAR(largest("IES:LM-63-2019\n", "0.9 1.10000 60"), 90.0, 1e-9);  // in LM-63-2019, 1.1 is not a factor
   EXPECT_NEAR(largest("", "0.9 0.5 60"), 45.0, 1e-9);                      // LM-63-86
   const PhotometricLamp lamp = parse_ies(ies(1, {0}, {0, 90}, kPlain), "a.ies");
   EXPECT_EQ(lamp.printed_lumens, 1000.0);

@@ -27,7 +27,7 @@ std::vector<Plane> planes_of(const SweptVolume& sweep, const RigidMotion& back, 
   std::vector<Plane> planes;
   const auto add = [&](const Vec3& outward) {
     for (const Vec3& ray : rays)
-      if (outward.dot(ray) > 1e-12) return;  // the wedge extends through this plane, so it is no boundary
+      if (outward.dot(ray) > 1e-12) return;  // the wedge extends through this plane, so it is not a boundary
     double bound = -1e300;
     for (const Vec3& tip : tips) bound = std::max({bound, outward.dot(tip), outward.dot(tip + travel)});
     const Vec3 turned = back.direction(outward);
