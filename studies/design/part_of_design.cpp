@@ -64,7 +64,7 @@ geometry::TriangleMesh united(const Design& design, const geometry::TriangleMesh
   std::optional<geometry::MeshUnion> all = geometry::union_of_bodies(mesh);
   if (!all)
     throw InputError(
-        fmt::format("the mesh {} and its bodies cannot be united: each body must be a closed surface that does not "
+        fmt::format("the mesh {}, and its bodies cannot be united: each body must be a closed surface that does not "
                     "cross itself; repair the mesh in the program that made it",
                     fault));
   tell(warnings, design, "bodies_united",
