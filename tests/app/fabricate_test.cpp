@@ -213,7 +213,7 @@ TEST(Job, ADihedralErrorOpensTheApex) {
 
 TEST(Fabricate, RefusesInOneLineAndLeavesNothing) {
   const TemporaryFolder folder;
-  folder.write("d.toml:7: array.x_length_mm", design("offset", 3 * 0.451));
+  folder.write("d.toml", design("offset", 3 * 0.451));
   folder.write("cube.toml",
                "[element]\nkind = \"hexagonal_icc\"\naperture_mm = 1\n[array]\narrangement = \"single\"\n"
                "[body]\nthickness_mm = 1\n");
