@@ -22,7 +22,8 @@ TEST(Validate, MeetsEveryFigureAndWritesThePageOfTheDocumentation) {
   const TemporaryFolder folder;
   const Outcome outcome = retrace(folder, {"validate", "-o", "validation.md", "--json", "validation.json"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_EQ(outcome.err, "");
+  // A slow machine gets a note about a long run.
+  for (const std::string& line : lines_of(outcome.err)) EXPECT_TRUE(line.starts_with("note: ")) << line;
   EXPECT_EQ(outcome.out, "wrote validation.md\n");
   EXPECT_EQ(folder.names(), (Arguments{"validation.json", "validation.md"}));
   EXPECT_EQ(numbers_of(folder.read("validation.md")),
