@@ -262,7 +262,7 @@ TEST(Fabricate, RefusesInOneLineAndLeavesNothing) {
       {{"job", "cube.toml", "--tool-width-mm", "1", "--strategy", "dmc", "--workpiece", "direct"}, "--workpiece"},
       {{"job", "cube.toml", "--tool-width-mm", "1", "--strategy", "dmc", "--set", "element.cant_deg=5"},
        "cube.toml: element.cant_deg"},
-      {{"job", "d.toml", "--tool-width-mm", "0.4", "--set", "array.extent=infinite"}, "d.toml"},
+      {{"job", "d.toml", "--tool-width-mm", "0.4", "--set", "array.extent=infinite"}, "d.toml:7: array.x_length_mm"},
       {{"job", "mask_white.pgm.toml", "--tool-width-mm", "0.451"}, "mask_white.pgm.toml:9: array.mask"},
       {{"job", "mask_small.pgm.toml", "--tool-width-mm", "0.451"}, "mask_small.pgm.toml:9: array.mask"},
       {{"job", "mask_text.png.toml", "--tool-width-mm", "0.451"}, "mask_text.png.toml:9: array.mask"},
