@@ -92,12 +92,7 @@ TEST_F(SweepByMpi, NoIsTheAnswerIfEveryPointFailed) {
                                   "[[quantity]]\nkind = \"rre\"\n");
   const Outcome outcome = Child(folder_.path(), on_three_ranks("study.toml -o out --quiet")).wait(kMpiLimit);
   EXPECT_EQ(outcome.code, 1);
-  // mpiexec adds lines of its own, and interrupts the other ranks as soon as one has ended with an error.
-  const std::vector<std::string> lines = lines_of(outcome.err);
-  const auto count = std::ranges::count_if(lines, [](const std::string& line) {
-    return line.starts_with("retrace: ") && !line.starts_with("retrace: interrupted");
-  });
-  EXPECT_EQ(count, 1) << outcome.err;
+  EXPECT_EQ(refusals_in(outcome), 1) << outcome.err;
 }
 
 TEST_F(SweepByMpi, WhatIsWrongIsSaidOnce) {

@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cstddef>
 #include <fstream>
 #include <string>
 #include <thread>
@@ -18,6 +20,14 @@ namespace retrace::test {
 inline constexpr std::chrono::seconds kMpiLimit = patient(60);
 /// Time, in s, without messages after which a rank is given up.
 inline constexpr int kMpiSilenceS = 3;
+
+/// Returns how many lines of a run by several ranks report why it was refused. mpiexec adds lines of its own, and
+/// interrupts the other ranks as soon as one has ended with an error.
+inline std::ptrdiff_t refusals_in(const Outcome& outcome) {
+  return std::ranges::count_if(lines_of(outcome.err), [](const std::string& line) {
+    return line.starts_with("retrace: ") && !line.starts_with("retrace: interrupted");
+  });
+}
 
 /// Returns the command that runs the program on several ranks. Each rank writes its process number to a file.
 /// \param options options of mpirun

@@ -159,12 +159,7 @@ TEST_F(CommandsByMpi, WhatIsWrongIsSaidOnce) {
        {"roughness d.toml --sa=-1", "optimize study.toml", "image d.toml --camera --noise=-1"}) {
     const Outcome outcome = Child(folder_.path(), on_ranks(3, arguments + " -o out")).wait(kMpiLimit);
     EXPECT_EQ(outcome.code, 2) << arguments;
-    const std::vector<std::string> lines = lines_of(outcome.err);
-    // mpiexec interrupts the other ranks as soon as one has ended with an error.
-    const auto count = std::ranges::count_if(lines, [](const std::string& line) {
-      return line.starts_with("retrace: ") && !line.starts_with("retrace: interrupted");
-    });
-    EXPECT_EQ(count, 1) << outcome.err;
+    EXPECT_EQ(refusals_in(outcome), 1) << outcome.err;
     EXPECT_FALSE(fs::exists(folder_.path() / "out")) << arguments;
   }
 }
