@@ -7,25 +7,44 @@ namespace retrace::app {
 
 FirstAnswer::FirstAnswer(ProgressBar& bar, const Cancellation* cancel, Compute compute)
     : bar_(bar), cancel_(cancel), compute_(std::move(compute)) {
-  bar_.after_notice([this](double remaining_s) { begin(remaining_s); });
+  if (bar_.is_quiet()) return;
+  bar_.after_notice([this](double) {
+    const std::lock_guard lock(mutex_);
+    is_long_ = true;
+    changed_.notify_one();
+  });
+  try {
+    thread_ = std::thread([this] { wait_and_compute(); });
+  } catch (const std::system_error&) {
+    // The system cannot start another thread. Preliminary results are omitted.
+  }
 }
 
 FirstAnswer::~FirstAnswer() {
   bar_.after_notice({});
   cancel_.request();
+  {
+    const std::lock_guard lock(mutex_);
+    is_over_ = true;
+    changed_.notify_one();
+  }
   if (thread_.joinable()) thread_.join();
 }
 
-void FirstAnswer::begin(double remaining_s) try {
-  thread_ = std::thread([this, remaining_s] {
-    try {
-      const std::string lines = compute_(remaining_s, &cancel_);
-      if (!cancel_.requested()) bar_.write_lines(lines);
-    } catch (...) {  // NOLINT(bugprone-empty-catch): preliminary results are omitted
-    }
-  });
-} catch (const std::system_error&) {
-  // The system cannot start another thread. Preliminary results are omitted.
+/// Waits until preliminary results are needed. Returns false if they are not needed.
+bool FirstAnswer::wait() {
+  std::unique_lock lock(mutex_);
+  changed_.wait_for(lock, kPatience, [this] { return is_long_ || is_over_; });
+  return !is_over_;
+}
+
+void FirstAnswer::wait_and_compute() try {
+  if (!wait()) return;
+  const std::optional<double> remaining_s = bar_.remaining_s();
+  if (remaining_s && *remaining_s < kSoonS) return;
+  const std::string lines = compute_(remaining_s, &cancel_);
+  if (!cancel_.requested()) bar_.write_lines(lines);
+} catch (...) {  // NOLINT(bugprone-empty-catch): preliminary results are omitted
 }
 
 }  // namespace retrace::app

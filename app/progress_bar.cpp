@@ -60,6 +60,11 @@ void ProgressBar::after_notice(std::function<void(double)> action) {
   after_notice_ = std::move(action);
 }
 
+std::optional<double> ProgressBar::remaining_s() {
+  const std::lock_guard lock(mutex_);
+  return remaining_s_;
+}
+
 void ProgressBar::write_lines(const std::string& lines) {
   const std::lock_guard lock(mutex_);
   if (is_quiet_) return;
@@ -78,11 +83,11 @@ void ProgressBar::at(double share) {
 void ProgressBar::at(double share, const std::string& remark) {
   const std::lock_guard lock(mutex_);
   notice(share, "this run");
-  const std::optional<double> remaining_s = run_.remaining_s(share, elapsed_s());
+  remaining_s_ = run_.remaining_s(share, elapsed_s());
   if (!is_time_to_draw(share >= 1.0)) return;
   const auto full = static_cast<int>(std::lround(share * kWidth));
   fmt::print(stderr, "\r\033[K{} [{:=>{}}{:>{}}] {:3.0f} %", text_.doing, "", full, "", kWidth - full, 100.0 * share);
-  if (remaining_s) fmt::print(stderr, "  {:.0f} s left", *remaining_s);
+  if (remaining_s_) fmt::print(stderr, "  {:.0f} s left", *remaining_s_);
   fmt::print(stderr, "{}", remark);
   std::fflush(stderr);
 }

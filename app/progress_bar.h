@@ -6,6 +6,7 @@
 #include <chrono>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <string>
 
 #include "app/command.h"
@@ -45,6 +46,9 @@ class ProgressBar : public Progress {
   /// \param group description of the group for the notice, such as "computing the next 65 designs"
   void at_group(double share, const std::string& group);
 
+  bool is_quiet() const { return is_quiet_; }
+  /// Returns the remaining time in seconds as last estimated by at(), or nothing if there is no estimate.
+  std::optional<double> remaining_s();
   /// Sets a function that is called after the notice about a long run. The function must not use the bar, because the
   /// mutex of the bar is locked during the call.
   /// \param action function with the estimated remaining time in seconds as its parameter. If it is empty, nothing is
@@ -70,6 +74,7 @@ class ProgressBar : public Progress {
   bool is_terminal_;
   bool drawn_ = false;
   LongRun run_;
+  std::optional<double> remaining_s_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   std::chrono::steady_clock::time_point last_;
 };

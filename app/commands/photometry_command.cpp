@@ -154,12 +154,15 @@ Words what_shortens_photometry(const PhotometryOptions& options, const studies::
 
 /// Computes preliminary readings (rough photometric values at the test points) and returns them as a table. The
 /// computation takes some seconds. Returns an empty text if the computation is cancelled.
-/// \param remaining_s estimated remaining time of the main computation, in seconds
-std::string first_answer_of(const studies::PhotometryStudy& study, double remaining_s, const Cancellation* cancel) {
+/// \param remaining_s estimated remaining time of the main computation, in seconds; empty if it is unknown
+std::string first_answer_of(const studies::PhotometryStudy& study, std::optional<double> remaining_s,
+                            const Cancellation* cancel) {
   // Intended tracing time of the preliminary readings in seconds. It is about twice as long while the main computation
   // runs in parallel.
   constexpr double first_answer_s = 3.0;
-  const auto answer = study.first_answer(first_answer_s / remaining_s, cancel);
+  constexpr double unknown_time_s = 600.0;
+  const double share = std::min(1.0, first_answer_s / remaining_s.value_or(unknown_time_s));
+  const auto answer = study.first_answer(share, cancel);
   return answer ? studies::first_answer_table(*answer) : std::string();
 }
 
@@ -185,7 +188,7 @@ ExitCode run(const PhotometryOptions& options, const CommonOptions& common) {
   {
     ProgressBar bar(text, common);
     interrupt.run(common.threads, [&](const Cancellation* cancel) {
-      const FirstAnswer first(bar, cancel, [&study](double remaining_s, const Cancellation* stop) {
+      const FirstAnswer first(bar, cancel, [&study](std::optional<double> remaining_s, const Cancellation* stop) {
         return first_answer_of(study, remaining_s, stop);
       });
       result = study.run(&bar, cancel);

@@ -21,6 +21,8 @@ constexpr std::array<double, 14> kAngleSteps = {0.5,  -0.5, 1.0,  -1.0, 1.5,  -1
 // Factors of the element size that are tried.
 constexpr std::array<double, 8> kSizeFactors = {0.7, 1.4, 0.5, 2.0, 0.35, 2.8, 0.25, 4.0};
 constexpr int kBisections = 4;
+// Maximum number of tables that are measured. The last table of each parameter is that of the returned change.
+constexpr double kMostTables = kAngleSteps.size() + kSizeFactors.size() + 2.0 * (kBisections + 1);
 // Minimum ratio of a reading to its limit that counts as passing during the search. It is above 1 because the search
 // uses few wavelengths and is therefore less accurate.
 constexpr double kEnough = 1.01;
@@ -141,13 +143,19 @@ double least_ratio(const std::vector<PhotometricPoint>& points) {
 }
 
 std::optional<PhotometricChange> change_that_passes(const Design& design, const TestProgramme& programme,
-                                                    const TableOfDesign& table) {
+                                                    const TableOfDesign& table, Progress* progress) {
+  double measured = 0.0;
+  const TableOfDesign counted = [&](const Design& changed, std::size_t parts, double enough) {
+    auto points = table(changed, parts, enough);
+    if (progress != nullptr) progress->at(++measured / kMostTables);
+    return points;
+  };
   const std::array<Knob, 2> knobs = {angle_knob(design), size_knob(design)};
   std::optional<Search> best;
   std::optional<PhotometricChange> told;
   double best_ratio = kNothingMade;
   for (const Knob& knob : knobs) {
-    Search search(knob, programme, table);
+    Search search(knob, programme, counted);
     const double ratio = search.run(best_ratio);
     if (search.is_cancelled()) return std::nullopt;
     if (ratio <= best_ratio) continue;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/progress.h"
 #include "studies/photometry/photometry.h"
 
 namespace retrace::studies {
@@ -25,7 +26,8 @@ double least_ratio(const std::vector<PhotometricPoint>& points);
 /// parameter that has one. If there is none, returns the best change that was tried. The search uses few wavelengths,
 /// but the returned readings use all wavelengths. Returns nothing if no changed part can be made, or if the search was
 /// cancelled.
+/// \param progress receives the number of measured tables as a fraction of the largest possible number; may be null
 std::optional<PhotometricChange> change_that_passes(const Design& design, const TestProgramme& programme,
-                                                    const TableOfDesign& table);
+                                                    const TableOfDesign& table, Progress* progress = nullptr);
 
 }  // namespace retrace::studies

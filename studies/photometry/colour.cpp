@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/task_progress.h"
 #include "materials/io/spectrum_reader.h"
 
 namespace retrace::studies {
@@ -31,14 +32,16 @@ std::optional<std::vector<MeasuredTristimulus>> measured_tristimulus(const Desig
                                                                      const PhotometryRequest& request,
                                                                      const Photometer& photometer,
                                                                      const std::vector<PhotometerSetting>& settings,
-                                                                     const Cancellation* cancel) {
+                                                                     Progress* progress, const Cancellation* cancel) {
   const materials::Tristimulus sent =
       materials::tristimulus(lamp_power(request.light), materials::shipped_colour_matching());
   std::vector<MeasuredTristimulus> measured(settings.size());
   for (std::size_t k = 0; k < sent.size(); ++k) {
     Photometer one(design, request_of_response(request, k), kColourParts, static_cast<PhotometricResponse>(k));
     if (!photometer.is_exact()) one.leave_exact();
-    const auto readings = one.measure(settings, nullptr, cancel);
+    const auto count = static_cast<double>(sent.size());
+    PartOfProgress part(progress, static_cast<double>(k) / count, static_cast<double>(k + 1) / count);
+    const auto readings = one.measure(settings, &part, cancel);
     if (!readings) return std::nullopt;
     for (std::size_t s = 0; s < settings.size(); ++s) {
       measured[s].values[k] = sent[k] * (*readings)[s].r_a.front();
@@ -119,7 +122,7 @@ std::optional<Verdict> PhotometricColour::verdict() const {
 
 std::optional<PhotometricColour> measured_colour(const Design& design, const PhotometryRequest& request,
                                                  const Photometer& photometer, const std::vector<double>& v_deg,
-                                                 const Cancellation* cancel) {
+                                                 Progress* progress, const Cancellation* cancel) {
   const std::vector<ColourBoundary>& boundaries = request.programme.boundaries;
   const TestPoint& first = request.programme.points.front();
   const double observation_deg = boundaries.empty() ? first.observation_deg : boundaries.front().observation_deg;
@@ -128,7 +131,7 @@ std::optional<PhotometricColour> measured_colour(const Design& design, const Pho
   for (const double v : v_deg)
     for (const double rotation_deg : request.rotation_deg)
       settings.push_back({v, h_deg, rotation_deg, {observation_deg}, 0, false});
-  const auto measured = measured_tristimulus(design, request, photometer, settings, cancel);
+  const auto measured = measured_tristimulus(design, request, photometer, settings, progress, cancel);
   if (!measured) return std::nullopt;
   std::optional<PhotometricColour> worst;
   for (std::size_t s = 0; s < settings.size(); ++s) {

@@ -19,9 +19,10 @@ PhotometryRequest request_of_response(const PhotometryRequest& request, std::siz
 /// own wavelengths. Returns nothing if the measurement was cancelled.
 /// \param photometer photometer of the design and the request; the colour is measured with its engine
 /// \param v_deg angles V at which the colour is measured; the worst result counts
+/// \param progress receives the finished fraction; may be null
 /// \pre the light is a CIE illuminant, and the test plan has points
 std::optional<PhotometricColour> measured_colour(const Design& design, const PhotometryRequest& request,
                                                  const Photometer& photometer, const std::vector<double>& v_deg,
-                                                 const Cancellation* cancel);
+                                                 Progress* progress, const Cancellation* cancel);
 
 }  // namespace retrace::studies

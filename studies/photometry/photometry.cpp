@@ -194,14 +194,14 @@ std::vector<PhotometerSetting> curve_settings(const PhotometryRequest& request) 
 }
 
 bool add_pictures(const Design& design, const PhotometryRequest& request, const Plan& plan, bool exact,
-                  const Cancellation* cancel, PhotometryResult& result) {
+                  Progress* progress, const Cancellation* cancel, PhotometryResult& result) {
   Photometer photometer(design, request, kPictureParts);
   if (!exact) photometer.leave_exact();
   const std::vector<PhotometerSetting> maps = map_settings(request, plan);
   const std::vector<PhotometerSetting> curves = curve_settings(request);
   std::vector<PhotometerSetting> all = maps;
   all.insert(all.end(), curves.begin(), curves.end());
-  const auto readings = photometer.measure(all, nullptr, cancel);
+  const auto readings = photometer.measure(all, progress, cancel);
   if (!readings) return false;
   for (std::size_t k = 0; k < maps.size(); ++k)
     result.maps.push_back(
@@ -414,32 +414,61 @@ std::optional<std::vector<PhotometerReading>> readings_of(Photometer& photometer
   }
 }
 
+bool measures_colour(const PhotometryRequest& request) {
+  return request.colour && request.light != PhotometricLight::of_design && !request.programme.points.empty();
+}
+
+/// Returns true if a change of the design is searched in case the design fails.
+bool may_search_change(const Design& design, const PhotometryRequest& request) {
+  return request.advice && design.elements() && !design.entrance;
+}
+
+/// Progress of the stages of PhotometryStudy::run().
+struct StageProgress {
+  PartOfProgress readings, colour, pictures, change;
+};
+
+/// Divides the progress of a run among its stages. The durations of the stages are estimates, relative to the first.
+StageProgress stages_of(Progress* whole, const Design& design, const PhotometryRequest& request) {
+  const double colour = 1.0 + (measures_colour(request) ? 0.3 : 0.0);
+  const double pictures = colour + (request.pictures ? 0.3 : 0.0);
+  const double change = pictures + (may_search_change(design, request) ? 1.0 : 0.0);
+  return {{whole, 0.0, 1.0 / change},
+          {whole, 1.0 / change, colour / change},
+          {whole, colour / change, pictures / change},
+          {whole, pictures / change, 1.0}};
+}
+
 /// Adds a proposal for a change with which a failing design passes. Returns false if the computation was cancelled.
-bool add_change(const Photometer& photometer, const Plan& plan, const Cancellation* cancel, PhotometryResult& result) {
+bool add_change(const Photometer& photometer, const Plan& plan, Progress* progress, const Cancellation* cancel,
+                PhotometryResult& result) {
   const Design& design = result.design;
   const PhotometryRequest& request = result.request;
-  const bool is_asked = request.advice && verdict_of(result.points, request.programme) == Verdict::fail &&
+  const bool is_asked = may_search_change(design, request) &&
+                        verdict_of(result.points, request.programme) == Verdict::fail &&
                         area_verdict(request.programme, request.area_cm2) != Verdict::fail;
-  if (!is_asked || !design.elements() || design.entrance) return true;
+  if (!is_asked) return true;
   TablesOfChanges tables(request, plan, photometer.is_exact(), cancel);
   result.change = change_that_passes(
       design, request.programme,
-      [&](const Design& changed, std::size_t parts, double enough) { return tables.table(changed, parts, enough); });
+      [&](const Design& changed, std::size_t parts, double enough) { return tables.table(changed, parts, enough); },
+      progress);
   if (result.change)
     result.change->verdict = std::max(result.change->verdict, area_verdict(request.programme, request.area_cm2));
   return !is_cancelled(cancel);
 }
 
 /// Adds the colour of the returned light if it is requested. Returns false if the computation was cancelled.
-bool add_colour(const Photometer& photometer, const Cancellation* cancel, PhotometryResult& result) {
+bool add_colour(const Photometer& photometer, Progress* progress, const Cancellation* cancel,
+                PhotometryResult& result) {
   const PhotometryRequest& request = result.request;
   const TestProgramme& programme = request.programme;
-  if (!request.colour || request.light == PhotometricLight::of_design || programme.points.empty()) return true;
+  if (!measures_colour(request)) return true;
   const bool mirrors = mirrors_source(result.design);
   const std::vector<double> v_deg = programme.boundaries.empty()
                                         ? measured_v_deg(programme.points.front(), mirrors)
                                         : measured_v_deg(programme.boundaries.front(), mirrors);
-  result.colour = measured_colour(result.design, request, photometer, v_deg, cancel);
+  result.colour = measured_colour(result.design, request, photometer, v_deg, progress, cancel);
   return result.colour.has_value();
 }
 
@@ -454,7 +483,8 @@ PhotometryResult PhotometryStudy::run(Progress* progress, const Cancellation* ca
   result.request = request;
   result.warnings = photometer.warnings();
   result.wavelengths_nm = photometer.wavelengths_nm();
-  const auto readings = readings_of(photometer, request, plan, progress, cancel);
+  StageProgress stages = stages_of(progress, design, request);
+  const auto readings = readings_of(photometer, request, plan, &stages.readings, cancel);
   result.engine = photometer.engine_name();
   result.has_diffraction = photometer.has_diffraction();
   if (request.diffraction && !result.has_diffraction)
@@ -473,10 +503,10 @@ PhotometryResult PhotometryStudy::run(Progress* progress, const Cancellation* ca
         std::max(verdict_of(result.points, request.programme), area_verdict(request.programme, request.area_cm2));
     result.reason = reason_of(result.points, photometer);
   }
-  if (result.complete) result.complete = add_colour(photometer, cancel, result);
+  if (result.complete) result.complete = add_colour(photometer, &stages.colour, cancel, result);
   if (result.complete && request.pictures)
-    result.complete = add_pictures(design, request, plan, photometer.is_exact(), cancel, result);
-  if (result.complete) result.complete = add_change(photometer, plan, cancel, result);
+    result.complete = add_pictures(design, request, plan, photometer.is_exact(), &stages.pictures, cancel, result);
+  if (result.complete) result.complete = add_change(photometer, plan, &stages.change, cancel, result);
   result.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
 }

@@ -56,26 +56,44 @@ TEST(LongRunOfTheProgram, OfAStudyIsReportedBeforeItsFirstPointIsFinished) {
   EXPECT_NE(outcome.err.find("analysis.samples"), std::string::npos) << outcome.err;
 }
 
-// The program prints preliminary readings to standard error during the run. They do not change the standard output of
-// an interrupted run.
-TEST(LongRunOfTheProgram, PhotometryGivesPreliminaryReadings) {
-  const TemporaryFolder folder;
-  const Arguments arguments = {"photometry",
-                               example("reflex_reflector.toml"),
-                               "--standard=r150",
-                               "--class=IA",
-                               "--colour=red",
-                               "--area-cm2=30",
-                               "--engine=montecarlo",
-                               "--samples=4294967296",
-                               "--json=-"};
+/// Returns the arguments of a photometry by ray tracing with `rays` rays for each direction of light.
+Arguments photometry_with_rays(std::uint64_t rays) {
+  return {"photometry",
+          example("reflex_reflector.toml"),
+          "--standard=r150",
+          "--class=IA",
+          "--colour=red",
+          "--area-cm2=30",
+          "--json=-",
+          "--engine=montecarlo",
+          "--samples=" + std::to_string(rays)};
+}
+
+/// Runs the program with one thread and interrupts it when it has printed preliminary readings.
+Outcome interrupted_after_preliminary_readings(const TemporaryFolder& folder, const Arguments& arguments) {
   Child child(folder.path(), with(with({RETRACE_PROGRAM}, arguments), {"--threads=1"}));
   const auto limit = std::chrono::steady_clock::now() + patient(60);
   while (!child.has_ended() && std::chrono::steady_clock::now() < limit &&
          child.err_so_far().find("preliminary readings") == std::string::npos)
     std::this_thread::sleep_for(10ms);
   child.interrupt(SIGINT);
-  const Outcome loud = child.wait(patient(60));
+  return child.wait(patient(60));
+}
+
+// A run of about half a minute is too short for the line about a long run.
+TEST(LongRunOfTheProgram, PhotometryGivesPreliminaryReadingsAfterSomeSeconds) {
+  const TemporaryFolder folder;
+  const Outcome outcome = interrupted_after_preliminary_readings(folder, photometry_with_rays(1500000));
+  EXPECT_EQ(outcome.code, 130) << outcome.err;
+  EXPECT_NE(outcome.err.find("preliminary readings"), std::string::npos) << outcome.err;
+}
+
+// The program prints preliminary readings to standard error during the run. They do not change the standard output of
+// an interrupted run.
+TEST(LongRunOfTheProgram, PhotometryGivesPreliminaryReadings) {
+  const TemporaryFolder folder;
+  const Arguments arguments = photometry_with_rays(4294967296);
+  const Outcome loud = interrupted_after_preliminary_readings(folder, arguments);
   EXPECT_EQ(loud.code, 130) << loud.err;
   EXPECT_EQ(note_count(loud.err), 1) << loud.err;
   EXPECT_LT(loud.err.find("note: "), loud.err.find("\npreliminary readings")) << loud.err;

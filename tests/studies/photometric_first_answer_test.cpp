@@ -1,12 +1,14 @@
 // Tests of preliminary readings of photometry, which are computed in parallel with a long measurement.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "studies/design/io/design_reader.h"
 #include "studies/photometry/io/photometry_files.h"
@@ -76,6 +78,38 @@ TEST(PhotometricFirstAnswer, CostsLess) {
   EXPECT_GT(by_rays.first_answer(kRayShare)->points[0].std_error_mcd_per_lx,
             2.0 * result.points[0].std_error_mcd_per_lx);
   EXPECT_EQ(by_rays.first_answer(1.0)->points[0].r_a, result.points[0].r_a) << "with all rays it is the final reading";
+}
+
+/// Records the reported progress.
+class Shares : public Progress {
+ public:
+  void at(double share) override { shares.push_back(share); }
+  std::vector<double> shares;
+};
+
+// The readings alone take the progress to 1 if they are all that is requested. Otherwise a part of it is left for the
+// colour and for the search for a change with which the design passes.
+TEST(PhotometricFirstAnswer, ProgressCoversEveryStage) {
+  PhotometryRequest request = request_by(Engine::automatic);
+  for (TestPoint& point : request.programme.points) point.minimum = 1e6;
+  request.light = PhotometricLight::illuminant_a;
+  const auto shares_of = [&](bool has_colour, bool has_advice) {
+    request.colour = has_colour;
+    request.advice = has_advice;
+    Shares progress;
+    EXPECT_TRUE(PhotometryStudy(cubes(), request).run(&progress).complete);
+    EXPECT_TRUE(std::ranges::is_sorted(progress.shares));
+    EXPECT_LE(progress.shares.back(), 1.0 + 1e-12);
+    return progress.shares;
+  };
+  const std::vector<double> readings = shares_of(false, false), with_colour = shares_of(true, false),
+                            with_change = shares_of(true, true);
+  EXPECT_NEAR(readings.back(), 1.0, 1e-12);
+  EXPECT_NEAR(with_colour.back(), 1.0, 1e-12);
+  EXPECT_GT(with_colour.size(), readings.size());
+  EXPECT_LT(with_colour[readings.size() - 1], 0.9);
+  EXPECT_LT(with_change[with_colour.size() - 1], 0.7);
+  EXPECT_GT(with_change.size(), with_colour.size() + 14) << "one report for each change that was tried";
 }
 
 /// Starts the computation of preliminary readings on another thread when a measurement first reports progress.
