@@ -95,6 +95,7 @@ struct Argument {
   std::string help;
   Target target;
   Traits traits = {};
+  std::string shown_default = {};  ///< default that help shows; if empty, it is the initial value of the variable
 };
 
 /// Returns the names of an option, such as "-o" and "--out". Returns an empty list for a positional argument.

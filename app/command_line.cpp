@@ -75,7 +75,10 @@ void add_value(CLI::App& app, const Argument& argument, Value& value) {
   if (!has_place) option.type_name(value_word(argument));
   if (may_be_repeated(argument) && !has_place) option.take_all()->allow_extra_args(false);
   add_check<Value>(option, argument.traits);
-  if (!default_of(argument).empty()) option.capture_default_str();
+  if (!argument.shown_default.empty())
+    option.default_str(argument.shown_default);
+  else if (!default_of(argument).empty())
+    option.capture_default_str();
   option.required(argument.traits.required || (has_place && !may_be_missing(argument)));
 }
 

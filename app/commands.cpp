@@ -78,6 +78,7 @@ std::string value_word(const Argument& argument) {
 }
 
 std::string default_of(const Argument& argument) {
+  if (!argument.shown_default.empty()) return argument.shown_default;
   const auto text = [](auto target) -> std::string {
     using Target = decltype(target);
     if constexpr (std::is_same_v<Target, std::string*>) return *target;

@@ -13,6 +13,7 @@
 #include "app/command_line.h"
 #include "app/interrupt.h"
 #include "app/output.h"
+#include "requests/row.h"
 
 namespace {
 
@@ -73,7 +74,7 @@ int main(int argc, char** argv) {
   try {
     return static_cast<int>(run(argc, argv));
   } catch (const Error& error) {
-    return fail(error.exit_code(), error.what());
+    return fail(error.exit_code(), error.message(requests::option_of_field));
   } catch (const std::bad_alloc&) {  // thrown by libraries that do not allocate memory with new
     end_without_memory();
   } catch (const std::filesystem::filesystem_error& error) {

@@ -19,4 +19,10 @@ std::string located(const InputLocation& where, std::string_view text) {
 InputError::InputError(const InputLocation& where, std::string_view text)
     : Error(ExitCode::bad_input, located(where, text)), where_(where), text_(text) {}
 
+InputError::InputError(Field field, std::string_view text)
+    : Error(ExitCode::bad_input, located({"", 0, reference(field)}, text)),
+      where_{"", 0, with_field_names(reference(field))},
+      text_(text),
+      field_(field.name) {}
+
 }  // namespace retrace

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "api.h"  // without a folder, because these headers are installed together with the library
+#include "field.h"
 
 namespace retrace {
 
@@ -19,14 +20,20 @@ enum class ExitCode : int {
   interrupted = 130  ///< stopped by the user; finished results are valid
 };
 
-/// Base class of all errors that retrace throws. An error has a message of one line and an exit code.
+/// Base class of all errors that retrace throws. An error has a message of one line and an exit code. In what(), fields
+/// of requests are named as in C++.
 class RETRACE_API Error : public std::runtime_error {
  public:
-  Error(ExitCode exit_code, const std::string& message) : std::runtime_error(message), exit_code_(exit_code) {}
+  /// \param message message, which may contain references to fields (core/field.h)
+  Error(ExitCode exit_code, const std::string& message)
+      : std::runtime_error(with_field_names(message)), exit_code_(exit_code), message_(message) {}
   ExitCode exit_code() const noexcept { return exit_code_; }
+  /// Returns the message with another spelling of the fields.
+  std::string message(FieldSpelling spelling) const { return with_fields(message_, spelling); }
 
  private:
   ExitCode exit_code_;
+  std::string message_;
 };
 
 /// Position in an input. An empty file, an empty key or the line 0 means that this part of the position is unknown.
@@ -37,19 +44,26 @@ struct InputLocation {
   std::string key;
 };
 
-/// Error in an input. The message has the form `file:line: key: text` (exit code 2).
+/// Error in an input: a file, or a field of a request. The message has the form `file:line: key: text` (exit code 2).
 class RETRACE_API InputError : public Error {
  public:
   InputError(const InputLocation& where, std::string_view text);
+  /// Creates an error in a field of a request. The key of where() is the name of the field.
+  InputError(Field field, std::string_view text);
   explicit InputError(std::string_view text) : InputError(InputLocation{}, text) {}
 
   const InputLocation& where() const noexcept { return where_; }
+  /// Returns the field, whose name is empty if the error is in a file.
+  Field field() const noexcept { return {field_}; }
   /// Returns the message without the position.
-  const std::string& text() const noexcept { return text_; }
+  std::string text() const { return with_field_names(text_); }
+  /// Returns the message without the position, with another spelling of the fields.
+  std::string text(FieldSpelling spelling) const { return with_fields(text_, spelling); }
 
  private:
   InputLocation where_;
   std::string text_;
+  std::string field_;
 };
 
 /// Error that an output cannot be written (exit code 3).

@@ -6,12 +6,12 @@
 #include "app/commands.h"
 #include "app/first_answer.h"
 #include "app/interrupt.h"
-#include "app/number_list.h"
 #include "app/output.h"
 #include "app/progress_bar.h"
 #include "app/shared_arguments.h"
 #include "core/data_directory.h"
 #include "report/results/result_plots.h"
+#include "requests/number_list.h"
 #include "studies/design/io/design_reader.h"
 #include "studies/photometry/io/limits_reader.h"
 #include "studies/photometry/io/photometry_files.h"
@@ -112,7 +112,7 @@ std::vector<Argument> arguments(PhotometryOptions& options) {
 studies::PhotometryRequest with_options(studies::PhotometryRequest request, const PhotometryOptions& options,
                                         const CommonOptions& common) {
   request.area_cm2 = options.area_cm2;
-  if (options.rotation) request.rotation_deg = read_number_list(*options.rotation, "--rotation");
+  if (options.rotation) request.rotation_deg = requests::read_number_list(*options.rotation, Field{"rotation_deg"});
   if (options.source_arcmin) request.apertures.source = Angle::from_deg(*options.source_arcmin / 60.0);
   if (options.receiver_arcmin) request.apertures.receiver = Angle::from_deg(*options.receiver_arcmin / 60.0);
   request.window_deg = options.window_deg;

@@ -5,13 +5,13 @@
 
 #include "app/commands.h"
 #include "app/interrupt.h"
-#include "app/number_list.h"
 #include "app/output.h"
 #include "app/ranks.h"
 #include "app/shared_arguments.h"
 #include "core/data_directory.h"
 #include "core/number_format.h"
 #include "report/results/result_plots.h"
+#include "requests/number_list.h"
 #include "studies/design/io/design_reader.h"
 #include "studies/design/request_limits.h"
 #include "studies/roughness/io/facet_table_reader.h"
@@ -52,8 +52,9 @@ std::vector<std::filesystem::path> tables_of(const RoughnessOptions& options) {
 studies::RoughnessRequest request_of(const RoughnessOptions& options, const CommonOptions& common,
                                      const std::vector<std::filesystem::path>& tables) {
   studies::RoughnessRequest request = options.request;
-  request.sa_nm = read_number_list(options.sa, "--sa");
-  request.correlation_length_um = read_number_list(options.correlation_length_um, "--correlation-length-um");
+  request.sa_nm = requests::read_number_list(options.sa, Field{"sa"});
+  request.correlation_length_um =
+      requests::read_number_list(options.correlation_length_um, Field{"correlation_length_um"});
   studies::check_azimuth(request.azimuth_deg);
   if (!(request.target_error > 0.0 && request.target_error < 1.0))
     throw InputError({"", 0, "--target-error"}, fmt::format("must lie between 0 and 1, got {}", request.target_error));

@@ -5,11 +5,11 @@
 
 #include "app/commands.h"
 #include "app/interrupt.h"
-#include "app/number_list.h"
 #include "app/output.h"
 #include "app/shared_arguments.h"
 #include "core/number_format.h"
 #include "report/results/result_plots.h"
+#include "requests/number_list.h"
 #include "studies/design/io/design_reader.h"
 #include "studies/rre/io/rre_files.h"
 
@@ -70,10 +70,10 @@ std::vector<Argument> arguments(RreOptions& options) {
 
 studies::RreRequest request_of(const RreOptions& options, const CommonOptions& common) {
   studies::RreRequest request = options.request;
-  const CurveList incidence = read_curve_list(options.incidence, "--incidence");
+  const requests::CurveList incidence = requests::read_curve_list(options.incidence, Field{"incidence_deg"});
   request.incidence_deg = incidence.values;
-  for (const NumberRange& range : incidence.chosen) request.incidence_spans.push_back({range.low, range.high});
-  request.azimuth_deg = read_number_list(options.azimuth, "--azimuth");
+  for (const auto& [low, high] : incidence.chosen) request.incidence_spans.push_back({low, high});
+  request.azimuth_deg = requests::read_number_list(options.azimuth, Field{"azimuth_deg"});
   request.engine = studies::engine_from_name(options.engine);
   request.sampling = studies::sampling_from_name(options.sampling);
   request.seed = common.seed;

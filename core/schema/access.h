@@ -4,7 +4,14 @@
 // of the format contain pointers to these functions. The functions are generated from pointers to members, or from
 // functions of the object's type.
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
 #include <type_traits>
+#include <vector>
 
 #include "core/schema/schema.h"
 
@@ -24,30 +31,67 @@ struct FirstOf<Result (*)(First, Rest...)> {
   using Type = std::remove_cvref_t<First>;
 };
 
+template <class Type>
+inline constexpr bool is_optional = false;
+template <class Type>
+inline constexpr bool is_optional<std::optional<Type>> = true;
+template <class Type>
+inline constexpr bool is_array = false;
+template <std::size_t size>
+inline constexpr bool is_array<std::array<double, size>> = true;
+
+/// Converts a member to a value. An empty optional and an empty path are no value.
+template <class Type>
+Value to_value(const Type& member) {
+  if constexpr (is_optional<Type>)
+    return member ? to_value(*member) : Value();
+  else if constexpr (is_array<Type>)
+    return std::vector<double>(member.begin(), member.end());
+  else if constexpr (std::is_same_v<Type, std::filesystem::path>)
+    return member.empty() ? Value() : Value(member.string());
+  else if constexpr (std::is_enum_v<Type> || (std::is_integral_v<Type> && !std::is_same_v<Type, bool>))
+    return static_cast<double>(member);
+  else
+    return member;
+}
+
+/// Sets a member to a value. std::monostate empties an optional or a path.
+/// \pre the value is of the member's type, and whole numbers are in its range
+template <class Type>
+void from_value(Type& member, const Value& value) {
+  if constexpr (is_optional<Type>) {
+    if (std::holds_alternative<std::monostate>(value))
+      member.reset();
+    else
+      from_value(member.emplace(), value);
+  } else if constexpr (is_array<Type>) {
+    std::ranges::copy(std::get<std::vector<double>>(value), member.begin());
+  } else if constexpr (std::is_same_v<Type, std::filesystem::path>) {
+    const std::string* const name = std::get_if<std::string>(&value);
+    member = name != nullptr ? *name : std::string();
+  } else if constexpr (std::is_enum_v<Type>) {
+    member = static_cast<Type>(static_cast<int>(std::get<double>(value)));
+  } else if constexpr (std::is_integral_v<Type> && !std::is_same_v<Type, bool>) {
+    member = static_cast<Type>(std::get<double>(value));
+  } else {
+    member = std::get<Type>(value);
+  }
+}
+
 template <auto member>
 Value get_member(const void* object) {
   using Types = MemberTypes<decltype(member)>;
-  const auto& value = static_cast<const typename Types::Object*>(object)->*member;
-  if constexpr (std::is_enum_v<typename Types::Type> || std::is_same_v<typename Types::Type, int>)
-    return static_cast<double>(value);
-  else
-    return value;
+  return to_value(static_cast<const typename Types::Object*>(object)->*member);
 }
 
 template <auto member>
 void set_member(void* object, const Value& value) {
   using Types = MemberTypes<decltype(member)>;
-  auto& target = static_cast<typename Types::Object*>(object)->*member;
-  if constexpr (std::is_same_v<typename Types::Type, int>)
-    target = static_cast<int>(std::get<double>(value));
-  else if constexpr (std::is_enum_v<typename Types::Type>)
-    target = static_cast<typename Types::Type>(static_cast<int>(std::get<double>(value)));
-  else
-    target = std::get<typename Types::Type>(value);
+  from_value(static_cast<typename Types::Object*>(object)->*member, value);
 }
 
-/// Access to a data member: a number, a flag, a text, a list of these, or an enumerator. The value of an enumerator is
-/// the index of its word.
+/// Access to a data member: a number, a flag, a text, a path, a list of these, an optional of these, or an enumerator.
+/// The value of an enumerator is the index of its word.
 template <auto member>
 inline constexpr Access access = {get_member<member>, set_member<member>};
 

@@ -73,6 +73,7 @@ struct Numbers {
   std::size_t count;
   NumberRange range;
   std::string_view what = "numbers";  ///< text for the numbers in messages
+  bool is_whole = false;              ///< true if all numbers must be integers; only for requests
 };
 /// A list of one or more terms, each of which consists of `count` numbers.
 struct Terms {

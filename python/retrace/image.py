@@ -195,9 +195,11 @@ def camera(
         },
         columns=whole("pixels", pixels[0], 1, _MOST),
         rows=whole("pixels", pixels[1], 1, _MOST),
-        film_mm=_numbers("film_mm", film_mm, 2),
         seed=whole("seed", seed, 0, _MOST),
     )
+    film = _numbers("film_mm", film_mm, 2)
+    if film != [100.0, 100.0]:
+        request.film_mm = film
     for name, place in (("eye_mm", eye_mm), ("lamp_mm", lamp_mm)):
         if place is not None:
             setattr(request, name, _numbers(name, place, 3))

@@ -14,7 +14,8 @@
 #include "core/error.h"
 #include "core/number_format.h"
 #include "raytrace/observers/photometric_geometry.h"
-#include "studies/design/length_limits.h"
+#include "requests/descriptions.h"
+#include "studies/image/io/lamp_reader.h"
 
 namespace retrace::studies {
 namespace {
@@ -24,67 +25,30 @@ using geometry::Vec2, geometry::Vec3;
 // Ratio of the width that the picture shows to the width of the part.
 constexpr double kMargin = 1.15;
 
-void require(bool holds, std::string_view option, std::string_view allowed, double given) {
-  if (!holds || !std::isfinite(given))
-    throw InputError({"", 0, std::string(option)}, fmt::format("must {}, got {}", allowed, shortest(given)));
+std::array<double, 2> film_of(const CameraRequest& r) {
+  return r.film_mm.value_or(kUsualFilmMm);
 }
 
-void check_picture(const CameraRequest& r) {
-  const bool fits = r.columns >= 1 && r.rows >= 1 && r.columns <= CameraStudy::kMostSide &&
-                    r.rows <= CameraStudy::kMostSide && r.columns * r.rows <= CameraStudy::kMostPixels;
-  if (!fits)
-    throw InputError({"", 0, "--pixels"},
-                     fmt::format("must be 1x1 to {}x{} and at most {} in all, got {}x{}", CameraStudy::kMostSide,
-                                 CameraStudy::kMostSide, CameraStudy::kMostPixels, r.columns, r.rows));
-  if (r.field_mm) require(*r.field_mm > 0.0, "--field-mm", "be > 0", *r.field_mm);
-  require(r.noise > 0.0 && r.noise < 1.0, "--noise", "lie between 0 and 1", r.noise);
-  if (r.passes)
-    require(*r.passes >= 2 && *r.passes <= CameraStudy::kMostPasses, "--passes", "be 2 to 65536", *r.passes);
-}
-
-/// Checks that all coordinates of the eye or the lamp are within the allowed range.
-void check_coordinates(const std::optional<std::array<double, 3>>& position_mm, std::string_view option) {
-  if (!position_mm) return;
-  for (const double coordinate : *position_mm)
-    require(std::abs(coordinate) <= kFarthestMm, option, "be three numbers from -1e9 to 1e9", coordinate);
-}
-
-void check(const CameraRequest& r) {
-  check_picture(r);
-  require(r.distance_m > 0.0 && r.distance_m <= 1e6, "--distance-m", "be above 0 and at most 1e6", r.distance_m);
-  require(r.observation_deg >= 0.0 && r.observation_deg < 180.0, "--observation-deg", "be >= 0 and < 180",
-          r.observation_deg);
-  require(std::abs(r.v_deg) < 90.0, "--v-deg", "lie between -90 and 90", r.v_deg);
-  require(std::abs(r.h_deg) < 90.0, "--h-deg", "lie between -90 and 90", r.h_deg);
-  require(std::abs(r.rotation_deg) <= 360.0, "--rotation-deg", "be -360 to 360", r.rotation_deg);
-  require(r.lamp_arcmin > 0.0 && r.lamp_arcmin <= 600.0, "--lamp-arcmin", "be above 0 and at most 600", r.lamp_arcmin);
-  require(r.pupil_arcmin >= 0.0 && r.pupil_arcmin <= 600.0, "--pupil-arcmin", "be 0 to 600", r.pupil_arcmin);
-  require(r.illuminance_lx >= 0.0, "--illuminance-lx", "be >= 0", r.illuminance_lx);
-  require(std::abs(r.lamp_aim_deg) <= 45.0, "--lamp-aim-deg", "lie between -45 and 45", r.lamp_aim_deg);
-  require(r.ambient_lx >= 0.0, "--ambient-lx", "be >= 0", r.ambient_lx);
-  require(r.backlight_lx >= 0.0, "--backlight-lx", "be >= 0", r.backlight_lx);
-  check_coordinates(r.eye_mm, "--eye-mm");
-  check_coordinates(r.lamp_mm, "--lamp-mm");
-  require(!r.cylinder_mm || std::abs(*r.cylinder_mm) <= kFarthestMm, "--cylinder-mm", "be -1e9 to 1e9",
-          r.cylinder_mm.value_or(0.0));
-  for (const double length : r.film_size_mm())
-    require(length > 0.0 && length <= 1e5, "--film-mm", "be above 0 and at most 1e5", length);
-}
-
-/// Checks the size of the sheet. Its width must not cover more than half the circumference of the cylinder.
+/// Checks the sheet. Its width must not cover more than half the circumference of the cylinder.
 void check_film(const CameraRequest& r, bool is_infinite) {
   if (!is_infinite) {
     constexpr std::string_view need = "needs a design with extent = \"infinite\": ";
     if (r.cylinder_mm)
-      throw InputError({"", 0, "--cylinder-mm"}, fmt::format("{}finite parts are plane in this version", need));
-    if (r.film_mm) throw InputError({"", 0, "--film-mm"}, fmt::format("{}a finite part is seen in its own size", need));
+      throw InputError(Field{"cylinder_mm"}, fmt::format("{}finite parts are plane in this version", need));
+    if (r.film_mm) throw InputError(Field{"film_mm"}, fmt::format("{}a finite part is seen in its own size", need));
     return;
   }
-  if (!r.cylinder_mm) return;
-  require(std::abs(*r.cylinder_mm) >= r.film_size_mm()[0] / std::numbers::pi, "--cylinder-mm",
-          fmt::format("be at least {} or at most its negative, so that the sheet goes half round",
-                      shortest(r.film_size_mm()[0] / std::numbers::pi)),
-          *r.cylinder_mm);
+  const double least = film_of(r)[0] / std::numbers::pi;
+  if (r.cylinder_mm && std::abs(*r.cylinder_mm) < least)
+    throw InputError(
+        Field{"cylinder_mm"},
+        fmt::format("must be at least {} or at most its negative, so that the sheet goes half round, got {}",
+                    shortest(least), shortest(*r.cylinder_mm)));
+}
+
+std::optional<PhotometricLamp> lamp_of(const CameraRequest& r) {
+  if (r.lamp.empty()) return std::nullopt;
+  return read_lamp(r.lamp, Field{"lamp"});
 }
 
 Vec3 to_vec(const std::array<double, 3>& a) {
@@ -114,24 +78,25 @@ bool is_behind(const raytrace::Film& film, double thickness_mm, const Vec3& p) {
   return *film.radius_mm > 0.0 ? from_axis <= *film.radius_mm : from_axis >= -*film.radius_mm;
 }
 
-void check_place(const geometry::Part& part, const raytrace::CameraScene& scene, const Vec3& place,
-                 const std::string& option, const char* what) {
+void check_place(const geometry::Part& part, const raytrace::CameraScene& scene, const Vec3& place, Field field,
+                 const char* what) {
   const bool bad = scene.film ? is_behind(*scene.film, part.thickness_mm, place) : is_inside(part, place);
   if (bad)
-    throw InputError({"", 0, option}, fmt::format("the {} must be outside the {}, got {} mm", what,
-                                                  scene.film ? "body, in front of its face" : "part", text_of(place)));
-  require((place - scene.view.target_mm).norm() > 0.0, option, "be away from what is looked at", 0.0);
+    throw InputError(field, fmt::format("the {} must be outside the {}, got {} mm", what,
+                                        scene.film ? "body, in front of its face" : "part", text_of(place)));
+  if (place == scene.view.target_mm) throw InputError(field, "must be away from what is looked at");
 }
 
 double shown_width(const CameraRequest& r, const geometry::Part& part) {
   if (r.field_mm) return *r.field_mm;
-  const auto [film_x_mm, film_y_mm] = r.film_size_mm();
+  const auto [film_x_mm, film_y_mm] = film_of(r);
   const Vec2 size = part.period_mm ? Vec2(film_x_mm, film_y_mm) : geometry::bounding_box(part.outline).size();
   const double aspect = static_cast<double>(r.columns) / static_cast<double>(r.rows);
   return kMargin * std::max(size.x(), size.y() * aspect);
 }
 
-raytrace::CameraScene scene_of(const CameraRequest& r, const geometry::Part& part) {
+raytrace::CameraScene scene_of(const CameraRequest& r, const std::optional<PhotometricLamp>& lamp,
+                               const geometry::Part& part) {
   raytrace::CameraScene scene;
   const raytrace::PhotometricGeometry geometry =
       raytrace::geometry_from({Angle::from_deg(r.v_deg), Angle::from_deg(r.h_deg)}, Angle::from_deg(r.observation_deg),
@@ -149,13 +114,12 @@ raytrace::CameraScene scene_of(const CameraRequest& r, const geometry::Part& par
   scene.lamp.position_mm = r.lamp_mm ? to_vec(*r.lamp_mm) : Vec3(target + distance_mm * towards.to_source);
   const double lamp_m = 1e-3 * (scene.lamp.position_mm - target).norm();
   scene.lamp.illuminance_lx =
-      r.lamp ? r.lamp->intensity.cd(from_aimed(-Vec3::UnitZ(), r.lamp_aim_deg)) / (lamp_m * lamp_m) : r.illuminance_lx;
+      lamp ? lamp->intensity.cd(from_aimed(-Vec3::UnitZ(), r.lamp_aim_deg)) / (lamp_m * lamp_m) : r.illuminance_lx;
   scene.lamp.diameter = Angle::from_deg(r.lamp_arcmin / 60.0);
   // A plane illuminated by a half space of uniform luminance L has the illuminance pi L.
   scene.surroundings = {r.ambient_lx / std::numbers::pi, r.backlight_lx / std::numbers::pi};
-  const auto [film_x_mm, film_y_mm] = r.film_size_mm();
+  const auto [film_x_mm, film_y_mm] = film_of(r);
   if (part.period_mm) scene.film = raytrace::Film{film_x_mm, film_y_mm, r.cylinder_mm};
-  scene.discs = r.discs;
   return scene;
 }
 
@@ -169,9 +133,10 @@ bool is_unpolarised(const raytrace::Stokes& s) {
 
 }  // namespace
 
-CameraStudy::CameraStudy(Design design, CameraRequest request)
+CameraStudy::CameraStudy(Design design, CameraRequest request, raytrace::DiscAverage discs)
     : design_(std::move(design)), request_(std::move(request)) {
-  check(request_);
+  requests::check(request_);
+  lamp_ = lamp_of(request_);
   if (!is_unpolarised(design_.light.polarisation))
     throw InputError({design_.source, 0, "light.polarisation"},
                      "cameras take unpolarised light in this version: leave it out");
@@ -180,9 +145,10 @@ CameraStudy::CameraStudy(Design design, CameraRequest request)
                      "cameras take no entrance face that scatters: use retrace rre, photometry or image --detector");
   check_film(request_, design_.is_endless());
   model_ = make_model(design_, materials::MaterialLibrary::shipped());
-  scene_ = scene_of(request_, model_.part);
-  check_place(model_.part, scene_, scene_.view.eye_mm, request_.eye_mm ? "--eye-mm" : "--observation-deg", "camera");
-  check_place(model_.part, scene_, scene_.lamp.position_mm, request_.lamp_mm ? "--lamp-mm" : "--v-deg", "lamp");
+  scene_ = scene_of(request_, lamp_, model_.part);
+  scene_.discs = discs;
+  check_place(model_.part, scene_, scene_.view.eye_mm, {request_.eye_mm ? "eye_mm" : "observation_deg"}, "camera");
+  check_place(model_.part, scene_, scene_.lamp.position_mm, {request_.lamp_mm ? "lamp_mm" : "v_deg"}, "lamp");
   const Vec3 view = (scene_.view.target_mm - scene_.view.eye_mm).normalized();
   if (view.cross(scene_.view.up).norm() < 1e-6) scene_.view.up = view.unitOrthogonal();
 }
@@ -285,6 +251,7 @@ CameraResult CameraStudy::run(Progress* progress, const Cancellation* cancel,
   CameraResult result;
   result.design = design_;
   result.request = request_;
+  result.lamp = lamp_;
   result.scene = scene_;
   result.warnings = model_.warnings;
   const Vec3 to_eye = scene_.view.eye_mm - scene_.view.target_mm;
@@ -306,7 +273,7 @@ CameraResult CameraStudy::run(Progress* progress, const Cancellation* cancel,
     result.warnings.push_back(
         {"noise_above_target",
          fmt::format("{}: the noise of {} is above the target of {} after {} passes, which would take about {:.2g} "
-                     "passes, but at most {} are allowed (--passes N sets the number of passes)",
+                     "passes, but at most {} are allowed (the number of passes can be set)",
                      design_.source_name(), fixed(result.image.relative_noise(), 4), shortest(request_.noise),
                      result.image.passes, passes_needed(result.image, request_), kMostPasses)});
   if (result.complete && result.image.part_mean() == 0.0)
@@ -314,7 +281,7 @@ CameraResult CameraStudy::run(Progress* progress, const Cancellation* cancel,
         {"no_light_found",
          fmt::format("{}: no light comes to the camera from the part in {} passes: the part is dark, or bright paths "
                      "are too rare to "
-                     "be found (--passes N sets the number of passes)",
+                     "be found (the number of passes can be set)",
                      design_.source_name(), result.image.passes)});
   result.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

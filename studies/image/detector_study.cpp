@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "core/number_format.h"
 #include "core/task_progress.h"
-#include "studies/design/request_limits.h"
+#include "requests/descriptions.h"
 
 namespace retrace::studies {
 namespace {
@@ -22,29 +22,6 @@ constexpr std::size_t kMostAnglePixels = 2049;
 constexpr double kTruncatedGoal = 1e-5;
 // Maximum number of beams for which the engine `auto` traces exactly. Tracing this number takes some seconds.
 constexpr std::uint64_t kBeamsOfAutomatic = 1'000'000;
-
-void check(const DetectorRequest& request) {
-  if (!(std::abs(request.incidence_deg) < 90.0))
-    throw InputError({"", 0, "--incidence"},
-                     fmt::format("must lie between -90 and 90 degrees, got {}", shortest(request.incidence_deg)));
-  if (request.pixels < 1 || request.pixels > kMostPixels)
-    throw InputError({"", 0, "--pixels"},
-                     fmt::format("must be 1 to {} along the longer side, got {}", kMostPixels, request.pixels));
-  if (request.angle_pixels < 1 || request.angle_pixels > kMostAnglePixels)
-    throw InputError({"", 0, "--angle-pixels"},
-                     fmt::format("must be 1 to {}, got {}", kMostAnglePixels, request.angle_pixels));
-  if (!(request.window_deg > 0.0 && request.window_deg <= 90.0))
-    throw InputError({"", 0, "--window-deg"},
-                     fmt::format("must be above 0 and at most 90 degrees, got {}", shortest(request.window_deg)));
-  check_has_effect("--cutoff", request.cutoff.has_value(), request.engine, kExactEngines);
-  check_has_effect("--samples", request.rays.has_value(), request.engine, kRayEnginesOfParts);
-  if (request.cutoff) check_share(*request.cutoff, false, "--cutoff");
-  if (request.rays) check_rays(*request.rays);
-  check_azimuth(request.azimuth_deg);
-  if (request.engine == Engine::cell || request.engine == Engine::stochastic)
-    throw InputError({"", 0, "--engine"}, fmt::format("must be auto, exact, montecarlo or embree for pictures, got {}",
-                                                      engine_name(request.engine)));
-}
 
 raytrace::Illumination illumination_of(const Design& design, const DetectorRequest& request) {
   return {Angle::from_deg(request.incidence_deg), Angle::from_deg(request.azimuth_deg), design.light.polarisation};
@@ -98,18 +75,21 @@ void add(raytrace::DetectorMaps& sum, const raytrace::DetectorMaps& more, double
 
 DetectorStudy::DetectorStudy(Design design, DetectorRequest request)
     : design_(std::move(design)), request_(std::move(request)) {
-  check(request_);
+  requests::check(request_);
+  engine_ = engine_from_name(request_.engine);
   model_ = make_model(design_, materials::MaterialLibrary::shipped());
-  if (request_.engine == Engine::exact && !model_.optics.has_plane_facets())
-    throw InputError(design_.where_facets(),
-                     fmt::format("{} cannot be traced exactly: use --engine montecarlo",
-                                 model_.optics.is_smooth() ? "facets with a form" : "rough facets"));
-  if (request_.engine == Engine::exact && !model_.optics.has_one_back())
-    throw InputError(design_.where("wet_back.index"),
-                     "backs that are not all alike cannot be traced exactly: use --engine montecarlo");
-  if (request_.engine == Engine::exact && !model_.optics.keeps_beams())
-    throw InputError(design_.where_entrance_scatters(),
-                     "an entrance face that scatters cannot be traced exactly: use --engine montecarlo");
+  if (engine_ == Engine::exact && !model_.optics.has_plane_facets())
+    throw InputError(
+        design_.where_facets(),
+        fmt::format("{} cannot be traced exactly: use {} montecarlo",
+                    model_.optics.is_smooth() ? "facets with a form" : "rough facets", reference({"engine"})));
+  if (engine_ == Engine::exact && !model_.optics.has_one_back())
+    throw InputError(design_.where("wet_back.index"), "backs that are not all alike cannot be traced exactly: use " +
+                                                          reference({"engine"}) + " montecarlo");
+  if (engine_ == Engine::exact && !model_.optics.keeps_beams())
+    throw InputError(
+        design_.where_entrance_scatters(),
+        "an entrance face that scatters cannot be traced exactly: use " + reference({"engine"}) + " montecarlo");
 }
 
 raytrace::DetectorMaps DetectorStudy::trace(const SpectralOptics& light, const raytrace::DetectorSetting& setting,
@@ -120,12 +100,12 @@ raytrace::DetectorMaps DetectorStudy::trace(const SpectralOptics& light, const r
   if (!exact)
     return raytrace::sampled_detector_maps(
         model_.part, light.optics, illumination, setting,
-        std::max<std::uint64_t>(1, request_.rays.value_or(kUsualDetectorRays) / model_.spectral.size()),
+        std::max<std::uint64_t>(1, request_.samples.value_or(kUsualDetectorRays) / model_.spectral.size()),
         request_.seed + kGolden * static_cast<std::uint32_t>(number), {}, progress, cancel);
   raytrace::BeamPolicy policy;
   policy.cutoff = request_.cutoff;
   policy.truncated_goal = kTruncatedGoal;
-  if (request_.engine == Engine::automatic) policy.max_beams = kBeamsOfAutomatic;
+  if (engine_ == Engine::automatic) policy.max_beams = kBeamsOfAutomatic;
   return raytrace::exact_detector_maps(model_.part, light.optics, illumination, setting, policy, cancel);
 }
 
@@ -144,8 +124,7 @@ DetectorResult DetectorStudy::run(Progress* progress, const Cancellation* cancel
        request_.angle_pixels},
       frame_of(illumination_of(design_, request_)),
       result.acceptance_half_angle_deg};
-  bool exact =
-      model_.optics.keeps_beams() && (request_.engine == Engine::exact || request_.engine == Engine::automatic);
+  bool exact = model_.optics.keeps_beams() && (engine_ == Engine::exact || engine_ == Engine::automatic);
   AttemptProgress attempt(progress);
   const auto trace_all = [&] {
     result.maps = {};
@@ -160,7 +139,7 @@ DetectorResult DetectorStudy::run(Progress* progress, const Cancellation* cancel
   try {
     trace_all();
   } catch (const BudgetError&) {
-    if (!exact || request_.engine == Engine::exact) throw;
+    if (!exact || engine_ == Engine::exact) throw;
     exact = false;  // the exact engine needs too many beams
     attempt.begin_again();
     trace_all();

@@ -3,13 +3,13 @@
 // Maps of the returned light over the face and over angles. `retrace image` runs this study if a detector is requested.
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/progress.h"
 #include "core/warning.h"
 #include "raytrace/observers/detector.h"
+#include "requests/image.h"
 #include "studies/design/optical_model.h"
 #include "studies/rre/rre.h"
 
@@ -17,19 +17,6 @@ namespace retrace::studies {
 
 /// Default number of rays for a detector.
 inline constexpr std::uint64_t kUsualDetectorRays = std::uint64_t{1} << 22;
-
-/// Request for a detector: maps of the returned light for one direction of incidence.
-struct DetectorRequest {
-  double incidence_deg = 0.0;  ///< in (-90, 90)
-  double azimuth_deg = 0.0;
-  std::size_t pixels = 400;           ///< pixels along the longer side of the face; 1 to 8192
-  std::size_t angle_pixels = 201;     ///< pixels along each side of the angular map; 1 to 2049
-  double window_deg = 1.0;            ///< half-width of the angular map; > 0, up to 90
-  Engine engine = Engine::automatic;  ///< any engine except stochastic and cell
-  std::optional<double> cutoff;       ///< exact engine: minimum power of a beam, as a fraction of the incident power
-  std::optional<std::uint64_t> rays;  ///< Monte Carlo: number of rays; kUsualDetectorRays if empty
-  std::uint32_t seed = 1;
-};
 
 struct DetectorResult {
   Design design;
@@ -61,6 +48,7 @@ class DetectorStudy {
 
   Design design_;
   DetectorRequest request_;
+  Engine engine_;
   OpticalModel model_;
 };
 

@@ -14,7 +14,11 @@
 #include "core/number_format.h"
 #include "core/task_progress.h"
 #include "core/threads.h"
+#include "materials/io/spectrum_reader.h"
 #include "raytrace/observers/photometric_geometry.h"
+#include "requests/descriptions.h"
+#include "studies/image/io/lamp_reader.h"
+#include "studies/photometry/io/standard_reader.h"
 #include "studies/photometry/photometer.h"
 
 namespace retrace::studies {
@@ -22,7 +26,6 @@ namespace {
 
 using geometry::Vec2, geometry::Vec3, std::numbers::pi;
 
-constexpr std::size_t kMostViews = 6;
 // Number of sample points of a pixel along each side.
 constexpr int kFiner = 4;
 
@@ -96,20 +99,20 @@ double road_reflectance(const RoadScene& s, const Vec3& p) {
 
 /// Returns the intensity of a headlamp towards a point. Without a lamp file, it is that of a dipped beam, which falls
 /// to one tenth above the horizon.
-double intensity(const RoadRequest& r, const Vec3& lamp, const Vec3& at) {
+double intensity(const RoadScene& s, const Vec3& lamp, const Vec3& at) {
   const Vec3 way = at - lamp;
-  if (r.lamp) return r.lamp->intensity.cd(from_aimed(way, r.lamp_aim_deg));
+  if (s.lamp) return s.lamp->intensity.cd(from_aimed(way, s.lamp_aim_deg));
   const double rise_deg = std::atan2(way.y(), std::abs(way.z())) * 180.0 / pi;
-  return way.z() < 0.0 ? std::clamp(0.55 - 1.5 * rise_deg, 0.1, 1.0) * r.lamp_cd : 0.0;
+  return way.z() < 0.0 ? std::clamp(0.55 - 1.5 * rise_deg, 0.1, 1.0) * s.lamp_cd : 0.0;
 }
 
 /// Returns the illuminance of a surface by the headlamps and the night sky.
-double illuminance(const RoadRequest& r, const std::array<Vec3, 2>& lamps, const Vec3& at, const Vec3& normal) {
+double illuminance(const RoadScene& s, const std::array<Vec3, 2>& lamps, const Vec3& at, const Vec3& normal) {
   double sum = kNightLight;
   for (const Vec3& lamp : lamps) {
     const Vec3 way = lamp - at;
     const double cosine = std::max(0.0, normal.dot(way.normalized()));
-    sum += intensity(r, lamp, at) * cosine / way.squaredNorm();
+    sum += intensity(s, lamp, at) * cosine / way.squaredNorm();
   }
   return sum;
 }
@@ -119,8 +122,8 @@ struct Seen {
   double coloured = 0.0;
 };
 
-Seen seen_along(const RoadScene& s, const RoadRequest& r, const RoadView& view, const std::array<Vec3, 2>& lamps,
-                const Vec3& eye, const Vec3& direction) {
+Seen seen_along(const RoadScene& s, const RoadView& view, const std::array<Vec3, 2>& lamps, const Vec3& eye,
+                const Vec3& direction) {
   if (direction.z() < 0.0) {
     const Vec3 at = eye - eye.z() / direction.z() * direction;
     const Vec2 on_rear = at.head<2>();
@@ -130,15 +133,15 @@ Seen seen_along(const RoadScene& s, const RoadRequest& r, const RoadView& view, 
         return {view.reflectors[side].luminance, view.reflectors[side].luminance};
     }
     if (const auto reflectance = car_reflectance(s, on_rear))
-      return {*reflectance / pi * illuminance(r, lamps, at, Vec3::UnitZ()), 0.0};
+      return {*reflectance / pi * illuminance(s, lamps, at, Vec3::UnitZ()), 0.0};
   }
   if (direction.y() >= 0.0) return {kNightSky, 0.0};
   const Vec3 ground = eye - eye.y() / direction.y() * direction;
-  return {road_reflectance(s, ground) / pi * illuminance(r, lamps, ground, Vec3::UnitY()), 0.0};
+  return {road_reflectance(s, ground) / pi * illuminance(s, lamps, ground, Vec3::UnitY()), 0.0};
 }
 
 /// Adds the veil, which is light from the reflectors that is scattered in the eye.
-void add_veil(const RoadScene& s, const RoadRequest& r, RoadView& view, double degrees_per_pixel,
+void add_veil(const RoadScene& s, RoadView& view, double degrees_per_pixel,
               const std::function<Vec2(const Vec3&)>& pixel_of) {
   const Vec3 eye = eye_at(s, view.distance_m);
   const double area = s.reflector_width * s.reflector_tall;
@@ -149,7 +152,7 @@ void add_veil(const RoadScene& s, const RoadRequest& r, RoadView& view, double d
         view.reflectors[side].luminance * area * std::abs(way.normalized().z()) / way.squaredNorm();
     const Vec2 centre = pixel_of(place);
     for (std::size_t k = 0; k < view.luminance.size(); ++k) {
-      const Vec2 pixel(static_cast<double>(k % r.columns) + 0.5, static_cast<double>(k / r.columns) + 0.5);
+      const Vec2 pixel(static_cast<double>(k % s.columns) + 0.5, static_cast<double>(k / s.columns) + 0.5);
       const double veil = at_pupil_lx * veil_per_lx((pixel - centre).norm() * degrees_per_pixel);
       view.luminance[k] += veil;
       view.coloured[k] += veil;
@@ -157,65 +160,52 @@ void add_veil(const RoadScene& s, const RoadRequest& r, RoadView& view, double d
   }
 }
 
-void check(const RoadRequest& r) {
-  if (r.distance_m.empty() || r.distance_m.size() > kMostViews)
-    throw InputError({"", 0, "--road-distance-m"},
-                     fmt::format("must be 1 to {} distances, got {}", kMostViews, r.distance_m.size()));
-  for (const double d : r.distance_m)
-    if (!(d >= 5.0 && d <= 1000.0))
-      throw InputError({"", 0, "--road-distance-m"}, fmt::format("must lie between 5 and 1000, got {}", shortest(d)));
-  const auto within = [](double value, double least, double most, const char* option) {
-    if (!(value >= least && value <= most))
-      throw InputError({"", 0, option}, fmt::format("must lie between {} and {}, got {}", shortest(least),
-                                                    shortest(most), shortest(value)));
-  };
-  within(r.lamp_height_m, 0.2, 3.0, "--lamp-height-m");
-  within(r.lamp_aim_deg, -45.0, 45.0, "--lamp-aim-deg");
-  if (!(r.lamp_cd > 0.0 && r.lamp_cd <= 1e6))
-    throw InputError({"", 0, "--lamp-cd"}, fmt::format("must be above 0 and at most 1e6, got {}", shortest(r.lamp_cd)));
-}
-
 }  // namespace
 
-void draw_road(const RoadScene& s, const RoadRequest& r, RoadView& view) {
+void draw_road(const RoadScene& s, RoadView& view) {
   const std::array<Vec3, 2> lamps = lamps_at(s, view.distance_m);
   const Vec3 eye = eye_at(s, view.distance_m);
   // The view is horizontal and towards the centre of the car. The horizon is a little above the centre of the picture.
-  const double pixel = 2.0 * std::tan(0.5 * r.field_deg * pi / 180.0) / static_cast<double>(r.columns);
-  const double middle_row = 0.42 * static_cast<double>(r.rows);
-  const double half_columns = 0.5 * static_cast<double>(r.columns);
+  const double pixel = 2.0 * std::tan(0.5 * s.field_deg * pi / 180.0) / static_cast<double>(s.columns);
+  const double middle_row = 0.42 * static_cast<double>(s.rows);
+  const double half_columns = 0.5 * static_cast<double>(s.columns);
   const Vec3 forward = Vec3(-eye.x(), 0.0, -eye.z()).normalized();
   const Vec3 right = forward.cross(Vec3::UnitY());
   const Vec2 level(half_columns, middle_row);
-  view.luminance.assign(r.columns * r.rows, 0.0);
-  view.coloured.assign(r.columns * r.rows, 0.0);
-  for_each_in_parallel(r.rows, [&](std::size_t row) {
-    for (std::size_t column = 0; column < r.columns; ++column) {
+  view.luminance.assign(s.columns * s.rows, 0.0);
+  view.coloured.assign(s.columns * s.rows, 0.0);
+  for_each_in_parallel(s.rows, [&](std::size_t row) {
+    for (std::size_t column = 0; column < s.columns; ++column) {
       Seen sum;
       for (int k = 0; k < kFiner * kFiner; ++k) {
         const Vec2 at(static_cast<double>(column) + (k % kFiner + 0.5) / kFiner,
                       static_cast<double>(row) + (k / kFiner + 0.5) / kFiner);
         const Vec2 off = pixel * (at - level);
         const Vec3 direction = (forward + off.x() * right - off.y() * Vec3::UnitY()).normalized();
-        const Seen seen = seen_along(s, r, view, lamps, eye, direction);
+        const Seen seen = seen_along(s, view, lamps, eye, direction);
         sum.luminance += seen.luminance / (kFiner * kFiner);
         sum.coloured += seen.coloured / (kFiner * kFiner);
       }
-      view.luminance[row * r.columns + column] = sum.luminance;
-      view.coloured[row * r.columns + column] = sum.coloured;
+      view.luminance[row * s.columns + column] = sum.luminance;
+      view.coloured[row * s.columns + column] = sum.coloured;
     }
   });
-  add_veil(s, r, view, r.field_deg / static_cast<double>(r.columns), [&](const Vec3& place) {
+  add_veil(s, view, s.field_deg / static_cast<double>(s.columns), [&](const Vec3& place) {
     const Vec3 way = place - eye;
     const double along = way.dot(forward);
     return Vec2(level + Vec2(way.dot(right), -way.y()) / along / pixel);
   });
 }
 
-RoadStudy::RoadStudy(Design design, RoadRequest request, std::uint32_t seed)
-    : design_(std::move(design)), request_(std::move(request)), seed_(seed) {
+RoadStudy::RoadStudy(Design design, RoadRequest request) : design_(std::move(design)), request_(std::move(request)) {
   check_taken(design_, {.what = "retrace image", .solids = true, .wet_backs = true});
-  check(request_);
+  requests::check(request_);
+  scene_.lamp_height = request_.lamp_height_m;
+  scene_.lamp_cd = request_.lamp_cd;
+  scene_.lamp_aim_deg = request_.lamp_aim_deg;
+  if (!request_.lamp.empty()) scene_.lamp = read_lamp(request_.lamp, Field{"lamp"});
+  const std::filesystem::path dye = dye_file_of(request_.dye, false, {});
+  if (!dye.empty()) dye_absorption_per_mm_ = materials::read_spectral_absorption(dye);
 }
 
 namespace {
@@ -225,11 +215,9 @@ struct Pair {
   std::size_t lamp = 0;
 };
 
-PhotometryRequest photometry_at(const RoadRequest& r, const RoadScene& s, double distance_m, std::uint32_t seed) {
+PhotometryRequest photometry_at(const RoadScene& s, double distance_m, std::uint32_t seed) {
   PhotometryRequest request;
   request.area_cm2 = 1e4 * s.reflector_width * s.reflector_tall;
-  request.dye = r.dye;
-  request.dye_absorption_per_mm = r.dye_absorption_per_mm;
   request.apertures.source = Angle::from_rad(s.lamp_diameter / distance_m);
   request.apertures.receiver = Angle::from_rad(s.pupil_diameter / (distance_m + s.eye_behind));
   request.window_deg = 10.0;
@@ -259,10 +247,13 @@ RoadResult RoadStudy::run(Progress* progress, const Cancellation* cancel) const 
   RoadResult result;
   result.design = design_;
   result.request = request_;
-  result.scene.lamp_height = request_.lamp_height_m;
+  result.scene = scene_;
   const double share = 1.0 / static_cast<double>(request_.distance_m.size());
   for (const double distance_m : request_.distance_m) {
-    Photometer photometer(design_, photometry_at(request_, result.scene, distance_m, seed_), 1);
+    PhotometryRequest photometry = photometry_at(scene_, distance_m, request_.seed);
+    photometry.dye_absorption_per_mm = dye_absorption_per_mm_;
+    if (!dye_absorption_per_mm_.values.empty()) photometry.dye = request_.dye;
+    Photometer photometer(design_, photometry, 1);
     const std::array<Vec3, 2> lamps = lamps_at(result.scene, distance_m);
     const Vec3 eye = eye_at(result.scene, distance_m);
     std::vector<PhotometerSetting> settings;
@@ -288,11 +279,11 @@ RoadResult RoadStudy::run(Progress* progress, const Cancellation* cancel) const 
       reflector.r_a[lamp] = (*readings)[k].r_a.front();
       const Vec3 place = reflector_place(result.scene, side);
       // Without a lamp file, `lamp_cd` is the intensity towards the reflectors.
-      const double cd = request_.lamp ? intensity(request_, lamps[lamp], place) : request_.lamp_cd;
+      const double cd = scene_.lamp ? intensity(scene_, lamps[lamp], place) : scene_.lamp_cd;
       reflector.illuminance_lx[lamp] = cd / (lamps[lamp] - place).squaredNorm();
       reflector.luminance += (*readings)[k].r_l.front() * reflector.illuminance_lx[lamp];
     }
-    draw_road(result.scene, request_, view);
+    draw_road(result.scene, view);
     result.views.push_back(std::move(view));
     result.engine = photometer.engine_name();
     result.warnings = photometer.warnings();

@@ -3,7 +3,7 @@
 // Reflectors of a car as seen at night by the driver behind it. `retrace image` runs this study if a road is requested.
 
 #include <array>
-#include <cstdint>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +11,7 @@
 #include "core/progress.h"
 #include "core/warning.h"
 #include "materials/spectrum.h"
+#include "requests/image.h"
 #include "studies/design/design.h"
 #include "studies/image/lamp.h"
 
@@ -30,17 +31,11 @@ struct RoadScene {
   double reflector_height = 0.6, reflector_half_gap = 0.72;
   double reflector_width = 0.12, reflector_tall = 0.025;
   double car_width = 1.75, car_tall = 1.42;
-};
 
-struct RoadRequest {
-  /// Distances from the headlamps to the reflectors, in m: 1 to 6 values between 5 and 1000.
-  std::vector<double> distance_m = {10.0, 30.0, 100.0};
-  double lamp_cd = 10'000.0;  ///< intensity of each dipped headlamp towards the reflectors; > 0; not used with `lamp`
+  double lamp_cd = 10'000.0;            ///< intensity of each dipped headlamp; not used with `lamp`
   std::optional<PhotometricLamp> lamp;  ///< photometric data of each headlamp
-  double lamp_height_m = 0.65;          ///< height of the headlamps' centres; 0.2 to 3
-  double lamp_aim_deg = 0.0;            ///< angle by which a lamp's axis is rotated downwards; -45 to 45
-  std::string dye;                      ///< name of the reflectors' dye, such as red or amber; empty if they have none
-  materials::SpectralCurve dye_absorption_per_mm;
+  double lamp_aim_deg = 0.0;            ///< angle by which the axis of `lamp` is rotated downwards
+
   std::size_t columns = 480;  ///< number of pixels of each picture
   std::size_t rows = 330;
   double field_deg = 13.0;  ///< angular width of each picture; 1 to 90
@@ -77,18 +72,19 @@ struct RoadResult {
 class RoadStudy {
  public:
   /// \throw InputError for numbers out of range, and for designs that Photometer refuses
-  RoadStudy(Design design, RoadRequest request, std::uint32_t seed = 1);
+  RoadStudy(Design design, RoadRequest request);
 
   RoadResult run(Progress* progress = nullptr, const Cancellation* cancel = nullptr) const;
 
  private:
   Design design_;
   RoadRequest request_;
-  std::uint32_t seed_;
+  RoadScene scene_;
+  materials::SpectralCurve dye_absorption_per_mm_;
 };
 
 /// Computes the luminances of a view.
 /// \param view view whose reflectors have been measured
-void draw_road(const RoadScene& scene, const RoadRequest& request, RoadView& view);
+void draw_road(const RoadScene& scene, RoadView& view);
 
 }  // namespace retrace::studies

@@ -45,7 +45,7 @@ Json lamp_json(const PhotometricLamp& lamp, double aim_deg) {
 std::string detector_json(const DetectorResult& result) {
   Json json = header("detector", result.design, result.request.seed);
   json["engine"] = result.engine;
-  json["engine_requested"] = engine_name(result.request.engine);
+  json["engine_requested"] = result.request.engine;
   json["incidence_deg"] = result.request.incidence_deg;
   json["azimuth_deg"] = result.request.azimuth_deg;
   json["acceptance_half_angle_deg"] = result.acceptance_half_angle_deg;
@@ -83,11 +83,11 @@ std::string camera_json(const CameraResult& result) {
   json["lamp_arcmin"] = asked.lamp_arcmin;
   json["pupil_arcmin"] = asked.pupil_arcmin;
   json["illuminance_lx"] = result.scene.lamp.illuminance_lx;
-  if (asked.lamp) json["lamp"] = lamp_json(*asked.lamp, asked.lamp_aim_deg);
+  if (result.lamp) json["lamp"] = lamp_json(*result.lamp, asked.lamp_aim_deg);
   json["ambient_lx"] = asked.ambient_lx;
   json["backlight_lx"] = asked.backlight_lx;
   if (result.scene.film) {
-    json["film_mm"] = asked.film_size_mm();
+    json["film_mm"] = asked.film_mm.value_or(kUsualFilmMm);
     if (asked.cylinder_mm) json["cylinder_mm"] = *asked.cylinder_mm;
   }
   json["passes"] = result.image.passes;
@@ -106,14 +106,14 @@ std::string camera_json(const CameraResult& result) {
 std::string road_json(const RoadResult& result) {
   Json json = {{"kind", "road"}, {"design", to_json(result.design)}};
   json["engine"] = result.engine;
-  if (const auto& lamp = result.request.lamp)
+  if (const auto& lamp = result.scene.lamp)
     json["lamp"] = lamp_json(*lamp, result.request.lamp_aim_deg);
   else
     json["lamp_cd"] = result.request.lamp_cd;
-  json["dye"] = result.request.dye;
-  json["columns"] = result.request.columns;
-  json["rows"] = result.request.rows;
-  json["field_deg"] = result.request.field_deg;
+  json["dye"] = result.request.dye == "none" ? "" : result.request.dye;
+  json["columns"] = result.scene.columns;
+  json["rows"] = result.scene.rows;
+  json["field_deg"] = result.scene.field_deg;
   const RoadScene& s = result.scene;
   json["scene"] = {{"lamp_height_m", s.lamp_height},
                    {"lamp_half_gap_m", s.lamp_half_gap},

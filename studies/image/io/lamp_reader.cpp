@@ -374,10 +374,10 @@ PhotometricLamp parse_ldt(std::string_view text, const std::string& file) {
           1e-2 * light_output_percent * lumens};
 }
 
-PhotometricLamp read_lamp(const std::filesystem::path& file, const std::string& option) {
+PhotometricLamp read_lamp(const std::filesystem::path& file, Field field) {
   const std::string ending = ending_of(file);
   if (ending != ".ies" && ending != ".ldt")
-    throw InputError({"", 0, option}, fmt::format("must end in .ies or .ldt, got {}", in_quotes(file.string())));
+    throw InputError(field, fmt::format("must end in .ies or .ldt, got {}", in_quotes(file.string())));
   const std::string text = read_file(file, kMostLampBytes);
   return ending == ".ies" ? parse_ies(text, file.string()) : parse_ldt(text, file.string());
 }

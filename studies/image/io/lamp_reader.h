@@ -12,8 +12,9 @@
 namespace retrace::studies {
 
 /// Reads the file of a lamp. The ending of the file's name determines the format.
-/// \throw InputError that names the file and the line, or at `option` for an unknown ending
-PhotometricLamp read_lamp(const std::filesystem::path& file, const std::string& option);
+/// \param field field that names the file
+/// \throw InputError that names the file and the line, or at `field` for an unknown ending
+PhotometricLamp read_lamp(const std::filesystem::path& file, Field field);
 
 /// Reads a photometric file of the editions LM-63-86, -91, -95, -2002 and -19 (ANSI/IESNA). The planes may be of type
 /// C, B or A. The angles of the first and the last plane determine the symmetry.

@@ -63,7 +63,7 @@ TEST(RoughCamera, SeesWhatIsSentForwards) {
     const Design design = rough_cubes(c.texture);
     const double disc_arcmin = 30.0;
     const studies::PhotometricPoint point = forwards(design, c, disc_arcmin);
-    studies::CameraRequest camera;
+    CameraRequest camera;
     camera.distance_m = 1e5;
     camera.observation_deg = c.alpha_deg;
     camera.v_deg = c.v_deg;

@@ -132,7 +132,7 @@ TEST(Camera, MeanLuminanceIsThatOfThePhotometer) {
     request.advice = false;
     const double r_a = studies::PhotometryStudy(design, request).run().points.front().r_a;
 
-    studies::CameraRequest camera;
+    CameraRequest camera;
     camera.distance_m = 1e5;  // what the face mirrors goes back to the lamp from all of it
     camera.observation_deg = c.alpha_deg;
     camera.v_deg = c.v_deg;

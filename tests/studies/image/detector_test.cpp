@@ -153,7 +153,7 @@ TEST(DetectorStudy, MapOfTheBrickArrayHoldsItsRre) {
   studies::RreRequest asked;
   asked.engine = studies::Engine::exact;
   const double rre = studies::RreStudy({design}, asked).run().points.front().rre;
-  studies::DetectorRequest request;
+  DetectorRequest request;
   request.pixels = 50;
   const studies::DetectorResult result = studies::DetectorStudy(design, request).run();
   EXPECT_EQ(result.engine, "exact");

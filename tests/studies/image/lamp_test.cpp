@@ -260,9 +260,9 @@ TEST(Lamp, ByteOrderMarkOfEulumdatIsNoText) {
 }
 
 TEST(Lamp, CutOffIsSeenOnTheRoad) {
-  RoadRequest request;
-  request.lamp = read_lamp(std::string(RETRACE_SOURCE_DIR) + "/examples/low_beam.ies", "--lamp");
-  const LuminousIntensity& beam = request.lamp->intensity;
+  RoadScene scene;
+  scene.lamp = read_lamp(std::string(RETRACE_SOURCE_DIR) + "/examples/low_beam.ies", {"lamp"});
+  const LuminousIntensity& beam = scene.lamp->intensity;
   const auto ahead = [&](double right_deg, double up_deg) {
     return beam.cd(Vec3(std::tan(right_deg * kRadPerDeg), std::tan(up_deg * kRadPerDeg), -1.0));
   };
@@ -271,10 +271,10 @@ TEST(Lamp, CutOffIsSeenOnTheRoad) {
   // The scene shows the rear of a car at 30 m. The lower part is illuminated and the upper part is dark, until the
   // lamps are aimed higher.
   const auto picture = [&](double aim_deg) {
-    request.lamp_aim_deg = aim_deg;
+    scene.lamp_aim_deg = aim_deg;
     RoadView view;
     view.distance_m = 30.0;
-    draw_road(RoadScene(), request, view);
+    draw_road(scene, view);
     return view.luminance;
   };
   const auto sum = [](const std::vector<double>& values) {
@@ -286,7 +286,7 @@ TEST(Lamp, CutOffIsSeenOnTheRoad) {
   const std::vector<double> raised = picture(-3.0);
   // The horizon is at 0.42 of the rows. The roof of the car is just above the horizon.
   const std::size_t roof =
-      static_cast<std::size_t>(0.415 * static_cast<double>(request.rows)) * request.columns + request.columns / 2;
+      static_cast<std::size_t>(0.415 * static_cast<double>(scene.rows)) * scene.columns + scene.columns / 2;
   EXPECT_GT(raised[roof], 5.0 * dipped[roof]);
   EXPECT_GT(sum(dipped), 0.0);
 }
@@ -316,7 +316,7 @@ TEST(Lamp, WhatIsWrongIsToldWithItsLine) {
   EXPECT_EQ(complaint(with(other, "1\n0\n12\n", "1\n5\n12\n"), false), "a.ldt:3: symmetry indicator");
   EXPECT_EQ(complaint(with(other, "1\n0\n12\n", "1\n4\n13\n"), false), "a.ldt:55: C planes");
   EXPECT_EQ(complaint(other.substr(0, other.size() / 2), false), "a.ldt:39: direct ratio");
-  EXPECT_EQ(refusal_of([] { read_lamp("lamp.txt", "--lamp"); }), "--lamp");
+  EXPECT_EQ(refusal_of([] { read_lamp("lamp.txt", {"lamp"}); }), "lamp");
 }
 
 }  // namespace

@@ -50,12 +50,7 @@ Design design() {
 }
 
 const RoadResult& road() {
-  static const RoadResult result = [] {
-    RoadRequest request;
-    request.columns = 40;
-    request.rows = 30;
-    return RoadStudy(design(), request).run();
-  }();
+  static const RoadResult result = [] { return RoadStudy(design(), {}).run(); }();
   return result;
 }
 
@@ -135,17 +130,16 @@ TEST(Road, CoefficientsAreThoseOfTheFarField) {
 
 /// In the picture the reflectors lie where a pinhole would show them, and are as large.
 TEST(Road, ReflectorsAreDrawnWhereTheyAre) {
-  RoadRequest request;
-  request.columns = 900;
-  request.rows = 700;
-  const RoadScene scene;
+  RoadScene scene;
+  scene.columns = 900;
+  scene.rows = 700;
   // Fields in which the reflectors are many pixels wide.
   for (const auto& [distance_m, field_deg] : {std::pair{10.0, 9.0}, {30.0, 3.2}, {100.0, 1.0}}) {
-    request.field_deg = field_deg;
+    scene.field_deg = field_deg;
     RoadView view;
     view.distance_m = distance_m;
     view.reflectors[0].luminance = view.reflectors[1].luminance = 1e5;
-    draw_road(scene, request, view);
+    draw_road(scene, view);
     // The camera looks level at the middle of the car, its pixels stand upright.
     const Vec3 eye(-0.35, 1.2, distance_m + 1.8);
     const Vec3 forward = Vec3(0.35, 0.0, -eye.z()).normalized();

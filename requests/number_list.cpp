@@ -1,4 +1,4 @@
-#include "app/number_list.h"
+#include "requests/number_list.h"
 
 #include <fmt/format.h>
 
@@ -10,17 +10,17 @@
 #include "core/message_text.h"
 #include "core/text.h"
 
-namespace retrace::app {
+namespace retrace::requests {
 namespace {
 
 constexpr std::size_t kMostValues = 100000;
 
 class ListReader {
  public:
-  ListReader(const std::string& option, bool may_choose) : option_(option), may_choose_(may_choose) {}
+  ListReader(Field field, bool may_choose) : field_(field), may_choose_(may_choose) {}
 
   std::vector<double> values;
-  std::vector<NumberRange> chosen;
+  std::vector<std::array<double, 2>> chosen;
 
   void read_item(std::string_view item) {
     const auto parts = split(item, ':');
@@ -31,14 +31,14 @@ class ListReader {
     if (parts.size() != 3) fail(fmt::format("a range must be {}, got {}", ranges(), in_quotes(item)));
     if (may_choose_ && parts[2] == "auto") {
       chosen.push_back({number(parts[0], item) + 0.0, number(parts[1], item) + 0.0});  // -0 is 0
-      if (!(chosen.back().low < chosen.back().high))
+      if (!(chosen.back()[0] < chosen.back()[1]))
         fail(fmt::format("a range start:stop:auto must have start < stop, got {}", in_quotes(item)));
       return;
     }
     add_range(number(parts[0], item), number(parts[1], item), number(parts[2], item), item);
   }
 
-  [[noreturn]] void fail(const std::string& text) const { throw InputError({"", 0, option_}, text); }
+  [[noreturn]] void fail(const std::string& text) const { throw InputError(field_, text); }
 
  private:
   std::string_view ranges() const { return may_choose_ ? "start:stop:step or start:stop:auto" : "start:stop:step"; }
@@ -72,7 +72,7 @@ class ListReader {
     values.push_back(value);
   }
 
-  const std::string& option_;
+  Field field_;
   bool may_choose_;
   std::unordered_set<double> seen_;
 };
@@ -84,16 +84,16 @@ void read_items(std::string_view text, ListReader& reader) {
 
 }  // namespace
 
-std::vector<double> read_number_list(std::string_view text, const std::string& option) {
-  ListReader reader(option, false);
+std::vector<double> read_number_list(std::string_view text, Field field) {
+  ListReader reader(field, false);
   read_items(text, reader);
   return reader.values;
 }
 
-CurveList read_curve_list(std::string_view text, const std::string& option) {
-  ListReader reader(option, true);
+CurveList read_curve_list(std::string_view text, Field field) {
+  ListReader reader(field, true);
   read_items(text, reader);
   return {reader.values, reader.chosen};
 }
 
-}  // namespace retrace::app
+}  // namespace retrace::requests

@@ -2,32 +2,29 @@
 
 // Reads lists of angles and lengths from the command line, such as 0:40:5 or -40:40:auto.
 
-#include <string>
+#include <array>
 #include <string_view>
 #include <vector>
 
-namespace retrace::app {
+#include "core/field.h"
+
+namespace retrace::requests {
 
 /// Reads a list of numbers `a,b,c` and ranges `start:stop:step`. The values of a range are start + i * step and include
 /// stop. Duplicates are removed.
-/// \param option name of the option, for messages
+/// \param field field of the list, for messages
 /// \throw InputError if the list is empty, has more than 100,000 values, or contains text that is not a finite number;
 /// also if the step of a range leads away from its stop
-std::vector<double> read_number_list(std::string_view text, const std::string& option);
-
-struct NumberRange {
-  double low = 0.0;
-  double high = 0.0;
-};
+std::vector<double> read_number_list(std::string_view text, Field field);
 
 /// List of numbers that may contain ranges `start:stop:auto`, in which the program chooses the points.
 struct CurveList {
   std::vector<double> values;
-  std::vector<NumberRange> chosen;  ///< ranges `start:stop:auto`, with low < high
+  std::vector<std::array<double, 2>> chosen;  ///< ranges `start:stop:auto`, with start < stop
 };
 
 /// Reads a list like read_number_list(), in which ranges `start:stop:auto` are also allowed.
 /// \throw InputError like read_number_list(); also if start >= stop in a range `start:stop:auto`
-CurveList read_curve_list(std::string_view text, const std::string& option);
+CurveList read_curve_list(std::string_view text, Field field);
 
-}  // namespace retrace::app
+}  // namespace retrace::requests

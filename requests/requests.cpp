@@ -1,0 +1,33 @@
+#include <algorithm>
+#include <array>
+
+#include "requests/descriptions.h"
+
+namespace retrace::requests {
+
+std::span<const Request* const> all_requests() {
+  static const std::array<const Request*, 3> all = {&description<DetectorRequest>(), &description<CameraRequest>(),
+                                                    &description<RoadRequest>()};
+  return all;
+}
+
+const Row* row_of(const Request& request, std::string_view name) {
+  const auto found = std::ranges::find(request.rows, name, &Row::name);
+  return found == request.rows.end() ? nullptr : &*found;
+}
+
+std::string option_of(const Row& row) {
+  if (!row.spelling.option.empty()) return std::string(row.spelling.option);
+  std::string option = "--" + std::string(row.name);
+  std::ranges::replace(option, '_', '-');
+  return option;
+}
+
+std::string option_of_field(std::string_view field) {
+  for (const Request* const request : all_requests())
+    for (const Row& row : request->rows)
+      if (row.field().name == field) return option_of(row);
+  return option_of(Row{field, schema::Flag{}, {}, {}});
+}
+
+}  // namespace retrace::requests

@@ -1,0 +1,46 @@
+#pragma once
+
+// Rows, ranges and conditions that several requests share.
+
+#include <string_view>
+
+#include "core/schema/access.h"
+#include "requests/row.h"
+
+namespace retrace::requests {
+
+using schema::File, schema::Flag, schema::Number, schema::NumberOrNumbers, schema::NumberRows, schema::Numbers,
+    schema::Text, schema::Texts, schema::Whole, schema::Word, schema::WordOrFile;
+
+inline constexpr NumberRange kIncidence{.low = -90.0, .low_included = false, .high = 90.0, .high_included = false};
+/// Larger azimuths are refused because they leave too few digits after the decimal point.
+inline constexpr NumberRange kAzimuth{.low = -360.0, .high = 360.0};
+inline constexpr NumberRange kCutoff{.low = 0.0, .low_included = false, .high = 1.0, .high_included = false};
+inline constexpr NumberRange kSamples{.low = 1.0, .high = 0x1p36};
+inline constexpr NumberRange kUnsigned32{.low = 0.0, .high = 4294967295.0};
+
+/// Engines that trace every part: all but stochastic and cell.
+inline constexpr std::string_view kEnginesOfParts[] = {"auto", "exact", "montecarlo", "embree"};
+inline constexpr std::string_view kExactEngines[] = {"auto", "exact"};
+inline constexpr std::string_view kRayEngines[] = {"auto", "montecarlo", "embree"};
+
+inline constexpr schema::Condition kIsExact[] = {schema::is("engine", kExactEngines)};
+inline constexpr schema::Condition kIsByRays[] = {schema::is("engine", kRayEngines)};
+inline constexpr Need kNeedExact[] = {kIsExact};
+inline constexpr Need kNeedRays[] = {kIsByRays};
+
+/// Names of the shipped dyes, and the name for no dye.
+inline constexpr std::string_view kDyes[] = {"none", "red", "amber"};
+inline constexpr WordOrFile kDye{kDyes, ".csv", "none, red, amber or a file"};
+
+/// Returns the row of the seed. The command line has --seed for all commands.
+template <class Type>
+constexpr Row seed_row() {
+  return {"seed",
+          Whole{kUnsigned32},
+          "seed of the random numbers",
+          schema::access<&Type::seed>,
+          {.value = "S", .is_only_python_and_library = true}};
+}
+
+}  // namespace retrace::requests

@@ -1,0 +1,254 @@
+#include "requests/descriptions.h"
+
+#include <array>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "core/schema/access.h"
+#include "requests/rows/common.h"
+
+namespace retrace::requests {
+namespace {
+
+using schema::access, schema::access_by;
+
+constexpr NumberRange kLampAim{.low = -45.0, .high = 45.0};
+constexpr double kMostSide = 16384.0;
+constexpr std::size_t kMostPixels = std::size_t{1} << 26U;
+constexpr double kFarthestMm = 1e9;
+
+constexpr Row kDetectorRows[] = {{"incidence_deg",
+                                  Number{kIncidence},
+                                  "angle of incidence",
+                                  access<&DetectorRequest::incidence_deg>,
+                                  {.value = "T", .option = "--incidence"}},
+                                 {"azimuth_deg",
+                                  Number{kAzimuth},
+                                  "azimuth of the source",
+                                  access<&DetectorRequest::azimuth_deg>,
+                                  {.value = "P", .option = "--azimuth"}},
+                                 {"pixels",
+                                  Whole{{.low = 1.0, .high = 8192.0}},
+                                  "pixels along the longer side of the face",
+                                  access<&DetectorRequest::pixels>,
+                                  {.value = "N"}},
+                                 {"angle_pixels",
+                                  Whole{{.low = 1.0, .high = 2049.0}},
+                                  "pixels along each side of the angular map",
+                                  access<&DetectorRequest::angle_pixels>,
+                                  {.value = "N"}},
+                                 {"window_deg",
+                                  Number{{.low = 0.0, .low_included = false, .high = 90.0}},
+                                  "half width of the angular map",
+                                  access<&DetectorRequest::window_deg>,
+                                  {.value = "W"}},
+                                 {"engine",
+                                  Word{kEnginesOfParts},
+                                  "exact, montecarlo (embree), or auto: exact where it is possible",
+                                  access<&DetectorRequest::engine>,
+                                  {.value = "ENGINE"}},
+                                 {"cutoff",
+                                  Number{kCutoff},
+                                  "exact: minimum power of a beam, as a fraction of the incident power",
+                                  access<&DetectorRequest::cutoff>,
+                                  {.value = "W", .otherwise = "truncates at most 1e-5"},
+                                  kNeedExact},
+                                 {"samples",
+                                  Whole{kSamples},
+                                  "number of Monte Carlo rays",
+                                  access<&DetectorRequest::samples>,
+                                  {.value = "N", .usual = "4194304"},
+                                  kNeedRays},
+                                 seed_row<DetectorRequest>()};
+
+schema::Value camera_pixels(const CameraRequest& request) {
+  return std::vector<double>{static_cast<double>(request.columns), static_cast<double>(request.rows)};
+}
+void set_camera_pixels(CameraRequest& request, const schema::Value& value) {
+  const auto& numbers = std::get<std::vector<double>>(value);
+  request.columns = static_cast<std::size_t>(numbers[0]);
+  request.rows = static_cast<std::size_t>(numbers[1]);
+}
+
+void check_camera(const void* object) {
+  const auto& request = *static_cast<const CameraRequest*>(object);
+  if (request.columns * request.rows > kMostPixels)
+    throw InputError(Field{"pixels"},
+                     fmt::format("must be at most {} in all, got {}x{}", kMostPixels, request.columns, request.rows));
+}
+
+constexpr NumberRange kPlaceMm{.low = -kFarthestMm, .high = kFarthestMm};
+constexpr NumberRange kLampAngle{.low = -90.0, .low_included = false, .high = 90.0, .high_included = false};
+
+constexpr schema::Condition kNoEye[] = {schema::without("eye_mm")};
+constexpr schema::Condition kNoEyeOrNoLamp[] = {schema::without("eye_mm"), schema::without("lamp_mm")};
+constexpr schema::Condition kNoLampFile[] = {schema::without("lamp")};
+constexpr schema::Condition kLampFile[] = {schema::beside("lamp")};
+constexpr schema::Condition kNoNoise[] = {schema::without("noise")};
+constexpr Need kNeedNoEye[] = {kNoEye};
+constexpr Need kNeedNoEyeOrNoLamp[] = {kNoEyeOrNoLamp};
+constexpr Need kNeedNoLampFile[] = {kNoLampFile};
+constexpr Need kNeedLampFile[] = {kLampFile};
+constexpr Need kNeedNoNoise[] = {kNoNoise};
+
+constexpr Row kCameraRows[] = {
+    {"distance_m",
+     Number{{.low = 0.0, .low_included = false, .high = 1e6}},
+     "distance of the lamp and the eye from the part",
+     access<&CameraRequest::distance_m>,
+     {.value = "D"},
+     kNeedNoEyeOrNoLamp},
+    {"observation_deg",
+     Number{{.low = 0.0, .high = 180.0, .high_included = false}},
+     "observation angle; the eye is above the lamp",
+     access<&CameraRequest::observation_deg>,
+     {.value = "A"},
+     kNeedNoEye},
+    {"v_deg", Number{kLampAngle}, "vertical angle of the lamp", access<&CameraRequest::v_deg>, {.value = "V"}},
+    {"h_deg", Number{kLampAngle}, "horizontal angle of the lamp", access<&CameraRequest::h_deg>, {.value = "H"}},
+    {"rotation_deg",
+     Number{{.low = -360.0, .high = 360.0}},
+     "rotation of the part about its normal",
+     access<&CameraRequest::rotation_deg>,
+     {.value = "E", .option = "--rotation-deg"}},
+    {"eye_mm",
+     Numbers{3, kPlaceMm},
+     "position of the eye",
+     access<&CameraRequest::eye_mm>,
+     {.value = "X,Y,Z", .notation = Notation::commas, .otherwise = "from distance and angles"}},
+    {"lamp_mm",
+     Numbers{3, kPlaceMm},
+     "position of the lamp",
+     access<&CameraRequest::lamp_mm>,
+     {.value = "X,Y,Z", .notation = Notation::commas, .otherwise = "from distance and angles"}},
+    {"lamp_arcmin",
+     Number{{.low = 0.0, .low_included = false, .high = 600.0}},
+     "angular diameter of the lamp",
+     access<&CameraRequest::lamp_arcmin>,
+     {.value = "D"}},
+    {"pupil_arcmin",
+     Number{{.low = 0.0, .high = 600.0}},
+     "angular diameter of the eye's pupil",
+     access<&CameraRequest::pupil_arcmin>,
+     {.value = "D"}},
+    {"illuminance_lx",
+     Number{{.low = 0.0}},
+     "illuminance by the lamp at the part, on a plane normal to the light",
+     access<&CameraRequest::illuminance_lx>,
+     {.value = "E"},
+     kNeedNoLampFile},
+    {"ambient_lx",
+     Number{{.low = 0.0}},
+     "illuminance of the face by uniform light from the front",
+     access<&CameraRequest::ambient_lx>,
+     {.value = "E"}},
+    {"backlight_lx",
+     Number{{.low = 0.0}},
+     "illuminance by uniform light from behind and around the part",
+     access<&CameraRequest::backlight_lx>,
+     {.value = "E"}},
+    {"pixels",
+     Numbers{2, {.low = 1.0, .high = kMostSide}, "numbers", true},
+     "columns and rows of the picture",
+     access_by<camera_pixels, set_camera_pixels>,
+     {.value = "CxR", .notation = Notation::by_x}},
+    {"field_mm",
+     Number{{.low = 0.0, .low_included = false}},
+     "width of the picture, measured at the part",
+     access<&CameraRequest::field_mm>,
+     {.value = "W", .otherwise = "the part and a margin"}},
+    {"film_mm",
+     Numbers{2, {.low = 0.0, .low_included = false, .high = 1e5}},
+     "width and height of the sheet that shows an infinite design",
+     access<&CameraRequest::film_mm>,
+     {.value = "WxH", .notation = Notation::by_x, .usual = "100x100"}},
+    {"cylinder_mm",
+     Number{kPlaceMm},
+     "radius of the cylinder around which the sheet is bent; negative: inside it",
+     access<&CameraRequest::cylinder_mm>,
+     {.value = "R", .otherwise = "plane"}},
+    {"noise",
+     Number{{.low = 0.0, .low_included = false, .high = 1.0, .high_included = false}},
+     "relative noise of pixels to reach",
+     access<&CameraRequest::noise>,
+     {.value = "E"}},
+    {"passes",
+     Whole{{.low = 2.0, .high = 65536.0}},
+     "number of passes of four light paths per pixel, instead of noise",
+     access<&CameraRequest::passes>,
+     {.value = "N", .otherwise = "as many as the noise requires"},
+     kNeedNoNoise},
+    {"lamp",
+     File{"an IES or EULUMDAT file"},
+     "IES or EULUMDAT file (.ies, .ldt) of the lamp or headlamps",
+     access<&CameraRequest::lamp>,
+     {.value = "FILE", .otherwise = "an even lamp"}},
+    {"lamp_aim_deg",
+     Number{kLampAim},
+     "downward tilt of the axis of a lamp from a file",
+     access<&CameraRequest::lamp_aim_deg>,
+     {.value = "D"},
+     kNeedLampFile},
+    seed_row<CameraRequest>()};
+
+void check_road(const void* object) {
+  constexpr std::size_t most = 6;
+  const std::size_t count = static_cast<const RoadRequest*>(object)->distance_m.size();
+  if (count > most)
+    throw InputError(Field{"road.distance_m"}, fmt::format("must be 1 to {} distances, got {}", most, count));
+}
+
+constexpr Row kRoadRows[] = {
+    {"distance_m",
+     NumberOrNumbers{{.low = 5.0, .high = 1000.0}},
+     "distances of the car ahead",
+     access<&RoadRequest::distance_m>,
+     {.value = "LIST",
+      .notation = Notation::number_list,
+      .option = "--road-distance-m",
+      .qualified = "road.distance_m"}},
+    {"lamp_cd",
+     Number{{.low = 0.0, .low_included = false, .high = 1e6}},
+     "intensity of each headlamp towards the reflectors",
+     access<&RoadRequest::lamp_cd>,
+     {.value = "I"},
+     kNeedNoLampFile},
+    {"lamp",
+     File{"an IES or EULUMDAT file"},
+     "IES or EULUMDAT file (.ies, .ldt) of the lamp or headlamps",
+     access<&RoadRequest::lamp>,
+     {.value = "FILE", .otherwise = "an even lamp"}},
+    {"lamp_height_m",
+     Number{{.low = 0.2, .high = 3.0}},
+     "height of the centres of the headlamps",
+     access<&RoadRequest::lamp_height_m>,
+     {.value = "H"}},
+    {"lamp_aim_deg",
+     Number{kLampAim},
+     "downward tilt of the axis of a lamp from a file",
+     access<&RoadRequest::lamp_aim_deg>,
+     {.value = "D"},
+     kNeedLampFile},
+    {"dye", kDye, "none, red, amber (illustrative) or a file", access<&RoadRequest::dye>, {.value = "NAME|FILE"}},
+    seed_row<RoadRequest>()};
+
+}  // namespace
+
+template <>
+const Request& description<DetectorRequest>() {
+  static constexpr Request request{"detector", "image", kDetectorRows, initial_object<DetectorRequest>};
+  return request;
+}
+template <>
+const Request& description<CameraRequest>() {
+  static constexpr Request request{"camera", "image", kCameraRows, initial_object<CameraRequest>, check_camera};
+  return request;
+}
+template <>
+const Request& description<RoadRequest>() {
+  static constexpr Request request{"road", "image", kRoadRows, initial_object<RoadRequest>, check_road};
+  return request;
+}
+
+}  // namespace retrace::requests

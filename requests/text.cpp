@@ -1,0 +1,77 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <charconv>
+
+#include "core/error.h"
+#include "core/leading_number.h"
+#include "core/message_text.h"
+#include "core/number_format.h"
+#include "core/overloaded.h"
+#include "core/text.h"
+#include "requests/number_list.h"
+#include "requests/row.h"
+
+namespace retrace::requests {
+namespace {
+
+using schema::Value;
+
+[[noreturn]] void refuse(const Row& row, const std::string& must_be, std::string_view text) {
+  throw InputError(row.field(), fmt::format("must be {}, got {}", must_be, printable(text)));
+}
+
+double number_of(const Row& row, std::string_view text, std::string_view must_be) {
+  const std::optional<LeadingNumber> number = leading_number(text);
+  if (!number || number->length != text.size()) refuse(row, std::string(must_be), text);
+  return number->value;
+}
+
+/// Parses a decimal whole number. Leading zeros are refused, because they could mean an octal number.
+double whole_of(const Row& row, std::string_view text) {
+  std::uint64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool is_number =
+      error == std::errc{} && end == text.data() + text.size() && (text.size() == 1 || text.front() != '0');
+  if (!is_number) refuse(row, schema::allowed(row.kind), text);
+  return static_cast<double>(value);
+}
+
+std::vector<double> separated(const Row& row, const schema::Numbers& kind, std::string_view text) {
+  const char separator = row.spelling.notation == Notation::by_x ? 'x' : ',';
+  const std::string must_be = fmt::format("{} numbers {}", kind.count, row.spelling.value);
+  std::vector<double> numbers;
+  for (const std::string_view part : split(text, separator)) numbers.push_back(number_of(row, part, must_be));
+  if (numbers.size() != kind.count) refuse(row, must_be, text);
+  return numbers;
+}
+
+std::string joined(const std::vector<double>& numbers, Notation notation) {
+  std::vector<std::string> texts;
+  for (const double number : numbers) texts.push_back(shortest(number));
+  return fmt::format("{}", fmt::join(texts, notation == Notation::by_x ? "x" : ","));
+}
+
+}  // namespace
+
+void set_text(const Row& row, void* object, std::string_view text) {
+  const Value value =
+      std::visit(Overloaded{[&](const schema::Number&) { return Value(number_of(row, text, "a number")); },
+                            [&](const schema::Whole&) { return Value(whole_of(row, text)); },
+                            [&](const schema::Numbers& kind) { return Value(separated(row, kind, text)); },
+                            [&](const schema::NumberOrNumbers&) { return Value(read_number_list(text, row.field())); },
+                            [&](const auto&) { return Value(std::string(text)); }},
+                 row.kind);
+  set(row, object, value);
+}
+
+std::string text_of(const Row& row, const void* object) {
+  return std::visit(
+      Overloaded{[](double number) { return shortest(number); }, [](const std::string& text) { return text; },
+                 [&](const std::vector<double>& numbers) { return joined(numbers, row.spelling.notation); },
+                 [](bool flag) { return std::string(flag ? "true" : "false"); },
+                 [](const auto&) { return std::string(); }},
+      row.access.get(object));
+}
+
+}  // namespace retrace::requests
