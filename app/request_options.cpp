@@ -60,7 +60,9 @@ std::string meaning_of(const FieldOfCommand& field) {
   const std::string_view unit = schema::unit_of(field.row->name);
   std::string suffix(field.row->name.substr(field.row->name.rfind('_') + 1));
   const bool is_named = unit.empty() || requests::option_of(*field.row).ends_with("-" + suffix);
-  return std::string(field.row->meaning) + (is_named ? "" : fmt::format(", in {}", unit));
+  std::string text(field.row->meaning);
+  if (!is_named) text.insert(std::min(text.find(';'), text.size()), fmt::format(", in {}", unit));
+  return text;
 }
 
 std::string mode_text(const CommandRequest& of) {
@@ -97,14 +99,13 @@ Words words_of_list(std::span<const std::string_view> words) {
 
 /// Returns the possible values of a field for shell completion.
 Traits traits_of(const schema::Kind& kind) {
-  return std::visit(
-      Overloaded{[](const schema::Word& word) { return one_of(words_of_list(word.words)); },
-                 [](const schema::File&) { return files(""); },
-                 [](const schema::WordOrFile& either) {
-                   return one_of(words_of_list(either.words), std::string(either.ending));
-                 },
-                 [](const auto&) { return Traits(); }},
-      kind);
+  return std::visit(Overloaded{[](const schema::Word& word) { return one_of(words_of_list(word.words)); },
+                               [](const schema::File&) { return files(""); },
+                               [](const schema::WordOrFile& either) {
+                                 return one_of(words_of_list(either.words), std::string(either.ending));
+                               },
+                               [](const auto&) { return Traits(); }},
+                    kind);
 }
 
 Condition condition_of(const requests::Request& request, const schema::Condition& condition) {
@@ -130,8 +131,7 @@ std::vector<Need> needs_of(const SharedOption& option) {
   if (!std::ranges::all_of(option.fields, has_same_needs)) return needs;
   for (const requests::Need& need : first.row->needs) {
     Need of_option;
-    for (const schema::Condition& condition : need)
-      of_option.push_back(condition_of(first.of->request, condition));
+    for (const schema::Condition& condition : need) of_option.push_back(condition_of(first.of->request, condition));
     needs.push_back(std::move(of_option));
   }
   return needs;

@@ -26,9 +26,8 @@ struct CommandRequest {
   std::string mode = {};
 };
 
-/// Returns the options for the fields of the requests of a command. Fields of several requests that have the same option
-/// share it.
-/// \param texts receives the given values; it must outlive the arguments
+/// Returns the options for the fields of the requests of a command. Fields of several requests that have the same
+/// option share it. \param texts receives the given values; it must outlive the arguments
 std::vector<Argument> field_arguments(std::span<const CommandRequest> of_command, FieldTexts& texts);
 
 /// Sets the fields of a request whose options are given, and its seed.

@@ -1,9 +1,13 @@
 """Writes the generated files of the Python package, from the program's JSON Schemas and help texts.
 
-    python3 print_package.py PROGRAM FOLDER
+    python3 print_package.py PROGRAM FOLDER SOURCES...
 
 FOLDER/files.py contains a TypedDict for each table of designs, jobs, studies and so on.
 FOLDER/_options.py contains the help of each option of the commands that the package supports.
+FOLDER/_fields.py contains the fields of each request of the library.
+SOURCES are Python files that are copied to FOLDER. In them, two kinds of lines are replaced:
+    # fields of NAME                                 the keywords of a function
+    request = _core.X()  # with the fields of NAME   a request with the values of the keywords
 """
 
 import json
@@ -184,11 +188,104 @@ def options_module(program: str) -> str:
     )
 
 
+def default_of(field: dict) -> object:
+    """Returns the default of a keyword. A list of one number is written as this number."""
+    if field.get("usual"):
+        numbers = [float(text) for text in field["usual"].split("x")]
+        return tuple(numbers) if field["kind"] == "numbers" else None
+    default = field["default"]
+    if field["kind"] == "whole" and default is not None:
+        return int(default)
+    if field["kind"] in ("file", "text") and default == "":
+        return None
+    if not isinstance(default, list):
+        return default
+    if field.get("is_whole"):
+        return tuple(int(number) for number in default)
+    is_one = field["kind"] == "number_or_numbers" and len(default) == 1
+    return default[0] if is_one else tuple(default)
+
+
+def type_of(field: dict) -> str:
+    """Returns the annotation of a keyword."""
+    type_ = {
+        "number": "float",
+        "whole": "int",
+        "flag": "bool",
+        "word": "str",
+        "text": "str",
+        "file": "PathLike",
+        "word_or_file": "str",
+        "number_or_numbers": "Numbers",
+        "numbers": "Numbers",
+        "number_rows": "Sequence[tuple[float, float]]",
+        "texts": "Sequence[str]",
+    }[field["kind"]]
+    if field.get("is_whole"):
+        type_ = f"tuple[{', '.join(['int'] * field['count'])}]"
+    is_optional = default_of(field) is None and not field.get("required")
+    return f"{type_} | None" if is_optional else type_
+
+
+def requests_of(program: str) -> dict[str, list[dict]]:
+    document = json.loads(said(program, "list", "requests", "--json", "-"))
+    return {request["name"]: request["fields"] for request in document["requests"]}
+
+
+def fields_module(requests: dict[str, list[dict]]) -> str:
+    lines = [
+        '"""Fields of the requests of the library: printed by the program."""',
+        "",
+        "from ._request import Field, Fields",
+        "",
+        "FIELDS: dict[str, Fields] = {",
+    ]
+    for name, fields in requests.items():
+        lines.append(f"    {name!r}: {{")
+        for field in fields:
+            otherwise = field.get("usual") or field.get("otherwise")
+            meaning = field["meaning"] + (f" [{otherwise}]" if otherwise else "")
+            values = (field["name"], field["kind"], field["allowed"], default_of(field), meaning)
+            lines.append(f"        {field['keyword']!r}: Field{values!r},  # noqa: E501")
+        lines.append("    },")
+    return "\n".join([*lines, "}"]) + "\n"
+
+
+def keywords(fields: list[dict]) -> list[str]:
+    lines = []
+    for field in fields:
+        default = "" if field.get("required") else f" = {default_of(field)!r}".replace("'", '"')
+        lines.append(f"    {field['keyword']}: {type_of(field)}{default},")
+    return lines
+
+
+def expanded(text: str, requests: dict[str, list[dict]]) -> str:
+    """Replaces the lines of a Python file that stand for the fields of a request."""
+    lines = []
+    for line in text.splitlines():
+        in_signature = re.fullmatch(r"    # fields of (\w+)", line)
+        in_body = re.fullmatch(r"    request = (_core\.\w+\(\))  # with the fields of (\w+)", line)
+        if in_signature:
+            lines += keywords(requests[in_signature[1]])
+        elif in_body:
+            lines += ["    request = given(", f"        {in_body[1]},", f'        FIELDS["{in_body[2]}"],']
+            words = (field["keyword"] for field in requests[in_body[2]])
+            lines += [*(f"        {word}={word}," for word in words), "    )"]
+        else:
+            lines.append(line)
+    return "\n".join(lines) + "\n"
+
+
 def main() -> None:
     program, folder = sys.argv[1], pathlib.Path(sys.argv[2])
     folder.mkdir(parents=True, exist_ok=True)
+    requests = requests_of(program)
     (folder / "files.py").write_text(files_module(program), encoding="utf-8")
     (folder / "_options.py").write_text(options_module(program), encoding="utf-8")
+    (folder / "_fields.py").write_text(fields_module(requests), encoding="utf-8")
+    for source in map(pathlib.Path, sys.argv[3:]):
+        text = expanded(source.read_text(encoding="utf-8"), requests)
+        (folder / source.name).write_text(text, encoding="utf-8")
 
 
 main()

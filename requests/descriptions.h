@@ -2,10 +2,15 @@
 
 // Descriptions of all requests (requests/row.h).
 
+#include <tuple>
+
 #include "requests/image.h"
 #include "requests/row.h"
 
 namespace retrace::requests {
+
+/// All types of requests.
+using AllRequests = std::tuple<DetectorRequest, CameraRequest, RoadRequest>;
 
 template <>
 const Request& description<DetectorRequest>();

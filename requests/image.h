@@ -14,52 +14,92 @@ namespace retrace {
 
 /// Settings for maps of the returned light, as in `retrace image --detector`.
 struct DetectorRequest {
+  /// Angle of incidence, in degrees; > -90 and < 90.
   double incidence_deg = 0.0;
+  /// Azimuth of the source, in degrees; >= -360 and <= 360.
   double azimuth_deg = 0.0;
+  /// Pixels along the longer side of the face; a whole number >= 1 and <= 8192.
   std::size_t pixels = 400;
+  /// Pixels along each side of the angular map; a whole number >= 1 and <= 2049.
   std::size_t angle_pixels = 201;
+  /// Half width of the angular map, in degrees; > 0 and <= 90.
   double window_deg = 1.0;
+  /// Exact, montecarlo (embree), or auto: exact where it is possible; "auto", "exact", "montecarlo" or "embree".
   std::string engine = "auto";
+  /// Exact: minimum power of a beam, as a fraction of the incident power; > 0 and < 1. Default: truncates at most 1e-5.
   std::optional<double> cutoff = {};
+  /// Number of Monte Carlo rays; a whole number >= 1 and <= 68719476736. Default: 4194304.
   std::optional<std::uint64_t> samples = {};
+  /// Seed of the random numbers; a whole number >= 0 and <= 4294967295.
   std::uint32_t seed = 1;
 };
 
 /// Settings for a camera picture of the part in the light of a lamp, as in `retrace image --camera`. Positions are in
 /// the frame of the camera (CONVENTIONS.md).
 struct CameraRequest {
+  /// Distance of the lamp and the eye from the part; > 0 and <= 1e+06.
   double distance_m = 10.0;
+  /// Observation angle; the eye is above the lamp, in degrees; >= 0 and < 180.
   double observation_deg = 0.33;
+  /// Vertical angle of the lamp, in degrees; > -90 and < 90.
   double v_deg = 0.0;
+  /// Horizontal angle of the lamp, in degrees; > -90 and < 90.
   double h_deg = 0.0;
+  /// Rotation of the part about its normal, in degrees; >= -360 and <= 360.
   double rotation_deg = 0.0;
+  /// Position of the eye, in mm. Default: from distance and angles.
   std::optional<std::array<double, 3>> eye_mm = {};
+  /// Position of the lamp, in mm. Default: from distance and angles.
   std::optional<std::array<double, 3>> lamp_mm = {};
+  /// Angular diameter of the lamp, in arc minutes; > 0 and <= 600.
   double lamp_arcmin = 10.0;
+  /// Angular diameter of the eye's pupil, in arc minutes; >= 0 and <= 600.
   double pupil_arcmin = 10.0;
+  /// Illuminance by the lamp at the part, on a plane normal to the light; >= 0.
   double illuminance_lx = 10.0;
+  /// Illuminance of the face by uniform light from the front; >= 0.
   double ambient_lx = 0.0;
+  /// Illuminance by uniform light from behind and around the part; >= 0.
   double backlight_lx = 0.0;
+  /// Columns and rows of the picture.
   std::size_t columns = 400;
+  /// Columns and rows of the picture.
   std::size_t rows = 300;
+  /// Width of the picture, measured at the part, in mm; > 0. Default: the part and a margin.
   std::optional<double> field_mm = {};
+  /// Width and height of the sheet that shows an infinite design, in mm. Default: 100x100.
   std::optional<std::array<double, 2>> film_mm = {};
+  /// Radius of the cylinder around which the sheet is bent; negative: inside it, in mm; >= -1e+09 and <= 1e+09.
+  /// Default: plane.
   std::optional<double> cylinder_mm = {};
+  /// Relative noise of pixels to reach; > 0 and < 1.
   double noise = 0.02;
+  /// Number of passes of four light paths per pixel, instead of noise; a whole number >= 2 and <= 65536. Default: as
+  /// many as the noise requires.
   std::optional<std::uint32_t> passes = {};
+  /// IES or EULUMDAT file (.ies, .ldt) of the lamp or headlamps. Default: an even lamp.
   std::filesystem::path lamp = {};
+  /// Downward tilt of the axis of a lamp from a file, in degrees; >= -45 and <= 45.
   double lamp_aim_deg = 0.0;
+  /// Seed of the random numbers; a whole number >= 0 and <= 4294967295.
   std::uint32_t seed = 1;
 };
 
 /// Settings for a driver's view of two reflectors on a car ahead at night, as in `retrace image --road`.
 struct RoadRequest {
+  /// Distances of the car ahead.
   std::vector<double> distance_m = {10.0, 30.0, 100.0};
+  /// Intensity of each headlamp towards the reflectors; > 0 and <= 1e+06.
   double lamp_cd = 10'000.0;
+  /// IES or EULUMDAT file (.ies, .ldt) of the lamp or headlamps. Default: an even lamp.
   std::filesystem::path lamp = {};
+  /// Height of the centres of the headlamps; >= 0.2 and <= 3.
   double lamp_height_m = 0.65;
+  /// Downward tilt of the axis of a lamp from a file, in degrees; >= -45 and <= 45.
   double lamp_aim_deg = 0.0;
+  /// None, red, amber (illustrative) or a file.
   std::string dye = "none";
+  /// Seed of the random numbers; a whole number >= 0 and <= 4294967295.
   std::uint32_t seed = 1;
 };
 

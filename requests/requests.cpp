@@ -5,9 +5,17 @@
 
 namespace retrace::requests {
 
+namespace {
+
+template <class... Types>
+std::array<const Request*, sizeof...(Types)> descriptions_of(const std::tuple<Types...>*) {
+  return {&description<Types>()...};
+}
+
+}  // namespace
+
 std::span<const Request* const> all_requests() {
-  static const std::array<const Request*, 3> all = {&description<DetectorRequest>(), &description<CameraRequest>(),
-                                                    &description<RoadRequest>()};
+  static const auto all = descriptions_of(static_cast<const AllRequests*>(nullptr));
   return all;
 }
 

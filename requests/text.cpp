@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <charconv>
+#include <cstdint>
 
 #include "core/error.h"
 #include "core/leading_number.h"
@@ -29,7 +30,7 @@ double number_of(const Row& row, std::string_view text, std::string_view must_be
 
 /// Parses a decimal whole number. Leading zeros are refused, because they could mean an octal number.
 double whole_of(const Row& row, std::string_view text) {
-  std::uint64_t value = 0;
+  std::int64_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   const bool is_number =
       error == std::errc{} && end == text.data() + text.size() && (text.size() == 1 || text.front() != '0');

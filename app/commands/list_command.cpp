@@ -15,6 +15,8 @@
 #include "fabrication/job/io/process_files.h"
 #include "fabrication/machine/io/machine_files.h"
 #include "materials/io/material_library.h"
+#include "requests/json.h"
+#include "requests/row.h"
 #include "studies/photometry/io/limits_reader.h"
 #include "studies/photometry/standards.h"
 
@@ -186,11 +188,21 @@ ExitCode list_standards(const CommonOptions& common) {
   return write_list(common, "standards", std::move(json), text);
 }
 
+ExitCode list_requests(const CommonOptions& common) {
+  std::string text = fmt::format("{:<12} {:<20} {:<22} {:<30} {}\n", "request", "field", "option", "allowed", "meaning");
+  for (const requests::Request* const request : requests::all_requests())
+    for (const requests::Row& row : request->rows)
+      text += fmt::format("{:<12} {:<20} {:<22} {:<30} {}\n", request->name, row.name, requests::option_of(row),
+                          schema::allowed(row.kind), row.meaning);
+  return write_list(common, "requests", requests::description_json(), text);
+}
+
 /// Names of the lists, and the functions that write them.
-constexpr std::array<std::pair<std::string_view, ExitCode (*)(const CommonOptions&)>, 4> kLists = {
+constexpr std::array<std::pair<std::string_view, ExitCode (*)(const CommonOptions&)>, 5> kLists = {
     {{"materials", list_materials},
      {"machines", list_machines},
      {"processes", list_processes},
+     {"requests", list_requests},
      {"standards", list_standards}}};
 
 struct ListOptions {
@@ -203,23 +215,26 @@ std::vector<Argument> arguments(ListOptions& options) {
     for (const auto& [name, list] : kLists) names.emplace_back(name);
     return names;
   };
-  return {{"WHAT", "materials, machines, processes or standards", &options.what, one_of(words)}};
+  return {{"WHAT", "materials, machines, processes, requests or standards", &options.what, one_of(words)}};
 }
 
 ExitCode run(const ListOptions& options, const CommonOptions& common) {
   for (const auto& [name, list] : kLists)
     if (name == options.what) return list(common);
   throw InputError(
-      fmt::format("list: must be materials, machines, processes or standards, got {}", printable(options.what)));
+      fmt::format("list: must be materials, machines, processes, requests or standards, got {}", printable(options.what)));
 }
 
 }  // namespace
 
 Command list_command() {
   return {.name = "list",
-          .summary = "what is shipped",
-          .manual = "Names what is shipped, with its sources; `--json` says more of it.",
-          .writes = {"retrace.materials/1", "retrace.machines/1", "retrace.processes/1", "retrace.standards/1"},
+          .summary = "what is shipped, and the fields of requests",
+          .manual =
+              "Names what is shipped, with its sources; `--json` says more of it. `retrace list requests` names what the "
+              "commands, the library and Python can be asked for: fields, options, allowed values and meanings.",
+          .writes = {"retrace.materials/1", "retrace.machines/1", "retrace.processes/1", "retrace.requests/1",
+                     "retrace.standards/1"},
           .begin = begins<ListOptions>(arguments, run)};
 }
 

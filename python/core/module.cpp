@@ -24,6 +24,7 @@
 #include "retrace/photometry.h"
 #include "retrace/rays.h"
 #include "retrace/report.h"
+#include "retrace/request.h"
 #include "retrace/rre.h"
 #include "retrace/running.h"
 #include "retrace/study.h"
@@ -45,16 +46,40 @@ void translate(std::exception_ptr error) {
     if (error) std::rethrow_exception(error);
   } catch (const InputError& input) {
     const InputLocation& where = input.where();
-    raise("InputError", py::make_tuple(input.text(), where.file, where.line, where.key));
+    const bool is_in_field = !input.field().name.empty();
+    raise("InputError", py::make_tuple(input.text(python_keyword), where.file, where.line,
+                                       is_in_field ? python_keyword(input.field().name) : where.key));
   } catch (const OutputError& output) {
     raise("OutputError", py::make_tuple(output.what()));
   } catch (const BudgetError& budget) {
-    raise("BudgetError", py::make_tuple(budget.what()));
+    raise("BudgetError", py::make_tuple(budget.message(python_keyword)));
   } catch (const Error& other) {
     raise("Error", py::make_tuple(other.what()));
   } catch (const Forked& forked) {
     raise("Error", py::make_tuple(forked.what()));
   }
+}
+
+/// Converts a value that the package gives to the value of a field.
+FieldValue field_value(const py::object& value) {
+  if (value.is_none()) return std::monostate();
+  if (py::isinstance<py::bool_>(value)) return value.cast<bool>();
+  if (py::isinstance<py::float_>(value) || py::isinstance<py::int_>(value)) return value.cast<double>();
+  if (py::isinstance<py::str>(value)) return value.cast<std::string>();
+  const auto list = value.cast<py::list>();
+  if (!list.empty() && py::isinstance<py::str>(list[0])) return value.cast<std::vector<std::string>>();
+  if (!list.empty() && py::isinstance<py::list>(list[0])) return value.cast<std::vector<std::vector<double>>>();
+  return value.cast<std::vector<double>>();
+}
+
+/// Binds a request, whose fields the package sets by name.
+template <class Request>
+void request_class(py::module_& module, const char* name) {
+  py::class_<Request>(module, name)
+      .def(py::init<>())
+      .def("assign", [](Request& request, const std::string& field, const py::object& value) {
+        assign(request, field, field_value(value));
+      });
 }
 
 /// Binds the members that most result classes have in common.
@@ -326,50 +351,9 @@ py::tuple told(ImageResult result) {
 }
 
 void bind_images(py::module_& module) {
-  py::class_<DetectorRequest>(module, "DetectorRequest")
-      .def(py::init<>())
-      .def_readwrite("incidence_deg", &DetectorRequest::incidence_deg)
-      .def_readwrite("azimuth_deg", &DetectorRequest::azimuth_deg)
-      .def_readwrite("pixels", &DetectorRequest::pixels)
-      .def_readwrite("angle_pixels", &DetectorRequest::angle_pixels)
-      .def_readwrite("window_deg", &DetectorRequest::window_deg)
-      .def_readwrite("engine", &DetectorRequest::engine)
-      .def_readwrite("cutoff", &DetectorRequest::cutoff)
-      .def_readwrite("samples", &DetectorRequest::samples)
-      .def_readwrite("seed", &DetectorRequest::seed);
-  py::class_<CameraRequest>(module, "CameraRequest")
-      .def(py::init<>())
-      .def_readwrite("distance_m", &CameraRequest::distance_m)
-      .def_readwrite("observation_deg", &CameraRequest::observation_deg)
-      .def_readwrite("v_deg", &CameraRequest::v_deg)
-      .def_readwrite("h_deg", &CameraRequest::h_deg)
-      .def_readwrite("rotation_deg", &CameraRequest::rotation_deg)
-      .def_readwrite("eye_mm", &CameraRequest::eye_mm)
-      .def_readwrite("lamp_mm", &CameraRequest::lamp_mm)
-      .def_readwrite("lamp_arcmin", &CameraRequest::lamp_arcmin)
-      .def_readwrite("pupil_arcmin", &CameraRequest::pupil_arcmin)
-      .def_readwrite("illuminance_lx", &CameraRequest::illuminance_lx)
-      .def_readwrite("ambient_lx", &CameraRequest::ambient_lx)
-      .def_readwrite("backlight_lx", &CameraRequest::backlight_lx)
-      .def_readwrite("columns", &CameraRequest::columns)
-      .def_readwrite("rows", &CameraRequest::rows)
-      .def_readwrite("field_mm", &CameraRequest::field_mm)
-      .def_readwrite("film_mm", &CameraRequest::film_mm)
-      .def_readwrite("cylinder_mm", &CameraRequest::cylinder_mm)
-      .def_readwrite("noise", &CameraRequest::noise)
-      .def_readwrite("passes", &CameraRequest::passes)
-      .def_readwrite("lamp", &CameraRequest::lamp)
-      .def_readwrite("lamp_aim_deg", &CameraRequest::lamp_aim_deg)
-      .def_readwrite("seed", &CameraRequest::seed);
-  py::class_<RoadRequest>(module, "RoadRequest")
-      .def(py::init<>())
-      .def_readwrite("distance_m", &RoadRequest::distance_m)
-      .def_readwrite("lamp_cd", &RoadRequest::lamp_cd)
-      .def_readwrite("lamp", &RoadRequest::lamp)
-      .def_readwrite("lamp_height_m", &RoadRequest::lamp_height_m)
-      .def_readwrite("lamp_aim_deg", &RoadRequest::lamp_aim_deg)
-      .def_readwrite("dye", &RoadRequest::dye)
-      .def_readwrite("seed", &RoadRequest::seed);
+  request_class<DetectorRequest>(module, "DetectorRequest");
+  request_class<CameraRequest>(module, "CameraRequest");
+  request_class<RoadRequest>(module, "RoadRequest");
   result_class<ImageResult>(module, "ImageResult").def_readonly("complete", &ImageResult::complete);
   const auto bind = [&]<class Request>(const char* name,
                                        ImageResult (*function)(const Design&, const Request&, const Running&)) {

@@ -13,28 +13,7 @@ _Pictures = dict[str, tuple[dict[str, _Floats], Drawing]]
 
 class CameraRequest:
     def __init__(self) -> None: ...
-    distance_m: float
-    observation_deg: float
-    v_deg: float
-    h_deg: float
-    rotation_deg: float
-    eye_mm: list[float] | None
-    lamp_mm: list[float] | None
-    lamp_arcmin: float
-    pupil_arcmin: float
-    illuminance_lx: float
-    ambient_lx: float
-    backlight_lx: float
-    columns: int
-    rows: int
-    field_mm: float | None
-    film_mm: list[float]
-    cylinder_mm: float | None
-    noise: float
-    passes: int | None
-    lamp: Path | str
-    lamp_aim_deg: float
-    seed: int
+    def assign(self, field: str, value: object, /) -> None: ...
 
 class Design:
     @staticmethod
@@ -58,15 +37,7 @@ class Design:
 
 class DetectorRequest:
     def __init__(self) -> None: ...
-    incidence_deg: float
-    azimuth_deg: float
-    pixels: int
-    angle_pixels: int
-    window_deg: float
-    engine: str
-    cutoff: float | None
-    samples: int | None
-    seed: int
+    def assign(self, field: str, value: object, /) -> None: ...
 
 class Drawing:
     def __bool__(self) -> bool: ...
@@ -265,13 +236,7 @@ class RaysResult:
 
 class RoadRequest:
     def __init__(self) -> None: ...
-    distance_m: list[float]
-    lamp_cd: float
-    lamp: Path | str
-    lamp_height_m: float
-    lamp_aim_deg: float
-    dye: str
-    seed: int
+    def assign(self, field: str, value: object, /) -> None: ...
 
 class RreRequest:
     def __init__(self) -> None: ...

@@ -41,7 +41,7 @@ std::vector<double> all_luminances(const RoadResult& result) {
 }
 
 std::vector<Colour> colours_of(const RoadResult& result, const RoadView& view, const double* shown) {
-  const std::array<double, 3> tint = tint_of(result.request.dye);
+  const std::array<double, 3> tint = tint_of(result.scene.dye);
   std::vector<Colour> colours;
   colours.reserve(view.luminance.size());
   for (std::size_t k = 0; k < view.luminance.size(); ++k) {
@@ -63,20 +63,20 @@ std::vector<Colour> colours_of(const RoadResult& result, const RoadView& view, c
 std::string road_png(const RoadResult& result, double scale) {
   const auto views = static_cast<double>(result.views.size());
   const double height =
-      kViewWidth * static_cast<double>(result.request.rows) / static_cast<double>(result.request.columns);
+      kViewWidth * static_cast<double>(result.scene.rows) / static_cast<double>(result.scene.columns);
   const Size size{kMargin + std::max(1.0, views) * (kViewWidth + kMargin), kHead + height + kCaption};
   Canvas canvas(Canvas::Format::png, size, scale);
   canvas.fill_rectangle({0.0, 0.0}, size, kBackground);
   const std::string title =
       fmt::format("{}{}: what a driver sees in his own headlamps", studies::short_name(result.design),
-                  result.request.dye.empty() ? "" : ", " + result.request.dye);
+                  result.scene.dye.empty() ? "" : ", " + result.scene.dye);
   for (const std::string& line : canvas.fitted(title, {15.0, true}, size.width - 2.0 * kMargin, 1, Ellipsis::middle))
     canvas.text({kMargin, 25.0}, line, {15.0, true}, kText, Align::left);
   const std::vector<double> shown = tone_mapped(all_luminances(result), kNightKey);
   double x = kMargin;
   const double* at = shown.data();
   for (const RoadView& view : result.views) {
-    canvas.image({x, kHead}, {kViewWidth, height}, result.request.columns, colours_of(result, view, at));
+    canvas.image({x, kHead}, {kViewWidth, height}, result.scene.columns, colours_of(result, view, at));
     at += view.luminance.size();
     canvas.text({x, kHead + height + 18.0}, fmt::format("{} m", shortest(view.distance_m)), {13.0, true}, kText,
                 Align::left);
@@ -91,10 +91,10 @@ std::string road_png(const RoadResult& result, double scale) {
 }
 
 FloatPicture road_picture(const RoadResult& result) {
-  const std::size_t columns = result.request.columns;
+  const std::size_t columns = result.scene.columns;
   FloatPicture picture;
   picture.columns = columns * result.views.size();
-  picture.rows = result.request.rows;
+  picture.rows = result.scene.rows;
   std::vector<double> luminance;
   std::vector<double> reflected;
   for (std::size_t row = 0; row < picture.rows; ++row)
@@ -107,7 +107,7 @@ FloatPicture road_picture(const RoadResult& result) {
   picture.channels = {{"Y", luminance}, {"reflected", reflected}};
   picture.texts = picture_texts("road", result.design);
   picture.texts.emplace_back("retrace:unit", "cd/m2");
-  picture.numbers = {{"retrace:field_deg", result.request.field_deg}, {"retrace:lamp_cd", result.request.lamp_cd}};
+  picture.numbers = {{"retrace:field_deg", result.scene.field_deg}, {"retrace:lamp_cd", result.request.lamp_cd}};
   return picture;
 }
 

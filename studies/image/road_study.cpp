@@ -205,7 +205,9 @@ RoadStudy::RoadStudy(Design design, RoadRequest request) : design_(std::move(des
   scene_.lamp_aim_deg = request_.lamp_aim_deg;
   if (!request_.lamp.empty()) scene_.lamp = read_lamp(request_.lamp, Field{"lamp"});
   const std::filesystem::path dye = dye_file_of(request_.dye, false, {});
-  if (!dye.empty()) dye_absorption_per_mm_ = materials::read_spectral_absorption(dye);
+  if (dye.empty()) return;
+  scene_.dye = request_.dye;
+  dye_absorption_per_mm_ = materials::read_spectral_absorption(dye);
 }
 
 namespace {
@@ -252,7 +254,7 @@ RoadResult RoadStudy::run(Progress* progress, const Cancellation* cancel) const 
   for (const double distance_m : request_.distance_m) {
     PhotometryRequest photometry = photometry_at(scene_, distance_m, request_.seed);
     photometry.dye_absorption_per_mm = dye_absorption_per_mm_;
-    if (!dye_absorption_per_mm_.values.empty()) photometry.dye = request_.dye;
+    photometry.dye = scene_.dye;
     Photometer photometer(design_, photometry, 1);
     const std::array<Vec3, 2> lamps = lamps_at(result.scene, distance_m);
     const Vec3 eye = eye_at(result.scene, distance_m);

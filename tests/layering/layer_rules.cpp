@@ -21,17 +21,18 @@ using Names = std::set<std::string>;
 const std::map<std::string, Names>& folders() {
   static const std::map<std::string, Names> order = {
       {"core", {}},
+      {"requests", {"core"}},
       {"geometry", {"core"}},
       {"materials", {"core"}},
       {"surface_models", {"core", "geometry", "materials"}},
       {"raytrace", {"core", "geometry", "materials", "surface_models"}},
       {"fabrication", {"core", "geometry"}},
-      {"studies", {"core", "geometry", "materials", "surface_models", "raytrace", "fabrication"}},
+      {"studies", {"core", "requests", "geometry", "materials", "surface_models", "raytrace", "fabrication"}},
       {"report", {"core", "geometry", "studies"}},
-      {"library", {"core", "geometry", "materials", "raytrace", "fabrication", "studies", "report"}},
-      {"live", {"core", "geometry", "materials", "surface_models", "raytrace", "studies"}},
-      {"python", {"library", "core"}},
-      {"app", {"core", "geometry", "materials", "surface_models", "raytrace", "fabrication", "studies", "report"}}};
+      {"library", {"core", "requests", "geometry", "materials", "raytrace", "fabrication", "studies", "report"}},
+      {"live", {"core", "requests", "geometry", "materials", "surface_models", "raytrace", "studies"}},
+      {"python", {"library", "core", "requests"}},
+      {"app", {"core", "requests", "geometry", "materials", "surface_models", "raytrace", "fabrication", "studies", "report"}}};
   return order;
 }
 
@@ -203,7 +204,7 @@ struct Include {
 std::string from_root(const std::string& target, const std::string& path) {
   if ((path.starts_with("library/") || path.starts_with("python/")) && target.starts_with("retrace/"))
     return "library/" + target;
-  if (path.starts_with("core/") && target == "api.h") return "core/" + target;
+  if (path.starts_with("core/") && (target == "api.h" || target == "field.h")) return "core/" + target;
   return target;
 }
 

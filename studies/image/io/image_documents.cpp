@@ -110,7 +110,7 @@ std::string road_json(const RoadResult& result) {
     json["lamp"] = lamp_json(*lamp, result.request.lamp_aim_deg);
   else
     json["lamp_cd"] = result.request.lamp_cd;
-  json["dye"] = result.request.dye == "none" ? "" : result.request.dye;
+  json["dye"] = result.scene.dye;
   json["columns"] = result.scene.columns;
   json["rows"] = result.scene.rows;
   json["field_deg"] = result.scene.field_deg;

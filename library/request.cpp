@@ -1,0 +1,40 @@
+#include "retrace/request.h"
+
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "core/json_text.h"
+#include "requests/descriptions.h"
+#include "requests/json.h"
+
+namespace retrace {
+namespace {
+
+template <class Request>
+void assign_field(Request& request, std::string_view field, const FieldValue& value) {
+  const requests::Row* const row = requests::row_of(requests::description<Request>(), field);
+  if (row == nullptr) throw InputError(Field{field}, "there is no such field");
+  std::visit([&](const auto& given) { requests::set(*row, &request, schema::Value(given)); }, value);
+}
+
+}  // namespace
+
+void assign(DetectorRequest& request, std::string_view field, const FieldValue& value) {
+  assign_field(request, field, value);
+}
+void assign(CameraRequest& request, std::string_view field, const FieldValue& value) {
+  assign_field(request, field, value);
+}
+void assign(RoadRequest& request, std::string_view field, const FieldValue& value) {
+  assign_field(request, field, value);
+}
+
+std::string request_description() {
+  return to_text(requests::description_json());
+}
+
+std::string python_keyword(std::string_view field) {
+  return requests::keyword_of_field(field);
+}
+
+}  // namespace retrace

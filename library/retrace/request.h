@@ -1,0 +1,35 @@
+#pragma once
+
+// Sets fields of requests by name, and describes all requests. Programs that build forms, bindings or documentation
+// from the description need no code for single fields.
+
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "core/api.h"
+#include "requests/image.h"
+
+namespace retrace {
+
+/// Value of a field. Whole numbers are given as double, words and file names as std::string. std::monostate means that no
+/// value is given.
+using FieldValue = std::variant<std::monostate, bool, double, std::string, std::vector<double>,
+                                std::vector<std::vector<double>>, std::vector<std::string>>;
+
+/// Sets a field of a request.
+/// \param field name of the member, or "pixels" for the columns and rows of a camera picture
+/// \throw InputError at the field if there is no such field, or if the value is not allowed
+RETRACE_API void assign(DetectorRequest& request, std::string_view field, const FieldValue& value);
+RETRACE_API void assign(CameraRequest& request, std::string_view field, const FieldValue& value);
+RETRACE_API void assign(RoadRequest& request, std::string_view field, const FieldValue& value);
+
+/// Returns the description of all requests as JSON: fields, ranges, units, defaults, meanings, and the spelling on the
+/// command line and in Python. It is the document of `retrace list requests --json -` without its header.
+RETRACE_API std::string request_description();
+
+/// Returns the keyword of a field in Python, for Error::message(). The field is named as in the message.
+RETRACE_API std::string python_keyword(std::string_view field);
+
+}  // namespace retrace

@@ -1,0 +1,70 @@
+"""Requests: converts the keywords of a function to the fields of a request of the library."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple, ParamSpec, TypeVar
+
+from ._arguments import checked, flag, number, number_list, pairs, path, refuse, whole, word
+
+_P = ParamSpec("_P")
+_R = TypeVar("_R")
+_MOST = 2**53  # the largest whole number that a double can count to
+
+
+class Field(NamedTuple):
+    """A field of a request, as the library describes it."""
+
+    name: str  #: name in the library
+    kind: str  #: kind of the value, such as "number" or "word"
+    allowed: str  #: allowed values
+    default: object
+    meaning: str
+
+
+#: Fields of a request by keyword.
+Fields = dict[str, Field]
+
+
+def _whole(keyword: str, value: object, field: Field) -> int:
+    if isinstance(value, str):
+        raise refuse(keyword, field.allowed, value)
+    return whole(keyword, value, -_MOST, _MOST)
+
+
+def _converted(keyword: str, value: object, field: Field) -> object:
+    """Converts a value to the type that the library takes. The library checks its range."""
+    if field.kind == "number":
+        return number(keyword, value)
+    if field.kind == "whole":
+        return _whole(keyword, value, field)
+    if field.kind == "flag":
+        return flag(keyword, value)
+    if field.kind in ("file", "word_or_file"):
+        return path(keyword, value)
+    if field.kind in ("number_or_numbers", "numbers"):
+        return number_list(keyword, value, may_be_empty=True)
+    if field.kind == "number_rows":
+        return [list(pair) for pair in pairs(keyword, value)]
+    if field.kind == "texts":
+        if isinstance(value, (list, tuple)) and all(isinstance(text, str) for text in value):
+            return list(value)
+        raise refuse(keyword, field.allowed, value)
+    return word(keyword, value)
+
+
+def given(request: Any, fields: Fields, **values: object) -> Any:
+    """Sets the fields of a request whose values differ from their defaults."""
+    for keyword, value in values.items():
+        field = fields[keyword]
+        if value is field.default or (
+            type(value) is type(field.default) and value == field.default
+        ):
+            continue
+        request.assign(field.name, _converted(keyword, value, field))
+    return request
+
+
+def described(fields: Fields) -> Callable[[Callable[_P, _R]], Callable[_P, _R]]:
+    """Decorates a function whose keywords are the fields of a request, see checked()."""
+    return checked({keyword: (field.meaning, "") for keyword, field in fields.items()}, {k: k for k in fields})

@@ -1,0 +1,91 @@
+"""Tests that program, library and package answer a wrong request alike: the same field, the same
+allowed values and the same given value."""
+
+import json
+import random
+import subprocess
+import unittest
+
+import program
+import retrace as rt
+from retrace import _core
+from retrace._fields import FIELDS
+
+BRICK = str(program.EXAMPLES / "rtp_brick_2mm.toml")
+#: Functions of the package and types of the module _core by request, with the arguments that the
+#: program needs to make the same request.
+CALLS = {
+    "detector": (rt.image.detector, _core.DetectorRequest, ["image", BRICK, "--detector"]),
+    "camera": (rt.image.camera, _core.CameraRequest, ["image", BRICK, "--camera"]),
+    "road": (rt.image.road, _core.RoadRequest, ["image", BRICK, "--road"]),
+}
+
+
+def descriptions():
+    out = subprocess.run(
+        [program.PROGRAM, "list", "requests", "--json", "-"],
+        check=True,
+        capture_output=True,
+        text=True,
+    ).stdout
+    return json.loads(out)["requests"]
+
+
+def wrong_value(chance, field):
+    """Returns a random number, list or word that the field does not allow, or None."""
+    far = chance.choice((-1.0, 1.0)) * 10 ** chance.uniform(11, 300)
+    if field["kind"] == "number":
+        return far if field["allowed"] != "any number" else None
+    if field["kind"] == "whole":
+        return chance.choice((int(-(10 ** chance.uniform(0, 9))), 2**53 - chance.randrange(1000)))
+    if field["kind"] == "numbers":
+        return [abs(far)] * field["count"]
+    if field["kind"] == "word":
+        return "".join(chance.choice("abcxyz") for _ in range(chance.randrange(2, 9)))
+    if field["kind"] == "number_or_numbers":
+        return [abs(far)]
+    return None
+
+
+def on_command_line(value, field):
+    if isinstance(value, list):
+        return ("x" if "x" in field["value"] else ",").join(map(repr, value))
+    return str(value)
+
+
+class Requests(unittest.TestCase):
+    maxDiff = 2000
+
+    def test_every_request_is_tested(self):
+        self.assertEqual(set(CALLS), {request["name"] for request in descriptions()})
+        self.assertEqual(set(CALLS), set(FIELDS))
+
+    def test_wrong_requests_get_the_same_answer(self):
+        chance = random.Random(61)
+        fields = [
+            (request["name"], field)
+            for request in descriptions()
+            for field in request["fields"]
+            if "option" in field and wrong_value(chance, field) is not None
+        ]
+        for _ in range(200):
+            name, field = chance.choice(fields)
+            value = wrong_value(chance, field)
+            call, request, arguments = CALLS[name]
+            with self.subTest(request=name, field=field["name"], value=value):
+                with self.assertRaises(rt.InputError) as of_package:
+                    call(BRICK, **{field["keyword"]: tuple(value) if isinstance(value, list) else value})
+                with self.assertRaises(rt.InputError) as of_library:
+                    request().assign(field["name"], value)
+                option = f"{field['option']}={on_command_line(value, field)}"
+                code, _, err = program.run(*arguments, option)
+                self.assertEqual(code, 2)
+                self.assertEqual(of_package.exception.key, field["keyword"])
+                self.assertEqual(str(of_library.exception), str(of_package.exception))
+                self.assertEqual(
+                    err, f"retrace: {field['option']}: {of_package.exception.message}\n"
+                )
+
+
+if __name__ == "__main__":
+    unittest.main()
