@@ -16,23 +16,6 @@
 namespace retrace {
 namespace {
 
-studies::RayRequest to_study(const RaysRequest& request) {
-  studies::RayRequest of_study;
-  of_study.placement = {request.at_mm, request.aim_mm, request.incidence_deg, request.azimuth_deg, request.distance_mm};
-  if (!request.emitter.empty()) of_study.placement.face_part();
-  of_study.split = request.split;
-  of_study.cutoff = request.cutoff;
-  of_study.stokes = request.stokes;
-  of_study.keep_missed = request.keep_missed;
-  of_study.seed = request.seed;
-  return of_study;
-}
-
-studies::EmitterRequest emitter_of(const RaysRequest& request) {
-  return {studies::emitter_from_name(request.emitter), request.disc_mm, request.half_angle_deg, request.rays,
-          request.power};
-}
-
 /// Fills the members that the results of rays() and trace() have in common.
 template <class Result>
 void tell(const studies::RayResult& found, Result& result) {
@@ -50,16 +33,15 @@ void tell(const studies::RayResult& found, Result& result) {
 }  // namespace
 
 RaysResult rays(const Design& design, const RaysRequest& request, const Running& running) {
-  if (request.source.empty() == request.emitter.empty())
-    throw InputError({"", 0, "source"}, "one of source and emitter must be given");
-  const studies::RayStudy study(design.content().design, to_study(request));
+  const studies::RayRequest settings = studies::resolve(request);
+  const studies::RayStudy study(design.content().design, settings);
   std::optional<studies::Emitter> emitter;
-  if (!request.emitter.empty()) emitter = study.emitter_of(emitter_of(request));
-  if (!request.out.empty()) studies::check_ray_file(request.out, "out");
-  const std::unique_ptr<studies::RaySource> source =
-      emitter ? std::make_unique<studies::EmitterSource>(*emitter) : studies::open_ray_file(request.source, "source");
+  if (settings.emitter) emitter = study.emitter_of(*settings.emitter);
+  if (!request.out.empty()) studies::check_ray_file(request.out, Field{"out"});
+  const std::unique_ptr<studies::RaySource> source = emitter ? std::make_unique<studies::EmitterSource>(*emitter)
+                                                             : studies::open_ray_file(request.source, Field{"source"});
   std::unique_ptr<studies::RaySink> sink;
-  if (!request.out.empty()) sink = studies::make_ray_file(request.out, "out");
+  if (!request.out.empty()) sink = studies::make_ray_file(request.out, Field{"out"});
   studies::RayResult found;
   run_with_threads(running.threads,
                    [&] { found = study.run(*source, sink.get(), running.progress, running.cancellation); });
@@ -76,13 +58,7 @@ std::vector<std::string> ray_accounts() {
 }
 
 TracedRays trace(const Design& design, const RayArrays& rays, const TraceRequest& request, const Running& running) {
-  studies::RayRequest of_study;
-  of_study.split = request.split;
-  of_study.cutoff = request.cutoff;
-  of_study.stokes = true;
-  of_study.keep_missed = request.keep_missed;
-  of_study.seed = request.seed;
-  const studies::RayStudy study(design.content().design, of_study);
+  const studies::RayStudy study(design.content().design, studies::resolve(request));
   studies::ArraySource source({rays.origins_mm, rays.directions, rays.stokes, rays.axes, rays.wavelengths_nm});
   studies::ArraySink sink(rays.origins_mm.size() / 3);
   studies::RayResult found;

@@ -5,12 +5,13 @@
 #include <tuple>
 
 #include "requests/image.h"
+#include "requests/rays.h"
 #include "requests/row.h"
 
 namespace retrace::requests {
 
 /// All types of requests.
-using AllRequests = std::tuple<DetectorRequest, CameraRequest, RoadRequest>;
+using AllRequests = std::tuple<DetectorRequest, CameraRequest, RoadRequest, RaysRequest, TraceRequest>;
 
 template <>
 const Request& description<DetectorRequest>();
@@ -18,5 +19,9 @@ template <>
 const Request& description<CameraRequest>();
 template <>
 const Request& description<RoadRequest>();
+template <>
+const Request& description<RaysRequest>();
+template <>
+const Request& description<TraceRequest>();
 
 }  // namespace retrace::requests

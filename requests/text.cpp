@@ -68,10 +68,13 @@ void set_text(const Row& row, void* object, std::string_view text) {
 
 std::string text_of(const Row& row, const void* object) {
   return std::visit(
-      Overloaded{[](double number) { return shortest(number); }, [](const std::string& text) { return text; },
-                 [&](const std::vector<double>& numbers) { return joined(numbers, row.spelling.notation); },
-                 [](bool flag) { return std::string(flag ? "true" : "false"); },
-                 [](const auto&) { return std::string(); }},
+      Overloaded{
+          [&](double number) {
+            return std::holds_alternative<schema::Whole>(row.kind) ? fmt::format("{:.0f}", number) : shortest(number);
+          },
+          [](const std::string& text) { return text; },
+          [&](const std::vector<double>& numbers) { return joined(numbers, row.spelling.notation); },
+          [](bool flag) { return std::string(flag ? "true" : "false"); }, [](const auto&) { return std::string(); }},
       row.access.get(object));
 }
 

@@ -2,41 +2,17 @@
 
 // Traces rays through a part. The rays come from a file, from an emitter or from arrays in memory.
 
-#include <array>
-#include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/warning.h"
+#include "requests/rays.h"
 #include "retrace/design.h"
 #include "retrace/running.h"
 
 namespace retrace {
-
-/// Settings of a ray trace. They correspond to the options of `retrace rays` (docs/commands.md).
-struct RaysRequest {
-  std::filesystem::path source = {};  ///< file of rays (.tm25ray, .csv); if empty, the rays come from `emitter`
-  std::string emitter = {};           ///< lambertian, gaussian or collimated, instead of `source`
-  std::optional<double> disc_mm = {};
-  std::optional<double> half_angle_deg = {};
-  std::uint64_t rays = 1'000'000;
-  double power = 1.0;
-  std::optional<double> incidence_deg = {};
-  std::optional<double> azimuth_deg = {};
-  std::optional<double> distance_mm = {};
-  std::optional<std::array<double, 3>> at_mm = {};
-  std::optional<std::array<double, 3>> aim_mm = {};
-  double split = 1.0;
-  double cutoff = 1e-10;
-  bool stokes = false;
-  bool keep_missed = false;
-  std::filesystem::path out = {};  ///< output file (.tm25ray, .csv); if empty, rays are not written
-  std::uint32_t seed = 1;
-};
 
 struct RaysResult {
   /// Fraction of the incident power for each account (fate of the light, such as absorption).
@@ -63,14 +39,6 @@ struct RayArrays {
   std::vector<double> axes;
   /// One per ray, or one for all rays; if empty, the wavelengths of the design are used.
   std::vector<double> wavelengths_nm;
-};
-
-/// Settings of trace(). Each member has the same meaning as the member of RaysRequest with the same name.
-struct TraceRequest {
-  double split = 1.0;
-  double cutoff = 1e-10;
-  bool keep_missed = false;
-  std::uint32_t seed = 1;
 };
 
 /// All rays that leave the part.

@@ -115,8 +115,8 @@ class RayTracer::Walk : public ExitObserver {
   void add_memory() {
     memory_.add(kRaysTogether * sizeof(LeavingRay));
     if (memory_.is_exceeded())
-      throw TraceBudgetError(fmt::format("the rays that leave the part exceed {}: give a larger --cutoff or --split",
-                                         memory_budget_text()));
+      throw TraceBudgetError(fmt::format("the rays that leave the part exceed {}: give a larger {} or {}",
+                                         memory_budget_text(), reference({"cutoff"}), reference({"split"})));
   }
 
   PathWalker& walker_at(std::uint32_t optics) {

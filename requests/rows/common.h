@@ -17,6 +17,10 @@ inline constexpr NumberRange kIncidence{.low = -90.0, .low_included = false, .hi
 inline constexpr NumberRange kAzimuth{.low = -360.0, .high = 360.0};
 inline constexpr NumberRange kCutoff{.low = 0.0, .low_included = false, .high = 1.0, .high_included = false};
 inline constexpr NumberRange kSamples{.low = 1.0, .high = 0x1p36};
+/// Maximum coordinate, distance and diameter, in mm, of lamps, eyes and ray sources. At larger distances, double
+/// precision is too coarse for rays to hit the part, and the squares of coordinates overflow in Embree.
+inline constexpr double kFarthestMm = 1e9;
+inline constexpr NumberRange kPlaceMm{.low = -kFarthestMm, .high = kFarthestMm};
 inline constexpr NumberRange kUnsigned32{.low = 0.0, .high = 4294967295.0};
 
 /// Engines that trace every part: all but stochastic and cell.

@@ -16,7 +16,6 @@ using schema::access, schema::access_by;
 constexpr NumberRange kLampAim{.low = -45.0, .high = 45.0};
 constexpr double kMostSide = 16384.0;
 constexpr std::size_t kMostPixels = std::size_t{1} << 26U;
-constexpr double kFarthestMm = 1e9;
 
 constexpr Row kDetectorRows[] = {{"incidence_deg",
                                   Number{kIncidence},
@@ -78,7 +77,6 @@ void check_camera(const void* object) {
                      fmt::format("must be at most {} in all, got {}x{}", kMostPixels, request.columns, request.rows));
 }
 
-constexpr NumberRange kPlaceMm{.low = -kFarthestMm, .high = kFarthestMm};
 constexpr NumberRange kLampAngle{.low = -90.0, .low_included = false, .high = 90.0, .high_included = false};
 
 constexpr schema::Condition kNoEye[] = {schema::without("eye_mm")};

@@ -35,11 +35,8 @@ struct Emitter {
 };
 
 /// Returns the kind of emitter with this name.
-/// \throw InputError for an unknown name
+/// \pre the name is one of kEmitterNames
 EmitterKind emitter_from_name(std::string_view name);
-
-/// Maximum number of rays of an emitter.
-inline constexpr std::uint64_t kMaxEmitterRays = std::uint64_t{1} << 40;
 
 /// Request for an emitter.
 struct EmitterRequest {

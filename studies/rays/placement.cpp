@@ -1,29 +1,18 @@
 #include "studies/rays/placement.h"
 
-#include <fmt/format.h>
-
 #include <Eigen/Geometry>
-#include <cmath>
 
 #include "core/error.h"
-#include "core/number_format.h"
 #include "raytrace/light/light_setup.h"
 #include "raytrace/light/optics.h"
 #include "raytrace/sampling/entrance_sampler.h"
-#include "studies/design/request_limits.h"
 
 namespace retrace::studies {
 namespace {
 
 constexpr double kUsualDistanceMm = 10.0;
 
-void require(bool is_right, const char* option, const std::string& text) {
-  if (!is_right) throw InputError({"", 0, option}, text);
-}
-
-Vec3 place_of(const std::array<double, 3>& numbers, const char* option) {
-  for (const double n : numbers)
-    require(std::abs(n) <= kFarthestMm, option, fmt::format("must be three numbers from -1e9 to 1e9, got {}", n));
+Vec3 to_vec(const std::array<double, 3>& numbers) {
   return {numbers[0], numbers[1], numbers[2]};
 }
 
@@ -49,25 +38,19 @@ RayPlacement placement_of(const RayPlacementRequest& request, const geometry::Pa
   std::optional<Vec3> aim;
   std::optional<Vec3> way;  ///< vector from the source to the point at which it is aimed
   if (request.is_by_angles()) {
-    require(!request.at_mm, "--at-mm", "not together with --incidence, --azimuth and --distance-mm");
     const double incidence = request.incidence_deg.value_or(0.0);
     const double azimuth = request.azimuth_deg.value_or(0.0);
     const double distance = request.distance_mm.value_or(kUsualDistanceMm);
-    require(std::abs(incidence) < 90.0, "--incidence",
-            fmt::format("must lie between -90 and 90 degrees, got {}", incidence));
-    check_azimuth(azimuth);
-    require(distance > 0.0 && distance <= kFarthestMm, "--distance-mm",
-            fmt::format("must be > 0 and at most 1e9, got {}", distance));
     aim = middle_of_face(part);
     const raytrace::Illumination light{Angle::from_deg(incidence), Angle::from_deg(azimuth), raytrace::kUnpolarised};
     way = -distance * raytrace::direction_to_source(light);
     placement.at_mm = *aim - *way;
   }
-  if (request.at_mm) placement.at_mm = place_of(*request.at_mm, "--at-mm");
-  if (request.aim_mm) aim = place_of(*request.aim_mm, "--aim-mm");
+  if (request.at_mm) placement.at_mm = to_vec(*request.at_mm);
+  if (request.aim_mm) aim = to_vec(*request.aim_mm);
   if (!aim) return placement;
   if (!way || request.aim_mm) way = *aim - placement.at_mm;
-  require(way->norm() > 0.0, "--aim-mm", "must differ from the position of the source");
+  if (!(way->norm() > 0.0)) throw InputError(Field{"aim_mm"}, "must differ from the position of the source");
   placement.part_from_source = aimed(way->normalized());
   return placement;
 }

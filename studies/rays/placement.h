@@ -6,12 +6,12 @@
 #include <optional>
 
 #include "geometry/part/part.h"
-#include "studies/design/length_limits.h"
 #include "studies/rays/ray_set.h"
 
 namespace retrace::studies {
 
-/// Position and direction that are requested for a source. Either `at_mm` is given, or the angles and the distance.
+/// Position and direction that are requested for a source. The angles and the distance must be empty if
+/// `at_mm` is given.
 struct RayPlacementRequest {
   std::optional<std::array<double, 3>> at_mm;   ///< origin of the source in the part frame
   std::optional<std::array<double, 3>> aim_mm;  ///< point at which the +z axis of the source is aimed
@@ -45,7 +45,8 @@ Vec3 middle_of_face(const geometry::Part& part);
 /// Computes the placement of a source. The x axis of an aimed source is the part's x axis, projected perpendicular to
 /// the source's z axis. If the x axis of the part is parallel to this z axis, the part's y axis is used instead. If
 /// nothing is requested, the frame of the source is the part frame.
-/// \throw InputError for contradictory values and values out of range
+/// \pre each value is allowed by itself (see RaysRequest)
+/// \throw InputError if the source would be aimed at its own position
 RayPlacement placement_of(const RayPlacementRequest& request, const geometry::Part& part);
 
 }  // namespace retrace::studies

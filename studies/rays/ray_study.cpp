@@ -13,6 +13,7 @@
 #include "core/number_format.h"
 #include "core/version.h"
 #include "raytrace/light/light_setup.h"
+#include "requests/descriptions.h"
 #include "studies/rays/ray_accounts.h"
 #include "studies/rays/ray_limits.h"
 #include "studies/rays/ray_wavelengths.h"
@@ -28,11 +29,6 @@ constexpr std::size_t kFewestAtATime = 1024;
 // Maximum number of surfaces that a branch of a ray meets, and maximum number of segments of all branches of a ray.
 constexpr std::uint32_t kMaxSurfaces = 10'000;
 constexpr std::uint64_t kMaxSegments = 1'000'000;
-
-void require_share(double value, const char* option) {
-  if (!(value >= 0.0 && value <= 1.0))
-    throw InputError({"", 0, option}, fmt::format("must be >= 0 and <= 1, got {}", value));
-}
 
 std::u32string wide_text(std::string_view ascii) {
   return {ascii.begin(), ascii.end()};
@@ -103,11 +99,36 @@ struct RayStudy::Hidden {
   RayPlacement placement;
 };
 
-RayStudy::RayStudy(Design design, RayRequest request) {
-  require_share(request.split, "--split");
-  require_share(request.cutoff, "--cutoff");
-  hidden_ = std::make_unique<const Hidden>(std::move(design), std::move(request));
+RayRequest resolve(const RaysRequest& request) {
+  requests::check(request);
+  RayRequest settings;
+  settings.placement = {request.at_mm, request.aim_mm, request.incidence_deg, request.azimuth_deg, request.distance_mm};
+  if (!request.emitter.empty()) {
+    settings.placement.face_part();
+    settings.emitter = {emitter_from_name(request.emitter), request.disc_mm, request.half_angle_deg, request.rays,
+                        request.power};
+  }
+  settings.split = request.split;
+  settings.cutoff = request.cutoff;
+  settings.keep_missed = request.keep_missed;
+  settings.stokes = request.stokes;
+  settings.seed = request.seed;
+  return settings;
 }
+
+RayRequest resolve(const TraceRequest& request) {
+  requests::check(request);
+  RayRequest settings;
+  settings.split = request.split;
+  settings.cutoff = request.cutoff;
+  settings.keep_missed = request.keep_missed;
+  settings.stokes = true;
+  settings.seed = request.seed;
+  return settings;
+}
+
+RayStudy::RayStudy(Design design, RayRequest request)
+    : hidden_(std::make_unique<const Hidden>(std::move(design), std::move(request))) {}
 RayStudy::~RayStudy() = default;
 
 const geometry::Part& RayStudy::part() const {
@@ -119,9 +140,6 @@ const Design& RayStudy::design() const {
 }
 
 Emitter RayStudy::emitter_of(const EmitterRequest& request) const {
-  const auto check = [](bool is_right, const char* option, const char* allowed, double given) {
-    if (!is_right) throw InputError({"", 0, option}, fmt::format("must be {}, got {}", allowed, given));
-  };
   const LightSpectrum* const spectrum = hidden_->design.light.spectrum();
   Emitter emitter;
   emitter.kind = request.kind;
@@ -133,12 +151,6 @@ Emitter RayStudy::emitter_of(const EmitterRequest& request) const {
   emitter.power = request.power;
   emitter.is_luminous = spectrum != nullptr && spectrum->photopic;
   emitter.seed = hidden_->request.seed;
-  check(emitter.disc_mm >= 0.0 && emitter.disc_mm <= kFarthestMm, "--disc-mm", ">= 0 and <= 1e9", emitter.disc_mm);
-  check(emitter.half_angle_deg >= 0.0 && emitter.half_angle_deg <= 90.0, "--half-angle-deg", ">= 0 and <= 90",
-        emitter.half_angle_deg);
-  check(emitter.power > 0.0 && emitter.power <= kMaxTotalPower, "--power", "> 0 and <= 1e150", emitter.power);
-  if (emitter.rays < 1 || emitter.rays > kMaxEmitterRays)
-    throw InputError({"", 0, "--rays"}, fmt::format("must be 1 to {}, got {}", kMaxEmitterRays, emitter.rays));
   return emitter;
 }
 
@@ -313,7 +325,8 @@ class RayStudy::Run {
     }
     for (Warning& warning : source_.warnings()) result_.warnings.push_back(std::move(warning));
     if (result_.ledger.rays > 0 && result_.ledger.rays_missed == result_.ledger.rays)
-      result_.warnings.push_back({"no_ray_meets_part", "no ray meets the part: see --at-mm, --aim-mm and --incidence"});
+      result_.warnings.push_back(
+          {"no_ray_meets_part", "no ray meets the part: change the position or the direction of the source"});
   }
 
   const Hidden& hidden_;

@@ -12,6 +12,7 @@
 #include "core/progress.h"
 #include "core/warning.h"
 #include "raytrace/paths/ray_tracer.h"
+#include "requests/rays.h"
 #include "studies/design/optical_model.h"
 #include "studies/rays/emitter.h"
 #include "studies/rays/placement.h"
@@ -19,8 +20,10 @@
 
 namespace retrace::studies {
 
+/// Settings of a study: a resolved RaysRequest or TraceRequest.
 struct RayRequest {
   RayPlacementRequest placement;
+  std::optional<EmitterRequest> emitter = {};  ///< requested emitter; empty: rays come from another source
   /// Minimum fraction of a ray's power for which both branches at an interface are traced. Below it, one branch is
   /// chosen at random and carries the power of both. With 1, at most one ray leaves for each incident ray.
   double split = 1.0;
@@ -29,6 +32,11 @@ struct RayRequest {
   bool stokes = false;       ///< true: polarisation is written even if the source has none
   std::uint32_t seed = 1;
 };
+
+/// Checks a request and returns its settings. An emitter without a requested position is in front of the entrance face.
+/// \throw InputError at the first field that is not allowed
+RayRequest resolve(const RaysRequest& request);
+RayRequest resolve(const TraceRequest& request);
 
 /// Unit of the power in the ledger.
 enum class RayPower { radiant_w, luminous_lm };
@@ -58,7 +66,8 @@ struct RayResult {
 /// in proportion to their weights. Rays with a spectrum get wavelengths of their spectrum.
 class RayStudy {
  public:
-  /// \throw InputError for balls, and for an invalid request
+  /// \pre each value of the request is allowed by itself, as resolve() ensures
+  /// \throw InputError for balls, and if the source would be aimed at its own position
   RayStudy(Design design, RayRequest request);
   RayStudy(const RayStudy&) = delete;
   RayStudy& operator=(const RayStudy&) = delete;
@@ -68,7 +77,6 @@ class RayStudy {
   const Design& design() const;
   /// Returns the requested emitter for this part. Its power is in lm if the design's light is weighted by the response
   /// of the eye.
-  /// \throw InputError for values out of range
   Emitter emitter_of(const EmitterRequest& request) const;
 
   /// Traces all rays of a source.

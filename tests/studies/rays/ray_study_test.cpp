@@ -393,39 +393,39 @@ TEST(RayStudy, SourcesAreMovedAndTurned) {
 TEST(RayStudy, WhatMakesNoSenseIsRefused) {
   const auto complaint = [](const auto& change) {
     return refusal_of([&] {
-      RayRequest request;
+      RaysRequest request;
+      request.emitter = "lambertian";
       change(request);
-      RayStudy(plate(), request);
+      RayStudy(plate(), resolve(request));
     });
   };
-  EXPECT_EQ(complaint([](RayRequest& r) { r.split = 1.5; }), "--split");
-  EXPECT_EQ(complaint([](RayRequest& r) { r.cutoff = NAN; }), "--cutoff");
-  EXPECT_EQ(complaint([](RayRequest& r) { r.placement.incidence_deg = 90.0; }), "--incidence");
-  EXPECT_EQ(complaint([](RayRequest& r) { r.placement.distance_mm = 0.0; }), "--distance-mm");
-  EXPECT_EQ(complaint([](RayRequest& r) { r.placement.azimuth_deg = 1e300; }), "--azimuth");
-  EXPECT_EQ(complaint([](RayRequest& r) { r.placement.at_mm = {{0, 0, 1e200}}; }), "--at-mm");
-  EXPECT_EQ(complaint([](RayRequest& r) {
-              r.placement.azimuth_deg = 0.0;
-              r.placement.at_mm = {{0, 0, 0}};
+  EXPECT_EQ(complaint([](RaysRequest& r) { r.split = 1.5; }), "split");
+  EXPECT_EQ(complaint([](RaysRequest& r) { r.cutoff = NAN; }), "cutoff");
+  EXPECT_EQ(complaint([](RaysRequest& r) { r.incidence_deg = 90.0; }), "incidence_deg");
+  EXPECT_EQ(complaint([](RaysRequest& r) { r.distance_mm = 0.0; }), "distance_mm");
+  EXPECT_EQ(complaint([](RaysRequest& r) { r.azimuth_deg = 1e300; }), "azimuth_deg");
+  EXPECT_EQ(complaint([](RaysRequest& r) { r.at_mm = {{0, 0, 1e200}}; }), "at_mm");
+  EXPECT_EQ(complaint([](RaysRequest& r) {
+              r.azimuth_deg = 0.0;
+              r.at_mm = {{0, 0, 0}};
             }),
-            "--at-mm");
-  EXPECT_EQ(complaint([](RayRequest& r) {
-              r.placement.at_mm = {{0, 0, 9}};
-              r.placement.aim_mm = {{0, 0, 9}};
+            "at_mm");
+  EXPECT_EQ(complaint([](RaysRequest& r) {
+              r.at_mm = {{0, 0, 9}};
+              r.aim_mm = {{0, 0, 9}};
             }),
-            "--aim-mm");
-  const auto emitter = [](const auto& change) {
-    return refusal_of([&] {
-      EmitterRequest request;
-      change(request);
-      RayStudy(plate(), {}).emitter_of(request);
-    });
-  };
-  EXPECT_EQ(emitter([](EmitterRequest& r) { r.disc_mm = -1.0; }), "--disc-mm");
-  EXPECT_EQ(emitter([](EmitterRequest& r) { r.half_angle_deg = 91.0; }), "--half-angle-deg");
-  EXPECT_EQ(emitter([](EmitterRequest& r) { r.power = 0.0; }), "--power");
-  EXPECT_EQ(emitter([](EmitterRequest& r) { r.rays = 0; }), "--rays");
-  EXPECT_EQ(emitter([](EmitterRequest& r) { r.rays = UINT64_MAX; }), "--rays");
+            "aim_mm");
+  EXPECT_EQ(complaint([](RaysRequest& r) { r.emitter = "laser"; }), "emitter");
+  EXPECT_EQ(complaint([](RaysRequest& r) { r.disc_mm = -1.0; }), "disc_mm");
+  EXPECT_EQ(complaint([](RaysRequest& r) { r.half_angle_deg = 91.0; }), "half_angle_deg");
+  EXPECT_EQ(complaint([](RaysRequest& r) { r.power = 0.0; }), "power");
+  EXPECT_EQ(complaint([](RaysRequest& r) { r.rays = 0; }), "rays");
+  EXPECT_EQ(complaint([](RaysRequest& r) { r.rays = UINT64_MAX; }), "rays");
+  EXPECT_EQ(complaint([](RaysRequest& r) { r.emitter = ""; }), "source");
+  EXPECT_EQ(complaint([](RaysRequest& r) { r.source = "rays.csv"; }), "source");
+  TraceRequest trace;
+  trace.split = -0.5;
+  EXPECT_EQ(refusal_of([&] { resolve(trace); }), "split");
 }
 
 /// Only the direction of a direction vector counts, not its length. The traced ray is the same for every multiple

@@ -1,0 +1,145 @@
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "core/schema/access.h"
+#include "requests/descriptions.h"
+#include "requests/rows/common.h"
+
+namespace retrace::requests {
+namespace {
+
+using schema::access;
+
+constexpr std::string_view kEmitters[] = {"lambertian", "gaussian", "collimated"};
+
+constexpr NumberRange kFraction{.low = 0.0, .high = 1.0};
+
+constexpr schema::Condition kEmitter[] = {schema::beside("emitter")};
+constexpr schema::Condition kNoEmitter[] = {schema::without("emitter")};
+constexpr schema::Condition kNoIncidence[] = {schema::without("incidence_deg")};
+constexpr schema::Condition kNoAzimuth[] = {schema::without("azimuth_deg")};
+constexpr schema::Condition kNoDistance[] = {schema::without("distance_mm")};
+constexpr schema::Condition kOut[] = {schema::beside("out")};
+constexpr Need kNeedEmitter[] = {kEmitter};
+constexpr Need kNeedNoEmitter[] = {kNoEmitter};
+constexpr Need kNeedNoAngles[] = {kNoIncidence, kNoAzimuth, kNoDistance};
+constexpr Need kNeedOut[] = {kOut};
+
+template <class Type>
+constexpr Row split_row() {
+  return {"split",
+          Number{kFraction},
+          "minimum power, as a fraction of the launched ray, for following both branches; 1: never",
+          access<&Type::split>,
+          {.value = "W"}};
+}
+
+template <class Type>
+constexpr Row cutoff_row() {
+  return {"cutoff",
+          Number{kFraction},
+          "minimum power of a branch that is followed, as a fraction of the launched ray",
+          access<&Type::cutoff>,
+          {.value = "W"}};
+}
+
+constexpr Row kRaysRows[] = {
+    {"source",
+     File{"a file of rays"},
+     "rays to trace: IES TM-25 (.tm25ray) or a table (.csv)",
+     access<&RaysRequest::source>,
+     {.value = "FILE"},
+     kNeedNoEmitter},
+    {"emitter",
+     Word{kEmitters},
+     "disc that emits rays, instead of a file of rays",
+     access<&RaysRequest::emitter>,
+     {.value = "KIND"}},
+    {"rays",
+     Whole{{.low = 1.0, .high = 0x1p40}},
+     "emitter: number of rays",
+     access<&RaysRequest::rays>,
+     {.value = "N"},
+     kNeedEmitter},
+    {"disc_mm",
+     Number{{.low = 0.0, .high = kFarthestMm}},
+     "emitter: diameter of its disc",
+     access<&RaysRequest::disc_mm>,
+     {.value = "D", .otherwise = "0, a point; collimated light: the size of the part or of one period"},
+     kNeedEmitter},
+    {"half_angle_deg",
+     Number{{.low = 0.0, .high = 90.0}},
+     "emitter: half angle of its cone; gaussian: where its light falls to exp(-2)",
+     access<&RaysRequest::half_angle_deg>,
+     {.value = "A", .otherwise = "lambertian: 90, others: 0"},
+     kNeedEmitter},
+    {"power",
+     Number{{.low = 0.0, .low_included = false, .high = 1e150}},
+     "emitter: total power of its rays, in W, or in lm if the design's light is weighted by the eye",
+     access<&RaysRequest::power>,
+     {.value = "P"},
+     kNeedEmitter},
+    {"incidence_deg",
+     Number{kIncidence},
+     "angle between the part's normal and a source that is aimed at the centre of the face",
+     access<&RaysRequest::incidence_deg>,
+     {.value = "T", .option = "--incidence"}},
+    {"azimuth_deg",
+     Number{kAzimuth},
+     "azimuth of the source",
+     access<&RaysRequest::azimuth_deg>,
+     {.value = "P", .option = "--azimuth"}},
+    {"distance_mm",
+     Number{{.low = 0.0, .low_included = false, .high = kFarthestMm}},
+     "distance of the source from the centre of the face",
+     access<&RaysRequest::distance_mm>,
+     {.value = "D", .usual = "10"}},
+    {"at_mm",
+     Numbers{3, kPlaceMm},
+     "position of the source's origin, instead of angles and distance",
+     access<&RaysRequest::at_mm>,
+     {.value = "X,Y,Z", .notation = Notation::commas, .otherwise = "files: the part's origin"},
+     kNeedNoAngles},
+    {"aim_mm",
+     Numbers{3, kPlaceMm},
+     "point at which the source's +z axis is aimed",
+     access<&RaysRequest::aim_mm>,
+     {.value = "X,Y,Z", .notation = Notation::commas, .otherwise = "files: parallel to the part's +z axis"}},
+    split_row<RaysRequest>(),
+    cutoff_row<RaysRequest>(),
+    {"stokes", Flag{}, "write polarisation even if the source has none", access<&RaysRequest::stokes>, {}, kNeedOut},
+    {"keep_missed", Flag{}, "also write rays that miss the part", access<&RaysRequest::keep_missed>, {}, kNeedOut},
+    {"out",
+     File{"a file of rays"},
+     "file for the rays that leave the part, .tm25ray or .csv",
+     access<&RaysRequest::out>,
+     {.value = "FILE", .otherwise = "rays are not written", .is_only_python_and_library = true}},
+    seed_row<RaysRequest>()};
+
+void check_rays(const void* object) {
+  const auto& request = *static_cast<const RaysRequest*>(object);
+  if (request.source.empty() && request.emitter.empty())
+    throw InputError(Field{"source"},
+                     fmt::format("one of {} and {} must be given", reference({"source"}), reference({"emitter"})));
+}
+
+constexpr Row kTraceRows[] = {
+    split_row<TraceRequest>(),
+    cutoff_row<TraceRequest>(),
+    {"keep_missed", Flag{}, "also return rays that miss the part", access<&TraceRequest::keep_missed>},
+    seed_row<TraceRequest>()};
+
+}  // namespace
+
+template <>
+const Request& description<RaysRequest>() {
+  static constexpr Request request{"rays", "rays", kRaysRows, initial_object<RaysRequest>, check_rays};
+  return request;
+}
+template <>
+const Request& description<TraceRequest>() {
+  static constexpr Request request{"trace", "", kTraceRows, initial_object<TraceRequest>};
+  return request;
+}
+
+}  // namespace retrace::requests
