@@ -65,8 +65,9 @@ std::string meaning_of(const FieldOfCommand& field) {
   return text;
 }
 
+/// Returns the name of a request for help. Returns an empty text for the only request of a command.
 std::string mode_text(const CommandRequest& of) {
-  return of.mode.empty() ? "" : of.mode.substr(2);
+  return of.mode.empty() ? of.label : of.mode.substr(2);
 }
 
 /// Returns the help of an option. If several requests have it, each part of the text names its requests.

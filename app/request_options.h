@@ -24,6 +24,9 @@ struct CommandRequest {
   const requests::Request& request;
   /// Option that selects the request if the command has several requests, such as "--camera".
   std::string mode = {};
+  /// Text before the help of its options if the command has several requests but no option selects this one, such as
+  /// "material".
+  std::string label = {};
 };
 
 /// Returns the options for the fields of the requests of a command. Fields of several requests that have the same

@@ -12,10 +12,6 @@
 namespace retrace {
 namespace {
 
-studies::Solid solid_of(const Design& design, const SolidRequest& request) {
-  return studies::make_solid(design.content().design, {studies::read_solid_kind(request.what), request.block_mm});
-}
-
 FaceKind kind_of(geometry::FacetRole role) {
   switch (role) {
     case geometry::FacetRole::entrance: return FaceKind::entrance;
@@ -31,7 +27,7 @@ FaceKind kind_of(geometry::FacetRole role) {
 }  // namespace
 
 Mesh mesh(const Design& design, const SolidRequest& request) {
-  const studies::Solid solid = solid_of(design, request);
+  const studies::Solid solid = studies::make_solid(design.content().design, request);
   Mesh mesh;
   for (const geometry::Vec3& vertex : solid.mesh.vertices)
     mesh.vertices_mm.push_back({vertex.x(), vertex.y(), vertex.z()});
@@ -46,7 +42,7 @@ Mesh mesh(const Design& design, const SolidRequest& request) {
 
 ExportResult export_solid(const Design& design, const std::filesystem::path& file, const SolidRequest& request) {
   const studies::SolidFormat format = studies::solid_format(file.string());
-  const studies::Solid solid = solid_of(design, request);
+  const studies::Solid solid = studies::make_solid(design.content().design, request);
   write_file_atomically(file, studies::solid_text(solid, format));
   return {solid.warnings, studies::solid_json(solid, file.string()), studies::solid_table(solid)};
 }
@@ -55,15 +51,9 @@ MaterialResult export_material(const Design& design, const std::filesystem::path
                                const Running& running) {
   const auto format = studies::appearance_format(file.string());
   if (!format) throw InputError({"", 0, "file"}, "must end in .json, .xml or .glsl, got " + in_quotes(file.string()));
-  studies::AppearanceRequest of_study;
-  of_study.apertures = {Angle::from_deg(request.source_arcmin / 60.0), Angle::from_deg(request.receiver_arcmin / 60.0)};
-  of_study.window_deg = request.window_deg;
-  of_study.entrance_deg = request.entrance_deg;
-  of_study.error = request.error;
-  of_study.most_directions = request.most_directions;
   studies::AppearanceResult found;
   run_with_threads(running.threads, [&] {
-    found = studies::compute_appearance(design.content().design, of_study, running.progress, running.cancellation);
+    found = studies::compute_appearance(design.content().design, request, running.progress, running.cancellation);
   });
   MaterialResult result;
   result.complete = found.complete;

@@ -5,13 +5,15 @@
 #include <tuple>
 
 #include "requests/image.h"
+#include "requests/part.h"
 #include "requests/rays.h"
 #include "requests/row.h"
 
 namespace retrace::requests {
 
 /// All types of requests.
-using AllRequests = std::tuple<DetectorRequest, CameraRequest, RoadRequest, RaysRequest, TraceRequest>;
+using AllRequests =
+    std::tuple<DetectorRequest, CameraRequest, RoadRequest, SolidRequest, MaterialRequest, RaysRequest, TraceRequest>;
 
 template <>
 const Request& description<DetectorRequest>();
@@ -19,6 +21,10 @@ template <>
 const Request& description<CameraRequest>();
 template <>
 const Request& description<RoadRequest>();
+template <>
+const Request& description<SolidRequest>();
+template <>
+const Request& description<MaterialRequest>();
 template <>
 const Request& description<RaysRequest>();
 template <>

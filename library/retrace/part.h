@@ -6,22 +6,15 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/warning.h"
+#include "requests/part.h"
 #include "retrace/design.h"
 #include "retrace/running.h"
 
 namespace retrace {
-
-/// Selects a solid of a design.
-struct SolidRequest {
-  std::string what = "array";  ///< element, array, or mould (the block behind the part's back)
-  /// Thickness of a mould below its deepest point; by default, the thickness of the plate.
-  std::optional<double> block_mm = {};
-};
 
 /// Kind of a face of a part, see CONVENTIONS.md.
 enum class FaceKind { entrance, retro_facet, flat_back, inner_wall, border_wall, side };
@@ -52,16 +45,6 @@ struct ExportResult {
 /// \throw OutputError
 RETRACE_API ExportResult export_solid(const Design& design, const std::filesystem::path& file,
                                       const SolidRequest& request = {});
-
-/// Settings of export_material(): a material that reflects light in the same way as a part (docs/theory/appearance.md).
-struct MaterialRequest {
-  double entrance_deg = 20.0;           ///< largest entrance angle; 1 to 40
-  double window_deg = 1.0;              ///< largest angle between view and source; 0.1 to 5
-  double source_arcmin = 10.0;          ///< angular diameter of the source, over which values are averaged
-  double receiver_arcmin = 10.0;        ///< angular diameter of the receiver, over which values are averaged
-  double error = 0.02;                  ///< intended relative error; 0.001 to 0.5
-  std::uint64_t most_directions = 400;  ///< maximum number of directions of light that are computed; 64 to 10000
-};
 
 struct MaterialResult {
   Warnings warnings;

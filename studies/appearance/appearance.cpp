@@ -12,15 +12,16 @@
 
 #include "core/error.h"
 #include "core/number_format.h"
-#include "core/number_range.h"
 #include "core/random.h"
 #include "core/threads.h"
 #include "geometry/direction.h"
 #include "materials/chromaticity.h"
 #include "materials/io/spectrum_reader.h"
+#include "raytrace/observers/aperture_kernel.h"
 #include "raytrace/observers/coefficients.h"
 #include "raytrace/observers/disc_means.h"
 #include "raytrace/observers/photometric_geometry.h"
+#include "requests/descriptions.h"
 #include "studies/photometry/colour.h"
 #include "studies/photometry/photometer.h"
 
@@ -74,26 +75,15 @@ constexpr RandomKey kViewKey{.seed = 0x6d61746cU, .stream = 1};
 constexpr RandomKey kProbeKey{.seed = 0x6d61746cU, .stream = 2};
 constexpr RandomKey kGridKey{.seed = 0x6d61746cU, .stream = 3};
 
-void check(double value, const NumberRange& range, const char* option) {
-  if (!range.contains(value))
-    throw InputError({"", 0, option}, fmt::format("must be {}, got {}", range.text(), shortest(value)));
-}
-
-void check(const AppearanceRequest& request) {
-  check(request.window_deg, {.low = 0.1, .high = 5.0}, "--window-deg");
-  check(request.entrance_deg, {.low = 1.0, .high = 40.0}, "--entrance-deg");
-  check(request.error, {.low = 0.001, .high = 0.5}, "--error");
-  check(static_cast<double>(request.most_directions), {.low = 64.0, .high = 10000.0}, "--most-directions");
-  const NumberRange discs{.low = 1.0, .high = 120.0};
-  check(arcmin_of(request.apertures.source), discs, "--source-arcmin");
-  check(arcmin_of(request.apertures.receiver), discs, "--receiver-arcmin");
+raytrace::PhotometricApertures apertures_of(const MaterialRequest& request) {
+  return {Angle::from_deg(request.source_arcmin / 60.0), Angle::from_deg(request.receiver_arcmin / 60.0)};
 }
 
 /// Returns the settings of the photometer for the table.
 /// \param back value of ReflectionTable::back
-PhotometryRequest photometry_of(const AppearanceRequest& request, const Vec2& back) {
+PhotometryRequest photometry_of(const MaterialRequest& request, const Vec2& back) {
   PhotometryRequest photometry;
-  photometry.apertures = request.apertures;
+  photometry.apertures = apertures_of(request);
   // The window is a disc about the direction to the source that contains the corners of the square range of views. The
   // cosine accounts for oblique incidence.
   photometry.window_deg =
@@ -161,7 +151,7 @@ constexpr auto kEye = static_cast<std::size_t>(PhotometricResponse::y_bar);
 /// axis, and -1 if light keeps this component. Cube corners reverse both components, prisms only one. The case that
 /// applies to more than half of the returned light is chosen. If there is no such case, both components count as
 /// reversed. Returns nothing if the computation was cancelled.
-std::optional<Vec2> back_of(const Design& design, const AppearanceRequest& request, const Cancellation* cancel) {
+std::optional<Vec2> back_of(const Design& design, const MaterialRequest& request, const Cancellation* cancel) {
   const Vec3 to_source = geometry::direction_at(Angle::from_deg(request.entrance_deg), Angle::from_deg(kAsideDeg));
   const Photometer eye = photometer_of(design, photometry_of(request, -Vec2::Ones()), kEye, kParts);
   const auto fields = eye.far_fields(to_source, eye.make_tracer(), cancel);
@@ -212,7 +202,7 @@ struct Instrument {
 class TableMaker {
  public:
   /// \param back value of ReflectionTable::back
-  TableMaker(const Design& design, const AppearanceRequest& request, const Vec2& back)
+  TableMaker(const Design& design, const MaterialRequest& request, const Vec2& back)
       : design_(design), request_(request), photometry_(photometry_of(request, back)) {
     for (std::size_t response = 0; response < instruments_.size(); ++response)
       instruments_[response] = std::make_unique<Instrument>(photometer_of(design, photometry_, response, kParts));
@@ -226,7 +216,7 @@ class TableMaker {
     table_.most_entrance = Angle::from_deg(request.entrance_deg);
     table_.mirrors = eye().mirrors();
     const double narrowest =
-        raytrace::ApertureKernel(request.apertures).reach_rad() * std::cos(table_.most_entrance.rad());
+        raytrace::ApertureKernel(apertures_of(request)).reach_rad() * std::cos(table_.most_entrance.rad());
     const double steps = 2.0 * table_.half_width * kStepsPerReach / narrowest;
     table_.columns = std::clamp(static_cast<std::size_t>(std::ceil(steps)) + 1, kPerSide, kMostColumns);
   }
@@ -548,7 +538,7 @@ class TableMaker {
   }
 
   const Design& design_;
-  const AppearanceRequest& request_;
+  const MaterialRequest& request_;
   PhotometryRequest photometry_;
   std::array<std::unique_ptr<Instrument>, 3> instruments_;  ///< one for each of the responses x, y and z
   Eigen::Matrix3d rgb_of_shares_;
@@ -566,9 +556,9 @@ AppearanceError appearance_error(const std::vector<AppearanceProbe>& probes, con
   return {errors.size(), quantile(errors, 0.5), quantile(errors, 0.95), quantile(errors, 1.0)};
 }
 
-AppearanceResult compute_appearance(const Design& design, const AppearanceRequest& request, Progress* progress,
+AppearanceResult compute_appearance(const Design& design, const MaterialRequest& request, Progress* progress,
                                     const Cancellation* cancel) {
-  check(request);
+  requests::check(request);
   check_engine(design, photometry_of(request, Vec2::Ones()));
   const auto begin = std::chrono::steady_clock::now();
   AppearanceResult result;
@@ -593,10 +583,10 @@ AppearanceResult compute_appearance(const Design& design, const AppearanceReques
   if (result.error.of_95_percent > request.error)
     result.warnings.push_back(
         {"table_error_above_target",
-         fmt::format(
-             "for 95 % of random geometries, the table is within {} % of the photometer, but {} % were requested: give "
-             "more --most-directions, or a smaller --entrance-deg",
-             fixed(100.0 * result.error.of_95_percent, 1), fixed(100.0 * request.error, 1))});
+         fmt::format("for 95 % of random geometries, the table is within {} % of the photometer, but {} % were "
+                     "requested: allow "
+                     "more directions of light, or give a smaller largest entrance angle",
+                     fixed(100.0 * result.error.of_95_percent, 1), fixed(100.0 * request.error, 1))});
   result.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   if (progress != nullptr) progress->at(1.0);
   return result;

@@ -9,22 +9,11 @@
 
 #include "core/progress.h"
 #include "core/warning.h"
-#include "raytrace/observers/aperture_kernel.h"
+#include "requests/part.h"
 #include "studies/appearance/reflection_table.h"
 #include "studies/design/design.h"
 
 namespace retrace::studies {
-
-struct AppearanceRequest {
-  /// Angular diameters of source and receiver. The values of the table are means over both discs.
-  raytrace::PhotometricApertures apertures{Angle::from_deg(10.0 / 60.0), Angle::from_deg(10.0 / 60.0)};
-  /// Half-width, in degrees, of the square range of view directions around the central direction, for light at normal
-  /// incidence. Allowed: 0.1 to 5.
-  double window_deg = 1.0;
-  double entrance_deg = 20.0;          ///< maximum entrance angle of the table; 1 to 40
-  double error = 0.02;                 ///< maximum relative error of interpolated values; 0.001 to 0.5
-  std::size_t most_directions = 1000;  ///< maximum number of directions of light; 64 to 10000
-};
 
 /// Errors of a table, or of lobes that are fitted to it, compared with the photometer at random directions of light and
 /// view. Each error is relative to the photometer's value. If this value is below the fraction kFloor of the maximum
@@ -47,7 +36,7 @@ struct AppearanceProbe {
 
 struct AppearanceResult {
   Design design;
-  AppearanceRequest request;
+  MaterialRequest request;
   ReflectionTable table;
   std::vector<AppearanceProbe> probes;
   AppearanceError error;        ///< error of the table
@@ -68,7 +57,7 @@ AppearanceError appearance_error(const std::vector<AppearanceProbe>& probes, con
 /// largest product of error and projected solid angle comes first. Refinement ends when all cells are accurate, or when
 /// the table has `most_directions` directions of light.
 /// \throw InputError for numbers out of range, and for designs that the exact engine does not support
-AppearanceResult compute_appearance(const Design& design, const AppearanceRequest& request,
-                                    Progress* progress = nullptr, const Cancellation* cancel = nullptr);
+AppearanceResult compute_appearance(const Design& design, const MaterialRequest& request, Progress* progress = nullptr,
+                                    const Cancellation* cancel = nullptr);
 
 }  // namespace retrace::studies

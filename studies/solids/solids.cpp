@@ -2,15 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "core/message_text.h"
-#include "core/number_format.h"
+#include "core/error.h"
 #include "geometry/part/faceted_solid.h"
 #include "geometry/part/mesh_part.h"
 #include "geometry/part/mould_boundary.h"
 #include "geometry/part/welded_part.h"
+#include "requests/descriptions.h"
 #include "studies/design/design_part.h"
 #include "studies/design/part_of_design.h"
 
@@ -18,6 +19,11 @@ namespace retrace::studies {
 namespace {
 
 constexpr std::array<std::string_view, 3> kKinds = {"element", "array", "mould"};
+
+/// \pre `word` is in kKinds
+SolidKind kind_of(const std::string& word) {
+  return static_cast<SolidKind>(std::ranges::find(kKinds, word) - kKinds.begin());
+}
 
 /// Estimates the number of elements of a finite array before it is built.
 double estimated_elements(const geometry::PartSpec& spec) {
@@ -38,8 +44,8 @@ geometry::PartSpec spec_of(const Design& design, SolidKind what) {
   }
   if (spec.array.extent == geometry::Extent::infinite)
     throw InputError({design.source_name(), 0, "array.extent"},
-                     fmt::format("must be \"finite\" for --what {}, got \"infinite\"; --what element has one element",
-                                 name_of(what)));
+                     fmt::format("must be \"finite\" for {0} {1}, got \"infinite\"; {0} element has one element",
+                                 reference({"what"}), name_of(what)));
   const double elements = estimated_elements(spec);
   if (elements > static_cast<double>(kMostSolidElements))
     throw InputError(
@@ -79,7 +85,8 @@ geometry::Part part_to_write(const Design& design, SolidKind what) {
   if (what == SolidKind::element && !design.facet_planes()) return geometry::build_welded_part(spec);
   if (!design.facet_planes() && !design.mask()) return geometry::build_welded_part(spec);
   if (what == SolidKind::element)
-    throw InputError(design.where("part.facets"), "--what element has no planes of single facets; export the array");
+    throw InputError(design.where("part.facets"),
+                     reference({"what"}) + " element has no planes of single facets; export the array");
   geometry::Part part = part_of(design);
   if (part.placements.size() != 1)
     throw InputError(design.where(design.mask() ? "array.mask" : "part.facets"),
@@ -91,7 +98,8 @@ geometry::Part part_to_write(const Design& design, SolidKind what) {
 /// mesh are reported in the warnings.
 Solid solid_of_mesh(Solid solid) {
   if (solid.what != SolidKind::array)
-    check_taken(solid.design, {.what = fmt::format("--what {}", name_of(solid.what)), .wet_backs = true});
+    check_taken(solid.design,
+                {.what = fmt::format("{} {}", reference({"what"}), name_of(solid.what)), .wet_backs = true});
   if (solid.design.zoned()) {
     const geometry::Part part = part_of_design(solid.design, &solid.warnings);
     solid.elements_full = part.elements_full;
@@ -107,30 +115,21 @@ Solid solid_of_mesh(Solid solid) {
 
 }  // namespace
 
-SolidKind read_solid_kind(const std::string& word) {
-  for (std::size_t k = 0; k < kKinds.size(); ++k)
-    if (kKinds[k] == word) return static_cast<SolidKind>(k);
-  throw InputError({"", 0, "--what"}, fmt::format("must be {}, got {}", alternatives(kKinds), in_quotes(word)));
-}
-
 std::string name_of(SolidKind kind) {
   return std::string(kKinds[static_cast<std::size_t>(kind)]);
 }
 
 Solid make_solid(const Design& design, const SolidRequest& request) {
-  if (request.block_mm && request.what != SolidKind::mould)
-    throw InputError({"", 0, "--block-mm"}, "only allowed with --what mould");
-  if (request.block_mm && !(*request.block_mm > 0.0 && *request.block_mm <= 1e6))
-    throw InputError({"", 0, "--block-mm"}, fmt::format("must be > 0 and <= 1e6, got {}", *request.block_mm));
+  requests::check(request);
   check_taken(design, {.what = "retrace export", .solids = true, .wet_backs = true});
   Solid solid;
   solid.design = design;
-  solid.what = request.what;
+  solid.what = kind_of(request.what);
   if (!design.elements()) return solid_of_mesh(std::move(solid));
-  const geometry::Part part = part_to_write(design, request.what);
+  const geometry::Part part = part_to_write(design, solid.what);
   solid.elements_full = part.elements_full;
   solid.elements_partial = part.elements_partial;
-  if (request.what == SolidKind::mould) {
+  if (solid.what == SolidKind::mould) {
     solid.block_mm = request.block_mm.value_or(part.thickness_mm);
     solid.mesh = geometry::mould_boundary(part, solid.block_mm);
   } else {

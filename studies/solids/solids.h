@@ -3,12 +3,12 @@
 // Elements, parts and moulds as closed solids for CAD and other programs. This study is behind `retrace export`.
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/warning.h"
 #include "geometry/part/closed_boundary.h"
+#include "requests/part.h"
 #include "studies/design/design.h"
 
 namespace retrace::studies {
@@ -20,19 +20,10 @@ enum class SolidKind {
   mould     ///< block behind the back surface of the part, with which the part is moulded
 };
 
-/// Reads a kind of solid.
-/// \throw InputError unless `word` is "element", "array" or "mould"
-SolidKind read_solid_kind(const std::string& word);
 std::string name_of(SolidKind kind);
 
 /// Maximum number of elements of a solid. The whole boundary is one mesh in memory.
 inline constexpr std::int64_t kMostSolidElements = 200'000;
-
-struct SolidRequest {
-  SolidKind what = SolidKind::array;
-  /// Thickness of the mould below its deepest point, > 0; none: thickness of the plate.
-  std::optional<double> block_mm;
-};
 
 /// Closed boundary of a solid, with its measures.
 struct Solid {
@@ -52,8 +43,8 @@ struct Solid {
 
 /// Builds the boundary of a solid. Facets are plane and smooth. Of the design's table [surface], only angle errors and
 /// edges are used.
-/// \throw InputError for an infinite array (a single element is allowed), a mask that cannot be read, more than
-/// kMostSolidElements elements, and a block without thickness
+/// \throw InputError for an invalid request, an infinite array (a single element is allowed), a mask that cannot be
+/// read, and more than kMostSolidElements elements
 Solid make_solid(const Design& design, const SolidRequest& request);
 
 }  // namespace retrace::studies

@@ -357,7 +357,7 @@ TEST(ZonedDesign, AreInspectedAndExported) {
   EXPECT_TRUE(solid.is_manifold);
   const geometry::Part part = part_of_design(design, nullptr);
   EXPECT_NEAR(solid.volume_mm3, 200.0 * part.thickness_mm, 0.5 * 200.0 * part.element_depth_mm);
-  EXPECT_EQ(refusal_of([&] { make_solid(design, {SolidKind::mould, {}}); }), "d.toml:9: zone");
+  EXPECT_EQ(refusal_of([&] { make_solid(design, {"mould", {}}); }), "d.toml:9: zone");
 }
 
 }  // namespace

@@ -35,10 +35,10 @@ Json range_json(const std::array<Angle, 2>& range) {
 
 /// Returns the request and the ranges that the table covers.
 Json request_json(const AppearanceResult& result) {
-  const AppearanceRequest& request = result.request;
+  const MaterialRequest& request = result.request;
   return {{"illuminant", "D65"},
-          {"source_arcmin", 60.0 * request.apertures.source.deg()},
-          {"receiver_arcmin", 60.0 * request.apertures.receiver.deg()},
+          {"source_arcmin", request.source_arcmin},
+          {"receiver_arcmin", request.receiver_arcmin},
           {"most_entrance_deg", request.entrance_deg},
           {"window_deg", request.window_deg},
           {"error_asked", request.error}};
@@ -151,11 +151,10 @@ std::string appearance_json(const AppearanceResult& result, const AppearanceText
 }
 
 std::string appearance_table(const AppearanceResult& result, const AppearanceText& text) {
-  const AppearanceRequest& request = result.request;
-  std::string lines =
-      fmt::format("material of {}: R_A about the direction {}, CIE D65, discs of {} and {} arcmin\n",
-                  printable(short_name(result.design), 60), where_of(result.table),
-                  shortest(60.0 * request.apertures.source.deg()), shortest(60.0 * request.apertures.receiver.deg()));
+  const MaterialRequest& request = result.request;
+  std::string lines = fmt::format("material of {}: R_A about the direction {}, CIE D65, discs of {} and {} arcmin\n",
+                                  printable(short_name(result.design), 60), where_of(result.table),
+                                  shortest(request.source_arcmin), shortest(request.receiver_arcmin));
   lines +=
       fmt::format("  light      entrance angles to {} degrees: {} directions in {} cells, the least {} degrees wide\n",
                   shortest(request.entrance_deg), result.table.directions.size(), result.table.cells.size(),

@@ -1,0 +1,72 @@
+#include "core/schema/access.h"
+#include "requests/descriptions.h"
+#include "requests/rows/common.h"
+
+namespace retrace::requests {
+namespace {
+
+using schema::access;
+
+constexpr std::string_view kSolids[] = {"element", "array", "mould"};
+constexpr schema::Condition kMould[] = {schema::is("what", schema::only(kSolids, "mould"))};
+constexpr Need kNeedMould[] = {kMould};
+
+constexpr Row kSolidRows[] = {{"what",
+                               Word{kSolids},
+                               "element, array, or mould (the block behind the part's back)",
+                               access<&SolidRequest::what>,
+                               {.value = "WHAT"}},
+                              {"block_mm",
+                               Number{{.low = 0.0, .low_included = false, .high = 1e6}},
+                               "thickness of the mould below its deepest point",
+                               access<&SolidRequest::block_mm>,
+                               {.value = "T", .otherwise = "the plate's thickness"},
+                               kNeedMould}};
+
+constexpr NumberRange kDiscs{.low = 1.0, .high = 120.0};
+
+constexpr Row kMaterialRows[] = {{"entrance_deg",
+                                  Number{{.low = 1.0, .high = 40.0}},
+                                  "largest entrance angle",
+                                  access<&MaterialRequest::entrance_deg>,
+                                  {.value = "B"}},
+                                 {"window_deg",
+                                  Number{{.low = 0.1, .high = 5.0}},
+                                  "largest angle between view and source",
+                                  access<&MaterialRequest::window_deg>,
+                                  {.value = "W"}},
+                                 {"source_arcmin",
+                                  Number{kDiscs},
+                                  "angular diameter of the source",
+                                  access<&MaterialRequest::source_arcmin>,
+                                  {.value = "D"}},
+                                 {"receiver_arcmin",
+                                  Number{kDiscs},
+                                  "angular diameter of the receiver",
+                                  access<&MaterialRequest::receiver_arcmin>,
+                                  {.value = "D"}},
+                                 {"error",
+                                  Number{{.low = 0.001, .high = 0.5}},
+                                  "relative error to reach",
+                                  access<&MaterialRequest::error>,
+                                  {.value = "E"}},
+                                 {"most_directions",
+                                  Whole{{.low = 64.0, .high = 10000.0}},
+                                  "maximum number of directions of light that are computed",
+                                  access<&MaterialRequest::most_directions>,
+                                  {.value = "N"}}};
+
+}  // namespace
+
+template <>
+const Request& description<SolidRequest>() {
+  static constexpr Request request{"export_solid", "export", kSolidRows, initial_object<SolidRequest>};
+  return request;
+}
+template <>
+const Request& description<MaterialRequest>() {
+  static constexpr Request request{"export_material", "export", kMaterialRows, initial_object<MaterialRequest>};
+  return request;
+}
+
+}  // namespace retrace::requests
