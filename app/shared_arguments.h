@@ -3,7 +3,6 @@
 // Arguments that several commands share: design, job and part files, engine, dye, and the options for a store that
 // exists already.
 
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,7 +10,6 @@
 #include "app/command.h"
 #include "studies/rre/rre.h"
 #include "studies/store/store.h"
-#include "surface_models/io/height_map_reader.h"
 
 namespace retrace::app {
 
@@ -38,18 +36,6 @@ Argument dye_argument(Name& dye, const std::string& help) {
 /// Returns names of engines.
 /// \param of_rre true: all engines of `retrace rre`; false: only the engines of pictures and photometry
 Words engine_words(bool of_rre);
-
-/// Options for reading height maps. They supply information that is missing in some files, such as units.
-struct MapOptions {
-  std::optional<std::string> pixel_um;  ///< spacing of the points: one number, or two numbers separated by a comma
-  std::optional<std::string> height_unit;
-  std::optional<std::string> lateral_unit;
-  std::optional<std::size_t> channel;
-};
-std::vector<Argument> map_arguments(MapOptions& options);
-/// Returns the settings for reading a height map.
-/// \throw InputError if --pixel-um is not one or two positive numbers
-surface_models::HeightMapOptions reading_of(const MapOptions& options);
 
 /// Options of commands that save their points in a store (an SQLite file).
 struct StudyOptions {

@@ -17,7 +17,9 @@ std::string located(const InputLocation& where, std::string_view text) {
 }  // namespace
 
 InputError::InputError(const InputLocation& where, std::string_view text)
-    : Error(ExitCode::bad_input, located(where, text)), where_(where), text_(text) {}
+    : Error(ExitCode::bad_input, located(where, text)),
+      where_{where.file, where.line, with_field_names(where.key)},
+      text_(text) {}
 
 InputError::InputError(Field field, std::string_view text)
     : Error(ExitCode::bad_input, located({"", 0, reference(field)}, text)),

@@ -1,6 +1,5 @@
 #include "retrace/metrology.h"
 
-#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -11,20 +10,6 @@
 
 namespace retrace {
 namespace {
-
-studies::MetrologyRequest to_study(const MetrologyRequest& request) {
-  studies::MetrologyRequest of_study;
-  of_study.form_degree = studies::form_degree_of(request.form);
-  of_study.cutoff_um = request.cutoff_um;
-  of_study.reading.x_pixel_um = request.x_pixel_um;
-  of_study.reading.y_pixel_um = request.y_pixel_um ? request.y_pixel_um : request.x_pixel_um;
-  of_study.reading.height_unit = request.height_unit;
-  of_study.reading.lateral_unit = request.lateral_unit;
-  of_study.reading.channel = request.channel;
-  of_study.feed_mm_per_min = request.feed_mm_per_min;
-  of_study.edge = request.edge;
-  return of_study;
-}
 
 HeightMap from_study(const surface_models::HeightMap& map) {
   return {map.columns, map.rows, map.heights_nm};
@@ -47,10 +32,9 @@ Metrology result_of(studies::MetrologyResult measured) {
   return result;
 }
 
-surface_models::HeightMapFile to_file(const HeightMap& heights, const surface_models::HeightMapOptions& reading) {
-  if (!reading.x_pixel_um) throw InputError({"", 0, "--pixel-um"}, "is required with heights in memory");
-  for (const auto& pixel_um : {reading.x_pixel_um, reading.y_pixel_um})
-    if (!(*pixel_um > 0.0) || !std::isfinite(*pixel_um)) throw InputError({"", 0, "--pixel-um"}, "must be > 0");
+surface_models::HeightMapFile to_file(const HeightMap& heights, const MetrologyRequest& request) {
+  const surface_models::HeightMapOptions reading = studies::reading_of(request);
+  if (!reading.x_pixel_um) throw InputError(Field{"pixel_um"}, "is required with heights in memory");
   if (heights.columns < surface_models::kLeastColumns || heights.rows < 1)
     throw InputError({"", 0, "heights"},
                      "must be rows of at least " + std::to_string(surface_models::kLeastColumns) + " numbers");
@@ -69,16 +53,11 @@ surface_models::HeightMapFile to_file(const HeightMap& heights, const surface_mo
 }  // namespace
 
 Metrology metrology(const std::filesystem::path& file, const MetrologyRequest& request) {
-  studies::MetrologyRequest of_study = to_study(request);
-  of_study.file = file.string();
-  return result_of(studies::measure_surface(of_study));
+  return result_of(studies::measure_surface(file.string(), request));
 }
 
 Metrology metrology(const HeightMap& heights, const MetrologyRequest& request) {
-  studies::MetrologyRequest of_study = to_study(request);
-  of_study.file = "heights";
-  surface_models::HeightMapFile file = to_file(heights, of_study.reading);
-  return result_of(studies::measure_surface(of_study, std::move(file)));
+  return result_of(studies::measure_surface("heights", request, to_file(heights, request)));
 }
 
 }  // namespace retrace

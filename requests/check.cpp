@@ -83,6 +83,8 @@ class KindCheck {
   void operator()(const schema::NumberOrNumbers& kind) const {
     const auto& numbers = taken<std::vector<double>>(kind);
     if (numbers.empty()) refuse(row_, "at least one number", "none");
+    if (numbers.size() > kind.most)
+      refuse(row_, fmt::format("1 to {} numbers", kind.most), fmt::format("{} of them", numbers.size()));
     check_numbers(numbers, kind.range, kind.is_whole);
   }
   void operator()(const schema::Numbers& kind) const {

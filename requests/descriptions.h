@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "requests/image.h"
+#include "requests/metrology.h"
 #include "requests/part.h"
 #include "requests/rays.h"
 #include "requests/row.h"
@@ -12,8 +13,8 @@
 namespace retrace::requests {
 
 /// All types of requests.
-using AllRequests =
-    std::tuple<DetectorRequest, CameraRequest, RoadRequest, SolidRequest, MaterialRequest, RaysRequest, TraceRequest>;
+using AllRequests = std::tuple<DetectorRequest, CameraRequest, RoadRequest, MetrologyRequest, SolidRequest,
+                               MaterialRequest, RaysRequest, TraceRequest>;
 
 template <>
 const Request& description<DetectorRequest>();
@@ -21,6 +22,8 @@ template <>
 const Request& description<CameraRequest>();
 template <>
 const Request& description<RoadRequest>();
+template <>
+const Request& description<MetrologyRequest>();
 template <>
 const Request& description<SolidRequest>();
 template <>

@@ -18,7 +18,7 @@ using Need = std::span<const schema::Condition>;
 /// Notation of a value on the command line.
 enum class Notation {
   plain,
-  commas,       ///< numbers separated by commas, such as X,Y,Z
+  commas,       ///< one number, or numbers separated by commas, such as X,Y,Z
   by_x,         ///< numbers separated by x, such as 400x300
   number_list,  ///< numbers and ranges, such as 0,10:40:5
   absent        ///< "--no-NAME" sets a flag, which is set by default, to false

@@ -3,6 +3,7 @@
 
 #include <charconv>
 #include <cstdint>
+#include <optional>
 
 #include "core/error.h"
 #include "core/leading_number.h"
@@ -47,6 +48,17 @@ std::vector<double> separated(const Row& row, const schema::Numbers& kind, std::
   return numbers;
 }
 
+std::vector<double> listed(const Row& row, std::string_view text) {
+  if (row.spelling.notation != Notation::commas) return read_number_list(text, row.field());
+  std::vector<double> numbers;
+  for (const std::string_view part : split(text, ',')) {
+    const std::optional<double> number = number_in(part);
+    if (!number) refuse(row, "a number, or numbers separated by commas", text);
+    numbers.push_back(*number);
+  }
+  return numbers;
+}
+
 std::string joined(const std::vector<double>& numbers, Notation notation) {
   std::vector<std::string> texts;
   for (const double number : numbers) texts.push_back(shortest(number));
@@ -60,7 +72,7 @@ void set_text(const Row& row, void* object, std::string_view text) {
       std::visit(Overloaded{[&](const schema::Number&) { return Value(number_of(row, text, "a number")); },
                             [&](const schema::Whole&) { return Value(whole_of(row, text)); },
                             [&](const schema::Numbers& kind) { return Value(separated(row, kind, text)); },
-                            [&](const schema::NumberOrNumbers&) { return Value(read_number_list(text, row.field())); },
+                            [&](const schema::NumberOrNumbers&) { return Value(listed(row, text)); },
                             [&](const auto&) { return Value(std::string(text)); }},
                  row.kind);
   set(row, object, value);

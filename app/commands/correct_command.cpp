@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <optional>
@@ -7,13 +8,16 @@
 #include "app/commands.h"
 #include "app/job_output.h"
 #include "app/output.h"
+#include "app/request_options.h"
 #include "app/shared_arguments.h"
 #include "core/error.h"
 #include "core/message_text.h"
 #include "core/text.h"
 #include "fabrication/job/io/job_files.h"
 #include "fabrication/machine/io/machine_files.h"
+#include "requests/descriptions.h"
 #include "studies/calibration/io/calibration_files.h"
+#include "studies/metrology/metrology.h"
 #include "surface_models/io/height_map_reader.h"
 
 namespace retrace::app {
@@ -23,7 +27,7 @@ namespace {
 struct CorrectOptions {
   std::string job;
   std::vector<std::string> maps;
-  MapOptions reading;
+  FieldTexts reading;
 };
 
 std::vector<Argument> arguments(CorrectOptions& options) {
@@ -33,7 +37,8 @@ std::vector<Argument> arguments(CorrectOptions& options) {
                                 "workpiece, in mm, and how it is "
                                 "turned about Z, in degrees",
                                 &options.maps, files("")}};
-  for (Argument& argument : map_arguments(options.reading)) all.push_back(std::move(argument));
+  const std::array<CommandRequest, 1> of_command = {{{requests::height_map_reading()}}};
+  for (Argument& argument : field_arguments(of_command, options.reading)) all.push_back(std::move(argument));
   return all;
 }
 
@@ -88,9 +93,10 @@ ExitCode run(const CorrectOptions& options, const CommonOptions& common) {
   files.add("residuals.csv", [&] { return studies::residuals_csv(result->calibration); });
   files.check();
   Warnings warnings;
-  surface_models::HeightMapOptions reading = reading_of(options.reading);
+  MetrologyRequest reading;
+  set_fields(requests::height_map_reading(), &reading, options.reading, common);
   for (studies::FacetMap& map : maps) {
-    surface_models::HeightMapFile file = surface_models::read_height_map(map.file, reading);
+    surface_models::HeightMapFile file = surface_models::read_height_map(map.file, studies::reading_of(reading));
     for (const Warning& warning : file.warnings) warnings.push_back(warning);
     map.heights = std::move(file.map);
   }

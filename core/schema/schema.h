@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <map>
 #include <span>
 #include <string>
@@ -66,7 +67,8 @@ struct WordOrFile {
 /// A number, or a list of one or more numbers.
 struct NumberOrNumbers {
   NumberRange range;
-  bool is_whole = false;  ///< true if all numbers must be integers
+  bool is_whole = false;                                       ///< true if all numbers must be integers
+  std::size_t most = std::numeric_limits<std::size_t>::max();  ///< maximum number of numbers; only for requests
 };
 /// A list of exactly `count` numbers.
 struct Numbers {

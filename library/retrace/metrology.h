@@ -4,29 +4,14 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/warning.h"
+#include "requests/metrology.h"
 #include "retrace/drawing.h"
 
 namespace retrace {
-
-/// Settings of the analysis. They correspond to the options of `retrace metrology`.
-struct MetrologyRequest {
-  std::string form = "plane";  ///< form that is removed: none, plane or poly2 to poly8
-  double cutoff_um = 80.0;     ///< cut-off of the Gaussian filter between roughness and waviness
-  /// Spacing of the points along x; by default, the spacing that the file contains.
-  std::optional<double> x_pixel_um = {};
-  std::optional<double> y_pixel_um = {};
-  std::optional<std::string> height_unit = {};   ///< unit of the heights in a file: m, mm, um, nm or pm
-  std::optional<std::string> lateral_unit = {};  ///< unit of lengths in a file: m, mm, um, nm or pm
-  std::optional<std::size_t> channel = {};       ///< channel of a GWY file; by default, the first
-  /// Feed of the cut; if given, frequencies of waves are also given in Hz.
-  std::optional<double> feed_mm_per_min = {};
-  bool edge = false;  ///< true: the rows are profiles across an edge
-};
 
 /// Heights on a grid.
 struct HeightMap {

@@ -7,8 +7,8 @@
 #include <stdexcept>
 
 #include "core/error.h"
-#include "core/message_text.h"
 #include "core/number_format.h"
+#include "requests/descriptions.h"
 #include "surface_models/autocorrelation.h"
 #include "surface_models/form.h"
 
@@ -27,17 +27,21 @@ constexpr double kLeastPointsPerLength = 2.0;
 /// Range on each side of a scratch with which the scratch is compared, in cut-off lengths.
 constexpr double kBesideScratch = 0.25;
 
-void check(const MetrologyRequest& request, const HeightMap& map) {
-  if (!(request.cutoff_um > 0.0 && std::isfinite(request.cutoff_um)))
-    throw InputError({"", 0, "--cutoff-um"}, fmt::format("must be > 0, got {}", request.cutoff_um));
+/// Checks that the spacing of a map is fine enough for the cut-off.
+void check_spacing(const std::string& name, double cutoff_um, const HeightMap& map) {
   const double coarser = map.is_profile() ? map.x_pixel_um : std::max(map.x_pixel_um, map.y_pixel_um);
-  if (request.cutoff_um < kLeastPointsPerCutoff * coarser)
-    throw InputError({request.file, 0, "--cutoff-um"},
-                     fmt::format("must be at least twice the spacing of {} um, got {}", shortest(coarser),
-                                 shortest(request.cutoff_um)));
-  if (request.feed_mm_per_min && !(*request.feed_mm_per_min > 0.0 && std::isfinite(*request.feed_mm_per_min)))
-    throw InputError({"", 0, "--feed-mm-per-min"}, fmt::format("must be > 0, got {}", *request.feed_mm_per_min));
+  if (cutoff_um < kLeastPointsPerCutoff * coarser)
+    throw InputError(
+        {name, 0, reference({"cutoff_um"})},
+        fmt::format("must be at least twice the spacing of {} um, got {}", shortest(coarser), shortest(cutoff_um)));
 }
+
+/// Returns the degree of the polynomial of a form: 0 for "none", 1 for "plane", k for "poly<k>".
+/// \pre `form` is one of these words
+int degree_of(const std::string& form) {
+  return form == "none" ? 0 : form == "plane" ? 1 : form.back() - '0';
+}
+static_assert(kMostFormDegree < 10, "the degree of a form is one digit");
 
 /// Returns every n-th row of a map, with the smallest n for which at most kMostEdgeProfiles rows remain.
 HeightMap thinned(const HeightMap& map) {
@@ -73,7 +77,7 @@ void measure_edge(MetrologyResult& result, const HeightMap& whole) {
       std::fill_n(out, map.columns, kMissing);
     }
   }
-  if (radius.empty()) throw InputError({result.request.file, 0, "--edge"}, refusal);
+  if (radius.empty()) throw InputError({result.file, 0, reference({"edge"})}, refusal);
   if (radius.size() < map.rows)
     result.warnings.push_back({"rows_without_edge", fmt::format("{} of {} rows show no edge and are left out",
                                                                 map.rows - radius.size(), map.rows)});
@@ -110,37 +114,39 @@ void warn(MetrologyResult& result, const HeightMap& map) {
 
 }  // namespace
 
-int form_degree_of(std::string_view name) {
-  if (name == "none") return 0;
-  for (int degree = 1; degree <= kMostFormDegree; ++degree)
-    if (name == form_name(degree)) return degree;
-  throw InputError({"", 0, "--form"},
-                   fmt::format("must be none, plane or poly2 to poly{}, got {}", kMostFormDegree, printable(name)));
-}
-
-std::string form_name(int degree) {
-  return degree == 0 ? "none" : degree == 1 ? "plane" : fmt::format("poly{}", degree);
+HeightMapOptions reading_of(const MetrologyRequest& request) {
+  HeightMapOptions reading;
+  reading.x_pixel_um = request.x_pixel_um;
+  reading.y_pixel_um = request.y_pixel_um ? request.y_pixel_um : request.x_pixel_um;
+  reading.height_unit = request.height_unit;
+  reading.lateral_unit = request.lateral_unit;
+  reading.channel = request.channel;
+  return reading;
 }
 
 double frequency_hz(double frequency_per_mm, double feed_mm_per_min) {
   return frequency_per_mm * feed_mm_per_min / 60.0;
 }
 
-MetrologyResult measure_surface(const MetrologyRequest& request) {
-  return measure_surface(request, read_height_map(request.file, request.reading));
+MetrologyResult measure_surface(const std::string& file, const MetrologyRequest& request) {
+  requests::check(request);
+  return measure_surface(file, request, read_height_map(file, reading_of(request)));
 }
 
-MetrologyResult measure_surface(const MetrologyRequest& request, HeightMapFile file) {
-  check(request, file.map);
+MetrologyResult measure_surface(const std::string& name, const MetrologyRequest& request, HeightMapFile file) {
+  requests::check(request);
+  check_spacing(name, request.cutoff_um, file.map);
   MetrologyResult result;
+  result.file = name;
   result.request = request;
   result.format = std::move(file.format);
   result.warnings = std::move(file.warnings);
   result.missing = file.map.heights_nm.size() - measured_points(file.map);
+  const int degree = degree_of(request.form);
   if (request.edge)
     measure_edge(result, file.map);
   else
-    result.surface = request.form_degree == 0 ? file.map : without_form(file.map, request.form_degree);
+    result.surface = degree == 0 ? file.map : without_form(file.map, degree);
 
   const HeightMap& surface = result.surface;
   result.split = gaussian_split(surface, request.cutoff_um);

@@ -6,10 +6,10 @@
 #include <cstddef>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "core/warning.h"
+#include "requests/metrology.h"
 #include "surface_models/edge_fit.h"
 #include "surface_models/gaussian_filter.h"
 #include "surface_models/height_map.h"
@@ -20,18 +20,6 @@
 #include "surface_models/texture_model.h"
 
 namespace retrace::studies {
-
-/// Height map that is evaluated, and the settings of the evaluation.
-struct MetrologyRequest {
-  std::string file;
-  surface_models::HeightMapOptions reading;
-  int form_degree = 1;  ///< degree of the polynomial that is removed; 0: none
-  double cutoff_um = 80.0;
-  /// Feed of the cut along the waves, from which their frequency in time is computed.
-  std::optional<double> feed_mm_per_min;
-  /// True: rows are profiles across an edge, and the fitted edge is removed instead of a polynomial.
-  bool edge = false;
-};
 
 /// Edge that is fitted to each profile (row) of a map. Summaries and medians are over all profiles.
 struct EdgeResult {
@@ -47,6 +35,7 @@ struct EdgeResult {
 
 /// Result of the evaluation of a height map.
 struct MetrologyResult {
+  std::string file;  ///< name of the height map
   MetrologyRequest request;
   std::string format;
   std::size_t missing = 0;            ///< number of points without a height
@@ -67,21 +56,21 @@ struct MetrologyResult {
   Warnings warnings;
 };
 
-/// Returns the degree of a form from its name: `none`, `plane`, `poly2` to `poly8`.
-/// \throw InputError whose location is the option --form
-int form_degree_of(std::string_view name);
-std::string form_name(int degree);
+/// Returns the settings for reading a height map.
+surface_models::HeightMapOptions reading_of(const MetrologyRequest& request);
 
 /// Returns the frequency, in Hz, with which waves pass the tool at a feed.
 double frequency_hz(double frequency_per_mm, double feed_mm_per_min);
 
 /// Measures a surface that has already been read.
-/// \param request request; its file is only used in messages, and its reading options are ignored
+/// \param name name of the surface, for messages
+/// \param request request, whose settings for reading are only checked
 /// \throw InputError for an invalid request
-MetrologyResult measure_surface(const MetrologyRequest& request, surface_models::HeightMapFile file);
+MetrologyResult measure_surface(const std::string& name, const MetrologyRequest& request,
+                                surface_models::HeightMapFile file);
 
 /// Reads a height map and measures its surface.
 /// \throw InputError for an invalid file or request
-MetrologyResult measure_surface(const MetrologyRequest& request);
+MetrologyResult measure_surface(const std::string& file, const MetrologyRequest& request);
 
 }  // namespace retrace::studies

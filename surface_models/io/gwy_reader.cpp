@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "core/field.h"
 #include "surface_models/io/byte_reader.h"
 #include "surface_models/io/raw_map.h"
 
@@ -157,7 +158,8 @@ RawMap parse_gwy(const Source& source) {
   const std::size_t wanted = source.options.channel.value_or(channels.fields.begin()->first);
   const auto found = channels.fields.find(wanted);
   if (found == channels.fields.end())
-    source.fail(0, fmt::format("--channel: the file has the channels {}, got {}", names_of(channels), wanted));
+    source.fail(
+        0, fmt::format("{}: the file has the channels {}, got {}", reference({"channel"}), names_of(channels), wanted));
   DataField field = read_field(source, found->second);
 
   RawMap raw;

@@ -42,11 +42,12 @@ double pixel_um(const Source& source, const std::optional<double>& option, const
                 const char* axis, Warnings& warnings) {
   if (!option && !in_file)
     source.fail(0, fmt::format("the spacing along {0} is not known: give {0}_pixel_um in the file{1}", axis,
-                               source.options.can_be_given ? ", or --pixel-um" : ""));
+                               source.options.can_be_given ? ", or " + reference({"pixel_um"}) : ""));
   if (option && in_file && std::abs(*option - *in_file) > 1e-6 * *option)
     warnings.push_back(
-        {"spacing_of_file_ignored", fmt::format("--pixel-um {} is used instead of the file's spacing along {} of {} um",
-                                                shortest(*option), axis, shortest(*in_file))});
+        {"spacing_of_file_ignored",
+         fmt::format("the given spacing of {} um is used instead of the file's spacing along {} of {} um",
+                     shortest(*option), axis, shortest(*in_file))});
   const double pixel = option ? *option : *in_file;
   if (!(pixel >= kLeastPixelUm && pixel <= kMostPixelUm))
     source.fail(0, fmt::format("the spacing along {} must be from 1e-6 to 1e6 um, got {}", axis, pixel));
@@ -56,18 +57,19 @@ double pixel_um(const Source& source, const std::optional<double>& option, const
 double nm_per_unit(const Source& source, RawMap& raw) {
   if (!source.options.height_unit) {
     if (!raw.nm_per_unit)
-      source.fail(0, fmt::format("the unit of heights is not known: give height_unit = UNIT in the file{}; UNIT is {}",
-                                 source.options.can_be_given ? ", or --height-unit UNIT" : "", kUnits));
+      source.fail(
+          0, fmt::format("the unit of heights is not known: give height_unit = UNIT in the file{}; UNIT is {}",
+                         source.options.can_be_given ? ", or " + reference({"height_unit"}) + " UNIT" : "", kUnits));
     return *raw.nm_per_unit;
   }
   const std::optional<double> given = nm_per(*source.options.height_unit);
   if (!given)
-    throw InputError({"", 0, "--height-unit"},
+    throw InputError(Field{"height_unit"},
                      fmt::format("must be {}, got {}", kUnits, in_quotes(*source.options.height_unit)));
   if (raw.nm_per_unit && *raw.nm_per_unit != *given)
     raw.warnings.push_back(
         {"unit_of_file_ignored",
-         fmt::format("--height-unit {} is used instead of the file's unit of heights", *source.options.height_unit)});
+         fmt::format("the given unit {} is used instead of the file's unit of heights", *source.options.height_unit)});
   return *given;
 }
 
@@ -112,7 +114,7 @@ HeightMapFile read_height_map(const std::filesystem::path& file, const HeightMap
 
 HeightMapFile parse_height_map(std::string_view content, const std::string& name, const HeightMapOptions& options) {
   if (options.lateral_unit && !nm_per(*options.lateral_unit))
-    throw InputError({"", 0, "--lateral-unit"},
+    throw InputError(Field{"lateral_unit"},
                      fmt::format("must be {}, got {}", kUnits, in_quotes(*options.lateral_unit)));
   const Source source{without_byte_order_mark(content), name, options};
   return finish(source, parse_known(source));

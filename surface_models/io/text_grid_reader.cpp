@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/field.h"
 #include "surface_models/io/raw_map.h"
 
 namespace retrace::surface_models {
@@ -293,10 +294,9 @@ class TextReader {
                    fmt::format("a list of points must have {} values in a line, got {}", wanted, columns_));
     const std::optional<double> um = lateral_um();
     if (!um)
-      source_.fail(0,
-                   fmt::format("the unit of x{} is not known: give lateral_unit = UNIT in the file, or --lateral-unit "
-                               "UNIT; UNIT is {}",
-                               has_y ? " and y" : "", kUnits));
+      source_.fail(
+          0, fmt::format("the unit of x{} is not known: give lateral_unit = UNIT in the file, or {} UNIT; UNIT is {}",
+                         has_y ? " and y" : "", reference({"lateral_unit"}), kUnits));
     const Grid x = grid_of(0, "x");
     const Grid y = has_y ? grid_of(1, "y") : Grid{};
     check_size(source_, 0, static_cast<double>(x.count), static_cast<double>(y.count));

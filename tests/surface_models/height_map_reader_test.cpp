@@ -328,10 +328,10 @@ TEST(BadHeightMap, SaysWhereAndWhatIsAllowed) {
 TEST(BadHeightMap, OptionsAreCheckedToo) {
   HeightMapOptions options;
   options.height_unit = "inch";
-  EXPECT_EQ(message_of("pixel_um 1\n1 2 3 4 5 6 7 8\n", "m.txt", options), "--height-unit");
+  EXPECT_EQ(message_of("pixel_um 1\n1 2 3 4 5 6 7 8\n", "m.txt", options), "height_unit");
   options.height_unit = "nm";
   options.lateral_unit = "ell";
-  EXPECT_EQ(message_of("pixel_um 1\n1 2 3 4 5 6 7 8\n", "m.txt", options), "--lateral-unit");
+  EXPECT_EQ(message_of("pixel_um 1\n1 2 3 4 5 6 7 8\n", "m.txt", options), "lateral_unit");
 }
 
 }  // namespace

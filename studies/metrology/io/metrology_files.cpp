@@ -143,14 +143,14 @@ void add_rows(CsvWriter& csv, const char* direction, const Spectrum& spectrum, c
 
 std::string metrology_json(const MetrologyResult& result) {
   const HeightMap& map = result.surface;
-  Json json = {{"source", result.request.file},
+  Json json = {{"source", result.file},
                {"format", result.format},
                {"columns", map.columns},
                {"rows", map.rows},
                {"x_pixel_um", map.x_pixel_um}};
   if (!map.is_profile()) json["y_pixel_um"] = map.y_pixel_um;
   json["missing"] = result.missing;
-  json["form"] = result.edge ? "edge" : form_name(result.request.form_degree);
+  json["form"] = result.edge ? "edge" : result.request.form;
   json["cutoff_um"] = result.request.cutoff_um;
   put(json, "", result.of_surface);
   put(json, "roughness_", result.of_roughness);
@@ -169,7 +169,7 @@ std::string metrology_json(const MetrologyResult& result) {
 }
 
 std::string surface_toml(const MetrologyResult& result) {
-  std::string text = fmt::format("[surface]  # measured: {}, cut-off {} um\n", printable_name(result.request.file),
+  std::string text = fmt::format("[surface]  # measured: {}, cut-off {} um\n", printable_name(result.file),
                                  shortest(result.request.cutoff_um));
   for (const auto& [key, value] : surface_keys(result)) text += fmt::format("{} = {}\n", key, shortest(rounded(value)));
   return text;
@@ -177,12 +177,12 @@ std::string surface_toml(const MetrologyResult& result) {
 
 std::string metrology_text(const MetrologyResult& result) {
   const HeightMap& map = result.surface;
-  std::string text = fmt::format("{}: {}\n", printable_name(result.request.file), result.format);
+  std::string text = fmt::format("{}: {}\n", printable_name(result.file), result.format);
   text += map.is_profile() ? fmt::format("  points              {}, {} um apart, {} missing\n", map.columns,
                                          fixed(map.x_pixel_um, 4), result.missing)
                            : fmt::format("  points              {} x {}, {} x {} um apart, {} missing\n", map.columns,
                                          map.rows, fixed(map.x_pixel_um, 4), fixed(map.y_pixel_um, 4), result.missing);
-  text += fmt::format("  form removed        {}\n", result.edge ? "edge" : form_name(result.request.form_degree));
+  text += fmt::format("  form removed        {}\n", result.edge ? "edge" : result.request.form);
   text += fmt::format("  cut-off             {} um\n", shortest(result.request.cutoff_um));
   text += fmt::format("  {:<10} {:>10} {:>10} {:>10} {:>8} {:>8}\n", "", "Sa_nm", "Sq_nm", "Sz_nm", "Ssk", "Sku");
   text += row_of("surface", result.of_surface) + row_of("roughness", result.of_roughness) +
