@@ -29,8 +29,9 @@ struct CommandRequest {
   std::string label = {};
 };
 
-/// Returns the options for the fields of the requests of a command. Fields of several requests that have the same
-/// option share it. \param texts receives the given values; it must outlive the arguments
+/// Returns the options for the fields of the requests of a command. If fields of several requests have the same option,
+/// they share it.
+/// \param texts receives the given values; it must outlive the arguments
 std::vector<Argument> field_arguments(std::span<const CommandRequest> of_command, FieldTexts& texts);
 
 /// Sets the fields of a request whose options are given, and its seed.

@@ -28,6 +28,21 @@ void assign(CameraRequest& request, std::string_view field, const FieldValue& va
 void assign(RoadRequest& request, std::string_view field, const FieldValue& value) {
   assign_field(request, field, value);
 }
+void assign(MetrologyRequest& request, std::string_view field, const FieldValue& value) {
+  assign_field(request, field, value);
+}
+void assign(SolidRequest& request, std::string_view field, const FieldValue& value) {
+  assign_field(request, field, value);
+}
+void assign(MaterialRequest& request, std::string_view field, const FieldValue& value) {
+  assign_field(request, field, value);
+}
+void assign(RaysRequest& request, std::string_view field, const FieldValue& value) {
+  assign_field(request, field, value);
+}
+void assign(TraceRequest& request, std::string_view field, const FieldValue& value) {
+  assign_field(request, field, value);
+}
 
 std::string request_description() {
   return to_text(requests::description_json());

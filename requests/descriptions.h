@@ -33,4 +33,7 @@ const Request& description<RaysRequest>();
 template <>
 const Request& description<TraceRequest>();
 
+/// Returns the fields of MetrologyRequest that are needed to read a height map.
+const Request& height_map_reading();
+
 }  // namespace retrace::requests

@@ -55,7 +55,7 @@ struct Row {
 
 /// Description of a request.
 struct Request {
-  std::string_view name;     ///< name of the function of the library, such as "camera"
+  std::string_view name;     ///< name of the type without "Request", such as "camera" for CameraRequest
   std::string_view command;  ///< command of the program; empty if only the library has the function
   std::span<const Row> rows;
   const void* (*initial)();  ///< returns an object with the defaults of all fields

@@ -199,20 +199,12 @@ void bind_part(py::module_& module) {
     return watched(py::none(), 0, [design](const Running&) { return inspect(design); });
   });
   result_class<ExportResult>(module, "ExportResult");
-  module.def("export_solid", [](const Design& design, const std::filesystem::path& file, const std::string& what,
-                                const std::optional<double>& block_mm) {
-    return watched(py::none(), 0, [design, file, request = SolidRequest{what, block_mm}](const Running&) {
-      return export_solid(design, file, request);
-    });
+  request_class<SolidRequest>(module, "SolidRequest");
+  module.def("export_solid", [](const Design& design, const std::filesystem::path& file, const SolidRequest& request) {
+    return watched(py::none(), 0,
+                   [design, file, request](const Running&) { return export_solid(design, file, request); });
   });
-  py::class_<MaterialRequest>(module, "MaterialRequest")
-      .def(py::init<>())
-      .def_readwrite("entrance_deg", &MaterialRequest::entrance_deg)
-      .def_readwrite("window_deg", &MaterialRequest::window_deg)
-      .def_readwrite("source_arcmin", &MaterialRequest::source_arcmin)
-      .def_readwrite("receiver_arcmin", &MaterialRequest::receiver_arcmin)
-      .def_readwrite("error", &MaterialRequest::error)
-      .def_readwrite("most_directions", &MaterialRequest::most_directions);
+  request_class<MaterialRequest>(module, "MaterialRequest");
   result_class<MaterialResult>(module, "MaterialResult").def_readonly("complete", &MaterialResult::complete);
   module.def("export_material", [](const Design& design, const std::filesystem::path& file,
                                    const MaterialRequest& request, const py::object& progress, unsigned threads) {
@@ -220,10 +212,8 @@ void bind_part(py::module_& module) {
       return export_material(design, file, request, running);
     });
   });
-  module.def("mesh", [](const Design& design, const std::string& what, const std::optional<double>& block_mm) {
-    Mesh made = watched(py::none(), 0, [design, request = SolidRequest{what, block_mm}](const Running&) {
-      return mesh(design, request);
-    });
+  module.def("mesh", [](const Design& design, const SolidRequest& request) {
+    Mesh made = watched(py::none(), 0, [design, request](const Running&) { return mesh(design, request); });
     static_assert(sizeof(FaceKind) == sizeof(std::int32_t));
     const auto vertices = static_cast<py::ssize_t>(made.vertices_mm.size());
     const auto triangles = static_cast<py::ssize_t>(made.triangles.size());
@@ -388,37 +378,14 @@ py::tuple told(TracedRays traced) {
 }
 
 void bind_rays(py::module_& module) {
-  py::class_<RaysRequest>(module, "RaysRequest")
-      .def(py::init<>())
-      .def_readwrite("source", &RaysRequest::source)
-      .def_readwrite("emitter", &RaysRequest::emitter)
-      .def_readwrite("disc_mm", &RaysRequest::disc_mm)
-      .def_readwrite("half_angle_deg", &RaysRequest::half_angle_deg)
-      .def_readwrite("rays", &RaysRequest::rays)
-      .def_readwrite("power", &RaysRequest::power)
-      .def_readwrite("incidence_deg", &RaysRequest::incidence_deg)
-      .def_readwrite("azimuth_deg", &RaysRequest::azimuth_deg)
-      .def_readwrite("distance_mm", &RaysRequest::distance_mm)
-      .def_readwrite("at_mm", &RaysRequest::at_mm)
-      .def_readwrite("aim_mm", &RaysRequest::aim_mm)
-      .def_readwrite("split", &RaysRequest::split)
-      .def_readwrite("cutoff", &RaysRequest::cutoff)
-      .def_readwrite("stokes", &RaysRequest::stokes)
-      .def_readwrite("keep_missed", &RaysRequest::keep_missed)
-      .def_readwrite("out", &RaysRequest::out)
-      .def_readwrite("seed", &RaysRequest::seed);
+  request_class<RaysRequest>(module, "RaysRequest");
   result_class<RaysResult>(module, "RaysResult");
   module.def("rays",
              [](const Design& design, const RaysRequest& request, const py::object& progress, unsigned threads) {
                return watched(progress, threads,
                               [design, request](const Running& running) { return rays(design, request, running); });
              });
-  py::class_<TraceRequest>(module, "TraceRequest")
-      .def(py::init<>())
-      .def_readwrite("split", &TraceRequest::split)
-      .def_readwrite("cutoff", &TraceRequest::cutoff)
-      .def_readwrite("keep_missed", &TraceRequest::keep_missed)
-      .def_readwrite("seed", &TraceRequest::seed);
+  request_class<TraceRequest>(module, "TraceRequest");
   result_class<TracedRays>(module, "TracedRays");
   module.def("ray_accounts", &ray_accounts);
   module.def("trace", [](const Design& design, const Numbers& origins, const Numbers& directions, const Numbers& stokes,
@@ -445,17 +412,7 @@ py::tuple told(Metrology measured) {
 }
 
 void bind_surfaces(py::module_& module) {
-  py::class_<MetrologyRequest>(module, "MetrologyRequest")
-      .def(py::init<>())
-      .def_readwrite("form", &MetrologyRequest::form)
-      .def_readwrite("cutoff_um", &MetrologyRequest::cutoff_um)
-      .def_readwrite("x_pixel_um", &MetrologyRequest::x_pixel_um)
-      .def_readwrite("y_pixel_um", &MetrologyRequest::y_pixel_um)
-      .def_readwrite("height_unit", &MetrologyRequest::height_unit)
-      .def_readwrite("lateral_unit", &MetrologyRequest::lateral_unit)
-      .def_readwrite("channel", &MetrologyRequest::channel)
-      .def_readwrite("feed_mm_per_min", &MetrologyRequest::feed_mm_per_min)
-      .def_readwrite("edge", &MetrologyRequest::edge);
+  request_class<MetrologyRequest>(module, "MetrologyRequest");
   result_class<Metrology>(module, "Metrology")
       .def_readonly("surface_toml", &Metrology::surface_toml)
       .def_readonly("spectra_csv", &Metrology::spectra_csv)

@@ -155,17 +155,13 @@ class Metrology:
     @property
     def y_pixel_um(self) -> float: ...
 
+class SolidRequest:
+    def __init__(self) -> None: ...
+    def assign(self, field: str, value: object, /) -> None: ...
+
 class MetrologyRequest:
     def __init__(self) -> None: ...
-    form: str
-    cutoff_um: float
-    x_pixel_um: float | None
-    y_pixel_um: float | None
-    height_unit: str | None
-    lateral_unit: str | None
-    channel: int | None
-    feed_mm_per_min: float | None
-    edge: bool
+    def assign(self, field: str, value: object, /) -> None: ...
 
 class PhotometryRequest:
     def __init__(self) -> None: ...
@@ -208,23 +204,7 @@ class PhotometryResult:
 
 class RaysRequest:
     def __init__(self) -> None: ...
-    source: Path | str
-    emitter: str
-    disc_mm: float | None
-    half_angle_deg: float | None
-    rays: int
-    power: float
-    incidence_deg: float | None
-    azimuth_deg: float | None
-    distance_mm: float | None
-    at_mm: list[float] | None
-    aim_mm: list[float] | None
-    split: float
-    cutoff: float
-    stokes: bool
-    keep_missed: bool
-    out: Path | str
-    seed: int
+    def assign(self, field: str, value: object, /) -> None: ...
 
 class RaysResult:
     @property
@@ -309,10 +289,7 @@ class StudyResult:
 
 class TraceRequest:
     def __init__(self) -> None: ...
-    split: float
-    cutoff: float
-    keep_missed: bool
-    seed: int
+    def assign(self, field: str, value: object, /) -> None: ...
 
 class TracedRays:
     @property
@@ -338,12 +315,7 @@ class Verification:
 
 class MaterialRequest:
     def __init__(self) -> None: ...
-    entrance_deg: float
-    window_deg: float
-    source_arcmin: float
-    receiver_arcmin: float
-    error: float
-    most_directions: int
+    def assign(self, field: str, value: object, /) -> None: ...
 
 class VerificationRequest:
     def __init__(self) -> None: ...
@@ -364,9 +336,7 @@ def photometry(
     design: Design, request: PhotometryRequest, progress: _Progress, threads: int, /
 ) -> PhotometryResult: ...
 def inspect(design: Design, /) -> Inspection: ...
-def export_solid(
-    design: Design, file: Path | str, what: str, block_mm: float | None, /
-) -> ExportResult: ...
+def export_solid(design: Design, file: Path | str, request: SolidRequest, /) -> ExportResult: ...
 def export_material(
     design: Design,
     file: Path | str,
@@ -375,7 +345,7 @@ def export_material(
     threads: int,
     /,
 ) -> MaterialResult: ...
-def mesh(design: Design, what: str, block_mm: float | None, /) -> dict[str, Any]: ...
+def mesh(design: Design, request: SolidRequest, /) -> dict[str, Any]: ...
 def make_job(design: Design, request: JobRequest, /) -> Job: ...
 def fabricate(job: Path | str, request: FabricationRequest, /) -> Fabrication: ...
 def write_as_machined(verification: Verification, design: Path | str, /) -> bool: ...

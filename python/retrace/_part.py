@@ -10,10 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
-from ._arguments import PathLike, checked, give, number, path, thread_count, whole, word
+from ._arguments import PathLike, path, thread_count
 from ._design import AnyDesign, design_of
-from ._options import OPTIONS
+from ._fields import FIELDS
 from ._progress import Progress, teller
+from ._request import described, given
 from ._results import Array, Result, needed
 
 __all__ = [
@@ -27,8 +28,6 @@ __all__ = [
     "inspect",
     "mesh",
 ]
-
-_SOLIDS = ("element", "array", "mould")
 
 
 class FaceKind(enum.IntEnum):
@@ -102,43 +101,36 @@ class Inspection(Result):
         return self._shown_drawing("plan")
 
 
-def _block(block_mm: float | None) -> float | None:
-    return None if block_mm is None else number("block_mm", block_mm, 0, low_included=False)
-
-
-@checked(OPTIONS["export"])
-def mesh(design: AnyDesign, *, what: str = "array", block_mm: float | None = None) -> Mesh:
+@described(FIELDS["solid"])
+def mesh(
+    design: AnyDesign,
+    *,
+    # fields of solid
+) -> Mesh:
     """Returns the solid of a design as a triangle mesh."""
-    return Mesh(_core.mesh(design_of(design)._core, word("what", what, _SOLIDS), _block(block_mm)))
+    request = _core.SolidRequest()  # with the fields of solid
+    return Mesh(_core.mesh(design_of(design)._core, request))
 
 
-@checked(OPTIONS["export"])
+@described(FIELDS["solid"])
 def export(
-    design: AnyDesign, file: PathLike, *, what: str = "array", block_mm: float | None = None
+    design: AnyDesign,
+    file: PathLike,
+    *,
+    # fields of solid
 ) -> ExportResult:
     """Writes the solid of a design as STL, OBJ, glTF or STEP, as `retrace export`. The ending of
     the file name determines the format."""
-    return ExportResult(
-        _core.export_solid(
-            design_of(design)._core,
-            path("file", file),
-            word("what", what, _SOLIDS),
-            _block(block_mm),
-        )
-    )
+    request = _core.SolidRequest()  # with the fields of solid
+    return ExportResult(_core.export_solid(design_of(design)._core, path("file", file), request))
 
 
-@checked(OPTIONS["export"])
+@described(FIELDS["material"])
 def export_material(
     design: AnyDesign,
     file: PathLike,
     *,
-    entrance_deg: float = 20.0,
-    window_deg: float = 1.0,
-    source_arcmin: float = 10.0,
-    receiver_arcmin: float = 10.0,
-    error: float = 0.02,
-    most_directions: int = 1000,
+    # fields of material
     threads: int | None = None,
     progress: Progress = None,
 ) -> MaterialResult:
@@ -146,15 +138,7 @@ def export_material(
     simulators. `retrace export` does the same. The formats are a table (.json and a .csv file), a
     BSDF for Radiance (.xml), and lobes in a shader (.glsl)."""
     taken = design_of(design)
-    request = give(
-        _core.MaterialRequest(),
-        entrance_deg=number("entrance_deg", entrance_deg, 1, 40),
-        window_deg=number("window_deg", window_deg, 0.1, 5),
-        source_arcmin=number("source_arcmin", source_arcmin, 0),
-        receiver_arcmin=number("receiver_arcmin", receiver_arcmin, 0),
-        error=number("error", error, 0.001, 0.5),
-        most_directions=whole("most_directions", most_directions, 64, 10000),
-    )
+    request = _core.MaterialRequest()  # with the fields of material
     count = thread_count(threads)
     with teller(progress, "material") as tell:
         return MaterialResult(
@@ -162,7 +146,7 @@ def export_material(
         )
 
 
-@checked(OPTIONS["inspect"])
+@described({})
 def inspect(design: AnyDesign) -> Inspection:
     """Computes properties of a design that need no ray tracing, as `retrace inspect`: counts,
     areas, limits of total reflection."""

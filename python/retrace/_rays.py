@@ -9,31 +9,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._arguments import (
-    Numbers,
-    PathLike,
-    checked,
-    flag,
-    give,
-    number,
-    number_list,
-    path,
-    refuse,
-    thread_count,
-    whole,
-    word,
-)
+from ._arguments import Numbers, PathLike, number_list, refuse, thread_count
 from ._design import AnyDesign, design_of
 from ._errors import InputError
-from ._options import OPTIONS
+from ._fields import FIELDS
 from ._progress import Progress, teller
+from ._request import described, given
 from ._results import Array, Result
 
 __all__ = ["RayAccount", "RaysResult", "TracedRays", "rays", "trace"]
-
-_MOST_SEED = 2**32 - 1
-_EMITTERS = ("lambertian", "gaussian", "collimated")
-_NAMES = {"incidence_deg": "incidence", "azimuth_deg": "azimuth", "design": "", "out": ""}
 
 
 class RayAccount(enum.IntEnum):
@@ -107,7 +91,7 @@ def _stokes(stokes: object, count: int) -> Array:
     return array
 
 
-@checked(OPTIONS["rays"], _NAMES)
+@described(FIELDS["trace"])
 def trace(
     design: AnyDesign,
     origins: ArrayLike,
@@ -116,10 +100,7 @@ def trace(
     *,
     axes: ArrayLike | None = None,
     wavelength_nm: Numbers | None = None,
-    split: float = 1.0,
-    cutoff: float = 1e-10,
-    keep_missed: bool = False,
-    seed: int = 1,
+    # fields of trace
     threads: int | None = None,
     progress: Progress = None,
 ) -> TracedRays:
@@ -143,13 +124,7 @@ def trace(
         if waves.dtype.kind not in "iuf" or waves.ndim > 1 or waves.size not in (1, len(places)):
             raise refuse("wavelength_nm", f"a number, or {len(places)} of them", wavelength_nm)
         waves = np.ascontiguousarray(waves, dtype=np.float64).reshape(-1)
-    request = give(
-        _core.TraceRequest(),
-        split=number("split", split, 0, 1),
-        cutoff=number("cutoff", cutoff, 0, 1),
-        keep_missed=flag("keep_missed", keep_missed),
-        seed=whole("seed", seed, 0, _MOST_SEED),
-    )
+    request = _core.TraceRequest()  # with the fields of trace
     light = _stokes(stokes, len(places))
     count = thread_count(threads)
     with teller(progress, "tracing") as tell:
@@ -158,34 +133,11 @@ def trace(
         )
 
 
-def _place(name: str, values: Numbers) -> list[float]:
-    place = number_list(name, values)
-    if len(place) != 3:
-        raise InputError(f"must be three numbers, got {len(place)}", key=name)
-    return place
-
-
-@checked(OPTIONS["rays"], _NAMES)
+@described(FIELDS["rays"])
 def rays(
     design: AnyDesign,
     *,
-    source: PathLike | None = None,
-    emitter: str | None = None,
-    rays: int = 1_000_000,
-    disc_mm: float | None = None,
-    half_angle_deg: float | None = None,
-    power: float = 1.0,
-    incidence_deg: float | None = None,
-    azimuth_deg: float | None = None,
-    distance_mm: float | None = None,
-    at_mm: Numbers | None = None,
-    aim_mm: Numbers | None = None,
-    split: float = 1.0,
-    cutoff: float = 1e-10,
-    stokes: bool = False,
-    keep_missed: bool = False,
-    out: PathLike | None = None,
-    seed: int = 1,
+    # fields of rays
     threads: int | None = None,
     progress: Progress = None,
 ) -> RaysResult:
@@ -195,34 +147,7 @@ def rays(
     taken = design_of(design)
     if (source is None) == (emitter is None):
         raise InputError("one of source and emitter must be given", key="source")
-    request = give(
-        _core.RaysRequest(),
-        rays=whole("rays", rays, 1, 2**40),
-        power=number("power", power, 0, low_included=False),
-        split=number("split", split, 0, 1),
-        cutoff=number("cutoff", cutoff, 0, 1),
-        stokes=flag("stokes", stokes),
-        keep_missed=flag("keep_missed", keep_missed),
-        seed=whole("seed", seed, 0, _MOST_SEED),
-    )
-    if source is not None:
-        request.source = path("source", source)
-    if emitter is not None:
-        request.emitter = word("emitter", emitter, _EMITTERS)
-    if out is not None:
-        request.out = path("out", out)
-    for name, value in (
-        ("disc_mm", disc_mm),
-        ("half_angle_deg", half_angle_deg),
-        ("incidence_deg", incidence_deg),
-        ("azimuth_deg", azimuth_deg),
-        ("distance_mm", distance_mm),
-    ):
-        if value is not None:
-            setattr(request, name, number(name, value))
-    for name, place in (("at_mm", at_mm), ("aim_mm", aim_mm)):
-        if place is not None:
-            setattr(request, name, _place(name, place))
+    request = _core.RaysRequest()  # with the fields of rays
     count = thread_count(threads)
     with teller(progress, "tracing") as tell:
         return RaysResult(_core.rays(taken._core, request, tell, count))

@@ -8,26 +8,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _core
-from ._arguments import (
-    Numbers,
-    PathLike,
-    checked,
-    flag,
-    give,
-    number,
-    number_list,
-    path,
-    refuse,
-    whole,
-    word,
-)
+from ._arguments import Numbers, PathLike, path, refuse
 from ._errors import InputError
-from ._options import OPTIONS
+from ._fields import FIELDS
+from ._request import described, given
 from ._results import Array, Result
 
 __all__ = ["MetrologyResult", "metrology"]
-
-_UNITS = ("m", "mm", "um", "nm", "pm")
 
 
 class MetrologyResult(Result):
@@ -79,18 +66,11 @@ def _heights(value: object) -> Array:
     return heights
 
 
-@checked(OPTIONS["metrology"])
+@described(FIELDS["metrology"])
 def metrology(
     heights: Union[PathLike, ArrayLike],
     *,
-    pixel_um: Numbers | None = None,
-    form: str = "plane",
-    cutoff_um: float = 80.0,
-    height_unit: str | None = None,
-    lateral_unit: str | None = None,
-    channel: int | None = None,
-    feed_mm_per_min: float | None = None,
-    edge: bool = False,
+    # fields of metrology
 ) -> MetrologyResult:
     """Computes roughness, waviness, dominant waves, scratches and edge radius of a measured height
     map or profile, as `retrace metrology`.
@@ -98,31 +78,14 @@ def metrology(
     heights: file (text, SDF, GSF or GWY), or an array of heights in nm, positive out of the
     material, NaN where nothing was measured. pixel_um: required for arrays; one number, or two for
     x and y."""
-    request = give(
-        _core.MetrologyRequest(),
-        form=word("form", form),
-        edge=flag("edge", edge),
-        cutoff_um=number("cutoff_um", cutoff_um, 0, low_included=False),
-    )
-    if pixel_um is not None:
-        pixels = number_list("pixel_um", pixel_um, 0, included=False)
-        if len(pixels) > 2:
-            raise refuse("pixel_um", "one number, or two for x and y", pixel_um)
-        request.x_pixel_um, request.y_pixel_um = pixels[0], pixels[-1]
-    for name, unit in (("height_unit", height_unit), ("lateral_unit", lateral_unit)):
-        if unit is not None:
-            setattr(request, name, word(name, unit, _UNITS))
-    if channel is not None:
-        request.channel = whole("channel", channel, 0, 999999)
-    if feed_mm_per_min is not None:
-        request.feed_mm_per_min = number("feed_mm_per_min", feed_mm_per_min, 0, low_included=False)
+    request = _core.MetrologyRequest()  # with the fields of metrology
     if isinstance(heights, str) or hasattr(heights, "__fspath__"):
         return MetrologyResult(_core.measure_file(path("heights", heights), request))
-    for name, given in (
+    for name, value in (
         ("height_unit", height_unit),
         ("lateral_unit", lateral_unit),
         ("channel", channel),
     ):
-        if given is not None:
+        if value is not None:
             raise InputError("is for files; heights in memory are in nm", key=name)
     return MetrologyResult(_core.measure_heights(_heights(heights), request))

@@ -1,6 +1,5 @@
 #include <cstddef>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "core/schema/access.h"
@@ -40,6 +39,17 @@ constexpr Row kMetrologyRows[] = {
      "spacing of the points, or spacings along x and y",
      access_by<pixels_um, set_pixels_um>,
      {.value = "P|PX,PY", .notation = Notation::commas, .otherwise = "as in the file"}},
+    {"form",
+     Word{kForms},
+     "form to remove: none, plane or poly2 to poly8",
+     access<&MetrologyRequest::form>,
+     {.value = "FORM"},
+     kNeedNoEdge},
+    {"cutoff_um",
+     Number{kPositive},
+     "cut-off of the Gaussian filter between roughness and waviness",
+     access<&MetrologyRequest::cutoff_um>,
+     {.value = "L"}},
     {"height_unit",
      Word{kLengthUnits},
      "unit of the heights: m, mm, um, nm or pm",
@@ -55,17 +65,6 @@ constexpr Row kMetrologyRows[] = {
      "channel of a GWY file",
      access<&MetrologyRequest::channel>,
      {.value = "N", .otherwise = "the first"}},
-    {"form",
-     Word{kForms},
-     "form to remove: none, plane or poly2 to poly8",
-     access<&MetrologyRequest::form>,
-     {.value = "FORM"},
-     kNeedNoEdge},
-    {"cutoff_um",
-     Number{kPositive},
-     "cut-off of the Gaussian filter between roughness and waviness",
-     access<&MetrologyRequest::cutoff_um>,
-     {.value = "L"}},
     {"feed_mm_per_min",
      Number{kPositive},
      "feed of the cut, for waves in Hz",
@@ -74,8 +73,8 @@ constexpr Row kMetrologyRows[] = {
     {"edge", schema::Flag{}, "rows are profiles across an edge: fit its radius and chamfer",
      access<&MetrologyRequest::edge>}};
 
-/// Number of the first rows of kMetrologyRows that are needed to read a height map.
-constexpr std::size_t kReadingRows = 4;
+/// Rows of the fields that are needed to read a height map.
+constexpr Row kReadingRows[] = {kMetrologyRows[0], kMetrologyRows[3], kMetrologyRows[4], kMetrologyRows[5]};
 
 }  // namespace
 
@@ -86,7 +85,7 @@ const Request& description<MetrologyRequest>() {
 }
 
 const Request& height_map_reading() {
-  static constexpr Request request{"correct", "correct", std::span<const Row>(kMetrologyRows).first(kReadingRows),
+  static constexpr Request request{"correct", "correct", kReadingRows,
                                    initial_object<MetrologyRequest>};
   return request;
 }

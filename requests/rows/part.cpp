@@ -60,12 +60,12 @@ constexpr Row kMaterialRows[] = {{"entrance_deg",
 
 template <>
 const Request& description<SolidRequest>() {
-  static constexpr Request request{"export_solid", "export", kSolidRows, initial_object<SolidRequest>};
+  static constexpr Request request{"solid", "export", kSolidRows, initial_object<SolidRequest>};
   return request;
 }
 template <>
 const Request& description<MaterialRequest>() {
-  static constexpr Request request{"export_material", "export", kMaterialRows, initial_object<MaterialRequest>};
+  static constexpr Request request{"material", "export", kMaterialRows, initial_object<MaterialRequest>};
   return request;
 }
 

@@ -5,6 +5,7 @@ import json
 import random
 import subprocess
 import unittest
+from functools import partial
 
 import program
 import retrace as rt
@@ -12,12 +13,27 @@ from retrace import _core
 from retrace._fields import FIELDS
 
 BRICK = str(program.EXAMPLES / "rtp_brick_2mm.toml")
-#: Functions of the package and types of the module _core by request, with the arguments that the
-#: program needs to make the same request.
+RAYS = ["rays", BRICK, "--emitter=lambertian"]
+HEIGHTS = str(program.EXAMPLES / "facet_height_map.txt")
+#: For each request: a function of the package without its other arguments, the type of the module
+#: _core, and the arguments with which the program makes the same request, if it can.
 CALLS = {
-    "detector": (rt.image.detector, _core.DetectorRequest, ["image", BRICK, "--detector"]),
-    "camera": (rt.image.camera, _core.CameraRequest, ["image", BRICK, "--camera"]),
-    "road": (rt.image.road, _core.RoadRequest, ["image", BRICK, "--road"]),
+    "detector": (
+        partial(rt.image.detector, BRICK),
+        _core.DetectorRequest,
+        ["image", BRICK, "--detector"],
+    ),
+    "camera": (partial(rt.image.camera, BRICK), _core.CameraRequest, ["image", BRICK, "--camera"]),
+    "road": (partial(rt.image.road, BRICK), _core.RoadRequest, ["image", BRICK, "--road"]),
+    "metrology": (partial(rt.metrology, HEIGHTS), _core.MetrologyRequest, ["metrology", HEIGHTS]),
+    "solid": (partial(rt.mesh, BRICK), _core.SolidRequest, ["export", BRICK, "-o", "part.stl"]),
+    "material": (
+        partial(rt.export_material, BRICK, "part.json"),
+        _core.MaterialRequest,
+        ["export", BRICK, "-o", "part.json"],
+    ),
+    "rays": (partial(rt.rays, BRICK, emitter="lambertian"), _core.RaysRequest, RAYS),
+    "trace": (partial(rt.trace, BRICK, [[0, 0, 5]], [[0, 0, -1]]), _core.TraceRequest, None),
 }
 
 
@@ -72,19 +88,21 @@ class Requests(unittest.TestCase):
             name, field = chance.choice(fields)
             value = wrong_value(chance, field)
             call, request, arguments = CALLS[name]
+            keyword = field["keyword"]
             with self.subTest(request=name, field=field["name"], value=value):
                 with self.assertRaises(rt.InputError) as of_package:
-                    call(BRICK, **{field["keyword"]: tuple(value) if isinstance(value, list) else value})
+                    call(**{keyword: tuple(value) if isinstance(value, list) else value})
                 with self.assertRaises(rt.InputError) as of_library:
                     request().assign(field["name"], value)
+                error = of_package.exception
+                self.assertEqual(error.key, keyword)
+                self.assertEqual(str(of_library.exception), str(error))
+                if arguments is None:
+                    continue
                 option = f"{field['option']}={on_command_line(value, field)}"
                 code, _, err = program.run(*arguments, option)
                 self.assertEqual(code, 2)
-                self.assertEqual(of_package.exception.key, field["keyword"])
-                self.assertEqual(str(of_library.exception), str(of_package.exception))
-                self.assertEqual(
-                    err, f"retrace: {field['option']}: {of_package.exception.message}\n"
-                )
+                self.assertEqual(err, f"retrace: {field['option']}: {error.message}\n")
 
 
 if __name__ == "__main__":
