@@ -55,12 +55,13 @@ bool has_plain_default(const Row& row) {
   return row.spelling.otherwise.empty() && row.spelling.usual.empty();
 }
 
-/// Returns the description of a field, with its unit if the name of the option does not end with it.
+/// Returns the description of an option, with its unit if the name of the option does not end with it.
 std::string meaning_of(const FieldOfCommand& field) {
   const std::string_view unit = schema::unit_of(field.row->name);
   std::string suffix(field.row->name.substr(field.row->name.rfind('_') + 1));
   const bool is_named = unit.empty() || requests::option_of(*field.row).ends_with("-" + suffix);
-  std::string text(field.row->meaning);
+  const bool is_absent = field.row->spelling.notation == requests::Notation::absent;
+  std::string text = (is_absent ? "do not " : "") + std::string(field.row->meaning);
   if (!is_named) text.insert(std::min(text.find(';'), text.size()), fmt::format(", in {}", unit));
   return text;
 }
@@ -158,7 +159,8 @@ Argument argument_of(const SharedOption& option, FieldTexts& texts) {
   }
   argument.name += " " + placeholder(option);
   argument.target = &texts.values[option.option];
-  if (option.fields.size() == 1 && has_plain_default(*first.row)) argument.shown_default = default_text(first);
+  if (option.fields.size() == 1 && has_plain_default(*first.row) && !first.row->is_required)
+    argument.shown_default = default_text(first);
   return argument;
 }
 

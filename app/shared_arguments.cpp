@@ -32,10 +32,6 @@ Traits machine_traits() {
   return one_of(names, ".toml");
 }
 
-Argument engine_argument(std::string& engine, const std::string& help) {
-  return {"--engine ENGINE", help, &engine, one_of([] { return engine_words(false); })};
-}
-
 Need engine_need(std::span<const studies::Engine> engines) {
   Condition condition{Condition::Kind::value, "--engine"};
   for (const studies::Engine engine : engines) condition.values.emplace_back(studies::engine_name(engine));

@@ -1,7 +1,7 @@
 #pragma once
 
-// Arguments that several commands share: design, job and part files, engine, dye, and the options for a store that
-// exists already.
+// Arguments that several commands share: design, job and part files, engine, and the options for a store that exists
+// already.
 
 #include <span>
 #include <string>
@@ -23,16 +23,8 @@ Argument part_argument(std::string& part);
 Argument dialect_argument(std::string& dialect);
 /// Returns the traits of a machine, which is given by the name of a shipped machine or by a file.
 Traits machine_traits();
-/// Returns the option --engine of commands that have the engines auto, exact, montecarlo and embree.
-Argument engine_argument(std::string& engine, const std::string& help);
 /// Returns the requirement that --engine is one of `engines`.
 Need engine_need(std::span<const studies::Engine> engines);
-/// Returns the option --dye, the colour filter of the part. Its value is "none", the name of a shipped dye, or a file.
-template <class Name>
-Argument dye_argument(Name& dye, const std::string& help) {
-  return {"--dye NAME|FILE", help, &dye, one_of(Words{"none", "red", "amber"}, ".csv")};
-}
-
 /// Returns names of engines.
 /// \param of_rre true: all engines of `retrace rre`; false: only the engines of pictures and photometry
 Words engine_words(bool of_rre);

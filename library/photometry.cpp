@@ -1,7 +1,6 @@
 #include "retrace/photometry.h"
 
 #include <memory>
-#include <string_view>
 #include <utility>
 
 #include "core/threads.h"
@@ -14,30 +13,6 @@
 
 namespace retrace {
 namespace {
-
-studies::PhotometryRequest to_study(const Design& design, const PhotometryRequest& request) {
-  studies::PhotometryRequest of_study =
-      studies::photometry_request({request.standard, request.part_class, request.colour});
-  const std::filesystem::path dye =
-      studies::dye_file_of(request.dye, design.content().design.substance.is_coloured(), of_study.programme.colour);
-  studies::set_dye(of_study, request.dye, dye);
-  of_study.area_cm2 = request.area_cm2;
-  if (request.rotation_deg) of_study.rotation_deg = *request.rotation_deg;
-  if (request.source_arcmin) of_study.apertures.source = Angle::from_deg(*request.source_arcmin / 60.0);
-  if (request.receiver_arcmin) of_study.apertures.receiver = Angle::from_deg(*request.receiver_arcmin / 60.0);
-  of_study.window_deg = request.window_deg;
-  of_study.light = studies::light_from_name(request.light);
-  of_study.engine = studies::engine_from_name(request.engine);
-  of_study.cutoff = request.cutoff;
-  of_study.rays = request.samples;
-  of_study.seed = request.seed;
-  of_study.diffraction = request.diffraction;
-  of_study.window_power = request.window_power;
-  of_study.advice = request.advice;
-  of_study.pictures = request.pictures;
-  of_study.colour = true;
-  return of_study;
-}
 
 PhotometricPoint from_study(const studies::PhotometricPoint& point) {
   PhotometricPoint told;
@@ -56,7 +31,8 @@ PhotometricPoint from_study(const studies::PhotometricPoint& point) {
 }  // namespace
 
 PhotometryResult photometry(const Design& design, const PhotometryRequest& request, const Running& running) {
-  const studies::PhotometryStudy study(design.content().design, to_study(design, request));
+  const studies::Design& of_study = design.content().design;
+  const studies::PhotometryStudy study(of_study, studies::resolve(request, of_study.substance.is_coloured()));
   const auto held = std::make_shared<studies::PhotometryResult>();
   studies::PhotometryResult& found = *held;
   run_with_threads(running.threads, [&] { found = study.run(running.progress, running.cancellation); });

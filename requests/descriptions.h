@@ -7,6 +7,7 @@
 #include "requests/image.h"
 #include "requests/metrology.h"
 #include "requests/part.h"
+#include "requests/photometry.h"
 #include "requests/rays.h"
 #include "requests/row.h"
 
@@ -14,7 +15,7 @@ namespace retrace::requests {
 
 /// All types of requests.
 using AllRequests = std::tuple<DetectorRequest, CameraRequest, RoadRequest, MetrologyRequest, SolidRequest,
-                               MaterialRequest, RaysRequest, TraceRequest>;
+                               MaterialRequest, PhotometryRequest, RaysRequest, TraceRequest>;
 
 template <>
 const Request& description<DetectorRequest>();
@@ -28,6 +29,8 @@ template <>
 const Request& description<SolidRequest>();
 template <>
 const Request& description<MaterialRequest>();
+template <>
+const Request& description<PhotometryRequest>();
 template <>
 const Request& description<RaysRequest>();
 template <>

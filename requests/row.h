@@ -21,7 +21,9 @@ enum class Notation {
   commas,       ///< one number, or numbers separated by commas, such as X,Y,Z
   by_x,         ///< numbers separated by x, such as 400x300
   number_list,  ///< numbers and ranges, such as 0,10:40:5
-  absent        ///< "--no-NAME" sets a flag, which is set by default, to false
+  /// "--no-NAME" sets a flag, which is set by default, to false. The description of the field begins with a verb,
+  /// because help of the option shows it after "do not".
+  absent
 };
 
 /// Spelling of a field.

@@ -62,15 +62,16 @@ Json standards_json() {
 
 Json photometry_json(const OpenedDesign& opened, const Json& request, TimeLimit& limit) {
   opened.require_tracer();
-  studies::PhotometryRequest asked = studies::photometry_request(
-      {get<std::string>(request, "standard"), choice_of(request, "class"), choice_of(request, "colour")});
+  PhotometryRequest asked;
+  asked.standard = get<std::string>(request, "standard");
+  asked.part_class = choice_of(request, "class");
+  asked.colour = choice_of(request, "colour");
   asked.area_cm2 = get<double>(request, "area_cm2");
   asked.advice = false;
-  const std::filesystem::path dye =
-      studies::dye_file_of(std::nullopt, opened.design().substance.is_coloured(), asked.programme.colour);
-  studies::set_dye(asked, std::nullopt, dye);
+  studies::PhotometrySettings settings = studies::resolve(asked, opened.design().substance.is_coloured());
+  settings.colour = false;
   const studies::PhotometryResult result =
-      studies::PhotometryStudy(opened.design(), std::move(asked)).run(&limit, limit.cancel());
+      studies::PhotometryStudy(opened.design(), std::move(settings)).run(&limit, limit.cancel());
   if (!result.complete) throw BudgetError("these test points take longer than they were given: use retrace photometry");
   Json points = Json::array();
   for (const PhotometricPoint& point : result.points) points.push_back(point_json(point));

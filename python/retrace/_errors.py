@@ -18,6 +18,9 @@ _KEYWORDS = {
     "no-advice": "advice",
 }
 
+# Keywords whose field of the library has a different name.
+_FIELDS = {"part_class": "class_"}
+
 
 def _keyword(option: str) -> str:
     """Returns the keyword of an option, such as target_error for --target-error."""
@@ -43,7 +46,9 @@ class InputError(Error, ValueError):
         self.file = None if changed else file or None  #: file that contains the error, or None
         self.line = line or None  #: line of this file, counted from 1
         #: Key of the file, such as "element.base_mm", or name of the argument.
-        self.key = (_keyword(key) if key.startswith("--") else key) if key else None
+        self.key = None
+        if key:
+            self.key = _keyword(key) if key.startswith("--") else _FIELDS.get(key, key)
         place = ":".join(str(part) for part in (self.file, self.line) if part is not None)
         super().__init__(": ".join(part for part in (place, self.key, self.message) if part))
 

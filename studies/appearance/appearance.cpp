@@ -81,8 +81,8 @@ raytrace::PhotometricApertures apertures_of(const MaterialRequest& request) {
 
 /// Returns the settings of the photometer for the table.
 /// \param back value of ReflectionTable::back
-PhotometryRequest photometry_of(const MaterialRequest& request, const Vec2& back) {
-  PhotometryRequest photometry;
+PhotometrySettings photometry_of(const MaterialRequest& request, const Vec2& back) {
+  PhotometrySettings photometry;
   photometry.apertures = apertures_of(request);
   // The window is a disc about the direction to the source that contains the corners of the square range of views. The
   // cosine accounts for oblique incidence.
@@ -126,7 +126,7 @@ struct PlannedCell {
 
 /// Returns a photometer for the response x, y or z. The photometer ignores light that the entrance face reflects
 /// specularly, because this light does not return to the source.
-Photometer photometer_of(const Design& design, const PhotometryRequest& request, std::size_t response,
+Photometer photometer_of(const Design& design, const PhotometrySettings& request, std::size_t response,
                          std::size_t parts) {
   Photometer photometer(design, request_of_response(request, response), parts,
                         static_cast<PhotometricResponse>(response));
@@ -136,7 +136,7 @@ Photometer photometer_of(const Design& design, const PhotometryRequest& request,
 
 /// Checks that the exact engine supports the design.
 /// \throw InputError if it does not
-void check_engine(const Design& design, PhotometryRequest request) {
+void check_engine(const Design& design, PhotometrySettings request) {
   request.engine = Engine::automatic;
   const Photometer photometer(design, request, kParts);
   if (!photometer.is_exact())
@@ -539,7 +539,7 @@ class TableMaker {
 
   const Design& design_;
   const MaterialRequest& request_;
-  PhotometryRequest photometry_;
+  PhotometrySettings photometry_;
   std::array<std::unique_ptr<Instrument>, 3> instruments_;  ///< one for each of the responses x, y and z
   Eigen::Matrix3d rgb_of_shares_;
   ReflectionTable table_;

@@ -217,8 +217,8 @@ struct Pair {
   std::size_t lamp = 0;
 };
 
-PhotometryRequest photometry_at(const RoadScene& s, double distance_m, std::uint32_t seed) {
-  PhotometryRequest request;
+PhotometrySettings photometry_at(const RoadScene& s, double distance_m, std::uint32_t seed) {
+  PhotometrySettings request;
   request.area_cm2 = 1e4 * s.reflector_width * s.reflector_tall;
   request.apertures.source = Angle::from_rad(s.lamp_diameter / distance_m);
   request.apertures.receiver = Angle::from_rad(s.pupil_diameter / (distance_m + s.eye_behind));
@@ -252,7 +252,7 @@ RoadResult RoadStudy::run(Progress* progress, const Cancellation* cancel) const 
   result.scene = scene_;
   const double share = 1.0 / static_cast<double>(request_.distance_m.size());
   for (const double distance_m : request_.distance_m) {
-    PhotometryRequest photometry = photometry_at(scene_, distance_m, request_.seed);
+    PhotometrySettings photometry = photometry_at(scene_, distance_m, request_.seed);
     photometry.dye_absorption_per_mm = dye_absorption_per_mm_;
     photometry.dye = scene_.dye;
     Photometer photometer(design_, photometry, 1);

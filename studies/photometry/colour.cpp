@@ -29,7 +29,7 @@ struct MeasuredTristimulus {
 /// Measures the tristimulus values in each geometry of `settings`, in their order. Returns nothing if the measurement
 /// was cancelled.
 std::optional<std::vector<MeasuredTristimulus>> measured_tristimulus(const Design& design,
-                                                                     const PhotometryRequest& request,
+                                                                     const PhotometrySettings& request,
                                                                      const Photometer& photometer,
                                                                      const std::vector<PhotometerSetting>& settings,
                                                                      Progress* progress, const Cancellation* cancel) {
@@ -93,7 +93,8 @@ bool is_near(const ColourPoint& point) {
   return std::abs(point.margin) < kErrorsOfAColour * point.std_error;
 }
 
-std::string reason_of(const PhotometricColour& colour, const PhotometryRequest& request, const Photometer& photometer) {
+std::string reason_of(const PhotometricColour& colour, const PhotometrySettings& request,
+                      const Photometer& photometer) {
   if (colour.verdict() != Verdict::undetermined) return {};
   if (!colour.chromaticity) return "no light comes back there";
   if (colour.lacks_diffraction) return "diffraction is left out, as " + photometer.why_undiffracted();
@@ -103,8 +104,8 @@ std::string reason_of(const PhotometricColour& colour, const PhotometryRequest& 
 
 }  // namespace
 
-PhotometryRequest request_of_response(const PhotometryRequest& request, std::size_t response) {
-  PhotometryRequest one = request;
+PhotometrySettings request_of_response(const PhotometrySettings& request, std::size_t response) {
+  PhotometrySettings one = request;
   one.rays = std::max<std::uint64_t>(1, request.rays.value_or(kUsualRaysOfDirection) / 3);
   one.seed = request.seed + kSeedStep * static_cast<std::uint32_t>(response + 1);
   return one;
@@ -120,7 +121,7 @@ std::optional<Verdict> PhotometricColour::verdict() const {
   return is_recalled ? Verdict::unconfirmed : Verdict::pass;
 }
 
-std::optional<PhotometricColour> measured_colour(const Design& design, const PhotometryRequest& request,
+std::optional<PhotometricColour> measured_colour(const Design& design, const PhotometrySettings& request,
                                                  const Photometer& photometer, const std::vector<double>& v_deg,
                                                  Progress* progress, const Cancellation* cancel) {
   const std::vector<ColourBoundary>& boundaries = request.programme.boundaries;

@@ -12,7 +12,7 @@ namespace retrace::studies {
 /// Returns the request for measuring one of the three tristimulus values. The requested number of rays per direction is
 /// divided evenly among the three measurements.
 /// \param response index of the colour matching function: 0 for x, 1 for y, 2 for z
-PhotometryRequest request_of_response(const PhotometryRequest& request, std::size_t response);
+PhotometrySettings request_of_response(const PhotometrySettings& request, std::size_t response);
 
 /// Measures the colour in the geometry for which the standard defines colour boundaries. If it defines none, the colour
 /// is measured in the geometry of the first test point. The tristimulus values are measured separately, each with its
@@ -21,7 +21,7 @@ PhotometryRequest request_of_response(const PhotometryRequest& request, std::siz
 /// \param v_deg angles V at which the colour is measured; the worst result counts
 /// \param progress receives the finished fraction; may be null
 /// \pre the light is a CIE illuminant, and the test plan has points
-std::optional<PhotometricColour> measured_colour(const Design& design, const PhotometryRequest& request,
+std::optional<PhotometricColour> measured_colour(const Design& design, const PhotometrySettings& request,
                                                  const Photometer& photometer, const std::vector<double>& v_deg,
                                                  Progress* progress, const Cancellation* cancel);
 

@@ -40,23 +40,22 @@ bool concerns(const LimitLine& line, const TestProgramme& programme) {
 }
 
 /// Returns the requested name, or the only available name if none was requested.
-/// \param option command-line option of the name, for error messages
-std::string choice(const std::vector<std::string>& there_are, const std::optional<std::string>& asked,
-                   const std::string& option, std::string_view of_what) {
+/// \param field field of the request that contains the name, for error messages
+std::string choice(const std::vector<std::string>& there_are, const std::optional<std::string>& asked, Field field,
+                   std::string_view of_what) {
   if (there_are.empty()) {
-    if (asked)
-      throw InputError({"", 0, option}, fmt::format("{} has none, got {}", printable(of_what), in_quotes(*asked)));
+    if (asked) throw InputError(field, fmt::format("{} has none, got {}", printable(of_what), in_quotes(*asked)));
     return {};
   }
   if (!asked) {
     if (there_are.size() == 1) return there_are.front();
-    throw InputError({"", 0, option}, fmt::format("is required for {}: {}", printable(of_what),
-                                                  printable(fmt::format("{}", fmt::join(there_are, ", ")), 400)));
+    throw InputError(field, fmt::format("is required for {}: {}", printable(of_what),
+                                        printable(fmt::format("{}", fmt::join(there_are, ", ")), 400)));
   }
   if (holds(there_are, *asked)) return *asked;
-  throw InputError({"", 0, option}, fmt::format("must be {} for {}, got {}",
-                                                printable(fmt::format("{}", fmt::join(there_are, ", ")), 400),
-                                                printable(of_what), in_quotes(*asked)));
+  throw InputError(
+      field, fmt::format("must be {} for {}, got {}", printable(fmt::format("{}", fmt::join(there_are, ", ")), 400),
+                         printable(of_what), in_quotes(*asked)));
 }
 
 /// Classes and colours of one standard in a table.
@@ -162,12 +161,12 @@ TestProgramme programme_of(const LimitTable& table, const std::optional<std::str
   std::vector<std::string> standards;
   for (const LimitRow& row : table.rows) add_once(standards, row.standard);
   TestProgramme programme;
-  programme.standard = choice(standards, standard, "--standard", table.source);
+  programme.standard = choice(standards, standard, {"standard"}, table.source);
   programme.part_class =
-      choice(contents_of(table, programme.standard).classes, part_class, "--class", programme.standard);
+      choice(contents_of(table, programme.standard).classes, part_class, {"part_class"}, programme.standard);
   const std::optional<std::string> asked = colour ? std::optional(known_colour(*colour)) : std::nullopt;
   programme.colour =
-      choice(colours_of(table, programme.standard, programme.part_class), asked, "--colour", programme.standard);
+      choice(colours_of(table, programme.standard, programme.part_class), asked, {"colour"}, programme.standard);
 
   const auto add_rows = [&](const std::string& of_colour, const LimitFactor* by) {
     for (const LimitRow& row : table.rows)

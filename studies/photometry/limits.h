@@ -118,7 +118,7 @@ struct TestProgramme {
 /// Selects a test plan from a table.
 /// \param standard name of the standard in the table; may be omitted if the table has only one
 /// \param part_class, colour may be omitted if the standard has only one
-/// \throw InputError with the location of the command-line option and with the available names
+/// \throw InputError at the field `standard`, `part_class` or `colour` of PhotometryRequest, with the available names
 TestProgramme programme_of(const LimitTable& table, const std::optional<std::string>& standard,
                            const std::optional<std::string>& part_class, const std::optional<std::string>& colour);
 

@@ -1,5 +1,7 @@
 #include "studies/photometry/photometer.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -48,12 +50,12 @@ OpticalModel model_of(const Design& design, const materials::MaterialLibrary& li
 }
 
 /// Checks a design of balls. R_A requires an area, which a single ball does not have. Balls are traced only by rays.
-void check_balls(const Design& design, const PhotometryRequest& request) {
+void check_balls(const Design& design, const PhotometrySettings& request) {
   if (!design.balls()->pitch_mm)
     throw InputError(design.where("element.kind"),
                      "photometry takes layers of balls: give array.arrangement = \"packed\"");
   if (request.engine != Engine::automatic && request.engine != Engine::montecarlo)
-    throw InputError({"", 0, "--engine"}, "must be auto or montecarlo for balls");
+    throw InputError(Field{"engine"}, "must be auto or montecarlo for balls");
 }
 
 /// Returns the width of the cells whose edges diffract light. Returns 0 if the width is not known, for example for
@@ -68,7 +70,7 @@ double cell_width_mm(const Design& design) {
 }
 
 /// Returns the design with the lamp of the photometer as its light.
-Design lit(Design design, const PhotometryRequest& request, const materials::Spectrum& light) {
+Design lit(Design design, const PhotometrySettings& request, const materials::Spectrum& light) {
   LightSpectrum spectrum;
   spectrum.kind = LightSpectrum::Kind::lines;
   spectrum.photopic = false;
@@ -78,7 +80,7 @@ Design lit(Design design, const PhotometryRequest& request, const materials::Spe
   return design;
 }
 
-Design dyed(Design design, const PhotometryRequest& request) {
+Design dyed(Design design, const PhotometrySettings& request) {
   const materials::SpectralCurve& dye = request.dye_absorption_per_mm;
   if (dye.values.empty()) return design;
   std::vector<SpectralAbsorption> curve;
@@ -139,13 +141,13 @@ raytrace::ReturnFrame frame_of(const PhotometerSetting& setting) {
   return raytrace::return_frame(geometry_of(setting, 0.0));
 }
 
-Photometer::Photometer(const Design& design, const PhotometryRequest& request, std::size_t parts,
+Photometer::Photometer(const Design& design, const PhotometrySettings& request, std::size_t parts,
                        PhotometricResponse response)
     : design_(dyed(design, request)), request_(request), kernel_(request.apertures) {
   const materials::MaterialLibrary library = materials::MaterialLibrary::shipped();
   if (design_.balls()) check_balls(design_, request);
   if (design_.entrance && (request.engine == Engine::exact || request.engine == Engine::cell))
-    throw InputError({"", 0, "--engine"}, "must be auto, montecarlo or embree for a [front]");
+    throw InputError(Field{"engine"}, "must be auto, montecarlo or embree for a [front]");
   if (request.light == PhotometricLight::of_design) {
     model_ = model_of(design_, library);
     for (const SpectralOptics& light : model_.spectral) weights_.push_back(light.weight);
@@ -157,15 +159,17 @@ Photometer::Photometer(const Design& design, const PhotometryRequest& request, s
     weights_ = light.weights;
   }
   if (!model_.optics.has_one_back() && (request.engine == Engine::exact || request.engine == Engine::cell))
-    throw InputError({"", 0, "--engine"}, "must be auto, montecarlo or embree for a [wet_back] behind some elements");
+    throw InputError(Field{"engine"}, "must be auto, montecarlo or embree for a [wet_back] behind some elements");
   has_form_ = !model_.optics.facet_form.is_plane();
   const bool keeps_beams_elsewhere = model_.optics.has_one_back() && !model_.optics.entrance.scatters();
   keeps_phases_ = request.diffraction && !has_form_ && keeps_beams_elsewhere &&
                   surface_models::has_phases(model_.optics.facet_scatter);
   if (request.engine == Engine::exact && has_form_ && !(request.diffraction && model_.optics.is_smooth()))
-    throw InputError(design_.where_form(),
-                     "facets with a form are traced exactly with diffraction and without a texture alone: use --engine "
-                     "montecarlo");
+    throw InputError(
+        design_.where_form(),
+        fmt::format("facets with a form are traced exactly with diffraction and without a texture alone: use {} "
+                    "montecarlo",
+                    reference({"engine"})));
   is_exact_ = !design_.balls() && !design_.entrance && keeps_beams_elsewhere &&
               (model_.optics.is_smooth() || keeps_phases_) && (!has_form_ || request.diffraction) &&
               (request.engine == Engine::exact || request.engine == Engine::automatic);

@@ -52,7 +52,7 @@ class Photometer {
   /// \param parts number of spans of the lamp's spectrum, with two wavelengths each
   /// \param response response of the receiver; values are relative to its response to the light that falls on the part
   /// \throw InputError in the same cases as make_model()
-  Photometer(const Design& design, const PhotometryRequest& request, std::size_t parts,
+  Photometer(const Design& design, const PhotometrySettings& request, std::size_t parts,
              PhotometricResponse response = PhotometricResponse::y_bar);
 
   /// Measures all settings. Returns the readings in the order of the settings, or nothing if the measurement was
@@ -89,7 +89,7 @@ class Photometer {
   /// truncated.
   double cutoff_of_element() const;
   /// Returns advice for reducing standard errors, for messages.
-  std::string remedy_for_noise() const { return is_exact_ ? "give a lower --cutoff" : "give more samples"; }
+  std::string remedy_for_noise() const { return is_exact_ ? "give a lower cut-off" : "give more samples"; }
   bool has_diffraction() const { return is_exact_ && request_.diffraction; }
   /// Returns the reason why readings lack diffraction, for messages.
   std::string why_undiffracted() const;
@@ -204,7 +204,7 @@ class Photometer {
   std::uint32_t replicates() const;
 
   Design design_;
-  PhotometryRequest request_;
+  PhotometrySettings request_;
   OpticalModel model_;
   std::optional<Lamp> lamp_;  ///< empty if the spectrum of the design is used
   /// Weights of the wavelengths by flux, without absorption in the dye, which the tracer applies.

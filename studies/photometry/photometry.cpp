@@ -13,7 +13,6 @@
 #include "core/message_text.h"
 #include "core/number_format.h"
 #include "core/task_progress.h"
-#include "studies/design/request_limits.h"
 #include "studies/photometry/advice.h"
 #include "studies/photometry/colour.h"
 #include "studies/photometry/photometer.h"
@@ -21,10 +20,6 @@
 namespace retrace::studies {
 namespace {
 
-constexpr double kLeastWindowDeg = 0.05;
-constexpr double kMostWindowDeg = 10.0;
-constexpr double kMostAreaCm2 = 1e6;
-constexpr double kMostApertureArcmin = 300.0;
 /// Minimum diameter of the larger of the two apertures, source and receiver. If both were points, computed intensities
 /// would be infinite or 0.
 constexpr double kLeastApertureArcmin = 0.006;
@@ -42,49 +37,31 @@ constexpr std::size_t kMostMaps = 6;
 constexpr std::array<double, 4> kCurveEntranceDeg = {0.0, 10.0, 20.0, 30.0};
 // Number of observation angles of a curve.
 constexpr std::size_t kCurvePoints = 41;
-constexpr std::size_t kMostRotations = 720;
-
-void check_number(double value, double low, double high, const std::string& option) {
-  if (!(value >= low && value <= high))
-    throw InputError({"", 0, option}, fmt::format("must be a number from {} to {}, got {}", shortest(low),
-                                                  shortest(high), shortest(value)));
-}
 
 void check_discs(const raytrace::PhotometricApertures& apertures) {
   const double source = arcmin_of(apertures.source), receiver = arcmin_of(apertures.receiver);
-  check_number(source, 0.0, kMostApertureArcmin, "--source-arcmin");
-  check_number(receiver, 0.0, kMostApertureArcmin, "--receiver-arcmin");
-  if (std::max(source, receiver) < kLeastApertureArcmin)
-    throw InputError({"", 0, "--source-arcmin"},
-                     fmt::format("must be at least {0} unless --receiver-arcmin is at least {0}: with a point source "
-                                 "and a point receiver, intensities are infinite or 0; got {1} and --receiver-arcmin "
-                                 "{2}",
-                                 shortest(kLeastApertureArcmin), shortest(source), shortest(receiver)));
+  if (std::max(source, receiver) >= kLeastApertureArcmin) return;
+  const std::string of_receiver = reference({"receiver_arcmin"});
+  throw InputError(Field{"source_arcmin"},
+                   fmt::format("must be at least {0} unless {1} is at least {0}: with a point source and a point "
+                               "receiver, intensities are infinite or 0; got {2} and {1} {3}",
+                               shortest(kLeastApertureArcmin), of_receiver, shortest(source), shortest(receiver)));
 }
 
-void check(const PhotometryRequest& request) {
-  if (!(request.area_cm2 > 0.0 && request.area_cm2 <= kMostAreaCm2))
-    throw InputError({"", 0, "--area-cm2"}, fmt::format("must be greater than 0 and at most {}, got {}",
-                                                        shortest(kMostAreaCm2), shortest(request.area_cm2)));
-  check_number(request.window_deg, kLeastWindowDeg, kMostWindowDeg, "--window-deg");
-  check_discs(request.apertures);
-  if (request.engine == Engine::cell || request.engine == Engine::stochastic)
-    throw InputError({"", 0, "--engine"},
-                     fmt::format("must be auto, exact, montecarlo or embree, got {}", engine_name(request.engine)));
-  check_has_effect("--cutoff", request.cutoff.has_value(), request.engine, kExactEngines);
-  check_has_effect("--window-power", request.window_power, request.engine, kExactEngines);
-  check_has_effect("--samples", request.rays.has_value(), request.engine, kRayEnginesOfParts);
-  if (request.cutoff) check_share(*request.cutoff, false, "--cutoff");
-  if (request.rays) check_rays(*request.rays);
-  if (request.rotation_deg.empty() || request.rotation_deg.size() > kMostRotations)
-    throw InputError({"", 0, "--rotation"},
-                     fmt::format("must be 1 to {} turns, got {}", kMostRotations, request.rotation_deg.size()));
-  for (const double turn : request.rotation_deg) check_number(turn, -360.0, 360.0, "--rotation");
-  for (const TestPoint& point : request.programme.points)
-    if (!(point.observation_deg <= request.window_deg))
-      throw InputError({request.limits_source, point.line, "observation_deg"},
-                       fmt::format("must lie within the far field that is computed, --window-deg {}, got {}",
-                                   shortest(request.window_deg), shortest(point.observation_deg)));
+void check(const PhotometrySettings& settings) {
+  check_discs(settings.apertures);
+  // The settings of sweeps and other studies may contain engines and cut-offs that only the computation of RRE
+  // supports.
+  if (settings.engine == Engine::cell || settings.engine == Engine::stochastic)
+    throw InputError(Field{"engine"},
+                     fmt::format("must be auto, exact, montecarlo or embree, got {}", engine_name(settings.engine)));
+  if (settings.cutoff == 0.0) throw InputError(Field{"cutoff"}, "must be > 0 for photometry, got 0");
+  for (const TestPoint& point : settings.programme.points)
+    if (!(point.observation_deg <= settings.window_deg))
+      throw InputError(
+          {settings.limits_source, point.line, "observation_deg"},
+          fmt::format("must lie within the far field that is computed, {} {}, got {}", reference({"window_deg"}),
+                      shortest(settings.window_deg), shortest(point.observation_deg)));
 }
 
 /// Geometries that are measured (settings). Each direction of light has one setting with all its observation angles.
@@ -114,7 +91,7 @@ std::vector<double> measured_v_deg(const Point& point, bool mirrors) {
 
 /// Returns the settings that are measured for the test points of a request.
 /// \param mirrors true if the entrance face reflects the lamp back to the lamp
-Plan plan_of(const PhotometryRequest& request, bool mirrors) {
+Plan plan_of(const PhotometrySettings& request, bool mirrors) {
   Plan plan;
   std::map<std::tuple<double, double, double>, std::size_t> known;
   for (const TestPoint& point : request.programme.points) {
@@ -133,7 +110,7 @@ Plan plan_of(const PhotometryRequest& request, bool mirrors) {
 using Readings = std::vector<std::optional<PhotometerReading>>;
 
 /// Returns all readings of each test point, in the order of the points. Empty for points that were not measured.
-std::vector<std::vector<PhotometricPoint>> readings_of_points(const PhotometryRequest& request, const Plan& plan,
+std::vector<std::vector<PhotometricPoint>> readings_of_points(const PhotometrySettings& request, const Plan& plan,
                                                               const Readings& readings) {
   std::vector<std::vector<PhotometricPoint>> of_points;
   for (std::size_t k = 0; k < request.programme.points.size(); ++k) {
@@ -174,7 +151,7 @@ std::vector<PhotometricPoint> least_of(const std::vector<std::vector<Photometric
 
 /// Returns settings for the far-field maps: one for each measured direction of light at the first rotation of the part,
 /// up to kMostMaps.
-std::vector<PhotometerSetting> map_settings(const PhotometryRequest& request, const Plan& plan) {
+std::vector<PhotometerSetting> map_settings(const PhotometrySettings& request, const Plan& plan) {
   std::vector<PhotometerSetting> settings;
   for (const PhotometerSetting& measured : plan.settings)
     if (measured.rotation_deg == request.rotation_deg.front() && settings.size() < kMostMaps)
@@ -182,7 +159,7 @@ std::vector<PhotometerSetting> map_settings(const PhotometryRequest& request, co
   return settings;
 }
 
-std::vector<PhotometerSetting> curve_settings(const PhotometryRequest& request) {
+std::vector<PhotometerSetting> curve_settings(const PhotometrySettings& request) {
   std::vector<PhotometerSetting> settings;
   for (const double entrance_deg : kCurveEntranceDeg) {
     PhotometerSetting setting{0.0, -entrance_deg, request.rotation_deg.front(), {}, 0, false};
@@ -193,7 +170,7 @@ std::vector<PhotometerSetting> curve_settings(const PhotometryRequest& request) 
   return settings;
 }
 
-bool add_pictures(const Design& design, const PhotometryRequest& request, const Plan& plan, bool exact,
+bool add_pictures(const Design& design, const PhotometrySettings& request, const Plan& plan, bool exact,
                   Progress* progress, const Cancellation* cancel, PhotometryResult& result) {
   Photometer photometer(design, request, kPictureParts);
   if (!exact) photometer.leave_exact();
@@ -212,7 +189,7 @@ bool add_pictures(const Design& design, const PhotometryRequest& request, const 
 }
 
 /// Measures the readings of a design at all test points. Returns nothing if the measurement was cancelled.
-std::optional<std::vector<PhotometricPoint>> table_of(const Photometer& photometer, const PhotometryRequest& request,
+std::optional<std::vector<PhotometricPoint>> table_of(const Photometer& photometer, const PhotometrySettings& request,
                                                       Plan plan, const Cancellation* cancel) {
   for (PhotometerSetting& setting : plan.settings) setting.split = false;
   const auto readings = photometer.measure(plan.settings, nullptr, cancel);
@@ -224,7 +201,7 @@ std::optional<std::vector<PhotometricPoint>> table_of(const Photometer& photomet
 /// earlier designs failed come first.
 class TablesOfChanges {
  public:
-  TablesOfChanges(const PhotometryRequest& request, const Plan& plan, bool exact, const Cancellation* cancel)
+  TablesOfChanges(const PhotometrySettings& request, const Plan& plan, bool exact, const Cancellation* cancel)
       : request_(request), plan_(plan), exact_(exact), cancel_(cancel), order_(plan.settings.size()) {
     for (PhotometerSetting& setting : plan_.settings) setting.split = false;
     std::iota(order_.begin(), order_.end(), 0U);
@@ -269,7 +246,7 @@ class TablesOfChanges {
     std::rotate(order_.begin(), at, at + 1);
   }
 
-  const PhotometryRequest& request_;
+  const PhotometrySettings& request_;
   Plan plan_;
   bool exact_;
   const Cancellation* cancel_;
@@ -295,7 +272,7 @@ PhotometricLight light_from_name(std::string_view name) {
   using enum PhotometricLight;
   for (const PhotometricLight light : {illuminant_a, illuminant_d65, of_design})
     if (name == light_name(light)) return light;
-  throw InputError({"", 0, "--light"}, fmt::format("must be a, d65 or design, got {}", in_quotes(name)));
+  throw InputError(Field{"light"}, fmt::format("must be a, d65 or design, got {}", in_quotes(name)));
 }
 
 std::string_view verdict_name(Verdict verdict) {
@@ -338,21 +315,21 @@ Verdict area_verdict(const TestProgramme& programme, double area_cm2) {
 
 struct PhotometryStudy::Prepared {
   Design design;
-  PhotometryRequest request;
+  PhotometrySettings request;
   std::unique_ptr<Photometer> photometer;
   Plan plan;
 };
 
-PhotometryStudy::PhotometryStudy(Design design, PhotometryRequest request) : prepared_(std::make_unique<Prepared>()) {
-  check(request);
-  prepared_->photometer = std::make_unique<Photometer>(design, request, materials::kSpectralParts);
-  if (request.engine == Engine::exact && !prepared_->photometer->is_exact())
-    throw InputError({"", 0, "--engine"}, fmt::format("exact needs plane smooth faces, and those of {} scatter: use "
-                                                      "--engine montecarlo",
-                                                      design.source_name()));
-  prepared_->plan = plan_of(request, mirrors_source(design));
+PhotometryStudy::PhotometryStudy(Design design, PhotometrySettings settings) : prepared_(std::make_unique<Prepared>()) {
+  check(settings);
+  prepared_->photometer = std::make_unique<Photometer>(design, settings, materials::kSpectralParts);
+  if (settings.engine == Engine::exact && !prepared_->photometer->is_exact())
+    throw InputError(Field{"engine"},
+                     fmt::format("exact needs plane smooth faces, and those of {} scatter: use {} montecarlo",
+                                 design.source_name(), reference({"engine"})));
+  prepared_->plan = plan_of(settings, mirrors_source(design));
   prepared_->design = std::move(design);
-  prepared_->request = std::move(request);
+  prepared_->request = std::move(settings);
 }
 
 PhotometryStudy::~PhotometryStudy() = default;
@@ -369,7 +346,7 @@ namespace {
 
 /// Replaces readings that lack diffraction by the readings of the mean field if these are above the limits. The mean
 /// field, which excludes scattered light, gives lower bounds. Returns false if the computation was cancelled.
-bool raise_to_mean_field(const Photometer& photometer, const PhotometryRequest& request, const Plan& plan,
+bool raise_to_mean_field(const Photometer& photometer, const PhotometrySettings& request, const Plan& plan,
                          const Cancellation* cancel, std::vector<PhotometricPoint>& points) {
   const auto lacks = [](const PhotometricPoint& p) { return p.lacks_diffraction; };
   const std::optional<Photometer> mean_field = photometer.mean_field();
@@ -400,7 +377,7 @@ std::string reason_of(const std::vector<PhotometricPoint>& points, const Photome
 
 /// Measures with the exact engine, or by Monte Carlo if the exact engine needs too many beams and the request allows
 /// both.
-std::optional<std::vector<PhotometerReading>> readings_of(Photometer& photometer, const PhotometryRequest& request,
+std::optional<std::vector<PhotometerReading>> readings_of(Photometer& photometer, const PhotometrySettings& request,
                                                           const Plan& plan, Progress* progress,
                                                           const Cancellation* cancel) {
   AttemptProgress attempt(progress);
@@ -414,12 +391,12 @@ std::optional<std::vector<PhotometerReading>> readings_of(Photometer& photometer
   }
 }
 
-bool measures_colour(const PhotometryRequest& request) {
+bool measures_colour(const PhotometrySettings& request) {
   return request.colour && request.light != PhotometricLight::of_design && !request.programme.points.empty();
 }
 
 /// Returns true if a change of the design is searched in case the design fails.
-bool may_search_change(const Design& design, const PhotometryRequest& request) {
+bool may_search_change(const Design& design, const PhotometrySettings& request) {
   return request.advice && design.elements() && !design.entrance;
 }
 
@@ -429,7 +406,7 @@ struct StageProgress {
 };
 
 /// Divides the progress of a run among its stages. The durations of the stages are estimates, relative to the first.
-StageProgress stages_of(Progress* whole, const Design& design, const PhotometryRequest& request) {
+StageProgress stages_of(Progress* whole, const Design& design, const PhotometrySettings& request) {
   const double colour = 1.0 + (measures_colour(request) ? 0.3 : 0.0);
   const double pictures = colour + (request.pictures ? 0.3 : 0.0);
   const double change = pictures + (may_search_change(design, request) ? 1.0 : 0.0);
@@ -443,7 +420,7 @@ StageProgress stages_of(Progress* whole, const Design& design, const PhotometryR
 bool add_change(const Photometer& photometer, const Plan& plan, Progress* progress, const Cancellation* cancel,
                 PhotometryResult& result) {
   const Design& design = result.design;
-  const PhotometryRequest& request = result.request;
+  const PhotometrySettings& request = result.request;
   const bool is_asked = may_search_change(design, request) &&
                         verdict_of(result.points, request.programme) == Verdict::fail &&
                         area_verdict(request.programme, request.area_cm2) != Verdict::fail;
@@ -461,7 +438,7 @@ bool add_change(const Photometer& photometer, const Plan& plan, Progress* progre
 /// Adds the colour of the returned light if it is requested. Returns false if the computation was cancelled.
 bool add_colour(const Photometer& photometer, Progress* progress, const Cancellation* cancel,
                 PhotometryResult& result) {
-  const PhotometryRequest& request = result.request;
+  const PhotometrySettings& request = result.request;
   const TestProgramme& programme = request.programme;
   if (!measures_colour(request)) return true;
   const bool mirrors = mirrors_source(result.design);
@@ -513,7 +490,7 @@ PhotometryResult PhotometryStudy::run(Progress* progress, const Cancellation* ca
 
 std::optional<PhotometricFirstAnswer> PhotometryStudy::first_answer(double ray_share,
                                                                     const Cancellation* cancel) const {
-  PhotometryRequest request = prepared_->request;
+  PhotometrySettings request = prepared_->request;
   const auto rays = static_cast<double>(request.rays.value_or(kUsualRaysOfDirection));
   request.rays = static_cast<std::uint64_t>(std::min(rays, std::max(kMinRaysOfFirstAnswer, ray_share * rays)));
   Plan plan = prepared_->plan;

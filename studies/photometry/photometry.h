@@ -29,21 +29,22 @@ enum class PhotometricLight {
 /// Returns the name of the light: "a", "d65" or "design".
 std::string_view light_name(PhotometricLight light);
 /// Returns the light with a name.
-/// \throw InputError for an unknown name
+/// \throw InputError at the field `light` for an unknown name
 PhotometricLight light_from_name(std::string_view name);
 
 /// Default number of rays per direction of incidence.
 inline constexpr std::uint64_t kUsualRaysOfDirection = std::uint64_t{1} << 20;
 
-/// Request for the coefficients of retroreflection of a part at the test points of a standard.
-struct PhotometryRequest {
+/// Settings of the study. They are those of a PhotometryRequest, in which the files of the standard and of the dye are
+/// read; see resolve() in io/standard_reader.h.
+struct PhotometrySettings {
   TestProgramme programme;
   std::string limits_source;  ///< origin of the limits: the name of a standard or a file
   /// Area of the real part, to which R_I refers; > 0. The design defines only the structure of the part.
   double area_cm2 = 0.0;
   std::vector<double> rotation_deg = {0.0};  ///< rotations epsilon of the part; the minimum reading over them counts
   raytrace::PhotometricApertures apertures;
-  double window_deg = 2.0;  ///< half-angle of the computed far field; 0.05 to 10
+  double window_deg = 2.0;  ///< half-angle of the computed far field
   PhotometricLight light = PhotometricLight::illuminant_a;
   std::string dye;                                 ///< name of the dye; empty: no dye
   materials::SpectralCurve dye_absorption_per_mm;  ///< absorption of the dye; empty: no dye
@@ -164,7 +165,7 @@ struct PhotometricColour {
 
 struct PhotometryResult {
   Design design;
-  PhotometryRequest request;
+  PhotometrySettings request;
   std::string engine;
   std::vector<double> wavelengths_nm;
   bool has_diffraction = true;
@@ -209,11 +210,13 @@ Verdict verdict_of(const std::vector<PhotometricPoint>& points, const TestProgra
 /// satisfies a limit that is unconfirmed.
 Verdict area_verdict(const TestProgramme& programme, double area_cm2);
 
-/// Photometric study of a design. The constructor checks the request, and run() computes the readings.
+/// Photometric study of a design. The constructor checks the settings, and run() computes the readings.
 class PhotometryStudy {
  public:
-  /// \throw InputError for numbers out of range, an observation angle outside the window, and an unknown material
-  PhotometryStudy(Design design, PhotometryRequest request);
+  /// \throw InputError for an observation angle outside the window, for point apertures, for an engine that does not
+  /// support the design, and for an unknown material
+  /// \pre each setting is within the range of its field in PhotometryRequest, except the engine and the cut-off
+  PhotometryStudy(Design design, PhotometrySettings settings);
   ~PhotometryStudy();
 
   /// Returns true if light is traced as beams, and false if it is traced as rays. If beam tracing needs too many beams,

@@ -54,7 +54,7 @@ class PhotometricQuantity final : public Quantity {
 
   bool adds_up() const override {
     if (choice_.reading) return true;
-    const PhotometryRequest& request = table_->request;
+    const PhotometrySettings& request = table_->request;
     return choice_.point && request.rotation_deg.size() == 1 &&
            request.programme.points.at(*choice_.point).v_beside_deg.size() < 2;
   }
@@ -67,7 +67,7 @@ class PhotometricQuantity final : public Quantity {
 
  private:
   Points measured_points(const Candidate& candidate, const Cancellation* cancel) const {
-    PhotometryRequest request = table_->request;
+    PhotometrySettings request = table_->request;
     const AnalysisSettings& analysis = candidate.analysis();
     request.engine = analysis.engine;
     // Photometry by rays has no cut-off. Therefore the cut-off is passed only to engines that trace beams. The study
@@ -130,7 +130,7 @@ std::shared_ptr<const Quantity> make_photometric(std::string name, std::shared_p
 Quantities make_photometric_readings(const std::string& name, const std::shared_ptr<const PhotometricTable>& table,
                                      PhotometricFigure figure) {
   Quantities all;
-  const PhotometryRequest& request = table->request;
+  const PhotometrySettings& request = table->request;
   for (std::size_t point = 0; point < request.programme.points.size(); ++point) {
     const std::size_t besides = std::max<std::size_t>(1, request.programme.points[point].v_beside_deg.size());
     std::size_t number = 0;

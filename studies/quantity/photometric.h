@@ -23,7 +23,7 @@ enum class PhotometricFigure {
 /// the analysis.
 struct PhotometricTable {
   std::string key;  ///< identifier of the measurement within the study
-  PhotometryRequest request;
+  PhotometrySettings request;
   /// True if the study names no dye. The dye of the standard's colour then applies to designs without a spectral
   /// absorption of their own.
   bool dye_unless_coloured = false;

@@ -103,8 +103,8 @@ Design patch_design(const Job& patch, const std::filesystem::path& job_file, War
   return design;
 }
 
-PhotometryRequest photometry_of_patch() {
-  PhotometryRequest request;
+PhotometrySettings photometry_of_patch() {
+  PhotometrySettings request;
   request.engine = Engine::exact;
   request.cutoff = kCutoff;
   request.apertures = {Angle::from_deg(SetupLight::kApertureArcmin / 60.0),

@@ -155,8 +155,8 @@ TestProgramme straight_back() {
   return programme;
 }
 
-PhotometryRequest request_of(double receiver_deg) {
-  PhotometryRequest request;
+PhotometrySettings request_of(double receiver_deg) {
+  PhotometrySettings request;
   request.programme = straight_back();
   request.area_cm2 = 10.0;
   request.apertures.source = Angle::from_deg(0.0);

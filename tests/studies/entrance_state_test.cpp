@@ -135,7 +135,7 @@ TEST(EntranceState, EnginesThatServe) {
   EXPECT_GT(soiled.points[0].ledger[raytrace::Account::scattered_out], 0.0);
   EXPECT_EQ(refusal_of([&] { rre(design(kHaze), Engine::exact); }), "d.toml:11: entrance.haze");
   // Photometry uses rays. It reports that diffraction is left out, and why.
-  PhotometryRequest request;
+  PhotometrySettings request;
   request.programme.points.push_back(
       {0.2, 0.0, 0.0, 1.0, PhotometricUnit::cd_per_lx_per_m2, LimitStatus::confirmed, 2});
   request.area_cm2 = 10.0;

@@ -243,7 +243,7 @@ using namespace photometric_requests;
 // As the sink goes to 0, its effect vanishes. A sink of 0.1 um has a large effect.
 TEST(FormOfDesign, PhotometryIsContinuousInTheSink) {
   Design design = photometric_requests::design_of(honeycomb(0.0, 0.5));
-  PhotometryRequest request = request_of(points_at({0.2}, 100.0));
+  PhotometrySettings request = request_of(points_at({0.2}, 100.0));
   request.diffraction = true;
   // With this engine, weak beams are truncated for plane facets, too, and not only for facets with a form.
   request.engine = Engine::exact;
@@ -291,7 +291,7 @@ TEST(FormOfDesign, RreIsContinuousInUnequalDihedralErrors) {
 TEST(FormOfDesign, PhotometryIsContinuousInUnequalDihedralErrors) {
   Design design = photometric_requests::design_of(honeycomb(0.0, 0.5));
   design.surface.form.sink_um = 0.1;
-  PhotometryRequest request = request_of(points_at({0.2}, 100.0));
+  PhotometrySettings request = request_of(points_at({0.2}, 100.0));
   request.diffraction = true;
   request.engine = Engine::exact;
   const auto r_a = [&](double arcmin) {
@@ -308,7 +308,7 @@ TEST(FormOfDesign, PhotometryIsContinuousInUnequalDihedralErrors) {
 TEST(FormOfDesign, PhotometryTakesRaysBesideATexture) {
   Design design = photometric_requests::design_of(honeycomb(0.0, 0.5));
   design.surface.form.sink_um = 0.1;
-  PhotometryRequest request = request_of(points_at({0.2}, 1e6));
+  PhotometrySettings request = request_of(points_at({0.2}, 1e6));
   request.rays = 1U << 12;
   EXPECT_EQ(run(design, request).engine, "embree") << "without diffraction";
   request.engine = Engine::exact;

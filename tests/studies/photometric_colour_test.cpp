@@ -19,15 +19,15 @@ using namespace testing;
 const std::string kData = RETRACE_SOURCE_DIR "/data/";
 
 /// Returns a request for the colour in the light of an illuminant.
-PhotometryRequest colour_request(PhotometricLight light = PhotometricLight::illuminant_a,
-                                 double observation_deg = 0.05) {
-  PhotometryRequest request = request_of(points_at({observation_deg}, 1.0));
+PhotometrySettings colour_request(PhotometricLight light = PhotometricLight::illuminant_a,
+                                  double observation_deg = 0.05) {
+  PhotometrySettings request = request_of(points_at({observation_deg}, 1.0));
   request.light = light;
   request.colour = true;
   return request;
 }
 
-materials::Chromaticity colour_of(const Design& design, const PhotometryRequest& request) {
+materials::Chromaticity colour_of(const Design& design, const PhotometrySettings& request) {
   return run(design, request).colour.value().chromaticity.value();
 }
 
@@ -69,7 +69,7 @@ TEST(PhotometricColour, OfADyedPartIsTheSumOverTheTable) {
       back.values[k] *= std::exp(-way_mm * dye.at(back.wavelengths_nm[k]));
     const materials::Chromaticity expected = materials::chromaticity(
         materials::tristimulus(back, materials::read_colour_matching(kData + "cie_xyz_1931_5nm.csv")));
-    PhotometryRequest request = colour_request();
+    PhotometrySettings request = colour_request();
     request.dye_absorption_per_mm = dye;
     const materials::Chromaticity found = colour_of(colourless(), request);
     EXPECT_NEAR(found.x, expected.x, 1e-5) << name;
@@ -92,7 +92,7 @@ TEST(PhotometricColour, WithDispersionAndDiffractionIsThatOfItsSpectrum) {
   Design design = design_of(honeycomb(0.75, 0.5));
   design.substance.refractive_index.reset();
   design.substance.material = "PMMA";
-  PhotometryRequest request = colour_request(PhotometricLight::illuminant_a, 1.0 / 3.0);
+  PhotometrySettings request = colour_request(PhotometricLight::illuminant_a, 1.0 / 3.0);
   request.diffraction = true;
   request.engine = Engine::exact;  // without the noise of resampled weak beams
   const materials::Chromaticity found = colour_of(design, request);
@@ -122,10 +122,10 @@ TEST(PhotometricColour, IsExactWhereTotalReflectionEnds) {
   Design design = design_of(infinite(geometry::RtpElement{3.0, 3.0, 90.0}, geometry::Arrangement::aligned, 2.0));
   design.substance.refractive_index.reset();
   design.substance.material = "N-BK7";
-  const PhotometryRequest request = colour_request();
+  const PhotometrySettings request = colour_request();
   for (const double h_deg : {5.7, 5.9}) {
     const auto r_a = [&](const Design& lit, PhotometricLight light, std::size_t response) {
-      PhotometryRequest of_light = request;
+      PhotometrySettings of_light = request;
       of_light.engine = Engine::exact;
       of_light.light = light;
       return Photometer(lit, of_light, 4, static_cast<PhotometricResponse>(response))
@@ -155,7 +155,7 @@ TEST(PhotometricColour, IsExactWhereTotalReflectionEnds) {
 }
 
 TEST(PhotometricColour, HasTheErrorOfItsRays) {
-  PhotometryRequest request = colour_request();
+  PhotometrySettings request = colour_request();
   request.dye_absorption_per_mm = materials::read_spectral_absorption(kData + "dye_amber.csv");
   const Design design = design_of(honeycomb(0.0, 20.0));
   const materials::Chromaticity exact = colour_of(design, request);
@@ -178,7 +178,7 @@ TEST(PhotometricColour, HasTheErrorOfItsRays) {
 
 TEST(PhotometricColour, VerdictIsThatOfTheBoundaries) {
   const Design wide = colourless(20.0);  // traced by rays; diffraction is negligible
-  PhotometryRequest request = colour_request();
+  PhotometrySettings request = colour_request();
   const auto verdict = [&](std::vector<ColourBoundary> boundaries) {
     request.programme.boundaries = std::move(boundaries);
     return run(wide, request).colour.value().verdict();
@@ -206,7 +206,7 @@ TEST(PhotometricColour, NearABoundaryOrWithoutDiffractionIsUndetermined) {
   colour.lacks_diffraction = true;
   EXPECT_EQ(colour.verdict(), Verdict::undetermined);
   // Cells of half a millimetre are traced by rays, without diffraction.
-  PhotometryRequest request = colour_request();
+  PhotometrySettings request = colour_request();
   request.programme.boundaries = {at_most(1.0, 0.0, 0.9)};
   request.engine = Engine::montecarlo;
   request.rays = 1U << 10;
@@ -218,7 +218,7 @@ TEST(PhotometricColour, NearABoundaryOrWithoutDiffractionIsUndetermined) {
 
 // Perfect cube corners return no light at an observation angle of 1 degree.
 TEST(PhotometricColour, OfNoLightIsUndetermined) {
-  PhotometryRequest request = colour_request(PhotometricLight::illuminant_a, 1.0);
+  PhotometrySettings request = colour_request(PhotometricLight::illuminant_a, 1.0);
   request.programme.boundaries = {at_most(1.0, 0.0, 0.9)};
   request.programme.boundaries[0].observation_deg = 1.0;
   const PhotometryResult result = run(design_of(honeycomb(0.0, 20.0), true), request);
@@ -230,7 +230,7 @@ TEST(PhotometricColour, OfNoLightIsUndetermined) {
 
 // The colour is measured at V = 5 and V = -5, away from the mirror image. The worse value counts.
 TEST(PhotometricColour, IsMeasuredBesideTheMirrorImage) {
-  PhotometryRequest request = colour_request();
+  PhotometrySettings request = colour_request();
   request.programme.boundaries = {at_most(1.0, 0.0, 0.448)};
   request.programme.boundaries[0].v_beside_deg = {5.0, -5.0};
   EXPECT_EQ(run(colourless(), request).colour->v_deg, 0.0);

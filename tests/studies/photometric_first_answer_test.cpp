@@ -30,10 +30,10 @@ Design cubes() {
 /// Returns a photometry request with two observation angles, at an entrance angle at which some light is trapped in the
 /// part. The Monte Carlo engine uses one wavelength without diffraction. All other engines use diffraction and the
 /// wavelengths of illuminant A.
-PhotometryRequest request_by(Engine engine) {
+PhotometrySettings request_by(Engine engine) {
   TestProgramme programme = points_at({0.1, 0.2}, 1.0);
   for (TestPoint& point : programme.points) point.h_deg = 20.0;
-  PhotometryRequest request = request_of(programme);
+  PhotometrySettings request = request_of(programme);
   request.engine = engine;
   if (engine == Engine::montecarlo) {
     request.rays = std::uint64_t{1} << 19U;
@@ -90,7 +90,7 @@ class Shares : public Progress {
 // The readings alone take the progress to 1 if they are all that is requested. Otherwise a part of it is left for the
 // colour and for the search for a change with which the design passes.
 TEST(PhotometricFirstAnswer, ProgressCoversEveryStage) {
-  PhotometryRequest request = request_by(Engine::automatic);
+  PhotometrySettings request = request_by(Engine::automatic);
   for (TestPoint& point : request.programme.points) point.minimum = 1e6;
   request.light = PhotometricLight::illuminant_a;
   const auto shares_of = [&](bool has_colour, bool has_advice) {
@@ -175,7 +175,7 @@ TEST(PhotometricFirstAnswer, MeasurementsStopAtAnyMoment) {
       "x_length_mm = 5\ny_length_mm = 5\n[body]\nthickness_mm = 2\nrefractive_index = 1.49\n"
       "[surface]\ndihedral_error_arcmin = 0.75\nroughness_sq_nm = 0.1\ncorrelation_length_um = 2\n",
       "rough.toml");
-  PhotometryRequest request = request_of(points_at({0.1, 0.2, 0.5}, 1.0));
+  PhotometrySettings request = request_of(points_at({0.1, 0.2, 0.5}, 1.0));
   request.diffraction = true;
   for (const Design& design : {rough, cubes()}) {
     const PhotometryStudy study(design, request);

@@ -47,8 +47,8 @@ inline TestProgramme points_at(const std::vector<double>& observation_deg, doubl
 }
 
 /// Returns a request with the design's own light, without diffraction.
-inline PhotometryRequest request_of(TestProgramme programme) {
-  PhotometryRequest request;
+inline PhotometrySettings request_of(TestProgramme programme) {
+  PhotometrySettings request;
   request.programme = std::move(programme);
   request.area_cm2 = 10.0;
   request.apertures = default_apertures();
@@ -58,7 +58,7 @@ inline PhotometryRequest request_of(TestProgramme programme) {
   return request;
 }
 
-inline PhotometryResult run(const Design& design, const PhotometryRequest& request) {
+inline PhotometryResult run(const Design& design, const PhotometrySettings& request) {
   return PhotometryStudy(design, request).run();
 }
 

@@ -12,8 +12,10 @@
 #include "core/number_format.h"
 #include "core/threads.h"
 #include "materials/io/spectrum_reader.h"
+#include "requests/descriptions.h"
 #include "studies/design/io/design_reader.h"
 #include "studies/photometry/io/photometry_files.h"
+#include "studies/photometry/io/standard_reader.h"
 #include "studies/photometry/standards.h"
 #include "tests/studies/photometric_requests.h"
 #include "tests/support/closed_forms.h"
@@ -35,7 +37,7 @@ using std::numbers::pi;
 TEST(Photometry, ReceiverSeesOneOfSixSpots) {
   Design design = design_of(honeycomb(2.46), true);
   design.substance.refractive_index = 1.49;
-  PhotometryRequest request = request_of(points_at({0.2}, 1.0));
+  PhotometrySettings request = request_of(points_at({0.2}, 1.0));
   request.apertures = {Angle::from_deg(0.1), Angle::from_deg(0.05)};
   const double source_sr = pi * std::pow(0.05 * kDeg, 2.0);
   std::vector<double> seen;
@@ -64,7 +66,7 @@ TEST(Photometry, VhGridAgreesWithRre) {
   for (const geometry::PartSpec& spec :
        {honeycomb(), infinite(geometry::TriangularCube{1.0}, Arrangement::triangular, 1.0)}) {
     const Design design = design_of(spec, true);
-    PhotometryRequest request = request_of(r150("IA", "red"));
+    PhotometrySettings request = request_of(r150("IA", "red"));
     request.cutoff = 1e-9;
     const PhotometryResult result = run(design, request);
     ASSERT_EQ(result.directions.size(), 7U);
@@ -115,7 +117,7 @@ TEST(Photometry, DirectionsThatShareTheirLightHaveTheirOwnValues) {
   TestProgramme all = points_at({0.2, 0.33, 0.33, 0.33}, 1.0);
   const std::vector<std::pair<double, double>> v_and_h = {{0.0, 0.0}, {5.0, 20.0}, {-5.0, 20.0}, {-5.0, -20.0}};
   for (std::size_t k = 0; k < v_and_h.size(); ++k) std::tie(all.points[k].v_deg, all.points[k].h_deg) = v_and_h[k];
-  PhotometryRequest request = request_of(all);
+  PhotometrySettings request = request_of(all);
   request.diffraction = true;
   request.engine = Engine::exact;
   request.cutoff = 1e-6;
@@ -136,10 +138,10 @@ TEST(Photometry, DirectionsThatShareTheirLightHaveTheirOwnValues) {
 }
 
 /// Returns a request with diffraction at an angle of 20 degrees, at which light is trapped in the part.
-PhotometryRequest diffracted(Engine engine) {
+PhotometrySettings diffracted(Engine engine) {
   TestProgramme programme = points_at({0.0, 0.2, 0.33, 0.5}, 1.0);
   for (TestPoint& point : programme.points) point.h_deg = 20.0;
-  PhotometryRequest request = request_of(programme);
+  PhotometrySettings request = request_of(programme);
   request.diffraction = true;
   request.engine = engine;
   return request;
@@ -152,7 +154,7 @@ TEST(Photometry, ResamplesWeakBeams) {
   small.angle_errors.dihedral_error_arcmin.fill(2.0);
   for (const geometry::PartSpec& spec : {honeycomb(2.0), small}) {
     const Design design = design_of(spec);
-    PhotometryRequest request = diffracted(Engine::exact);
+    PhotometrySettings request = diffracted(Engine::exact);
     const PhotometryResult exact = run(design, request);
     request.cutoff = 1e-7;
     const PhotometryResult further = run(design, request);
@@ -190,7 +192,7 @@ Design rough(Design design, double sq_nm) {
 TEST(Photometry, InvisibleRoughnessChangesNoReading) {
   geometry::PartSpec small = finite(geometry::HexagonalCube{1.0}, Arrangement::honeycomb, 4.0, 4.0, 1.0);
   small.angle_errors.dihedral_error_arcmin.fill(2.0);
-  PhotometryRequest request = diffracted(Engine::automatic);
+  PhotometrySettings request = diffracted(Engine::automatic);
   for (TestPoint& point : points_at({0.8, 1.5}, 1.0).points) {
     point.h_deg = 20.0;
     request.programme.points.push_back(point);
@@ -213,7 +215,7 @@ TEST(Photometry, InvisibleRoughnessChangesNoReading) {
 // with those of a run that follows beams exactly down to a lower cut-off.
 TEST(Photometry, ResampledBeamsOfRoughFacetsScatterAsFollowedOnesDo) {
   const Design design = rough(design_of(honeycomb(2.0)), 20.0);
-  PhotometryRequest request = diffracted(Engine::exact);
+  PhotometrySettings request = diffracted(Engine::exact);
   request.cutoff = 1e-6;
   const PhotometryResult further = run(design, request);
   const PhotometryResult resampled = run(design, diffracted(Engine::automatic));
@@ -237,7 +239,7 @@ TEST(Photometry, ResampledBeamsOfRoughFacetsScatterAsFollowedOnesDo) {
 TEST(Photometry, StandardErrorsOfFormsCoverTruncatedLight) {
   const Design design = read_design(std::string(RETRACE_SOURCE_DIR) + "/examples/sunk_reflector.toml",
                                     std::vector<std::string>{"light.wavelength_nm=620"});
-  PhotometryRequest request = diffracted(Engine::automatic);
+  PhotometrySettings request = diffracted(Engine::automatic);
   const PhotometryResult found = run(design, request);
   request.cutoff = 1e-7;
   const PhotometryResult further = run(design, request);
@@ -251,7 +253,7 @@ TEST(Photometry, StandardErrorsOfFormsCoverTruncatedLight) {
 
 TEST(Photometry, ResampledBeamsDependOnTheSeedAndNotOnThreads) {
   const Design design = design_of(honeycomb(2.0));
-  PhotometryRequest request = diffracted(Engine::automatic);
+  PhotometrySettings request = diffracted(Engine::automatic);
   std::vector<PhotometryResult> results;
   for (const unsigned threads : {1U, 3U}) run_with_threads(threads, [&] { results.push_back(run(design, request)); });
   request.seed = 2;
@@ -265,7 +267,7 @@ TEST(Photometry, ResampledBeamsDependOnTheSeedAndNotOnThreads) {
 
 // A part with an area outside the limits of its class fails, however bright it is. No change of its elements can help.
 TEST(Photometry, APartOfTheWrongAreaFails) {
-  PhotometryRequest request = request_of(points_at({0.1}, 1.0));
+  PhotometrySettings request = request_of(points_at({0.1}, 1.0));
   LimitArea most;
   most.area_cm2 = 5.0;
   most.status = LimitStatus::read;
@@ -285,7 +287,7 @@ TEST(Photometry, APartOfTheWrongAreaFails) {
 // A grey dye transmits exp(-a L) at normal incidence, where L = 2 (plate + depth) in a perfect array of prisms.
 TEST(Photometry, DyeTakesItsShareOfTheFlux) {
   const Design design = design_of(infinite(geometry::RtpElement{0.5, 0.5, 90.0}, Arrangement::aligned, 2.0), true);
-  PhotometryRequest request = request_of(points_at({0.05}, 1.0));
+  PhotometrySettings request = request_of(points_at({0.05}, 1.0));
   request.light = PhotometricLight::illuminant_a;
   const double clear = run(design, request).points[0].r_a;
   const double way_mm = 2.0 * 2.25;
@@ -314,7 +316,7 @@ TEST(Photometry, DyeTakesItsShareOfTheFlux) {
     for (std::size_t k = 0; k < request.dye_absorption_per_mm.values.size(); ++k)
       curve.push_back({request.dye_absorption_per_mm.wavelengths_nm[k], request.dye_absorption_per_mm.values[k]});
     coloured.substance.absorption_per_mm = curve;
-    PhotometryRequest undyed = request;
+    PhotometrySettings undyed = request;
     undyed.dye_absorption_per_mm = {};
     EXPECT_NEAR(run(coloured, undyed).points[0].r_a, dyed, 1e-12 * dyed) << name;
     EXPECT_GT(behind / all, 0.1);
@@ -325,7 +327,7 @@ TEST(Photometry, DyeTakesItsShareOfTheFlux) {
 // Monte Carlo with the same apertures of source and receiver agrees with the exact engine within its standard error.
 TEST(Photometry, MonteCarloAgreesWithTheExactEngine) {
   const Design design = design_of(honeycomb(4.0));
-  PhotometryRequest request = request_of(r150("IA", "red"));
+  PhotometrySettings request = request_of(r150("IA", "red"));
   request.programme.points.resize(4);
   request.engine = Engine::exact;
   const PhotometryResult exact = run(design, request);
@@ -345,7 +347,7 @@ TEST(Photometry, MonteCarloAgreesWithTheExactEngine) {
 // Diffracted light reaches the region between the spots. The power outside of the window is reported.
 TEST(Photometry, DiffractionReachesWhereRaysDoNot) {
   const Design design = design_of(honeycomb(0.0, 0.4));
-  PhotometryRequest request = request_of(points_at({1.0 / 3.0}, 1.0));
+  PhotometrySettings request = request_of(points_at({1.0 / 3.0}, 1.0));
   EXPECT_EQ(run(design, request).points[0].r_a, 0.0);
   request.diffraction = true;
   EXPECT_FALSE(run(design, request).directions[0].split) << "takes long, and was not asked for";
@@ -362,7 +364,7 @@ TEST(Photometry, DiffractionReachesWhereRaysDoNot) {
 // part returns enough light, and reports the table of the changed design.
 TEST(Photometry, FindsTheAngleErrorThatPasses) {
   const Design design = design_of(honeycomb(0.0, 10.0), true);
-  PhotometryRequest request = request_of(points_at({1.0 / 3.0}, 300.0));
+  PhotometrySettings request = request_of(points_at({1.0 / 3.0}, 300.0));
   request.rotation_deg = {0.0, 30.0};
   // The source has an angular diameter of half a degree, so that one ring of six spots is sufficient for both
   // rotations.
@@ -393,7 +395,7 @@ struct InterruptAfterTheTable : Progress {
 };
 
 TEST(Photometry, AnInterruptedSearchForWhatToChangeIsNotComplete) {
-  PhotometryRequest request = request_of(points_at({1.0 / 3.0}, 1e8));
+  PhotometrySettings request = request_of(points_at({1.0 / 3.0}, 1e8));
   request.advice = true;
   InterruptAfterTheTable interrupt;
   const PhotometryResult result =
@@ -405,7 +407,7 @@ TEST(Photometry, AnInterruptedSearchForWhatToChangeIsNotComplete) {
 
 TEST(Photometry, WhatCannotPassIsToldWithTheBestThatWasTried) {
   const Design design = design_of(honeycomb(0.0, 60.0), true);
-  PhotometryRequest request = request_of(points_at({1.0 / 3.0}, 1e8));
+  PhotometrySettings request = request_of(points_at({1.0 / 3.0}, 1e8));
   request.advice = true;
   const PhotometryResult result = run(design, request);
   ASSERT_TRUE(result.change);
@@ -416,7 +418,7 @@ TEST(Photometry, WhatCannotPassIsToldWithTheBestThatWasTried) {
 // The manual defines the default cut-off. It is 1e-5 of the power that enters one element. For resampled beams of a
 // part with N elements, it is the larger of 5e-5 and 5e-7 N.
 TEST(Photometry, ReportsItsCutoff) {
-  PhotometryRequest request = request_of(points_at({0.2}, 1.0));
+  PhotometrySettings request = request_of(points_at({0.2}, 1.0));
   const auto cutoff = [&](const geometry::PartSpec& part) {
     return PhotometryStudy(design_of(part, true), request).cutoff();
   };
@@ -440,25 +442,55 @@ TEST(Photometry, ReportsItsCutoff) {
 
 TEST(Photometry, RefusesWhatItCannotMeasure) {
   const Design design = design_of(honeycomb(), true);
-  const auto refusal = [&](const std::function<void(PhotometryRequest&)>& spoil) -> std::string {
-    PhotometryRequest request = request_of(points_at({0.2, 1.5}, 1.0));
-    request.limits_source = "l.csv";
-    spoil(request);
-    return refusal_of([&] { PhotometryStudy(design, request); }, "accepted");
+  const auto refusal = [&](const std::function<void(PhotometrySettings&)>& spoil) -> std::string {
+    PhotometrySettings settings = request_of(points_at({0.2, 1.5}, 1.0));
+    settings.limits_source = "l.csv";
+    spoil(settings);
+    return refusal_of([&] { PhotometryStudy(design, settings); }, "accepted");
   };
   EXPECT_EQ(refusal([](auto&) {}), "accepted");
-  EXPECT_EQ(refusal([](auto& r) { r.area_cm2 = 0.0; }), "--area-cm2");
-  EXPECT_EQ(refusal([](auto& r) { r.window_deg = 1.0; }), "l.csv:2: observation_deg");
-  EXPECT_EQ(refusal([](auto& r) { r.window_deg = 20.0; }), "--window-deg");
+  EXPECT_EQ(refusal([](auto& s) { s.window_deg = 1.0; }), "l.csv:2: observation_deg");
   // The message gives the true bound and shows the rejected value with enough digits to be below the bound.
-  for (const double arcmin : {0.0, 0.005, 0.0059}) {
-    const std::string message = refusal([&](auto& r) { r.apertures = {Angle::from_deg(arcmin / 60.0), {}}; });
-    EXPECT_EQ(message, "--source-arcmin");
-    EXPECT_EQ(message, "--source-arcmin");
-  }
-  EXPECT_EQ(refusal([](auto& r) { r.apertures = {Angle::from_deg(0.006 / 60.0), {}}; }), "accepted");
-  EXPECT_EQ(refusal([](auto& r) { r.apertures.source = Angle::from_deg(300.1 / 60.0); }), "--source-arcmin");
-  EXPECT_EQ(refusal([](auto& r) { r.engine = Engine::cell; }), "--engine");
+  for (const double arcmin : {0.0, 0.005, 0.0059})
+    EXPECT_EQ(refusal([&](auto& s) { s.apertures = {Angle::from_deg(arcmin / 60.0), {}}; }), "source_arcmin");
+  EXPECT_EQ(refusal([](auto& s) { s.apertures = {Angle::from_deg(0.006 / 60.0), {}}; }), "accepted");
+  EXPECT_EQ(refusal([](auto& s) { s.engine = Engine::cell; }), "engine");
+  EXPECT_EQ(refusal([](auto& s) { s.cutoff = 0.0; }), "cutoff");
+}
+
+TEST(Photometry, RefusesRequestsOutOfRange) {
+  const auto refusal = [](const std::function<void(PhotometryRequest&)>& spoil) -> std::string {
+    PhotometryRequest request;
+    request.standard = "r150";
+    request.part_class = "IA";
+    request.colour = "red";
+    request.area_cm2 = 30.0;
+    spoil(request);
+    return refusal_of([&] { resolve(request, false); }, "accepted");
+  };
+  EXPECT_EQ(refusal([](auto&) {}), "accepted");
+  EXPECT_EQ(refusal([](auto& r) { r.standard = "r151"; }), "standard");
+  EXPECT_EQ(refusal([](auto& r) { r.part_class = "XX"; }), "part_class");
+  EXPECT_EQ(refusal([](auto& r) { r.colour = std::nullopt; }), "colour");
+  EXPECT_EQ(refusal([](auto& r) { r.area_cm2 = 0.0; }), "area_cm2");
+  EXPECT_EQ(refusal([](auto& r) { r.area_cm2 = -1.0; }), "area_cm2");
+  EXPECT_EQ(refusal([](auto& r) { r.rotation_deg = std::vector<double>(); }), "rotation_deg");
+  EXPECT_EQ(refusal([](auto& r) { r.rotation_deg = std::vector<double>(721, 0.0); }), "rotation_deg");
+  EXPECT_EQ(refusal([](auto& r) { r.rotation_deg = std::vector<double>{0.0, 361.0}; }), "rotation_deg");
+  EXPECT_EQ(refusal([](auto& r) { r.dye = "blue"; }), "dye");
+  EXPECT_EQ(refusal([](auto& r) { r.source_arcmin = 300.1; }), "source_arcmin");
+  EXPECT_EQ(refusal([](auto& r) { r.window_deg = 20.0; }), "window_deg");
+  EXPECT_EQ(refusal([](auto& r) { r.engine = "cell"; }), "engine");
+  EXPECT_EQ(refusal([](auto& r) { r.cutoff = 0.0; }), "cutoff");
+}
+
+TEST(Photometry, RequestsNameTheShippedStandards) {
+  const requests::Row* const row = requests::row_of(requests::description<PhotometryRequest>(), "standard");
+  ASSERT_NE(row, nullptr);
+  std::vector<std::string_view> names;
+  for (const ShippedStandard& standard : shipped_standards()) names.push_back(standard.name);
+  const auto words = std::get<schema::WordOrFile>(row->kind).words;
+  EXPECT_EQ(std::vector(words.begin(), words.end()), names);
 }
 
 }  // namespace

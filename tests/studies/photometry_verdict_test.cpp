@@ -71,8 +71,8 @@ Design scattering_by_abg(Design design, double a = kAbgA) {
 
 /// Returns a request for two points with diffraction. The limits of the regulation are multiplied by `share_of_limits`.
 /// Smooth cube corners with errors of 0.75 arcmin reach the limits of the regulation.
-PhotometryRequest diffracted_request(double share_of_limits) {
-  PhotometryRequest request = request_of(r150("IA", "red"));
+PhotometrySettings diffracted_request(double share_of_limits) {
+  PhotometrySettings request = request_of(r150("IA", "red"));
   request.programme.points.resize(2);
   for (TestPoint& point : request.programme.points) point.minimum *= share_of_limits;
   request.area_cm2 = 30.0;
@@ -85,7 +85,7 @@ PhotometryRequest diffracted_request(double share_of_limits) {
 // A roughness of 0.1 nm must not change the readings measurably.
 TEST(PhotometryVerdict, IsContinuousInTheRoughness) {
   const Design smooth = design_of(honeycomb(0.75, 0.5));
-  PhotometryRequest request = diffracted_request(0.5);
+  PhotometrySettings request = diffracted_request(0.5);
   // With this engine, weak beams are truncated for smooth as well as for rough facets.
   request.engine = Engine::exact;
   request.rays.reset();
@@ -105,7 +105,7 @@ TEST(PhotometryVerdict, IsContinuousInTheRoughness) {
 TEST(PhotometryVerdict, RoughPartsPassAndFailByTheirDiffractedValue) {
   const Design part = rough(design_of(honeycomb(0.75, 0.5)), 20.0);
   for (const auto& [share_of_limits, verdict] : {std::pair{0.5, Verdict::pass}, {1e3, Verdict::fail}}) {
-    PhotometryRequest request = diffracted_request(share_of_limits);
+    PhotometrySettings request = diffracted_request(share_of_limits);
     request.advice = false;
     const PhotometryResult result = run(part, request);
     EXPECT_EQ(result.verdict, verdict);
@@ -121,7 +121,7 @@ TEST(PhotometryVerdict, RoughPartsPassAndFailByTheirDiffractedValue) {
 // light increases R_A above this value.
 TEST(PhotometryVerdict, RoughPartsShowTheirSpecularShareAndWhatTheyScatter) {
   const Design smooth = design_of(honeycomb(0.0, 0.5), true);
-  PhotometryRequest request = request_of(points_at({0.05}, 1e-3));
+  PhotometrySettings request = request_of(points_at({0.05}, 1e-3));
   request.diffraction = true;
   const PhotometryResult before = run(smooth, request);
   const double sq_nm = 15.0;
@@ -139,7 +139,7 @@ TEST(PhotometryVerdict, RoughPartsShowTheirSpecularShareAndWhatTheyScatter) {
 // Textures that contain no information on phases are traced by rays, and diffraction includes only the mean field.
 TEST(PhotometryVerdict, MeanFieldIsTheSmoothPatternTimesTheSpecularShares) {
   const Design smooth = design_of(honeycomb(0.0, 0.5), true);
-  PhotometryRequest request = request_of(points_at({0.1, 1.0 / 3.0}, 1e-3));
+  PhotometrySettings request = request_of(points_at({0.1, 1.0 / 3.0}, 1e-3));
   request.diffraction = true;
   request.rays = 1U << 12;
   const PhotometryResult before = run(smooth, request);
@@ -167,7 +167,7 @@ TEST(PhotometryVerdict, TexturesWithoutPhasesThatTheBoundDoesNotLiftAreUndetermi
 
 TEST(PhotometryVerdict, DiffractionThatIsLeftOutIsNamedWhyEver) {
   const Design smooth = design_of(honeycomb(0.0, 0.5));
-  PhotometryRequest request = diffracted_request(1e-6);
+  PhotometrySettings request = diffracted_request(1e-6);
   const auto reason = [&](const Design& design) {
     const PhotometryResult result = run(design, request);
     EXPECT_EQ(result.verdict, Verdict::undetermined);
@@ -187,7 +187,7 @@ TEST(PhotometryVerdict, DiffractionThatIsLeftOutIsNamedWhyEver) {
 TEST(PhotometryVerdict, WideCellsNeedNoDiffraction) {
   for (const auto& [aperture_mm, limit, verdict] :
        {std::tuple{13.0, 1e9, Verdict::fail}, {13.0, 1.0, Verdict::pass}, {12.8, 1e9, Verdict::undetermined}}) {
-    PhotometryRequest request = request_of(points_at({0.05}, limit));
+    PhotometrySettings request = request_of(points_at({0.05}, limit));
     request.engine = Engine::montecarlo;
     request.rays = 1U << 14;
     EXPECT_EQ(run(design_of(honeycomb(0.0, aperture_mm)), request).verdict, verdict) << aperture_mm << " " << limit;
@@ -196,7 +196,7 @@ TEST(PhotometryVerdict, WideCellsNeedNoDiffraction) {
 
 // The receiver is between the spots, and none of the few rays hits it. This does not prove that it receives no light.
 TEST(PhotometryVerdict, AReceiverThatNoRayMetHasTheErrorOfOne) {
-  PhotometryRequest request = request_of(points_at({1.0}, 100.0));
+  PhotometrySettings request = request_of(points_at({1.0}, 100.0));
   request.engine = Engine::montecarlo;
   request.rays = 1U << 10;
   const PhotometryResult result = run(design_of(honeycomb(0.0, 20.0)), request);

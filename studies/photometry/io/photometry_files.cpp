@@ -68,7 +68,7 @@ Json change_json(const PhotometricChange& change) {
           {"points", points_json(change.points)}};
 }
 
-Json areas_json(const PhotometryRequest& asked) {
+Json areas_json(const PhotometrySettings& asked) {
   Json json = Json::array();
   for (const LimitArea& limit : asked.programme.areas)
     json.push_back({{"limit", limit.text()},
@@ -104,7 +104,7 @@ Json colour_json(const PhotometricColour& colour) {
 }
 
 Json programme_json(const PhotometryResult& result) {
-  const PhotometryRequest& asked = result.request;
+  const PhotometrySettings& asked = result.request;
   return {{"standard", asked.programme.standard},
           {"class", asked.programme.part_class},
           {"colour", asked.programme.colour},
@@ -134,7 +134,7 @@ std::string rows_of(const std::vector<PhotometricPoint>& points) {
 }
 
 /// Returns a line for each limit of the area.
-std::string areas_text(const PhotometryRequest& asked) {
+std::string areas_text(const PhotometrySettings& asked) {
   std::string text;
   for (const LimitArea& limit : asked.programme.areas)
     text += fmt::format("area: {}{} - {}, has {}\n", limit.holds(asked.area_cm2) ? "pass" : "FAIL",
@@ -195,7 +195,7 @@ std::string change_text(const PhotometricChange& change, const TestProgramme& pr
 }  // namespace
 
 std::string photometry_json(const PhotometryResult& result) {
-  const PhotometryRequest& asked = result.request;
+  const PhotometrySettings& asked = result.request;
   Json json = {{"engine", result.engine},
                {"engine_requested", engine_name(asked.engine)},
                {"diffraction", result.has_diffraction},

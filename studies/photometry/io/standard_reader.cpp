@@ -8,6 +8,7 @@
 #include "core/message_text.h"
 #include "core/named_file.h"
 #include "materials/io/spectrum_reader.h"
+#include "requests/descriptions.h"
 #include "studies/photometry/io/limits_reader.h"
 #include "studies/photometry/standards.h"
 
@@ -22,28 +23,29 @@ std::vector<std::string_view> names_of_standards() {
   return names;
 }
 
+/// Returns settings with the limits, apertures and rotations of the standard of a request.
+PhotometrySettings settings_of_standard(const PhotometryRequest& request) {
+  const fs::path file = limits_file_of(request.standard);
+  const ShippedStandard* const shipped = find_standard(request.standard);
+  const auto in_table = shipped != nullptr ? std::optional(std::string(shipped->in_table)) : std::nullopt;
+  PhotometrySettings settings;
+  const auto limits = read_named(Field{"standard"}, [&] { return read_limits(file); });
+  settings.programme = programme_of(limits, in_table, request.part_class, request.colour);
+  settings.limits_source = shipped != nullptr ? request.standard : file.string();
+  settings.apertures = shipped != nullptr ? shipped->apertures : default_apertures();
+  if (shipped != nullptr) settings.rotation_deg = shipped->rotation_deg;
+  return settings;
+}
+
 }  // namespace
 
 fs::path limits_file_of(const std::string& standard) {
   if (find_standard(standard) != nullptr) return data_directory() / "photometry_limits.csv";
   std::error_code ignored;
   if (!fs::exists(standard, ignored))
-    throw InputError({"", 0, "--standard"}, fmt::format("must be {} or a file that exists, got {}",
-                                                        fmt::join(names_of_standards(), ", "), in_quotes(standard)));
+    throw InputError(Field{"standard"}, fmt::format("must be {} or a file that exists, got {}",
+                                                    fmt::join(names_of_standards(), ", "), in_quotes(standard)));
   return standard;
-}
-
-PhotometryRequest photometry_request(const StandardChoice& choice) {
-  const fs::path file = limits_file_of(choice.standard);
-  const ShippedStandard* const shipped = find_standard(choice.standard);
-  const auto in_table = shipped != nullptr ? std::optional(std::string(shipped->in_table)) : std::nullopt;
-  PhotometryRequest request;
-  const auto limits = read_named({"", 0, "--standard"}, [&] { return read_limits(file); });
-  request.programme = programme_of(limits, in_table, choice.part_class, choice.colour);
-  request.limits_source = shipped != nullptr ? choice.standard : file.string();
-  request.apertures = shipped != nullptr ? shipped->apertures : default_apertures();
-  if (shipped != nullptr) request.rotation_deg = shipped->rotation_deg;
-  return request;
 }
 
 fs::path dye_file_of(const std::optional<std::string>& dye, bool design_is_coloured, const std::string& colour) {
@@ -52,16 +54,35 @@ fs::path dye_file_of(const std::optional<std::string>& dye, bool design_is_colou
   if (name == "none" || !dye) return {};
   std::error_code ignored;
   if (!fs::exists(name, ignored))
-    throw InputError({"", 0, "--dye"},
+    throw InputError(Field{"dye"},
                      fmt::format("must be none, red, amber or a file that exists, got {}", in_quotes(name)));
   return name;
 }
 
-void set_dye(PhotometryRequest& request, const std::optional<std::string>& dye, const fs::path& file) {
-  if (file.empty()) return;
-  request.dye = dye.value_or(request.programme.colour);
-  request.dye_absorption_per_mm =
-      read_named({"", 0, "--dye"}, [&] { return materials::read_spectral_absorption(file); });
+PhotometrySettings resolve(const PhotometryRequest& request, bool design_is_coloured) {
+  requests::check(request);
+  PhotometrySettings settings = settings_of_standard(request);
+  const fs::path dye = dye_file_of(request.dye, design_is_coloured, settings.programme.colour);
+  if (!dye.empty()) {
+    settings.dye = request.dye.value_or(settings.programme.colour);
+    settings.dye_absorption_per_mm = read_named(Field{"dye"}, [&] { return materials::read_spectral_absorption(dye); });
+  }
+  settings.area_cm2 = request.area_cm2;
+  if (request.rotation_deg) settings.rotation_deg = *request.rotation_deg;
+  if (request.source_arcmin) settings.apertures.source = Angle::from_deg(*request.source_arcmin / 60.0);
+  if (request.receiver_arcmin) settings.apertures.receiver = Angle::from_deg(*request.receiver_arcmin / 60.0);
+  settings.window_deg = request.window_deg;
+  settings.light = light_from_name(request.light);
+  settings.diffraction = request.diffraction;
+  settings.engine = engine_from_name(request.engine);
+  settings.cutoff = request.cutoff;
+  settings.rays = request.samples;
+  settings.seed = request.seed;
+  settings.pictures = request.pictures;
+  settings.window_power = request.window_power;
+  settings.advice = request.advice;
+  settings.colour = true;
+  return settings;
 }
 
 }  // namespace retrace::studies

@@ -91,19 +91,17 @@ Quantities read_share(const std::string& name, const Document& document, const s
   return shares_of(name, spec);
 }
 
-/// Runs a function and converts the location of its errors: `--class` becomes the key `class` of the quantity.
-/// \throw InputError with the converted location
-template <class Work>
-auto with_keys(const Document& document, const std::string& at, Work work) {
+/// Returns the settings for a request. Errors in its fields are located at the keys of the quantity.
+PhotometrySettings settings_of(const PhotometryRequest& request, const Document& document, const std::string& at) {
   try {
-    return work();
+    // Whether a design is coloured is not known before the designs of the study are read.
+    PhotometrySettings settings = resolve(request, false);
+    settings.colour = false;
+    return settings;
   } catch (const InputError& error) {
-    const std::string text = error.what();
-    const std::size_t end = text.find(": ");
-    if (!text.starts_with("--") || end == std::string::npos) throw;
-    std::string key = text.substr(2, end - 2);
-    std::replace(key.begin(), key.end(), '-', '_');
-    document.fail(at + "." + key, text.substr(end + 2));
+    if (error.field().name.empty()) throw;
+    const std::string& field = error.where().key;
+    document.fail(at + "." + (field == "part_class" ? "class" : field), error.text());
   }
 }
 
@@ -113,40 +111,38 @@ std::optional<std::string> optional_text(const Document& document, const std::st
 
 std::shared_ptr<const PhotometricTable> read_photometric_table(const Document& document, const std::string& at,
                                                                std::vector<NamedFile>& files) {
-  PhotometricTable table;
-  StandardChoice choice;
+  PhotometryRequest request;
   // The value is the name of a shipped standard or otherwise the name of a file.
-  choice.standard = document.text(at + ".standard");
-  if (find_standard(choice.standard) == nullptr) {
+  request.standard = document.text(at + ".standard");
+  if (find_standard(request.standard) == nullptr) {
     const std::string key = at + ".standard";
     files.push_back({document.file(key), key, document.where(key)});
-    choice.standard = files.back().file.string();
+    request.standard = files.back().file.string();
   }
-  choice.part_class = optional_text(document, at + ".class");
-  choice.colour = optional_text(document, at + ".colour");
-  table.request = with_keys(document, at, [&] { return photometry_request(choice); });
-  PhotometryRequest& request = table.request;
+  request.part_class = optional_text(document, at + ".class");
+  request.colour = optional_text(document, at + ".colour");
   request.area_cm2 = document.number(at + ".area_cm2");
   if (document.has(at + ".rotation_deg")) request.rotation_deg = document.numbers(at + ".rotation_deg");
   request.window_deg = document.number_if(at + ".window_deg").value_or(request.window_deg);
-  for (const TestPoint& point : request.programme.points)
-    if (point.observation_deg > request.window_deg)
-      document.fail(at + ".window_deg", fmt::format("must be >= {}, an observation angle of the standard, got {}",
-                                                    shortest(point.observation_deg), shortest(request.window_deg)));
-  request.light = document.choice<PhotometricLight>(at + ".light");
+  request.light = document.text(at + ".light");
   request.diffraction = document.text(at + ".far_field") == "diffracted";
   request.advice = false;
-  const std::optional<std::string> dye = optional_text(document, at + ".dye");
-  const std::filesystem::path dye_file =
-      with_keys(document, at, [&] { return dye_file_of(dye, false, request.programme.colour); });
-  if (dye && dye_file == *dye)  // the dye is a file of the user and not a shipped one
+  request.dye = optional_text(document, at + ".dye");
+  PhotometricTable table;
+  table.request = settings_of(request, document, at);
+  const PhotometrySettings& settings = table.request;
+  for (const TestPoint& point : settings.programme.points)
+    if (point.observation_deg > settings.window_deg)
+      document.fail(at + ".window_deg", fmt::format("must be >= {}, an observation angle of the standard, got {}",
+                                                    shortest(point.observation_deg), shortest(settings.window_deg)));
+  const std::filesystem::path dye_file = dye_file_of(request.dye, false, settings.programme.colour);
+  if (request.dye && dye_file == *request.dye)  // the dye is a file of the user and not a shipped one
     files.push_back({dye_file, at + ".dye", document.where(at + ".dye")});
-  with_keys(document, at, [&] { set_dye(request, dye, dye_file); });
-  table.dye_unless_coloured = !dye;
+  table.dye_unless_coloured = !request.dye;
   table.key =
-      fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}", choice.standard, choice.part_class.value_or(""),
-                  request.programme.colour, request.area_cm2, fmt::join(request.rotation_deg, " "), request.window_deg,
-                  light_name(request.light), request.diffraction, dye.value_or("(by colour)"));
+      fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}", request.standard, request.part_class.value_or(""),
+                  settings.programme.colour, settings.area_cm2, fmt::join(settings.rotation_deg, " "),
+                  settings.window_deg, request.light, settings.diffraction, request.dye.value_or("(by colour)"));
   return std::make_shared<const PhotometricTable>(std::move(table));
 }
 

@@ -37,7 +37,7 @@ struct RoughCase {
 
 /// Light followed forwards, from the source to the receiver's disc: R_A with its error.
 studies::PhotometricPoint forwards(const Design& design, const RoughCase& c, double disc_arcmin) {
-  studies::PhotometryRequest request;
+  studies::PhotometrySettings request;
   request.programme.points.push_back({c.alpha_deg, c.v_deg, c.h_deg, 1.0, studies::PhotometricUnit::cd_per_lx_per_m2,
                                       studies::LimitStatus::confirmed, 2});
   request.area_cm2 = 10.0;

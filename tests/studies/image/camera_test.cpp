@@ -122,7 +122,7 @@ TEST(Camera, MeanLuminanceIsThatOfThePhotometer) {
     design.part() = infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 1.0);
     design.part().angle_errors.dihedral_error_arcmin.fill(c.error_arcmin);
     design.substance.refractive_index = kPmma;
-    studies::PhotometryRequest request;
+    studies::PhotometrySettings request;
     request.programme.points.push_back({c.alpha_deg, c.v_deg, c.h_deg, 1.0, studies::PhotometricUnit::cd_per_lx_per_m2,
                                         studies::LimitStatus::confirmed, 2});
     request.area_cm2 = 10.0;

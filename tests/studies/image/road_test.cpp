@@ -117,7 +117,7 @@ TEST(Road, CoefficientsAreThoseOfTheFarField) {
   setting.h_deg = entrance.h.deg();
   setting.observation_deg = {row.observation_deg};
   setting.rotation_deg = geometry.epsilon.deg();
-  PhotometryRequest request;
+  PhotometrySettings request;
   request.area_cm2 = 1.0;
   request.apertures = {Angle::from_rad(0.15 / distance_m), Angle::from_rad(0.007 / (distance_m + 1.8))};
   request.window_deg = 10.0;

@@ -188,14 +188,15 @@ TEST_F(PhotometricStudy, QuantitiesAreThoseOfTheTable) {
       "\"r_i_mcd_per_lx\"\n|name = \"r_a\"\npoints = 2\nfigure = \"r_a\"\n");
   ASSERT_FALSE(result.points.at(0).failed) << result.points[0].reason;
   // The reference is the result of `retrace photometry` for the same design.
-  PhotometryRequest request = photometry_request({(folder_ / "l.csv").string(), {}, {}});
+  PhotometryRequest request;
+  request.standard = (folder_ / "l.csv").string();
   request.area_cm2 = 30.0;
-  request.light = PhotometricLight::of_design;
+  request.light = "design";
   request.diffraction = false;
   request.advice = false;
-  set_dye(request, {}, dye_file_of({}, false, request.programme.colour));
   const std::vector<std::string> overrides = {"surface.dihedral_error_arcmin=1"};
-  const PhotometryResult table = PhotometryStudy(parse_design(kCubes, "d.toml", overrides), request).run();
+  const PhotometryResult table =
+      PhotometryStudy(parse_design(kCubes, "d.toml", overrides), resolve(request, false)).run();
   ASSERT_EQ(table.points.size(), 3U);
   double worst = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < 3; ++k) {

@@ -1,0 +1,134 @@
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "core/schema/access.h"
+#include "requests/descriptions.h"
+#include "requests/rows/common.h"
+
+namespace retrace::requests {
+namespace {
+
+using schema::access;
+
+constexpr std::string_view kStandards[] = {"r150", "j594", "bicycle", "d4956", "iso20471", "stvzvo"};
+constexpr std::string_view kPhotometricLights[] = {"a", "d65", "design"};
+constexpr NumberRange kApertureArcmin{.low = 0.0, .high = 300.0};
+
+void check_photometry(const void* object) {
+  constexpr std::size_t most = 720;
+  const auto& request = *static_cast<const PhotometryRequest*>(object);
+  if (request.rotation_deg && request.rotation_deg->size() > most)
+    throw InputError(Field{"photometry.rotation_deg"},
+                     fmt::format("must be 1 to {} rotations, got {}", most, request.rotation_deg->size()));
+}
+
+constexpr Row kPhotometryRows[] = {
+    {"standard",
+     WordOrFile{kStandards, ".csv", "the name of a standard or a file with limits"},
+     "r150, j594, bicycle, d4956, iso20471, stvzvo, or a limits file",
+     access<&PhotometryRequest::standard>,
+     {.value = "NAME|FILE"},
+     {},
+     true},
+    {"part_class",
+     Text{},
+     "class of the part, such as IA",
+     access<&PhotometryRequest::part_class>,
+     {.value = "CLASS", .option = "--class", .keyword = "class_", .otherwise = "required if the standard has several"}},
+    {"colour",
+     Text{},
+     "white, amber, red, yellow, ...",
+     access<&PhotometryRequest::colour>,
+     {.value = "COLOUR", .otherwise = "required if the standard has several"}},
+    {"area_cm2",
+     Number{{.low = 0.0, .low_included = false, .high = 1e6}},
+     "area of the whole part, of which the design may be a section",
+     access<&PhotometryRequest::area_cm2>,
+     {.value = "A"},
+     {},
+     true},
+    {"rotation_deg",
+     NumberOrNumbers{{.low = -360.0, .high = 360.0}},
+     "rotations of the part about its normal (the one with the smallest reading counts)",
+     access<&PhotometryRequest::rotation_deg>,
+     {.value = "LIST",
+      .notation = Notation::number_list,
+      .option = "--rotation",
+      .otherwise = "the standard's",
+      .qualified = "photometry.rotation_deg"}},
+    {"dye",
+     kDye,
+     "none, red, amber (illustrative) or a file",
+     access<&PhotometryRequest::dye>,
+     {.value = "NAME|FILE", .otherwise = "by the colour, unless the design's absorption is spectral"}},
+    {"source_arcmin",
+     Number{kApertureArcmin},
+     "diameter of the source",
+     access<&PhotometryRequest::source_arcmin>,
+     {.value = "D", .otherwise = "the standard's"}},
+    {"receiver_arcmin",
+     Number{kApertureArcmin},
+     "diameter of the receiver",
+     access<&PhotometryRequest::receiver_arcmin>,
+     {.value = "D", .otherwise = "the standard's"}},
+    {"window_deg",
+     Number{{.low = 0.05, .high = 10.0}},
+     "half angle of the far field that is computed",
+     access<&PhotometryRequest::window_deg>,
+     {.value = "W"}},
+    {"light",
+     Word{kPhotometricLights},
+     "a, d65: a CIE illuminant as the eye sees it; design: the light of the design",
+     access<&PhotometryRequest::light>,
+     {.value = "LIGHT"}},
+    {"engine",
+     Word{kEnginesOfParts},
+     "exact, montecarlo (embree), or auto: beams where they are possible",
+     access<&PhotometryRequest::engine>,
+     {.value = "ENGINE"}},
+    {"samples",
+     Whole{kSamples},
+     "number of Monte Carlo rays for each direction",
+     access<&PhotometryRequest::samples>,
+     {.value = "N", .usual = "1048576"},
+     kNeedRays},
+    {"cutoff",
+     Number{kCutoff},
+     "minimum power of a beam that is followed exactly, as a fraction of the light on one element (weaker beams are "
+     "resampled with auto and truncated with exact)",
+     access<&PhotometryRequest::cutoff>,
+     {.value = "W", .otherwise = "1e-5; finite parts with resampling: see docs/commands.md"},
+     kNeedExact},
+    {"diffraction",
+     Flag{},
+     "add diffraction to the geometric far field",
+     access<&PhotometryRequest::diffraction>,
+     {.notation = Notation::absent}},
+    {"window_power",
+     Flag{},
+     "integrate the power inside and outside of the far field's window, as a check",
+     access<&PhotometryRequest::window_power>,
+     {},
+     kNeedExact},
+    {"advice",
+     Flag{},
+     "search for a change of the design that passes if a point fails",
+     access<&PhotometryRequest::advice>,
+     {.notation = Notation::absent}},
+    {"pictures",
+     Flag{},
+     "compute maps and curves, and make the drawings \"far_field\" and \"r_a\"",
+     access<&PhotometryRequest::pictures>,
+     {.is_only_python_and_library = true}},
+    seed_row<PhotometryRequest>()};
+
+}  // namespace
+
+template <>
+const Request& description<PhotometryRequest>() {
+  static constexpr Request request{"photometry", "photometry", kPhotometryRows, initial_object<PhotometryRequest>,
+                                   check_photometry};
+  return request;
+}
+
+}  // namespace retrace::requests
