@@ -37,6 +37,9 @@ void assign(SolidRequest& request, std::string_view field, const FieldValue& val
 void assign(MaterialRequest& request, std::string_view field, const FieldValue& value) {
   assign_field(request, field, value);
 }
+void assign(PhotometryRequest& request, std::string_view field, const FieldValue& value) {
+  assign_field(request, field, value);
+}
 void assign(RaysRequest& request, std::string_view field, const FieldValue& value) {
   assign_field(request, field, value);
 }

@@ -12,6 +12,7 @@
 #include "requests/image.h"
 #include "requests/metrology.h"
 #include "requests/part.h"
+#include "requests/photometry.h"
 #include "requests/rays.h"
 
 namespace retrace {
@@ -30,6 +31,7 @@ RETRACE_API void assign(RoadRequest& request, std::string_view field, const Fiel
 RETRACE_API void assign(MetrologyRequest& request, std::string_view field, const FieldValue& value);
 RETRACE_API void assign(SolidRequest& request, std::string_view field, const FieldValue& value);
 RETRACE_API void assign(MaterialRequest& request, std::string_view field, const FieldValue& value);
+RETRACE_API void assign(PhotometryRequest& request, std::string_view field, const FieldValue& value);
 RETRACE_API void assign(RaysRequest& request, std::string_view field, const FieldValue& value);
 RETRACE_API void assign(TraceRequest& request, std::string_view field, const FieldValue& value);
 

@@ -155,26 +155,7 @@ void bind_rre(py::module_& module) {
 }
 
 void bind_photometry(py::module_& module) {
-  py::class_<PhotometryRequest>(module, "PhotometryRequest")
-      .def(py::init<>())
-      .def_readwrite("standard", &PhotometryRequest::standard)
-      .def_readwrite("class_", &PhotometryRequest::part_class)
-      .def_readwrite("colour", &PhotometryRequest::colour)
-      .def_readwrite("area_cm2", &PhotometryRequest::area_cm2)
-      .def_readwrite("rotation_deg", &PhotometryRequest::rotation_deg)
-      .def_readwrite("dye", &PhotometryRequest::dye)
-      .def_readwrite("source_arcmin", &PhotometryRequest::source_arcmin)
-      .def_readwrite("receiver_arcmin", &PhotometryRequest::receiver_arcmin)
-      .def_readwrite("window_deg", &PhotometryRequest::window_deg)
-      .def_readwrite("light", &PhotometryRequest::light)
-      .def_readwrite("engine", &PhotometryRequest::engine)
-      .def_readwrite("cutoff", &PhotometryRequest::cutoff)
-      .def_readwrite("samples", &PhotometryRequest::samples)
-      .def_readwrite("seed", &PhotometryRequest::seed)
-      .def_readwrite("diffraction", &PhotometryRequest::diffraction)
-      .def_readwrite("window_power", &PhotometryRequest::window_power)
-      .def_readwrite("advice", &PhotometryRequest::advice)
-      .def_readwrite("pictures", &PhotometryRequest::pictures);
+  request_class<PhotometryRequest>(module, "PhotometryRequest");
   result_class<PhotometryResult>(module, "PhotometryResult")
       .def_readonly("complete", &PhotometryResult::complete)
       .def_readonly("passes", &PhotometryResult::passes)

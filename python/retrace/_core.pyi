@@ -165,24 +165,7 @@ class MetrologyRequest:
 
 class PhotometryRequest:
     def __init__(self) -> None: ...
-    standard: str
-    class_: str | None
-    colour: str | None
-    area_cm2: float
-    rotation_deg: list[float] | None
-    dye: str | None
-    source_arcmin: float | None
-    receiver_arcmin: float | None
-    window_deg: float
-    light: str
-    engine: str
-    cutoff: float | None
-    samples: int | None
-    seed: int
-    diffraction: bool
-    window_power: bool
-    advice: bool
-    pictures: bool
+    def assign(self, field: str, value: object, /) -> None: ...
 
 class PhotometryResult:
     @property

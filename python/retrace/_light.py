@@ -272,28 +272,11 @@ class PhotometryResult(Result):
         return html_table(rows) + f"<p>{self.verdict}</p>"
 
 
-@checked(OPTIONS["photometry"], _LIGHT_NAMES)
+@described(FIELDS["photometry"])
 def photometry(
     design: AnyDesign,
     *,
-    standard: str,
-    area_cm2: float,
-    class_: str | None = None,
-    colour: str | None = None,
-    rotation_deg: Numbers | None = None,
-    dye: str | None = None,
-    source_arcmin: float | None = None,
-    receiver_arcmin: float | None = None,
-    window_deg: float = 2.0,
-    light: str = "a",
-    engine: str = "auto",
-    samples: int | None = None,
-    cutoff: float | None = None,
-    diffraction: bool = True,
-    window_power: bool = False,
-    advice: bool = True,
-    pictures: bool = False,
-    seed: int = 1,
+    # fields of photometry
     threads: int | None = None,
     progress: Progress = None,
 ) -> PhotometryResult:
@@ -304,35 +287,7 @@ def photometry(
     the design if a point fails. pictures: make the drawings "far_field" and "r_a", which takes
     time."""
     taken = design_of(design)
-    request = give(
-        _core.PhotometryRequest(),
-        standard=path("standard", standard),
-        area_cm2=number("area_cm2", area_cm2, 0, low_included=False),
-        window_deg=number("window_deg", window_deg, 0.05, 10),
-        light=word("light", light, ("a", "d65", "design")),
-        engine=word("engine", engine, ("auto", "exact", "montecarlo", "embree")),
-        diffraction=flag("diffraction", diffraction),
-        window_power=flag("window_power", window_power),
-        advice=flag("advice", advice),
-        pictures=flag("pictures", pictures),
-        seed=whole("seed", seed, 0, _MOST_SEED),
-    )
-    for name, text in (("class_", class_), ("colour", colour), ("dye", dye)):
-        if text is not None:
-            setattr(request, name, word(name, text))
-    for name, value in (("source_arcmin", source_arcmin), ("receiver_arcmin", receiver_arcmin)):
-        if value is not None:
-            setattr(request, name, number(name, value, 0))
-    if rotation_deg is not None:
-        request.rotation_deg = number_list("rotation_deg", rotation_deg)
-        if len(request.rotation_deg) > 720:
-            raise InputError(
-                f"must be at most 720 turns, got {len(request.rotation_deg)}", key="rotation_deg"
-            )
-    if samples is not None:
-        request.samples = whole("samples", samples, 1)
-    if cutoff is not None:
-        request.cutoff = number("cutoff", cutoff, 0, 1, low_included=False, high_included=False)
+    request = _core.PhotometryRequest()  # with the fields of photometry
     count = thread_count(threads)
     with teller(progress, "tracing") as tell:
         return PhotometryResult(_core.photometry(taken._core, request, tell, count))

@@ -15,6 +15,7 @@ from retrace._fields import FIELDS
 BRICK = str(program.EXAMPLES / "rtp_brick_2mm.toml")
 RAYS = ["rays", BRICK, "--emitter=lambertian"]
 HEIGHTS = str(program.EXAMPLES / "facet_height_map.txt")
+STANDARD = {"standard": "r150", "class_": "IA", "colour": "red", "area_cm2": 30}
 #: For each request: a function of the package without its other arguments, the type of the module
 #: _core, and the arguments with which the program makes the same request, if it can.
 CALLS = {
@@ -31,6 +32,11 @@ CALLS = {
         partial(rt.export_material, BRICK, "part.json"),
         _core.MaterialRequest,
         ["export", BRICK, "-o", "part.json"],
+    ),
+    "photometry": (
+        partial(rt.photometry, BRICK, **STANDARD),
+        _core.PhotometryRequest,
+        ["photometry", BRICK, "--standard=r150", "--class=IA", "--colour=red", "--area-cm2=30"],
     ),
     "rays": (partial(rt.rays, BRICK, emitter="lambertian"), _core.RaysRequest, RAYS),
     "trace": (partial(rt.trace, BRICK, [[0, 0, 5]], [[0, 0, -1]]), _core.TraceRequest, None),
