@@ -19,7 +19,7 @@ SurfacePlot metrology_plot(const studies::MetrologyResult& result) {
                      map.heights_nm};
   };
   SurfacePlot plot;
-  plot.title = fmt::format("{}, cut-off {} µm", std::filesystem::path(result.request.file).filename().string(),
+  plot.title = fmt::format("{}, cut-off {} µm", std::filesystem::path(result.file).filename().string(),
                            shortest(result.request.cutoff_um));
   plot.panels.push_back(grid("Surface", result.surface, result.of_surface.sa_nm));
   plot.panels.push_back(grid("Roughness", result.split.roughness, result.of_roughness.sa_nm));
