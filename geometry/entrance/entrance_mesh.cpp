@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "core/error.h"
 #include "core/number_format.h"
-#include "geometry/entrance/mesh_tiling.h"
 
 namespace retrace::geometry {
 namespace {
@@ -80,29 +80,22 @@ double rounding_mm(const TriangleMesh& mesh) {
   return kSingleRounding * largest_mm;
 }
 
-/// Returns the triangles that face +z and overlap the outline.
-std::vector<Triangle> wanted(const TriangleMesh& mesh, const std::vector<Vec3>& vertices, MeshSide side,
-                             const Vec3& move_mm, const Polygon& outline) {
-  const std::vector<Triangle> all = turned_up(mesh, side);
-  std::vector<Triangle> triangles;
-  double covered_mm2 = 0.0;
-  for (const Triangle& t : all) {
-    if (normal_of(vertices, t).z() < kUpright) continue;
-    const double area_mm2 = plan_area(over(outline, vertices, t));
-    if (!(area_mm2 > 0.0)) continue;
-    covered_mm2 += area_mm2;
-    triangles.push_back(t);
-  }
-  const double share = covered_mm2 / area(outline);
-  const auto gap = find_gap(vertices, triangles, all, outline, rounding_mm(mesh));
-  if (!gap && std::abs(share - 1.0) <= kSameArea) return triangles;
-  std::string text = fmt::format("the {} of the mesh must cover the part once, it covers {} % of it",
-                                 side == MeshSide::top ? "top" : "bottom",
-                                 fixed(100.0 * share, share > 0.999 && share < 1.001 ? 6 : 2));
-  if (gap)
-    text += fmt::format("; at x = {}, y = {} mm of its frame {}", fixed(gap->at_mm.x() - move_mm.x(), 4),
-                        fixed(gap->at_mm.y() - move_mm.y(), 4), gap->what);
-  throw InputError(text);
+std::vector<Vec3> moved(const std::vector<Vec3>& vertices, const Vec3& move_mm) {
+  std::vector<Vec3> all;
+  for (const Vec3& p : vertices) all.push_back(p + move_mm);
+  return all;
+}
+
+/// Returns the message for a mesh that does not cover the part exactly once.
+std::string refusal_text(const MeshCover& cover, MeshSide side) {
+  const bool is_nearly_all = cover.fraction > 0.999 && cover.fraction < 1.001;
+  std::string text =
+      fmt::format("the {} of the mesh must cover the part once, it covers {} % of it",
+                  side == MeshSide::top ? "top" : "bottom", fixed(100.0 * cover.fraction, is_nearly_all ? 6 : 2));
+  if (cover.gap)
+    text += fmt::format("; at x = {}, y = {} mm of its frame {}", fixed(cover.gap->at_mm.x(), 4),
+                        fixed(cover.gap->at_mm.y(), 4), text_of(cover.gap->fault));
+  return text;
 }
 
 void add_facet(SurfacePatch& patch, PatchCell& cell, const Triangle& t) {
@@ -124,10 +117,34 @@ void add_facet(SurfacePatch& patch, PatchCell& cell, const Triangle& t) {
 
 }  // namespace
 
+bool MeshCover::is_exact() const {
+  return !gap && std::abs(fraction - 1.0) <= kSameArea;
+}
+
+MeshCover cover_of_mesh(const TriangleMesh& mesh, MeshSide side, const Vec3& move_mm, const Polygon& outline) {
+  const std::vector<Vec3> vertices = moved(mesh.vertices, move_mm);
+  const std::vector<Triangle> all = turned_up(mesh, side);
+  MeshCover cover;
+  double covered_mm2 = 0.0;
+  for (const Triangle& t : all) {
+    if (normal_of(vertices, t).z() < kUpright) continue;
+    const double area_mm2 = plan_area(over(outline, vertices, t));
+    if (!(area_mm2 > 0.0)) continue;
+    covered_mm2 += area_mm2;
+    cover.triangles.push_back(t);
+  }
+  cover.fraction = covered_mm2 / area(outline);
+  cover.gap = find_gap(vertices, cover.triangles, all, outline, rounding_mm(mesh));
+  if (cover.gap) cover.gap->at_mm -= move_mm.head<2>();
+  return cover;
+}
+
 SurfacePatch entrance_of_mesh(const TriangleMesh& mesh, MeshSide side, const Vec3& move_mm, const Polygon& outline) {
+  const MeshCover cover = cover_of_mesh(mesh, side, move_mm, outline);
+  if (!cover.is_exact()) throw InputError(refusal_text(cover, side));
+  const std::vector<Triangle>& triangles = cover.triangles;
   SurfacePatch patch;
-  for (const Vec3& p : mesh.vertices) patch.vertices.push_back(p + move_mm);
-  const std::vector<Triangle> triangles = wanted(mesh, patch.vertices, side, move_mm, outline);
+  patch.vertices = moved(mesh.vertices, move_mm);
   // Group nearby triangles into cells of about sixteen triangles.
   const double cell_mm = 4.0 * std::sqrt(area(outline) / static_cast<double>(triangles.size()));
   std::map<std::pair<std::int64_t, std::int64_t>, std::vector<Triangle>> bins;

@@ -39,7 +39,7 @@ class GapFinder {
     const std::vector<SheetSide> open = open_sides();
     if (open.empty()) return std::nullopt;
     const Vec2 middle = *middle_inside(open.front());
-    return TilingGap{name_of(open.front(), middle, open), middle};
+    return TilingGap{fault_of(open.front(), middle, open), middle};
   }
 
  private:
@@ -87,18 +87,18 @@ class GapFinder {
     return open;
   }
 
-  std::string_view name_of(const SheetSide& side, const Vec2& middle, const std::vector<SheetSide>& open) const {
+  TilingFault fault_of(const SheetSide& side, const Vec2& middle, const std::vector<SheetSide>& open) const {
     for (const Corners& t : mesh_) {
       const bool goes_on = has_side(t, side.to, side.from);
       if (!goes_on && !has_side(t, side.from, side.to)) continue;
       const Vec3 twice = (vertices_[t[1]] - vertices_[t[0]]).cross(vertices_[t[2]] - vertices_[t[0]]);
       if (twice.z() > kStandsUpright * twice.norm()) continue;
-      if (twice.norm() == 0.0) return "a triangle has no area";
-      if (twice.z() > -kStandsUpright * twice.norm()) return "a triangle stands upright";
-      return goes_on ? "a triangle hangs over" : "a triangle is turned over";
+      if (twice.norm() == 0.0) return TilingFault::no_area;
+      if (twice.z() > -kStandsUpright * twice.norm()) return TilingFault::upright_triangle;
+      return goes_on ? TilingFault::overhang : TilingFault::reversed_triangle;
     }
-    if (has_corner_on_side(side, open)) return "a corner lies on the side of a triangle";
-    return name_by_cover(side, middle);
+    if (has_corner_on_side(side, open)) return TilingFault::corner_on_side;
+    return fault_by_cover(side, middle);
   }
 
   bool is_on(std::uint32_t vertex, const SheetSide& side) const {
@@ -124,13 +124,13 @@ class GapFinder {
     }));
   }
 
-  /// Describes a gap by the number of triangles above the points on both sides of it.
-  std::string_view name_by_cover(const SheetSide& side, const Vec2& middle) const {
+  /// Returns the fault at a gap from the number of triangles above the points on both sides of it.
+  TilingFault fault_by_cover(const SheetSide& side, const Vec2& middle) const {
     constexpr double kBeside = 1e-4;
     const Vec2 along = plan(side.to) - plan(side.from);
     const Vec2 left = kBeside * Vec2(-along.y(), along.x());
-    if (cover(middle + left) > 1 || cover(middle - left) > 1) return "triangles overlap";
-    return cover(middle - left) == 0 ? "there is a hole" : "the height jumps";
+    if (cover(middle + left) > 1 || cover(middle - left) > 1) return TilingFault::overlap;
+    return cover(middle - left) == 0 ? TilingFault::hole : TilingFault::height_jump;
   }
 
   const std::vector<Vec3>& vertices_;
@@ -141,6 +141,20 @@ class GapFinder {
 };
 
 }  // namespace
+
+std::string_view text_of(TilingFault fault) {
+  switch (fault) {
+    case TilingFault::hole: return "there is a hole";
+    case TilingFault::overlap: return "triangles overlap";
+    case TilingFault::height_jump: return "the height jumps";
+    case TilingFault::corner_on_side: return "a corner lies on the side of a triangle";
+    case TilingFault::no_area: return "a triangle has no area";
+    case TilingFault::upright_triangle: return "a triangle stands upright";
+    case TilingFault::overhang: return "a triangle hangs over";
+    case TilingFault::reversed_triangle: return "a triangle is turned over";
+  }
+  return "";
+}
 
 std::optional<TilingGap> find_gap(const std::vector<Vec3>& vertices, const std::vector<Corners>& sheet,
                                   const std::vector<Corners>& mesh, const Polygon& outline, double tolerance_mm) {

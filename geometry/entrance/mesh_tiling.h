@@ -13,9 +13,24 @@
 
 namespace retrace::geometry {
 
+/// Fault at a position at which the triangles are not continuous.
+enum class TilingFault {
+  hole,
+  overlap,
+  height_jump,
+  corner_on_side,    ///< a corner is located on the side of another triangle
+  no_area,           ///< a triangle has no area
+  upright_triangle,  ///< a triangle is vertical
+  overhang,          ///< a triangle faces -z and continues the sheet
+  reversed_triangle  ///< the corners of a triangle have the wrong order
+};
+
+/// Returns the fault as a clause for messages, such as "there is a hole".
+std::string_view text_of(TilingFault fault);
+
 /// Position at which the triangles are not continuous.
 struct TilingGap {
-  std::string_view what;  ///< description, such as "there is a hole"
+  TilingFault fault = TilingFault::hole;
   Vec2 at_mm = Vec2::Zero();
 };
 
@@ -26,7 +41,7 @@ struct TilingGap {
 /// must add up to the area of the outline. The number is then one, and the triangles tile the outline. Corners are
 /// shared in three dimensions, so heights are continuous.
 /// \param sheet triangles to check
-/// \param mesh all triangles of the mesh, which determine how a gap is described
+/// \param mesh all triangles of the mesh, which determine the fault at a gap
 /// \param tolerance_mm maximum distance at which a side counts as part of the outline, or a corner counts as a point on
 ///     a side
 /// \return the first gap, or nothing
