@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "core/leading_number.h"
+#include "core/math/formula_error.h"
 #include "core/math/formula_evaluation.h"
 #include "core/message_text.h"
 
@@ -128,16 +129,18 @@ std::vector<Formula::Node> simplified(std::vector<Formula::Node> nodes, std::siz
 Formula parse_formula(const std::string& text, const std::vector<std::string>& variables, const InputLocation& where) {
   if (text.size() > kLongestFormula)
     throw InputError(where, fmt::format("must have at most {} characters, got {}", kLongestFormula, text.size()));
+  const auto failed_at = [&](std::size_t position, const std::string& reason) {
+    return FormulaError(
+        where, fmt::format("does not parse at character {}: {}, got {}", position, reason, in_quotes(text)), position);
+  };
   if (const auto at =
           std::find_if(text.begin(), text.end(),
                        [](char c) { return std::iscntrl(static_cast<unsigned char>(c)) != 0 && c != '\t'; });
       at != text.end())
-    throw InputError(where, fmt::format("does not parse at character {}: it is none that shows, got {}",
-                                        at - text.begin() + 1, in_quotes(text)));
+    throw failed_at(static_cast<std::size_t>(at - text.begin()) + 1, "it is none that shows");
   // muParser always accepts conditions (a ? b : c). They cannot be differentiated here and are refused.
   if (const std::size_t at = text.find_first_of("?:"); at != std::string::npos)
-    throw InputError(where, fmt::format("does not parse at character {}: conditions are not allowed, got {}", at + 1,
-                                        in_quotes(text)));
+    throw failed_at(at + 1, "conditions are not allowed");
   Recorder record;
   recorder = &record;
   std::vector<double> handles;
@@ -157,9 +160,8 @@ Formula parse_formula(const std::string& text, const std::vector<std::string>& v
     result = static_cast<std::size_t>(values[0]);
   } catch (const mu::Parser::exception_type& error) {
     // For an error at the end of the text, muParser returns a position that is too large by one.
-    const std::size_t place = std::min(static_cast<std::size_t>(error.GetPos()), text.size()) + 1;
-    throw InputError(where, fmt::format("does not parse at character {}: {}, got {}", place,
-                                        printable(error.GetMsg(), 120), in_quotes(text)));
+    throw failed_at(std::min(static_cast<std::size_t>(error.GetPos()), text.size()) + 1,
+                    printable(error.GetMsg(), 120));
   }
   return {text, simplified(std::move(record.nodes), result)};
 }

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <utility>
 
-#include "core/error.h"
+#include "core/limit_error.h"
 #include "core/number_format.h"
 #include "fabrication/job/fins.h"
 #include "fabrication/job/v_tool.h"
@@ -87,10 +87,10 @@ void check_fins(const Job& job, const Machine& machine, const CubeCorner& corner
                                       fin_text(left_mm), fixed(1e3 * std::max(0.0, max_mm), 3));
   const auto at_step = [&](const Tool& tool) { return fin_mm(tool, step_mm); };
   if (const std::optional<double> wedge_deg = allowed_wedge_deg(job, max_mm, at_step))
-    throw InputError(
-        job.where("tool.wedge_deg"),
-        fmt::format("{}must be at least {}, because machine {} rounds positions to {} um and {}, got {}", who,
-                    shortest(*wedge_deg), machine.name, step_text, fin, shortest(job.tool.wedge_deg)));
+    throw LimitError(job.where("tool.wedge_deg"),
+                     fmt::format("{}must be at least {}, because machine {} rounds positions to {} um and {}, got {}",
+                                 who, shortest(*wedge_deg), machine.name, step_text, fin, shortest(job.tool.wedge_deg)),
+                     *wedge_deg);
   const std::string none = fmt::format("no tool.wedge_deg up to {} is large enough", shortest(kMaxWedgeDeg));
   if (machine.increments.linear_nm <= Increments{}.linear_nm)
     throw InputError(job.where("tool.nose_angle_deg"),
@@ -98,11 +98,13 @@ void check_fins(const Job& job, const Machine& machine, const CubeCorner& corner
                                  shortest(job.tool.nose_angle_deg)));
   // The height of a fin is proportional to the increment. Compute the maximum increment that is allowed.
   const double max_step_um = 1e3 * kEdgeStripMm / (fin_mm(job.tool, 1.0) + kEdgeStripMm - max_fin_mm(1.0));
-  throw InputError(
+  const double allowed_um = std::floor(1e4 * max_step_um) * 1e-4;
+  throw LimitError(
       job.where("machine"),
       fmt::format("{}must round positions to at most {} um for this tool (control.increment_system), got machine {} "
                   "with {} um: {}, and {}",
-                  who, fixed(std::floor(1e4 * max_step_um) * 1e-4, 4), machine.name, step_text, fin, none));
+                  who, fixed(allowed_um, 4), machine.name, step_text, fin, none),
+      allowed_um);
 }
 
 bool has_finishing_cuts(const Job& job) {

@@ -5,9 +5,11 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <string>
 
 #include "core/error.h"
+#include "core/math/formula_error.h"
 #include "core/math/formula_evaluation.h"
 #include "tests/support/refusals.h"
 
@@ -168,15 +170,31 @@ TEST(Formula, SaysWhereItDoesNotParse) {
   }
 }
 
-TEST(Formula, SaysWhatIsWrongAndWhere) {
-  const auto complaint = [](const std::string& text) -> std::string { return refusal_of([&] { formula(text); }); };
-  EXPECT_EQ(complaint("x + * y"), "refused");
-  EXPECT_EQ(complaint("(x + y"), "refused");
-  EXPECT_EQ(complaint("x y"), "refused");
-  EXPECT_EQ(complaint("z^2"), "refused");
-  EXPECT_EQ(complaint(std::string("x\0+((", 5)), "refused");
-  EXPECT_EQ(complaint(std::string(2001, '(')), "refused");
-  EXPECT_EQ(complaint(std::string(1990, '(')), "refused");
+/// Returns the number of the character at which a formula fails to parse. Returns nothing if the formula is refused
+/// without a position.
+std::optional<std::size_t> failed_at(const std::string& text) {
+  try {
+    formula(text);
+  } catch (const FormulaError& error) {
+    EXPECT_EQ(recorded_place_of(error), "refused");
+    return error.position();
+  } catch (const InputError& error) {
+    EXPECT_EQ(recorded_place_of(error), "refused");
+    return std::nullopt;
+  }
+  ADD_FAILURE() << text << " was accepted";
+  return std::nullopt;
+}
+
+TEST(Formula, ReportsTheCharacterAtWhichParsingFails) {
+  EXPECT_EQ(failed_at("x + * y"), 5U);
+  EXPECT_EQ(failed_at("(x + y"), 7U) << "behind the end";
+  EXPECT_EQ(failed_at("x y"), 3U);
+  EXPECT_EQ(failed_at("z^2"), 1U);
+  EXPECT_EQ(failed_at("x ? y : 1"), 3U);
+  EXPECT_EQ(failed_at(std::string("x\0+((", 5)), 2U);
+  EXPECT_EQ(failed_at(std::string(1990, '(')), 1991U);
+  EXPECT_EQ(failed_at(std::string(2001, '(')), std::nullopt) << "too long";
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <numbers>
 #include <optional>
 #include <random>
@@ -14,7 +13,8 @@
 #include <string>
 #include <string_view>
 
-#include "core/error.h"
+#include "core/limit_error.h"
+#include "core/number_format.h"
 #include "fabrication/chisel/on_machine.h"
 #include "fabrication/job/fins.h"
 #include "fabrication/job/io/job_files.h"
@@ -322,24 +322,17 @@ TEST(RoundedCuts, CubeCornersOfEveryIncrementSystemPassOrAreRefused) {
       }
 }
 
-/// Returns the first number after `before` in a text; nullopt if the text does not contain it.
-std::optional<double> number_after(const std::string& text, const std::string& before) {
-  const std::size_t at = text.find(before);
-  if (at == std::string::npos) return std::nullopt;
-  return std::strtod(text.c_str() + text.find_first_of("0123456789", at + before.size()), nullptr);
-}
-
-/// The values that a message names as allowed are accepted. Smaller wedge angles and larger increments are refused. No
-/// number in a message has more than eight digits.
-TEST(RoundedCuts, RefusalsNameValuesThatAreAccepted) {
-  const auto refusal = [](const Job& job, const Machine& m) -> std::string {
+/// The limits of refused jobs are accepted. Smaller wedge angles and larger increments are refused. Messages contain
+/// the limit, and no number in a message has more than eight digits.
+TEST(RoundedCuts, LimitsOfRefusedJobsAreAccepted) {
+  const auto refusal = [](const Job& job, const Machine& m) -> std::optional<LimitError> {
     try {
       check_on_machine(job, m);
-    } catch (const InputError& error) {
+    } catch (const LimitError& error) {
       EXPECT_FALSE(std::regex_search(error.what(), std::regex("[0-9]{9}|[0-9]\\.[0-9]{8}"))) << error.what();
-      return error.what();
+      return error;
     }
-    return "";
+    return std::nullopt;
   };
   int wedges = 0;
   int steps = 0;
@@ -350,26 +343,27 @@ TEST(RoundedCuts, RefusalsNameValuesThatAreAccepted) {
       job.tool.wedge_deg = wedge_deg;
       Machine m = machine();
       m.increments.linear_nm = step_nm;
-      const std::string text = refusal(job, m);
-      if (text.empty()) continue;
-      if (const auto allowed_deg = number_after(text, "tool.wedge_deg: ")) {
+      const std::optional<LimitError> refused = refusal(job, m);
+      if (!refused) continue;
+      const std::string what = refused->what();
+      if (refused->where().key == "tool.wedge_deg") {
         ++wedges;
-        job.tool.wedge_deg = *allowed_deg;
-        EXPECT_EQ(refusal(job, m), "") << text;
-        EXPECT_TRUE(fits(job)) << text;
-        job.tool.wedge_deg = *allowed_deg - 0.11;
-        EXPECT_NE(refusal(job, m), "") << text;
+        EXPECT_NE(what.find(" " + shortest(refused->limit()) + ","), std::string::npos) << what;
+        job.tool.wedge_deg = refused->limit();
+        EXPECT_FALSE(refusal(job, m)) << what;
+        EXPECT_TRUE(fits(job)) << what;
+        job.tool.wedge_deg = refused->limit() - 0.11;
+        EXPECT_TRUE(refusal(job, m)) << what;
       } else {
-        const auto allowed_um = number_after(text, "machine: ");
-        ASSERT_TRUE(allowed_um) << text;
+        ASSERT_EQ(refused->where().key, "machine") << what;
         ++steps;
-        const double allowed_nm = 1e3 * *allowed_um;
-        m.increments.linear_nm = static_cast<std::int64_t>(std::floor(allowed_nm + 1e-6));
+        EXPECT_NE(what.find(" " + fixed(refused->limit(), 4) + " um"), std::string::npos) << what;
+        m.increments.linear_nm = static_cast<std::int64_t>(std::floor(1e3 * refused->limit() + 1e-6));
         if (m.increments.linear_nm >= 1) {
-          EXPECT_EQ(refusal(job, m), "") << text;
+          EXPECT_FALSE(refusal(job, m)) << what;
         }
-        m.increments.linear_nm = static_cast<std::int64_t>(std::floor(allowed_nm + 1e-6)) + 1;
-        EXPECT_NE(refusal(job, m), "") << text;
+        ++m.increments.linear_nm;
+        EXPECT_TRUE(refusal(job, m)) << what;
       }
     }
   EXPECT_GT(wedges, 5);

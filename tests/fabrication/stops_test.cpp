@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/atomic_file.h"
-#include "core/error.h"
+#include "core/limit_error.h"
 #include "fabrication/chisel/check/verify.h"
 #include "fabrication/chisel/plan/plan.h"
 #include "fabrication/machine/io/machine_files.h"
@@ -103,16 +103,16 @@ class Stops : public ::testing::TestWithParam<NcDialect> {
 };
 
 /// Returns the longest length of cut of a visit. A visit is one call of a cutting subroutine at an element. The length
-/// is taken from the message that refuses a shorter edge life.
+/// is the limit that is reported if a shorter edge life is refused.
 double longest_visit_mm(const Case& c, const Machine& machine) {
   Job job = c.job;
   job.tool.edge_life_mm = 1e-3;
   for (;;) try {
       make_plan(job, machine);
       return *job.tool.edge_life_mm;
-    } catch (const InputError& error) {
-      // The text names the least life that is allowed.
-      job.tool.edge_life_mm = 1e-3 + std::stod(error.text().substr(error.text().find_first_of("0123456789")));
+    } catch (const LimitError& error) {
+      EXPECT_EQ(error.where().key, "tool.edge_life_mm");
+      job.tool.edge_life_mm = error.limit();
     }
 }
 

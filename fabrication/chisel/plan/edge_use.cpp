@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/error.h"
+#include "core/limit_error.h"
 #include "core/number_format.h"
 #include "fabrication/machine/edge_cut.h"
 
@@ -87,9 +87,10 @@ bool EdgeAccount::needs_program(const EdgeUse& visit) const {
 void EdgeAccount::check(const EdgeUse& visit, double fresh_s, std::int32_t element) const {
   const auto& life_mm = job_.tool.edge_life_mm;
   if (life_mm && visit.cut_mm > *life_mm)
-    throw InputError(job_.where("tool.edge_life_mm"),
+    throw LimitError(job_.where("tool.edge_life_mm"),
                      fmt::format("must be at least {}, what one visit of element {} cuts, got {}",
-                                 fixed(visit.cut_mm, 3), element, shortest(*life_mm)));
+                                 fixed(visit.cut_mm, 3), element, shortest(*life_mm)),
+                     visit.cut_mm);
   const auto& most_min = job_.process.stop_every_min;
   const double minutes = (fresh_s + visit.seconds) / kSecondsPerMinute;
   if (most_min && minutes > *most_min)

@@ -2,11 +2,15 @@
 // the profile of the planner. Its simulation of a round nose is compared with closed forms. It must report findings for
 // plans that were made for another lens or tool.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <sstream>
+#include <string>
+#include <vector>
 
 #include "core/error.h"
 #include "fabrication/planing/check/check.h"
@@ -207,15 +211,31 @@ std::string with_line(std::string text, const std::string& line, const std::stri
   return text.replace(at, line.size() + 1, other.empty() ? "" : other + "\n");
 }
 
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
 const std::string kStarts[] = {"G97 S800 M3", "S800 M3", "G97 S800 M3", "M103", "M103", "M103"};
 const std::string kStops[] = {"M5", "M5", "M5", "M105", "M105", "M105"};
 
-/// Returns the kinds of all findings and records their messages.
-std::string spindle_finding(const PlaningCheck& check) {
+/// Returns the kinds of all findings, with the speed of the spindle and the program line: "feed" for a feed move,
+/// "stop" and "speed" for lines that only stop the spindle or set its speed, and "end" for other lines. Records their
+/// messages.
+std::string spindle_findings(const PlanedPart& part, const std::string& text, NcDialect dialect) {
+  const std::vector<std::string> lines = lines_of(text);
   std::string found;
-  for (const Finding& f : check.findings) {
+  for (const Finding& f : check_of(part, text, dialect).findings) {
     record_message(f.message);
-    found += f.kind + ";";
+    EXPECT_EQ(f.limit, static_cast<double>(part.lathe->spindle_rpm));
+    const std::string& line = lines.at(static_cast<std::size_t>(f.line) - 1);
+    std::string place = "end";
+    if (line.starts_with("G1 ") || line.starts_with("linear ")) place = "feed";
+    if (line == kStops[static_cast<std::size_t>(dialect)]) place = "stop";
+    if (line == "S80") place = "speed";
+    found += fmt::format("{} {} rpm, {};", f.kind, f.value, place);
   }
   return found;
 }
@@ -228,7 +248,7 @@ TEST(Lathe, TheSpindleTurnsFromBeforeTheFirstMoveToBehindTheLast) {
     const std::string move = dialect == NcDialect::pmac ? "\nrapid " : "\nG0 ";
     EXPECT_LT(text.find("\n" + kStarts[d] + "\n"), text.find(move)) << text.substr(0, 400);
     EXPECT_GT(text.rfind("\n" + kStops[d] + "\n"), text.rfind(move));
-    EXPECT_EQ(spindle_finding(check_of(part, text, dialect)), "");
+    EXPECT_EQ(spindle_findings(part, text, dialect), "");
   }
   part.lathe->spindle_direction = SpindleDirection::counterclockwise;
   EXPECT_NE(turned_text(part, "sinumerik").find("\nS800 M4\n"), std::string::npos);
@@ -237,28 +257,28 @@ TEST(Lathe, TheSpindleTurnsFromBeforeTheFirstMoveToBehindTheLast) {
 
 TEST(Lathe, EveryFaultOfTheSpindleIsFoundInEveryDialect) {
   const PlanedPart part = turned_part();
-  const std::string spindle = "spindle;";
   for (std::size_t d = 0; d < std::size(kNcDialectWords); ++d) {
     const auto dialect = static_cast<NcDialect>(d);
     const std::string& start = kStarts[d];
     const std::string& stop = kStops[d];
     const std::string text = turned_text(part, std::string(kNcDialectWords[d]));
-    const auto found = [&](const std::string& faulty) { return spindle_finding(check_of(part, faulty, dialect)); };
-    EXPECT_EQ(found(with_line(text, start, "")), spindle) << d;
-    EXPECT_EQ(found(with_line(text, stop, "", true)), spindle) << d;
+    const auto found = [&](const std::string& faulty) { return spindle_findings(part, faulty, dialect); };
+    const std::string at_end = has_own_texts(dialect) ? "spindle 0 rpm, end;" : "spindle 800 rpm, end;";
+    EXPECT_EQ(found(with_line(text, start, "")), "spindle 0 rpm, feed;") << d;
+    EXPECT_EQ(found(with_line(text, stop, "", true)), at_end) << d;
     // Stop the spindle before the last cut: insert the line before the last feed move.
     const std::size_t last_cut = text.rfind(dialect == NcDialect::pmac ? "\nlinear " : "\nG1 ") + 1;
-    EXPECT_EQ(found(std::string(text).insert(last_cut, stop + "\n")), spindle) << d;
+    EXPECT_EQ(found(std::string(text).insert(last_cut, stop + "\n")), "spindle 0 rpm, stop;") << d;
     if (has_own_texts(dialect)) {
-      EXPECT_EQ(found(with_line(text, start, "M3")), spindle);
-      EXPECT_EQ(found(with_line(text, stop, "M5", true)), spindle);
+      EXPECT_EQ(found(with_line(text, start, "M3")), "spindle 0 rpm, feed;");
+      EXPECT_EQ(found(with_line(text, stop, "M5", true)), at_end);
       EXPECT_THROW(found(with_line(text, start, "M104")), InputError);
       continue;
     }
-    EXPECT_EQ(found(with_line(text, start, start.substr(0, start.size() - 1) + "4")), spindle) << d;
-    EXPECT_EQ(found(with_line(text, start, "S801 M3")), spindle) << d;
-    EXPECT_EQ(found(with_line(text, start, "M3")), spindle) << d;
-    EXPECT_EQ(found(std::string(text).insert(last_cut, "S80\n")), spindle) << d;
+    EXPECT_EQ(found(with_line(text, start, start.substr(0, start.size() - 1) + "4")), "spindle 800 rpm, feed;") << d;
+    EXPECT_EQ(found(with_line(text, start, "S801 M3")), "spindle 801 rpm, feed;") << d;
+    EXPECT_EQ(found(with_line(text, start, "M3")), "spindle 0 rpm, feed;") << d;
+    EXPECT_EQ(found(std::string(text).insert(last_cut, "S80\n")), "spindle 80 rpm, speed;") << d;
   }
 }
 

@@ -289,10 +289,14 @@ TEST(TurningProgram, StopsAndMissingTimesAreFound) {
   CutRecorder stops;
   run_nc(parse_nc("%\nG90 G21 G61 G93\nG0 X0. Y0. C0.\nG1 X1. C1. F60.\nM2\n%\n", "p", NcDialect::rs274ngc), stops);
   ASSERT_EQ(stops.findings().size(), 1U);
+  EXPECT_EQ(stops.findings()[0].kind, "stops");
+  EXPECT_EQ(stops.findings()[0].line, 4);
   record_message(stops.findings()[0].message);
   CutRecorder untimed;
   run_nc(parse_nc("%\nG90 G21 G64 G94\nG0 X0. Y0. C0.\nG1 X1. C1. F60.\nM2\n%\n", "p", NcDialect::rs274ngc), untimed);
   ASSERT_EQ(untimed.findings().size(), 1U);
+  EXPECT_EQ(untimed.findings()[0].kind, "untimed");
+  EXPECT_EQ(untimed.findings()[0].line, 4);
   record_message(untimed.findings()[0].message);
 }
 
