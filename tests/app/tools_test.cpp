@@ -57,17 +57,24 @@ class ToolsRun : public ::testing::Test {
   std::string asked() const { return fs::exists(folder_.path() / "asked") ? folder_.read("asked") : ""; }
   /// Expects exit code 3 and no build folder. On standard error, the last line and `others` further lines must be lines
   /// of tools/run itself, which begin with "run: ".
-  void expect_gives_up(const Outcome& outcome, std::ptrdiff_t others = 0) const {
+  /// \param named command, version or system that the last line must contain
+  /// \return the last line
+  std::string expect_gives_up(const Outcome& outcome, const std::string& named = "", std::ptrdiff_t others = 0) const {
     EXPECT_EQ(outcome.code, 3) << outcome.err;
     EXPECT_EQ(outcome.out, "");
     const std::vector<std::string> lines = lines_of(outcome.err);
-    ASSERT_FALSE(lines.empty());
+    if (lines.empty()) {
+      ADD_FAILURE() << "nothing on standard error";
+      return "";
+    }
+    EXPECT_NE(lines.back().find(named), std::string::npos) << outcome.err;
     EXPECT_TRUE(lines.back().starts_with("run: ")) << outcome.err;
     record_message(lines.back());
     EXPECT_EQ(std::count_if(lines.begin(), lines.end(), [](const auto& line) { return line.starts_with("run: "); }),
               others + 1)
         << outcome.err;
     EXPECT_FALSE(fs::exists(project() / "build"));
+    return lines.back();
   }
 
   TemporaryFolder folder_;
@@ -82,25 +89,29 @@ TEST_F(ToolsRun, WithoutNetworkItSaysSo) {
 }
 
 TEST_F(ToolsRun, WithoutTheRightToInstallItSaysWhatToAskFor) {
+  const std::string install = " apt-get install --no-install-recommends g++ ";
   stub("id", "echo 1000");
-  expect_gives_up(run());
+  const std::string without_sudo = expect_gives_up(run(), install);
+  EXPECT_EQ(without_sudo.find("sudo" + install), std::string::npos);
   stub("sudo", "exit 1");
-  expect_gives_up(run());
-  expect_gives_up(run({"--no-install"}));
+  expect_gives_up(run(), "sudo" + install);
+  const std::string not_allowed = expect_gives_up(run({"--no-install"}), install);
+  EXPECT_EQ(not_allowed.find("sudo" + install), std::string::npos);
+  EXPECT_NE(not_allowed, without_sudo);
   EXPECT_EQ(asked(), "");
 }
 
 TEST_F(ToolsRun, AnOldCMakeIsRefusedBeforeAnythingIsInstalled) {
   stub("cmake", "echo cmake version 3.18.4");
-  expect_gives_up(run());
+  expect_gives_up(run(), " 3.18.4,");
   stub("cmake", "exit 1");
-  expect_gives_up(run());
+  expect_gives_up(run(), " 3.25 ");
   EXPECT_EQ(asked(), "");
 }
 
 TEST_F(ToolsRun, AnOldDebianIsRefusedBeforeAnythingIsInstalled) {
   folder_.write("os-release", "PRETTY_NAME='Debian GNU/Linux 11 (bullseye)'\nID=debian\nVERSION_ID='11'\n");
-  expect_gives_up(run());
+  expect_gives_up(run(), "Debian GNU/Linux 11 (bullseye)");
   EXPECT_EQ(asked(), "");
 }
 
@@ -108,10 +119,10 @@ TEST_F(ToolsRun, ElsewhereNothingIsInstalledAndWhatLacksIsToldInTheEnd) {
   for (const char* system : {"PRETTY_NAME='Ubuntu 22.04.4 LTS'\nID=ubuntu\nVERSION_ID='22.04'\n",
                              "PRETTY_NAME='Fedora Linux 40'\nID=fedora\nVERSION_ID=40\n", ""}) {
     folder_.write("os-release", system);
-    expect_gives_up(run(), 2);
+    expect_gives_up(run(), "docs/dependencies.md", 2);
   }
   fs::remove(stubs() / "dpkg-query");
-  expect_gives_up(run(), 2);
+  expect_gives_up(run(), "docs/dependencies.md", 2);
   EXPECT_EQ(asked(), "");
 }
 
