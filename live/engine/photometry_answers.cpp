@@ -76,7 +76,7 @@ Json photometry_json(const OpenedDesign& opened, const Json& request, TimeLimit&
   Json points = Json::array();
   for (const PhotometricPoint& point : result.points) points.push_back(point_json(point));
   return {{"verdict", studies::verdict_name(result.verdict)},
-          {"reason", result.reason},
+          {"reason", result.reason.text},
           {"engine", result.engine},
           {"has_diffraction", result.has_diffraction},
           {"warnings", texts_of(result.warnings)},

@@ -142,7 +142,7 @@ void check_engine(const Design& design, PhotometrySettings request) {
   if (!photometer.is_exact())
     throw InputError(design.where_facets(),
                      "a material is computed by the exact engine, which does not take this design: " +
-                         photometer.why_undiffracted());
+                         std::string(text_of(photometer.why_undiffracted())));
 }
 
 constexpr auto kEye = static_cast<std::size_t>(PhotometricResponse::y_bar);

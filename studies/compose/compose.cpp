@@ -259,6 +259,7 @@ class Composer {
         mixture = composition.by_zones.back().mixture;
     }
     if (!mixture.is_there()) {
+      composition.excluding = excluding_bounds(composition, relaxed);
       composition.none_because = why_none(composition, relaxed);
       return;
     }
@@ -271,7 +272,18 @@ class Composer {
       composition.proof = has_intervals(study_) ? Proof::catalogue : Proof::family;
   }
 
+  /// Returns the indices of the bounds over the part that together exclude all mixtures.
+  /// \param relaxed best mixture without limits on the number and the minimum area of zones
+  std::vector<std::size_t> excluding_bounds(const Composition& composition, const Mixture& relaxed) const {
+    std::vector<std::size_t> bounds;
+    if (composition.catalogue.empty() || relaxed.is_there()) return bounds;
+    for (std::size_t k = 0; k < request_.of_part.size(); ++k)
+      if (std::abs(relaxed.prices.means[k]) > 1e-9) bounds.push_back(k);
+    return bounds;
+  }
+
   /// Returns the reason why no mixture satisfies the bounds, as text.
+  /// \pre composition.excluding is set
   std::string why_none(const Composition& composition, const Mixture& relaxed) const {
     if (composition.catalogue.empty())
       return composition.failed > 0 ? fmt::format("no cell can be computed: {}", composition.first_failure)
@@ -281,9 +293,8 @@ class Composer {
                          request_.most_zones.value_or(composition.catalogue.size()), composition.catalogue.size(),
                          shortest(request_.least_share));
     std::string text;
-    for (std::size_t k = 0; k < request_.of_part.size(); ++k)
-      if (std::abs(relaxed.prices.means[k]) > 1e-9)
-        text += fmt::format("{}{}", text.empty() ? "" : " and ", request_.of_part[k].text());
+    for (const std::size_t k : composition.excluding)
+      text += fmt::format("{}{}", text.empty() ? "" : " and ", request_.of_part[k].text());
     if (text.empty())
       return fmt::format("{} cells with a share of at most {} do not fill the part", composition.catalogue.size(),
                          shortest(request_.most_share));

@@ -356,34 +356,40 @@ std::optional<Variant> cheaper_than(const Optimum& optimum, const OptimiseReques
   return is_worth_it ? found : std::nullopt;
 }
 
-/// Returns why no design is feasible.
-std::string why_none(const OptimiseRequest& request, const Evaluator& evaluator) {
-  std::vector<std::size_t> broken_by(request.constraints.size(), 0);
-  std::vector<double> nearest(request.constraints.size(), std::numeric_limits<double>::infinity());
-  std::size_t judged = 0;
-  const Variant* failed = nullptr;
+/// Returns the effect of each constraint on the designs that could be computed.
+std::vector<Exclusion> exclusions_of(const OptimiseRequest& request, const Evaluator& evaluator) {
+  std::vector<Exclusion> exclusions(request.constraints.size());
   for (const Variant& variant : evaluator.seen()) {
-    if (variant.failed) failed = &variant;
     if (variant.failed) continue;
-    ++judged;
-    for (const std::size_t k : variant.broken) ++broken_by[k];
-    for (std::size_t k = 0; k < nearest.size(); ++k)
-      nearest[k] = std::min(
-          nearest[k], request.constraints[k].violation(evaluator.value(variant, request.constraints[k].quantity)));
+    for (const std::size_t k : variant.broken) ++exclusions[k].designs;
+    for (std::size_t k = 0; k < exclusions.size(); ++k) {
+      const Constraint& constraint = request.constraints[k];
+      exclusions[k].least_violation =
+          std::min(exclusions[k].least_violation, constraint.violation(evaluator.value(variant, constraint.quantity)));
+    }
   }
-  if (judged == 0) return fmt::format("no design can be computed: {}", failed != nullptr ? failed->reason : "none");
+  return exclusions;
+}
+
+/// Returns why no design is feasible.
+std::string why_none(const OptimiseRequest& request, const std::vector<Exclusion>& exclusions,
+                     const std::vector<Variant>& seen) {
+  const auto judged =
+      static_cast<std::size_t>(std::ranges::count_if(seen, [](const Variant& variant) { return !variant.failed; }));
+  if (judged == 0) return fmt::format("no design can be computed: {}", seen.empty() ? "none" : seen.back().reason);
   std::string text;
-  for (std::size_t k = 0; k < broken_by.size(); ++k)
-    if (broken_by[k] == judged) {
+  for (std::size_t k = 0; k < exclusions.size(); ++k)
+    if (exclusions[k].designs == judged) {
       text += fmt::format("{}{} excludes all {} designs", text.empty() ? "" : ", and ", request.constraints[k].text(),
                           judged);
-      if (std::isfinite(nearest[k])) text += fmt::format(" (the nearest misses it by {:.3g})", nearest[k]);
+      if (std::isfinite(exclusions[k].least_violation))
+        text += fmt::format(" (the nearest misses it by {:.3g})", exclusions[k].least_violation);
     }
   if (!text.empty()) return text;
-  for (std::size_t k = 0; k < broken_by.size(); ++k)
-    if (broken_by[k] > 0)
+  for (std::size_t k = 0; k < exclusions.size(); ++k)
+    if (exclusions[k].designs > 0)
       text += fmt::format("{}{} excludes {} of {} designs", text.empty() ? "" : ", ", request.constraints[k].text(),
-                          broken_by[k], judged);
+                          exclusions[k].designs, judged);
   return text.empty() ? "the objective has no value anywhere" : text + ": none is left";
 }
 
@@ -392,7 +398,8 @@ void search(const Study& study, const OptimiseRequest& request, Evaluator& evalu
   Search searching(study, request, evaluator);
   optimum.best = searching.run(optimum);
   if (!optimum.best) {
-    optimum.none_because = why_none(request, evaluator);
+    optimum.exclusions = exclusions_of(request, evaluator);
+    optimum.none_because = why_none(request, optimum.exclusions, evaluator.seen());
     return;
   }
   std::vector<Rejected> neighbours = searching.neighbours(*optimum.best);

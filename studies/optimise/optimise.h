@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -68,10 +69,19 @@ struct ToleranceBand {
   std::optional<double> up;
 };
 
+/// Evaluated designs that a constraint excludes.
+struct Exclusion {
+  std::size_t designs = 0;  ///< number of designs that violate the constraint
+  /// Smallest violation of all evaluated designs; infinite if the quantity has no value for any of them.
+  double least_violation = std::numeric_limits<double>::infinity();
+};
+
 struct Optimum {
   std::optional<Variant> best;  ///< none if no design is feasible
   std::string none_because;     ///< why no design is feasible; empty if there is a best design
-  std::vector<Variant> front;   ///< feasible designs that no other design dominates
+  /// Effect of each constraint of the request. Empty if there is a best design.
+  std::vector<Exclusion> exclusions;
+  std::vector<Variant> front;  ///< feasible designs that no other design dominates
   std::vector<Rejected> rejected;
   /// Design of the front that loses at most 1 % of the objective and is best on the first axis that is not part of the
   /// objective.

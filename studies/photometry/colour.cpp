@@ -1,5 +1,7 @@
 #include "studies/photometry/colour.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -93,13 +95,18 @@ bool is_near(const ColourPoint& point) {
   return std::abs(point.margin) < kErrorsOfAColour * point.std_error;
 }
 
-std::string reason_of(const PhotometricColour& colour, const PhotometrySettings& request,
-                      const Photometer& photometer) {
+/// Returns the reason of an undetermined verdict on a colour.
+OpenReason reason_of(const PhotometricColour& colour, const Photometer& photometer) {
+  using Cause = OpenReason::Cause;
   if (colour.verdict() != Verdict::undetermined) return {};
-  if (!colour.chromaticity) return "no light comes back there";
-  if (colour.lacks_diffraction) return "diffraction is left out, as " + photometer.why_undiffracted();
-  if (request.light != PhotometricLight::illuminant_a) return "the boundaries are of CIE A";
-  return "the colour is nearer to a boundary than two standard errors: " + photometer.remedy_for_noise();
+  if (!colour.chromaticity) return {Cause::no_light, std::nullopt, "no light comes back there"};
+  if (colour.lacks_diffraction) {
+    const NoDiffraction why = photometer.why_undiffracted();
+    return {Cause::diffraction, why, fmt::format("diffraction is left out, as {}", text_of(why))};
+  }
+  if (colour.is_of_another_light) return {Cause::another_light, std::nullopt, "the boundaries are of CIE A"};
+  return {Cause::noise, std::nullopt,
+          "the colour is nearer to a boundary than two standard errors: " + photometer.remedy_for_noise()};
 }
 
 }  // namespace
@@ -140,7 +147,7 @@ std::optional<PhotometricColour> measured_colour(const Design& design, const Pho
     colour.is_of_another_light = request.light != PhotometricLight::illuminant_a;
     if (!worst || least_margin(colour) < least_margin(*worst)) worst = std::move(colour);
   }
-  worst->reason = reason_of(*worst, request, photometer);
+  worst->reason = reason_of(*worst, photometer);
   return worst;
 }
 

@@ -197,18 +197,16 @@ std::string Photometer::engine_name() const {
   return resamples_weak() ? "stochastic" : "exact";
 }
 
-std::string Photometer::why_undiffracted() const {
-  if (!request_.diffraction) return "it was not asked for";
-  if (design_.balls()) return "balls are traced by rays";
-  if (design_.entrance) return "curved fronts are traced by rays";
-  if (!model_.optics.has_one_back()) return "backs that are not all alike are traced by rays";
-  if (is_exact_) return "its cells differ too much to diffract the light of each";
-  if (!model_.optics.is_smooth() && has_form_) return "facets with both a form and a texture are traced by rays";
-  if (model_.optics.entrance.scatters()) return "an entrance face that scatters is traced by rays";
-  if (!model_.optics.is_smooth() && !keeps_phases_)
-    return "textures that say nothing of phases (abg, microfacet, height_map, roughness with a lay) are traced by rays";
-  return request_.engine == Engine::automatic ? "the exact engine would take too many beams"
-                                              : "the Monte-Carlo engine has none";
+NoDiffraction Photometer::why_undiffracted() const {
+  if (!request_.diffraction) return NoDiffraction::not_requested;
+  if (design_.balls()) return NoDiffraction::balls;
+  if (design_.entrance) return NoDiffraction::curved_entrance;
+  if (!model_.optics.has_one_back()) return NoDiffraction::unequal_backs;
+  if (is_exact_) return NoDiffraction::unequal_cells;
+  if (!model_.optics.is_smooth() && has_form_) return NoDiffraction::form_and_texture;
+  if (model_.optics.entrance.scatters()) return NoDiffraction::scattering_entrance;
+  if (!model_.optics.is_smooth() && !keeps_phases_) return NoDiffraction::no_phases;
+  return request_.engine == Engine::automatic ? NoDiffraction::too_many_beams : NoDiffraction::monte_carlo;
 }
 
 double Photometer::least_undiffracted_mm() const {

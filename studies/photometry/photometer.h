@@ -91,8 +91,9 @@ class Photometer {
   /// Returns advice for reducing standard errors, for messages.
   std::string remedy_for_noise() const { return is_exact_ ? "give a lower cut-off" : "give more samples"; }
   bool has_diffraction() const { return is_exact_ && request_.diffraction; }
-  /// Returns the reason why readings lack diffraction, for messages.
-  std::string why_undiffracted() const;
+  /// Returns the reason why readings lack diffraction.
+  /// \pre readings lack diffraction
+  NoDiffraction why_undiffracted() const;
   /// Returns the smallest cell width, in mm, for which diffraction is not significant.
   double least_undiffracted_mm() const;
   /// Returns a photometer that measures, with diffraction, only the mean field of a part with rough facets: the field

@@ -275,6 +275,24 @@ PhotometricLight light_from_name(std::string_view name) {
   throw InputError(Field{"light"}, fmt::format("must be a, d65 or design, got {}", in_quotes(name)));
 }
 
+std::string_view text_of(NoDiffraction reason) {
+  switch (reason) {
+    case NoDiffraction::not_requested: return "it was not asked for";
+    case NoDiffraction::balls: return "balls are traced by rays";
+    case NoDiffraction::curved_entrance: return "curved fronts are traced by rays";
+    case NoDiffraction::unequal_backs: return "backs that are not all alike are traced by rays";
+    case NoDiffraction::unequal_cells: return "its cells differ too much to diffract the light of each";
+    case NoDiffraction::form_and_texture: return "facets with both a form and a texture are traced by rays";
+    case NoDiffraction::scattering_entrance: return "an entrance face that scatters is traced by rays";
+    case NoDiffraction::no_phases:
+      return "textures that say nothing of phases (abg, microfacet, height_map, roughness with a lay) are traced by "
+             "rays";
+    case NoDiffraction::too_many_beams: return "the exact engine would take too many beams";
+    case NoDiffraction::monte_carlo: return "the Monte-Carlo engine has none";
+  }
+  return "";
+}
+
 std::string_view verdict_name(Verdict verdict) {
   switch (verdict) {
     case Verdict::pass: return "pass";
@@ -365,14 +383,17 @@ bool raise_to_mean_field(const Photometer& photometer, const PhotometrySettings&
   return true;
 }
 
-/// Returns why points are undetermined. Empty if none is.
-std::string reason_of(const std::vector<PhotometricPoint>& points, const Photometer& photometer) {
+/// Returns the reason of undetermined points.
+OpenReason reason_of(const std::vector<PhotometricPoint>& points, const Photometer& photometer) {
   const auto is_open = [](const PhotometricPoint& p) { return p.verdict() == Verdict::undetermined; };
   if (std::none_of(points.begin(), points.end(), is_open)) return {};
   if (std::none_of(points.begin(), points.end(), [](const PhotometricPoint& p) { return p.lacks_diffraction; }))
-    return "a value is nearer to its limit than two standard errors: " + photometer.remedy_for_noise();
-  return fmt::format("diffraction is left out, as {}, and counts for cells narrower than {} mm",
-                     photometer.why_undiffracted(), fixed(photometer.least_undiffracted_mm(), 1));
+    return {OpenReason::Cause::noise, std::nullopt,
+            "a value is nearer to its limit than two standard errors: " + photometer.remedy_for_noise()};
+  const NoDiffraction why = photometer.why_undiffracted();
+  return {OpenReason::Cause::diffraction, why,
+          fmt::format("diffraction is left out, as {}, and counts for cells narrower than {} mm", text_of(why),
+                      fixed(photometer.least_undiffracted_mm(), 1))};
 }
 
 /// Measures with the exact engine, or by Monte Carlo if the exact engine needs too many beams and the request allows

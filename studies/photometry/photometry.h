@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/progress.h"
@@ -139,6 +140,36 @@ struct PhotometricChange {
   bool passes() const { return every_point_holds(verdict); }
 };
 
+/// Reason why readings lack diffraction.
+enum class NoDiffraction {
+  not_requested,
+  balls,
+  curved_entrance,
+  unequal_backs,        ///< the faces of the back differ
+  unequal_cells,        ///< the cells differ too much
+  form_and_texture,     ///< the facets have both a form and a texture
+  scattering_entrance,  ///< the entrance face scatters light
+  no_phases,            ///< the model of the texture contains no information on phases
+  too_many_beams,       ///< the exact engine would need too many beams
+  monte_carlo           ///< the request selects the Monte-Carlo engine
+};
+/// Returns the reason as a clause for messages, such as "balls are traced by rays".
+std::string_view text_of(NoDiffraction reason);
+
+/// Reason of an undetermined verdict.
+struct OpenReason {
+  enum class Cause {
+    none,           ///< the verdict is not undetermined
+    noise,          ///< a value is too near to its limit
+    diffraction,    ///< diffraction is significant but not included
+    no_light,       ///< no light returns
+    another_light,  ///< the limits are defined for another light
+  };
+  Cause cause = Cause::none;
+  std::optional<NoDiffraction> no_diffraction;  ///< only if the cause is `diffraction`
+  std::string text;                             ///< one line for the user; empty if there is no reason
+};
+
 /// Boundary of the allowed colours, and distance of the returned light's colour from it.
 struct ColourPoint {
   ColourBoundary asked;
@@ -157,7 +188,7 @@ struct PhotometricColour {
   /// True: diffraction is significant but not included in the result.
   bool lacks_diffraction = false;
   bool is_of_another_light = false;  ///< true: the light is not CIE A, for which the boundaries are defined
-  std::string reason;                ///< reason of an undetermined verdict; empty otherwise
+  OpenReason reason;
 
   /// Returns the verdict on all boundaries. Returns nothing if there are no boundaries.
   std::optional<Verdict> verdict() const;
@@ -176,7 +207,7 @@ struct PhotometryResult {
   std::vector<std::vector<PhotometricPoint>> readings;
   std::vector<PhotometricDirection> directions;
   Verdict verdict = Verdict::fail;
-  std::string reason;                       ///< reason of undetermined points; empty if there are none
+  OpenReason reason;                        ///< reason of undetermined points
   std::optional<PhotometricColour> colour;  ///< colour, which has its own verdict
   /// For a failing design: a change with which it passes, or else the best change that was tried.
   std::optional<PhotometricChange> change;

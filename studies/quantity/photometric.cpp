@@ -82,7 +82,7 @@ class PhotometricQuantity final : public Quantity {
     }
     const PhotometryResult result =
         PhotometryStudy(candidate.design(), std::move(request)).run(candidate.progress(), cancel);
-    return result.complete ? Points{result.points, result.measured, result.readings, result.reason} : Points{};
+    return result.complete ? Points{result.points, result.measured, result.readings, result.reason.text} : Points{};
   }
 
   /// Returns the margin to the limit. A margin is refused if requested diffraction is missing in it, because it would

@@ -111,7 +111,7 @@ class ShareQuantity final : public Quantity {
     for (const RrePoint& point : result.points) {
       const auto found = std::find_if(point.derivatives.begin(), point.derivatives.end(),
                                       [&](const RreDerivative& d) { return d.parameter == parameter; });
-      if (found == point.derivatives.end() || !found->left_out.empty()) return std::nullopt;
+      if (found == point.derivatives.end() || found->left_out) return std::nullopt;
       slopes.push_back({found->derivative.value, 0.0});
       const double sine = std::sin(Angle::from_deg(point.incidence_deg).rad());
       weights.push_back(spec_.window.by_solid_angle ? std::abs(sine) : 1.0);

@@ -187,24 +187,24 @@ class TraceByParameter {
   std::map<double, Traced> known_;
 };
 
-std::string why_not(const Derivative& derivative) {
+std::optional<NoDerivative> why_not(const Derivative& derivative) {
   if (derivative.converged()) return {};
   // Fraction of the error above which noise is given as the reason; noise also increases the error itself.
   constexpr double kShows = 0.2;
-  return derivative.noise > kShows * derivative.error ? "what is cut off hides it" : "RRE has a kink or a jump here";
+  return derivative.noise > kShows * derivative.error ? NoDerivative::truncated_power : NoDerivative::not_smooth;
 }
 
 /// Returns the derivatives with respect to one parameter, one for each acceptance cone.
 std::vector<RreDerivative> derivatives_by(RreParameter parameter, const TracedDirection& at,
                                           const Cancellation* cancel) {
   const std::size_t cones = at.design.detector.acceptance_half_angle_deg.size();
-  const auto left_out = [&](const char* reason) {
+  const auto left_out = [&](NoDerivative reason) {
     return std::vector<RreDerivative>(cones, RreDerivative{parameter, {}, reason});
   };
   DifferenceRange range = range_of(at, parameter);
   const double value = value_of(at, parameter);
   if (parameter == RreParameter::size_mm && !keep_elements(at.design, value, range))
-    return left_out("the number of elements changes here");
+    return left_out(NoDerivative::count_changes);
   TraceByParameter trace(at, parameter, cancel);
   std::vector<RreDerivative> derivatives;
   try {
@@ -221,14 +221,25 @@ std::vector<RreDerivative> derivatives_by(RreParameter parameter, const TracedDi
       derivatives.push_back({parameter, found, why_not(found)});
     }
   } catch (const BudgetError&) {
-    return left_out("far more beams are needed nearby");
+    return left_out(NoDerivative::too_many_beams);
   } catch (const InputError&) {
-    return left_out("no part can be built nearby");
+    return left_out(NoDerivative::no_part);
   }
   return derivatives;
 }
 
 }  // namespace
+
+std::string_view text_of(NoDerivative reason) {
+  switch (reason) {
+    case NoDerivative::count_changes: return "the number of elements changes here";
+    case NoDerivative::too_many_beams: return "far more beams are needed nearby";
+    case NoDerivative::no_part: return "no part can be built nearby";
+    case NoDerivative::truncated_power: return "what is cut off hides it";
+    case NoDerivative::not_smooth: return "RRE has a kink or a jump here";
+  }
+  return "";
+}
 
 std::string_view parameter_name(RreParameter parameter) {
   switch (parameter) {

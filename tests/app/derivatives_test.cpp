@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "tests/app/program.h"
+#include "tests/support/refusals.h"
 
 namespace retrace::test::derivatives_test {
 namespace {
@@ -31,7 +32,9 @@ TEST(Derivatives, AreObjectsByParameterOfEveryPoint) {
     }
     EXPECT_EQ(names, (Arguments{"size_mm", "apex_angle_deg", "refractive_index", "thickness_mm", "incidence_deg"}));
   }
-  EXPECT_EQ(json["points"][0]["derivatives"]["incidence_deg"], (Json{{"left_out", "RRE has a kink or a jump here"}}));
+  const Json& left_out = json["points"][0]["derivatives"]["incidence_deg"];
+  ASSERT_EQ(left_out.size(), 1U);
+  record_message(left_out.at("left_out").get<std::string>());
   EXPECT_TRUE(json["points"][2]["derivatives"]["incidence_deg"].contains("value"));
 }
 
@@ -64,7 +67,9 @@ TEST(Derivatives, StandInATableToo) {
   const Outcome outcome = retrace(folder, with_derivatives({}));
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(lines_of(outcome.out).size(), 16U);
-  EXPECT_NE(outcome.out.find("left out: RRE has a kink or a jump here"), std::string::npos);
+  const Json json = retrace_json(folder, with_derivatives({}));
+  const Json& reason = json["points"][0]["derivatives"]["incidence_deg"]["left_out"];
+  EXPECT_NE(outcome.out.find(reason.get<std::string>()), std::string::npos);
 }
 
 TEST(Derivatives, NeedTheExactEngine) {

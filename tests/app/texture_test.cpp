@@ -105,42 +105,30 @@ TEST(HeightMapOfADesign, ExactEngineRefusesIt) {
   EXPECT_EQ(refused_at(outcome), "d.toml:10: surface.height_map");
 }
 
-struct OutOfRange {
-  std::string surface;
-  std::string word;  ///< word that only the warning of this model contains
-};
-
 // Each model warns if it is used outside of its range, on standard error and in the JSON documents of both commands.
+// Tests of the models check which warnings these are.
 TEST(TextureOfADesign, WarnsOutsideTheRangeOfEveryModel) {
-  const std::vector<OutOfRange> cases = {
-      {"roughness_sq_nm = 10\ncorrelation_length_um = 0.2\n", "correlation length"},
-      {"roughness_sq_nm = 400\ncorrelation_length_um = 2\n", "slope of the roughness"},
-      {"roughness_sq_nm = 250\ncorrelation_length_um = 9\n", "roughness 250 nm"},
-      {"waviness_sq_nm = 300\nwaviness_length_um = 5\n", "slope of the waviness"},
-      {"model = \"abg\"\nabg_a = 0.01\nabg_b = 1e-4\nabg_g = 2\n", "abg"},
-      {"model = \"microfacet\"\nwaviness_sq_nm = 30\nwaviness_length_um = 80\n", "waviness of 30 nm"},
-      {"model = \"microfacet\"\nwaviness_sq_nm = 900\nwaviness_length_um = 10\n", "slope"},
-      {"height_map = \"steep.txt\"\n", "slope of the height map"},
-      {"height_map = \"coarse.txt\"\n", "5 um"},
-      {"height_map = \"coarse.txt\"\n", "kurtosis"},
-      {"height_map = \"coarse.txt\"\n", "coarse.txt"},
-  };
   const TemporaryFolder folder;
   folder.write("steep.txt", stairs(64, "700"));
   folder.write("coarse.txt", "pixel_um 5\nheight_unit nm\n" + repeated("0 0 nan 0 0 1 0 0\n", 8));
-  for (const OutOfRange& bad : cases)
+  for (const std::string surface :
+       {"roughness_sq_nm = 10\ncorrelation_length_um = 0.2\n", "roughness_sq_nm = 400\ncorrelation_length_um = 2\n",
+        "roughness_sq_nm = 250\ncorrelation_length_um = 9\n", "waviness_sq_nm = 300\nwaviness_length_um = 5\n",
+        "model = \"abg\"\nabg_a = 0.01\nabg_b = 1e-4\nabg_g = 2\n",
+        "model = \"microfacet\"\nwaviness_sq_nm = 30\nwaviness_length_um = 80\n",
+        "model = \"microfacet\"\nwaviness_sq_nm = 900\nwaviness_length_um = 10\n", "height_map = \"steep.txt\"\n",
+        "height_map = \"coarse.txt\"\n"})
     for (const std::string command : {"rre", "inspect"}) {
-      SCOPED_TRACE(command + ": " + bad.surface);
-      folder.write("d.toml", kDesign + bad.surface);
+      SCOPED_TRACE(command + ": " + surface);
+      folder.write("d.toml", kDesign + surface);
       Arguments arguments = {command, "d.toml", "--json", "r.json"};
       if (command == "rre") arguments.emplace_back("--samples=64");
       const Outcome outcome = retrace(folder, arguments);
       ASSERT_EQ(outcome.code, 0) << outcome.err;
       const std::vector<std::string> warnings = warnings_of(outcome);
       EXPECT_EQ(folder.json("r.json")["warnings"], Json(warnings));
-      EXPECT_TRUE(std::ranges::any_of(warnings, [&](const std::string& text) {
-        return text.starts_with("d.toml: ") && text.find(bad.word) != std::string::npos;
-      })) << outcome.err;
+      EXPECT_TRUE(std::ranges::any_of(warnings, [](const std::string& text) { return text.starts_with("d.toml: "); }))
+          << outcome.err;
     }
 }
 

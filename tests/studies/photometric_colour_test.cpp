@@ -9,6 +9,7 @@
 #include "studies/photometry/io/photometry_files.h"
 #include "studies/photometry/photometer.h"
 #include "tests/studies/photometric_requests.h"
+#include "tests/support/refusals.h"
 
 namespace retrace::studies::photometric_colour_test {
 namespace {
@@ -192,6 +193,7 @@ TEST(PhotometricColour, VerdictIsThatOfTheBoundaries) {
   EXPECT_EQ(run(wide, request).verdict, Verdict::pass) << "that of the points is another";
   request.light = PhotometricLight::illuminant_d65;
   EXPECT_EQ(verdict({at_most(1.0, 0.0, 0.448)}), Verdict::undetermined);
+  EXPECT_EQ(run(wide, request).colour.value().reason.cause, OpenReason::Cause::another_light);
 }
 
 TEST(PhotometricColour, NearABoundaryOrWithoutDiffractionIsUndetermined) {
@@ -212,8 +214,10 @@ TEST(PhotometricColour, NearABoundaryOrWithoutDiffractionIsUndetermined) {
   request.rays = 1U << 10;
   const PhotometryResult result = run(design_of(honeycomb(0.0, 0.5)), request);
   EXPECT_EQ(result.colour->verdict(), Verdict::undetermined);
-  EXPECT_NE(result.colour->reason.find("diffraction is left out"), std::string::npos);
-  EXPECT_NE(photometry_table(result).find("colour: undetermined"), std::string::npos);
+  EXPECT_EQ(result.colour->reason.cause, OpenReason::Cause::diffraction);
+  EXPECT_EQ(result.colour->reason.no_diffraction, NoDiffraction::not_requested);
+  record_message(result.colour->reason.text);
+  EXPECT_NE(photometry_table(result).find(result.colour->reason.text), std::string::npos);
 }
 
 // Perfect cube corners return no light at an observation angle of 1 degree.
@@ -224,7 +228,8 @@ TEST(PhotometricColour, OfNoLightIsUndetermined) {
   const PhotometryResult result = run(design_of(honeycomb(0.0, 20.0), true), request);
   EXPECT_FALSE(result.colour->chromaticity);
   EXPECT_EQ(result.colour->verdict(), Verdict::undetermined);
-  EXPECT_EQ(result.colour->reason, "no light comes back there");
+  EXPECT_EQ(result.colour->reason.cause, OpenReason::Cause::no_light);
+  record_message(result.colour->reason.text);
   EXPECT_EQ(photometry_json(result).find("\"x\""), std::string::npos);
 }
 

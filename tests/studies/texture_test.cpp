@@ -7,6 +7,7 @@
 #include <fstream>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/number_format.h"
@@ -15,6 +16,7 @@
 #include "studies/rre/rre.h"
 #include "surface_models/form.h"
 #include "surface_models/height_parameters.h"
+#include "tests/support/refusals.h"
 #include "tests/support/statistics.h"
 #include "tests/support/synthetic_surface.h"
 
@@ -105,6 +107,43 @@ double specular_share_of_two(double index, double sq_nm, double incidence_deg) {
   for (const double side : {-1.0, 1.0})
     phase2 += std::pow(4.0 * kPi * index * sq_nm * std::cos(0.25 * kPi + side * inside) / kWavelengthNm, 2);
   return std::exp(-phase2);
+}
+
+/// Returns identifiers and positions of the warnings of a design.
+std::vector<std::string> warnings_of(const std::string& surface, const std::string& file) {
+  const Design design = parse_design(kPrism + "[surface]\n" + surface, file);
+  return facts_of(make_model(design, materials::MaterialLibrary::shipped()).warnings);
+}
+
+// Each model warns if it is used outside of its range.
+TEST(DesignTexture, WarnsOutsideTheRangeOfEveryModel) {
+  const Folder folder;
+  const std::string file = (folder.path() / "d.toml").string();
+  const std::string head = "height_unit nm\npixel_um ";
+  std::string steep = head + "0.2\n", coarse = head + "5\n";
+  for (int row = 0; row < 64; ++row)
+    for (int column = 0; column < 64; ++column)
+      steep += std::string(column % 16 < 8 ? "0" : "700") + (column == 63 ? "\n" : " ");
+  for (int row = 0; row < 8; ++row) coarse += "0 0 nan 0 0 1 0 0\n";
+  std::ofstream(folder.path() / "steep.txt") << steep;
+  std::ofstream(folder.path() / "coarse.txt") << coarse;
+  using Facts = std::vector<std::string>;
+  const std::vector<std::pair<std::string, Facts>> cases = {
+      {"roughness_sq_nm = 10\ncorrelation_length_um = 0.2\n", {"correlation_below_wavelength"}},
+      {"roughness_sq_nm = 400\ncorrelation_length_um = 2\n", {"steep_roughness", "roughness_beyond_model"}},
+      {"roughness_sq_nm = 250\ncorrelation_length_um = 9\n", {"roughness_beyond_model"}},
+      {"waviness_sq_nm = 300\nwaviness_length_um = 5\n", {"steep_waviness"}},
+      {"model = \"abg\"\nabg_a = 0.01\nabg_b = 1e-4\nabg_g = 2\n", {"strong_scatter"}},
+      {"model = \"microfacet\"\nwaviness_sq_nm = 30\nwaviness_length_um = 80\n", {"low_waviness"}},
+      {"model = \"microfacet\"\nwaviness_sq_nm = 900\nwaviness_length_um = 10\n", {"steep_facets"}},
+      {"height_map = \"steep.txt\"\n", {"coarse_height_map", "steep_height_map", "heights_not_gaussian"}},
+      {"height_map = \"coarse.txt\"\n", {"missing_points", "coarse_height_map", "heights_not_gaussian"}}};
+  for (const auto& [surface, ids] : cases) {
+    Facts expected;
+    for (const std::string& id : ids)
+      expected.push_back(id + " at TMP/d.toml" + (id == "missing_points" ? ": TMP/coarse.txt" : ""));
+    EXPECT_EQ(warnings_of(surface, file), expected) << surface;
+  }
 }
 
 // Low waviness diffracts light. In PMMA at the d line, 63 % of the light remains specular at each total reflection.

@@ -99,7 +99,7 @@ Json colour_json(const PhotometricColour& colour) {
     json["boundaries"].push_back(std::move(one));
   }
   if (const auto verdict = colour.verdict()) json["verdict"] = verdict_name(*verdict);
-  if (!colour.reason.empty()) json["reason"] = colour.reason;
+  if (!colour.reason.text.empty()) json["reason"] = colour.reason.text;
   return json;
 }
 
@@ -155,7 +155,7 @@ std::string colour_text(const PhotometricColour& colour) {
   if (colour.boundaries.empty()) return text + "; the standard's boundaries are not known\n";
   for (const ColourPoint& point : colour.boundaries)
     if (point.margin < 0.0) text += fmt::format("; not {}", point.asked.text);
-  return text + (colour.reason.empty() ? "" : "; " + colour.reason) + "\n";
+  return text + (colour.reason.text.empty() ? "" : "; " + colour.reason.text) + "\n";
 }
 
 /// Returns the name of the light that illuminates the part.
@@ -213,7 +213,7 @@ std::string photometry_json(const PhotometryResult& result) {
                {"seed", asked.seed}};
   json["points"] = points_json(result.points);
   if (result.complete || !result.points.empty()) json["verdict"] = verdict_name(result.verdict);
-  if (!result.reason.empty()) json["reason"] = result.reason;
+  if (!result.reason.text.empty()) json["reason"] = result.reason.text;
   if (result.colour) json["chromaticity"] = colour_json(*result.colour);
   json["directions"] = Json::array();
   for (const PhotometricDirection& d : result.directions) json["directions"].push_back(direction_json(d));
@@ -271,7 +271,7 @@ std::string photometry_table(const PhotometryResult& result) {
   table += rows_of(result.points);
   table += areas_text(result.request);
   if (result.colour) table += colour_text(*result.colour);
-  if (!result.points.empty()) table += verdict_text(result.verdict, programme, result.reason);
+  if (!result.points.empty()) table += verdict_text(result.verdict, programme, result.reason.text);
   if (result.change) table += change_text(*result.change, programme);
   return table;
 }

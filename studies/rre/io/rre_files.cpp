@@ -60,10 +60,10 @@ Json derivatives_json(const std::vector<RreDerivative>& derivatives) {
   Json json = Json::object();
   for (const RreDerivative& by : derivatives) {
     Json& entry = json[std::string(parameter_name(by.parameter))];
-    if (by.left_out.empty())
-      entry = {{"value", by.derivative.value}, {"error", by.derivative.error}};
+    if (by.left_out)
+      entry = {{"left_out", text_of(*by.left_out)}};
     else
-      entry = {{"left_out", by.left_out}};
+      entry = {{"value", by.derivative.value}, {"error", by.derivative.error}};
   }
   return json;
 }
@@ -93,7 +93,7 @@ std::string line_of(const RrePoint& point, const RreDerivative& by) {
   std::string line =
       fmt::format("{:>6}  {:>13}  {:>11}  {:>14}  {:<18}  ", point.design, shortest(point.incidence_deg),
                   shortest(point.azimuth_deg), shortest(point.acceptance_half_angle_deg), parameter_name(by.parameter));
-  if (!by.left_out.empty()) return line + "left out: " + by.left_out + "\n";
+  if (by.left_out) return line + fmt::format("left out: {}\n", text_of(*by.left_out));
   return line + fmt::format("{:>13.6g}  {:.1e}\n", by.derivative.value, by.derivative.error);
 }
 
