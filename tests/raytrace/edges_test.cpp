@@ -83,6 +83,7 @@ TEST(Edges, RimsBesideLandTakeTheirWidth) {
   const double leg = 0.5 * width / std::cos(std::numbers::pi / 8.0);
   EXPECT_NEAR(exact_rre(with_edges(sharp, {0.0, 0.0, 0.0, width}), lossless),
               (substrate - std::numbers::sqrt2 * leg + fresnel * (gap - 2.0 * leg)) / (substrate + gap), 1e-9);
+  EXPECT_NEAR(rim_reach_over_land_mm(with_edges(sharp, {0.0, 0.0, 0.0, width})), leg, 1e-15);
 }
 
 // The chamfer of two neighbouring rims is a horizontal plane.

@@ -105,6 +105,11 @@ TEST(Sweep, WindowsAreMeansAndLeastsOfTheirDirections) {
   EXPECT_NEAR(value("incidence_deg = [2, 6]\n"), 0.5 * (at_2 + at_6), 1e-12);
   EXPECT_NEAR(value("incidence_deg = {from = 0, to = 8, count = 2}\n"), 0.5 * (at_2 + at_6), 1e-12);
   EXPECT_EQ(value("incidence_deg = [2, 6]\nover_directions = \"least\"\n"), std::min(at_2, at_6));
+  // Rotating the part by 30 degrees is equivalent to rotating the light by -30 degrees.
+  const std::string oblique = "incidence_deg = 20\nazimuth_deg = ";
+  const double at_minus_20 = value(oblique + "-20\n");
+  EXPECT_NEAR(value(oblique + "10\n[analysis]\nrotation_deg = 30\n"), at_minus_20, 1e-12);
+  EXPECT_NE(value(oblique + "40\n"), at_minus_20);
   const double s2 = std::sin(2.0 * M_PI / 180.0);
   const double s6 = std::sin(6.0 * M_PI / 180.0);
   EXPECT_NEAR(value("incidence_deg = [2, 6]\nweighting = \"solid_angle\"\n"), (s2 * at_2 + s6 * at_6) / (s2 + s6),
