@@ -245,7 +245,7 @@ TEST(PhotometricColour, IsMeasuredBesideTheMirrorImage) {
 // Of several boundaries, the one with the smallest margin determines the geometry. The second boundary is -x <= 5. Its
 // margin is always large, and smallest in the other geometry.
 TEST(PhotometricColour, SmallestMarginDeterminesTheGeometry) {
-  PhotometryRequest request = colour_request();
+  PhotometrySettings request = colour_request();
   const auto v_deg = [&](std::vector<ColourBoundary> boundaries) {
     request.programme.boundaries = std::move(boundaries);
     request.programme.boundaries[0].v_beside_deg = {5.0, -5.0};
