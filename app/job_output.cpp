@@ -1,46 +1,31 @@
 #include "app/job_output.h"
 
-#include "app/shared_arguments.h"
+#include <array>
+
 #include "fabrication/job/io/job_files.h"
-#include "fabrication/job/io/process_files.h"
+#include "requests/descriptions.h"
 
 namespace retrace::app {
 namespace fs = std::filesystem;
 
 std::vector<Argument> making_arguments(MakingOptions& options, const std::string& needs) {
-  const auto processes = [] {
-    Words names;
-    for (const fabrication::Process& process : fabrication::shipped_processes()) names.push_back(process.name);
-    return names;
-  };
-  std::vector<Argument> all = {
-      {"--machine MACHINE", "ideal, paper, thesis, ideal-dmc or a file", &options.request.machine, machine_traits()},
-      {"--tool-width-mm W",
-       "width of the cutting edge, 0.1 to 2; with the strategy dmc 0.01 to 10",
-       &options.tool_width_mm,
-       {.required = needs.empty()}},
-      {"--strategy STRATEGY", "unidirectional, bidirectional or two-step; dmc for cube corners",
-       &options.request.strategy, one_of(words_of(fabrication::kStrategyWords))},
-      {"--process PROCESS", "depths, feeds and dwells: a shipped process or a file", &options.request.process,
-       one_of(processes, ".toml")},
-      {"--workpiece KIND", "mould, or direct if the optic itself is cut", &options.request.workpiece,
-       one_of(words_of(fabrication::kWorkpieceWords))},
-      {"--shrinkage-percent S", "shrinkage of the part, by which the mould is larger",
-       &options.request.shrinkage_percent}};
-  if (!needs.empty())
-    for (Argument& argument : all) argument.traits.needs = {any_given({needs})};
+  const std::array<CommandRequest, 1> of_command = {{{requests::description<JobRequest>()}}};
+  std::vector<Argument> all = field_arguments(of_command, options.fields);
+  if (needs.empty()) return all;
+  for (Argument& argument : all) {
+    argument.traits.needs.push_back(any_given({needs}));
+    argument.traits.required = false;
+  }
   return all;
 }
 
-studies::JobRequest job_request(const MakingOptions& options, double tool_width_mm) {
-  studies::JobRequest request = options.request;
-  request.tool_width_mm = tool_width_mm;
-  return request;
+JobRequest job_request(const MakingOptions& options, const CommonOptions& common) {
+  return request_of<JobRequest>(options.fields, common);
 }
 
-std::vector<std::string> files_of_making(const MakingOptions& options) {
+std::vector<std::string> files_of_making(const JobRequest& request) {
   std::vector<std::string> files;
-  for (const std::string& name : {options.request.machine, options.request.process})
+  for (const std::string& name : {request.machine, request.process})
     if (fs::path(name).has_extension()) files.push_back(name);
   return files;
 }

@@ -4,19 +4,19 @@
 // optimize` with --job.
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "app/command.h"
+#include "app/request_options.h"
+#include "requests/job.h"
 #include "studies/fabrication/job_maker.h"
 
 namespace retrace::app {
 
 /// Options of all commands that make a fabrication job.
 struct MakingOptions {
-  studies::JobRequest request;
-  std::optional<double> tool_width_mm;
+  FieldTexts fields;
 };
 
 /// Returns the arguments that set MakingOptions.
@@ -24,12 +24,14 @@ struct MakingOptions {
 /// other option, and --tool-width-mm must be given.
 std::vector<Argument> making_arguments(MakingOptions& options, const std::string& needs);
 
-/// Returns the request for a fabrication job that the options describe.
-studies::JobRequest job_request(const MakingOptions& options, double tool_width_mm);
+/// Returns the request for a fabrication job that the options describe. Its tool width is 0 if --tool-width-mm is not
+/// given.
+/// \throw InputError at a field whose value is not allowed
+JobRequest job_request(const MakingOptions& options, const CommonOptions& common);
 
 /// Returns the files that are read in addition to the design: machine and process. Names without an extension refer to
 /// shipped machines and processes and are not files.
-std::vector<std::string> files_of_making(const MakingOptions& options);
+std::vector<std::string> files_of_making(const JobRequest& request);
 
 /// Returns the path of a file relative to the folder of a job.
 /// \param folder folder of the job; if empty, the working directory

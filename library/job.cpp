@@ -15,29 +15,13 @@
 namespace retrace {
 
 Job make_job(const Design& design, const JobRequest& request) {
-  studies::JobRequest of_study;
-  of_study.machine = request.machine;
-  of_study.tool_width_mm = request.tool_width_mm;
-  of_study.strategy = request.strategy;
-  of_study.process = request.process;
-  of_study.workpiece = request.workpiece;
-  of_study.shrinkage_percent = request.shrinkage_percent;
-  const studies::MadeJob made = studies::make_job(design.content().design, of_study);
+  const studies::MadeJob made = studies::make_job(design.content().design, request);
   return {fabrication::job_text(made.job), made.elements,           made.partial_elements, made.warnings,
           studies::job_json(made),         studies::job_table(made)};
 }
 
 Fabrication fabricate(const std::filesystem::path& job, const FabricationRequest& request) {
-  studies::FabricationRequest of_study;
-  of_study.job_file = job;
-  of_study.dialect = request.dialect;
-  of_study.options.phase = request.phase;
-  of_study.options.from_element = request.from_element;
-  of_study.options.from_pass = request.from_pass;
-  of_study.options.stop_every = request.stop_every;
-  of_study.options.split_hours = request.split_hours;
-  if (request.job_text) of_study.texts = {{job.string(), *request.job_text}};
-  const auto held = std::make_shared<const studies::FabricationResult>(studies::fabricate(of_study));
+  const auto held = std::make_shared<const studies::FabricationResult>(studies::fabricate(job, request));
   const studies::FabricationResult& found = *held;
   Fabrication result;
   for (std::size_t k = 0; k < found.plan.programs.size(); ++k)

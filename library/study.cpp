@@ -5,10 +5,10 @@
 #include <memory>
 #include <utility>
 
-#include "core/message_text.h"
 #include "core/threads.h"
 #include "library/drawing_content.h"
 #include "report/results/result_plots.h"
+#include "requests/descriptions.h"
 #include "studies/design/io/design_reader.h"
 #include "studies/optimise/io/optimise_reader.h"
 #include "studies/optimise/io/optimum_files.h"
@@ -28,14 +28,14 @@ double seconds_since(Clock::time_point start) {
 }
 
 studies::Study to_study(const Study& study, const StudyRequest& request) {
+  requests::check(request);
   return studies::parse_study(study.text, study.source, request.overrides, request.seed, study.designs);
 }
 
+/// \pre the request has been checked
 studies::IfExists if_exists_of(const StudyRequest& request) {
-  using enum studies::IfExists;
-  for (const auto& [word, meaning] : {std::pair{"refuse", refuse}, {"resume", resume}, {"overwrite", overwrite}})
-    if (request.if_exists == word) return meaning;
-  throw InputError({"", 0, "if_exists"}, "must be refuse, resume or overwrite, got " + in_quotes(request.if_exists));
+  if (request.if_exists == "resume") return studies::IfExists::resume;
+  return request.if_exists == "overwrite" ? studies::IfExists::overwrite : studies::IfExists::refuse;
 }
 
 /// Reports the progress of a sweep to a Progress object. A value that is smaller than an earlier one is not reported.

@@ -35,11 +35,9 @@ void write_as_machined(studies::VerificationRun& run, const std::filesystem::pat
 
 Verification verify(const VerificationRequest& request, const Running& running) {
   const auto start = std::chrono::steady_clock::now();
-  const studies::VerificationRequest of_study = {request.job.string(), request.programs, request.dialect,
-                                                 request.tolerance_nm, request.standing, request.texts};
   const auto held = std::make_shared<Verification::Content>();
   studies::VerificationRun& run = held->run;
-  run_with_threads(running.threads, [&] { run = studies::run_verification(of_study, running.cancellation); });
+  run_with_threads(running.threads, [&] { run = studies::run_verification(request, running.cancellation); });
   const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!request.as_machined.empty()) write_as_machined(run, request.as_machined);
   Verification result;

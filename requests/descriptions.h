@@ -5,17 +5,21 @@
 #include <tuple>
 
 #include "requests/image.h"
+#include "requests/job.h"
 #include "requests/metrology.h"
 #include "requests/part.h"
 #include "requests/photometry.h"
 #include "requests/rays.h"
 #include "requests/row.h"
+#include "requests/study.h"
+#include "requests/verify.h"
 
 namespace retrace::requests {
 
 /// All types of requests.
-using AllRequests = std::tuple<DetectorRequest, CameraRequest, RoadRequest, MetrologyRequest, SolidRequest,
-                               MaterialRequest, PhotometryRequest, RaysRequest, TraceRequest>;
+using AllRequests = std::tuple<DetectorRequest, CameraRequest, RoadRequest, JobRequest, FabricationRequest,
+                               MetrologyRequest, SolidRequest, MaterialRequest, PhotometryRequest, RaysRequest,
+                               TraceRequest, StudyRequest, VerificationRequest>;
 
 template <>
 const Request& description<DetectorRequest>();
@@ -23,6 +27,10 @@ template <>
 const Request& description<CameraRequest>();
 template <>
 const Request& description<RoadRequest>();
+template <>
+const Request& description<JobRequest>();
+template <>
+const Request& description<FabricationRequest>();
 template <>
 const Request& description<MetrologyRequest>();
 template <>
@@ -35,6 +43,10 @@ template <>
 const Request& description<RaysRequest>();
 template <>
 const Request& description<TraceRequest>();
+template <>
+const Request& description<StudyRequest>();
+template <>
+const Request& description<VerificationRequest>();
 
 /// Returns the fields of MetrologyRequest that are needed to read a height map.
 const Request& height_map_reading();

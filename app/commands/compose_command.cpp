@@ -16,6 +16,7 @@
 #include "app/shared_arguments.h"
 #include "app/study_bar.h"
 #include "report/results/result_plots.h"
+#include "requests/row.h"
 #include "studies/compose/io/compose_reader.h"
 #include "studies/compose/io/composition_files.h"
 #include "studies/compose/io/zone_designs.h"
@@ -70,10 +71,9 @@ std::vector<Argument> compose_arguments(ComposeOptions& options) {
 
 /// Checks the options of the fabrication job before the search, because a search may take long.
 /// \throw InputError
-void check_job_of(const ComposeOptions& options) {
+void check_job_of(const ComposeOptions& options, const JobRequest& request) {
   if (options.job.empty()) return;
-  if (!options.making.tool_width_mm) throw InputError({"", 0, "--tool-width-mm"}, "is required with --job");
-  const studies::JobRequest request = job_request(options.making, *options.making.tool_width_mm);
+  if (request.tool_width_mm == 0.0) throw InputError({"", 0, "--tool-width-mm"}, "is required with --job");
   studies::check_making(request);
   studies::check_cuts_zones(request);
 }
@@ -97,7 +97,7 @@ struct WholePart {
 
 /// Returns the design and the fabrication job of the whole part, if they are requested.
 /// \param warnings receives the reason if the design or the job cannot be made; all other results are still written
-WholePart whole_part_of(const ComposeOptions& options, const studies::Study& study,
+WholePart whole_part_of(const ComposeOptions& options, const JobRequest& making, const studies::Study& study,
                         const std::vector<studies::Zone>& zones, const studies::ZonedDesignRequest& zoned,
                         Warnings& warnings) {
   WholePart whole;
@@ -105,13 +105,12 @@ WholePart whole_part_of(const ComposeOptions& options, const studies::Study& stu
   try {
     whole.design = studies::zoned_design_text(study, zones, zoned);
     if (options.job.empty()) return whole;
-    whole.job = studies::make_job(studies::parse_design(whole.design, options.design),
-                                  job_request(options.making, *options.making.tool_width_mm));
+    whole.job = studies::make_job(studies::parse_design(whole.design, options.design), making);
     warnings.insert(warnings.end(), whole.job->warnings.begin(), whole.job->warnings.end());
   } catch (const InputError& error) {
     warnings.push_back(
-        {"zones_not_written",
-         fmt::format("{} is not written: {}", whole.design.empty() ? options.design : options.job, error.what())});
+        {"zones_not_written", fmt::format("{} is not written: {}", whole.design.empty() ? options.design : options.job,
+                                          error.message(requests::option_of_field))});
     whole.is_complete = false;
   }
   return whole;
@@ -132,7 +131,8 @@ ExitCode compose_part(const ComposeOptions& options, const CommonOptions& common
     return composition.best ? composition.best->zones : std::vector<studies::Zone>{};
   };
   std::vector<std::string> inputs = study.files;
-  for (const std::string& file : files_of_making(options.making)) inputs.push_back(file);
+  const JobRequest making = job_request(options.making, common);
+  for (const std::string& file : files_of_making(making)) inputs.push_back(file);
   ResultFiles files(common, inputs, "composition.json");
   files.add("composition.csv", [&] { return studies::composition_csv(study, request, composition); });
   files.add_drawing("composition", [&] { return report::composition_plot(study, request, composition); });
@@ -140,7 +140,7 @@ ExitCode compose_part(const ComposeOptions& options, const CommonOptions& common
     files.add(fmt::format("zone_{}.toml", zone + 1), [&, zone] { return zone_design(study, written_zones(), zone); });
   const studies::ZonedDesignRequest zoned = zoned_design_of(options);
   if (!options.design.empty()) studies::check_zoned_design(study, zoned);
-  check_job_of(options);
+  check_job_of(options, making);
   WholePart whole;
   files.add_named("--design", options.design, [&] { return whole.design; });
   files.add_named("--job", options.job, [&] { return whole.job ? job_text_at(*whole.job, options.job) : ""; });
@@ -162,7 +162,7 @@ ExitCode compose_part(const ComposeOptions& options, const CommonOptions& common
   Warnings warnings = remarks_of(session);
   const Warnings without_effect = studies::keys_without_effect(study);
   warnings.insert(warnings.end(), without_effect.begin(), without_effect.end());
-  if (composition.best) whole = whole_part_of(options, study, written_zones(), zoned, warnings);
+  if (composition.best) whole = whole_part_of(options, making, study, written_zones(), zoned, warnings);
   const ExitCode code = files.write(studies::composition_json(study, request, composition, elapsed_s),
                                     studies::composition_text(study, request, composition), warnings,
                                     {.complete = composition.complete,

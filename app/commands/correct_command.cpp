@@ -80,9 +80,7 @@ fabrication::Job corrected_job(fabrication::Job job, const fs::path& file, const
 ExitCode run(const CorrectOptions& options, const CommonOptions& common) {
   std::vector<studies::FacetMap> maps;
   for (const std::string& text : options.maps) maps.push_back(place_of(text));
-  studies::FabricationRequest request;
-  request.job_file = options.job;
-  const studies::FabricationResult plan = studies::fabricate(request);
+  const studies::FabricationResult plan = studies::fabricate(options.job);
   std::vector<std::string> inputs = {options.job};
   if (fs::path(plan.job.machine).has_extension()) inputs.push_back(plan.job.machine);
   for (const studies::FacetMap& map : maps) inputs.push_back(map.file);

@@ -1,13 +1,16 @@
 #include <fmt/format.h>
 
+#include <array>
 #include <filesystem>
 
 #include "app/commands.h"
 #include "app/output.h"
+#include "app/request_options.h"
 #include "app/shared_arguments.h"
 #include "fabrication/post/post.h"
 #include "report/page/setup_page.h"
 #include "report/results/result_plots.h"
+#include "requests/descriptions.h"
 #include "studies/fabrication/fabricate.h"
 #include "studies/fabrication/io/fabrication_files.h"
 #include "studies/setup/io/setup_files.h"
@@ -18,31 +21,18 @@ namespace {
 
 struct FabricateOptions {
   std::string job;
-  std::string dialect = "rs274ngc";
-  std::string phase = "all";
-  std::optional<std::uint64_t> from_element;
-  std::optional<std::uint64_t> from_pass;
-  std::optional<std::uint64_t> stop_every;
-  std::optional<double> split_hours;
+  FieldTexts fields;
 };
 
 std::vector<Argument> arguments(FabricateOptions& options) {
-  constexpr std::uint64_t most = std::numeric_limits<std::int32_t>::max();
-  Traits from_pass = whole(1, most);
-  from_pass.needs = {any_given({"--from-element"})};
-  const Words phases = {"all", "roughing", "finishing"};
-  return {job_argument(options.job, "job file, as retrace job writes it"),
-          dialect_argument(options.dialect),
-          {"--phase PHASE",
-           "all, roughing, finishing, or one stage such as finishing-1-facet-2; with + also all later stages",
-           &options.phase, one_of(phases)},
-          {"--from-element N", "start at the first visit of the tool to element N [the first]", &options.from_element,
-           whole(0, most)},
-          {"--from-pass K", "start at pass K of that visit; a narrow tool needs several passes per element [1]",
-           &options.from_pass, from_pass},
-          {"--stop-every N", "optional stop after every N visits of the tool to an element [none]", &options.stop_every,
-           whole(1, most)},
-          {"--split-hours H", "maximum duration of one program in hours [all in one program]", &options.split_hours}};
+  std::vector<Argument> all = {job_argument(options.job, "job file, as retrace job writes it")};
+  const std::array<CommandRequest, 1> of_command = {{{requests::description<FabricationRequest>()}}};
+  for (Argument& argument : field_arguments(of_command, options.fields)) {
+    if (option_names(argument).front() == "--phase")
+      argument.traits.words = one_of({"all", "roughing", "finishing"}).words;
+    all.push_back(std::move(argument));
+  }
+  return all;
 }
 
 bool has_stage(const studies::FabricationResult& result, bool roughing) {
@@ -67,15 +57,8 @@ std::vector<report::PageFigure> drawings_of(const studies::FabricationResult& re
 }
 
 ExitCode run(const FabricateOptions& options, const CommonOptions& common) {
-  studies::FabricationRequest request;
-  request.job_file = options.job;
-  request.dialect = options.dialect;
-  request.options.phase = options.phase;
-  request.options.from_element = options.from_element;
-  request.options.from_pass = options.from_pass;
-  request.options.stop_every = options.stop_every;
-  request.options.split_hours = options.split_hours;
-  const studies::FabricationResult result = studies::fabricate(request);
+  const studies::FabricationResult result =
+      studies::fabricate(options.job, request_of<FabricationRequest>(options.fields, common));
   // The sheet can also contain how machining errors change the returned light. These changes are traced only if the
   // sheet is written to a file or to JSON.
   const studies::SetupSheet sheet = studies::setup_sheet(result, !common.out.empty() || !common.json.empty());

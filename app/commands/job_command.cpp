@@ -38,9 +38,9 @@ std::vector<Argument> arguments(JobOptions& options) {
 }
 
 /// Returns all files that the command reads.
-std::vector<std::string> inputs_of(const JobOptions& options, const studies::Design& design) {
+std::vector<std::string> inputs_of(const JobRequest& request, const studies::Design& design) {
   std::vector<std::string> inputs = files_read({design});
-  for (const std::string& file : files_of_making(options)) inputs.push_back(file);
+  for (const std::string& file : files_of_making(request)) inputs.push_back(file);
   return inputs;
 }
 
@@ -50,9 +50,9 @@ ExitCode write_reachable(const JobOptions& options, const CommonOptions& common,
   if (!common.out.empty()) throw InputError({"", 0, "--out"}, "makes a job: not allowed together with --reachable");
   const fs::path file = options.reachable;
   const fs::path facets_file = file.parent_path() / (file.stem().string() + "_facets.csv");
-  const studies::JobRequest request = job_request(options, *options.tool_width_mm);
+  const JobRequest request = job_request(options, common);
   const studies::ReachablePart part = studies::reachable_part(design, request, facets_file.filename().string());
-  ResultFiles files(common, inputs_of(options, design));
+  ResultFiles files(common, inputs_of(request, design));
   files.add_named("--reachable", file, [&] { return part.design; });
   files.add_named("--reachable", facets_file, [&] { return part.facets; });
   files.prepare();
@@ -63,10 +63,11 @@ ExitCode write_reachable(const JobOptions& options, const CommonOptions& common,
 ExitCode write_test_cuts(const JobOptions& options, const CommonOptions& common, const studies::Design& design) {
   if (!common.out.empty()) throw InputError({"", 0, "--out"}, "makes a job: not allowed together with --test-cuts");
   const fs::path folder = options.test_cuts;
-  studies::TestCuts cuts = studies::plan_test_cuts(design, job_request(options, *options.tool_width_mm));
+  const JobRequest request = job_request(options, common);
+  studies::TestCuts cuts = studies::plan_test_cuts(design, request);
   CommonOptions outputs = common;
   outputs.out = options.test_cuts;
-  ResultFiles files(outputs, inputs_of(options, design), "test_cuts.json");
+  ResultFiles files(outputs, inputs_of(request, design), "test_cuts.json");
   for (std::size_t k = 0; k < cuts.jobs.size(); ++k)
     files.add(cuts.parts.jobs[k], [&, k] { return job_text_at(cuts.jobs[k], folder / cuts.parts.jobs[k]); });
   files.add("measurements.csv", [&] { return studies::test_cuts_csv(cuts); });
@@ -78,9 +79,10 @@ ExitCode run(const JobOptions& options, const CommonOptions& common) {
   const studies::Design design = studies::read_design(options.design, common.overrides);
   if (!options.test_cuts.empty()) return write_test_cuts(options, common, design);
   if (!options.reachable.empty()) return write_reachable(options, common, design);
-  studies::MadeJob made = studies::make_job(design, job_request(options, *options.tool_width_mm));
+  const JobRequest request = job_request(options, common);
+  studies::MadeJob made = studies::make_job(design, request);
   const std::string text = job_text_at(made, common.out);
-  TextFiles files(common, inputs_of(options, design));
+  TextFiles files(common, inputs_of(request, design));
   return files.write(studies::job_json(made), text, made.warnings, {}, studies::job_table(made));
 }
 

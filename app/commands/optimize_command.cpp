@@ -34,28 +34,31 @@ std::vector<Argument> arguments(OptimizeOptions& options) {
 
 /// Returns the fabrication job of the chosen design. The tool width comes from --tool-width-mm, or else from the key
 /// machining.tool_width_mm of the study.
-studies::MadeJob job_of(const OptimizeOptions& options, const studies::Study& study, const studies::Variant& best) {
+studies::MadeJob job_of(JobRequest request, const studies::Study& study, const studies::Variant& best) {
   const studies::Candidate candidate = studies::make_candidate(study, best.values);
-  const std::optional<double> width_mm =
-      options.making.tool_width_mm ? options.making.tool_width_mm : candidate.machining().tool_width_mm;
-  if (!width_mm)
-    throw InputError({"", 0, "--tool-width-mm"},
-                     "is required with --job where the study has no machining.tool_width_mm");
-  return studies::make_job(candidate.design(), job_request(options.making, *width_mm));
+  if (request.tool_width_mm == 0.0) {
+    const std::optional<double> width_mm = candidate.machining().tool_width_mm;
+    if (!width_mm)
+      throw InputError({"", 0, "--tool-width-mm"},
+                       "is required with --job where the study has no machining.tool_width_mm");
+    request.tool_width_mm = *width_mm;
+  }
+  return studies::make_job(candidate.design(), request);
 }
 
-std::vector<std::string> inputs_of(const OptimizeOptions& options, const studies::Study& study) {
+std::vector<std::string> inputs_of(const OptimizeOptions& options, const JobRequest& making,
+                                   const studies::Study& study) {
   std::vector<std::string> files = study.files;
   if (!options.job.empty())
-    for (const std::string& file : files_of_making(options.making)) files.push_back(file);
+    for (const std::string& file : files_of_making(making)) files.push_back(file);
   return files;
 }
 
 /// Checks the options of the fabrication job before the search, because a search may take long.
 /// \throw InputError
-void check_making_of(const OptimizeOptions& options, const studies::Study& study) {
+void check_making_of(const OptimizeOptions& options, JobRequest request, const studies::Study& study) {
   if (options.job.empty()) return;
-  const studies::JobRequest request = job_request(options.making, options.making.tool_width_mm.value_or(1.0));
+  if (request.tool_width_mm == 0.0) request.tool_width_mm = 1.0;  // the width is a key of the study
   studies::check_making(request);
   studies::check_element(studies::make_candidate(study, some_values(study)).design(), request);
 }
@@ -66,11 +69,12 @@ ExitCode look(const OptimizeOptions& options, const CommonOptions& common, studi
   const auto start = std::chrono::steady_clock::now();
   const studies::Study study = studies::read_study(options.study, common.overrides, common.seed);
   const studies::OptimiseRequest request = studies::read_optimise(study);
-  check_making_of(options, study);
+  const JobRequest making = job_request(options.making, common);
+  check_making_of(options, making, study);
   const OrderlyInterrupt interrupt;
   studies::Optimum optimum;
   std::optional<studies::MadeJob> made;
-  ResultFiles files(common, inputs_of(options, study), "optimum.json");
+  ResultFiles files(common, inputs_of(options, making, study), "optimum.json");
   files.add("front.csv", [&] { return studies::front_csv(study, optimum); });
   files.add_named("--job", options.job, [&] { return made ? job_text_at(*made, options.job) : ""; });
   const std::filesystem::path file = files.reserve("optimum.sqlite");
@@ -86,7 +90,7 @@ ExitCode look(const OptimizeOptions& options, const CommonOptions& common, studi
       optimum = studies::optimise(study, request, store, &bar, cancel);
     });
   }
-  if (optimum.best && !options.job.empty()) made = job_of(options, study, *optimum.best);
+  if (optimum.best && !options.job.empty()) made = job_of(making, study, *optimum.best);
   const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   Warnings warnings = remarks_of(session);
   const Warnings without_effect = studies::keys_without_effect(study);

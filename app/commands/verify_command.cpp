@@ -1,13 +1,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <filesystem>
 #include <optional>
 
 #include "app/commands.h"
 #include "app/output.h"
-#include "app/shared_arguments.h"
+#include "app/request_options.h"
 #include "core/message_text.h"
 #include "core/threads.h"
 #include "core/toml_file.h"
@@ -15,6 +16,7 @@
 #include "fabrication/job/io/job_files.h"
 #include "fabrication/read/nc_program.h"
 #include "report/results/result_plots.h"
+#include "requests/descriptions.h"
 #include "studies/closed_loop/as_machined.h"
 #include "studies/closed_loop/io/verification_files.h"
 #include "studies/closed_loop/verification.h"
@@ -29,36 +31,35 @@ namespace fs = std::filesystem;
 namespace {
 
 struct VerifyOptions {
-  studies::VerificationRequest request;
+  std::string job;  ///< file of a job or a part
+  std::vector<std::string> programs;
+  FieldTexts fields;
   std::string as_machined;  ///< output file for the design of the machined part; not written if empty
   std::string map;          ///< output file for the error map (PNG); not written if empty
   std::string servo;        ///< input file with a table of strokes; no table if empty
 };
 
-Words dialects() {
-  Words words = words_of(fabrication::kNcDialectWords)();
-  words.insert(words.begin(), "auto");
-  return words;
+std::vector<Argument> arguments(VerifyOptions& options) {
+  std::vector<Argument> all = {
+      {"JOB|PART", "job file, or the file of a planed or turned part", &options.job, files(".toml")},
+      {"PROGRAM", "NC programs, in the order in which they run; FILE@LINE: stopped behind that line", &options.programs,
+       files("")}};
+  const std::array<CommandRequest, 1> of_command = {{{requests::description<VerificationRequest>()}}};
+  for (Argument& argument : field_arguments(of_command, options.fields)) all.push_back(std::move(argument));
+  all.push_back({"--map FILE", "of a job: draw what the programs leave over the facets to a PNG FILE", &options.map,
+                 files(".png")});
+  all.push_back({"--as-machined FILE", "of a job: write the part that is left as a design to FILE",
+                 &options.as_machined, files(".toml")});
+  all.push_back({"--servo FILE", "of a turned part with a fast tool servo: its strokes, servo.csv of `turn`",
+                 &options.servo, files(".csv")});
+  return all;
 }
 
-std::vector<Argument> arguments(VerifyOptions& options) {
-  return {{"JOB|PART", "job file, or the file of a planed or turned part", &options.request.job, files(".toml")},
-          {"PROGRAM", "NC programs, in the order in which they run; FILE@LINE: stopped behind that line",
-           &options.request.programs, files("")},
-          {"--standing STAGE", "of a job: all before that stage has been cut, such as finishing-1-facet-1",
-           &options.request.standing},
-          {"--dialect DIALECT", "rs274ngc, sinumerik, fanuc, pmac, a3200, automation1, or auto: told from the text",
-           &options.request.dialect, one_of(dialects)},
-          {"--tolerance-nm T",
-           "of a job: that facet planes may differ from the design by; 10, or what a Fanuc's increments leave, unless "
-           "it is given",
-           &options.request.tolerance_nm},
-          {"--map FILE", "of a job: draw what the programs leave over the facets to a PNG FILE", &options.map,
-           files(".png")},
-          {"--as-machined FILE", "of a job: write the part that is left as a design to FILE", &options.as_machined,
-           files(".toml")},
-          {"--servo FILE", "of a turned part with a fast tool servo: its strokes, servo.csv of `turn`", &options.servo,
-           files(".csv")}};
+VerificationRequest request_of_command(const VerifyOptions& options, const CommonOptions& common) {
+  auto request = request_of<VerificationRequest>(options.fields, common);
+  request.job = options.job;
+  request.programs = options.programs;
+  return request;
 }
 
 /// Runs a study and measures its time.
@@ -87,14 +88,14 @@ Kind kind_of(const std::string& file) {
 }
 
 /// Refuses options that do not apply to files of kind `kind`.
-void refuse_others(const VerifyOptions& options, Kind kind) {
+void refuse_others(const VerifyOptions& options, const VerificationRequest& request, Kind kind) {
   const auto refuse = [&](const char* option, const char* whom) {
-    throw InputError({"", 0, option}, fmt::format("is for {}; {} is none", whom, options.request.job));
+    throw InputError({"", 0, option}, fmt::format("is for {}; {} is none", whom, options.job));
   };
   if (kind != Kind::turned_part && !options.servo.empty()) refuse("--servo", "turned parts");
   if (kind == Kind::job) return;
-  const std::pair<const char*, bool> of_jobs[] = {{"--standing", !options.request.standing.empty()},
-                                                  {"--tolerance-nm", options.request.tolerance_nm.has_value()},
+  const std::pair<const char*, bool> of_jobs[] = {{"--standing", !request.standing.empty()},
+                                                  {"--tolerance-nm", request.tolerance_nm.has_value()},
                                                   {"--map", !options.map.empty()},
                                                   {"--as-machined", !options.as_machined.empty()}};
   for (const auto& [option, is_given] : of_jobs)
@@ -102,17 +103,17 @@ void refuse_others(const VerifyOptions& options, Kind kind) {
 }
 
 /// Returns the files of the programs and the file of the job or part.
-std::vector<std::string> program_files(const studies::VerificationRequest& request) {
+std::vector<std::string> program_files(const VerifyOptions& options) {
   std::vector<std::string> files;
-  for (const std::string& program : request.programs) files.push_back(fabrication::program_name(program).file);
-  files.push_back(request.job);
+  for (const std::string& program : options.programs) files.push_back(fabrication::program_name(program).file);
+  files.push_back(options.job);
   return files;
 }
 
 /// Verifies programs of a turned or planed part with a study, and writes the results.
 template <class Study>
 ExitCode run_part(const VerifyOptions& options, const CommonOptions& common, const Study& study) {
-  std::vector<std::string> inputs = program_files(options.request);
+  std::vector<std::string> inputs = program_files(options);
   if (!options.servo.empty()) inputs.push_back(options.servo);
   const ResultFiles files(common, std::move(inputs), "verification.json");
   files.check();
@@ -123,9 +124,9 @@ ExitCode run_part(const VerifyOptions& options, const CommonOptions& common, con
                      {.is_yes = run.passes()});
 }
 
-std::vector<std::string> inputs_of(const studies::VerificationRequest& request) {
-  std::vector<std::string> files = program_files(request);
-  if (const fs::path machine = fabrication::read_job(request.job).machine; machine.has_extension())
+std::vector<std::string> inputs_of(const VerifyOptions& options) {
+  std::vector<std::string> files = program_files(options);
+  if (const fs::path machine = fabrication::read_job(options.job).machine; machine.has_extension())
     files.push_back(machine.string());
   return files;
 }
@@ -135,19 +136,19 @@ fs::path facets_file_of(const fs::path& design) {
   return design.empty() ? fs::path() : design.parent_path() / (design.stem().string() + "_facets.csv");
 }
 
-ExitCode run_job(const VerifyOptions& options, const CommonOptions& common) {
+ExitCode run_job(const VerifyOptions& options, const VerificationRequest& request, const CommonOptions& common) {
   const fs::path facets_file = facets_file_of(options.as_machined);
   studies::VerificationRun run;
   std::string design;
   std::string facets;
-  ResultFiles files(common, inputs_of(options.request), "verification.json");
+  ResultFiles files(common, inputs_of(options), "verification.json");
   files.add_named("--as-machined", options.as_machined, [&] { return design; });
   files.add_named("--as-machined", facets_file, [&] { return facets; });
   files.add_named("--map", options.map,
                   [&] { return report::render_png(report::error_map_plot(studies::error_map(run))); });
   files.check();
   double elapsed_s = 0.0;
-  run = timed(common, elapsed_s, [&] { return studies::run_verification(options.request); });
+  run = timed(common, elapsed_s, [&] { return studies::run_verification(request); });
   if (!options.as_machined.empty()) {
     const studies::AsMachined part = studies::as_machined(run);
     run.warnings.insert(run.warnings.end(), part.warnings.begin(), part.warnings.end());
@@ -160,20 +161,20 @@ ExitCode run_job(const VerifyOptions& options, const CommonOptions& common) {
 }
 
 ExitCode run(const VerifyOptions& options, const CommonOptions& common) {
-  const studies::VerificationRequest& request = options.request;
-  const Kind kind = kind_of(request.job);
-  refuse_others(options, kind);
+  const VerificationRequest request = request_of_command(options, common);
+  const Kind kind = kind_of(options.job);
+  refuse_others(options, request, kind);
   switch (kind) {
     case Kind::job: break;
     case Kind::planed_part:
       return run_part(options, common,
-                      [&] { return studies::verify_planing(request.job, request.programs, request.dialect); });
+                      [&] { return studies::verify_planing(options.job, options.programs, request.dialect); });
     case Kind::turned_part:
       return run_part(options, common, [&] {
-        return studies::verify_turning({request.job, request.programs, request.dialect, options.servo});
+        return studies::verify_turning({options.job, options.programs, request.dialect, options.servo});
       });
   }
-  return run_job(options, common);
+  return run_job(options, request, common);
 }
 
 }  // namespace

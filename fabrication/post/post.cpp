@@ -55,7 +55,7 @@ std::string unchecked_text(const OwnLine& line) {
 /// \throw InputError if the line is not allowed
 void check_line(const OwnLine& line, std::string_view dialect, std::string_view table, bool may_be_any) {
   if (may_be_any || !is_unchecked(line, dialect)) return;
-  throw InputError({"", 0, "--dialect"},
+  throw InputError(Field{"dialect"},
                    fmt::format("{} {} for {}; any other line needs {}.has_unchecked_lines = true, got {}", line.key,
                                unknown_line(line.text, line.use, dialect), dialect, table, in_quotes(line.text)));
 }
@@ -133,7 +133,7 @@ class FileWriter {
  private:
   void cubics(const Path& path) {
     if (dialect_.cubic_move.empty())
-      throw InputError({"", 0, "--dialect"},
+      throw InputError(Field{"dialect"},
                        fmt::format("{} has no moves with positions, velocities and times", dialect_.dialect.name));
     add_for_control(dialect_.cubic_begin);
     double since_begin_s = 0.0;
@@ -239,7 +239,7 @@ class FileWriter {
   void time_of(const Move& move) {
     const double way = way_of(move);
     if (dialect_.has_paths_by_speed && way == 0.0)
-      throw InputError({"", 0, "--dialect"},
+      throw InputError(Field{"dialect"},
                        fmt::format("{} cannot say how long a move of a path takes that goes nowhere: its time is "
                                    "that of its way",
                                    dialect_.dialect.name));
@@ -309,7 +309,7 @@ class FileWriter {
 
   [[noreturn]] void refuse(const std::string& what) const {
     throw InputError(
-        {"", 0, "--dialect"},
+        Field{"dialect"},
         fmt::format("{} cannot say {} in increment system IS-{}, which has nine digits", dialect_.dialect.name, what,
                     kIncrementSystemWords[static_cast<std::size_t>(program_.control.increment_system)]));
   }
@@ -343,7 +343,7 @@ const DialectWords& words_of(std::string_view dialect) {
     if (words.dialect.name == dialect) return words;
     names.push_back(words.dialect.name);
   }
-  throw InputError({"", 0, "--dialect"}, fmt::format("must be {}, got {}", alternatives(names), in_quotes(dialect)));
+  throw InputError(Field{"dialect"}, fmt::format("must be {}, got {}", alternatives(names), in_quotes(dialect)));
 }
 
 }  // namespace
@@ -377,10 +377,9 @@ void check_words(const Program& program, std::string_view dialect) {
   const auto need = [&](const std::string& text, std::string_view what, std::string_view key,
                         std::string_view otherwise) {
     if (text.empty())
-      throw InputError({"", 0, "--dialect"},
-                       fmt::format("{} has no words of its own for {}: the machine file must give "
-                                   "control.{}, or {}",
-                                   dialect, what, key, otherwise));
+      throw InputError(Field{"dialect"}, fmt::format("{} has no words of its own for {}: the machine file must give "
+                                                     "control.{}, or {}",
+                                                     dialect, what, key, otherwise));
   };
   for (const OwnLine& line : control_lines(program.control))
     check_line(line, dialect, "control", program.control.has_unchecked_lines);
@@ -391,7 +390,8 @@ void check_words(const Program& program, std::string_view dialect) {
   if (program.needs_mist) need(program.control.mist_off, "mist", "mist_off", "the job say process.mist = false");
   for (const Item& item : program.items) {
     if (std::holds_alternative<OptionalStop>(item))
-      need(program.control.optional_stop, "an optional stop", "optional_stop", "--stop-every be left out");
+      need(program.control.optional_stop, "an optional stop", "optional_stop",
+           reference({"stop_every"}) + " be left out");
     if (std::holds_alternative<Stop>(item))
       need(program.control.stop, "a stop", "stop",
            "the job ask for none by tool.edge_life_mm, process.stop_every_min and stop_before_finishing");

@@ -4,25 +4,15 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/warning.h"
+#include "requests/job.h"
 #include "retrace/design.h"
 #include "retrace/drawing.h"
 
 namespace retrace {
-
-/// Settings of a fabrication job that are not in the design. They correspond to the options of `retrace job`.
-struct JobRequest {
-  std::string machine = "ideal";  ///< name of a shipped machine, or a file
-  double tool_width_mm = 0.0;     ///< width of the cutting edge, > 0
-  std::string strategy = "two-step";
-  std::string process = "thesis-acrylic";  ///< name of a shipped process, or a file
-  std::string workpiece = "mould";         ///< "mould", or "direct" if the optic itself is cut
-  double shrinkage_percent = 0.0;
-};
 
 struct Job {
   std::string text;                   ///< text of the job file (format retrace.job/1)
@@ -36,19 +26,6 @@ struct Job {
 /// Makes the fabrication job of a design.
 /// \throw InputError if the design cannot be cut
 RETRACE_API Job make_job(const Design& design, const JobRequest& request);
-
-/// Settings of NC programs. They correspond to the options of `retrace fabricate`.
-struct FabricationRequest {
-  std::string dialect = "rs274ngc";  ///< rs274ngc, sinumerik, fanuc, pmac, a3200 or automation1
-  std::string phase = "all";
-  std::optional<std::uint64_t> from_element = {};
-  /// Number, from 1, of the tool pass at which the programs start. Passes are counted within the first visit of the
-  /// tool to the element `from_element`. A narrow tool needs several passes for each element.
-  std::optional<std::uint64_t> from_pass = {};
-  std::optional<std::uint64_t> stop_every = {};
-  std::optional<double> split_hours = {};
-  std::optional<std::string> job_text = {};  ///< text of the job file; if given, the file itself is not read
-};
 
 struct NcText {
   std::string file;  ///< file name that `retrace fabricate` would use

@@ -2,14 +2,13 @@
 
 // Studies that are defined in study files: sweeps, tolerances and optimisation (docs/studies.md).
 
-#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "core/warning.h"
+#include "requests/study.h"
 #include "retrace/design.h"
 #include "retrace/drawing.h"
 #include "retrace/running.h"
@@ -25,14 +24,6 @@ struct Study {
   /// Reads a study file.
   /// \throw InputError if the file cannot be read
   RETRACE_API static Study load(const std::filesystem::path& file);
-};
-
-/// Settings for carrying out a study. They correspond to the options of `retrace sweep`.
-struct StudyRequest {
-  std::vector<std::string> overrides = {};  ///< texts `key=value` for keys of designs, [analysis] and [machining]
-  std::uint32_t seed = 1;
-  std::filesystem::path store = {};  ///< SQLite file in which finished points are kept; if empty, they are not kept
-  std::string if_exists = "refuse";  ///< action if the store exists already: refuse, resume or overwrite
 };
 
 struct StudyResult {

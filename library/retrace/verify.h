@@ -2,34 +2,17 @@
 
 // Verifies NC programs: compares the surface that they cut with the fabrication job.
 
-#include <cstdint>
 #include <filesystem>
-#include <map>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/warning.h"
+#include "requests/verify.h"
 #include "retrace/drawing.h"
 #include "retrace/running.h"
 
 namespace retrace {
-
-/// Settings of a verification. They correspond to the options of `retrace verify`.
-struct VerificationRequest {
-  std::filesystem::path job = {};  ///< job file
-  std::vector<std::string> programs =
-      {};  ///< files in the order in which they run; FILE@LINE: the program was stopped after this line
-  std::string dialect = "auto";  ///< rs274ngc, sinumerik, fanuc, pmac, a3200, automation1, or auto
-  /// Maximum deviation of facet planes from the design. If no value is given, the limit is 10, or the deviation that
-  /// the increments of a Fanuc control cause if this deviation is larger.
-  std::optional<double> tolerance_nm = {};
-  /// Name of the next stage of the job. All stages before it have already been cut. If it is empty, the blank is uncut.
-  std::string standing = {};
-  std::filesystem::path as_machined = {};  ///< output file for the design of the machined part; not written if empty
-  std::map<std::string, std::string> texts = {};  ///< texts of job and programs by file name, used instead of files
-};
 
 /// A fault of a program.
 struct Finding {

@@ -43,8 +43,7 @@ Design test_design(const Design& design, double apex_angle_deg, double most_mm) 
   const auto* const array = std::get_if<ElementArray>(&design.shape);
   const auto* const prism = array ? std::get_if<geometry::RtpElement>(&array->part.element) : nullptr;
   if (prism == nullptr)
-    throw InputError({"", 0, "--test-cuts"},
-                     "test cuts are prisms: the design must have such (rtp), got another element");
+    throw InputError(Field{"test_cuts"}, "test cuts are prisms: the design must have such (rtp), got another element");
   Design test = design;
   test.title = fmt::format("Test cuts, apex angle {} degrees", shortest(apex_angle_deg));
   const double size_mm = std::min({prism->base_mm, prism->width_mm, most_mm});
@@ -168,9 +167,8 @@ TestCuts plan_test_cuts(const Design& design, const JobRequest& request) {
     const std::string name = fmt::format("test-cuts-{}.toml", shortest(angle));
     cuts.jobs.push_back(make_job(test_design(design, angle, request.tool_width_mm), request));
     FabricationRequest plan;
-    plan.job_file = name;
-    plan.texts[name] = job_text(cuts.jobs.back().job);
-    cuts.parts.plans.push_back(fabricate(plan));
+    plan.job_text = job_text(cuts.jobs.back().job);
+    cuts.parts.plans.push_back(fabricate(name, plan));
     for (const Measurement& figure : all_figures(cuts.parts.jobs.size())) figures.push_back(figure);
     cuts.parts.jobs.push_back(name);
     parts.emplace_back(cuts.parts.plans.back(), std::vector<std::size_t>());

@@ -183,7 +183,7 @@ bool has_flares(const VerificationRun& run) {
 void check_on_substrate(const VerificationRun& run, const Unlikeness& unlike, AsMachined& part) {
   if (unlike.missing > 0)
     throw InputError(
-        {"", 0, "--as-machined"},
+        Field{"as_machined"},
         fmt::format("a design with [base] has all its elements: must be cut all, {} are not", unlike.missing));
   warn_of(unlike, part, "on a base");
   if (run.result.rim_overcut_um_max > 0.0)
@@ -231,7 +231,7 @@ AsMachined as_machined(const VerificationRun& run) {
     part.facet_tilt_arcmin.resize(tilt.size());
     for (std::size_t f = 0; f < tilt.size(); ++f) part.facet_tilt_arcmin[f] += tilt[f];
   }
-  if (cut == 0) throw InputError({"", 0, "--as-machined"}, "the programs cut no element of the job");
+  if (cut == 0) throw InputError(Field{"as_machined"}, "the programs cut no element of the job");
   for (double& tilt : part.facet_tilt_arcmin) tilt /= static_cast<double>(cut);
   const Unlikeness unlike = unlikeness_of(run, part.facet_tilt_arcmin);
   const bool is_direct = run.job.workpiece.kind == WorkpieceKind::direct;

@@ -136,7 +136,7 @@ std::vector<CutAngles> cut_angles(const fabrication::Job& job, const std::vector
 
 ZonedPart machined_zones(const fabrication::Job& job, const std::filesystem::path& job_file,
                          const std::vector<ElementTilts>& elements, Warnings& warnings) {
-  const InputLocation at{"", 0, "--as-machined"};
+  const Field at{"as_machined"};
   const std::optional<Design> design = design_beside(job, job_file);
   if (!design)
     throw InputError(

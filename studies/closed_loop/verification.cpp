@@ -1,15 +1,13 @@
 #include "studies/closed_loop/verification.h"
 
 #include <algorithm>
-#include <cmath>
 
-#include "core/error.h"
-#include "core/number_format.h"
 #include "fabrication/check/io/program_files.h"
 #include "fabrication/chisel/plan/plan.h"
 #include "fabrication/job/io/job_files.h"
 #include "fabrication/machine/io/machine_files.h"
 #include "fabrication/post/post.h"
+#include "requests/descriptions.h"
 
 namespace retrace::studies {
 namespace {
@@ -31,8 +29,7 @@ std::vector<NcProgram> programs_before(const std::string& stage, const Job& job,
 }  // namespace
 
 VerificationRun run_verification(const VerificationRequest& request, const Cancellation* cancellation) {
-  if (const auto given = request.tolerance_nm; given && !(*given > 0.0 && std::isfinite(*given)))
-    throw InputError({"", 0, "--tolerance-nm"}, "must be > 0, got " + shortest(*given));
+  requests::check(request);
   VerificationRun run;
   run.request = request;
   run.job = read_job(request.job, request.texts);

@@ -1,29 +1,29 @@
 #include "studies/fabrication/fabricate.h"
 
-#include <fmt/format.h>
-
 #include <set>
 
-#include "core/message_text.h"
+#include "core/file_texts.h"
 #include "fabrication/chisel/plan/chiseling.h"
 #include "fabrication/job/cube_corner.h"
 #include "fabrication/job/io/job_files.h"
 #include "fabrication/machine/io/machine_files.h"
 #include "fabrication/post/post.h"
 #include "geometry/elements/element_cells.h"
+#include "requests/descriptions.h"
 
 namespace retrace::studies {
 namespace {
 
 using fabrication::Plan, geometry::Vec3;
 
-const fabrication::Dialect& dialect_of(const std::string& name) {
-  std::vector<std::string_view> names;
-  for (const fabrication::Dialect& dialect : fabrication::dialects()) {
-    if (dialect.name == name) return dialect;
-    names.push_back(dialect.name);
-  }
-  throw InputError({"", 0, "--dialect"}, fmt::format("must be {}, got {}", alternatives(names), in_quotes(name)));
+fabrication::PlanOptions plan_options(const FabricationRequest& request) {
+  fabrication::PlanOptions options;
+  options.phase = request.phase;
+  options.from_element = request.from_element;
+  options.from_pass = request.from_pass;
+  options.stop_every = request.stop_every;
+  options.split_hours = request.split_hours;
+  return options;
 }
 
 /// Returns the position of the tool tip in the section of an element, in the coordinates of SectionMove.
@@ -48,17 +48,19 @@ geometry::Vec2 in_section(const FabricationResult& result, const fabrication::Cu
 
 }  // namespace
 
-FabricationResult fabricate(const FabricationRequest& request) {
+FabricationResult fabricate(const std::filesystem::path& job, const FabricationRequest& request) {
+  requests::check(request);
   FabricationResult result;
-  const fabrication::Dialect& dialect = dialect_of(request.dialect);
-  result.dialect = dialect.name;
-  result.file_ending = dialect.ending;
-  result.job = fabrication::read_job(request.job_file, request.texts);
+  result.dialect = request.dialect;
+  result.file_ending = fabrication::ending_of(request.dialect);
+  FileTexts texts;
+  if (request.job_text) texts[job.string()] = *request.job_text;
+  result.job = fabrication::read_job(job, texts);
   result.machine = fabrication::load_machine(result.job.machine, result.job.where("machine"));
-  result.machine.increments = fabrication::word_increments(dialect.name, result.machine.control);
-  result.machine.shortest_axes = fabrication::shortest_axes(dialect.name, result.machine.control);
-  result.plan = fabrication::make_plan(result.job, result.machine, request.options);
-  for (const fabrication::Program& program : result.plan.programs) fabrication::check_words(program, dialect.name);
+  result.machine.increments = fabrication::word_increments(result.dialect, result.machine.control);
+  result.machine.shortest_axes = fabrication::shortest_axes(result.dialect, result.machine.control);
+  result.plan = fabrication::make_plan(result.job, result.machine, plan_options(request));
+  for (const fabrication::Program& program : result.plan.programs) fabrication::check_words(program, result.dialect);
   return result;
 }
 

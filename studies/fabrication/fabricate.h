@@ -2,24 +2,18 @@
 
 // Study of the command `retrace fabricate`: plans a job, and computes the tool path through one element.
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
 
-#include "core/file_texts.h"
 #include "core/warning.h"
 #include "fabrication/chisel/plan/plan.h"
 #include "fabrication/job/job.h"
 #include "fabrication/machine/machine.h"
+#include "requests/job.h"
 
 namespace retrace::studies {
-
-struct FabricationRequest {
-  std::filesystem::path job_file;
-  std::string dialect = "rs274ngc";
-  FileTexts texts = {};  ///< contents of files that are used instead of reading these files
-  fabrication::PlanOptions options;
-};
 
 /// Planned job, with its programs in one dialect.
 struct FabricationResult {
@@ -34,8 +28,9 @@ struct FabricationResult {
 };
 
 /// Reads and plans a job.
-/// \throw InputError for an invalid job
-FabricationResult fabricate(const FabricationRequest& request);
+/// \param job job file; relative names in the job start at its folder
+/// \throw InputError for an invalid job or request
+FabricationResult fabricate(const std::filesystem::path& job, const FabricationRequest& request = {});
 
 /// Move of the tool in one element, in a section. For a prism, the section is across the root: u points to the side of
 /// facet 2 and z up, measured from the root. For a cube corner, the section is the plane of facet 1: u points along its

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/message_text.h"
+#include "core/named_file.h"
 #include "core/number_format.h"
 #include "core/schema/document.h"
 #include "fabrication/chisel/check/workpiece.h"
@@ -22,6 +23,7 @@
 #include "geometry/io/mask_image.h"
 #include "geometry/part/part.h"
 #include "geometry/part/zones.h"
+#include "requests/descriptions.h"
 #include "studies/design/zone_elements.h"
 #include "studies/fabrication/reachable.h"
 
@@ -30,26 +32,33 @@ namespace {
 
 using fabrication::Job, geometry::Arrangement, geometry::PartSpec;
 
-/// Returns the index of a word.
-/// \throw InputError at the option if `words` does not contain the word
-std::size_t word_index(const std::string& option, const std::string& given, std::span<const std::string_view> words) {
-  const auto found = std::find(words.begin(), words.end(), given);
-  if (found != words.end()) return static_cast<std::size_t>(found - words.begin());
-  throw InputError({"", 0, option}, fmt::format("must be {}, got {}", alternatives(words), in_quotes(given)));
-}
-
-fabrication::Strategy strategy_of(const std::string& given) {
-  return static_cast<fabrication::Strategy>(word_index("--strategy", given, fabrication::kStrategyWords));
+/// Returns the enumerator of a word.
+/// \pre `words` contains the word
+template <class Enumeration>
+Enumeration enumerator_of(const std::string& word, std::span<const std::string_view> words) {
+  return static_cast<Enumeration>(std::ranges::find(words, word) - words.begin());
 }
 
 bool is_dmc(const JobRequest& request) {
-  return strategy_of(request.strategy) == fabrication::Strategy::dmc;
+  return request.strategy == "dmc";
 }
 
 /// Returns the name of the machine. Diamond micro chiseling needs a tilting head, so "ideal" is replaced by
 /// "ideal-dmc".
 std::string machine_of(const JobRequest& request) {
   return is_dmc(request) && request.machine == "ideal" ? "ideal-dmc" : request.machine;
+}
+
+/// Returns the machine of a request by its name or its file.
+/// \throw InputError at the field `machine` if the machine does not exist, or if the file is invalid
+fabrication::Machine machine_at_field(const std::string& name_or_file) {
+  return read_named(Field{"machine"}, [&] { return fabrication::load_machine(name_or_file, {}); });
+}
+
+/// Returns the process of a request.
+/// \throw InputError at the field `process` if the process does not exist, or if the file is invalid
+fabrication::Process process_of(const JobRequest& request) {
+  return read_named(Field{"process"}, [&] { return fabrication::load_process(request.process, {}); });
 }
 
 /// Checks that an element is not canted, because canted cube corners cannot be cut.
@@ -69,7 +78,7 @@ geometry::Element element_of(const Design& design, const JobRequest& request) {
     throw InputError({design.source_name(), 0, "array.extent"}, "must be \"finite\" to be cut, got \"infinite\"");
   if (const auto* const rtp = std::get_if<geometry::RtpElement>(&design.part().element)) {
     if (is_dmc(request))
-      throw InputError({"", 0, "--strategy"},
+      throw InputError(Field{"strategy"},
                        "dmc cuts cube corners: must be unidirectional, bidirectional or two-step "
                        "for element.kind = \"rtp\", got dmc");
     geometry::RtpElement prism = *rtp;
@@ -78,9 +87,9 @@ geometry::Element element_of(const Design& design, const JobRequest& request) {
   }
   if (!is_dmc(request))
     throw InputError(
-        {"", 0, "--strategy"},
-        fmt::format("a chisel with a straight edge reaches {} % of the facets of this cube corner, and not "
-                    "its apex: must be dmc, or --reachable FILE for the part that it can make, got {}",
+        Field{"strategy"},
+        fmt::format("a chisel with a straight edge reaches {} % of the facets of this cube corner, and not its apex: "
+                    "must be dmc, or use retrace job --reachable FILE for the part that it can make, got {}",
                     fixed(100.0 * reachable_share(design.part().element, request.tool_width_mm), 2), request.strategy));
   check_upright(design.part().element, {design.source_name(), 0, "element.cant_deg"});
   return design.part().element;
@@ -210,8 +219,7 @@ void tell_overcut(MadeJob& made) {
   Job& job = made.job;
   if (!std::holds_alternative<geometry::HexagonalCube>(job.element)) return;
   job.notes.push_back("cavities are triangular: at borders of zones, they extend beyond the elements' outlines");
-  const fabrication::Workpiece3d workpiece =
-      fabrication::workpiece_of(job, fabrication::load_machine(job.machine, {"", 0, "--machine"}));
+  const fabrication::Workpiece3d workpiece = fabrication::workpiece_of(job, machine_at_field(job.machine));
   const fabrication::ZoneOvercut overcut =
       fabrication::zone_overcut(workpiece, std::vector<bool>(workpiece.grooves.size(), true));
   if (overcut.elements == 0) return;
@@ -226,27 +234,18 @@ void tell_overcut(MadeJob& made) {
 }  // namespace
 
 void check_making(const JobRequest& request) {
-  strategy_of(request.strategy);
-  word_index("--workpiece", request.workpiece, fabrication::kWorkpieceWords);
-  if (!(request.shrinkage_percent >= 0.0 && request.shrinkage_percent <= 10.0))
-    throw InputError({"", 0, "--shrinkage-percent"},
-                     "must be >= 0 and <= 10, got " + shortest(request.shrinkage_percent));
-  const double least_mm = is_dmc(request) ? 0.01 : 0.1;
-  const double most_mm = is_dmc(request) ? 10.0 : 2.0;
-  if (!(request.tool_width_mm >= least_mm && request.tool_width_mm <= most_mm))
-    throw InputError({"", 0, "--tool-width-mm"}, fmt::format("must be >= {} and <= {}, got {}", shortest(least_mm),
-                                                             shortest(most_mm), shortest(request.tool_width_mm)));
-  const fabrication::Machine machine = fabrication::load_machine(machine_of(request), {"", 0, "--machine"});
+  requests::check(request);
+  const fabrication::Machine machine = machine_at_field(machine_of(request));
   if (is_dmc(request) != (machine.tilt == fabrication::Tilt::head))
-    throw InputError({"", 0, "--machine"},
+    throw InputError(Field{"machine"},
                      fmt::format("must be a machine whose {} tilts for strategy {}, got {}",
                                  is_dmc(request) ? "head" : "table", request.strategy, in_quotes(request.machine)));
-  fabrication::load_process(request.process, {"", 0, "--process"});
+  process_of(request);
 }
 
 void check_cuts_zones(const JobRequest& request) {
   if (!is_dmc(request))
-    throw InputError({"", 0, "--strategy"},
+    throw InputError(Field{"strategy"},
                      fmt::format("must be dmc for a part of zones, got {}", in_quotes(request.strategy)));
 }
 
@@ -264,7 +263,7 @@ namespace {
 fabrication::Tool tool_of(const Job& job, const JobRequest& request) {
   fabrication::Tool tool;
   tool.width_mm = request.tool_width_mm;
-  const InputLocation at{"", 0, "--tool-width-mm"};
+  const Field at{"tool_width_mm"};
   if (job.strategy == fabrication::Strategy::dmc) {
     tool.wedge_deg = fabrication::kDmcWedgeDeg;
     for (std::size_t zone = 0; zone < fabrication::zone_count(job); ++zone)
@@ -291,13 +290,13 @@ void check_substrate(const Design& design, const JobRequest& request) {
     throw InputError({design.source_name(), 0, "array.arrangement"},
                      "pins are ground one by one and bundled, not cut: must be \"honeycomb\" for a job, got \"pins\"");
   if (request.workpiece != fabrication::kWorkpieceWords[0])
-    throw InputError({"", 0, "--workpiece"},
-                     "must be mould for a design with [base], got " + in_quotes(request.workpiece));
+    throw InputError(Field{"workpiece"}, "must be mould for a design with [base], got " + in_quotes(request.workpiece));
 }
 
 }  // namespace
 
 MadeJob make_job(const Design& design, const JobRequest& request) {
+  requests::check(request);
   check_taken(design, {.what = "retrace job", .zones = true, .wet_backs = true});
   check_substrate(design, request);
   if (design.facet_planes())
@@ -307,7 +306,7 @@ MadeJob make_job(const Design& design, const JobRequest& request) {
   job.title = design.title;
   if (design.source != "-") made.design_file = design.source;
   job.design = made.design_file.filename().string();
-  job.strategy = strategy_of(request.strategy);
+  job.strategy = enumerator_of<fabrication::Strategy>(request.strategy, fabrication::kStrategyWords);
   check_element(design, request);
   check_making(request);
   if (design.zoned()) {
@@ -318,18 +317,17 @@ MadeJob make_job(const Design& design, const JobRequest& request) {
     job.substrate = design.part().substrate;
     if (!is_prism(design.part())) job.angle_errors = design.part().angle_errors;
   }
-  job.workpiece.kind = static_cast<fabrication::WorkpieceKind>(
-      word_index("--workpiece", request.workpiece, fabrication::kWorkpieceWords));
+  job.workpiece.kind = enumerator_of<fabrication::WorkpieceKind>(request.workpiece, fabrication::kWorkpieceWords);
   job.workpiece.shrinkage_percent = request.shrinkage_percent;
   job.tool = tool_of(job, request);
   job.machine = machine_of(request);
-  job.process = fabrication::load_process(request.process, {"", 0, "--process"});
+  job.process = process_of(request);
   if (design.mask())
     job.array.pattern = geometry::mask_pattern(design.mask()->file, design.mask()->threshold,
                                                geometry::prism_block(job.array, fabrication::prism_of(job)).counts,
                                                design.where("array.mask"));
   if (job.strategy == fabrication::Strategy::dmc && request.workpiece != fabrication::kWorkpieceWords[0])
-    throw InputError({"", 0, "--workpiece"},
+    throw InputError(Field{"workpiece"},
                      "must be mould for cube corners, because the cavities differ from the elements, got " +
                          in_quotes(request.workpiece));
   fabrication::check_job(job, {design.source_name(), 0, ""});

@@ -10,19 +10,10 @@
 #include "core/error.h"
 #include "core/warning.h"
 #include "fabrication/job/job.h"
+#include "requests/job.h"
 #include "studies/design/design.h"
 
 namespace retrace::studies {
-
-/// Properties of a job that a design does not contain.
-struct JobRequest {
-  std::string machine = "ideal";  ///< name of a shipped machine, or a machine file
-  double tool_width_mm = 0.0;
-  std::string strategy = "two-step";
-  std::string process = "thesis-acrylic";  ///< name of a shipped process, or a process file
-  std::string workpiece = "mould";
-  double shrinkage_percent = 0.0;
-};
 
 struct MadeJob {
   fabrication::Job job;               ///< job, which contains only the file name of its design, without the folder
@@ -32,16 +23,16 @@ struct MadeJob {
   Warnings warnings;
 };
 
-/// Checks the strategy, workpiece, machine and process of a request, which do not depend on a design.
+/// Checks the fields of a request, its machine and its process, which do not depend on a design.
 /// \throw InputError for an invalid value
 void check_making(const JobRequest& request);
 
 /// Checks that the strategy supports designs with zones.
-/// \throw InputError at --strategy if it does not
+/// \throw InputError at the field `strategy` if it does not
 void check_cuts_zones(const JobRequest& request);
 
 /// Checks that the strategy can cut the elements of the design.
-/// \throw InputError at --strategy, or for a design that no strategy can cut
+/// \throw InputError at the field `strategy`, or for a design that no strategy can cut
 void check_element(const Design& design, const JobRequest& request);
 
 /// Returns the fabrication job of a design, which is an array of elements or has zones of cube corners. The job

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/json_text.h"
+#include "core/named_file.h"
 #include "core/number_format.h"
 #include "geometry/elements/element_cells.h"
 #include "geometry/elements/facet_planes.h"
@@ -76,17 +77,17 @@ void check_design(const Design& design, const JobRequest& request) {
   check_taken(design, {.what = "retrace job --reachable", .wet_backs = true});
   const geometry::PartSpec& part = design.part();
   if (std::holds_alternative<geometry::RtpElement>(part.element))
-    throw InputError({"", 0, "--reachable"}, "is for cube corners: a chisel reaches all of a prism");
+    throw InputError(Field{"reachable"}, "is for cube corners: a chisel reaches all of a prism");
   if (request.strategy == "dmc")
-    throw InputError({"", 0, "--reachable"}, "is for strategies with a chisel: dmc reaches all of a cube corner");
+    throw InputError(Field{"reachable"}, "is for strategies with a chisel: dmc reaches all of a cube corner");
   if (part.array.extent == geometry::Extent::infinite)
     throw InputError({design.source_name(), 0, "array.extent"}, "must be \"finite\" to be cut, got \"infinite\"");
   if (geometry::cant_of(part.element).deg != 0.0)
     throw InputError({design.source_name(), 0, "element.cant_deg"},
                      "must be 0 to be cut in this version, got " + shortest(geometry::cant_of(part.element).deg));
   if (request.shrinkage_percent != 0.0)
-    throw InputError({"", 0, "--shrinkage-percent"},
-                     "must be 0 with --reachable, got " + shortest(request.shrinkage_percent));
+    throw InputError(Field{"shrinkage_percent"}, fmt::format("must be 0 with {}, got {}", reference({"reachable"}),
+                                                             shortest(request.shrinkage_percent)));
 }
 
 }  // namespace
@@ -103,8 +104,7 @@ ReachablePart reachable_part(const Design& design, const JobRequest& request, co
   const geometry::PartSpec& part = design.part();
   fabrication::Tool tool;
   tool.width_mm = request.tool_width_mm;
-  const InputLocation at{"", 0, "--tool-width-mm"};
-  fabrication::check_chisel_reach(part.element, tool, at, at);
+  read_named(Field{"tool_width_mm"}, [&] { fabrication::check_chisel_reach(part.element, tool, {}, {}); });
   ReachablePart result;
   result.reach = fabrication::chisel_reach(part.element, tool);
   std::vector<geometry::ElementPlanes> planes;

@@ -258,7 +258,7 @@ TEST(Dialects, NameLinesThatNobodyChecked) {
   EXPECT_EQ(text("a3200").find("Not checked"), std::string::npos);
   on.control.mist_on = "DigitalOutputSet(X, 0, 1)";
   EXPECT_EQ(text("automation1").find("Not checked"), std::string::npos);
-  EXPECT_EQ(refusal_of([&] { text("a3200"); }), "--dialect");
+  EXPECT_EQ(refusal_of([&] { text("a3200"); }), "dialect");
   on.control.has_unchecked_lines = true;
   EXPECT_NE(text("a3200").find("' Not checked: the line of control.mist_on, which may move axes or wait\n"),
             std::string::npos);

@@ -518,18 +518,14 @@ TEST(Refused, JobsBeyondTheLimitsOfAnAxis) {
 TEST(Refused, OptionsWithoutMeaning) {
   PlanOptions options;
   options.from_element = 23;
-  EXPECT_EQ(refusal(square_job(5), machine("ideal"), options), "--from-element");
+  EXPECT_EQ(refusal(square_job(5), machine("ideal"), options), "from_element");
   options = {};
   options.from_pass = 2;
-  EXPECT_EQ(refusal(square_job(5), machine("ideal"), options), "--from-pass");
   options.from_element = 0;
-  EXPECT_EQ(refusal(square_job(5), machine("ideal"), options), "--from-pass");
+  EXPECT_EQ(refusal(square_job(5), machine("ideal"), options), "from_pass");
   options = {};
   options.phase = "finishing-3-facet-1";
-  EXPECT_EQ(refusal(square_job(5), machine("ideal"), options), "--phase");
-  options = {};
-  options.stop_every = 0;
-  EXPECT_EQ(refusal(square_job(5), machine("ideal"), options), "--stop-every");
+  EXPECT_EQ(refusal(square_job(5), machine("ideal"), options), "phase");
 }
 
 }  // namespace

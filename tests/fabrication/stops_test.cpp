@@ -459,7 +459,7 @@ TEST(StopsRefused, ControlsWithoutALineForStops) {
   machine.control.stop.clear();
   const Program program = make_plan(job, machine).programs.front();
   for (const char* dialect : {"pmac", "a3200", "automation1"})
-    EXPECT_EQ(refusal_of([&] { nc_text(program, dialect); }), "--dialect");
+    EXPECT_EQ(refusal_of([&] { nc_text(program, dialect); }), "dialect");
 }
 
 }  // namespace

@@ -22,5 +22,8 @@ retrace_test(studies_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/balls_test.cpp
   LIBRARIES retrace::inspect retrace::photometry retrace::rre nlohmann_json::nlohmann_json)
 retrace_test(studies_tests
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/fabrication_request_test.cpp
+  LIBRARIES retrace::fabrication_study)
+retrace_test(studies_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/validation_test.cpp
   LIBRARIES retrace::validation nlohmann_json::nlohmann_json)

@@ -57,10 +57,9 @@ retract_feed_mm_per_min = 200
 }
 
 inline studies::FabricationResult planned(const std::string& job) {
-  studies::FabricationRequest request;
-  request.job_file = "job.toml";
-  request.texts["job.toml"] = job;
-  return studies::fabricate(request);
+  FabricationRequest request;
+  request.job_text = job;
+  return studies::fabricate("job.toml", request);
 }
 
 inline std::vector<fabrication::NcProgram> programs_of(const studies::FabricationResult& made) {

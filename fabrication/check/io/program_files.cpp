@@ -17,7 +17,7 @@ NcDialect dialect_of(const std::string& word, std::string_view text, const std::
   if (word == "auto") return recognise_dialect(text, file);
   const auto* const found = std::find(std::begin(kNcDialectWords), std::end(kNcDialectWords), word);
   if (found == std::end(kNcDialectWords))
-    throw InputError({"", 0, "--dialect"},
+    throw InputError(Field{"dialect"},
                      fmt::format("must be \"auto\", {}, got {}", alternatives(kNcDialectWords), in_quotes(word)));
   return static_cast<NcDialect>(found - std::begin(kNcDialectWords));
 }

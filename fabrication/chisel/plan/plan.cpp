@@ -47,7 +47,7 @@ bool is_named(const Stage& stage, std::string_view name) {
          (name == "finishing" && stage.name.starts_with(name));
 }
 
-[[noreturn]] void refuse_phase(const Plan& plan, const std::string& option, const std::string& name) {
+[[noreturn]] void refuse_phase(const Plan& plan, Field field, const std::string& name) {
   std::vector<std::string> names;
   for (const Stage& stage : plan.stages) names.push_back(stage.name);
   constexpr std::size_t kMostNamed = 12;
@@ -55,10 +55,10 @@ bool is_named(const Stage& stage, std::string_view name) {
     names.resize(kMostNamed);
     names.emplace_back("...");
   }
-  throw InputError(
-      {"", 0, option},
-      fmt::format("must be {}roughing, finishing or one of {}{}, got {}", option == "--phase" ? "all, " : "",
-                  fmt::join(names, ", "), option == "--phase" ? " (with + for all after it too)" : "", plain(name)));
+  const bool is_phase = field.name == "phase";
+  throw InputError(field,
+                   fmt::format("must be {}roughing, finishing or one of {}{}, got {}", is_phase ? "all, " : "",
+                               fmt::join(names, ", "), is_phase ? " (with + for all after it too)" : "", plain(name)));
 }
 
 /// Removes all stages from `plan` except the requested ones.
@@ -68,9 +68,9 @@ std::vector<Stage> choose_stages(Plan& plan, const PlanOptions& options) {
   if (!options.before.empty()) {
     const auto first = std::find_if(plan.stages.begin(), plan.stages.end(),
                                     [&](const Stage& stage) { return is_named(stage, options.before); });
-    if (first == plan.stages.end()) refuse_phase(plan, "--standing", options.before);
+    if (first == plan.stages.end()) refuse_phase(plan, Field{"standing"}, options.before);
     if (first == plan.stages.begin())
-      throw InputError({"", 0, "--standing"}, "must be a stage before which something is cut, got the first");
+      throw InputError(Field{"standing"}, "must be a stage before which something is cut, got the first");
     plan.stages.erase(first, plan.stages.end());
   }
   if (options.phase == "all") return {};
@@ -82,7 +82,7 @@ std::vector<Stage> choose_stages(Plan& plan, const PlanOptions& options) {
     if ((and_after && !chosen.empty()) || is_named(stage, name)) chosen.push_back(stage);
     if (chosen.empty()) before.push_back(stage);
   }
-  if (chosen.empty()) refuse_phase(plan, "--phase", options.phase);
+  if (chosen.empty()) refuse_phase(plan, Field{"phase"}, options.phase);
   plan.stages = std::move(chosen);
   return before;
 }
@@ -559,20 +559,14 @@ class ProgramMaker {
   std::int64_t roughing_done_ = 0;
 };
 
+/// Checks the options whose limits depend on the job.
 void check_options(const PlanOptions& options, std::size_t elements, std::size_t passes) {
   const auto most = static_cast<std::int64_t>(elements) - 1;
   if (options.from_element && (*options.from_element < 0 || *options.from_element > most))
-    throw InputError({"", 0, "--from-element"}, fmt::format("must be 0 to {}, got {}", most, *options.from_element));
+    throw InputError(Field{"from_element"}, fmt::format("must be 0 to {}, got {}", most, *options.from_element));
   const auto most_passes = static_cast<std::int64_t>(passes);
-  if (options.from_pass && !options.from_element)
-    throw InputError({"", 0, "--from-pass"},
-                     fmt::format("only allowed with --from-element, got {}", *options.from_pass));
   if (options.from_pass && (*options.from_pass < 1 || *options.from_pass > most_passes))
-    throw InputError({"", 0, "--from-pass"}, fmt::format("must be 1 to {}, got {}", most_passes, *options.from_pass));
-  if (options.stop_every && *options.stop_every < 1)
-    throw InputError({"", 0, "--stop-every"}, fmt::format("must be >= 1, got {}", *options.stop_every));
-  if (options.split_hours && !(*options.split_hours > 0.0))
-    throw InputError({"", 0, "--split-hours"}, "must be > 0, got " + shortest(*options.split_hours));
+    throw InputError(Field{"from_pass"}, fmt::format("must be 1 to {}, got {}", most_passes, *options.from_pass));
 }
 
 ProcessFacts facts_of(const Job& job, const Plan& plan) {

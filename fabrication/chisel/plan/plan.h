@@ -86,6 +86,7 @@ struct Plan {
 };
 
 /// Plans a job on a machine.
+/// \pre `stop_every` is >= 1, `split_hours` is > 0, and `from_pass` is only given together with `from_element`
 /// \throw InputError naming axis and element for a job that the machine cannot cut, or for options that do not apply
 Plan make_plan(const Job& job, const Machine& machine, const PlanOptions& options = {});
 

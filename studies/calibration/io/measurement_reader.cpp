@@ -113,9 +113,9 @@ class Reader {
     if (known != result_.jobs.end()) return static_cast<std::size_t>(known - result_.jobs.begin());
     if (result_.jobs.size() == kMostJobs) table_.fail(fmt::format("at most {} jobs are allowed", kMostJobs));
     FabricationRequest request;
-    request.job_file = folder_ / job;
-    request.texts = texts_;
-    FabricationResult plan = read_named({result_.file, table_.line(), "job"}, [&] { return fabricate(request); });
+    const fs::path file = folder_ / job;
+    if (const auto text = texts_.find(file.string()); text != texts_.end()) request.job_text = text->second;
+    FabricationResult plan = read_named({result_.file, table_.line(), "job"}, [&] { return fabricate(file, request); });
     if (!result_.plans.empty() && plan.machine.name != result_.plans.front().machine.name)
       table_.fail(columns_.job,
                   fmt::format("is a job for machine {}, those before are for {}", in_quotes(plan.machine.name),

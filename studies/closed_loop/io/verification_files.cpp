@@ -33,7 +33,7 @@ Json poses_json(const Verification& result, const Machine& machine) {
 std::string verification_json(const VerificationRun& run, double elapsed_s) {
   const Verification& r = run.result;
   const Json json = {{"verdict", r.verdict()},
-                     {"job", run.request.job},
+                     {"job", run.request.job.string()},
                      {"machine", run.machine.name},
                      {"programs", programs_json(run)},
                      {"findings", findings_json(r.findings)},
@@ -72,7 +72,7 @@ std::string verification_json(const VerificationRun& run, double elapsed_s) {
 
 std::string verification_table(const VerificationRun& run) {
   const Verification& r = run.result;
-  std::string text = fmt::format("{} on machine {}: {}\n", printable(run.request.job, std::string::npos),
+  std::string text = fmt::format("{} on machine {}: {}\n", printable(run.request.job.string(), std::string::npos),
                                  printable(run.machine.name), r.verdict());
   const auto row = [&](const char* name, const std::string& value) {
     text += fmt::format("  {:<28} {}\n", name, value);

@@ -1,0 +1,124 @@
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "core/number_format.h"
+#include "core/schema/access.h"
+#include "requests/descriptions.h"
+#include "requests/rows/common.h"
+
+namespace retrace::requests {
+namespace {
+
+using schema::access;
+
+/// Names of the shipped machines and processes.
+constexpr std::string_view kMachines[] = {"ideal", "paper", "thesis", "ideal-dmc"};
+constexpr std::string_view kProcesses[] = {"thesis-acrylic", "thesis-forces", "thesis-forces-10um", "paper-pmma"};
+
+constexpr std::string_view kStrategies[] = {"unidirectional", "bidirectional", "two-step", "dmc"};
+constexpr std::string_view kWorkpieces[] = {"mould", "direct"};
+
+/// Widths of chisels. The range of the row includes the widths of the tools for diamond micro chiseling (dmc).
+constexpr NumberRange kChiselWidthMm{.low = 0.1, .high = 2.0};
+
+void check_making_request(const void* object) {
+  const auto& request = *static_cast<const JobRequest*>(object);
+  if (request.strategy != "dmc" && !kChiselWidthMm.contains(request.tool_width_mm))
+    throw InputError(Field{"tool_width_mm"},
+                     fmt::format("must be {}, got {}", kChiselWidthMm.text(), shortest(request.tool_width_mm)));
+}
+
+constexpr Row kJobRows[] = {{"machine",
+                             WordOrFile{kMachines, ".toml", "ideal, paper, thesis, ideal-dmc or a file"},
+                             "ideal, paper, thesis, ideal-dmc or a file",
+                             access<&JobRequest::machine>,
+                             {.value = "MACHINE"}},
+                            {.name = "tool_width_mm",
+                             .kind = Number{{.low = 0.01, .high = 10.0}},
+                             .meaning = "width of the cutting edge, 0.1 to 2; with the strategy dmc 0.01 to 10",
+                             .access = access<&JobRequest::tool_width_mm>,
+                             .spelling = {.value = "W"},
+                             .is_required = true},
+                            {"strategy",
+                             Word{kStrategies},
+                             "unidirectional, bidirectional or two-step; dmc for cube corners",
+                             access<&JobRequest::strategy>,
+                             {.value = "STRATEGY"}},
+                            {"process",
+                             WordOrFile{kProcesses, ".toml", "the name of a shipped process or a file"},
+                             "depths, feeds and dwells: a shipped process or a file",
+                             access<&JobRequest::process>,
+                             {.value = "PROCESS"}},
+                            {"workpiece",
+                             Word{kWorkpieces},
+                             "mould, or direct if the optic itself is cut",
+                             access<&JobRequest::workpiece>,
+                             {.value = "KIND"}},
+                            {"shrinkage_percent",
+                             Number{{.low = 0.0, .high = 10.0}},
+                             "shrinkage of the part, by which the mould is larger",
+                             access<&JobRequest::shrinkage_percent>,
+                             {.value = "S"}}};
+
+/// Dialects of NC programs.
+constexpr std::string_view kProgramDialects[] = {"rs274ngc", "sinumerik", "fanuc", "pmac", "a3200", "automation1"};
+
+/// Largest number of elements, passes and visits.
+constexpr double kMaxVisits = 2147483647.0;
+
+constexpr schema::Condition kFromElement[] = {schema::beside("from_element")};
+constexpr Need kNeedFromElement[] = {kFromElement};
+
+constexpr Row kFabricationRows[] = {
+    {"dialect",
+     Word{kProgramDialects},
+     "rs274ngc, sinumerik, fanuc, pmac, a3200 or automation1",
+     access<&FabricationRequest::dialect>,
+     {.value = "DIALECT"}},
+    {"phase",
+     Text{"all, roughing, finishing or the name of a stage"},
+     "all, roughing, finishing, or one stage such as finishing-1-facet-2; with + also all later stages",
+     access<&FabricationRequest::phase>,
+     {.value = "PHASE"}},
+    {"from_element",
+     Whole{{.low = 0.0, .high = kMaxVisits}},
+     "number of the element at whose first visit of the tool the programs start",
+     access<&FabricationRequest::from_element>,
+     {.value = "N", .otherwise = "the first"}},
+    {"from_pass",
+     Whole{{.low = 1.0, .high = kMaxVisits}},
+     "number, from 1, of the pass in that visit at which the programs start; a narrow tool needs several passes per "
+     "element",
+     access<&FabricationRequest::from_pass>,
+     {.value = "K", .usual = "1"},
+     kNeedFromElement},
+    {"stop_every",
+     Whole{{.low = 1.0, .high = kMaxVisits}},
+     "number of visits of the tool to an element between optional stops",
+     access<&FabricationRequest::stop_every>,
+     {.value = "N", .otherwise = "no stops"}},
+    {"split_hours",
+     Number{{.low = 0.0, .low_included = false}},
+     "maximum duration of one program in hours",
+     access<&FabricationRequest::split_hours>,
+     {.value = "H", .otherwise = "all in one program"}},
+    {"job_text",
+     Text{"the text of a job file"},
+     "text of the job file, which is used instead of reading the file",
+     access<&FabricationRequest::job_text>,
+     {.value = "TEXT", .is_only_python_and_library = true}}};
+
+}  // namespace
+
+template <>
+const Request& description<JobRequest>() {
+  static constexpr Request request{"make_job", "job", kJobRows, initial_object<JobRequest>, check_making_request};
+  return request;
+}
+template <>
+const Request& description<FabricationRequest>() {
+  static constexpr Request request{"fabricate", "fabricate", kFabricationRows, initial_object<FabricationRequest>};
+  return request;
+}
+
+}  // namespace retrace::requests

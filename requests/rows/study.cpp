@@ -1,0 +1,39 @@
+#include "core/schema/access.h"
+#include "requests/descriptions.h"
+#include "requests/rows/common.h"
+
+namespace retrace::requests {
+namespace {
+
+using schema::access;
+
+constexpr std::string_view kActionsIfExists[] = {"refuse", "resume", "overwrite"};
+
+// The command line has --set, --seed, --out, --resume and --overwrite for these fields.
+constexpr Row kStudyRows[] = {
+    {"overrides",
+     Texts{},
+     "texts KEY=VALUE for keys of designs, [analysis] and [machining]",
+     access<&StudyRequest::overrides>,
+     {.value = "KEY=VALUE", .option = "--set", .is_only_python_and_library = true}},
+    seed_row<StudyRequest>(),
+    {"store",
+     File{"an SQLite file"},
+     "SQLite file in which finished points are kept",
+     access<&StudyRequest::store>,
+     {.value = "FILE", .otherwise = "finished points are not kept", .is_only_python_and_library = true}},
+    {"if_exists",
+     Word{kActionsIfExists},
+     "action if the store exists already: refuse, resume or overwrite",
+     access<&StudyRequest::if_exists>,
+     {.value = "ACTION", .is_only_python_and_library = true}}};
+
+}  // namespace
+
+template <>
+const Request& description<StudyRequest>() {
+  static constexpr Request request{"sweep", "sweep", kStudyRows, initial_object<StudyRequest>};
+  return request;
+}
+
+}  // namespace retrace::requests
