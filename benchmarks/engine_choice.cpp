@@ -20,7 +20,7 @@
 namespace retrace::benchmarks {
 namespace {
 
-Timed timed_by(const studies::Design& design, studies::RreRequest request, studies::Engine engine, double most_s) {
+Timed timed_by(const studies::Design& design, studies::RreSettings request, studies::Engine engine, double most_s) {
   request.engine = engine;
   return timed(design, request, most_s);
 }
@@ -36,7 +36,7 @@ struct Comparison {
 std::optional<Comparison> compare(unsigned seed, double target_error) {
   RandomDesigns random(seed);
   const std::string text = random.next();
-  studies::RreRequest request;
+  studies::RreSettings request;
   request.incidence_deg = {random.between(0.0, 10.0), random.between(10.0, 30.0), random.between(30.0, 60.0)};
   request.azimuth_deg = {random.between(0.0, 90.0)};
   request.target_error = target_error;

@@ -28,7 +28,7 @@ constexpr double kTargetErrorRatio = 0.05;
 // Maximum time for one run of an engine. A design is skipped if a run takes longer.
 constexpr double kMaxTime_s = 5.0;
 
-std::optional<studies::RrePoint> answer(const studies::Design& design, studies::RreRequest request,
+std::optional<studies::RrePoint> answer(const studies::Design& design, studies::RreSettings request,
                                         studies::Engine engine) {
   request.engine = engine;
   const Deadline deadline(kMaxTime_s);
@@ -49,7 +49,7 @@ std::optional<Trial> trial(unsigned seed, double target_error) {
   RandomDesigns random(seed);
   const std::string text = random.next();
   if (text.find("roughness") != std::string::npos) return std::nullopt;
-  studies::RreRequest request;
+  studies::RreSettings request;
   request.incidence_deg = {random.between(0.0, 40.0)};
   request.azimuth_deg = {random.between(0.0, 90.0)};
   request.seed = seed;

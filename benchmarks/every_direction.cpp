@@ -66,7 +66,7 @@ std::vector<Measured> measure(const studies::Design& given) {
     for (const double incidence_deg : kIncidences_deg)
       for (const double azimuth_deg : kAzimuths_deg) {
         if (incidence_deg == 0.0 && azimuth_deg != 0.0) continue;
-        studies::RreRequest request;
+        studies::RreSettings request;
         request.incidence_deg = {incidence_deg};
         request.azimuth_deg = {azimuth_deg};
         all.push_back({back_index, incidence_deg, azimuth_deg, timed(design, request, kPatience_s)});

@@ -45,7 +45,7 @@ struct Timed {
 
 /// Measures the time of a request on one thread. The check of the request is not included.
 /// \param most_s time after which the request is cancelled
-inline Timed timed(const studies::Design& design, const studies::RreRequest& request, double most_s) {
+inline Timed timed(const studies::Design& design, const studies::RreSettings& request, double most_s) {
   const studies::RreStudy study({design}, request);
   Timed result;
   run_with_threads(1, [&] {

@@ -8,27 +8,10 @@
 #include "library/drawing_content.h"
 #include "report/results/result_plots.h"
 #include "studies/rre/io/rre_files.h"
-#include "studies/rre/rre.h"
+#include "studies/rre/rre_request.h"
 
 namespace retrace {
 namespace {
-
-studies::RreRequest to_study(const RreRequest& request) {
-  studies::RreRequest of_study;
-  of_study.incidence_deg = request.incidence_deg;
-  for (const auto& [from, to] : request.incidence_spans_deg) of_study.incidence_spans.push_back({from, to});
-  of_study.azimuth_deg = request.azimuth_deg;
-  of_study.engine = studies::engine_from_name(request.engine);
-  of_study.target_error = request.target_error;
-  of_study.rays = request.samples;
-  of_study.cutoff = request.cutoff;
-  of_study.seed = request.seed;
-  of_study.sampling = studies::sampling_from_name(request.sampling);
-  of_study.derivatives = request.derivatives;
-  of_study.footprint = request.footprint;
-  of_study.far_field = request.far_field;
-  return of_study;
-}
 
 RrePoint from_study(const studies::RrePoint& point) {
   RrePoint told;
@@ -52,7 +35,7 @@ RreResult rre(const std::vector<Design>& designs, const RreRequest& request, con
   std::vector<studies::Design> of_study;
   of_study.reserve(designs.size());
   for (const Design& design : designs) of_study.push_back(design.content().design);
-  const studies::RreStudy study(std::move(of_study), to_study(request));
+  const studies::RreStudy study(std::move(of_study), studies::resolve(request));
   const auto held = std::make_shared<studies::RreResult>();
   studies::RreResult& found = *held;
   run_with_threads(running.threads, [&] { found = study.run(running.progress, running.cancellation); });

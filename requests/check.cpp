@@ -82,7 +82,7 @@ class KindCheck {
   void operator()(const schema::WordOrFile& kind) const { check_file(taken<std::string>(kind), kind); }
   void operator()(const schema::NumberOrNumbers& kind) const {
     const auto& numbers = taken<std::vector<double>>(kind);
-    if (numbers.empty()) refuse(row_, "at least one number", "none");
+    if (numbers.empty() && !kind.may_be_empty) refuse(row_, "at least one number", "none");
     if (numbers.size() > kind.most)
       refuse(row_, fmt::format("1 to {} numbers", kind.most), fmt::format("{} of them", numbers.size()));
     check_numbers(numbers, kind.range, kind.is_whole);

@@ -10,7 +10,9 @@
 #include "requests/part.h"
 #include "requests/photometry.h"
 #include "requests/rays.h"
+#include "requests/roughness.h"
 #include "requests/row.h"
+#include "requests/rre.h"
 #include "requests/study.h"
 #include "requests/verify.h"
 
@@ -19,7 +21,7 @@ namespace retrace::requests {
 /// All types of requests.
 using AllRequests = std::tuple<DetectorRequest, CameraRequest, RoadRequest, JobRequest, FabricationRequest,
                                MetrologyRequest, SolidRequest, MaterialRequest, PhotometryRequest, RaysRequest,
-                               TraceRequest, StudyRequest, VerificationRequest>;
+                               TraceRequest, RoughnessRequest, RreRequest, StudyRequest, VerificationRequest>;
 
 template <>
 const Request& description<DetectorRequest>();
@@ -43,6 +45,10 @@ template <>
 const Request& description<RaysRequest>();
 template <>
 const Request& description<TraceRequest>();
+template <>
+const Request& description<RoughnessRequest>();
+template <>
+const Request& description<RreRequest>();
 template <>
 const Request& description<StudyRequest>();
 template <>

@@ -1,19 +1,21 @@
 #include <fmt/format.h>
 
-#include <cmath>
+#include <array>
+#include <filesystem>
 #include <memory>
+#include <utility>
 
 #include "app/commands.h"
 #include "app/interrupt.h"
 #include "app/output.h"
 #include "app/ranks.h"
+#include "app/request_options.h"
 #include "app/shared_arguments.h"
 #include "core/data_directory.h"
 #include "core/number_format.h"
 #include "report/results/result_plots.h"
-#include "requests/number_list.h"
+#include "requests/descriptions.h"
 #include "studies/design/io/design_reader.h"
-#include "studies/design/request_limits.h"
 #include "studies/roughness/io/facet_table_reader.h"
 #include "studies/roughness/io/roughness_files.h"
 
@@ -22,24 +24,17 @@ namespace {
 
 struct RoughnessOptions {
   std::string design;
-  std::string sa = "0,2,5,10,15,20,30,40,50,75,100,150,200";
-  std::string correlation_length_um = "5,20,50";
-  std::vector<std::string> facets;    ///< tables of measured facets; if empty, the shipped tables are used
-  studies::RoughnessRequest request;  ///< all other options
+  std::vector<std::string> facets;  ///< tables of measured facets; if empty, the shipped tables are used
+  FieldTexts fields;
 };
 
 std::vector<Argument> arguments(RoughnessOptions& options) {
-  return {design_argument(options.design),
-          {"--sa LIST", "Sa of the curves in nm: a,b,c and start:stop:step", &options.sa},
-          {"--correlation-length-um LIST", "correlation lengths, one curve each; the first is for measured facets",
-           &options.correlation_length_um},
-          {"--waviness-length-um L", "period of the waviness of measured facets", &options.request.waviness_length_um},
-          {"--facets FILE", "table of measured facets, repeatable [the shipped ones]", &options.facets, files(".csv")},
-          {"--incidence T", "angle of incidence in degrees", &options.request.incidence_deg},
-          {"--azimuth P", "azimuth of the source in degrees", &options.request.azimuth_deg},
-          {"--samples N", "rays for each point [until the target error is reached]", &options.request.rays, whole(1)},
-          {"--target-error E", "standard error of RRE to reach, as a fraction", &options.request.target_error,
-           not_with("--samples")}};
+  std::vector<Argument> all = {
+      design_argument(options.design),
+      {"--facets FILE", "table of measured facets, repeatable [the shipped ones]", &options.facets, files(".csv")}};
+  const std::array<CommandRequest, 1> of_command = {{{requests::description<RoughnessRequest>()}}};
+  for (Argument& argument : field_arguments(of_command, options.fields)) all.push_back(std::move(argument));
+  return all;
 }
 
 /// Returns the tables of measured facets from the command line, or the shipped tables if none are given.
@@ -49,19 +44,11 @@ std::vector<std::filesystem::path> tables_of(const RoughnessOptions& options) {
   return {options.facets.begin(), options.facets.end()};
 }
 
-studies::RoughnessRequest request_of(const RoughnessOptions& options, const CommonOptions& common,
-                                     const std::vector<std::filesystem::path>& tables) {
-  studies::RoughnessRequest request = options.request;
-  request.sa_nm = requests::read_number_list(options.sa, Field{"sa"});
-  request.correlation_length_um =
-      requests::read_number_list(options.correlation_length_um, Field{"correlation_length_um"});
-  studies::check_azimuth(request.azimuth_deg);
-  if (!(request.target_error > 0.0 && request.target_error < 1.0))
-    throw InputError({"", 0, "--target-error"}, fmt::format("must lie between 0 and 1, got {}", request.target_error));
-  request.seed = common.seed;
+std::vector<studies::FacetGroup> facets_in(const std::vector<std::filesystem::path>& tables) {
+  std::vector<studies::FacetGroup> measured;
   for (const std::filesystem::path& table : tables)
-    for (studies::FacetGroup& group : studies::read_facet_table(table)) request.measured.push_back(std::move(group));
-  return request;
+    for (studies::FacetGroup& group : studies::read_facet_table(table)) measured.push_back(std::move(group));
+  return measured;
 }
 
 /// Computes all points and writes the results.
@@ -71,18 +58,18 @@ ExitCode trace(const RoughnessOptions& options, const CommonOptions& common, stu
   const std::vector<std::filesystem::path> tables = tables_of(options);
   std::vector<std::string> inputs = files_read({design});
   for (const std::filesystem::path& table : tables) inputs.push_back(table.string());
-  const studies::RoughnessStudy study(design, request_of(options, common, tables));
+  const auto request = request_of<RoughnessRequest>(options.fields, common);
+  const studies::RoughnessStudy study(design, request, facets_in(tables));
   const OrderlyInterrupt interrupt;
   studies::RoughnessResult result;
   ResultFiles files(common, inputs, "roughness.json");
   files.add("roughness.csv", [&] { return studies::roughness_csv(result); });
   files.add_drawing("roughness", [&] { return report::roughness_plot(result); });
   files.prepare();
-  const Words to_shorten = {
-      options.request.rays
-          ? fmt::format("give a smaller --samples (now {})", *options.request.rays)
-          : fmt::format("give a larger --target-error (now {})", shortest(options.request.target_error)),
-      "give fewer values (--sa)"};
+  const Words to_shorten = {request.samples
+                                ? fmt::format("give a smaller --samples (now {})", *request.samples)
+                                : fmt::format("give a larger --target-error (now {})", shortest(request.target_error)),
+                            "give fewer values (--sa)"};
   interrupt.run(common, {"tracing", to_shorten}, [&](Progress* bar, const Cancellation* cancel) {
     result = study.run(bar, cancel, share_among(session, slots(common), cancel));
   });
@@ -97,7 +84,8 @@ ExitCode run(const RoughnessOptions& options, const CommonOptions& common) {
       common, slots(common), [&](studies::MpiSession* session) { return trace(options, common, session); },
       [&]() -> ComputeTask {
         const auto study = std::make_shared<const studies::RoughnessStudy>(
-            studies::read_design(options.design, common.overrides), request_of(options, common, tables_of(options)));
+            studies::read_design(options.design, common.overrides),
+            request_of<RoughnessRequest>(options.fields, common), facets_in(tables_of(options)));
         return
             [study](std::uint64_t point, const Cancellation* cancel) { return study->compute_shared(point, cancel); };
       });
@@ -110,7 +98,7 @@ Command roughness_command() {
           .summary = "retroreflective efficiency against the roughness of the facets",
           .manual =
               "RRE against the Sa of the facets' roughness, one curve for each correlation length, with measured "
-              "facets beside them.",
+              "facets beside them. A LIST contains numbers a,b,c and ranges start:stop:step.",
           .reads = {"retrace.design/1", "measured facets (CSV)"},
           .writes = {"retrace.roughness/1"},
           .begin = begins<RoughnessOptions>(arguments, run)};

@@ -1,17 +1,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "app/commands.h"
 #include "app/interrupt.h"
 #include "app/output.h"
-#include "app/shared_arguments.h"
+#include "app/request_options.h"
 #include "core/number_format.h"
 #include "report/results/result_plots.h"
+#include "requests/descriptions.h"
 #include "requests/number_list.h"
 #include "studies/design/io/design_reader.h"
 #include "studies/rre/io/rre_files.h"
+#include "studies/rre/rre_request.h"
 
 namespace retrace::app {
 namespace {
@@ -19,65 +22,25 @@ namespace {
 struct RreOptions {
   std::vector<std::string> designs;
   std::string incidence = "0";
-  std::string azimuth = "0";
-  std::string engine = "auto";
-  std::string sampling = "stratified";
-  studies::RreRequest request;  ///< all other options
+  FieldTexts fields;
 };
 
 std::vector<Argument> arguments(RreOptions& options) {
-  studies::RreRequest& request = options.request;
-  const Need of_rays = engine_need(studies::kRayEngines);
-  const Need of_beams = engine_need(studies::kExactEngines);
-  Traits samples = whole(1), sampling = one_of(Words{"stratified", "plain"}), target = not_with("--samples");
-  samples.needs = sampling.needs = {of_rays};
-  // The exact engine uses either the cut-off or the target error. Therefore --target-error requires an engine that
-  // always has a target error, or the absence of --cutoff.
-  Need cutoff_or_target = engine_need(studies::kTargetEngines);
-  cutoff_or_target.push_back(absent("--cutoff").front());
-  target.needs = {cutoff_or_target};
-  for (const char* const option : {"--derivatives", "--footprint", "--far-field"})
-    target.needs.push_back({absent("--cutoff").front(), absent(option).front()});
-  const Traits files_of_beams = {.needs = {of_beams, any_given({"--out"})}};
-  return {
+  std::vector<Argument> all = {
       {"DESIGN", "design files; - is standard input", &options.designs, files(".toml")},
       {"--incidence LIST", "incidence angles in degrees: a,b,c, start:stop:step and start:stop:auto",
-       &options.incidence},
-      {"--azimuth LIST", "azimuths of the source in degrees: a,b,c and start:stop:step", &options.azimuth},
-      {"--engine ENGINE", "exact, stochastic, montecarlo (cell or embree), or auto: the fastest for each direction",
-       &options.engine, one_of([] { return engine_words(true); })},
-      {"--samples N", "number of rays for each point [until the target error is reached]", &request.rays, samples},
-      {"--sampling KIND", "stratified, or plain: random points without splitting, for comparison", &options.sampling,
-       sampling},
-      {"--target-error E",
-       "standard error of RRE to reach, as a fraction; with exact, the maximum truncated power "
-       "[0.0001; --engine exact: 1e-10]",
-       &request.target_error, target},
-      {"--cutoff W",
-       "minimum power of light that is followed, as a fraction of the incident power [1e-10; exact: determined by "
-       "the target error]",
-       &request.cutoff,
-       {.needs = {engine_need(studies::kCutoffEngines)}}},
-      {"--derivatives",
-       "compute the derivatives of RRE with respect to the parameters of the design (--engine exact)",
-       &request.derivatives,
-       {.needs = {of_beams}}},
-      {"--footprint", "write the regions of the entrance face that return light, as polygons (--engine exact, --out)",
-       &request.footprint, files_of_beams},
-      {"--far-field", "write the directions in which light leaves the entrance face (--engine exact, --out)",
-       &request.far_field, files_of_beams}};
+       &options.incidence}};
+  const std::array<CommandRequest, 1> of_command = {{{requests::description<RreRequest>()}}};
+  for (Argument& argument : field_arguments(of_command, options.fields)) all.push_back(std::move(argument));
+  return all;
 }
 
-studies::RreRequest request_of(const RreOptions& options, const CommonOptions& common) {
-  studies::RreRequest request = options.request;
-  const requests::CurveList incidence = requests::read_curve_list(options.incidence, Field{"incidence_deg"});
-  request.incidence_deg = incidence.values;
-  for (const auto& [low, high] : incidence.chosen) request.incidence_spans.push_back({low, high});
-  request.azimuth_deg = requests::read_number_list(options.azimuth, Field{"azimuth_deg"});
-  request.engine = studies::engine_from_name(options.engine);
-  request.sampling = studies::sampling_from_name(options.sampling);
-  request.seed = common.seed;
-  return request;
+studies::RreSettings settings_of(const RreOptions& options, const CommonOptions& common) {
+  auto request = request_of<RreRequest>(options.fields, common);
+  requests::CurveList incidence = requests::read_curve_list(options.incidence, Field{"incidence_deg"});
+  request.incidence_deg = std::move(incidence.values);
+  request.incidence_spans_deg = std::move(incidence.chosen);
+  return studies::resolve(request);
 }
 
 std::vector<studies::Design> designs_of(const RreOptions& options, const CommonOptions& common) {
@@ -98,7 +61,7 @@ void warn_of_panels(studies::RreResult& result) {
 
 /// Adds the output files of the command.
 /// \param result result of the computation; it is filled before the files are written
-void add_files(ResultFiles& files, const studies::RreRequest& asked, const studies::RreResult& result) {
+void add_files(ResultFiles& files, const studies::RreSettings& asked, const studies::RreResult& result) {
   files.add("rre.csv", [&] { return studies::rre_csv(result); });
   files.add_drawing("rre", [&] { return report::rre_plot(result); });
   if (asked.footprint) {
@@ -112,7 +75,7 @@ void add_files(ResultFiles& files, const studies::RreRequest& asked, const studi
 }
 
 /// Returns advice for a shorter run: options to change, with their current values.
-Words what_shortens_rre(const studies::RreRequest& request) {
+Words what_shortens_rre(const studies::RreSettings& request) {
   Words advice;
   if (request.rays) {
     advice.push_back(fmt::format("give a smaller --samples (now {})", *request.rays));
@@ -129,7 +92,7 @@ Words what_shortens_rre(const studies::RreRequest& request) {
 }
 
 ExitCode run(const RreOptions& options, const CommonOptions& common) {
-  studies::RreRequest request = request_of(options, common);
+  studies::RreSettings request = settings_of(options, common);
   std::vector<studies::Design> designs = designs_of(options, common);
   studies::RreResult result;
   ResultFiles files(common, files_read(designs), "rre.json");

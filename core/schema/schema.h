@@ -69,6 +69,7 @@ struct NumberOrNumbers {
   NumberRange range;
   bool is_whole = false;                                       ///< true if all numbers must be integers
   std::size_t most = std::numeric_limits<std::size_t>::max();  ///< maximum number of numbers; only for requests
+  bool may_be_empty = false;                                   ///< true if an empty list is allowed; only for requests
 };
 /// A list of exactly `count` numbers.
 struct Numbers {

@@ -3,37 +3,18 @@
 // Computes the retroreflective efficiency (RRE) over the angle of incidence, and a ledger with the fate of all incident
 // light.
 
-#include <array>
-#include <cstdint>
+#include <cstddef>
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/warning.h"
+#include "requests/rre.h"
 #include "retrace/design.h"
 #include "retrace/drawing.h"
 #include "retrace/running.h"
 
 namespace retrace {
-
-/// Settings of the computation. They correspond to the options of `retrace rre` (docs/commands.md).
-struct RreRequest {
-  std::vector<double> incidence_deg = {0.0};  ///< angles of incidence, each in (-90, 90)
-  /// Ranges within (-90, 90) in which further angles of incidence are selected automatically, in the same way as for
-  /// `start:stop:auto` on the command line.
-  std::vector<std::array<double, 2>> incidence_spans_deg = {};
-  std::vector<double> azimuth_deg = {0.0};    ///< azimuths of the source
-  std::string engine = "auto";                ///< auto, exact, stochastic, montecarlo, cell or embree
-  std::optional<double> target_error = {};    ///< standard error of RRE to reach, as a fraction; by default 1e-4
-  std::optional<std::uint64_t> samples = {};  ///< number of rays for each point, instead of `target_error`
-  std::optional<double> cutoff = {};  ///< minimum power of light that is followed, as a fraction of the incident power
-  std::string sampling = "stratified";  ///< stratified, or plain: random points without splitting of rays
-  std::uint32_t seed = 1;
-  bool derivatives = false;  ///< true: compute derivatives of RRE with respect to parameters (engine exact)
-  bool footprint = false;    ///< true: compute the regions of the entrance face that return light (engine exact)
-  bool far_field = false;    ///< true: compute the directions in which light leaves the entrance face (engine exact)
-};
 
 /// RRE of one design for one direction of the light and one acceptance cone.
 struct RrePoint {

@@ -221,9 +221,9 @@ void BeamWalk::observe_front() const {
 
 void BeamWalk::fail_on_budget() const {
   throw TraceBudgetError(
-      fmt::format("the budget of {} beams ran out with {:.3g} of the power not accounted for; a larger "
-                  "--cutoff follows fewer beams",
-                  policy_.max_beams, open_power()));
+      fmt::format("the budget of {} beams ran out with {:.3g} of the power not accounted for; a larger {} follows "
+                  "fewer beams",
+                  policy_.max_beams, open_power(), reference({"cutoff"})));
 }
 
 }  // namespace retrace::raytrace

@@ -143,9 +143,9 @@ bool BeamWalk::has_many_deferred() const {
 void BeamWalk::require_memory() const {
   if (memory_->is_exceeded())
     throw TraceBudgetError(fmt::format(
-        "beams exceed {} with {:.3g} of the power not accounted for: give a larger --cutoff, which follows fewer "
-        "beams, a larger budget, or --engine montecarlo",
-        memory_budget_text(), open_power()));
+        "beams exceed {} with {:.3g} of the power not accounted for: give a larger {}, which follows fewer beams, a "
+        "larger budget, or {} montecarlo",
+        memory_budget_text(), open_power(), reference({"cutoff"}), reference({"engine"})));
   memory_->require_shared();
 }
 

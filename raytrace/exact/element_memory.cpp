@@ -41,9 +41,9 @@ void require_element_memory(const geometry::Part& part) {
   const ElementCost cost = element_cost(part);
   if (cost.fits_memory()) return;
   throw TraceBudgetError(fmt::format(
-      "beams through {:.3g} cells take about {:.3g} GiB, which exceeds half of {}: give a larger budget, or --engine "
+      "beams through {:.3g} cells take about {:.3g} GiB, which exceeds half of {}: give a larger budget, or {} "
       "montecarlo",
-      cost.cells, cost.bytes / static_cast<double>(1U << 30), memory_budget_text()));
+      cost.cells, cost.bytes / static_cast<double>(1U << 30), memory_budget_text(), reference({"engine"})));
 }
 
 }  // namespace retrace::raytrace

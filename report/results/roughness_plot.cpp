@@ -32,7 +32,7 @@ LinePlot roughness_plot(const studies::RoughnessResult& result) {
   plot.y_label = "Retroreflective efficiency (%)";
   std::map<std::string, std::size_t> series_of;
   for (const RoughnessPoint& p : result.points) {
-    const std::string label = p.measured ? label_of(result.request.measured[*p.measured])
+    const std::string label = p.measured ? label_of(result.measured[*p.measured])
                                          : fmt::format("correlation length {} µm", shortest(p.correlation_length_um));
     const auto [it, is_new] = series_of.try_emplace(label, plot.series.size());
     if (is_new) plot.series.push_back(Series{label, {}, {}, {}});

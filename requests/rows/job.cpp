@@ -112,12 +112,12 @@ constexpr Row kFabricationRows[] = {
 
 template <>
 const Request& description<JobRequest>() {
-  static constexpr Request request{"make_job", "job", kJobRows, initial_object<JobRequest>, check_making_request};
+  static constexpr Request request{"job", "job", kJobRows, initial_object<JobRequest>, check_making_request};
   return request;
 }
 template <>
 const Request& description<FabricationRequest>() {
-  static constexpr Request request{"fabricate", "fabricate", kFabricationRows, initial_object<FabricationRequest>};
+  static constexpr Request request{"fabrication", "fabricate", kFabricationRows, initial_object<FabricationRequest>};
   return request;
 }
 

@@ -32,7 +32,7 @@ constexpr Row kStudyRows[] = {
 
 template <>
 const Request& description<StudyRequest>() {
-  static constexpr Request request{"sweep", "sweep", kStudyRows, initial_object<StudyRequest>};
+  static constexpr Request request{"study", "sweep", kStudyRows, initial_object<StudyRequest>};
   return request;
 }
 

@@ -53,7 +53,7 @@ constexpr Row kVerificationRows[] = {{.name = "job",
 
 template <>
 const Request& description<VerificationRequest>() {
-  static constexpr Request request{"verify", "verify", kVerificationRows, initial_object<VerificationRequest>};
+  static constexpr Request request{"verification", "verify", kVerificationRows, initial_object<VerificationRequest>};
   return request;
 }
 

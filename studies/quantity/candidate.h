@@ -25,7 +25,7 @@ struct AnalysisSettings {
   double azimuth_deg = 0.0;
   double rotation_deg = 0.0;  ///< rotation of the part about its normal, counter-clockwise as seen from the source
   Engine engine = Engine::automatic;
-  std::optional<double> target_error;  ///< see RreRequest::target_error
+  std::optional<double> target_error;  ///< see RreSettings::target_error
   std::optional<std::uint64_t> rays;
   std::optional<double> cutoff;
   std::uint32_t seed = 1;

@@ -12,6 +12,7 @@
 #include "studies/design/design_part.h"
 #include "studies/design/optical_model.h"
 #include "studies/inspect/inspect.h"
+#include "studies/rre/rre_request.h"
 
 namespace retrace::studies {
 
@@ -28,9 +29,9 @@ RreRequest request_of(const AngleWindow& window, const AnalysisSettings& analysi
   request.azimuth_deg = window.azimuth_deg.value_or(std::vector{analysis.azimuth_deg});
   // Rotating the part by an angle is equivalent to rotating the light by the opposite angle.
   for (double& azimuth_deg : request.azimuth_deg) azimuth_deg -= analysis.rotation_deg;
-  request.engine = analysis.engine;
+  request.engine = engine_name(analysis.engine);
   request.target_error = analysis.target_error;
-  request.rays = analysis.rays;
+  request.samples = analysis.rays;
   request.cutoff = analysis.cutoff;
   request.seed = analysis.seed;
   return request;
@@ -66,7 +67,7 @@ class ShareQuantity final : public Quantity {
   ShareQuantity(std::string name, const ShareSpec& spec) : Quantity(std::move(name)), spec_(spec) {}
 
   std::optional<Measured> measure(const Candidate& candidate, const Cancellation* cancel) const override {
-    const RreStudy study({design_of(candidate)}, request_of(spec_.window, candidate.analysis()));
+    const RreStudy study({design_of(candidate)}, resolve(request_of(spec_.window, candidate.analysis())));
     const RreResult result = study.run(candidate.progress(), cancel);
     if (!result.complete) return std::nullopt;
     const std::size_t cones = result.designs.front().detector.acceptance_half_angle_deg.size();
@@ -98,13 +99,13 @@ class ShareQuantity final : public Quantity {
     const bool is_rre = spec_.account == static_cast<std::size_t>(raytrace::Account::retroreflected);
     if (!is_rre || spec_.beyond_half_angle_deg || spec_.reduction == Reduction::least) return std::nullopt;
     RreRequest request = request_of(spec_.window, candidate.analysis());
-    if (request.engine != Engine::automatic && request.engine != Engine::exact) return std::nullopt;
-    request.engine = Engine::exact;
+    if (!is_one_of(candidate.analysis().engine, kExactEngines)) return std::nullopt;
+    request.engine = engine_name(Engine::exact);
     request.derivatives = true;
     // Resets those settings of the engine `auto` that the engine `exact` does not accept.
-    request.rays.reset();
+    request.samples.reset();
     if (request.cutoff) request.target_error.reset();
-    const RreResult result = RreStudy({design_of(candidate)}, request).run(nullptr, cancel);
+    const RreResult result = RreStudy({design_of(candidate)}, resolve(request)).run(nullptr, cancel);
     if (!result.complete) return std::nullopt;
     std::vector<Share> slopes;
     std::vector<double> weights;

@@ -10,20 +10,11 @@
 #include "core/error.h"
 #include "core/number_format.h"
 #include "core/task_progress.h"
+#include "requests/descriptions.h"
 #include "surface_models/scatter/phase.h"
 
 namespace retrace::studies {
 namespace {
-
-constexpr double kMostSaNm = 1e5;
-constexpr double kMostLengthUm = 1e6;
-
-void check(const std::vector<double>& values, double most, bool zero_allowed, const char* option) {
-  for (const double value : values)
-    if (!(value <= most && (value > 0.0 || (zero_allowed && value == 0.0))))
-      throw InputError({"", 0, option}, fmt::format("must be {} 0 and <= {}, got {}", zero_allowed ? ">=" : ">",
-                                                    shortest(most), shortest(value)));
-}
 
 void check(const Design& design) {
   check_taken(design, {.what = "retrace roughness", .solids = true});
@@ -45,8 +36,8 @@ Design textured(const Design& design, const RoughnessPoint& point, double wavine
   return rough;
 }
 
-RreRequest direction_of(const RoughnessRequest& asked) {
-  RreRequest request;
+RreSettings direction_of(const RoughnessRequest& asked) {
+  RreSettings request;
   request.incidence_deg = {asked.incidence_deg};
   request.azimuth_deg = {asked.azimuth_deg};
   request.seed = asked.seed;
@@ -71,17 +62,17 @@ double gaussian_sq_nm(double sa_nm) {
 struct RoughnessStudy::Prepared {
   Design design;
   RoughnessRequest request;
+  std::vector<FacetGroup> measured;
   std::vector<RoughnessPoint> points;
   std::vector<std::size_t> rough;  ///< indices of the points that are not smooth
   std::unique_ptr<RreStudy> smooth_study;
   std::unique_ptr<RreStudy> rough_study;  ///< study of the rough points, in their order
 };
 
-RoughnessStudy::RoughnessStudy(Design design, RoughnessRequest request) : prepared_(std::make_unique<Prepared>()) {
+RoughnessStudy::RoughnessStudy(Design design, RoughnessRequest request, std::vector<FacetGroup> measured)
+    : prepared_(std::make_unique<Prepared>()) {
   check(design);
-  check(request.sa_nm, kMostSaNm, true, "--sa");
-  check(request.correlation_length_um, kMostLengthUm, false, "--correlation-length-um");
-  check({request.waviness_length_um}, kMostLengthUm, false, "--waviness-length-um");
+  requests::check(request);
   Prepared& p = *prepared_;
   std::vector<Design> rough;
   const auto add = [&](const RoughnessPoint& point, const InputLocation& where) {
@@ -94,19 +85,22 @@ RoughnessStudy::RoughnessStudy(Design design, RoughnessRequest request) : prepar
   for (const double length_um : request.correlation_length_um)
     for (const double sa_nm : request.sa_nm)
       add({sa_nm, 0.0, length_um, {}, 0.0, 0.0},
-          {"", 0, fmt::format("--sa {} --correlation-length-um {}", shortest(sa_nm), shortest(length_um))});
-  for (std::size_t k = 0; k < request.measured.size(); ++k) {
-    const FacetGroup& group = request.measured[k];
+          {"", 0,
+           fmt::format("{} {} {} {}", reference({"sa_nm"}), shortest(sa_nm), reference({"correlation_length_um"}),
+                       shortest(length_um))});
+  for (std::size_t k = 0; k < measured.size(); ++k) {
+    const FacetGroup& group = measured[k];
     add({group.roughness_sa_nm, group.waviness_sa_nm, request.correlation_length_um.front(), k, 0.0, 0.0},
         {group.table, group.line, group.name});
   }
-  RreRequest asked = direction_of(request);
+  RreSettings asked = direction_of(request);
   p.smooth_study = std::make_unique<RreStudy>(std::vector{design}, asked);
-  asked.rays = request.rays;
-  if (!request.rays) asked.target_error = request.target_error;
+  asked.rays = request.samples;
+  if (!request.samples) asked.target_error = request.target_error;
   if (!rough.empty()) p.rough_study = std::make_unique<RreStudy>(std::move(rough), asked);
   p.design = std::move(design);
   p.request = std::move(request);
+  p.measured = std::move(measured);
 }
 
 RoughnessStudy::~RoughnessStudy() = default;
@@ -187,6 +181,7 @@ RoughnessResult RoughnessStudy::run(Progress* progress, const Cancellation* canc
   RoughnessResult result;
   result.design = p.design;
   result.request = p.request;
+  result.measured = p.measured;
   // All points, including the smooth one, are assumed to take equal time.
   const double smooth_share = 1.0 / static_cast<double>(1 + p.rough.size());
   PartOfProgress smooth_part(progress, 0.0, smooth_share), rough_part(progress, smooth_share, 1.0);

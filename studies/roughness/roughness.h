@@ -12,6 +12,7 @@
 #include "core/progress.h"
 #include "core/shared_tasks.h"
 #include "core/warning.h"
+#include "requests/roughness.h"
 #include "studies/design/design.h"
 #include "studies/rre/rre.h"
 
@@ -28,25 +29,11 @@ struct FacetGroup {
   double waviness_sa_nm = 0.0;   ///< mean Sa of the heights with wavelengths above the cut-off of the measurement
 };
 
-/// Request for the RRE of one design as a function of the roughness of its facets.
-struct RoughnessRequest {
-  std::vector<double> sa_nm;  ///< roughness values of the curves, each >= 0
-  /// Correlation lengths, each > 0. There is one curve for each value. The first value also applies to measured facets.
-  std::vector<double> correlation_length_um;
-  double waviness_length_um = 200.0;  ///< waviness period of the measured facets, > 0
-  std::vector<FacetGroup> measured;
-  double incidence_deg = 0.0;
-  double azimuth_deg = 0.0;
-  std::optional<std::uint64_t> rays;  ///< number of rays per point; none: rays are traced until target_error is reached
-  double target_error = 1e-3;         ///< maximum standard error of RRE, as a fraction
-  std::uint32_t seed = 1;
-};
-
 struct RoughnessPoint {
   double roughness_sa_nm = 0.0;
   double waviness_sa_nm = 0.0;
   double correlation_length_um = 0.0;
-  std::optional<std::size_t> measured;  ///< index of the measured group in the request; none: point of a curve
+  std::optional<std::size_t> measured;  ///< index of the group of measured facets; none: point of a curve
   double rre = 0.0;
   double std_error = 0.0;
 };
@@ -54,6 +41,7 @@ struct RoughnessPoint {
 struct RoughnessResult {
   Design design;
   RoughnessRequest request;
+  std::vector<FacetGroup> measured;
   double smooth_rre = 0.0;  ///< RRE for smooth facets, from the exact engine if this is fast
   double smooth_std_error = 0.0;
   std::vector<RoughnessPoint> points;  ///< curves in the order of the request, then the measured facets
@@ -69,9 +57,10 @@ double gaussian_sq_nm(double sa_nm);
 /// Roughness study of a design. The constructor checks the request, and run() computes the points.
 class RoughnessStudy {
  public:
+  /// \param measured measured facets, each of which is a further point
   /// \throw InputError for a design with its own texture or several acceptance angles, for numbers out of range, and
   /// for facets for which no scatter model is valid
-  RoughnessStudy(Design design, RoughnessRequest request);
+  RoughnessStudy(Design design, RoughnessRequest request, std::vector<FacetGroup> measured = {});
   ~RoughnessStudy();
 
   /// Computes all points.

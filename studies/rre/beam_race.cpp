@@ -83,7 +83,8 @@ double BeamRace::share_done() const {
 bool BeamRace::advance() {
   if (beams_ && beams_ns() <= stochastic_ns()) return advance_exact();
   if (may_resample_) return advance_stochastic();
-  throw BudgetError("beams do not reach the target error within their budgets: give --engine montecarlo");
+  throw BudgetError("beams do not reach the target error within their budgets: give " + reference({"engine"}) +
+                    " montecarlo");
 }
 
 bool BeamRace::advance_exact() try {

@@ -14,7 +14,7 @@
 namespace retrace::studies {
 namespace {
 
-std::vector<Direction> directions_of(const std::vector<OpticalModel>& models, const RreRequest& request,
+std::vector<Direction> directions_of(const std::vector<OpticalModel>& models, const RreSettings& request,
                                      const std::vector<double>& incidence_deg) {
   std::vector<Direction> directions;
   for (std::size_t d = 0; d < models.size(); ++d)
@@ -58,7 +58,7 @@ void finish(Direction& direction, const Design& design, const OpticalModel& mode
 /// ends, at any of the requested azimuths and wavelengths. Another kink is at half of an acceptance angle. There, the
 /// light that the entrance face reflects leaves the acceptance cone, because it rotates twice as fast as the part.
 std::vector<double> kinks_of(const std::vector<Design>& designs, const std::vector<OpticalModel>& models,
-                             const RreRequest& request) {
+                             const RreSettings& request) {
   std::vector<double> kinks;
   for (std::size_t d = 0; d < designs.size(); ++d) {
     const Design& design = designs[d];
@@ -124,12 +124,12 @@ void put_in_order(std::vector<Direction>& directions, const std::vector<double>&
 std::string told(const AdaptiveCurve& curve) {
   if (curve.worst_left() == 0.0) return {};
   return fmt::format(
-      "--incidence: {} points chosen in each range are not enough: straight lines between them may miss RRE by {:.2g}",
+      "{} angles of incidence chosen in each range are not enough: straight lines between them may miss RRE by {:.2g}",
       AdaptiveCurve::kMostPlaces, curve.worst_left());
 }
 
 TracedRequest trace_chosen(const std::vector<Design>& designs, const std::vector<OpticalModel>& models,
-                           const RreRequest& request, Progress* progress, const Cancellation* cancel) {
+                           const RreSettings& request, Progress* progress, const Cancellation* cancel) {
   TracedRequest traced;
   DirectionTracing tracing(designs, models, request, cancel);
   RoundProgress part(progress);
@@ -156,7 +156,7 @@ TracedRequest trace_chosen(const std::vector<Design>& designs, const std::vector
 }  // namespace
 
 TracedRequest trace_request(const std::vector<Design>& designs, const std::vector<OpticalModel>& models,
-                            const RreRequest& request, std::optional<std::size_t> only, Progress* progress,
+                            const RreSettings& request, std::optional<std::size_t> only, Progress* progress,
                             const Cancellation* cancel) {
   if (!request.incidence_spans.empty()) return trace_chosen(designs, models, request, progress, cancel);
   TracedRequest traced;

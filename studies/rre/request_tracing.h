@@ -22,7 +22,7 @@ struct TracedRequest {
 /// \pre all designs are traced if incidences are chosen automatically
 /// \throw BudgetError in the same cases as DirectionTracing::trace()
 TracedRequest trace_request(const std::vector<Design>& designs, const std::vector<OpticalModel>& models,
-                            const RreRequest& request, std::optional<std::size_t> only, Progress* progress,
+                            const RreSettings& request, std::optional<std::size_t> only, Progress* progress,
                             const Cancellation* cancel);
 
 }  // namespace retrace::studies

@@ -1,4 +1,4 @@
-// Names of engines and sampling methods in command-line options, and checks of the values of such options.
+// Names of engines in requests, and checks of the values of options.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -44,14 +44,8 @@ void check_has_effect(const char* option, bool is_given, Engine engine, std::spa
 Engine engine_from_name(std::string_view name) {
   for (const auto& [known, engine] : kEngines)
     if (known == name) return engine;
-  throw InputError({"", 0, "--engine"},
+  throw InputError(Field{"engine"},
                    fmt::format("must be auto, exact, stochastic, montecarlo, cell or embree, got {}", printable(name)));
-}
-
-raytrace::Sampling::Kind sampling_from_name(std::string_view name) {
-  if (name == "stratified") return raytrace::Sampling::Kind::stratified;
-  if (name == "plain") return raytrace::Sampling::Kind::plain;
-  throw InputError({"", 0, "--sampling"}, fmt::format("must be stratified or plain, got {}", printable(name)));
 }
 
 std::string_view engine_name(Engine engine) {

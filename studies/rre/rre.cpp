@@ -4,79 +4,60 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <utility>
 
 #include "core/error.h"
 #include "core/number_format.h"
 #include "raytrace/exact/stochastic_beams.h"
 #include "raytrace/paths/monte_carlo.h"
-#include "studies/design/request_limits.h"
 #include "studies/rre/request_tracing.h"
 #include "studies/rre/tracing.h"
 
 namespace retrace::studies {
 namespace {
 
-void check_incidence(double deg) {
-  if (!(std::abs(deg) < 90.0))
-    throw InputError({"", 0, "--incidence"}, fmt::format("must lie between -90 and 90 degrees, got {}", shortest(deg)));
+/// Returns the fields of the requested results that only the exact engine computes.
+std::vector<Field> exact_results(const RreSettings& request) {
+  std::vector<Field> fields;
+  if (request.footprint) fields.push_back({"footprint"});
+  if (request.far_field) fields.push_back({"far_field"});
+  if (request.derivatives) fields.push_back({"derivatives"});
+  return fields;
 }
 
-void check(const RreRequest& request) {
-  if (request.sampling == raytrace::Sampling::Kind::plain)
-    if (request.engine != Engine::automatic && request.engine != Engine::montecarlo && request.engine != Engine::embree)
-      throw InputError({"", 0, "--sampling"},
-                       fmt::format("plain needs --engine montecarlo or embree, got {}", engine_name(request.engine)));
-  for (const auto& [asked, option] : {std::pair{request.footprint, "--footprint"},
-                                      {request.far_field, "--far-field"},
-                                      {request.derivatives, "--derivatives"}}) {
-    check_has_effect(option, asked, request.engine, kExactEngines);
-    if (asked && !may_follow_beams(request)) throw InputError({"", 0, option}, "needs --engine exact");
-  }
-  check_has_effect("--samples", request.rays.has_value(), request.engine, kRayEngines);
-  check_has_effect("--cutoff", request.cutoff.has_value(), request.engine, kCutoffEngines);
-  if (request.target_error && request.rays) throw InputError({"", 0, "--target-error"}, "not together with --samples");
-  if (request.target_error && request.cutoff && must_be_exact(request))
-    throw InputError({"", 0, "--target-error"}, "not together with --cutoff where only the exact engine is used");
-  if (request.target_error) check_share(*request.target_error, false, "--target-error");
-  if (request.cutoff) check_share(*request.cutoff, true, "--cutoff");
-  if (request.rays) check_rays(*request.rays);
-  for (const double p : request.azimuth_deg) check_azimuth(p);
-  for (const double t : request.incidence_deg) check_incidence(t);
-  for (const CurveSpan& span : request.incidence_spans) {
-    check_incidence(span.low);
-    check_incidence(span.high);
-    if (!(span.low < span.high))
-      throw InputError({"", 0, "--incidence"}, fmt::format("a range must have start < stop, got {} and {}",
-                                                           shortest(span.low), shortest(span.high)));
-  }
+/// Checks that the settings can be combined.
+/// \throw InputError at the field that needs another setting
+void check(const RreSettings& request) {
+  const std::string engine = reference({"engine"});
+  if (request.sampling == raytrace::Sampling::Kind::plain && !is_one_of(request.engine, kRayEnginesOfParts))
+    throw InputError(Field{"sampling"},
+                     fmt::format("plain needs {} montecarlo or embree, got {}", engine, engine_name(request.engine)));
+  for (const Field result : exact_results(request))
+    if (!is_one_of(request.engine, kExactEngines) || !may_follow_beams(request))
+      throw InputError(result, fmt::format("needs {} exact", engine));
 }
 
 /// Refuses derivatives for parts with individual facet planes or a mask. Derivatives rebuild the part with changed
 /// sizes, but a table of facet planes or a mask does not change with the size.
-void check_planes(const Design& design, const RreRequest& request) {
+void check_planes(const Design& design, const RreSettings& request) {
   if (request.derivatives && design.facet_planes())
-    throw InputError(design.where("part.facets"), "has no derivatives: leave out --derivatives");
+    throw InputError(design.where("part.facets"), "has no derivatives: leave out " + reference({"derivatives"}));
   if (request.derivatives && design.mask())
-    throw InputError(design.where("array.mask"), "has no derivatives: leave out --derivatives");
+    throw InputError(design.where("array.mask"), "has no derivatives: leave out " + reference({"derivatives"}));
 }
 
 /// Refuses results that are defined at a single wavelength for light with a spectrum. Averaging them over a spectrum is
 /// meaningless.
-void check_light(const Design& design, const OpticalModel& model, const RreRequest& request) {
+void check_light(const Design& design, const OpticalModel& model, const RreSettings& request) {
   if (model.spectral.size() < 2) return;
-  for (const auto& [asked, option] : {std::pair{request.footprint, "--footprint"},
-                                      {request.far_field, "--far-field"},
-                                      {request.derivatives, "--derivatives"}})
-    if (asked)
-      throw InputError(design.where("light.spectrum"),
-                       fmt::format("{} takes one wavelength and this light has {}: give light.wavelength_nm instead, "
-                                   "or --set light.spectrum=[[{:.0f},1]]",
-                                   option, model.spectral.size(), model.wavelength_nm));
+  for (const Field result : exact_results(request))
+    throw InputError(design.where("light.spectrum"),
+                     fmt::format("{} takes one wavelength and this light has {}: give light.wavelength_nm instead, "
+                                 "or --set light.spectrum=[[{:.0f},1]]",
+                                 reference(result), model.spectral.size(), model.wavelength_nm));
 }
 
-std::string missed_target_text(const Design& design, const RrePoint& at, const RreRequest& request) {
+std::string missed_target_text(const Design& design, const RrePoint& at, const RreSettings& request) {
   return fmt::format("{}: the standard error at incidence {}, azimuth {} is above the target of {}",
                      design.source_name(), shortest(at.incidence_deg), shortest(at.azimuth_deg),
                      shortest(target_error_of(request)));
@@ -84,36 +65,31 @@ std::string missed_target_text(const Design& design, const RrePoint& at, const R
 
 }  // namespace
 
-double target_error_of(const RreRequest& request) {
+double target_error_of(const RreSettings& request) {
   return request.target_error.value_or(request.incidence_spans.empty() ? kUsualTargetError : 0.5 * kCurveTolerance);
 }
 
 namespace {
 
 /// Refuses engines that support only plane entrance faces if the design has a curved one.
-void check_entrance(const Design& design, const RreRequest& request) {
+void check_entrance(const Design& design, const RreSettings& request) {
   if (!design.entrance) return;
   if (request.engine == Engine::exact || request.engine == Engine::stochastic || request.engine == Engine::cell)
-    throw InputError({"", 0, "--engine"}, fmt::format("{} takes a plane entrance face alone, {} has a [front]: use "
-                                                      "--engine embree",
-                                                      engine_name(request.engine), design.source_name()));
-  for (const auto& [asked, option] : {std::pair{request.footprint, "--footprint"},
-                                      {request.far_field, "--far-field"},
-                                      {request.derivatives, "--derivatives"}})
-    if (asked) check_taken(design, {.what = option, .solids = true});
+    throw InputError(Field{"engine"},
+                     fmt::format("{} takes a plane entrance face alone, {} has a [front]: use {} embree",
+                                 engine_name(request.engine), design.source_name(), reference({"engine"})));
+  for (const Field result : exact_results(request)) check_taken(design, {.what = reference(result), .solids = true});
 }
 
 /// Refuses results and engines that require the same medium behind all elements.
-void check_backs(const Design& design, const OpticalModel& model, const RreRequest& request) {
+void check_backs(const Design& design, const OpticalModel& model, const RreSettings& request) {
   if (model.optics.has_one_back()) return;
-  for (const auto& [asked, option] : {std::pair{request.footprint, "--footprint"},
-                                      {request.far_field, "--far-field"},
-                                      {request.derivatives, "--derivatives"}})
-    if (asked) check_taken(design, {.what = option, .solids = true});
+  for (const Field result : exact_results(request)) check_taken(design, {.what = reference(result), .solids = true});
   if (request.engine == Engine::exact || request.engine == Engine::stochastic || request.engine == Engine::cell)
-    throw InputError({"", 0, "--engine"}, fmt::format("{} takes backs that are all alike, {} has a [wet_back] behind "
-                                                      "some elements: use --engine embree",
-                                                      engine_name(request.engine), design.source_name()));
+    throw InputError(
+        Field{"engine"},
+        fmt::format("{} takes backs that are all alike, {} has a [wet_back] behind some elements: use {} embree",
+                    engine_name(request.engine), design.source_name(), reference({"engine"})));
 }
 
 /// Refuses engines that trace beams if facets or the entrance face split or bend beams. Stochastic beams are allowed if
@@ -122,9 +98,10 @@ void check_beams(const Design& design, const raytrace::Optics& optics, Engine en
   const bool may_resample = raytrace::StochasticBeams::serves(optics);
   if (engine == Engine::stochastic ? may_resample : optics.keeps_beams()) return;
   const auto refused = [&](const InputLocation& where, std::string_view what) {
-    return InputError(where, fmt::format("{} a beam into infinitely many: use --engine {}montecarlo, without "
-                                         "--footprint, --far-field and --derivatives",
-                                         what, may_resample ? "stochastic or " : ""));
+    return InputError(where,
+                      fmt::format("{} a beam into infinitely many: use {} {}montecarlo, without {}, {} and {}", what,
+                                  reference({"engine"}), may_resample ? "stochastic or " : "", reference({"footprint"}),
+                                  reference({"far_field"}), reference({"derivatives"})));
   };
   if (!optics.has_plane_facets())
     throw refused(design.where_facets(), optics.is_smooth() ? "facets with a form bend" : "rough facets split");
@@ -132,20 +109,18 @@ void check_beams(const Design& design, const raytrace::Optics& optics, Engine en
 }
 
 /// Returns the model of a design. Balls have their own tracer. Therefore most options are refused for them.
-OpticalModel model_of(const Design& design, const materials::MaterialLibrary& library, const RreRequest& request) {
+OpticalModel model_of(const Design& design, const materials::MaterialLibrary& library, const RreSettings& request) {
   if (!design.balls()) {
     check_entrance(design, request);
     return make_model(design, library, Entrances::any);
   }
   if (request.engine != Engine::automatic && request.engine != Engine::montecarlo)
-    throw InputError({"", 0, "--engine"},
+    throw InputError(Field{"engine"},
                      fmt::format("must be auto or montecarlo for balls, got {}", engine_name(request.engine)));
   if (request.sampling == raytrace::Sampling::Kind::plain)
-    throw InputError({"", 0, "--sampling"}, "must be stratified for balls, got plain");
-  for (const auto& [asked, option] : {std::pair{request.footprint, "--footprint"},
-                                      {request.far_field, "--far-field"},
-                                      {request.derivatives, "--derivatives"}})
-    if (asked) throw InputError(design.where("element.kind"), fmt::format("balls have no {}", option));
+    throw InputError(Field{"sampling"}, "must be stratified for balls, got plain");
+  for (const Field result : exact_results(request))
+    throw InputError(design.where("element.kind"), "balls have no " + reference(result));
   return make_light_model(design, library);
 }
 
@@ -153,11 +128,11 @@ OpticalModel model_of(const Design& design, const materials::MaterialLibrary& li
 
 struct RreStudy::Prepared {
   std::vector<Design> designs;
-  RreRequest request;
+  RreSettings request;
   std::vector<OpticalModel> models;
 };
 
-RreStudy::RreStudy(std::vector<Design> designs, RreRequest request) : prepared_(std::make_unique<Prepared>()) {
+RreStudy::RreStudy(std::vector<Design> designs, RreSettings request) : prepared_(std::make_unique<Prepared>()) {
   check(request);
   const auto library = materials::MaterialLibrary::shipped();
   for (const Design& design : designs) {
@@ -165,15 +140,15 @@ RreStudy::RreStudy(std::vector<Design> designs, RreRequest request) : prepared_(
     check_light(design, prepared_->models.back(), request);
     check_planes(design, request);
     if (design.balls()) continue;
-    if (request.derivatives) check_taken(design, {.what = "--derivatives"});
+    if (request.derivatives) check_taken(design, {.what = reference({"derivatives"})});
     check_backs(design, prepared_->models.back(), request);
     if (must_be_exact(request) || request.engine == Engine::stochastic)
       check_beams(design, prepared_->models.back().optics, request.engine);
     if (request.engine == Engine::cell && !raytrace::MonteCarlo::cell_serves(prepared_->models.back().part))
-      throw InputError({"", 0, "--engine"},
+      throw InputError(Field{"engine"},
                        fmt::format("cell takes endless arrays, and arrays of equal elements that reach more than two "
-                                   "elements from every border; {} is neither: use --engine embree",
-                                   design.source_name()));
+                                   "elements from every border; {} is neither: use {} embree",
+                                   design.source_name(), reference({"engine"})));
   }
   prepared_->designs = std::move(designs);
   prepared_->request = std::move(request);
@@ -185,7 +160,7 @@ namespace {
 
 /// Adds a warning if more power was truncated than the target error allows. If the request gives a cut-off power, the
 /// limit is 1e-6, because tables show no smaller changes.
-void warn_of_truncation(const RreRequest& request, RreResult& result) {
+void warn_of_truncation(const RreSettings& request, RreResult& result) {
   constexpr double kShows = 1e-6;
   const double allowed = request.cutoff ? kShows : std::max(kShows, target_error_of(request));
   const auto truncated = [](const RrePoint& p) { return p.ledger[raytrace::Account::truncated]; };
@@ -195,8 +170,7 @@ void warn_of_truncation(const RreRequest& request, RreResult& result) {
   if (worst == result.points.end() || truncated(*worst) <= allowed) return;
   result.warnings.push_back(
       {"power_truncated", fmt::format("{}: {:.2g} % of the power is cut off at incidence {}, azimuth {}, so that RRE "
-                                      "may be too low by up to this amount; a smaller "
-                                      "--cutoff reduces the error",
+                                      "may be too low by up to this amount; a smaller cut-off reduces the error",
                                       result.designs[worst->design].source_name(), 100.0 * truncated(*worst),
                                       shortest(worst->incidence_deg), shortest(worst->azimuth_deg))});
 }

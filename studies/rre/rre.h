@@ -32,24 +32,12 @@ enum class Engine { automatic, exact, stochastic, montecarlo, cell, embree };
 /// Returns the engine with this name.
 /// \throw InputError that lists all engines if the name is unknown
 Engine engine_from_name(std::string_view name);
-/// Returns the sampling method with this name.
-/// \throw InputError that lists all methods if the name is unknown
-raytrace::Sampling::Kind sampling_from_name(std::string_view name);
 std::string_view engine_name(Engine engine);
 
-/// Engines that compute RRE (retroreflective efficiency) by tracing rays. A request may give a number of rays only for
-/// these engines.
-inline constexpr Engine kRayEngines[] = {Engine::automatic, Engine::montecarlo, Engine::cell, Engine::embree};
 /// Engines that trace rays and are available for photometry and pictures.
 inline constexpr Engine kRayEnginesOfParts[] = {Engine::automatic, Engine::montecarlo, Engine::embree};
 /// Engines that may trace all light as beams instead of random rays.
 inline constexpr Engine kExactEngines[] = {Engine::exact, Engine::automatic};
-/// Engines that stop tracing light below a cut-off power when they compute RRE.
-inline constexpr Engine kCutoffEngines[] = {Engine::automatic, Engine::exact, Engine::montecarlo, Engine::cell,
-                                            Engine::embree};
-/// Engines that compute RRE until a target error is reached, even if the request gives a cut-off power.
-inline constexpr Engine kTargetEngines[] = {Engine::automatic, Engine::stochastic, Engine::montecarlo, Engine::cell,
-                                            Engine::embree};
 /// Returns true if `engine` is one of `engines`.
 bool is_one_of(Engine engine, std::span<const Engine> engines);
 /// Refuses an option that is given although it has no effect with the requested engine.
@@ -62,7 +50,7 @@ void check_has_effect(const char* option, bool is_given, Engine engine, std::spa
 /// \throw InputError with the location `option` unless the value is above 0 and below 1
 void check_share(double value, bool zero_allowed, const char* option);
 
-/// Default of RreRequest::target_error, as a fraction of the incident power.
+/// Default of RreSettings::target_error, as a fraction of the incident power.
 inline constexpr double kUsualTargetError = 1e-4;
 /// Maximum error of linear interpolation between automatically chosen incidences, as a fraction of the incident power.
 /// It is used instead of target_error if target_error is smaller.
@@ -70,8 +58,9 @@ inline constexpr double kCurveTolerance = 1e-3;
 /// Engine of a result to which several engines have contributed.
 inline constexpr std::string_view kMixedEngines = "mixed";
 
-/// Request for the retroreflective efficiency over a grid of directions.
-struct RreRequest {
+/// Settings for the retroreflective efficiency over a grid of directions. resolve() makes them from a request
+/// (studies/rre/rre_request.h) and checks the ranges.
+struct RreSettings {
   std::vector<double> incidence_deg = {0.0};  ///< each in (-90, 90)
   /// Intervals in (-90, 90) in which further incidences are chosen automatically. They are the same for all designs and
   /// azimuths. Incidences are added until the error of linear interpolation between the points is at most target_error
@@ -95,7 +84,7 @@ struct RreRequest {
 };
 
 /// Returns the target error of a request, or its default.
-double target_error_of(const RreRequest& request);
+double target_error_of(const RreSettings& request);
 
 /// RRE at one wavelength of a spectrum.
 struct SpectralRre {
@@ -150,13 +139,12 @@ struct RreResult {
   bool complete = true;
 };
 
-/// RRE study of designs. The constructor checks the request and reports all errors of the input; run() computes the
-/// points.
+/// RRE study of designs. The constructor checks which combinations of settings and designs are supported; run()
+/// computes the points.
 class RreStudy {
  public:
-  /// \throw InputError for an engine that is not part of this program, a direction out of range, and an unknown
-  /// material
-  RreStudy(std::vector<Design> designs, RreRequest request);
+  /// \throw InputError for an engine that does not support a design or a requested result, and for an unknown material
+  RreStudy(std::vector<Design> designs, RreSettings request);
   ~RreStudy();
 
   /// Computes RRE of every design at every direction.

@@ -41,7 +41,7 @@ constexpr std::uint64_t kSpareWork = 100'000;
 /// wavelengths. An estimate then has the variance v / (w N) and contributes w^2 v / (w N). The sum is v / N, as if all
 /// N rays had one wavelength. A target error t becomes t / sqrt(w) in the same way. Wavelengths have different seeds,
 /// so that their estimates are independent. The first wavelength has the requested seed.
-raytrace::Sampling sampling_of(const RreRequest& request, double weight, std::size_t wavelength) {
+raytrace::Sampling sampling_of(const RreSettings& request, double weight, std::size_t wavelength) {
   constexpr std::uint32_t kGolden = 0x9e3779b9U;  // odd, so that all wavelengths have different seeds
   raytrace::Sampling sampling;
   sampling.kind = request.sampling;
@@ -61,13 +61,13 @@ RrePoint spectral_point(const Direction& direction, const SpectralOptics& light,
   return at;
 }
 
-bool asks_for_more(const RreRequest& request) {
+bool asks_for_more(const RreSettings& request) {
   return request.footprint || request.far_field || request.derivatives;
 }
 
 /// Returns the limits for tracing beams. The limits are those of the request. If the request gives no target error and
 /// only the engine `exact` can be used, the default goal of this engine applies.
-raytrace::BeamPolicy beam_policy(const RreRequest& request) {
+raytrace::BeamPolicy beam_policy(const RreSettings& request) {
   raytrace::BeamPolicy policy;
   policy.cutoff = request.cutoff;
   const bool is_free = request.engine == Engine::automatic && !asks_for_more(request);
@@ -99,7 +99,7 @@ std::size_t unit_count(const std::vector<Direction>& directions) {
 /// Traces all directions of one design at all its wavelengths.
 class DesignTracing {
  public:
-  DesignTracing(const Design& design, const OpticalModel& model, const RreRequest& request, const Cancellation* cancel)
+  DesignTracing(const Design& design, const OpticalModel& model, const RreSettings& request, const Cancellation* cancel)
       : design_(design), model_(model), request_(request), cancel_(cancel), beams_(beam_policy(request)) {
     paths_.cutoff = request.cutoff.value_or(paths_.cutoff);
     follows_beams_ = may_follow_beams(design, model, request);
@@ -284,7 +284,7 @@ class DesignTracing {
 
   const Design& design_;
   const OpticalModel& model_;
-  const RreRequest& request_;
+  const RreSettings& request_;
   const Cancellation* cancel_;
   raytrace::BeamPolicy beams_;
   raytrace::PathPolicy paths_;
@@ -299,23 +299,23 @@ class DesignTracing {
   std::optional<raytrace::MonteCarlo> ray_tracer_;
 };
 
-bool may_follow_beams(const RreRequest& request) {
+bool may_follow_beams(const RreSettings& request) {
   const bool asks_for_rays = request.rays || request.sampling == raytrace::Sampling::Kind::plain;
   return request.engine == Engine::exact || request.engine == Engine::stochastic ||
          (request.engine == Engine::automatic && !asks_for_rays);
 }
 
-bool may_follow_beams(const Design& design, const OpticalModel& model, const RreRequest& request) {
+bool may_follow_beams(const Design& design, const OpticalModel& model, const RreSettings& request) {
   return may_follow_beams(request) && !design.balls() && !model.entrance &&
          raytrace::StochasticBeams::serves(model.optics);
 }
 
-bool must_be_exact(const RreRequest& request) {
+bool must_be_exact(const RreSettings& request) {
   return request.engine == Engine::exact || asks_for_more(request);
 }
 
 DirectionTracing::DirectionTracing(const std::vector<Design>& designs, const std::vector<OpticalModel>& models,
-                                   const RreRequest& request, const Cancellation* cancel)
+                                   const RreSettings& request, const Cancellation* cancel)
     : designs_(designs), models_(models), request_(request), cancel_(cancel), tracings_(designs.size()) {}
 
 DirectionTracing::~DirectionTracing() = default;

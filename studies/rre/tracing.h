@@ -24,13 +24,13 @@ struct Direction {
 };
 
 /// Returns true if the request allows beam tracing. A number of rays or plain sampling excludes it.
-bool may_follow_beams(const RreRequest& request);
+bool may_follow_beams(const RreSettings& request);
 /// Returns true if beams can be traced for the request and the design. They cannot be traced if facets bend beams, if
 /// all light is scattered, if the media behind the elements differ, if the entrance face is curved, and for balls.
-bool may_follow_beams(const Design& design, const OpticalModel& model, const RreRequest& request);
+bool may_follow_beams(const Design& design, const OpticalModel& model, const RreSettings& request);
 /// Returns true if the request must be traced with the exact engine, however long this takes. This is the case if the
 /// engine is requested by name, or if results are requested that only this engine computes.
-bool must_be_exact(const RreRequest& request);
+bool must_be_exact(const RreSettings& request);
 
 class DesignTracing;
 
@@ -39,7 +39,7 @@ class DesignTracing;
 class DirectionTracing {
  public:
   DirectionTracing(const std::vector<Design>& designs, const std::vector<OpticalModel>& models,
-                   const RreRequest& request, const Cancellation* cancel);
+                   const RreSettings& request, const Cancellation* cancel);
   ~DirectionTracing();
 
   /// Traces directions at all wavelengths. Directions that are not finished because of a cancellation remain empty.
@@ -51,7 +51,7 @@ class DirectionTracing {
  private:
   const std::vector<Design>& designs_;
   const std::vector<OpticalModel>& models_;
-  const RreRequest& request_;
+  const RreSettings& request_;
   const Cancellation* cancel_;
   std::vector<std::unique_ptr<DesignTracing>> tracings_;  ///< indexed by design
 };

@@ -115,7 +115,7 @@ PhotometrySettings photometry_of_patch() {
 PartLight light_of(Design design, geometry::FacetPlanes planes) {
   auto& array = std::get<ElementArray>(design.shape);
   array.facet_planes = FacetPlanesFile{{}, {}, std::make_shared<const geometry::FacetPlanes>(std::move(planes))};
-  RreRequest request;
+  RreSettings request;
   request.engine = Engine::exact;
   request.cutoff = kCutoff;
   PartLight light;

@@ -375,7 +375,7 @@ TEST(BadInput, WrongOptionsAreRefused) {
       {{"--target-error", "-1e-4"}, "--target-error"},
       {{"--target-error", "nan"}, "--target-error"},
       {{"--target-error", "small"}, "--target-error"},
-      {{"--target-error=1e-3", "--samples=64"}, ""},
+      {{"--target-error=1e-3", "--samples=64"}, "--target-error"},
       {{"--cutoff", "-1"}, "--cutoff"},
       {{"--cutoff", "1"}, "--cutoff"},
       {{"--seed", "lucky"}, "--seed"},

@@ -183,7 +183,7 @@ TEST(LiveEngine, MakesTablesAndListsOfTables) {
 
 studies::RreResult rre_of(const std::string& toml, double incidence_deg, double azimuth_deg, double target_error,
                           bool footprint) {
-  studies::RreRequest request;
+  studies::RreSettings request;
   request.engine = studies::Engine::exact;
   request.target_error = target_error;
   request.incidence_deg = {incidence_deg};

@@ -39,8 +39,8 @@ Design honeycomb() {
   return design("kind = \"hexagonal_icc\"\naperture_mm = 0.5", "arrangement = \"honeycomb\"\nextent = \"infinite\"");
 }
 
-RreRequest chosen(double low, double high, Engine engine) {
-  RreRequest request;
+RreSettings chosen(double low, double high, Engine engine) {
+  RreSettings request;
   request.incidence_deg.clear();
   request.incidence_spans = {{low, high}};
   request.engine = engine;
@@ -49,7 +49,7 @@ RreRequest chosen(double low, double high, Engine engine) {
 }
 
 /// Returns the request with these incidences instead of automatically chosen ones.
-RreRequest fixed(RreRequest request, std::vector<double> incidence_deg) {
+RreSettings fixed(RreSettings request, std::vector<double> incidence_deg) {
   request.incidence_spans.clear();
   request.incidence_deg = std::move(incidence_deg);
   return request;
@@ -74,7 +74,7 @@ double line_at(const std::vector<RrePoint>& points, double incidence_deg) {
 
 /// Expects that linear interpolation between the chosen points agrees with a dense curve.
 /// \return number of chosen points
-std::size_t expect_followed(const Design& given, RreRequest request, double step_deg) {
+std::size_t expect_followed(const Design& given, RreSettings request, double step_deg) {
   const CurveSpan span = request.incidence_spans.front();
   const RreResult curve = RreStudy({given}, request).run();
   const RreResult dense = RreStudy({given}, fixed(request, grid(span.low, span.high, step_deg))).run();
@@ -95,7 +95,7 @@ TEST(AdaptiveCurve, FollowsPrismsPastTheirKnee) {
 }
 
 TEST(AdaptiveCurve, FollowsPrismsAtAnObliqueAzimuth) {
-  RreRequest request = chosen(-5, 40, Engine::exact);
+  RreSettings request = chosen(-5, 40, Engine::exact);
   request.azimuth_deg = {25.0};
   request.target_error = 1e-4;
   expect_followed(prisms(), request, 0.25);
@@ -106,7 +106,7 @@ TEST(AdaptiveCurve, FollowsASinglePrism) {
 }
 
 TEST(AdaptiveCurve, FollowsAHoneycomb) {
-  RreRequest request = chosen(-26, -18, Engine::montecarlo);
+  RreSettings request = chosen(-26, -18, Engine::montecarlo);
   request.target_error = 5e-4;
   expect_followed(honeycomb(), request, 0.25);
 }
@@ -143,7 +143,7 @@ TEST(AdaptiveCurve, KinksOfPrismsComeInPairsAboutTheNormal) {
 /// All designs and azimuths share the chosen incidences. The values equal those for a list of the same incidences, with
 /// any number of threads.
 TEST(AdaptiveCurve, ValuesAreThoseOfAList) {
-  RreRequest request = chosen(-3, 3, Engine::montecarlo);
+  RreSettings request = chosen(-3, 3, Engine::montecarlo);
   request.azimuth_deg = {30.0, 0.0};
   request.rays = 4096;
   request.incidence_deg = {15.0, 2.3};
@@ -184,7 +184,7 @@ TEST(AdaptiveCurve, InterruptedRunKeepsWhatIsFinishedInOrder) {
 }
 
 TEST(AdaptiveCurve, FootprintsAndFarFieldsFollowThePoints) {
-  RreRequest request = chosen(-6, -3, Engine::exact);
+  RreSettings request = chosen(-6, -3, Engine::exact);
   request.footprint = request.far_field = request.derivatives = true;
   const RreResult result = RreStudy({prisms()}, request).run();
   ASSERT_EQ(result.returned.size(), result.points.size());

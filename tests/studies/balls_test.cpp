@@ -103,8 +103,8 @@ TEST(BallDesign, WhatTakesNoBallsSaysWhatDoes) {
   EXPECT_EQ(message([] { check_taken(balls(), {.what = "retrace job"}); }), text);
 }
 
-RreRequest some_rays() {
-  RreRequest request;
+RreSettings some_rays() {
+  RreSettings request;
   request.rays = 1U << 15;
   return request;
 }
@@ -140,7 +140,7 @@ TEST(BallStudies, BallsAndPrismsStandInOneTable) {
 }
 
 TEST(BallStudies, OtherEnginesAreRefused) {
-  RreRequest request = some_rays();
+  RreSettings request = some_rays();
   request.rays.reset();
   request.engine = Engine::exact;
   EXPECT_THROW(RreStudy({balls()}, request), InputError);

@@ -118,7 +118,7 @@ TEST(Coating, DesignsAreWrittenAsTheyWereRead) {
 // Both ways to specify aluminium give the same results.
 TEST(Coating, AnOpaqueLayerOfAluminiumIsTheFacetCoating) {
   const auto rre = [](const Design& design) {
-    RreRequest request;
+    RreSettings request;
     request.incidence_deg = {0.0, 30.0};
     return RreStudy({design}, request).run();
   };

@@ -35,8 +35,8 @@ Design idealised(Design design) {
   return design;
 }
 
-RreRequest exactly(double incidence_deg, double azimuth_deg = 0.0) {
-  RreRequest request;
+RreSettings exactly(double incidence_deg, double azimuth_deg = 0.0) {
+  RreSettings request;
   request.incidence_deg = {incidence_deg};
   request.azimuth_deg = {azimuth_deg};
   request.engine = Engine::exact;
@@ -44,7 +44,7 @@ RreRequest exactly(double incidence_deg, double azimuth_deg = 0.0) {
   return request;
 }
 
-RrePoint point_of(const Design& design, const RreRequest& request) {
+RrePoint point_of(const Design& design, const RreSettings& request) {
   return RreStudy({design}, request).run().points.at(0);
 }
 
@@ -147,7 +147,7 @@ TEST(RreDerivatives, VanishesBySymmetry) {
   expect_derivative(point_of(design, exactly(0.0, 90.0)), RreParameter::incidence_deg, 0.0);
   design = design_of(infinite(TriangularCube{1.0}, Arrangement::triangular, 0.7));
   design.substance.absorption_per_mm = 1.0;
-  RreRequest request = exactly(0.0, 0.0);
+  RreSettings request = exactly(0.0, 0.0);
   request.cutoff = 1e-8;
   EXPECT_NEAR(by(RreParameter::incidence_deg, point_of(design, request)).derivative.value, 0.0, 1e-5);
 }
@@ -261,7 +261,7 @@ TEST(RreDerivatives, ErrorEstimateCoversTheCutOff) {
   int covered = 0;
   for (const Design& design : {prism, prisms, cubes})
     for (const auto& [t, p] : {std::pair{-11.0, 20.0}, {7.0, 50.0}, {23.0, 5.0}, {31.0, 80.0}}) {
-      RreRequest request = exactly(t, p);
+      RreSettings request = exactly(t, p);
       request.cutoff = 1e-11;
       const RrePoint fine = point_of(design, request);
       for (const double cutoff : {1e-6, 1e-7, 1e-8, 1e-9}) {
@@ -286,7 +286,7 @@ TEST(RreDerivatives, ErrorEstimateCoversTheCutOff) {
 
 TEST(RreDerivatives, CutOffThatHidesThemIsSaid) {
   const Design design = design_of(infinite(TriangularCube{1.0}, Arrangement::triangular, 0.7));
-  RreRequest request = exactly(20.0, 10.0);
+  RreSettings request = exactly(20.0, 10.0);
   request.cutoff = 1e-3;
   EXPECT_EQ(reason(RreParameter::incidence_deg, point_of(design, request)), NoDerivative::truncated_power);
 }
@@ -311,7 +311,7 @@ TEST(RreDerivatives, OneACone) {
 }
 
 TEST(RreDerivatives, NeedTheExactEngine) {
-  RreRequest request = exactly(0.0);
+  RreSettings request = exactly(0.0);
   request.engine = Engine::montecarlo;
   EXPECT_THROW(RreStudy({design_of(brick(5.0))}, request), InputError);
 }

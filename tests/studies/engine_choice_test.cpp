@@ -33,7 +33,7 @@ std::string prisms(const std::string& array) {
 const std::string kSingle = prisms("arrangement = \"single\"");
 const std::string kBricks = prisms("arrangement = \"offset\"\nextent = \"infinite\"");
 
-RreResult run(const std::string& text, const std::vector<std::string>& overrides, RreRequest request,
+RreResult run(const std::string& text, const std::vector<std::string>& overrides, RreSettings request,
               unsigned threads = 0) {
   RreResult result;
   const RreStudy study({parse_design(text, "design", overrides)}, std::move(request));
@@ -41,8 +41,8 @@ RreResult run(const std::string& text, const std::vector<std::string>& overrides
   return result;
 }
 
-RreRequest at(std::vector<double> incidence_deg, Engine engine, std::optional<double> target_error) {
-  RreRequest request;
+RreSettings at(std::vector<double> incidence_deg, Engine engine, std::optional<double> target_error) {
+  RreSettings request;
   request.incidence_deg = std::move(incidence_deg);
   request.azimuth_deg = {17.0};
   request.engine = engine;
@@ -112,11 +112,11 @@ TEST(EngineChoice, IsTheSameAtAnyNumberOfThreads) {
 // kilometres, so that an unlimited search for its next hit would not end.
 TEST(EngineChoice, AWetBackAtNormalIncidenceEnds) {
   for (const char* index : {"body.back_index=1.2", "body.back_index=1.333", "body.back_index=1.45"}) {
-    RreRequest beams = at({0.0}, Engine::exact, std::nullopt);
+    RreSettings beams = at({0.0}, Engine::exact, std::nullopt);
     beams.azimuth_deg = {0.0};
     beams.cutoff = 3e-5;
     const RrePoint exact = run(kBricks, {index}, beams).points.front();
-    RreRequest rays = beams;
+    RreSettings rays = beams;
     rays.engine = Engine::montecarlo;
     rays.cutoff = std::nullopt;
     rays.target_error = 1e-4;

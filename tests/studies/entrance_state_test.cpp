@@ -115,7 +115,7 @@ TEST(EntranceState, OpticsAreThoseOfTheKeys) {
 }
 
 RreResult rre(const Design& design, Engine engine = Engine::automatic) {
-  RreRequest request;
+  RreSettings request;
   request.engine = engine;
   request.incidence_deg = {5.0};
   if (engine != Engine::exact) request.rays = 1U << 12;

@@ -224,15 +224,15 @@ TEST(FormOfDesign, InspectTellsIt) {
 TEST(FormOfDesign, ExactEnginesAreForPlanes) {
   const Design sunk = parse_design(kCubes + "[form]\nsink_um = 0.1\n", "d.toml");
   const auto refusal = [&](const auto& change) {
-    RreRequest request;
+    RreSettings request;
     change(request);
     return refusal_of([&] { RreStudy({sunk}, request); });
   };
   const std::string message = "d.toml:10: form.sink_um";
-  EXPECT_EQ(refusal([](RreRequest& r) { r.engine = Engine::exact; }), message);
-  EXPECT_EQ(refusal([](RreRequest& r) { r.footprint = true; }), message);
-  EXPECT_EQ(refusal([](RreRequest& r) { r.derivatives = true; }), message);
-  RreRequest automatic;
+  EXPECT_EQ(refusal([](RreSettings& r) { r.engine = Engine::exact; }), message);
+  EXPECT_EQ(refusal([](RreSettings& r) { r.footprint = true; }), message);
+  EXPECT_EQ(refusal([](RreSettings& r) { r.derivatives = true; }), message);
+  RreSettings automatic;
   automatic.rays = std::nullopt;
   automatic.target_error = 1e-3;
   EXPECT_EQ(RreStudy({sunk}, automatic).run().points.front().engine, "cell");
@@ -271,7 +271,7 @@ TEST(FormOfDesign, RreIsContinuousInUnequalDihedralErrors) {
             "acceptance_half_angle_deg = [0.03, 0.1, 0.2]\n",
         "d.toml");
     design.part().angle_errors.dihedral_error_arcmin = {arcmin, 2.0 * arcmin, 3.0 * arcmin};
-    RreRequest request;
+    RreSettings request;
     request.rays = 1U << 13;
     request.engine = Engine::montecarlo;
     std::vector<double> values;

@@ -52,7 +52,7 @@ TEST(GlassOfDesign, IsTheShippedGlassOfThatName) {
 }
 
 TEST(GlassOfDesign, IsTraced) {
-  RreRequest request;
+  RreSettings request;
   request.incidence_deg = {5.0};
   request.engine = Engine::exact;
   const std::string index = shortest(inspected(with_glass("CAF2")).refractive_index);

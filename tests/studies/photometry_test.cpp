@@ -73,7 +73,7 @@ TEST(Photometry, VhGridAgreesWithRre) {
     for (const PhotometricDirection& at : result.directions) {
       const double v = at.v_deg * kDeg;
       const double h = at.h_deg * kDeg;
-      RreRequest asked;
+      RreSettings asked;
       asked.incidence_deg = {std::acos(std::cos(v) * std::cos(h)) / kDeg};
       asked.azimuth_deg = {std::atan2(std::sin(v), std::sin(h) * std::cos(v)) / kDeg};
       asked.engine = Engine::exact;

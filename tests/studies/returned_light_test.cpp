@@ -28,7 +28,7 @@ Design design_of(const geometry::PartSpec& part, bool is_ideal = false) {
 
 RreResult run(const Design& design, std::vector<double> incidence_deg, std::vector<double> azimuth_deg = {0.0},
               std::optional<double> cutoff = {}) {
-  RreRequest request;
+  RreSettings request;
   request.incidence_deg = std::move(incidence_deg);
   request.azimuth_deg = std::move(azimuth_deg);
   request.engine = Engine::exact;
@@ -333,14 +333,14 @@ TEST(ReturnedLight, IsTheSameAtAnyNumberOfThreads) {
 }
 
 TEST(ReturnedLight, NeedsTheExactEngine) {
-  RreRequest request;
+  RreSettings request;
   request.engine = Engine::montecarlo;
   request.footprint = true;
   EXPECT_THROW(RreStudy({design_of(bricks())}, request), InputError);
 }
 
 TEST(ReturnedLight, IsNotGatheredUnasked) {
-  RreRequest request;
+  RreSettings request;
   request.engine = Engine::exact;
   const RreResult result = RreStudy({design_of(bricks())}, request).run();
   EXPECT_TRUE(result.returned.empty());

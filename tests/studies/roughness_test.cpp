@@ -58,7 +58,7 @@ RoughnessRequest request_of(const std::vector<double>& sa_nm) {
   RoughnessRequest request;
   request.sa_nm = sa_nm;
   request.correlation_length_um = {5.0};
-  request.rays = 1U << 16;
+  request.samples = 1U << 16;
   return request;
 }
 
@@ -77,8 +77,7 @@ TEST(RoughnessStudy, SpecularShareIsTheClosedFormOfSa) {
   wavy.name = "wavy";
   wavy.roughness_sa_nm = 6.0;
   wavy.waviness_sa_nm = 12.0;
-  request.measured = {wavy};
-  const RoughnessResult result = RoughnessStudy(design, request).run();
+  const RoughnessResult result = RoughnessStudy(design, request, {wavy}).run();
   ASSERT_EQ(result.points.size(), 5U);
   EXPECT_EQ(result.smooth_std_error, 0.0) << "of the exact engine";
   EXPECT_EQ(result.points[0].rre, result.smooth_rre);
@@ -102,7 +101,7 @@ class Reports : public Progress {
 TEST(RoughnessStudy, ReportsTheProgressOfTheSmoothPointAsWell) {
   for (const std::vector<double>& sa_nm : {std::vector{0.0}, std::vector{0.0, 4.0, 9.0, 20.0}}) {
     RoughnessRequest request = request_of(sa_nm);
-    request.rays = 4096;
+    request.samples = 4096;
     Reports progress;
     EXPECT_TRUE(RoughnessStudy(parse_design(kPrism, "d.toml"), request).run(&progress, nullptr).complete);
     ASSERT_FALSE(progress.shares.empty());
@@ -134,26 +133,25 @@ TEST(RoughnessStudy, FallsWithSaAndRisesWithTheCorrelationLength) {
 }
 
 TEST(RoughnessStudy, RefusesWhatItCannotVary) {
-  const auto said = [](const std::string& design, const RoughnessRequest& request) -> std::string {
-    return refusal_of([&] { RoughnessStudy(parse_design(design, "d.toml"), request); });
+  const auto said = [](const std::string& design, const RoughnessRequest& request,
+                       const std::vector<FacetGroup>& measured = {}) -> std::string {
+    return refusal_of([&] { RoughnessStudy(parse_design(design, "d.toml"), request, measured); });
   };
   EXPECT_EQ(said(kArray + "[surface]\nroughness_sq_nm = 3\ncorrelation_length_um = 5\n", request_of({1.0})),
             "d.toml:11: surface.roughness_sq_nm");
   EXPECT_EQ(said(kArray + "[detector]\nacceptance_half_angle_deg = [0.2, 0.5]\n", request_of({1.0})),
             "d.toml: detector.acceptance_half_angle_deg");
-  EXPECT_EQ(said(kArray, request_of({-1.0})), "--sa");
+  EXPECT_EQ(said(kArray, request_of({-1.0})), "sa_nm");
   RoughnessRequest request = request_of({1.0});
   request.correlation_length_um = {0.0};
-  EXPECT_EQ(said(kArray, request), "--correlation-length-um");
-  EXPECT_EQ(said(kArray, request_of({5000.0})), "--sa 5000 --correlation-length-um 5");
-  request = request_of({1.0});
+  EXPECT_EQ(said(kArray, request), "correlation_length_um");
+  EXPECT_EQ(said(kArray, request_of({5000.0})), "sa_nm 5000 correlation_length_um 5");
   FacetGroup steep;
   steep.table = "t.csv";
   steep.line = 7;
   steep.name = "steep";
   steep.waviness_sa_nm = 90000.0;
-  request.measured = {steep};
-  EXPECT_EQ(said(kArray, request), "t.csv:7: steep");
+  EXPECT_EQ(said(kArray, request_of({1.0}), {steep}), "t.csv:7: steep");
 }
 
 }  // namespace

@@ -38,16 +38,16 @@ Design design(const Overrides& overrides) {
   return parse_design(kPrisms, "d.toml", overrides);
 }
 
-RreRequest exactly(double incidence_deg, double azimuth_deg = 0.0) {
-  RreRequest request;
+RreSettings exactly(double incidence_deg, double azimuth_deg = 0.0) {
+  RreSettings request;
   request.incidence_deg = {incidence_deg};
   request.azimuth_deg = {azimuth_deg};
   request.engine = Engine::exact;
   return request;
 }
 
-RreRequest sampled(double incidence_deg, std::uint64_t rays, std::uint32_t seed) {
-  RreRequest request;
+RreSettings sampled(double incidence_deg, std::uint64_t rays, std::uint32_t seed) {
+  RreSettings request;
   request.incidence_deg = {incidence_deg};
   request.engine = Engine::montecarlo;
   request.rays = rays;
@@ -55,11 +55,11 @@ RreRequest sampled(double incidence_deg, std::uint64_t rays, std::uint32_t seed)
   return request;
 }
 
-RrePoint point(const Overrides& overrides, const RreRequest& request) {
+RrePoint point(const Overrides& overrides, const RreSettings& request) {
   return RreStudy({design(overrides)}, request).run().points.at(0);
 }
 
-std::string complaint(const Design& given, const RreRequest& request) {
+std::string complaint(const Design& given, const RreSettings& request) {
   return refusal_of([&] { RreStudy({given}, request); });
 }
 
@@ -173,7 +173,7 @@ TEST(SpectrumOfLight, IsTheWeightedMeanOfSingleWavelengths) {
 TEST(SpectrumOfLight, OneLineIsTheWavelength) {
   const Overrides line = {"light.spectrum=[[633, 2.5]]"};
   const Overrides wavelength = {"light.wavelength_nm=633"};
-  for (const RreRequest& request : {exactly(7.0), sampled(7.0, 4096, 3)}) {
+  for (const RreSettings& request : {exactly(7.0), sampled(7.0, 4096, 3)}) {
     const RrePoint a = point(line, request);
     const RrePoint b = point(wavelength, request);
     EXPECT_EQ(a.rre, b.rre);
@@ -217,7 +217,7 @@ TEST(SpectrumOfLight, WeightingIsOfTheEyeOrOfPower) {
 TEST(SpectrumOfLight, TenWavelengthsStandForTheWholeTable) {
   const materials::CieTable cie = materials::shipped_cie_table();
   for (const double incidence_deg : {0.0, 10.0}) {
-    RreRequest request = exactly(incidence_deg);
+    RreSettings request = exactly(incidence_deg);
     request.cutoff = 1e-7;
     const auto all = point({lines_of_the_table(cie), "light.weighting=radiant"}, request).by_wavelength;
     ASSERT_EQ(all.size(), 81U);
@@ -243,7 +243,7 @@ TEST(SpectrumOfLight, MonteCarloAgreesWithTheExactEngineWithinItsError) {
   const double truth = point({"light.spectrum=A"}, exactly(10.0)).rre;
   double sum = 0.0;
   for (std::uint32_t seed = 1; seed <= kSeeds; ++seed) {
-    RreRequest request = sampled(10.0, 4096, seed);
+    RreSettings request = sampled(10.0, 4096, seed);
     request.sampling = raytrace::Sampling::Kind::plain;
     const RrePoint estimate = point({"light.spectrum=A"}, request);
     ASSERT_GT(estimate.std_error, 0.0);
@@ -254,7 +254,7 @@ TEST(SpectrumOfLight, MonteCarloAgreesWithTheExactEngineWithinItsError) {
 }
 
 TEST(SpectrumOfLight, TargetErrorIsThatOfTheMean) {
-  RreRequest request = sampled(10.0, 0, 5);
+  RreSettings request = sampled(10.0, 0, 5);
   request.rays.reset();
   request.target_error = 2e-4;
   const RreResult lit = RreStudy({design({"light.spectrum=D65"})}, request).run();
@@ -320,7 +320,7 @@ TEST(SpectrumOfLight, WhatCannotBeTracedIsRefused) {
 
 TEST(SpectrumOfLight, WhatShowsOneWavelengthIsRefused) {
   for (const int which : {0, 1, 2}) {
-    RreRequest request = exactly(0.0);
+    RreSettings request = exactly(0.0);
     (which == 0 ? request.derivatives : which == 1 ? request.footprint : request.far_field) = true;
     EXPECT_EQ(complaint(design({"light.spectrum=A"}), request), "--set light.spectrum=A: light.spectrum");
     EXPECT_EQ(complaint(design({"light.spectrum=[[572,1]]"}), request), "");

@@ -71,7 +71,7 @@ TEST(Temperature, IsTheSameIndexInEveryEngine) {
         Case{kCubes, Engine::cell}, Case{kBall, Engine::automatic}}) {
     const Overrides warm = {"body.temperature_c=75", "body.material=PC"};
     const Overrides given = {"body.refractive_index=" + shortest(inspected(warm, text).refractive_index)};
-    RreRequest request;
+    RreSettings request;
     request.incidence_deg = {12.0};
     request.engine = engine;
     if (engine != Engine::exact) request.rays = 1U << 11;

@@ -81,7 +81,7 @@ struct Question {
 
 RrePoint rre_of(const std::string& design, const std::vector<std::string>& overrides, const Question& asked = {},
                 const std::string& source = "d.toml") {
-  RreRequest request;
+  RreSettings request;
   request.incidence_deg = {asked.incidence_deg};
   request.engine = asked.engine;
   if (asked.engine == Engine::montecarlo) request.rays = asked.rays;
@@ -172,7 +172,7 @@ TEST(DesignTexture, ShortRoughnessScattersLessAtTotalReflection) {
   const double kept = traced.rre / all;
   const double phase = -std::log(specular_share_of_two(index_of(kPrism), 10.0, 0.0));
   EXPECT_NEAR(-std::log(kept) / phase, 0.543, 0.01);
-  EXPECT_LE(traced.std_error, target_error_of(RreRequest{}));
+  EXPECT_LE(traced.std_error, target_error_of(RreSettings{}));
   EXPECT_NEAR(traced.ledger.total(), 1.0, 1e-9);
   EXPECT_GT(traced.ledger[raytrace::Account::transmitted], 0.1 * (1.0 - kept));
 }

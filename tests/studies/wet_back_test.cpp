@@ -23,7 +23,7 @@ Design read(const std::string& lines, const std::vector<std::string>& overrides 
 }
 
 RreResult rre(const Design& design, Engine engine = Engine::automatic) {
-  RreRequest request;
+  RreSettings request;
   request.incidence_deg = {0.0, 20.0};
   request.azimuth_deg = {0.0, 40.0};
   request.engine = engine;
@@ -93,8 +93,8 @@ TEST(WetBackDesign, PartlyWetBacksAreTracedByRays) {
   const double dry = rre(set({})).points[0].rre, wet = rre(set({"body.back_index=1.333"})).points[0].rre;
   EXPECT_NEAR(result.points[0].rre, 0.5 * (dry + wet), 0.03 * (dry - wet));
   for (const Engine engine : {Engine::exact, Engine::cell})
-    EXPECT_EQ(refusal_of([&, e = engine] { rre(design, e); }), "--engine");
-  RreRequest footprint;
+    EXPECT_EQ(refusal_of([&, e = engine] { rre(design, e); }), "engine");
+  RreSettings footprint;
   footprint.footprint = true;
   EXPECT_EQ(refusal_of([&] { RreStudy({design}, footprint); }), "d.toml:12: wet_back.index");
 }

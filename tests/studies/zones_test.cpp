@@ -226,7 +226,7 @@ TEST(ZonedDesign, MasksThatDoNotServeAreRefused) {
 
 TEST(ZonedDesign, QuestionsOfOneKindOfElementAreRefused) {
   const Design design = read(kHalves);
-  RreRequest footprint;
+  RreSettings footprint;
   footprint.derivatives = true;
   EXPECT_EQ(refusal_of([&] { RreStudy({design}, footprint); }), "d.toml:9: zone");
 }
@@ -246,7 +246,7 @@ TEST(ZonedDesign, StudiesVaryWhatIsAllOverThePart) {
   for (std::size_t k = 0; k < 2; ++k) {
     const Design design =
         with(read(kHalves), std::vector<std::string>{k == 0 ? "body.thickness_mm=2" : "body.thickness_mm=3"});
-    RreRequest request;
+    RreSettings request;
     request.engine = Engine::exact;
     ASSERT_FALSE(shares.at(k).failed) << shares[k].reason;
     EXPECT_EQ(shares[k].outputs.at(0).value, RreStudy({design}, request).run().points.at(0).rre);
@@ -256,7 +256,7 @@ TEST(ZonedDesign, StudiesVaryWhatIsAllOverThePart) {
 }
 
 RreResult rre(const Design& design, Engine engine, double incidence_deg, std::optional<std::uint64_t> rays = {}) {
-  RreRequest request;
+  RreSettings request;
   request.incidence_deg = {incidence_deg};
   request.azimuth_deg = {30.0};
   request.engine = engine;

@@ -53,7 +53,7 @@ std::string roughness_json(const RoughnessResult& result) {
   json["measured"] = Json::array();
   for (const RoughnessPoint& p : result.points)
     if (p.measured)
-      json["measured"].push_back(measured_json(p, asked.measured[*p.measured]));
+      json["measured"].push_back(measured_json(p, result.measured[*p.measured]));
     else
       json["points"].push_back(curve_json(p));
   json["elapsed_s"] = result.elapsed_s;
@@ -64,7 +64,7 @@ std::string roughness_json(const RoughnessResult& result) {
 std::string roughness_csv(const RoughnessResult& result) {
   CsvWriter csv("name,facets,correlation_length_um,roughness_sa_nm,waviness_sa_nm,rre,std_error");
   for (const RoughnessPoint& p : result.points) {
-    const FacetGroup* const group = p.measured ? &result.request.measured[*p.measured] : nullptr;
+    const FacetGroup* const group = p.measured ? &result.measured[*p.measured] : nullptr;
     csv.add(group != nullptr ? group->name : "");
     csv.add(group != nullptr ? fmt::format("{}", group->facets) : "");
     csv.row(p.correlation_length_um, p.roughness_sa_nm, p.waviness_sa_nm, p.rre, p.std_error);
@@ -77,7 +77,7 @@ std::string roughness_table(const RoughnessResult& result) {
   table += fmt::format("{:<12} {:>6}  {:>10} {:>12} {:>11} {:>8}  {}\n", "", "facets", "corr_um", "roughness_Sa",
                        "waviness_Sa", "RRE_%", "+-_%");
   for (const RoughnessPoint& p : result.points) {
-    const FacetGroup* const group = p.measured ? &result.request.measured[*p.measured] : nullptr;
+    const FacetGroup* const group = p.measured ? &result.measured[*p.measured] : nullptr;
     table += fmt::format("{:<12} {:>6}  {:>10} {:>12} {:>11} {:>8}  {}\n", group ? printable(group->name) : "curve",
                          group ? fmt::format("{}", group->facets) : "", shortest(p.correlation_length_um),
                          fixed(p.roughness_sa_nm, 2), fixed(p.waviness_sa_nm, 2), percent(p.rre), percent(p.std_error));

@@ -150,7 +150,7 @@ TEST(DetectorStudy, MapOfTheBrickArrayHoldsItsRre) {
   design.part() = finite(RtpElement{2.0, 2.0}, Arrangement::offset, 10.0, 10.0, 2.0);
   design.part().array.shifted_rows = RowParity::odd;
   design.substance.refractive_index = kPmma;
-  studies::RreRequest asked;
+  studies::RreSettings asked;
   asked.engine = studies::Engine::exact;
   const double rre = studies::RreStudy({design}, asked).run().points.front().rre;
   DetectorRequest request;

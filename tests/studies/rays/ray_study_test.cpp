@@ -285,7 +285,7 @@ TEST(RayStudy, AnEmitterThatCoversThePartIsTheBeamOfRre) {
   emitter.rays = 60000;
   EmitterSource source(study.emitter_of(emitter));
   const RayResult result = study.run(source, nullptr, nullptr, nullptr);
-  studies::RreRequest beam;
+  studies::RreSettings beam;
   beam.incidence_deg = {20.0};
   beam.azimuth_deg = {30.0};
   const RrePoint known = RreStudy({design}, beam).run(nullptr, nullptr).points.at(0);
@@ -354,7 +354,7 @@ TEST(RayStudy, AnEmitterBeforeAnInfinitePartIsTheBeamOfRre) {
   asked.rays = 100000;
   EmitterSource source(study.emitter_of(asked));
   const RayResult result = study.run(source, nullptr, nullptr, nullptr);
-  studies::RreRequest beam;
+  studies::RreSettings beam;
   beam.incidence_deg = {15.0};
   beam.azimuth_deg = {10.0};
   const RrePoint known = RreStudy({endless_triangles()}, beam).run(nullptr, nullptr).points.at(0);

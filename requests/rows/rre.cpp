@@ -1,0 +1,133 @@
+#include "requests/descriptions.h"
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "core/number_format.h"
+#include "core/schema/access.h"
+#include "requests/rows/common.h"
+
+namespace retrace::requests {
+namespace {
+
+using schema::access, schema::access_by;
+
+constexpr std::string_view kRreEngines[] = {"auto", "exact", "stochastic", "montecarlo", "cell", "embree"};
+constexpr std::string_view kRreRayEngines[] = {"auto", "montecarlo", "cell", "embree"};
+/// Engines that stop tracing light below a cut-off power.
+constexpr std::string_view kRreCutoffEngines[] = {"auto", "exact", "montecarlo", "cell", "embree"};
+/// Engines that trace light until a target error is reached, even if the request gives a cut-off power.
+constexpr std::string_view kRreTargetEngines[] = {"auto", "stochastic", "montecarlo", "cell", "embree"};
+constexpr std::string_view kRreSamplings[] = {"stratified", "plain"};
+
+constexpr schema::Condition kRreByRays[] = {schema::is("engine", kRreRayEngines)};
+constexpr schema::Condition kRreWithCutoff[] = {schema::is("engine", kRreCutoffEngines)};
+// The exact engine uses either the cut-off or the target error.
+constexpr schema::Condition kRreWithTarget[] = {schema::is("engine", kRreTargetEngines), schema::without("cutoff")};
+constexpr schema::Condition kRreNoCutoffOrDerivatives[] = {schema::without("cutoff"), schema::without("derivatives")};
+constexpr schema::Condition kRreNoCutoffOrFootprint[] = {schema::without("cutoff"), schema::without("footprint")};
+constexpr schema::Condition kRreNoCutoffOrFarField[] = {schema::without("cutoff"), schema::without("far_field")};
+constexpr schema::Condition kRreNoSamples[] = {schema::without("samples")};
+constexpr schema::Condition kRreOut[] = {schema::beside("out")};
+
+constexpr Need kRreNeedRays[] = {kRreByRays};
+constexpr Need kRreNeedCutoff[] = {kRreWithCutoff};
+constexpr Need kRreNeedTarget[] = {kRreNoSamples, kRreWithTarget, kRreNoCutoffOrDerivatives, kRreNoCutoffOrFootprint,
+                                   kRreNoCutoffOrFarField};
+constexpr Need kRreNeedExactAndOut[] = {kIsExact, kRreOut};
+
+schema::Value incidence_spans(const RreRequest& request) {
+  std::vector<std::vector<double>> spans;
+  for (const auto& [from, to] : request.incidence_spans_deg) spans.push_back({from, to});
+  return spans;
+}
+void set_incidence_spans(RreRequest& request, const schema::Value& value) {
+  request.incidence_spans_deg.clear();
+  for (const std::vector<double>& span : std::get<std::vector<std::vector<double>>>(value))
+    request.incidence_spans_deg.push_back({span[0], span[1]});
+}
+
+void check_rre(const void* object) {
+  const auto& request = *static_cast<const RreRequest*>(object);
+  for (const auto& [from, to] : request.incidence_spans_deg)
+    if (!(from < to))
+      throw InputError(Field{"incidence_spans_deg"},
+                       fmt::format("a range must have start < stop, got {} and {}", shortest(from), shortest(to)));
+  if (request.incidence_deg.empty() && request.incidence_spans_deg.empty())
+    throw InputError(Field{"incidence_deg"}, "must be at least one number, got none");
+}
+
+constexpr Row kRreRows[] = {
+    {"incidence_deg",
+     NumberOrNumbers{.range = kIncidence, .may_be_empty = true},
+     "angles of incidence; they may be an empty list if there are ranges with automatically chosen angles",
+     access<&RreRequest::incidence_deg>,
+     {.value = "LIST", .notation = Notation::number_list, .option = "--incidence", .is_only_python_and_library = true}},
+    {"incidence_spans_deg",
+     NumberRows{.columns = 2, .range = kIncidence, .least = 0, .most = 100'000, .what = "ranges"},
+     "ranges in which further angles of incidence are chosen automatically, as many as the curve requires",
+     access_by<incidence_spans, set_incidence_spans>,
+     {.value = "RANGES", .option = "--incidence", .is_only_python_and_library = true}},
+    {"azimuth_deg",
+     NumberOrNumbers{kAzimuth},
+     "azimuths of the source",
+     access<&RreRequest::azimuth_deg>,
+     {.value = "LIST", .notation = Notation::number_list, .option = "--azimuth"}},
+    {"engine",
+     Word{kRreEngines},
+     "exact, stochastic, montecarlo (cell or embree), or auto: the fastest for each direction",
+     access<&RreRequest::engine>,
+     {.value = "ENGINE"}},
+    {"samples",
+     Whole{kSamples},
+     "number of rays for each point",
+     access<&RreRequest::samples>,
+     {.value = "N", .otherwise = "until the target error is reached"},
+     kRreNeedRays},
+    {"sampling",
+     Word{kRreSamplings},
+     "stratified, or plain: random points without splitting, for comparison",
+     access<&RreRequest::sampling>,
+     {.value = "KIND"},
+     kRreNeedRays},
+    {"target_error",
+     Number{{.low = 0.0, .low_included = false, .high = 1.0, .high_included = false}},
+     "standard error of RRE to reach, as a fraction; with exact, the maximum truncated power",
+     access<&RreRequest::target_error>,
+     {.value = "E", .otherwise = "0.0001; with exact: 1e-10"},
+     kRreNeedTarget},
+    {"cutoff",
+     Number{{.low = 0.0, .high = 1.0, .high_included = false}},
+     "minimum power of light that is followed, as a fraction of the incident power",
+     access<&RreRequest::cutoff>,
+     {.value = "W", .otherwise = "1e-10; exact: determined by the target error"},
+     kRreNeedCutoff},
+    {"derivatives",
+     Flag{},
+     "compute the derivatives of RRE with respect to the parameters of the design",
+     access<&RreRequest::derivatives>,
+     {},
+     kNeedExact},
+    {"footprint",
+     Flag{},
+     "compute the regions of the entrance face that return light, as polygons",
+     access<&RreRequest::footprint>,
+     {},
+     kRreNeedExactAndOut},
+    {"far_field",
+     Flag{},
+     "compute the directions in which light leaves the entrance face",
+     access<&RreRequest::far_field>,
+     {},
+     kRreNeedExactAndOut},
+    seed_row<RreRequest>()};
+
+}  // namespace
+
+template <>
+const Request& description<RreRequest>() {
+  static constexpr Request request{"rre", "rre", kRreRows, initial_object<RreRequest>, check_rre};
+  return request;
+}
+
+}  // namespace retrace::requests
