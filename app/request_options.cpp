@@ -24,17 +24,12 @@ struct SharedOption {
   std::vector<FieldOfCommand> fields;
 };
 
-std::string option_name(const Row& row) {
-  if (row.spelling.notation != requests::Notation::absent) return requests::option_of(row);
-  return row.spelling.option.empty() ? "--no-" + requests::option_of(row).substr(2) : std::string(row.spelling.option);
-}
-
 std::vector<SharedOption> options_of(std::span<const CommandRequest> of_command) {
   std::vector<SharedOption> options;
   for (const CommandRequest& of : of_command)
     for (const Row& row : of.request.rows) {
-      if (row.spelling.is_only_python_and_library) continue;
-      const std::string option = option_name(row);
+      if (row.spelling.is_no_option) continue;
+      const std::string option = requests::option_of(row);
       auto found = std::ranges::find(options, option, &SharedOption::option);
       if (found == options.end()) found = options.insert(options.end(), {option, {}});
       found->fields.push_back({&of, &row});
@@ -113,7 +108,7 @@ Traits traits_of(const schema::Kind& kind) {
 Condition condition_of(const requests::Request& request, const schema::Condition& condition) {
   using Is = schema::Condition::Is;
   const Row* const row = requests::row_of(request, condition.key);
-  const std::string option = row != nullptr ? option_name(*row) : "--" + std::string(condition.key);
+  const std::string option = row != nullptr ? requests::option_of(*row) : "--" + std::string(condition.key);
   if (condition.is == Is::given) return {Condition::Kind::given, option};
   if (condition.is == Is::absent) return {Condition::Kind::absent, option};
   return {Condition::Kind::value, option, words_of_list(condition.words)};
@@ -175,7 +170,7 @@ std::vector<Argument> field_arguments(std::span<const CommandRequest> of_command
 void set_fields(const requests::Request& request, void* object, const FieldTexts& texts, const CommonOptions& common) {
   for (const Row& row : request.rows) {
     if (row.name == "seed") requests::set(row, object, static_cast<double>(common.seed));
-    const std::string option = option_name(row);
+    const std::string option = requests::option_of(row);
     if (const auto flag = texts.flags.find(option); flag != texts.flags.end() && flag->second)
       requests::set(row, object, row.spelling.notation != requests::Notation::absent);
     if (const auto text = texts.values.find(option); text != texts.values.end() && text->second)

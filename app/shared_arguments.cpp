@@ -32,22 +32,6 @@ Traits machine_traits() {
   return one_of(names, ".toml");
 }
 
-Need engine_need(std::span<const studies::Engine> engines) {
-  Condition condition{Condition::Kind::value, "--engine"};
-  for (const studies::Engine engine : engines) condition.values.emplace_back(studies::engine_name(engine));
-  return {condition};
-}
-
-Words engine_words(bool of_rre) {
-  Words words;
-  using studies::Engine;
-  for (const auto engine :
-       {Engine::automatic, Engine::exact, Engine::stochastic, Engine::montecarlo, Engine::cell, Engine::embree})
-    if (of_rre || (engine != Engine::cell && engine != Engine::stochastic))
-      words.emplace_back(studies::engine_name(engine));
-  return words;
-}
-
 std::vector<Argument> study_arguments(StudyOptions& options) {
   return {{"STUDY", "study file; - is standard input", &options.study, files(".toml")},
           {"--resume",

@@ -23,12 +23,6 @@ Argument part_argument(std::string& part);
 Argument dialect_argument(std::string& dialect);
 /// Returns the traits of a machine, which is given by the name of a shipped machine or by a file.
 Traits machine_traits();
-/// Returns the requirement that --engine is one of `engines`.
-Need engine_need(std::span<const studies::Engine> engines);
-/// Returns names of engines.
-/// \param of_rre true: all engines of `retrace rre`; false: only the engines of pictures and photometry
-Words engine_words(bool of_rre);
-
 /// Options of commands that save their points in a store (an SQLite file).
 struct StudyOptions {
   std::string study;

@@ -35,8 +35,8 @@ std::uint64_t beam_memory_bytes() {
 }
 
 std::string memory_budget_text() {
-  return fmt::format("the memory budget of {:.3g} GiB (--memory-gib)",
-                     static_cast<double>(memory_budget_bytes()) / static_cast<double>(kGiB));
+  return fmt::format("the memory budget of {:.3g} GiB ({})",
+                     static_cast<double>(memory_budget_bytes()) / static_cast<double>(kGiB), reference({"memory_gib"}));
 }
 
 SharedMemoryScope::SharedMemoryScope() : was_shared_(is_in_shared_scope) {

@@ -28,6 +28,12 @@ void assign(CameraRequest& request, std::string_view field, const FieldValue& va
 void assign(RoadRequest& request, std::string_view field, const FieldValue& value) {
   assign_field(request, field, value);
 }
+void assign(JobRequest& request, std::string_view field, const FieldValue& value) {
+  assign_field(request, field, value);
+}
+void assign(FabricationRequest& request, std::string_view field, const FieldValue& value) {
+  assign_field(request, field, value);
+}
 void assign(MetrologyRequest& request, std::string_view field, const FieldValue& value) {
   assign_field(request, field, value);
 }
@@ -44,6 +50,15 @@ void assign(RaysRequest& request, std::string_view field, const FieldValue& valu
   assign_field(request, field, value);
 }
 void assign(TraceRequest& request, std::string_view field, const FieldValue& value) {
+  assign_field(request, field, value);
+}
+void assign(RreRequest& request, std::string_view field, const FieldValue& value) {
+  assign_field(request, field, value);
+}
+void assign(StudyRequest& request, std::string_view field, const FieldValue& value) {
+  assign_field(request, field, value);
+}
+void assign(VerificationRequest& request, std::string_view field, const FieldValue& value) {
   assign_field(request, field, value);
 }
 

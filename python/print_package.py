@@ -1,18 +1,18 @@
-"""Writes the generated files of the Python package, from the program's JSON Schemas and help texts.
+"""Writes the generated files of the Python package, from the program's JSON Schemas and descriptions of
+requests.
 
     python3 print_package.py PROGRAM FOLDER SOURCES...
 
 FOLDER/files.py contains a TypedDict for each table of designs, jobs, studies and so on.
-FOLDER/_options.py contains the help of each option of the commands that the package supports.
 FOLDER/_fields.py contains the fields of each request of the library.
 SOURCES are Python files that are copied to FOLDER. In them, two kinds of lines are replaced:
-    # fields of NAME                                 the keywords of a function
+    # fields of NAME                                 the keywords of a function that has others as well
+    **fields: object,  # fields of NAME              the keywords of a function that has no others
     request = _core.X()  # with the fields of NAME   a request with the values of the keywords
 """
 
 import json
 import pathlib
-import pprint
 import re
 import subprocess
 import sys
@@ -24,21 +24,6 @@ FORMATS = {
     "machine": "Machine",
     "process": "Process",
 }
-COMMANDS = (
-    "rre",
-    "photometry",
-    "rays",
-    "export",
-    "job",
-    "fabricate",
-    "verify",
-    "inspect",
-    "sweep",
-    "tolerance",
-    "optimize",
-    "metrology",
-    "image",
-)
 LINE = 100
 
 
@@ -46,30 +31,6 @@ def said(program: str, *arguments: str) -> str:
     return subprocess.run(
         [program, *arguments], check=True, capture_output=True, text=True, timeout=60
     ).stdout
-
-
-def options_of(help_text: str) -> dict[str, tuple[str, str]]:
-    """Returns the help and the default of each option as texts, by name. No default is ""."""
-    options: dict[str, tuple[str, str]] = {}
-    name = ""
-    for line in help_text.splitlines():
-        told = re.match(
-            r"  (?:-\w,)?--([a-z][a-z-]*)(?: [A-Z](?:[A-Z|,]|x(?=[A-Z]))*(?=[= ]|$))?"
-            r"(?:=(\S+))?(.*)",
-            line,
-        )
-        if told and told[1] != "help":
-            name = told[1]
-            text = re.sub(
-                r"^ *(?:REQUIRED|Excludes: \S+|Needs: \S+|\.\.\.)* *", "", told[3]
-            ).strip()
-            options[name] = (text, told[2] or "")
-        elif name and re.match(r" {20,}\S", line):
-            text, default = options[name]
-            options[name] = ((text + " " + line.strip()).strip(), default)
-        else:
-            name = ""
-    return options
 
 
 def schemas_in(schema, path: tuple[str, ...] = ()):
@@ -180,14 +141,6 @@ def files_module(program: str) -> str:
     return "\n".join(lines) + "\n"
 
 
-def options_module(program: str) -> str:
-    options = {command: options_of(said(program, command, "--help")) for command in COMMANDS}
-    return (
-        '"""Help and default of each option of a command: printed by the program."""\n\n'
-        f"OPTIONS: dict[str, dict[str, tuple[str, str]]] = {pprint.pformat(options, width=LINE)}\n"
-    )
-
-
 def default_of(field: dict) -> object:
     """Returns the default of a keyword. A list of one number is written as this number."""
     if field.get("usual"):
@@ -196,7 +149,7 @@ def default_of(field: dict) -> object:
     default = field["default"]
     if field["kind"] == "whole" and default is not None:
         return int(default)
-    if field["kind"] in ("file", "text") and default == "":
+    if field["kind"] == "file" and default == "":
         return None
     if not isinstance(default, list):
         return default
@@ -229,7 +182,10 @@ def type_of(field: dict) -> str:
 
 def requests_of(program: str) -> dict[str, list[dict]]:
     document = json.loads(said(program, "list", "requests", "--json", "-"))
-    return {request["name"]: request["fields"] for request in document["requests"]}
+    return {
+        request["name"]: [field for field in request["fields"] if "keyword" in field]
+        for request in document["requests"]
+    }
 
 
 def fields_module(requests: dict[str, list[dict]]) -> str:
@@ -263,10 +219,11 @@ def expanded(text: str, requests: dict[str, list[dict]]) -> str:
     """Replaces the lines of a Python file that stand for the fields of a request."""
     lines = []
     for line in text.splitlines():
-        in_signature = re.fullmatch(r"    # fields of (\w+)", line)
+        in_signature = re.fullmatch(r"    (\*\*fields: object,  )?# fields of (\w+)", line)
         in_body = re.fullmatch(r"    request = (_core\.\w+\(\))  # with the fields of (\w+)", line)
         if in_signature:
-            lines += keywords(requests[in_signature[1]])
+            lines += ["    *,"] if in_signature[1] else []
+            lines += keywords(requests[in_signature[2]])
         elif in_body:
             lines += ["    request = given(", f"        {in_body[1]},", f'        FIELDS["{in_body[2]}"],']
             words = (field["keyword"] for field in requests[in_body[2]])
@@ -281,7 +238,6 @@ def main() -> None:
     folder.mkdir(parents=True, exist_ok=True)
     requests = requests_of(program)
     (folder / "files.py").write_text(files_module(program), encoding="utf-8")
-    (folder / "_options.py").write_text(options_module(program), encoding="utf-8")
     (folder / "_fields.py").write_text(fields_module(requests), encoding="utf-8")
     for source in map(pathlib.Path, sys.argv[3:]):
         text = expanded(source.read_text(encoding="utf-8"), requests)

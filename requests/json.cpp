@@ -52,7 +52,9 @@ Json needs_json(const Row& row) {
 }
 
 Json field_json(const Request& request, const Row& row) {
-  Json json = {{"name", row.name}, {"keyword", keyword_of(row)}, {"kind", kind_name(row.kind)}};
+  Json json = {{"name", row.name}};
+  if (!row.spelling.is_no_keyword) json["keyword"] = keyword_of(row);
+  json["kind"] = kind_name(row.kind);
   json["allowed"] = schema::allowed(row.kind);
   if (const auto* const word = std::get_if<schema::Word>(&row.kind))
     json["words"] = std::vector<std::string>(word->words.begin(), word->words.end());
@@ -66,7 +68,7 @@ Json field_json(const Request& request, const Row& row) {
   if (!row.spelling.otherwise.empty()) json["otherwise"] = row.spelling.otherwise;
   if (!row.spelling.usual.empty()) json["usual"] = row.spelling.usual;
   if (row.is_required) json["required"] = true;
-  if (!row.spelling.is_only_python_and_library) {
+  if (!row.spelling.is_no_option) {
     json["option"] = option_of(row);
     json["value"] = row.spelling.value;
   }

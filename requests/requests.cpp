@@ -26,7 +26,7 @@ const Row* row_of(const Request& request, std::string_view name) {
 
 std::string option_of(const Row& row) {
   if (!row.spelling.option.empty()) return std::string(row.spelling.option);
-  std::string option = "--" + std::string(row.name);
+  std::string option = (row.spelling.notation == Notation::absent ? "--no-" : "--") + std::string(row.name);
   std::ranges::replace(option, '_', '-');
   return option;
 }

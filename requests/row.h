@@ -39,7 +39,8 @@ struct Spelling {
   /// Name of the field in messages if it differs from that of a field of another request with another option:
   /// "road.distance_m". The part up to the dot is not shown in C++.
   std::string_view qualified = {};
-  bool is_only_python_and_library = false;  ///< true if the command line has another way to set the field
+  bool is_no_option = false;   ///< true if the command line has another way to set the field
+  bool is_no_keyword = false;  ///< true if Python has another way to set the field
 };
 
 /// Field of a request. Its default is the initialiser of the member.

@@ -10,10 +10,14 @@
 
 #include "core/api.h"
 #include "requests/image.h"
+#include "requests/job.h"
 #include "requests/metrology.h"
 #include "requests/part.h"
 #include "requests/photometry.h"
 #include "requests/rays.h"
+#include "requests/rre.h"
+#include "requests/study.h"
+#include "requests/verify.h"
 
 namespace retrace {
 
@@ -28,12 +32,17 @@ using FieldValue = std::variant<std::monostate, bool, double, std::string, std::
 RETRACE_API void assign(DetectorRequest& request, std::string_view field, const FieldValue& value);
 RETRACE_API void assign(CameraRequest& request, std::string_view field, const FieldValue& value);
 RETRACE_API void assign(RoadRequest& request, std::string_view field, const FieldValue& value);
+RETRACE_API void assign(JobRequest& request, std::string_view field, const FieldValue& value);
+RETRACE_API void assign(FabricationRequest& request, std::string_view field, const FieldValue& value);
 RETRACE_API void assign(MetrologyRequest& request, std::string_view field, const FieldValue& value);
 RETRACE_API void assign(SolidRequest& request, std::string_view field, const FieldValue& value);
 RETRACE_API void assign(MaterialRequest& request, std::string_view field, const FieldValue& value);
 RETRACE_API void assign(PhotometryRequest& request, std::string_view field, const FieldValue& value);
 RETRACE_API void assign(RaysRequest& request, std::string_view field, const FieldValue& value);
 RETRACE_API void assign(TraceRequest& request, std::string_view field, const FieldValue& value);
+RETRACE_API void assign(RreRequest& request, std::string_view field, const FieldValue& value);
+RETRACE_API void assign(StudyRequest& request, std::string_view field, const FieldValue& value);
+RETRACE_API void assign(VerificationRequest& request, std::string_view field, const FieldValue& value);
 
 /// Returns the description of all requests as JSON: fields, ranges, units, defaults, meanings, and the spelling on the
 /// command line and in Python. It is the document of `retrace list requests --json -` without its header.

@@ -74,8 +74,8 @@ FieldValue field_value(const py::object& value) {
 
 /// Binds a request, whose fields the package sets by name.
 template <class Request>
-void request_class(py::module_& module, const char* name) {
-  py::class_<Request>(module, name)
+py::class_<Request> request_class(py::module_& module, const char* name) {
+  return py::class_<Request>(module, name)
       .def(py::init<>())
       .def("assign", [](Request& request, const std::string& field, const py::object& value) {
         assign(request, field, field_value(value));
@@ -118,20 +118,7 @@ void bind_design(py::module_& module) {
 }
 
 void bind_rre(py::module_& module) {
-  py::class_<RreRequest>(module, "RreRequest")
-      .def(py::init<>())
-      .def_readwrite("incidence_deg", &RreRequest::incidence_deg)
-      .def_readwrite("incidence_spans_deg", &RreRequest::incidence_spans_deg)
-      .def_readwrite("azimuth_deg", &RreRequest::azimuth_deg)
-      .def_readwrite("engine", &RreRequest::engine)
-      .def_readwrite("target_error", &RreRequest::target_error)
-      .def_readwrite("samples", &RreRequest::samples)
-      .def_readwrite("cutoff", &RreRequest::cutoff)
-      .def_readwrite("sampling", &RreRequest::sampling)
-      .def_readwrite("seed", &RreRequest::seed)
-      .def_readwrite("derivatives", &RreRequest::derivatives)
-      .def_readwrite("footprint", &RreRequest::footprint)
-      .def_readwrite("far_field", &RreRequest::far_field);
+  request_class<RreRequest>(module, "RreRequest");
   result_class<RreResult>(module, "RreResult")
       .def_readonly("complete", &RreResult::complete)
       .def_readonly("csv", &RreResult::csv)
@@ -211,14 +198,7 @@ void bind_part(py::module_& module) {
 }
 
 void bind_making(py::module_& module) {
-  py::class_<JobRequest>(module, "JobRequest")
-      .def(py::init<>())
-      .def_readwrite("machine", &JobRequest::machine)
-      .def_readwrite("tool_width_mm", &JobRequest::tool_width_mm)
-      .def_readwrite("strategy", &JobRequest::strategy)
-      .def_readwrite("process", &JobRequest::process)
-      .def_readwrite("workpiece", &JobRequest::workpiece)
-      .def_readwrite("shrinkage_percent", &JobRequest::shrinkage_percent);
+  request_class<JobRequest>(module, "JobRequest");
   result_class<Job>(module, "Job")
       .def_readonly("text", &Job::text)
       .def_readonly("elements", &Job::elements)
@@ -226,14 +206,7 @@ void bind_making(py::module_& module) {
   module.def("make_job", [](const Design& design, const JobRequest& request) {
     return watched(py::none(), 0, [design, request](const Running&) { return make_job(design, request); });
   });
-  py::class_<FabricationRequest>(module, "FabricationRequest")
-      .def(py::init<>())
-      .def_readwrite("dialect", &FabricationRequest::dialect)
-      .def_readwrite("phase", &FabricationRequest::phase)
-      .def_readwrite("from_element", &FabricationRequest::from_element)
-      .def_readwrite("from_pass", &FabricationRequest::from_pass)
-      .def_readwrite("stop_every", &FabricationRequest::stop_every)
-      .def_readwrite("split_hours", &FabricationRequest::split_hours)
+  request_class<FabricationRequest>(module, "FabricationRequest")
       .def_readwrite("job_text", &FabricationRequest::job_text);
   result_class<Fabrication>(module, "Fabrication")
       .def_property_readonly("programs",
@@ -249,14 +222,12 @@ void bind_making(py::module_& module) {
   module.def("fabricate", [](const std::filesystem::path& job, const FabricationRequest& request) {
     return watched(py::none(), 0, [job, request](const Running&) { return fabricate(job, request); });
   });
-  py::class_<VerificationRequest>(module, "VerificationRequest")
-      .def(py::init<>())
+  request_class<VerificationRequest>(module, "VerificationRequest")
       .def_readwrite("job", &VerificationRequest::job)
       .def_readwrite("programs", &VerificationRequest::programs)
       .def_readwrite("dialect", &VerificationRequest::dialect)
       .def_readwrite("tolerance_nm", &VerificationRequest::tolerance_nm)
       .def_readwrite("standing", &VerificationRequest::standing)
-      .def_readwrite("as_machined", &VerificationRequest::as_machined)
       .def_readwrite("texts", &VerificationRequest::texts);
   result_class<Verification>(module, "Verification")
       .def_readonly("passes", &Verification::passes)
@@ -283,8 +254,7 @@ void bind_studies(py::module_& module) {
       .def_readonly("text", &Study::text)
       .def_readonly("source", &Study::source)
       .def_readonly("designs", &Study::designs);
-  py::class_<StudyRequest>(module, "StudyRequest")
-      .def(py::init<>())
+  request_class<StudyRequest>(module, "StudyRequest")
       .def_readwrite("overrides", &StudyRequest::overrides)
       .def_readwrite("seed", &StudyRequest::seed)
       .def_readwrite("store", &StudyRequest::store)

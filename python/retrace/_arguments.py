@@ -165,23 +165,15 @@ def thread_count(value: object) -> int:
     return 0 if value is None else whole("threads", value, 1, 4096)
 
 
-def checked(
-    options: Mapping[str, tuple[str, str]], names: Mapping[str, str] | None = None
-) -> Callable[[Callable[_P, _R]], Callable[_P, _R]]:
-    """Decorates a function whose keywords are the options of a command.
+def checked(meanings: Mapping[str, str]) -> Callable[[Callable[_P, _R]], Callable[_P, _R]]:
+    """Decorates a function with keywords.
 
-    The help of each option is appended to the docstring. If the function is called with an unknown
-    keyword, the message suggests the most similar keyword.
-
-    names: options of keywords whose names differ; an empty text if a keyword is not an option."""
+    The meanings of its keywords are appended to the docstring. If the function is called with an
+    unknown keyword, the message suggests the most similar keyword."""
 
     def wrap(function: Callable[_P, _R]) -> Callable[_P, _R]:
-        keywords = [name for name in inspect.signature(function).parameters]
-        lines = []
-        for keyword in keywords:
-            option = (names or {}).get(keyword, keyword.rstrip("_").replace("_", "-"))
-            if option in options and options[option][0]:
-                lines.append(f"    {keyword}: {options[option][0]}")
+        keywords = list(inspect.signature(function).parameters)
+        lines = [f"    {word}: {meanings[word]}" for word in keywords if word in meanings]
         if lines:
             function.__doc__ = (function.__doc__ or "").rstrip() + "\n\n" + "\n".join(lines) + "\n"
 
@@ -198,10 +190,3 @@ def checked(
         return call
 
     return wrap
-
-
-def give(request: Any, **values: object) -> Any:
-    """Sets attributes of a request of the library."""
-    for name, value in values.items():
-        setattr(request, name, value)
-    return request

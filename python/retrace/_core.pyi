@@ -80,12 +80,7 @@ class Fabrication:
 
 class FabricationRequest:
     def __init__(self) -> None: ...
-    dialect: str
-    phase: str
-    from_element: int | None
-    from_pass: int | None
-    stop_every: int | None
-    split_hours: float | None
+    def assign(self, field: str, value: object, /) -> None: ...
     job_text: str | None
 
 class ImageResult:
@@ -130,12 +125,7 @@ class Job:
 
 class JobRequest:
     def __init__(self) -> None: ...
-    machine: str
-    tool_width_mm: float
-    strategy: str
-    process: str
-    workpiece: str
-    shrinkage_percent: float
+    def assign(self, field: str, value: object, /) -> None: ...
 
 class Metrology:
     @property
@@ -203,18 +193,7 @@ class RoadRequest:
 
 class RreRequest:
     def __init__(self) -> None: ...
-    incidence_deg: list[float]
-    incidence_spans_deg: list[tuple[float, float]]
-    azimuth_deg: list[float]
-    engine: str
-    target_error: float | None
-    samples: int | None
-    cutoff: float | None
-    sampling: str
-    seed: int
-    derivatives: bool
-    footprint: bool
-    far_field: bool
+    def assign(self, field: str, value: object, /) -> None: ...
 
 class RreResult:
     @property
@@ -249,6 +228,7 @@ class Study:
 
 class StudyRequest:
     def __init__(self) -> None: ...
+    def assign(self, field: str, value: object, /) -> None: ...
     overrides: list[str]
     seed: int
     store: Path | str
@@ -302,12 +282,12 @@ class MaterialRequest:
 
 class VerificationRequest:
     def __init__(self) -> None: ...
+    def assign(self, field: str, value: object, /) -> None: ...
     job: Path | str
     programs: list[str]
     dialect: str
     tolerance_nm: float | None
     standing: str
-    as_machined: Path | str
     texts: dict[str, str]
 
 def version() -> str: ...

@@ -10,28 +10,16 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Union
 
 from . import _core
-from ._arguments import (
-    PathLike,
-    checked,
-    give,
-    number,
-    path,
-    refuse,
-    shown,
-    thread_count,
-    whole,
-    word,
-)
+from ._arguments import PathLike, path, refuse, shown, thread_count
 from ._design import AnyDesign, Design, design_of
 from ._errors import InputError
-from ._options import OPTIONS
+from ._fields import FIELDS
 from ._progress import Progress, teller
+from ._request import described, given
 from ._results import Columns, Result, html_table, write_file
 
 __all__ = ["Fabrication", "Job", "Verification", "fabricate", "job", "verify"]
 
-_DIALECTS = ("rs274ngc", "sinumerik", "fanuc", "pmac", "a3200", "automation1")
-_MOST_NUMBER = 2**31 - 1
 _IN_MEMORY = "job.toml"  # stands for the file of a job that is in memory
 
 
@@ -135,7 +123,10 @@ class Verification(Result):
         folder = _Folder()
         file = os.path.join(folder.name, "as_machined.toml")
         if self._core is None:
-            self._core = _core.verify(give(_core.VerificationRequest(), **self._asked), None, 0)
+            request = _core.VerificationRequest()
+            for name, value in self._asked.items():
+                setattr(request, name, value)
+            self._core = _core.verify(request, None, 0)
         _core.write_as_machined(self._core, file)
         # The design may refer to a table of facets in a separate file of this folder.
         return Design._of(_core.Design.load(file, []), keeps=folder)
@@ -149,27 +140,13 @@ class Verification(Result):
         return verdict + (html_table(self.findings.rows) if self.findings.rows else "")
 
 
-@checked(OPTIONS["job"])
+@described(FIELDS["job"])
 def job(
     design: AnyDesign,
-    *,
-    tool_width_mm: float,
-    machine: str = "ideal",
-    strategy: str = "two-step",
-    process: str = "thesis-acrylic",
-    workpiece: str = "mould",
-    shrinkage_percent: float = 0.0,
+    **fields: object,  # fields of job
 ) -> Job:
     """Computes the fabrication job of a design, as `retrace job`."""
-    request = give(
-        _core.JobRequest(),
-        tool_width_mm=number("tool_width_mm", tool_width_mm, 0, low_included=False),
-        machine=path("machine", machine),
-        strategy=word("strategy", strategy),
-        process=path("process", process),
-        workpiece=word("workpiece", workpiece, ("mould", "direct")),
-        shrinkage_percent=number("shrinkage_percent", shrinkage_percent),
-    )
+    request = _core.JobRequest()  # with the fields of job
     return Job(_core.make_job(design_of(design)._core, request))
 
 
@@ -182,33 +159,15 @@ def _job_file(value: object) -> tuple[str, str | None]:
     raise refuse("job", "a Job or the name of its file", value)
 
 
-@checked(OPTIONS["fabricate"])
+@described(FIELDS["fabrication"])
 def fabricate(
     job: AnyJob,
-    *,
-    dialect: str = "rs274ngc",
-    phase: str = "all",
-    from_element: int | None = None,
-    from_pass: int | None = None,
-    stop_every: int | None = None,
-    split_hours: float | None = None,
+    **fields: object,  # fields of fabrication
 ) -> Fabrication:
     """Computes the NC programs of a job and their machining time, as `retrace fabricate`."""
     name, text = _job_file(job)
-    request = give(
-        _core.FabricationRequest(),
-        dialect=word("dialect", dialect, _DIALECTS),
-        phase=word("phase", phase),
-        job_text=text,
-    )
-    if from_element is not None:
-        request.from_element = whole("from_element", from_element, 0, _MOST_NUMBER)
-    if from_pass is not None:
-        request.from_pass = whole("from_pass", from_pass, 1, _MOST_NUMBER)
-    if stop_every is not None:
-        request.stop_every = whole("stop_every", stop_every, 1, _MOST_NUMBER)
-    if split_hours is not None:
-        request.split_hours = number("split_hours", split_hours)
+    request = _core.FabricationRequest()  # with the fields of fabrication
+    request.job_text = text
     return Fabrication(_core.fabricate(name, request))
 
 
@@ -230,14 +189,12 @@ def _programs(value: object) -> tuple[list[str], dict[str, str]]:
     raise refuse("programs", "what fabricate() gave, texts by names, or names of files", value)
 
 
-@checked(OPTIONS["verify"])
+@described(FIELDS["verification"])
 def verify(
     job: AnyJob,
     programs: AnyPrograms,
     *,
-    dialect: str = "auto",
-    tolerance_nm: float | None = None,
-    standing: str = "",
+    # fields of verification
     threads: int | None = None,
     progress: Progress = None,
 ) -> Verification:
@@ -246,17 +203,10 @@ def verify(
     names, texts = _programs(programs)
     if not names:
         raise InputError("must be one or more, got none", key="programs")
-    request = give(
-        _core.VerificationRequest(),
-        job=name,
-        programs=names,
-        texts={**texts, **({} if text is None else {name: text})},
-        dialect=word("dialect", dialect, ("auto", *_DIALECTS)),
-        tolerance_nm=None
-        if tolerance_nm is None
-        else number("tolerance_nm", tolerance_nm, 0, low_included=False),
-        standing=word("standing", standing) if standing else "",
-    )
+    request = _core.VerificationRequest()  # with the fields of verification
+    request.job = name
+    request.programs = names
+    request.texts = {**texts, **({} if text is None else {name: text})}
     count = thread_count(threads)
     with teller(progress, "cutting") as tell:
         return Verification(_core.verify(request, tell, count), request)

@@ -9,36 +9,14 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._arguments import (
-    Numbers,
-    checked,
-    flag,
-    give,
-    number,
-    number_list,
-    pairs,
-    path,
-    thread_count,
-    whole,
-    word,
-)
+from ._arguments import Numbers, thread_count
 from ._design import AnyDesign, design_of, designs_of
-from ._errors import InputError
-from ._options import OPTIONS
+from ._fields import FIELDS
 from ._progress import Progress, teller
+from ._request import described, given
 from ._results import Array, Columns, Result, dataset_of, frozen, html_table
 
 __all__ = ["Footprint", "PhotometryResult", "RreResult", "footprint", "photometry", "rre"]
-
-ENGINES = ("auto", "exact", "stochastic", "montecarlo", "cell", "embree")
-_MOST_SEED = 2**32 - 1
-_LIGHT_NAMES = {
-    "incidence_deg": "incidence",
-    "azimuth_deg": "azimuth",
-    "rotation_deg": "rotation",
-    "designs": "",
-    "design": "",
-}
 
 
 class RreResult(Result):
@@ -156,22 +134,11 @@ class Footprint(Result):
         return self._shown_drawing("footprint")
 
 
-@checked(OPTIONS["rre"], _LIGHT_NAMES)
+@described(FIELDS["rre"])
 def rre(
     designs: AnyDesign | Sequence[AnyDesign],
     *,
-    incidence_deg: Numbers = 0.0,
-    azimuth_deg: Numbers = 0.0,
-    incidence_spans_deg: Sequence[tuple[float, float]] = (),
-    engine: str = "auto",
-    target_error: float | None = None,
-    samples: int | None = None,
-    cutoff: float | None = None,
-    sampling: str = "stratified",
-    derivatives: bool = False,
-    footprint: bool = False,
-    far_field: bool = False,
-    seed: int = 1,
+    # fields of rre
     threads: int | None = None,
     progress: Progress = None,
 ) -> RreResult:
@@ -182,41 +149,13 @@ def rre(
     which additional angles of incidence are chosen, as many as the curve requires. threads: maximum
     number of threads [all cores]."""
     taken = designs_of(designs)
-    request = give(
-        _core.RreRequest(),
-        incidence_deg=number_list(
-            "incidence_deg",
-            incidence_deg,
-            -90,
-            90,
-            included=False,
-            may_be_empty=bool(incidence_spans_deg),
-        ),
-        incidence_spans_deg=pairs("incidence_spans_deg", incidence_spans_deg),
-        azimuth_deg=number_list("azimuth_deg", azimuth_deg),
-        engine=word("engine", engine, ENGINES),
-        sampling=word("sampling", sampling, ("stratified", "plain")),
-        derivatives=flag("derivatives", derivatives),
-        footprint=flag("footprint", footprint),
-        far_field=flag("far_field", far_field),
-        seed=whole("seed", seed, 0, _MOST_SEED),
-    )
-    if target_error is not None:
-        if samples is not None:
-            raise InputError("not together with samples", key="target_error")
-        request.target_error = number(
-            "target_error", target_error, 0, 1, low_included=False, high_included=False
-        )
-    if samples is not None:
-        request.samples = whole("samples", samples, 1)
-    if cutoff is not None:
-        request.cutoff = number("cutoff", cutoff, 0, 1, high_included=False)
+    request = _core.RreRequest()  # with the fields of rre
     count = thread_count(threads)
     with teller(progress, "tracing") as tell:
         return RreResult(_core.rre([design._core for design in taken], request, tell, count))
 
 
-@checked(OPTIONS["rre"], _LIGHT_NAMES)
+@described(FIELDS["rre"])
 def footprint(
     design: AnyDesign,
     *,

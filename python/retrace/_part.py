@@ -104,8 +104,7 @@ class Inspection(Result):
 @described(FIELDS["solid"])
 def mesh(
     design: AnyDesign,
-    *,
-    # fields of solid
+    **fields: object,  # fields of solid
 ) -> Mesh:
     """Returns the solid of a design as a triangle mesh."""
     request = _core.SolidRequest()  # with the fields of solid
@@ -116,8 +115,7 @@ def mesh(
 def export(
     design: AnyDesign,
     file: PathLike,
-    *,
-    # fields of solid
+    **fields: object,  # fields of solid
 ) -> ExportResult:
     """Writes the solid of a design as STL, OBJ, glTF or STEP, as `retrace export`. The ending of
     the file name determines the format."""

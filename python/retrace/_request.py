@@ -67,4 +67,4 @@ def given(request: Any, fields: Fields, **values: object) -> Any:
 
 def described(fields: Fields) -> Callable[[Callable[_P, _R]], Callable[_P, _R]]:
     """Decorates a function whose keywords are the fields of a request, see checked()."""
-    return checked({keyword: (field.meaning, "") for keyword, field in fields.items()}, {k: k for k in fields})
+    return checked({keyword: field.meaning for keyword, field in fields.items()})

@@ -15,7 +15,6 @@ from ._arguments import (
     PathLike,
     checked,
     flag,
-    give,
     number,
     path,
     refuse,
@@ -26,9 +25,10 @@ from ._arguments import (
 )
 from ._design import AnyDesign, Design, design_of, overrides_of, toml_text
 from ._errors import InputError
+from ._fields import FIELDS
 from ._light import rre
-from ._options import OPTIONS
 from ._progress import Progress, teller
+from ._request import given
 from ._results import Columns, Result, dataset_of, html_table
 from ._search import FoundOptimum, number_of, search
 
@@ -49,6 +49,12 @@ Quantity = Union[str, Mapping[str, Any], Callable[[Any], Any]]
 Values = Any
 
 _MOST_SEED = 2**32 - 1
+_MEANINGS = {
+    "seed": FIELDS["study"]["seed"].meaning,
+    "store": "SQLite file in which finished points are kept",
+    "resume": "continue with the store: finished points are not computed again",
+    "overwrite": "replace the store and compute all points again",
+}
 _KEY = '{"element.base_mm": [0.5, 1, 2]}'
 
 
@@ -241,7 +247,8 @@ def _request(
 ) -> Any:
     if flag("resume", resume) and flag("overwrite", overwrite):
         raise InputError("not together with overwrite", key="resume")
-    request = give(_core.StudyRequest(), overrides=changes, seed=whole("seed", seed, 0, _MOST_SEED))
+    request = given(_core.StudyRequest(), FIELDS["study"], seed=seed)
+    request.overrides = changes
     if store is not None:
         request.store = path("store", store)
     elif resume or overwrite:
@@ -309,7 +316,7 @@ def _swept(study: Any, seed: int) -> dict[str, Any]:
     }
 
 
-@checked(OPTIONS["sweep"])
+@checked(_MEANINGS)
 def sweep(
     study: AnyDesign,
     parameters: Mapping[str, Values] | None = None,
@@ -408,7 +415,7 @@ def _text_table(columns: Columns) -> str:
     )
 
 
-@checked(OPTIONS["tolerance"])
+@checked(_MEANINGS)
 def tolerance(
     study: AnyDesign,
     parameters: Mapping[str, Values] | None = None,
@@ -457,7 +464,7 @@ def tolerance(
         return ToleranceResult(_core.tolerance(read, request, tell, count))
 
 
-@checked(OPTIONS["optimize"])
+@checked(_MEANINGS)
 def optimize(
     study: AnyDesign,
     parameters: Mapping[str, Values] | None = None,

@@ -69,8 +69,7 @@ def _heights(value: object) -> Array:
 @described(FIELDS["metrology"])
 def metrology(
     heights: Union[PathLike, ArrayLike],
-    *,
-    # fields of metrology
+    **fields: object,  # fields of metrology
 ) -> MetrologyResult:
     """Computes roughness, waviness, dominant waves, scratches and edge radius of a measured height
     map or profile, as `retrace metrology`.

@@ -44,7 +44,7 @@ constexpr Row seed_row() {
           Whole{kUnsigned32},
           "seed of the random numbers",
           schema::access<&Type::seed>,
-          {.value = "S", .is_only_python_and_library = true}};
+          {.value = "S", .is_no_option = true}};
 }
 
 }  // namespace retrace::requests

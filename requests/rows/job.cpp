@@ -28,17 +28,17 @@ void check_making_request(const void* object) {
                      fmt::format("must be {}, got {}", kChiselWidthMm.text(), shortest(request.tool_width_mm)));
 }
 
-constexpr Row kJobRows[] = {{"machine",
-                             WordOrFile{kMachines, ".toml", "ideal, paper, thesis, ideal-dmc or a file"},
-                             "ideal, paper, thesis, ideal-dmc or a file",
-                             access<&JobRequest::machine>,
-                             {.value = "MACHINE"}},
-                            {.name = "tool_width_mm",
+constexpr Row kJobRows[] = {{.name = "tool_width_mm",
                              .kind = Number{{.low = 0.01, .high = 10.0}},
                              .meaning = "width of the cutting edge, 0.1 to 2; with the strategy dmc 0.01 to 10",
                              .access = access<&JobRequest::tool_width_mm>,
                              .spelling = {.value = "W"},
                              .is_required = true},
+                            {"machine",
+                             WordOrFile{kMachines, ".toml", "ideal, paper, thesis, ideal-dmc or a file"},
+                             "ideal, paper, thesis, ideal-dmc or a file",
+                             access<&JobRequest::machine>,
+                             {.value = "MACHINE"}},
                             {"strategy",
                              Word{kStrategies},
                              "unidirectional, bidirectional or two-step; dmc for cube corners",
@@ -106,7 +106,7 @@ constexpr Row kFabricationRows[] = {
      Text{"the text of a job file"},
      "text of the job file, which is used instead of reading the file",
      access<&FabricationRequest::job_text>,
-     {.value = "TEXT", .is_only_python_and_library = true}}};
+     {.value = "TEXT", .is_no_option = true, .is_no_keyword = true}}};
 
 }  // namespace
 

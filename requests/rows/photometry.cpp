@@ -119,7 +119,7 @@ constexpr Row kPhotometryRows[] = {
      Flag{},
      "compute maps and curves, and make the drawings \"far_field\" and \"r_a\"",
      access<&PhotometryRequest::pictures>,
-     {.is_only_python_and_library = true}},
+     {.is_no_option = true}},
     seed_row<PhotometryRequest>()};
 
 }  // namespace

@@ -113,7 +113,7 @@ constexpr Row kRaysRows[] = {
      File{"a file of rays"},
      "file for the rays that leave the part, .tm25ray or .csv",
      access<&RaysRequest::out>,
-     {.value = "FILE", .otherwise = "rays are not written", .is_only_python_and_library = true}},
+     {.value = "FILE", .otherwise = "rays are not written", .is_no_option = true}},
     seed_row<RaysRequest>()};
 
 void check_rays(const void* object) {

@@ -15,18 +15,18 @@ constexpr Row kStudyRows[] = {
      Texts{},
      "texts KEY=VALUE for keys of designs, [analysis] and [machining]",
      access<&StudyRequest::overrides>,
-     {.value = "KEY=VALUE", .option = "--set", .is_only_python_and_library = true}},
+     {.value = "KEY=VALUE", .option = "--set", .is_no_option = true, .is_no_keyword = true}},
     seed_row<StudyRequest>(),
     {"store",
      File{"an SQLite file"},
      "SQLite file in which finished points are kept",
      access<&StudyRequest::store>,
-     {.value = "FILE", .otherwise = "finished points are not kept", .is_only_python_and_library = true}},
+     {.value = "FILE", .otherwise = "finished points are not kept", .is_no_option = true, .is_no_keyword = true}},
     {"if_exists",
      Word{kActionsIfExists},
      "action if the store exists already: refuse, resume or overwrite",
      access<&StudyRequest::if_exists>,
-     {.value = "ACTION", .is_only_python_and_library = true}}};
+     {.value = "ACTION", .is_no_option = true, .is_no_keyword = true}}};
 
 }  // namespace
 

@@ -15,14 +15,14 @@ constexpr Row kVerificationRows[] = {{.name = "job",
                                       .kind = File{"a job file"},
                                       .meaning = "job file",
                                       .access = access<&VerificationRequest::job>,
-                                      .spelling = {.value = "FILE", .is_only_python_and_library = true},
+                                      .spelling = {.value = "FILE", .is_no_option = true, .is_no_keyword = true},
                                       .is_required = true},
                                      {.name = "programs",
                                       .kind = Texts{},
                                       .meaning = "NC programs, in the order in which they run; FILE@LINE: the program "
                                                  "was stopped after this line",
                                       .access = access<&VerificationRequest::programs>,
-                                      .spelling = {.value = "FILE", .is_only_python_and_library = true},
+                                      .spelling = {.value = "FILE", .is_no_option = true, .is_no_keyword = true},
                                       .is_required = true},
                                      {"standing",
                                       Text{"the name of a stage"},
@@ -47,7 +47,7 @@ constexpr Row kVerificationRows[] = {{.name = "job",
                                       File{"a design file"},
                                       "output file for the design of the machined part",
                                       access<&VerificationRequest::as_machined>,
-                                      {.value = "FILE", .otherwise = "none", .is_only_python_and_library = true}}};
+                                      {.value = "FILE", .otherwise = "none", .is_no_option = true, .is_no_keyword = true}}};
 
 }  // namespace
 

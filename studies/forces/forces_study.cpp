@@ -20,7 +20,7 @@ using namespace fabrication;
 Configuration configuration_of(const std::string& word) {
   const auto* const found = std::find(std::begin(kConfigurationWords), std::end(kConfigurationWords), word);
   if (found == std::end(kConfigurationWords))
-    throw InputError({"", 0, "--configuration"},
+    throw InputError(Field{"configuration"},
                      fmt::format("must be {}, got {}", alternatives(kConfigurationWords), in_quotes(word)));
   return static_cast<Configuration>(found - std::begin(kConfigurationWords));
 }
@@ -38,7 +38,7 @@ CutConditions conditions_of(const Job& job, const ForcesRequest& request) {
   cut.width_mm = std::min(job.tool.width_mm, element.width_mm);
   cut.plunge_mm = request.plunge_mm > 0.0 ? request.plunge_mm : facet_mm;
   if (cut.plunge_mm > facet_mm * (1.0 + 1e-9))
-    throw InputError({"", 0, "--plunge-mm"}, fmt::format("must be at most the length of the facet, {}, got {}",
+    throw InputError(Field{"plunge_mm"}, fmt::format("must be at most the length of the facet, {}, got {}",
                                                          shortest(facet_mm), shortest(cut.plunge_mm)));
   cut.plough_mm = job.process.plough_length_mm;
   cut.dwell_s = job.process.dwell_s;
@@ -52,9 +52,9 @@ CutConditions conditions_of(const Job& job, const ForcesRequest& request) {
 
 ForcesResult cutting_forces(const ForcesRequest& request) {
   if (request.facet != 1 && request.facet != 2)
-    throw InputError({"", 0, "--facet"}, fmt::format("must be 1 or 2, got {}", request.facet));
+    throw InputError(Field{"facet"}, fmt::format("must be 1 or 2, got {}", request.facet));
   if (!(request.plunge_mm >= 0.0) || !std::isfinite(request.plunge_mm))
-    throw InputError({"", 0, "--plunge-mm"}, "must be > 0, got " + shortest(request.plunge_mm));
+    throw InputError(Field{"plunge_mm"}, "must be > 0, got " + shortest(request.plunge_mm));
   const Job job = read_job(request.job);
   const ForceModel model = calibrate(shipped_forces());
   ForcesResult result;

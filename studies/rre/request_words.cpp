@@ -23,22 +23,8 @@ constexpr std::array<std::pair<std::string_view, Engine>, 6> kEngines = {{{"auto
 
 }  // namespace
 
-void check_share(double value, bool zero_allowed, const char* option) {
-  if (!(value > 0.0 && value < 1.0) && !(zero_allowed && value == 0.0))
-    throw InputError({"", 0, option},
-                     fmt::format("must lie between 0 {}and 1, got {}", zero_allowed ? "(included) " : "", value));
-}
-
 bool is_one_of(Engine engine, std::span<const Engine> engines) {
   return std::ranges::count(engines, engine) > 0;
-}
-
-void check_has_effect(const char* option, bool is_given, Engine engine, std::span<const Engine> engines) {
-  if (!is_given || is_one_of(engine, engines)) return;
-  std::vector<std::string_view> names;
-  for (const Engine allowed : engines) names.push_back(engine_name(allowed));
-  throw InputError({"", 0, option},
-                   fmt::format("needs --engine {}, got {}", fmt::join(names, " or "), engine_name(engine)));
 }
 
 Engine engine_from_name(std::string_view name) {

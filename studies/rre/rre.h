@@ -40,16 +40,6 @@ inline constexpr Engine kRayEnginesOfParts[] = {Engine::automatic, Engine::monte
 inline constexpr Engine kExactEngines[] = {Engine::exact, Engine::automatic};
 /// Returns true if `engine` is one of `engines`.
 bool is_one_of(Engine engine, std::span<const Engine> engines);
-/// Refuses an option that is given although it has no effect with the requested engine.
-/// \param engines engines with which the option has an effect
-/// \throw InputError with the location `option`
-void check_has_effect(const char* option, bool is_given, Engine engine, std::span<const Engine> engines);
-
-/// Checks a fraction of the power.
-/// \param zero_allowed true: 0 is also a valid value
-/// \throw InputError with the location `option` unless the value is above 0 and below 1
-void check_share(double value, bool zero_allowed, const char* option);
-
 /// Default of RreSettings::target_error, as a fraction of the incident power.
 inline constexpr double kUsualTargetError = 1e-4;
 /// Maximum error of linear interpolation between automatically chosen incidences, as a fraction of the incident power.

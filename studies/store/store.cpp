@@ -98,7 +98,7 @@ struct ResultStore::Database {
   std::int64_t owner() const { return locks ? locks->own() : 0; }
 
   [[noreturn]] void refuse(const std::string& what) const {
-    throw InputError({name(), 0, ""}, what + ": --overwrite starts anew, another --out keeps it");
+    throw InputError({name(), 0, ""}, fmt::format("{}: {} starts anew, another folder keeps it", what, reference({"overwrite"})));
   }
   [[noreturn]] void refuse_damaged(const std::string& why) const {
     refuse("is damaged: " + printable(why, kMaxReasonLength));
@@ -258,7 +258,8 @@ void ResultStore::Database::check_study() const {
     if (stored("part." + key) != value)
       throw InputError(
           {layout.source, 0, ""},
-          fmt::format("{} differs from that of {}: --overwrite starts anew, another --out keeps both", key, name()));
+          fmt::format("{} differs from that of {}: {} starts anew, another folder keeps both", key, name(),
+                                   reference({"overwrite"})));
 }
 
 void ResultStore::Database::prepare() {
@@ -278,7 +279,8 @@ ResultStore::ResultStore(const fs::path& file, const StoreLayout& layout, IfExis
   database_->layout = layout;
   if (!is_new(file) && if_exists == IfExists::refuse)
     throw InputError({file.string(), 0, ""},
-                     "exists: --resume goes on with it, --overwrite starts anew, another --out keeps it");
+                     fmt::format("exists: {} goes on with it, {} starts anew, another folder keeps it",
+                                 reference({"resume"}), reference({"overwrite"})));
   try {
     // An existing store is checked before other files are created. If the store is refused, no new files remain next to
     // it.

@@ -1,5 +1,6 @@
 """Functions that run the program on its examples. Tests compare the results with the package."""
 
+import json
 import os
 import pathlib
 import re
@@ -53,14 +54,32 @@ def run(*arguments, folder=None):
     return ended.returncode, ended.stdout.decode(), ended.stderr.decode()
 
 
+def requests():
+    """Returns the descriptions of all requests."""
+    return json.loads(run("list", "requests", "--json", "-")[1])["requests"]
+
+
+def in_python(message):
+    """Replaces the names of options in a message by the package's keywords."""
+    keywords = {
+        field["option"]: field["keyword"]
+        for request in requests()
+        for field in request["fields"]
+        if "option" in field and "keyword" in field
+    }
+
+    def keyword(option):
+        return keywords.get(option[0], option[0].removeprefix("--").replace("-", "_"))
+
+    return re.sub(r"--[a-z][a-z-]+", keyword, message)
+
+
 def document(*arguments, folder=None):
     """Returns the document of a command, or None and the message that the package must raise."""
     code, out, err = run(*arguments, "--json", "-", folder=folder)
     if code in (0, 1) and out:
         return same(out), ""
-    # InputError replaces the names of options by the names of the package's keywords.
-    text = err.strip().removeprefix("retrace: ")
-    return None, rt.InputError(text).message if code == 2 else text
+    return None, in_python(err.strip().removeprefix("retrace: "))
 
 
 def answer(call, *arguments, **keywords):

@@ -86,13 +86,13 @@ TEST(Requests, NamesAndSpellingsAreUnique) {
     std::set<std::string> names, options;
     for (const Row& row : request.rows) {
       EXPECT_TRUE(names.insert(std::string(row.name)).second) << row.name;
-      EXPECT_TRUE(options.insert(option_of(row)).second) << row.name;
+      EXPECT_TRUE(row.spelling.is_no_option || options.insert(option_of(row)).second) << row.name;
       EXPECT_FALSE(row.meaning.empty() || row.meaning.ends_with('.')) << row.name;
       EXPECT_EQ(row_of(request, row.name), &row);
       EXPECT_EQ(option_of_field(row.field().name), option_of(row)) << row.name << ": qualify the name";
       for (const Need need : row.needs)
         for (const schema::Condition& condition : need)
-          EXPECT_NE(row_of(request, condition.key), nullptr) << condition.key << " is no field";
+          EXPECT_TRUE(condition.key == "out" || row_of(request, condition.key) != nullptr) << condition.key << " is no field";
     }
   });
 }

@@ -90,10 +90,10 @@ std::string changes_text(const Study& study, const PointValues& values) {
   return text.empty() ? text : fmt::format("set = [{}]\n", text);
 }
 
-/// Returns the command-line option that sets the given key in the design of the whole part.
-std::string_view option_of(std::string_view key) {
-  if (key == "array.x_length_mm") return "--x-length-mm";
-  return key == "array.y_length_mm" ? "--y-length-mm" : "--design";
+/// Returns the field of the request that sets the given key in the design of the whole part.
+Field field_of(std::string_view key) {
+  if (key == "array.x_length_mm") return {"x_length_mm"};
+  return {key == "array.y_length_mm" ? "y_length_mm" : "design"};
 }
 
 /// Returns the design of the whole part, with elements that have the given parameter values everywhere. The part is
@@ -106,8 +106,8 @@ Design whole_design(const Study& study, const PointValues& values, const ZonedDe
                                                  fmt::format("array.x_length_mm={}", shortest(request.size_mm->x())),
                                                  fmt::format("array.y_length_mm={}", shortest(request.size_mm->y()))});
   } catch (const InputError& error) {
-    const std::string option(option_of(error.where().key));
-    throw InputError({"", 0, option}, option == "--design" ? error.where().key + ": " + error.text() : error.text());
+    const Field field = field_of(error.where().key);
+    throw InputError(field, field.name == "design" ? error.where().key + ": " + error.text() : error.text());
   }
 }
 
@@ -128,14 +128,14 @@ std::string zone_design_text(const Study& study, const std::vector<Zone>& zones,
       fmt::format("# Zone {} of {} of {}: {} of the area", zone + 1, zones.size(),
                   printable(std::filesystem::path(study.source).filename().string()), shortest(zones[zone].share));
   if (const double turn_deg = candidate.analysis().rotation_deg; turn_deg != 0.0)
-    comment += fmt::format(", turned by {} degrees (--rotation of retrace photometry)", shortest(turn_deg));
+    comment += fmt::format(", turned by {} degrees, which is a rotation for retrace photometry", shortest(turn_deg));
   return design_text(candidate.design(), comment + "\n");
 }
 
 ZoneLayout read_zone_layout(const std::string& word) {
   const auto* const found = std::ranges::find(kZoneLayouts, word);
   if (found == std::end(kZoneLayouts))
-    throw InputError({"", 0, "--layout"},
+    throw InputError(Field{"layout"},
                      fmt::format("must be {}, got {}", alternatives(kZoneLayouts), in_quotes(word)));
   return static_cast<ZoneLayout>(found - std::begin(kZoneLayouts));
 }
@@ -145,13 +145,14 @@ void check_zoned_design(const Study& study, const ZonedDesignRequest& request) {
     for (const std::string& key : parameter.keys)
       if (key != kTurn && !may_set_in_zone(key))
         throw InputError(parameter.location,
-                         fmt::format("--design: zones of a part cannot differ in {}, which is one all over it", key));
+                         fmt::format("{}: zones of a part cannot differ in {}, which is one all over it",
+                                     reference({"design"}), key));
   const Design design = whole_design(study, some_values(study), request);
   if (design.is_endless())
-    throw InputError({"", 0, "--x-length-mm"},
+    throw InputError(Field{"x_length_mm"},
                      "missing: the design of the study is endless, and a part of zones is not");
   if (design.part().array.arrangement == geometry::Arrangement::single)
-    throw InputError({"", 0, "--design"}, "the design of the study is a single element, which has no room for zones");
+    throw InputError(Field{"design"}, "the design of the study is a single element, which has no room for zones");
 }
 
 std::string zoned_design_text(const Study& study, const std::vector<Zone>& zones, const ZonedDesignRequest& request) {
@@ -177,7 +178,7 @@ std::string zoned_design_text(const Study& study, const std::vector<Zone>& zones
     if (turn_deg != 0.0) text += fmt::format("rotation_deg = {}\n", shortest(turn_deg));
     text += changes_text(study, values);
   }
-  parse_design(text, "--design");  // refuses zones that are too small for their elements
+  parse_design(text, "the design of zones");  // refuses zones that are too small for their elements
   return text;
 }
 

@@ -59,7 +59,7 @@ SolidFormat solid_format(const std::string& file) {
   if (ending == ".glb") return SolidFormat::gltf;
   if (ending == ".step" || ending == ".stp") return SolidFormat::step;
   throw InputError(
-      {"", 0, "--out"},
+      Field{"out"},
       fmt::format("must end in .stl, .obj, .glb, .step or .stp, of a material in .json, .xml or .glsl, got {}",
                   in_quotes(file)));
 }
