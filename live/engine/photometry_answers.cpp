@@ -15,11 +15,6 @@ namespace {
 
 using studies::PhotometricPoint;
 
-std::optional<std::string> choice_of(const Json& request, const char* key) {
-  const auto chosen = get<std::string>(request, key, std::string());
-  return chosen.empty() ? std::nullopt : std::optional(chosen);
-}
-
 Json standard_json(const studies::ShippedStandard& standard, const studies::LimitTable& limits) {
   std::set<std::string> classes;
   std::set<std::string> colours;
@@ -62,11 +57,7 @@ Json standards_json() {
 
 Json photometry_json(const OpenedDesign& opened, const Json& request, TimeLimit& limit) {
   opened.require_tracer();
-  PhotometryRequest asked;
-  asked.standard = get<std::string>(request, "standard");
-  asked.part_class = choice_of(request, "class");
-  asked.colour = choice_of(request, "colour");
-  asked.area_cm2 = get<double>(request, "area_cm2");
+  auto asked = fields_of<PhotometryRequest>(request);
   asked.advice = false;
   studies::PhotometrySettings settings = studies::resolve(asked, opened.design().substance.is_coloured());
   settings.colour = false;

@@ -2,12 +2,14 @@
 
 // Reads and checks the values of a request.
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "core/error.h"
 #include "geometry/vec.h"
+#include "requests/descriptions.h"
 #include "studies/scene/piece.h"
 
 namespace retrace::live {
@@ -28,6 +30,24 @@ Type get(const Json& request, const char* key) {
 template <class Type>
 Type get(const Json& request, const char* key, const Type& otherwise) {
   return request.contains(key) ? get<Type>(request, key) : otherwise;
+}
+
+/// Returns a request of the library with the fields for which `request` has a key: the name of the option, with
+/// underscores. Empty texts are not given.
+/// \throw InputError at a field whose value is not allowed
+template <class Type>
+Type fields_of(const Json& request) {
+  Type fields;
+  for (const requests::Row& row : requests::description<Type>().rows) {
+    std::string key = requests::option_of(row).substr(2);
+    std::ranges::replace(key, '-', '_');
+    const auto found = request.find(key);
+    if (found == request.end()) continue;
+    if (found->is_number()) requests::set(row, &fields, found->template get<double>());
+    if (found->is_boolean()) requests::set(row, &fields, found->template get<bool>());
+    if (found->is_string() && *found != "") requests::set(row, &fields, found->template get<std::string>());
+  }
+  return fields;
 }
 
 /// \throw InputError unless the value is between 0 and 1
