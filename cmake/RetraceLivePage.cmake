@@ -28,7 +28,7 @@ endforeach()
 target_compile_definitions(fmt::fmt INTERFACE FMT_HEADER_ONLY)
 # Without assertions on what users gave, as the library of the program.
 target_compile_definitions(PkgConfig::TOMLPLUSPLUS INTERFACE NDEBUG)
-foreach(folder IN ITEMS core geometry materials surface_models raytrace studies/design studies/rre studies/scene
+foreach(folder IN ITEMS core requests geometry materials surface_models raytrace studies/design studies/rre studies/scene
                         studies/photometry live/engine)
   add_subdirectory(${folder})
 endforeach()
