@@ -11,8 +11,8 @@
 
 namespace retrace {
 
-/// Field of a request, such as the field `target_error` of RreRequest. A name such as "road.distance_m" has the request
-/// before the dot, where fields of several requests have the same name but different options.
+/// Field of a request, such as the field `target_error` of RreRequest. If fields of several requests have the same name but
+/// different options, the name of the request precedes it: "road.distance_m".
 struct Field {
   std::string_view name;
 };

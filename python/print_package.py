@@ -5,10 +5,13 @@ requests.
 
 FOLDER/files.py contains a TypedDict for each table of designs, jobs, studies and so on.
 FOLDER/_fields.py contains the fields of each request of the library.
-SOURCES are Python files that are copied to FOLDER. In them, two kinds of lines are replaced:
-    # fields of NAME                                 the keywords of a function that has others as well
-    **fields: object,  # fields of NAME              the keywords of a function that has no others
-    request = _core.X()  # with the fields of NAME   a request with the values of the keywords
+SOURCES are Python files that are copied to FOLDER. In them, three kinds of lines are replaced:
+    # the build inserts the fields of NAME
+        Keywords of a function that has other keywords as well.
+    **fields: object,  # the build inserts the fields of NAME
+        Keywords of a function that has no other keywords.
+    request = _core.X()  # the build inserts the fields of NAME
+        A request with the values of the keywords.
 """
 
 import json
@@ -219,8 +222,8 @@ def expanded(text: str, requests: dict[str, list[dict]]) -> str:
     """Replaces the lines of a Python file that stand for the fields of a request."""
     lines = []
     for line in text.splitlines():
-        in_signature = re.fullmatch(r"    (\*\*fields: object,  )?# fields of (\w+)", line)
-        in_body = re.fullmatch(r"    request = (_core\.\w+\(\))  # with the fields of (\w+)", line)
+        in_signature = re.fullmatch(r"    (\*\*fields: object,  )?# the build inserts the fields of (\w+)", line)
+        in_body = re.fullmatch(r"    request = (_core\.\w+\(\))  # the build inserts the fields of (\w+)", line)
         if in_signature:
             lines += ["    *,"] if in_signature[1] else []
             lines += keywords(requests[in_signature[2]])

@@ -229,10 +229,11 @@ ExitCode run(const ListOptions& options, const CommonOptions& common) {
 
 Command list_command() {
   return {.name = "list",
-          .summary = "what is shipped, and the fields of requests",
+          .summary = "shipped materials, machines, processes and standards; fields of requests",
           .manual =
-              "Names what is shipped, with its sources; `--json` says more of it. `retrace list requests` names what the "
-              "commands, the library and Python can be asked for: fields, options, allowed values and meanings.",
+              "Lists the shipped materials, machines, processes or standards with their sources; `--json` adds details. "
+              "`retrace list requests` lists the fields of all requests, which are settings of commands, library and "
+              "Python: options, allowed values and meanings.",
           .writes = {"retrace.materials/1", "retrace.machines/1", "retrace.processes/1", "retrace.requests/1",
                      "retrace.standards/1"},
           .begin = begins<ListOptions>(arguments, run)};

@@ -32,8 +32,8 @@ Type get(const Json& request, const char* key, const Type& otherwise) {
   return request.contains(key) ? get<Type>(request, key) : otherwise;
 }
 
-/// Returns a request of the library with the fields for which `request` has a key: the name of the option, with
-/// underscores. Empty texts are not given.
+/// Returns a request of the library in which those fields are set for which `request` has a key. The key is the name of
+/// the option with underscores, such as "area_cm2". Empty texts are ignored.
 /// \throw InputError at a field whose value is not allowed
 template <class Type>
 Type fields_of(const Json& request) {

@@ -18,7 +18,8 @@ constexpr std::string_view kProcesses[] = {"thesis-acrylic", "thesis-forces", "t
 constexpr std::string_view kStrategies[] = {"unidirectional", "bidirectional", "two-step", "dmc"};
 constexpr std::string_view kWorkpieces[] = {"mould", "direct"};
 
-/// Widths of chisels. The range of the row includes the widths of the tools for diamond micro chiseling (dmc).
+/// Allowed widths of chisels. The range of the field is wider, because it also covers tools for diamond micro chiseling
+/// (dmc).
 constexpr NumberRange kChiselWidthMm{.low = 0.1, .high = 2.0};
 
 void check_making_request(const void* object) {
@@ -36,7 +37,7 @@ constexpr Row kJobRows[] = {{.name = "tool_width_mm",
                              .is_required = true},
                             {"machine",
                              WordOrFile{kMachines, ".toml", "ideal, paper, thesis, ideal-dmc or a file"},
-                             "ideal, paper, thesis, ideal-dmc or a file",
+                             "shipped machine, or machine file",
                              access<&JobRequest::machine>,
                              {.value = "MACHINE"}},
                             {"strategy",
@@ -46,7 +47,7 @@ constexpr Row kJobRows[] = {{.name = "tool_width_mm",
                              {.value = "STRATEGY"}},
                             {"process",
                              WordOrFile{kProcesses, ".toml", "the name of a shipped process or a file"},
-                             "depths, feeds and dwells: a shipped process or a file",
+                             "shipped process or file with the depths, feeds and dwell times of the cuts",
                              access<&JobRequest::process>,
                              {.value = "PROCESS"}},
                             {"workpiece",
@@ -56,7 +57,7 @@ constexpr Row kJobRows[] = {{.name = "tool_width_mm",
                              {.value = "KIND"}},
                             {"shrinkage_percent",
                              Number{{.low = 0.0, .high = 10.0}},
-                             "shrinkage of the part, by which the mould is larger",
+                             "shrinkage of the part; the mould is larger than the part by this amount",
                              access<&JobRequest::shrinkage_percent>,
                              {.value = "S"}}};
 
@@ -82,7 +83,7 @@ constexpr Row kFabricationRows[] = {
      {.value = "PHASE"}},
     {"from_element",
      Whole{{.low = 0.0, .high = kMaxVisits}},
-     "number of the element at whose first visit of the tool the programs start",
+     "number of the element at which the programs start, with the first visit of the tool",
      access<&FabricationRequest::from_element>,
      {.value = "N", .otherwise = "the first"}},
     {"from_pass",

@@ -416,7 +416,7 @@ bool measures_colour(const PhotometrySettings& request) {
   return request.colour && request.light != PhotometricLight::of_design && !request.programme.points.empty();
 }
 
-/// Returns true if a change of the design is searched in case the design fails.
+/// Returns true if a change of the design is to be searched for in case the design fails.
 bool may_search_change(const Design& design, const PhotometrySettings& request) {
   return request.advice && design.elements() && !design.entrance;
 }

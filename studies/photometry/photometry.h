@@ -160,7 +160,7 @@ std::string_view text_of(NoDiffraction reason);
 struct OpenReason {
   enum class Cause {
     none,           ///< the verdict is not undetermined
-    noise,          ///< a value is too near to its limit
+    noise,          ///< a value is nearer to its limit than its noise
     diffraction,    ///< diffraction is significant but not included
     no_light,       ///< no light returns
     another_light,  ///< the limits are defined for another light

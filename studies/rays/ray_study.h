@@ -67,7 +67,7 @@ struct RayResult {
 class RayStudy {
  public:
   /// \pre each value of the request is allowed by itself, as resolve() ensures
-  /// \throw InputError for balls, and if the source would be aimed at its own position
+  /// \throw InputError if the elements are balls, or if the source would be aimed at its own position
   RayStudy(Design design, RayRequest request);
   RayStudy(const RayStudy&) = delete;
   RayStudy& operator=(const RayStudy&) = delete;

@@ -80,7 +80,7 @@ Outcome interrupted_after_preliminary_readings(const TemporaryFolder& folder, co
   return child.wait(patient(60));
 }
 
-// A run of about half a minute is too short for the line about a long run.
+// A run of about half a minute prints no note that it will take long. It prints preliminary readings nevertheless.
 TEST(LongRunOfTheProgram, PhotometryGivesPreliminaryReadingsAfterSomeSeconds) {
   const TemporaryFolder folder;
   const Outcome outcome = interrupted_after_preliminary_readings(folder, photometry_with_rays(1500000));

@@ -75,7 +75,7 @@ class CommandsByMpi : public ByMpi {
 };
 
 /// Returns the numbers in the warnings about lost ranks: the rank, and the time in s for a rank that was silent.
-/// Records the warnings.
+/// Also records the warnings for tests/messages.txt.
 std::vector<int> numbers_of_lost_ranks(const std::string& said) {
   Outcome outcome;
   outcome.err = said;
