@@ -24,9 +24,11 @@ struct DetectorRequest {
   std::size_t angle_pixels = 201;
   /// Half width of the angular map, in degrees; > 0 and <= 90.
   double window_deg = 1.0;
-  /// Exact, montecarlo (embree), or auto: exact where it is possible; "auto", "exact", "montecarlo" or "embree".
+  /// Method of tracing; montecarlo is that of embree, and auto is exact where it is possible; "auto", "exact",
+  /// "montecarlo" or "embree".
   std::string engine = "auto";
-  /// Exact: minimum power of a beam, as a fraction of the incident power; > 0 and < 1. Default: truncates at most 1e-5.
+  /// Minimum power of a beam that is followed, as a fraction of the incident power; > 0 and < 1. Default: truncates at
+  /// most 1e-5.
   std::optional<double> cutoff = {};
   /// Number of Monte Carlo rays; a whole number >= 1 and <= 68719476736. Default: 4194304.
   std::optional<std::uint64_t> samples = {};
@@ -39,7 +41,7 @@ struct DetectorRequest {
 struct CameraRequest {
   /// Distance of the lamp and the eye from the part; > 0 and <= 1e+06.
   double distance_m = 10.0;
-  /// Observation angle; the eye is above the lamp, in degrees; >= 0 and < 180.
+  /// Observation angle, in degrees; the eye is above the lamp; >= 0 and < 180.
   double observation_deg = 0.33;
   /// Vertical angle of the lamp, in degrees; > -90 and < 90.
   double v_deg = 0.0;
@@ -69,7 +71,7 @@ struct CameraRequest {
   std::optional<double> field_mm = {};
   /// Width and height of the sheet that shows an infinite design, in mm. Default: 100x100.
   std::optional<std::array<double, 2>> film_mm = {};
-  /// Radius of the cylinder around which the sheet is bent; negative: inside it, in mm; >= -1e+09 and <= 1e+09.
+  /// Radius of the cylinder around which the sheet is bent, in mm; negative: inside it; >= -1e+09 and <= 1e+09.
   /// Default: plane.
   std::optional<double> cylinder_mm = {};
   /// Relative noise of pixels to reach; > 0 and < 1.

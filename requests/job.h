@@ -10,22 +10,40 @@ namespace retrace {
 
 /// Settings of a fabrication job that are not in the design, as in `retrace job`.
 struct JobRequest {
+  /// Ideal, paper, thesis, ideal-dmc or a file.
   std::string machine = "ideal";
+  /// Width of the cutting edge, 0.1 to 2, in mm; with the strategy dmc 0.01 to 10; >= 0.01 and <= 10. Required.
   double tool_width_mm = 0.0;
+  /// Unidirectional, bidirectional or two-step; dmc for cube corners; "unidirectional", "bidirectional", "two-step" or
+  /// "dmc".
   std::string strategy = "two-step";
+  /// Depths, feeds and dwells: a shipped process or a file.
   std::string process = "thesis-acrylic";
+  /// Mould, or direct if the optic itself is cut; "mould" or "direct".
   std::string workpiece = "mould";
+  /// Shrinkage of the part, by which the mould is larger, in percent; >= 0 and <= 10.
   double shrinkage_percent = 0.0;
 };
 
 /// Settings of NC programs, as in `retrace fabricate`.
 struct FabricationRequest {
+  /// Rs274ngc, sinumerik, fanuc, pmac, a3200 or automation1; "rs274ngc", "sinumerik", "fanuc", "pmac", "a3200" or
+  /// "automation1".
   std::string dialect = "rs274ngc";
+  /// All, roughing, finishing, or one stage such as finishing-1-facet-2; with + also all later stages.
   std::string phase = "all";
+  /// Number of the element at whose first visit of the tool the programs start; a whole number >= 0 and <= 2147483647.
+  /// Default: the first.
   std::optional<std::uint64_t> from_element = {};
+  /// Number, from 1, of the pass in that visit at which the programs start; a narrow tool needs several passes per
+  /// element; a whole number >= 1 and <= 2147483647. Default: 1.
   std::optional<std::uint64_t> from_pass = {};
+  /// Number of visits of the tool to an element between optional stops; a whole number >= 1 and <= 2147483647. Default:
+  /// no stops.
   std::optional<std::uint64_t> stop_every = {};
+  /// Maximum duration of one program in hours; > 0. Default: all in one program.
   std::optional<double> split_hours = {};
+  /// Text of the job file, which is used instead of reading the file.
   std::optional<std::string> job_text = {};
 };
 

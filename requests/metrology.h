@@ -11,14 +11,23 @@ namespace retrace {
 /// Settings of the evaluation of a measured surface, as in `retrace metrology`. The spacing along y is that along x
 /// unless it is given.
 struct MetrologyRequest {
+  /// Form to remove: none, plane or poly2 to poly8; "none", "plane", "poly2", "poly3", "poly4", "poly5", "poly6",
+  /// "poly7" or "poly8".
   std::string form = "plane";
+  /// Cut-off of the Gaussian filter between roughness and waviness, in um; > 0.
   double cutoff_um = 80.0;
   std::optional<double> x_pixel_um = {};
   std::optional<double> y_pixel_um = {};
+  /// Unit of the heights: m, mm, um, nm or pm; "m", "mm", "um", "nm" or "pm". Default: as in the file.
   std::optional<std::string> height_unit = {};
+  /// Unit of lateral lengths without a unit: m, mm, um, nm or pm; "m", "mm", "um", "nm" or "pm". Default: as in the
+  /// file.
   std::optional<std::string> lateral_unit = {};
+  /// Channel of a GWY file; a whole number >= 0 and <= 999999. Default: the first.
   std::optional<std::size_t> channel = {};
+  /// Feed of the cut, for waves in Hz, in mm/min; > 0.
   std::optional<double> feed_mm_per_min = {};
+  /// Rows are profiles across an edge: fit its radius and chamfer.
   bool edge = false;
 };
 

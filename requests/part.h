@@ -12,18 +12,26 @@ namespace retrace {
 /// Selects a solid of a design: one element on its plate, the whole array, or the mould, which is the block behind the
 /// back of the part.
 struct SolidRequest {
+  /// Element, array, or mould (the block behind the part's back); "element", "array" or "mould".
   std::string what = "array";
+  /// Thickness of the mould below its deepest point, in mm; > 0 and <= 1e+06. Default: the plate's thickness.
   std::optional<double> block_mm = {};
 };
 
 /// Settings for a material that reflects light in the same way as a part (docs/theory/appearance.md). Its values are
 /// means over the discs of source and receiver.
 struct MaterialRequest {
+  /// Largest entrance angle, in degrees; >= 1 and <= 40.
   double entrance_deg = 20.0;
+  /// Largest angle between view and source, in degrees; >= 0.1 and <= 5.
   double window_deg = 1.0;
+  /// Angular diameter of the source, in arc minutes; >= 1 and <= 120.
   double source_arcmin = 10.0;
+  /// Angular diameter of the receiver, in arc minutes; >= 1 and <= 120.
   double receiver_arcmin = 10.0;
+  /// Relative error to reach; >= 0.001 and <= 0.5.
   double error = 0.02;
+  /// Maximum number of directions of light that are computed; a whole number >= 64 and <= 10000.
   std::uint64_t most_directions = 1000;
 };
 

@@ -11,23 +11,44 @@ namespace retrace {
 
 /// Settings of a photometric test, as in `retrace photometry`. For empty settings, the values of the standard are used.
 struct PhotometryRequest {
+  /// R150, j594, bicycle, d4956, iso20471, stvzvo, or a limits file. Required.
   std::string standard = {};
+  /// Class of the part, such as IA. Default: required if the standard has several.
   std::optional<std::string> part_class = {};
+  /// White, amber, red, yellow, .... Default: required if the standard has several.
   std::optional<std::string> colour = {};
+  /// Area of the whole part, of which the design may be a section; > 0 and <= 1e+06. Required.
   double area_cm2 = 0.0;
+  /// Rotations of the part about its normal (the one with the smallest reading counts), in degrees. Default: the
+  /// standard's.
   std::optional<std::vector<double>> rotation_deg = {};
+  /// None, red, amber (illustrative) or a file. Default: by the colour, unless the design's absorption is spectral.
   std::optional<std::string> dye = {};
+  /// Diameter of the source, in arc minutes; >= 0 and <= 300. Default: the standard's.
   std::optional<double> source_arcmin = {};
+  /// Diameter of the receiver, in arc minutes; >= 0 and <= 300. Default: the standard's.
   std::optional<double> receiver_arcmin = {};
+  /// Half angle of the far field that is computed, in degrees; >= 0.05 and <= 10.
   double window_deg = 2.0;
+  /// A, d65: a CIE illuminant as the eye sees it; design: the light of the design; "a", "d65" or "design".
   std::string light = "a";
+  /// Exact, montecarlo (embree), or auto: beams where they are possible; "auto", "exact", "montecarlo" or "embree".
   std::string engine = "auto";
+  /// Minimum power of a beam that is followed exactly, as a fraction of the light on one element (weaker beams are
+  /// resampled with auto and truncated with exact); > 0 and < 1. Default: 1e-5; finite parts with resampling: see
+  /// docs/commands.md.
   std::optional<double> cutoff = {};
+  /// Number of Monte Carlo rays for each direction; a whole number >= 1 and <= 68719476736. Default: 1048576.
   std::optional<std::uint64_t> samples = {};
+  /// Seed of the random numbers; a whole number >= 0 and <= 4294967295.
   std::uint32_t seed = 1;
+  /// Add diffraction to the geometric far field.
   bool diffraction = true;
+  /// Integrate the power inside and outside of the far field's window, as a check.
   bool window_power = false;
+  /// Search for a change of the design that passes if a point fails.
   bool advice = true;
+  /// Compute maps and curves, and make the drawings "far_field" and "r_a".
   bool pictures = false;
 };
 

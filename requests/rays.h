@@ -12,31 +12,54 @@ namespace retrace {
 
 /// Settings of a ray trace, as in `retrace rays`. The rays come either from the file `source` or from an emitter.
 struct RaysRequest {
+  /// Rays to trace: IES TM-25 (.tm25ray) or a table (.csv).
   std::filesystem::path source = {};
+  /// Disc that emits rays, instead of a file of rays; "lambertian", "gaussian" or "collimated".
   std::string emitter = {};
+  /// Emitter: diameter of its disc, in mm; >= 0 and <= 1e+09. Default: 0, a point; collimated light: the size of the
+  /// part or of one period.
   std::optional<double> disc_mm = {};
+  /// Emitter: half angle of its cone, in degrees; gaussian: where its light falls to exp(-2); >= 0 and <= 90. Default:
+  /// lambertian: 90, others: 0.
   std::optional<double> half_angle_deg = {};
+  /// Emitter: number of rays; a whole number >= 1 and <= 1099511627776.
   std::uint64_t rays = 1'000'000;
+  /// Emitter: total power of its rays, in W, or in lm if the design's light is weighted by the eye; > 0 and <= 1e+150.
   double power = 1.0;
+  /// Angle between the part's normal and a source that is aimed at the centre of the face, in degrees; > -90 and < 90.
   std::optional<double> incidence_deg = {};
+  /// Azimuth of the source, in degrees; >= -360 and <= 360.
   std::optional<double> azimuth_deg = {};
+  /// Distance of the source from the centre of the face, in mm; > 0 and <= 1e+09. Default: 10.
   std::optional<double> distance_mm = {};
+  /// Position of the source's origin, instead of angles and distance, in mm. Default: files: the part's origin.
   std::optional<std::array<double, 3>> at_mm = {};
+  /// Point at which the source's +z axis is aimed, in mm. Default: files: parallel to the part's +z axis.
   std::optional<std::array<double, 3>> aim_mm = {};
+  /// Minimum power, as a fraction of the launched ray, for following both branches; 1: never; >= 0 and <= 1.
   double split = 1.0;
+  /// Minimum power of a branch that is followed, as a fraction of the launched ray; >= 0 and <= 1.
   double cutoff = 1e-10;
+  /// Write polarisation even if the source has none.
   bool stokes = false;
+  /// Also write rays that miss the part.
   bool keep_missed = false;
+  /// File for the rays that leave the part, .tm25ray or .csv. Default: rays are not written.
   std::filesystem::path out = {};
+  /// Seed of the random numbers; a whole number >= 0 and <= 4294967295.
   std::uint32_t seed = 1;
 };
 
 /// Settings of trace(), which traces rays in memory. Each member has the same meaning as the member of RaysRequest with
 /// the same name.
 struct TraceRequest {
+  /// Minimum power, as a fraction of the launched ray, for following both branches; 1: never; >= 0 and <= 1.
   double split = 1.0;
+  /// Minimum power of a branch that is followed, as a fraction of the launched ray; >= 0 and <= 1.
   double cutoff = 1e-10;
+  /// Also return rays that miss the part.
   bool keep_missed = false;
+  /// Seed of the random numbers; a whole number >= 0 and <= 4294967295.
   std::uint32_t seed = 1;
 };
 

@@ -87,8 +87,11 @@ def needs_text(field: dict, fields: list[dict]) -> str:
         elif all(one.get("is") == "given" for one in need):
             sentences.append(f"Only with {' or '.join(names)}.")
         else:
-            words = " or ".join(need[0].get("one_of", []))
-            sentences.append(f"Only with {names[0]} {words}.")
+            parts = []
+            for name, one in zip(names, need):
+                words = " or ".join(one.get("one_of", []))
+                parts.append(f"without {name}" if one.get("is") == "absent" else f"with {name} {words}".strip())
+            sentences.append(f"Only {', or '.join(parts)}.")
     return " ".join(sentences)
 
 
