@@ -24,8 +24,7 @@ struct DetectorRequest {
   std::size_t angle_pixels = 201;
   /// Half width of the angular map, in degrees; > 0 and <= 90.
   double window_deg = 1.0;
-  /// Method of tracing; montecarlo is that of embree, and auto is exact where it is possible; "auto", "exact",
-  /// "montecarlo" or "embree".
+  /// Method of tracing; montecarlo is that of embree, and auto is exact where it is possible.
   std::string engine = "auto";
   /// Minimum power of a beam that is followed, as a fraction of the incident power; > 0 and < 1. Default: truncates at
   /// most 1e-5.

@@ -14,12 +14,11 @@ struct JobRequest {
   std::string machine = "ideal";
   /// Width of the cutting edge, 0.1 to 2, in mm; with the strategy dmc 0.01 to 10; >= 0.01 and <= 10. Required.
   double tool_width_mm = 0.0;
-  /// Unidirectional, bidirectional or two-step; dmc for cube corners; "unidirectional", "bidirectional", "two-step" or
-  /// "dmc".
+  /// Unidirectional, bidirectional or two-step; dmc for cube corners.
   std::string strategy = "two-step";
   /// Depths, feeds and dwells: a shipped process or a file.
   std::string process = "thesis-acrylic";
-  /// Mould, or direct if the optic itself is cut; "mould" or "direct".
+  /// Mould, or direct if the optic itself is cut.
   std::string workpiece = "mould";
   /// Shrinkage of the part, by which the mould is larger, in percent; >= 0 and <= 10.
   double shrinkage_percent = 0.0;
@@ -27,8 +26,7 @@ struct JobRequest {
 
 /// Settings of NC programs, as in `retrace fabricate`.
 struct FabricationRequest {
-  /// Rs274ngc, sinumerik, fanuc, pmac, a3200 or automation1; "rs274ngc", "sinumerik", "fanuc", "pmac", "a3200" or
-  /// "automation1".
+  /// Rs274ngc, sinumerik, fanuc, pmac, a3200 or automation1.
   std::string dialect = "rs274ngc";
   /// All, roughing, finishing, or one stage such as finishing-1-facet-2; with + also all later stages.
   std::string phase = "all";

@@ -18,10 +18,9 @@ struct MetrologyRequest {
   double cutoff_um = 80.0;
   std::optional<double> x_pixel_um = {};
   std::optional<double> y_pixel_um = {};
-  /// Unit of the heights: m, mm, um, nm or pm; "m", "mm", "um", "nm" or "pm". Default: as in the file.
+  /// Unit of the heights: m, mm, um, nm or pm. Default: as in the file.
   std::optional<std::string> height_unit = {};
-  /// Unit of lateral lengths without a unit: m, mm, um, nm or pm; "m", "mm", "um", "nm" or "pm". Default: as in the
-  /// file.
+  /// Unit of lateral lengths without a unit: m, mm, um, nm or pm. Default: as in the file.
   std::optional<std::string> lateral_unit = {};
   /// Channel of a GWY file; a whole number >= 0 and <= 999999. Default: the first.
   std::optional<std::size_t> channel = {};

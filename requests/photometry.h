@@ -30,9 +30,9 @@ struct PhotometryRequest {
   std::optional<double> receiver_arcmin = {};
   /// Half angle of the far field that is computed, in degrees; >= 0.05 and <= 10.
   double window_deg = 2.0;
-  /// A, d65: a CIE illuminant as the eye sees it; design: the light of the design; "a", "d65" or "design".
+  /// A, d65: a CIE illuminant as the eye sees it; design: the light of the design.
   std::string light = "a";
-  /// Exact, montecarlo (embree), or auto: beams where they are possible; "auto", "exact", "montecarlo" or "embree".
+  /// Exact, montecarlo (embree), or auto: beams where they are possible.
   std::string engine = "auto";
   /// Minimum power of a beam that is followed exactly, as a fraction of the light on one element (weaker beams are
   /// resampled with auto and truncated with exact); > 0 and < 1. Default: 1e-5; finite parts with resampling: see

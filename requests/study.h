@@ -17,7 +17,7 @@ struct StudyRequest {
   std::uint32_t seed = 1;
   /// SQLite file in which finished points are kept. Default: finished points are not kept.
   std::filesystem::path store = {};
-  /// Action if the store exists already: refuse, resume or overwrite; "refuse", "resume" or "overwrite".
+  /// Action if the store exists already: refuse, resume or overwrite.
   std::string if_exists = "refuse";
 };
 

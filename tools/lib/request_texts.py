@@ -34,6 +34,8 @@ def range_of(field: dict) -> str:
     """Returns the allowed numbers or words, or an empty text if they follow from the type or the meaning."""
     if field["kind"] not in ("number", "whole", "word") or field["allowed"] == "any number":
         return ""
+    if all(word in field["meaning"] for word in field.get("words", [""])):
+        return "" if field["kind"] == "word" else field["allowed"]
     return field["allowed"]
 
 
@@ -80,7 +82,7 @@ def needs_text(field: dict, fields: list[dict]) -> str:
     options = {other["name"]: other.get("option", "") for other in fields}
     sentences = []
     for need in field.get("needs", []):
-        names = [f"`{options.get(one['field'], one['field'])}`" for one in need]
+        names = [f"`{options.get(one['field'], '--' + one['field'])}`" for one in need]
         if all(one.get("is") == "absent" for one in need):
             together = " and ".join(names)
             sentences.append(f"Not with {together}{' together' if len(names) > 1 else ''}.")
