@@ -150,14 +150,18 @@ def default_of(field: dict) -> object:
         numbers = [float(text) for text in field["usual"].split("x")]
         return tuple(numbers) if field["kind"] == "numbers" else None
     default = field["default"]
-    if field["kind"] == "whole" and default is not None:
-        return int(default)
-    if field["kind"] == "file" and default == "":
+    if default is None or (field["kind"] in ("file", "word") and default == ""):
         return None
+    if field["kind"] == "whole":
+        return int(default)
+    if field["kind"] == "number":
+        return float(default)
     if not isinstance(default, list):
         return default
     if field.get("is_whole"):
         return tuple(int(number) for number in default)
+    if field["kind"] in ("numbers", "number_or_numbers"):
+        default = [float(number) for number in default]
     is_one = field["kind"] == "number_or_numbers" and len(default) == 1
     return default[0] if is_one else tuple(default)
 

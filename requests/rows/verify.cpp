@@ -11,43 +11,44 @@ using schema::access;
 constexpr std::string_view kReadDialects[] = {"auto", "rs274ngc", "sinumerik", "fanuc", "pmac", "a3200", "automation1"};
 
 // Texts of files in memory (VerificationRequest::texts) have no row, because only callers in C++ and Python have them.
-constexpr Row kVerificationRows[] = {{.name = "job",
-                                      .kind = File{"a job file"},
-                                      .meaning = "job file",
-                                      .access = access<&VerificationRequest::job>,
-                                      .spelling = {.value = "FILE", .is_no_option = true, .is_no_keyword = true},
-                                      .is_required = true},
-                                     {.name = "programs",
-                                      .kind = Texts{},
-                                      .meaning = "NC programs, in the order in which they run; FILE@LINE: the program "
-                                                 "was stopped after this line",
-                                      .access = access<&VerificationRequest::programs>,
-                                      .spelling = {.value = "FILE", .is_no_option = true, .is_no_keyword = true},
-                                      .is_required = true},
-                                     {"standing",
-                                      Text{"the name of a stage"},
-                                      "name of the next stage of a job, such as finishing-1-facet-1: all stages before "
-                                      "it have been cut",
-                                      access<&VerificationRequest::standing>,
-                                      {.value = "STAGE", .otherwise = "the blank is uncut"}},
-                                     {"dialect",
-                                      Word{kReadDialects},
-                                      "rs274ngc, sinumerik, fanuc, pmac, a3200, automation1, or auto: recognised from "
-                                      "the text",
-                                      access<&VerificationRequest::dialect>,
-                                      {.value = "DIALECT"}},
-                                     {"tolerance_nm",
-                                      Number{{.low = 0.0, .low_included = false}},
-                                      "maximum deviation of the facet planes of a job from the design",
-                                      access<&VerificationRequest::tolerance_nm>,
-                                      {.value = "T",
-                                       .otherwise = "10, or the deviation that the increments of a Fanuc control cause "
-                                                    "if it is larger"}},
-                                     {"as_machined",
-                                      File{"a design file"},
-                                      "output file for the design of the machined part",
-                                      access<&VerificationRequest::as_machined>,
-                                      {.value = "FILE", .otherwise = "none", .is_no_option = true, .is_no_keyword = true}}};
+constexpr Row kVerificationRows[] = {
+    {.name = "job",
+     .kind = File{"a job file"},
+     .meaning = "job file",
+     .access = access<&VerificationRequest::job>,
+     .spelling = {.value = "FILE", .is_no_option = true, .is_no_keyword = true},
+     .is_required = true},
+    {.name = "programs",
+     .kind = Texts{},
+     .meaning = "NC programs, in the order in which they run; FILE@LINE: the program "
+                "was stopped after this line",
+     .access = access<&VerificationRequest::programs>,
+     .spelling = {.value = "FILE", .is_no_option = true, .is_no_keyword = true},
+     .is_required = true},
+    {"dialect",
+     Word{kReadDialects},
+     "rs274ngc, sinumerik, fanuc, pmac, a3200, automation1, or auto: recognised from "
+     "the text",
+     access<&VerificationRequest::dialect>,
+     {.value = "DIALECT"}},
+    {"tolerance_nm",
+     Number{{.low = 0.0, .low_included = false}},
+     "maximum deviation of the facet planes of a job from the design",
+     access<&VerificationRequest::tolerance_nm>,
+     {.value = "T",
+      .otherwise = "10, or the deviation that the increments of a Fanuc control cause "
+                   "if it is larger"}},
+    {"standing",
+     Text{"the name of a stage"},
+     "name of the next stage of a job, such as finishing-1-facet-1: all stages before "
+     "it have been cut",
+     access<&VerificationRequest::standing>,
+     {.value = "STAGE", .otherwise = "the blank is uncut"}},
+    {"as_machined",
+     File{"a design file"},
+     "output file for the design of the machined part",
+     access<&VerificationRequest::as_machined>,
+     {.value = "FILE", .otherwise = "none", .is_no_option = true, .is_no_keyword = true}}};
 
 }  // namespace
 

@@ -70,11 +70,12 @@ TEST(Library, HeadersNeedTheStandardLibraryAlone) {
   for (const fs::directory_entry& entry : fs::directory_iterator(kSource / "library/retrace"))
     headers.push_back(entry.path());
   for (const std::string& line : lines_of(read_text(kSource / "library/CMakeLists.txt")))
-    for (std::smatch found; std::regex_search(line, found, std::regex(R"(/(requests/\w+\.h)")")); break)
+    if (std::smatch found; std::regex_search(line, found, std::regex("/(requests/\\w+\\.h)\"")))
       headers.push_back(kSource / found[1].str());
   ASSERT_GE(headers.size(), 10U);
   const std::regex include(R"(\s*#\s*include\s*(.*))");
-  const std::regex allowed(R"((<[a-z_]+>|"retrace/\w+\.h"|"core/(api|error|field|progress|warning)\.h"|"requests/\w+\.h"|"(api|field)\.h").*)");
+  const std::regex allowed(
+      R"((<[a-z_]+>|"(retrace|requests)/\w+\.h"|"core/(api|error|field|progress|warning)\.h"|"(api|field)\.h").*)");
   for (const fs::path& header : headers) {
     std::smatch found;
     for (const std::string& line : lines_of(read_text(header)))

@@ -4,6 +4,7 @@ allowed values. The package never crashes."""
 import math
 import os
 import random
+import re
 import unittest
 
 import numpy as np
@@ -185,11 +186,12 @@ class Arguments(unittest.TestCase):
         import inspect
 
         from retrace._arguments import thread_count
-        from retrace._options import OPTIONS
 
         self.assertEqual(thread_count(None), 0)
         for function in (rt.rre, rt.photometry, rt.mesh, rt.job, rt.fabricate, rt.verify):
-            options = OPTIONS[{"mesh": "export"}.get(function.__name__, function.__name__)]
+            command = {"mesh": "export"}.get(function.__name__, function.__name__)
+            shown = program.run(command, "--help")[1]
+            options = dict(re.findall(r"^  --([a-z-]+) [^ =]+=(\S+)", shown, re.MULTILINE))
             compared = 0
             for name, parameter in inspect.signature(function).parameters.items():
                 for option in (
@@ -197,8 +199,7 @@ class Arguments(unittest.TestCase):
                     name.removesuffix("_deg"),
                     name.removesuffix("_"),
                 ):
-                    default = options.get(option, ("", ""))[1]
-                    if default:
+                    if default := options.get(option):
                         compared += 1
                         self.assertEqual(str(parameter.default).removesuffix(".0"), default, name)
                         break

@@ -34,7 +34,11 @@ CALLS = {
     "camera": (partial(rt.image.camera, BRICK), _core.CameraRequest, ["image", BRICK, "--camera"]),
     "road": (partial(rt.image.road, BRICK), _core.RoadRequest, ["image", BRICK, "--road"]),
     "metrology": (partial(rt.metrology, HEIGHTS), _core.MetrologyRequest, ["metrology", HEIGHTS]),
-    "solid": (partial(rt.mesh, BRICK), _core.SolidRequest, ["export", BRICK, "-o", "part.stl"]),
+    "solid": (
+        partial(rt.mesh, BRICK, what="mould"),
+        _core.SolidRequest,
+        ["export", BRICK, "-o", "part.stl", "--what=mould"],
+    ),
     "material": (
         partial(rt.export_material, BRICK, "part.json"),
         _core.MaterialRequest,
@@ -65,9 +69,10 @@ CALLS = {
 
 def wrong_value(chance, field):
     """Returns a random number, list or word that the field does not allow, or None."""
-    far = chance.choice((-1.0, 1.0)) * 10 ** chance.uniform(11, 300)
+    signs = [sign for sign, bound in ((-1.0, ">"), (1.0, "<")) if bound in field["allowed"]]
+    far = chance.choice(signs or [1.0]) * 10 ** chance.uniform(11, 300)
     if field["kind"] == "number":
-        return far if field["allowed"] != "any number" else None
+        return far if signs else None
     if field["kind"] == "whole":
         return chance.choice((int(-(10 ** chance.uniform(0, 9))), 2**53 - chance.randrange(1000)))
     if field["kind"] == "numbers":
@@ -75,7 +80,7 @@ def wrong_value(chance, field):
     if field["kind"] == "word":
         return "".join(chance.choice("abcxyz") for _ in range(chance.randrange(2, 9)))
     if field["kind"] == "number_or_numbers":
-        return [abs(far)]
+        return [-abs(far)]
     return None
 
 
@@ -99,7 +104,10 @@ class Requests(unittest.TestCase):
             (request["name"], field)
             for request in program.requests()
             for field in request["fields"]
-            if request["name"] in CALLS and "keyword" in field and wrong_value(chance, field) is not None
+            if request["name"] in CALLS
+            and "keyword" in field
+            and all(one.get("is") != "given" for need in field.get("needs", []) for one in need)
+            and wrong_value(chance, field) is not None
         ]
         for _ in range(200):
             name, field = chance.choice(fields)
@@ -117,7 +125,8 @@ class Requests(unittest.TestCase):
                 if arguments is None or "option" not in field:
                     continue
                 option = f"{field['option']}={on_command_line(value, field)}"
-                code, _, err = program.run(*arguments, option)
+                others = [one for one in arguments if not one.startswith(field["option"] + "=")]
+                code, _, err = program.run(*others, option)
                 self.assertEqual(code, 2)
                 self.assertEqual(err, f"retrace: {field['option']}: {error.message}\n")
 

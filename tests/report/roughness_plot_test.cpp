@@ -19,7 +19,7 @@ TEST(RoughnessPlot, HasACurveForEachLengthAndPointsForFacets) {
   process.facets = 21;
   process.waviness_sa_nm = 32.93;
   first.table = second.table = "some/ten_facets.csv";
-  result.request.measured = {process, first, second};
+  result.measured = {process, first, second};
   for (const double length_um : result.request.correlation_length_um)
     for (const double sa_nm : {0.0, 10.0})
       result.points.push_back({sa_nm, 0.0, length_um, {}, 1.0 - 0.01 * sa_nm, 0.0});

@@ -41,24 +41,28 @@ std::vector<double> outside(const NumberRange& range, bool is_whole) {
 std::vector<Value> wrong_values(const schema::Kind& kind) {
   std::vector<Value> wrong;
   const auto add = [&](const std::vector<double>& numbers, std::size_t count) {
-    for (const double number : numbers) wrong.push_back(count == 0 ? Value(number) : std::vector(count, number));
+    for (const double number : numbers)
+      if (count == 0)
+        wrong.emplace_back(number);
+      else
+        wrong.emplace_back(std::vector<double>(count, number));
   };
   std::visit(Overloaded{[&](const schema::Number& number) { add(outside(number.range, false), 0); },
                         [&](const schema::Whole& whole) { add(outside(whole.range, true), 0); },
                         [&](const schema::Numbers& numbers) {
                           add(outside(numbers.range, numbers.is_whole), numbers.count);
-                          wrong.push_back(std::vector<double>(numbers.count + 1, 1.0));
+                          wrong.emplace_back(std::vector<double>(numbers.count + 1, 1.0));
                         },
                         [&](const schema::NumberOrNumbers& numbers) {
                           add(outside(numbers.range, numbers.is_whole), 1);
-                          wrong.push_back(std::vector<double>());
+                          wrong.emplace_back(std::vector<double>());
                         },
-                        [&](const schema::Word&) { wrong.push_back(std::string("no such word")); },
-                        [&](const schema::File&) { wrong.push_back(std::string()); },
-                        [&](const schema::WordOrFile&) { wrong.push_back(std::string()); }, [](const auto&) {}},
+                        [&](const schema::Word&) { wrong.emplace_back(std::string("no such word")); },
+                        [&](const schema::File&) { wrong.emplace_back(std::string()); },
+                        [&](const schema::WordOrFile&) { wrong.emplace_back(std::string()); }, [](const auto&) {}},
              kind);
-  if (!std::holds_alternative<schema::Flag>(kind)) wrong.push_back(true);
-  if (!std::holds_alternative<schema::Texts>(kind)) wrong.push_back(std::vector<std::string>{"a", "b"});
+  if (!std::holds_alternative<schema::Flag>(kind)) wrong.emplace_back(true);
+  if (!std::holds_alternative<schema::Texts>(kind)) wrong.emplace_back(std::vector<std::string>{"a", "b"});
   return wrong;
 }
 
@@ -92,7 +96,8 @@ TEST(Requests, NamesAndSpellingsAreUnique) {
       EXPECT_EQ(option_of_field(row.field().name), option_of(row)) << row.name << ": qualify the name";
       for (const Need need : row.needs)
         for (const schema::Condition& condition : need)
-          EXPECT_TRUE(condition.key == "out" || row_of(request, condition.key) != nullptr) << condition.key << " is no field";
+          EXPECT_TRUE(condition.key == "out" || row_of(request, condition.key) != nullptr)
+              << condition.key << " is no field";
     }
   });
 }

@@ -11,8 +11,8 @@
 #include "requests/descriptions.h"
 #include "studies/fabrication/fabricate.h"
 #include "studies/fabrication/job_maker.h"
-#include "support/prism_jobs.h"
-#include "support/refusals.h"
+#include "tests/support/prism_jobs.h"
+#include "tests/support/refusals.h"
 
 // Requests for fabrication jobs, NC programs and verifications: the words of their rows, and the values that are
 // refused.

@@ -222,19 +222,17 @@ const std::string kStarts[] = {"G97 S800 M3", "S800 M3", "G97 S800 M3", "M103", 
 const std::string kStops[] = {"M5", "M5", "M5", "M105", "M105", "M105"};
 
 /// Returns the kinds of all findings, with the speed of the spindle and the program line: "feed" for a feed move,
-/// "stop" and "speed" for lines that only stop the spindle or set its speed, and "end" for other lines. Records their
-/// messages.
+/// "stop" for a line that only stops the spindle, and "end" for other lines. Records their messages.
 std::string spindle_findings(const PlanedPart& part, const std::string& text, NcDialect dialect) {
   const std::vector<std::string> lines = lines_of(text);
   std::string found;
   for (const Finding& f : check_of(part, text, dialect).findings) {
     record_message(f.message);
     EXPECT_EQ(f.limit, static_cast<double>(part.lathe->spindle_rpm));
-    const std::string& line = lines.at(static_cast<std::size_t>(f.line) - 1);
+    const std::string line = f.line > 0 ? lines.at(static_cast<std::size_t>(f.line) - 1) : "";
     std::string place = "end";
     if (line.starts_with("G1 ") || line.starts_with("linear ")) place = "feed";
     if (line == kStops[static_cast<std::size_t>(dialect)]) place = "stop";
-    if (line == "S80") place = "speed";
     found += fmt::format("{} {} rpm, {};", f.kind, f.value, place);
   }
   return found;
@@ -278,7 +276,7 @@ TEST(Lathe, EveryFaultOfTheSpindleIsFoundInEveryDialect) {
     EXPECT_EQ(found(with_line(text, start, start.substr(0, start.size() - 1) + "4")), "spindle 800 rpm, feed;") << d;
     EXPECT_EQ(found(with_line(text, start, "S801 M3")), "spindle 801 rpm, feed;") << d;
     EXPECT_EQ(found(with_line(text, start, "M3")), "spindle 0 rpm, feed;") << d;
-    EXPECT_EQ(found(std::string(text).insert(last_cut, "S80\n")), "spindle 80 rpm, speed;") << d;
+    EXPECT_EQ(found(std::string(text).insert(last_cut, "S80\n")), "spindle 80 rpm, feed;") << d;
   }
 }
 
