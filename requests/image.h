@@ -24,7 +24,8 @@ struct DetectorRequest {
   std::size_t angle_pixels = 201;
   /// Half width of the angular map, in degrees; > 0 and <= 90.
   double window_deg = 1.0;
-  /// Method of tracing; montecarlo is that of embree, and auto is exact where it is possible.
+  /// Method of tracing: beams (exact), rays (montecarlo or embree, which are the same here), or auto: exact if
+  /// possible.
   std::string engine = "auto";
   /// Minimum power of a beam that is followed, as a fraction of the incident power; > 0 and < 1. Default: truncates at
   /// most 1e-5.
@@ -66,19 +67,19 @@ struct CameraRequest {
   std::size_t columns = 400;
   /// Columns and rows of the picture.
   std::size_t rows = 300;
-  /// Width of the picture, measured at the part, in mm; > 0. Default: the part and a margin.
+  /// Width of the field of view at the part, in mm; > 0. Default: the part and a margin.
   std::optional<double> field_mm = {};
   /// Width and height of the sheet that shows an infinite design, in mm. Default: 100x100.
   std::optional<std::array<double, 2>> film_mm = {};
   /// Radius of the cylinder around which the sheet is bent, in mm; negative: inside it; >= -1e+09 and <= 1e+09.
   /// Default: plane.
   std::optional<double> cylinder_mm = {};
-  /// Relative noise of pixels to reach; > 0 and < 1.
+  /// Relative noise of the pixels at which the picture ends; > 0 and < 1.
   double noise = 0.02;
-  /// Number of passes of four light paths per pixel, instead of noise; a whole number >= 2 and <= 65536. Default: as
-  /// many as the noise requires.
+  /// Number of passes, each with four light paths per pixel; not together with the noise; a whole number >= 2 and <=
+  /// 65536. Default: as many as the noise requires.
   std::optional<std::uint32_t> passes = {};
-  /// IES or EULUMDAT file (.ies, .ldt) of the lamp or headlamps. Default: an even lamp.
+  /// IES or EULUMDAT file (.ies, .ldt) of the lamp or headlamps. Default: the same intensity in all directions.
   std::filesystem::path lamp = {};
   /// Downward tilt of the axis of a lamp from a file, in degrees; >= -45 and <= 45.
   double lamp_aim_deg = 0.0;
@@ -92,13 +93,13 @@ struct RoadRequest {
   std::vector<double> distance_m = {10.0, 30.0, 100.0};
   /// Intensity of each headlamp towards the reflectors; > 0 and <= 1e+06.
   double lamp_cd = 10'000.0;
-  /// IES or EULUMDAT file (.ies, .ldt) of the lamp or headlamps. Default: an even lamp.
+  /// IES or EULUMDAT file (.ies, .ldt) of the lamp or headlamps. Default: the same intensity in all directions.
   std::filesystem::path lamp = {};
   /// Height of the centres of the headlamps; >= 0.2 and <= 3.
   double lamp_height_m = 0.65;
   /// Downward tilt of the axis of a lamp from a file, in degrees; >= -45 and <= 45.
   double lamp_aim_deg = 0.0;
-  /// None, red, amber (illustrative) or a file.
+  /// Dye of the reflectors: none, red, amber (illustrative) or a file.
   std::string dye = "none";
   /// Seed of the random numbers; a whole number >= 0 and <= 4294967295.
   std::uint32_t seed = 1;

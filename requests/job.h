@@ -10,28 +10,29 @@ namespace retrace {
 
 /// Settings of a fabrication job that are not in the design, as in `retrace job`.
 struct JobRequest {
-  /// Ideal, paper, thesis, ideal-dmc or a file.
+  /// Shipped machine, or machine file.
   std::string machine = "ideal";
   /// Width of the cutting edge, 0.1 to 2, in mm; with the strategy dmc 0.01 to 10; >= 0.01 and <= 10. Required.
   double tool_width_mm = 0.0;
-  /// Unidirectional, bidirectional or two-step; dmc for cube corners.
+  /// Strategy of cutting: unidirectional, bidirectional or two-step; dmc for cube corners.
   std::string strategy = "two-step";
-  /// Depths, feeds and dwells: a shipped process or a file.
+  /// Shipped process or file with the depths, feeds and dwell times of the cuts.
   std::string process = "thesis-acrylic";
-  /// Mould, or direct if the optic itself is cut.
+  /// Workpiece: mould, or direct if the optic itself is cut.
   std::string workpiece = "mould";
-  /// Shrinkage of the part, by which the mould is larger, in percent; >= 0 and <= 10.
+  /// Shrinkage of the part, in percent; the mould is larger than the part by this amount; >= 0 and <= 10.
   double shrinkage_percent = 0.0;
 };
 
 /// Settings of NC programs, as in `retrace fabricate`.
 struct FabricationRequest {
-  /// Rs274ngc, sinumerik, fanuc, pmac, a3200 or automation1.
+  /// Dialect of the programs: rs274ngc, sinumerik, fanuc, pmac, a3200 or automation1.
   std::string dialect = "rs274ngc";
-  /// All, roughing, finishing, or one stage such as finishing-1-facet-2; with + also all later stages.
+  /// Stages in the programs: all, roughing, finishing, or one stage such as finishing-1-facet-2; with + also all later
+  /// stages.
   std::string phase = "all";
-  /// Number of the element at whose first visit of the tool the programs start; a whole number >= 0 and <= 2147483647.
-  /// Default: the first.
+  /// Number of the element at which the programs start, with the first visit of the tool; a whole number >= 0 and <=
+  /// 2147483647. Default: the first.
   std::optional<std::uint64_t> from_element = {};
   /// Number, from 1, of the pass in that visit at which the programs start; a narrow tool needs several passes per
   /// element; a whole number >= 1 and <= 2147483647. Default: 1.
@@ -41,7 +42,7 @@ struct FabricationRequest {
   std::optional<std::uint64_t> stop_every = {};
   /// Maximum duration of one program in hours; > 0. Default: all in one program.
   std::optional<double> split_hours = {};
-  /// Text of the job file, which is used instead of reading the file.
+  /// Text of the job file, which is used instead of reading the file. Default: the text of the file.
   std::optional<std::string> job_text = {};
 };
 

@@ -12,7 +12,7 @@ namespace retrace {
 /// Selects a solid of a design: one element on its plate, the whole array, or the mould, which is the block behind the
 /// back of the part.
 struct SolidRequest {
-  /// Element, array, or mould (the block behind the part's back).
+  /// Solid: element, array, or mould (the block behind the part's back).
   std::string what = "array";
   /// Thickness of the mould below its deepest point, in mm; > 0 and <= 1e+06. Default: the plate's thickness.
   std::optional<double> block_mm = {};

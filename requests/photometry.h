@@ -11,18 +11,19 @@ namespace retrace {
 
 /// Settings of a photometric test, as in `retrace photometry`. For empty settings, the values of the standard are used.
 struct PhotometryRequest {
-  /// R150, j594, bicycle, d4956, iso20471, stvzvo, or a limits file. Required.
+  /// Standard: r150, j594, bicycle, d4956, iso20471, stvzvo, or a limits file. Required.
   std::string standard = {};
   /// Class of the part, such as IA. Default: required if the standard has several.
   std::optional<std::string> part_class = {};
-  /// White, amber, red, yellow, .... Default: required if the standard has several.
+  /// Colour of the part: white, amber, red, yellow and so on. Default: required if the standard has several.
   std::optional<std::string> colour = {};
   /// Area of the whole part, of which the design may be a section; > 0 and <= 1e+06. Required.
   double area_cm2 = 0.0;
   /// Rotations of the part about its normal (the one with the smallest reading counts), in degrees. Default: the
   /// standard's.
   std::optional<std::vector<double>> rotation_deg = {};
-  /// None, red, amber (illustrative) or a file. Default: by the colour, unless the design's absorption is spectral.
+  /// Dye of the part: none, red, amber (illustrative) or a file. Default: by the colour, unless the design's absorption
+  /// is spectral.
   std::optional<std::string> dye = {};
   /// Diameter of the source, in arc minutes; >= 0 and <= 300. Default: the standard's.
   std::optional<double> source_arcmin = {};
@@ -30,9 +31,9 @@ struct PhotometryRequest {
   std::optional<double> receiver_arcmin = {};
   /// Half angle of the far field that is computed, in degrees; >= 0.05 and <= 10.
   double window_deg = 2.0;
-  /// A, d65: a CIE illuminant as the eye sees it; design: the light of the design.
+  /// Light: a or d65, which are CIE illuminants as the eye sees them, or design, the light of the design.
   std::string light = "a";
-  /// Exact, montecarlo (embree), or auto: beams where they are possible.
+  /// Method of tracing: beams (exact), rays (montecarlo or embree), or auto: beams if possible.
   std::string engine = "auto";
   /// Minimum power of a beam that is followed exactly, as a fraction of the light on one element (weaker beams are
   /// resampled with auto and truncated with exact); > 0 and < 1. Default: 1e-5; finite parts with resampling: see

@@ -12,9 +12,9 @@ namespace retrace {
 
 /// Settings of a ray trace, as in `retrace rays`. The rays come either from the file `source` or from an emitter.
 struct RaysRequest {
-  /// Rays to trace: IES TM-25 (.tm25ray) or a table (.csv).
+  /// Rays to trace: IES TM-25 (.tm25ray) or a table (.csv). Default: rays of an emitter.
   std::filesystem::path source = {};
-  /// Disc that emits rays, instead of a file of rays; "lambertian", "gaussian" or "collimated".
+  /// Disc that emits rays: lambertian, gaussian or collimated. Default: rays of a file.
   std::string emitter = {};
   /// Emitter: diameter of its disc, in mm; >= 0 and <= 1e+09. Default: 0, a point; collimated light: the size of the
   /// part or of one period.
@@ -27,8 +27,9 @@ struct RaysRequest {
   /// Emitter: total power of its rays, in W, or in lm if the design's light is weighted by the eye; > 0 and <= 1e+150.
   double power = 1.0;
   /// Angle between the part's normal and a source that is aimed at the centre of the face, in degrees; > -90 and < 90.
+  /// Default: 0.
   std::optional<double> incidence_deg = {};
-  /// Azimuth of the source, in degrees; >= -360 and <= 360.
+  /// Azimuth of the source, in degrees; >= -360 and <= 360. Default: 0.
   std::optional<double> azimuth_deg = {};
   /// Distance of the source from the centre of the face, in mm; > 0 and <= 1e+09. Default: 10.
   std::optional<double> distance_mm = {};

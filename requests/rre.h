@@ -18,7 +18,7 @@ struct RreRequest {
   std::vector<std::array<double, 2>> incidence_spans_deg = {};
   /// Azimuths of the source, in degrees.
   std::vector<double> azimuth_deg = {0.0};
-  /// Exact, stochastic, montecarlo (cell or embree), or auto: the fastest for each direction.
+  /// Method of tracing: exact, stochastic, montecarlo (cell or embree), or auto: the fastest for each direction.
   std::string engine = "auto";
   /// Standard error of RRE to reach, as a fraction; with exact, the maximum truncated power; > 0 and < 1. Default:
   /// 0.0001; with exact: 1e-10.
@@ -28,7 +28,7 @@ struct RreRequest {
   /// Minimum power of light that is followed, as a fraction of the incident power; >= 0 and < 1. Default: 1e-10; exact:
   /// determined by the target error.
   std::optional<double> cutoff = {};
-  /// Stratified, or plain: random points without splitting, for comparison.
+  /// Method of sampling: stratified, or plain, which is random points without splitting, for comparison.
   std::string sampling = "stratified";
   /// Seed of the random numbers; a whole number >= 0 and <= 4294967295.
   std::uint32_t seed = 1;

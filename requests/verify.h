@@ -16,7 +16,7 @@ struct VerificationRequest {
   std::filesystem::path job = {};
   /// NC programs, in the order in which they run; FILE@LINE: the program was stopped after this line. Required.
   std::vector<std::string> programs = {};
-  /// Rs274ngc, sinumerik, fanuc, pmac, a3200, automation1, or auto: recognised from the text.
+  /// Dialect of the programs: rs274ngc, sinumerik, fanuc, pmac, a3200, automation1, or auto: recognised from the text.
   std::string dialect = "auto";
   /// Maximum deviation of the facet planes of a job from the design, in nm; > 0. Default: 10, or the deviation that the
   /// increments of a Fanuc control cause if it is larger.

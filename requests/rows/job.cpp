@@ -42,7 +42,7 @@ constexpr Row kJobRows[] = {{.name = "tool_width_mm",
                              {.value = "MACHINE"}},
                             {"strategy",
                              Word{kStrategies},
-                             "unidirectional, bidirectional or two-step; dmc for cube corners",
+                             "strategy of cutting: unidirectional, bidirectional or two-step; dmc for cube corners",
                              access<&JobRequest::strategy>,
                              {.value = "STRATEGY"}},
                             {"process",
@@ -52,7 +52,7 @@ constexpr Row kJobRows[] = {{.name = "tool_width_mm",
                              {.value = "PROCESS"}},
                             {"workpiece",
                              Word{kWorkpieces},
-                             "mould, or direct if the optic itself is cut",
+                             "workpiece: mould, or direct if the optic itself is cut",
                              access<&JobRequest::workpiece>,
                              {.value = "KIND"}},
                             {"shrinkage_percent",
@@ -73,12 +73,13 @@ constexpr Need kNeedFromElement[] = {kFromElement};
 constexpr Row kFabricationRows[] = {
     {"dialect",
      Word{kProgramDialects},
-     "rs274ngc, sinumerik, fanuc, pmac, a3200 or automation1",
+     "dialect of the programs: rs274ngc, sinumerik, fanuc, pmac, a3200 or automation1",
      access<&FabricationRequest::dialect>,
      {.value = "DIALECT"}},
     {"phase",
      Text{"all, roughing, finishing or the name of a stage"},
-     "all, roughing, finishing, or one stage such as finishing-1-facet-2; with + also all later stages",
+     "stages in the programs: all, roughing, finishing, or one stage such as finishing-1-facet-2; with + also all "
+     "later stages",
      access<&FabricationRequest::phase>,
      {.value = "PHASE"}},
     {"from_element",
@@ -107,7 +108,7 @@ constexpr Row kFabricationRows[] = {
      Text{"the text of a job file"},
      "text of the job file, which is used instead of reading the file",
      access<&FabricationRequest::job_text>,
-     {.value = "TEXT", .is_no_option = true, .is_no_keyword = true}}};
+     {.value = "TEXT", .otherwise = "the text of the file", .is_no_option = true, .is_no_keyword = true}}};
 
 }  // namespace
 

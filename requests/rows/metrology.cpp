@@ -69,7 +69,7 @@ constexpr Row kMetrologyRows[] = {
      Number{kPositive},
      "feed of the cut, for waves in Hz",
      access<&MetrologyRequest::feed_mm_per_min>,
-     {.value = "F"}},
+     {.value = "F", .otherwise = "no frequencies"}},
     {"edge", schema::Flag{}, "rows are profiles across an edge: fit its radius and chamfer",
      access<&MetrologyRequest::edge>}};
 
@@ -85,8 +85,7 @@ const Request& description<MetrologyRequest>() {
 }
 
 const Request& height_map_reading() {
-  static constexpr Request request{"correct", "correct", kReadingRows,
-                                   initial_object<MetrologyRequest>};
+  static constexpr Request request{"correct", "correct", kReadingRows, initial_object<MetrologyRequest>};
   return request;
 }
 

@@ -13,7 +13,7 @@ constexpr Need kNeedMould[] = {kMould};
 
 constexpr Row kSolidRows[] = {{"what",
                                Word{kSolids},
-                               "element, array, or mould (the block behind the part's back)",
+                               "solid: element, array, or mould (the block behind the part's back)",
                                access<&SolidRequest::what>,
                                {.value = "WHAT"}},
                               {"block_mm",

@@ -27,7 +27,7 @@ constexpr Row kVerificationRows[] = {
      .is_required = true},
     {"dialect",
      Word{kReadDialects},
-     "rs274ngc, sinumerik, fanuc, pmac, a3200, automation1, or auto: recognised from "
+     "dialect of the programs: rs274ngc, sinumerik, fanuc, pmac, a3200, automation1, or auto: recognised from "
      "the text",
      access<&VerificationRequest::dialect>,
      {.value = "DIALECT"}},
