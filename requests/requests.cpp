@@ -27,7 +27,7 @@ const Row* row_of(const Request& request, std::string_view name) {
 std::string option_of(const Row& row) {
   if (!row.spelling.option.empty()) return std::string(row.spelling.option);
   std::string option = (row.spelling.notation == Notation::absent ? "--no-" : "--") + std::string(row.name);
-  std::ranges::replace(option, '_', '-');
+  std::replace(option.begin(), option.end(), '_', '-');
   return option;
 }
 

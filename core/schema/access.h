@@ -65,7 +65,8 @@ void from_value(Type& member, const Value& value) {
     else
       from_value(member.emplace(), value);
   } else if constexpr (is_array<Type>) {
-    std::ranges::copy(std::get<std::vector<double>>(value), member.begin());
+    const auto& numbers = std::get<std::vector<double>>(value);
+    std::copy(numbers.begin(), numbers.end(), member.begin());
   } else if constexpr (std::is_same_v<Type, std::filesystem::path>) {
     const std::string* const name = std::get_if<std::string>(&value);
     member = name != nullptr ? *name : std::string();

@@ -40,7 +40,7 @@ Type fields_of(const Json& request) {
   Type fields;
   for (const requests::Row& row : requests::description<Type>().rows) {
     std::string key = requests::option_of(row).substr(2);
-    std::ranges::replace(key, '-', '_');
+    std::replace(key.begin(), key.end(), '-', '_');
     const auto found = request.find(key);
     if (found == request.end()) continue;
     if (found->is_number()) requests::set(row, &fields, found->template get<double>());

@@ -124,7 +124,7 @@ TEST_P(Completion, KnowsWhatMayStandForAValue) {
   EXPECT_EQ(completed("retrace metrology c.txt --form pl"), Arguments{"plane"});
   EXPECT_EQ(completed("retrace rre --set body.th"), Arguments{"body.thickness_mm="});
   EXPECT_TRUE(offers("retrace rre --set ", "surface.root_radius_um="));
-  EXPECT_EQ(completed("retrace list "), (Arguments{"machines", "materials", "processes", "standards"}));
+  EXPECT_EQ(completed("retrace list "), (Arguments{"machines", "materials", "processes", "requests", "standards"}));
   EXPECT_EQ(completed("retrace --json list schema "),
             (Arguments{"design", "job", "machine", "materials", "planed_part", "process", "study", "turned_part"}))
       << "list is a file here";
