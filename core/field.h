@@ -1,8 +1,8 @@
 #pragma once
 
 // References to fields of requests in messages. A field has one name in the library, in Python and on the command line,
-// but is spelled differently in each: target_error, or --target-error. A message therefore contains a reference, and the
-// program or module that shows the message spells it.
+// but is spelled differently in each: target_error, or --target-error. A message therefore contains a reference, and
+// the program or module that shows the message spells it.
 
 #include <string>
 #include <string_view>
@@ -11,8 +11,8 @@
 
 namespace retrace {
 
-/// Field of a request, such as the field `target_error` of RreRequest. If fields of several requests have the same name but
-/// different options, the name of the request precedes it: "road.distance_m".
+/// Field of a request, such as the field `target_error` of RreRequest. If fields of several requests have the same name
+/// but different options, the name of the request precedes it: "road.distance_m".
 struct Field {
   std::string_view name;
 };

@@ -189,7 +189,8 @@ ExitCode list_standards(const CommonOptions& common) {
 }
 
 ExitCode list_requests(const CommonOptions& common) {
-  std::string text = fmt::format("{:<12} {:<20} {:<22} {:<30} {}\n", "request", "field", "option", "allowed", "meaning");
+  std::string text =
+      fmt::format("{:<12} {:<20} {:<22} {:<30} {}\n", "request", "field", "option", "allowed", "meaning");
   for (const requests::Request* const request : requests::all_requests())
     for (const requests::Row& row : request->rows)
       text += fmt::format("{:<12} {:<20} {:<22} {:<30} {}\n", request->name, row.name, requests::option_of(row),
@@ -221,22 +222,23 @@ std::vector<Argument> arguments(ListOptions& options) {
 ExitCode run(const ListOptions& options, const CommonOptions& common) {
   for (const auto& [name, list] : kLists)
     if (name == options.what) return list(common);
-  throw InputError(
-      fmt::format("list: must be materials, machines, processes, requests or standards, got {}", printable(options.what)));
+  throw InputError(fmt::format("list: must be materials, machines, processes, requests or standards, got {}",
+                               printable(options.what)));
 }
 
 }  // namespace
 
 Command list_command() {
-  return {.name = "list",
-          .summary = "shipped materials, machines, processes and standards; fields of requests",
-          .manual =
-              "Lists the shipped materials, machines, processes or standards with their sources; `--json` adds details. "
-              "`retrace list requests` lists the fields of all requests, which are settings of commands, library and "
-              "Python: options, allowed values and meanings.",
-          .writes = {"retrace.materials/1", "retrace.machines/1", "retrace.processes/1", "retrace.requests/1",
-                     "retrace.standards/1"},
-          .begin = begins<ListOptions>(arguments, run)};
+  return {
+      .name = "list",
+      .summary = "shipped materials, machines, processes and standards; fields of requests",
+      .manual =
+          "Lists the shipped materials, machines, processes or standards with their sources; `--json` adds details. "
+          "`retrace list requests` lists the fields of all requests, which are settings of commands, library and "
+          "Python: options, allowed values and meanings.",
+      .writes = {"retrace.materials/1", "retrace.machines/1", "retrace.processes/1", "retrace.requests/1",
+                 "retrace.standards/1"},
+      .begin = begins<ListOptions>(arguments, run)};
 }
 
 }  // namespace retrace::app

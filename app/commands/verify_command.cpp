@@ -46,10 +46,10 @@ std::vector<Argument> arguments(VerifyOptions& options) {
        files("")}};
   const std::array<CommandRequest, 1> of_command = {{{requests::description<VerificationRequest>()}}};
   for (Argument& argument : field_arguments(of_command, options.fields)) all.push_back(std::move(argument));
-  all.push_back({"--map FILE", "jobs: draw the material that the programs leave above the facets, as a PNG file", &options.map,
-                 files(".png")});
-  all.push_back({"--as-machined FILE", "jobs: write the machined part as a design",
-                 &options.as_machined, files(".toml")});
+  all.push_back({"--map FILE", "jobs: draw the material that the programs leave above the facets, as a PNG file",
+                 &options.map, files(".png")});
+  all.push_back(
+      {"--as-machined FILE", "jobs: write the machined part as a design", &options.as_machined, files(".toml")});
   all.push_back({"--servo FILE", "turned parts with a fast tool servo: file with its strokes, servo.csv of `turn`",
                  &options.servo, files(".csv")});
   return all;

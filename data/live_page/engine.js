@@ -1,4 +1,4 @@
-/* made by tools/live_page; engine.wasm.gz 1c69359631464f7ed5dec702d9ceb70aff4f7bdc8cad68a460b0cff7907d6dde */
+/* made by tools/live_page; engine.wasm.gz afd5362b3ddd6f2fb2f9eeb54a7509e6a460c64a4f8f107c76c6d0c802fed9f8 */
 
 var makeRetrace = (() => {
   var _scriptDir = typeof document !== 'undefined' && document.currentScript ? document.currentScript.src : undefined;

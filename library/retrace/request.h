@@ -21,8 +21,8 @@
 
 namespace retrace {
 
-/// Value of a field. Whole numbers are given as double, words and file names as std::string. std::monostate means that no
-/// value is given.
+/// Value of a field. Whole numbers are given as double, words and file names as std::string. std::monostate means that
+/// no value is given.
 using FieldValue = std::variant<std::monostate, bool, double, std::string, std::vector<double>,
                                 std::vector<std::vector<double>>, std::vector<std::string>>;
 

@@ -62,8 +62,7 @@ std::vector<Colour> colours_of(const RoadResult& result, const RoadView& view, c
 
 std::string road_png(const RoadResult& result, double scale) {
   const auto views = static_cast<double>(result.views.size());
-  const double height =
-      kViewWidth * static_cast<double>(result.scene.rows) / static_cast<double>(result.scene.columns);
+  const double height = kViewWidth * static_cast<double>(result.scene.rows) / static_cast<double>(result.scene.columns);
   const Size size{kMargin + std::max(1.0, views) * (kViewWidth + kMargin), kHead + height + kCaption};
   Canvas canvas(Canvas::Format::png, size, scale);
   canvas.fill_rectangle({0.0, 0.0}, size, kBackground);

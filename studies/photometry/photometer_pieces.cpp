@@ -56,9 +56,10 @@ constexpr double kBytesPerBeamOfCell = 8.0;
 constexpr double kLeastBeamsOfCell = 10.0;
 
 [[noreturn]] void fail_on_memory() {
-  throw TraceBudgetError(fmt::format(
-      "the far field of so many elements exceeds {}: give a larger budget, compute without diffraction, or use {} montecarlo",
-      memory_budget_text(), reference({"engine"})));
+  throw TraceBudgetError(
+      fmt::format("the far field of so many elements exceeds {}: give a larger budget, compute without diffraction, or "
+                  "use {} montecarlo",
+                  memory_budget_text(), reference({"engine"})));
 }
 
 /// Memory that a far field needs while its beams are collected. A beam that represents several equal elements is

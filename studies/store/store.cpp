@@ -98,7 +98,8 @@ struct ResultStore::Database {
   std::int64_t owner() const { return locks ? locks->own() : 0; }
 
   [[noreturn]] void refuse(const std::string& what) const {
-    throw InputError({name(), 0, ""}, fmt::format("{}: {} starts anew, another folder keeps it", what, reference({"overwrite"})));
+    throw InputError({name(), 0, ""},
+                     fmt::format("{}: {} starts anew, another folder keeps it", what, reference({"overwrite"})));
   }
   [[noreturn]] void refuse_damaged(const std::string& why) const {
     refuse("is damaged: " + printable(why, kMaxReasonLength));
@@ -256,9 +257,8 @@ void ResultStore::Database::check_study() const {
     throw InputError({name(), 0, ""}, fmt::format("is a store of {}, not of {}", kind, layout.kind));
   for (const auto& [key, value] : layout.parts)
     if (stored("part." + key) != value)
-      throw InputError(
-          {layout.source, 0, ""},
-          fmt::format("{} differs from that of {}: {} starts anew, another folder keeps both", key, name(),
+      throw InputError({layout.source, 0, ""},
+                       fmt::format("{} differs from that of {}: {} starts anew, another folder keeps both", key, name(),
                                    reference({"overwrite"})));
 }
 

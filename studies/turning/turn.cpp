@@ -201,8 +201,7 @@ TurningVerification verify_turning(const TurningRequest& request) {
   TurningVerification run{request, turning::parse_turned_part(read_file(request.part), request.part), {}, {}, {}};
   const bool is_fast = run.part.path.servo == turning::Servo::fast;
   if (is_fast && request.servo.empty())
-    throw InputError(Field{"servo"},
-                     "must name the table of strokes, as the servo of " + request.part + " is fast");
+    throw InputError(Field{"servo"}, "must name the table of strokes, as the servo of " + request.part + " is fast");
   if (!is_fast && !request.servo.empty())
     throw InputError(Field{"servo"}, request.part + " has no fast servo that takes strokes");
   run.programs = fabrication::read_programs(request.programs, request.dialect);

@@ -182,8 +182,8 @@ RawMap parse_gwy(const Source& source) {
     raw.heights.push_back(std::isfinite(z) ? z : kMissing);
   }
   if (channels.fields.size() > 1 && !source.options.channel)
-    raw.warnings.push_back({"channel_chosen", fmt::format("channel {} of {} is used; another one can be chosen",
-                                                          wanted, names_of(channels))});
+    raw.warnings.push_back({"channel_chosen", fmt::format("channel {} of {} is used; another one can be chosen", wanted,
+                                                          names_of(channels))});
   if (channels.has_mask)
     raw.warnings.push_back(
         {"masks_ignored", "masks in the file are ignored: the points that they cover count as measured"});

@@ -32,7 +32,9 @@ const std::map<std::string, Names>& folders() {
       {"library", {"core", "requests", "geometry", "materials", "raytrace", "fabrication", "studies", "report"}},
       {"live", {"core", "requests", "geometry", "materials", "surface_models", "raytrace", "studies"}},
       {"python", {"library", "core", "requests"}},
-      {"app", {"core", "requests", "geometry", "materials", "surface_models", "raytrace", "fabrication", "studies", "report"}}};
+      {"app",
+       {"core", "requests", "geometry", "materials", "surface_models", "raytrace", "fabrication", "studies",
+        "report"}}};
   return order;
 }
 

@@ -135,8 +135,7 @@ std::string zone_design_text(const Study& study, const std::vector<Zone>& zones,
 ZoneLayout read_zone_layout(const std::string& word) {
   const auto* const found = std::ranges::find(kZoneLayouts, word);
   if (found == std::end(kZoneLayouts))
-    throw InputError(Field{"layout"},
-                     fmt::format("must be {}, got {}", alternatives(kZoneLayouts), in_quotes(word)));
+    throw InputError(Field{"layout"}, fmt::format("must be {}, got {}", alternatives(kZoneLayouts), in_quotes(word)));
   return static_cast<ZoneLayout>(found - std::begin(kZoneLayouts));
 }
 
@@ -149,8 +148,7 @@ void check_zoned_design(const Study& study, const ZonedDesignRequest& request) {
                                      reference({"design"}), key));
   const Design design = whole_design(study, some_values(study), request);
   if (design.is_endless())
-    throw InputError(Field{"x_length_mm"},
-                     "missing: the design of the study is endless, and a part of zones is not");
+    throw InputError(Field{"x_length_mm"}, "missing: the design of the study is endless, and a part of zones is not");
   if (design.part().array.arrangement == geometry::Arrangement::single)
     throw InputError(Field{"design"}, "the design of the study is a single element, which has no room for zones");
 }
