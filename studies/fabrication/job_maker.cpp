@@ -89,8 +89,9 @@ geometry::Element element_of(const Design& design, const JobRequest& request) {
     throw InputError(
         Field{"strategy"},
         fmt::format("a chisel with a straight edge reaches {} % of the facets of this cube corner, and not its apex: "
-                    "must be dmc, or use retrace job --reachable FILE for the part that it can make, got {}",
-                    fixed(100.0 * reachable_share(design.part().element, request.tool_width_mm), 2), request.strategy));
+                    "must be dmc, or give {} FILE for the part that it can make, got {}",
+                    fixed(100.0 * reachable_share(design.part().element, request.tool_width_mm), 2),
+                    reference({"reachable"}), request.strategy));
   check_upright(design.part().element, {design.source_name(), 0, "element.cant_deg"});
   return design.part().element;
 }
