@@ -242,19 +242,5 @@ TEST(PhotometricColour, IsMeasuredBesideTheMirrorImage) {
   EXPECT_EQ(std::abs(run(design_of(honeycomb()), request).colour->v_deg), 5.0);
 }
 
-// Of several boundaries, the one with the smallest margin determines the geometry. The second boundary is -x <= 5. Its
-// margin is always large, and smallest in the other geometry.
-TEST(PhotometricColour, SmallestMarginDeterminesTheGeometry) {
-  PhotometrySettings request = colour_request();
-  const auto v_deg = [&](std::vector<ColourBoundary> boundaries) {
-    request.programme.boundaries = std::move(boundaries);
-    request.programme.boundaries[0].v_beside_deg = {5.0, -5.0};
-    return run(design_of(honeycomb()), request).colour->v_deg;
-  };
-  const double worst = v_deg({at_most(1.0, 0.0, 0.448)});
-  EXPECT_EQ(v_deg({at_most(-1.0, 0.0, 5.0)}), -worst);
-  EXPECT_EQ(v_deg({at_most(1.0, 0.0, 0.448), at_most(-1.0, 0.0, 5.0)}), worst);
-}
-
 }  // namespace
 }  // namespace retrace::studies::photometric_colour_test
