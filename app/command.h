@@ -95,7 +95,7 @@ struct Argument {
   std::string help;
   Target target;
   Traits traits = {};
-  std::string shown_default = {};  ///< default that help shows; if empty, it is the initial value of the variable
+  std::string shown_default = {};  ///< text of the default in help; if empty, help shows the initial value of `target`
 };
 
 /// Returns the names of an option, such as "-o" and "--out". Returns an empty list for a positional argument.

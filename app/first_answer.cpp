@@ -31,7 +31,8 @@ FirstAnswer::~FirstAnswer() {
   if (thread_.joinable()) thread_.join();
 }
 
-/// Waits until preliminary results are needed. Returns false if they are not needed.
+/// Waits until the progress bar reports a long computation, but at most for kPatience. Returns true if preliminary
+/// results should then be computed. Returns false if this object is being destroyed.
 bool FirstAnswer::wait() {
   std::unique_lock lock(mutex_);
   changed_.wait_for(lock, kPatience, [this] { return is_long_ || is_over_; });
@@ -44,7 +45,7 @@ void FirstAnswer::wait_and_compute() try {
   if (remaining_s && *remaining_s < kSoonS) return;
   const std::string lines = compute_(remaining_s, &cancel_);
   if (!cancel_.requested()) bar_.write_lines(lines);
-} catch (...) {  // NOLINT(bugprone-empty-catch): preliminary results are omitted
+} catch (...) {  // NOLINT(bugprone-empty-catch): after an error, no preliminary results are written
 }
 
 }  // namespace retrace::app

@@ -23,7 +23,8 @@ class FirstAnswer {
  public:
   /// Time after which preliminary results are computed even if the progress bar has not reported a long computation.
   static constexpr std::chrono::seconds kPatience{4};
-  /// Estimated remaining time in seconds below which the results of the main computation are awaited instead.
+  /// Minimum remaining time of the main computation, in seconds. If the estimated remaining time is shorter, no
+  /// preliminary results are computed.
   static constexpr double kSoonS = 6.0;
   /// Function that returns the lines to write, or an empty text to write nothing. It runs in parallel with the main
   /// computation.
@@ -48,8 +49,8 @@ class FirstAnswer {
   Compute compute_;
   std::mutex mutex_;
   std::condition_variable changed_;
-  bool is_long_ = false;  ///< true after the progress bar has reported a long computation
-  bool is_over_ = false;  ///< true when this object is being destroyed
+  bool is_long_ = false;  ///< true after the progress bar has reported that the main computation takes long
+  bool is_over_ = false;  ///< true after the destructor of this object has started
   std::thread thread_;
 };
 

@@ -24,9 +24,9 @@ struct MakingOptions {
 /// other option, and --tool-width-mm must be given.
 std::vector<Argument> making_arguments(MakingOptions& options, const std::string& needs);
 
-/// Returns the request for a fabrication job that the options describe. Its tool width is 0 if --tool-width-mm is not
-/// given.
-/// \throw InputError at a field whose value is not allowed
+/// Creates the request for a fabrication job from the options of the command line. The tool width of the request is 0
+/// if the option --tool-width-mm is not given.
+/// \throw InputError that names the field, if its value is not allowed
 JobRequest job_request(const MakingOptions& options, const CommonOptions& common);
 
 /// Returns the files that are read in addition to the design: machine and process. Names without an extension refer to

@@ -47,7 +47,7 @@ class ProgressBar : public Progress {
   void at_group(double share, const std::string& group);
 
   bool is_quiet() const { return is_quiet_; }
-  /// Returns the remaining time in seconds as last estimated by at(), or nothing if there is no estimate.
+  /// Returns the latest estimate of at() for the remaining time, in seconds. Returns nothing before the first estimate.
   std::optional<double> remaining_s();
   /// Sets a function that is called after the notice about a long run. The function must not use the bar, because the
   /// mutex of the bar is locked during the call.

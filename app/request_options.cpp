@@ -12,13 +12,13 @@ namespace {
 
 using requests::Row;
 
-/// Row of a field, with the request to which it belongs.
+/// Description (row) of a field of a request, and the request to which the field belongs.
 struct FieldOfCommand {
   const CommandRequest* of;
   const Row* row;
 };
 
-/// Fields that share an option.
+/// Option of a command, and the fields of its requests that the option sets.
 struct SharedOption {
   std::string option;
   std::vector<FieldOfCommand> fields;
@@ -37,7 +37,7 @@ std::vector<SharedOption> options_of(std::span<const CommandRequest> of_command)
   return options;
 }
 
-/// Returns the default of a field as text for help. Returns an empty text if there is none.
+/// Returns the default of a field as text for help. Returns an empty text if the field has no default.
 std::string default_text(const FieldOfCommand& field) {
   const requests::Spelling& spelling = field.row->spelling;
   if (!spelling.otherwise.empty()) return std::string(spelling.otherwise);
@@ -45,12 +45,14 @@ std::string default_text(const FieldOfCommand& field) {
                                 : std::string(spelling.usual);
 }
 
-/// Returns true if the default is the initial value of the field, which the parser shows as "=VALUE".
+/// Returns true if help shows the initial value of the field as its default, instead of a special text. If such a field
+/// is the only one of its option, the command-line parser adds the default to help as "=VALUE".
 bool has_plain_default(const Row& row) {
   return row.spelling.otherwise.empty() && row.spelling.usual.empty();
 }
 
-/// Returns the description of an option, with its unit if the name of the option does not end with it.
+/// Returns the description of a field for help. The description includes the unit, unless the name of the option ends
+/// with the unit.
 std::string meaning_of(const FieldOfCommand& field) {
   const std::string_view unit = schema::unit_of(field.row->name);
   std::string suffix(field.row->name.substr(field.row->name.rfind('_') + 1));
@@ -61,12 +63,14 @@ std::string meaning_of(const FieldOfCommand& field) {
   return text;
 }
 
-/// Returns the name of a request for help. Returns an empty text for the only request of a command.
+/// Returns the name by which help refers to a request, such as "camera". Returns an empty text if the command has only
+/// one request.
 std::string mode_text(const CommandRequest& of) {
   return of.mode.empty() ? of.label : of.mode.substr(2);
 }
 
-/// Returns the help of an option. If several requests have it, each part of the text names its requests.
+/// Returns the help text of an option. If the command has several requests, the names of the requests that have the
+/// option precede each description, such as "camera, road: DESCRIPTION".
 std::string help_of(const SharedOption& option) {
   struct Part {
     std::string text;
@@ -94,7 +98,7 @@ Words words_of_list(std::span<const std::string_view> words) {
   return {words.begin(), words.end()};
 }
 
-/// Returns the possible values of a field for shell completion.
+/// Returns traits that contain the possible values of a field. Shell completion uses them.
 Traits traits_of(const schema::Kind& kind) {
   return std::visit(Overloaded{[](const schema::Word& word) { return one_of(words_of_list(word.words)); },
                                [](const schema::File&) { return files(""); },
@@ -114,7 +118,9 @@ Condition condition_of(const requests::Request& request, const schema::Condition
   return {Condition::Kind::value, option, words_of_list(condition.words)};
 }
 
-/// Returns the requirements of an option: the requests that have it, and the conditions that all of its fields have.
+/// Returns the requirements for giving an option. If options such as "--camera" select the request, one of the requests
+/// that have the option must be selected. If all fields of the option have the same conditions, these are also
+/// required.
 std::vector<Need> needs_of(const SharedOption& option) {
   std::vector<Need> needs;
   Words modes;
@@ -134,7 +140,7 @@ std::vector<Need> needs_of(const SharedOption& option) {
   return needs;
 }
 
-/// Returns the placeholder of an option, such as "N|CxR".
+/// Returns the placeholder for the value of an option in help. Joins different placeholders of its fields: "N|CxR".
 std::string placeholder(const SharedOption& option) {
   Words values;
   for (const FieldOfCommand& field : option.fields)

@@ -1,6 +1,7 @@
 #pragma once
 
-// Makes the options of a command from the rows of requests, and requests from the given options.
+// Creates the command-line options of a command from the descriptions of its requests (requests/row.h). Sets the fields
+// of the requests from the options that the user gives.
 
 #include <map>
 #include <optional>
@@ -15,28 +16,31 @@ namespace retrace::app {
 
 /// Values of the options that set fields of requests, as given on the command line.
 struct FieldTexts {
-  std::map<std::string, std::optional<std::string>> values;  ///< by option
-  std::map<std::string, bool> flags;                         ///< by option; true if the option is given
+  std::map<std::string, std::optional<std::string>> values;  ///< value of each option; empty if it is not given
+  std::map<std::string, bool> flags;                         ///< for each flag: true if it is given
 };
 
-/// A request of a command.
+/// Request whose fields are options of a command. A command can have several requests.
 struct CommandRequest {
   const requests::Request& request;
-  /// Option that selects the request if the command has several requests, such as "--camera".
+  /// Option that selects this request among several requests of the command, such as "--camera". It is empty if no
+  /// option selects the request.
   std::string mode = {};
-  /// Text before the help of its options if the command has several requests but no option selects this one, such as
-  /// "material".
+  /// Name of the request in the help of its options, such as "material". It is only used if `mode` is empty and the
+  /// command has several requests.
   std::string label = {};
 };
 
-/// Returns the options for the fields of the requests of a command. If fields of several requests have the same option,
-/// they share it.
-/// \param texts receives the given values; it must outlive the arguments
+/// Returns the command-line options that set the fields of a command's requests. Fields of different requests that have
+/// the same option name share one option.
+/// \param of_command requests of the command
+/// \param texts receives the values from the command line; it must outlive the returned arguments
 std::vector<Argument> field_arguments(std::span<const CommandRequest> of_command, FieldTexts& texts);
 
-/// Sets the fields of a request whose options are given, and its seed.
-/// \param object object of the type of the request
-/// \throw InputError at a field whose value is not allowed
+/// Sets the fields of a request whose options are given. Sets the field `seed`, if the request has it, from `common`.
+/// \param request description of the type of request
+/// \param object request whose fields are set; it has the type that `request` describes
+/// \throw InputError that names the field, if its value is not allowed
 void set_fields(const requests::Request& request, void* object, const FieldTexts& texts, const CommonOptions& common);
 
 /// Returns the request that the options describe. Fields without an option keep their defaults.

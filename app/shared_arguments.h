@@ -1,7 +1,7 @@
 #pragma once
 
-// Arguments that several commands share: design, job and part files, engine, and the options for a store that exists
-// already.
+// Arguments that several commands share: design, job and part files, machines and dialects, and the options --resume
+// and --overwrite for a store that already exists.
 
 #include <span>
 #include <string>

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "api.h"  // without a folder, because these headers are installed together with the library
+#include "api.h"  // without the folder core/, because the installed copies of both headers are in the same folder
 #include "field.h"
 
 namespace retrace {
@@ -20,15 +20,15 @@ enum class ExitCode : int {
   interrupted = 130  ///< stopped by the user; finished results are valid
 };
 
-/// Base class of all errors that retrace throws. An error has a message of one line and an exit code. In what(), fields
-/// of requests are named as in C++.
+/// Base class of all errors that retrace throws. An error has a message of one line and an exit code. The text of
+/// what() contains the C++ names of request fields; message() can spell the fields differently.
 class RETRACE_API Error : public std::runtime_error {
  public:
-  /// \param message message, which may contain references to fields (core/field.h)
+  /// \param message text of one line; it may contain references to fields, which reference() creates (core/field.h)
   Error(ExitCode exit_code, const std::string& message)
       : std::runtime_error(with_field_names(message)), exit_code_(exit_code), message_(message) {}
   ExitCode exit_code() const noexcept { return exit_code_; }
-  /// Returns the message with another spelling of the fields.
+  /// Returns the message, with each request field spelled by the function `spelling`.
   std::string message(FieldSpelling spelling) const { return with_fields(message_, spelling); }
 
  private:
@@ -44,20 +44,20 @@ struct InputLocation {
   std::string key;
 };
 
-/// Error in an input: a file, or a field of a request. The message has the form `file:line: key: text` (exit code 2).
+/// Error in an input file or in a field of a request (exit code 2). The message has the form `file:line: key: text`.
 class RETRACE_API InputError : public Error {
  public:
   InputError(const InputLocation& where, std::string_view text);
-  /// Creates an error in a field of a request. The key of where() is the name of the field.
+  /// Creates an error about a field of a request. The member `key` of where() is the name of the field.
   InputError(Field field, std::string_view text);
   explicit InputError(std::string_view text) : InputError(InputLocation{}, text) {}
 
   const InputLocation& where() const noexcept { return where_; }
-  /// Returns the field, whose name is empty if the error is in a file.
+  /// Returns the request field that has the error. Its name is empty if the error is not about a request field.
   Field field() const noexcept { return {field_}; }
-  /// Returns the message without the position.
+  /// Returns the message without file, line and key. Request fields in the text have their C++ names.
   std::string text() const { return with_field_names(text_); }
-  /// Returns the message without the position, with another spelling of the fields.
+  /// Returns the message without file, line and key, with each request field spelled by the function `spelling`.
   std::string text(FieldSpelling spelling) const { return with_fields(text_, spelling); }
 
  private:

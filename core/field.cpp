@@ -3,8 +3,8 @@
 namespace retrace {
 namespace {
 
-// First and last character of a reference. Text from users cannot contain it, because messages escape control
-// characters.
+// Control character at the beginning and at the end of a reference. It cannot come from user input, because messages
+// escape the control characters of user input.
 constexpr char kMark = '\x1f';
 
 }  // namespace

@@ -1,6 +1,6 @@
 #pragma once
 
-// Errors in numbers whose limit depends on other inputs.
+// Error class for numbers beyond a limit that depends on other inputs.
 
 #include <string_view>
 
@@ -8,14 +8,14 @@
 
 namespace retrace {
 
-/// Error in a number of the input that is beyond a limit. The limit depends on other inputs.
+/// Error for an input number that is above an upper limit or below a lower limit. The limit depends on other inputs.
 class LimitError : public InputError {
  public:
-  /// \param limit smallest or largest value that is accepted, in the unit of the message
+  /// \param limit the limit, which is the largest or smallest accepted value, in the unit used in the message
   LimitError(const InputLocation& where, std::string_view text, double limit)
       : InputError(where, text), limit_(limit) {}
 
-  /// Returns the smallest or largest value that is accepted, in the unit of the message.
+  /// Returns the limit, which is the largest or smallest accepted value, in the unit used in the message.
   double limit() const noexcept { return limit_; }
 
  private:

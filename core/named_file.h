@@ -1,16 +1,16 @@
 #pragma once
 
-// Reads files whose names are given by a key, a field of a request or a table. Error messages begin with the position
-// (file, line, key) or the field at which the name is given.
+// Reads files whose names are given in another file or in a field of a request. Error messages begin with the position
+// (file, line, key) or the field that contains the name.
 
 #include "core/error.h"
 
 namespace retrace {
 
-/// Calls the function `read`, which reads a file, and adds a position to its error messages.
-/// \param key position or field at which the name of the file is given
+/// Calls the function `read`, which reads a file. If `read` fails, prepends `key` to the error message.
+/// \param key position or field that contains the name of the file
 /// \return the return value of `read`
-/// \throw InputError if `read` throws an InputError; the message begins with `key`
+/// \throw InputError if `read` throws an InputError; the message consists of `key` and the message of `read`
 template <class Read, class Key>
 auto read_named_at(const Key& key, const Read& read) {
   try {

@@ -32,7 +32,8 @@ studies::Study to_study(const Study& study, const StudyRequest& request) {
   return studies::parse_study(study.text, study.source, request.overrides, request.seed, study.designs);
 }
 
-/// \pre the request has been checked
+/// Returns the action to take if the store of the study already exists.
+/// \pre requests::check() has accepted the request
 studies::IfExists if_exists_of(const StudyRequest& request) {
   if (request.if_exists == "resume") return studies::IfExists::resume;
   return request.if_exists == "overwrite" ? studies::IfExists::overwrite : studies::IfExists::refuse;

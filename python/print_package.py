@@ -5,13 +5,14 @@ requests.
 
 FOLDER/files.py contains a TypedDict for each table of designs, jobs, studies and so on.
 FOLDER/_fields.py contains the fields of each request of the library.
-SOURCES are Python files that are copied to FOLDER. In them, three kinds of lines are replaced:
+SOURCES are Python files that are copied to FOLDER. In the copies, three kinds of lines are replaced
+by code for the request NAME:
     # the build inserts the fields of NAME
-        Keywords of a function that has other keywords as well.
+        Replaced by one keyword per field, in the signature of a function that has more keywords.
     **fields: object,  # the build inserts the fields of NAME
-        Keywords of a function that has no other keywords.
+        Replaced by one keyword per field, in the signature of a function without more keywords.
     request = _core.X()  # the build inserts the fields of NAME
-        A request with the values of the keywords.
+        Replaced by code that creates a request and sets its fields to the values of the keywords.
 """
 
 import json

@@ -22,7 +22,7 @@ std::string numbers_text(const std::vector<double>& numbers) {
   return fmt::format("[{}]", fmt::join(texts, ", "));
 }
 
-/// Returns a value as text for messages.
+/// Converts a value to text for error messages.
 std::string shown(const Value& value) {
   return std::visit(
       Overloaded{[](std::monostate) { return std::string("nothing"); },
@@ -44,7 +44,8 @@ bool is_in(const NumberRange& range, double number, bool is_whole = false) {
   return std::isfinite(number) && range.contains(number) && (!is_whole || number == std::floor(number));
 }
 
-/// Returns the first number that is not in a range, or nothing.
+/// Returns the first number that is not in the range, or nothing if all numbers are in the range.
+/// \param is_whole true if numbers that are not integers count as outside of the range
 std::optional<double> first_outside(const std::vector<double>& numbers, const NumberRange& range, bool is_whole) {
   for (const double number : numbers)
     if (!is_in(range, number, is_whole)) return number;
@@ -55,8 +56,8 @@ std::optional<double> first_outside(const std::vector<double>& numbers, const Nu
   throw InputError(row.field(), fmt::format("must be {}, got {}", must_be, given));
 }
 
-/// Checks that a value is of a kind.
-/// \throw InputError at the field if it is not
+/// Checks the value of a field. The call operator takes the kind of the field and throws an InputError that names the
+/// field, if the kind does not allow the value.
 class KindCheck {
  public:
   KindCheck(const Row& row, const Value& value) : row_(row), value_(value) {}
@@ -124,7 +125,7 @@ void check_kind(const Row& row, const Value& value) {
   std::visit(KindCheck(row, value), row.kind);
 }
 
-/// Conditions of a request on the values of its fields.
+/// Evaluates the conditions under which the fields of a request may be given.
 class Conditions {
  public:
   Conditions(const Request& request, const void* object)
@@ -135,7 +136,8 @@ class Conditions {
   bool holds(const schema::Condition& condition) const {
     using Is = schema::Condition::Is;
     const Row* const other = row_of(request_, condition.key);
-    if (other == nullptr) return true;  // an option that only the command line has
+    // The condition refers to an option that is not a field of the request. The command line checks this condition.
+    if (other == nullptr) return true;
     if (condition.is == Is::given) return is_given(*other);
     if (condition.is == Is::absent) return !is_given(*other);
     const Value value = other->access.get(object_);
@@ -157,7 +159,8 @@ class Conditions {
     return fmt::format("{}", fmt::join(texts, " or "));
   }
 
-  /// Returns the value of the field of the first condition, if the condition is about its value.
+  /// Returns the text ", got VALUE", with the value of the field to which the first condition refers. Returns an empty
+  /// text if the first condition does not restrict the value of that field to a list of words.
   std::string given(Need need) const {
     const schema::Condition& first = need.front();
     const Row* const other = row_of(request_, first.key);

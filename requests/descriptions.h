@@ -1,6 +1,6 @@
 #pragma once
 
-// Descriptions of all requests (requests/row.h).
+// Declares the descriptions of all types of requests. Descriptions are explained in requests/row.h.
 
 #include <tuple>
 
@@ -18,7 +18,7 @@
 
 namespace retrace::requests {
 
-/// All types of requests.
+/// Tuple of all types of requests, for templates that iterate over the types.
 using AllRequests = std::tuple<DetectorRequest, CameraRequest, RoadRequest, JobRequest, FabricationRequest,
                                MetrologyRequest, SolidRequest, MaterialRequest, PhotometryRequest, RaysRequest,
                                TraceRequest, RoughnessRequest, RreRequest, StudyRequest, VerificationRequest>;
@@ -54,7 +54,8 @@ const Request& description<StudyRequest>();
 template <>
 const Request& description<VerificationRequest>();
 
-/// Returns the fields of MetrologyRequest that are needed to read a height map.
+/// Returns a description of MetrologyRequest that contains only the fields needed to read a height map. The command
+/// `correct` uses this description.
 const Request& height_map_reading();
 
 }  // namespace retrace::requests

@@ -1,6 +1,6 @@
 #pragma once
 
-// Requests for pictures: of a detector, of a camera, and of a driver's view at night.
+// Settings for computing images: maps of the returned light, camera pictures, and a driver's view at night.
 
 #include <array>
 #include <cstddef>
@@ -87,7 +87,7 @@ struct CameraRequest {
   std::uint32_t seed = 1;
 };
 
-/// Settings for a driver's view of two reflectors on a car ahead at night, as in `retrace image --road`.
+/// Settings for images of two reflectors on a car ahead, as a driver sees them at night (`retrace image --road`).
 struct RoadRequest {
   /// Distances of the car ahead.
   std::vector<double> distance_m = {10.0, 30.0, 100.0};

@@ -1,6 +1,6 @@
 #pragma once
 
-// Description of all requests as JSON, from which the Python package and the documentation are made.
+// Describes all requests as JSON. The Python package and the documentation are generated from this JSON.
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -8,11 +8,11 @@
 
 namespace retrace::requests {
 
-/// Returns the description of all requests (docs/library.md, "Requests").
+/// Returns the description of all requests and their fields as JSON (see "Requests" in docs/library.md).
 nlohmann::ordered_json description_json();
 
-/// Returns the keyword of a field in Python. The field is named as in messages, see Row::field(). It is a
-/// FieldSpelling.
+/// Returns the Python keyword of a field. The function can be used as a FieldSpelling (core/field.h).
+/// \param field name of the field in messages, as returned by Row::field()
 std::string keyword_of_field(std::string_view field);
 
 }  // namespace retrace::requests

@@ -8,8 +8,8 @@
 
 namespace retrace {
 
-/// Settings of the evaluation of a measured surface, as in `retrace metrology`. The spacing along y is that along x
-/// unless it is given.
+/// Settings of the evaluation of a measured surface, as in `retrace metrology`. If only the spacing of the points along
+/// x is given, the spacing along y is equal to it.
 struct MetrologyRequest {
   /// Form to remove: none, plane or poly2 to poly8; "none", "plane", "poly2", "poly3", "poly4", "poly5", "poly6",
   /// "poly7" or "poly8".

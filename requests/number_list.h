@@ -10,17 +10,17 @@
 
 namespace retrace::requests {
 
-/// Reads a list of numbers `a,b,c` and ranges `start:stop:step`. The values of a range are start + i * step and include
-/// stop. Duplicates are removed.
-/// \param field field of the list, for messages
+/// Reads a list of numbers `a,b,c` and ranges `start:stop:step`. The values of a range are start + i * step. They
+/// include stop if stop is a whole number of steps away from start. Duplicates are removed.
+/// \param field field that error messages name
 /// \throw InputError if the list is empty, has more than 100,000 values, or contains text that is not a finite number;
-/// also if the step of a range leads away from its stop
+/// also if the step of a range is 0 or leads from start away from stop
 std::vector<double> read_number_list(std::string_view text, Field field);
 
 /// List of numbers that may contain ranges `start:stop:auto`, in which the program chooses the points.
 struct CurveList {
   std::vector<double> values;
-  std::vector<std::array<double, 2>> chosen;  ///< ranges `start:stop:auto`, with start < stop
+  std::vector<std::array<double, 2>> chosen;  ///< start and stop of each range `start:stop:auto`; start < stop
 };
 
 /// Reads a list like read_number_list(), in which ranges `start:stop:auto` are also allowed.

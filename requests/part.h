@@ -1,7 +1,7 @@
 #pragma once
 
-// Requests for files for other programs: solids of a design, and materials that reflect light in the same way as a
-// part.
+// Requests for the export of files for other programs: solids of a design, and materials that reflect light in the same
+// way as a part.
 
 #include <cstdint>
 #include <optional>
@@ -9,8 +9,8 @@
 
 namespace retrace {
 
-/// Selects a solid of a design: one element on its plate, the whole array, or the mould, which is the block behind the
-/// back of the part.
+/// Selects the solid to export from a design: one element on its plate, the whole array, or the mould. The mould is a
+/// block whose upper face fits the back surface of the part.
 struct SolidRequest {
   /// Solid: element, array, or mould (the block behind the part's back).
   std::string what = "array";
@@ -18,8 +18,8 @@ struct SolidRequest {
   std::optional<double> block_mm = {};
 };
 
-/// Settings for a material that reflects light in the same way as a part (docs/theory/appearance.md). Its values are
-/// means over the discs of source and receiver.
+/// Settings for a material that reflects light in the same way as a part (docs/theory/appearance.md). The
+/// reflectance values of the material are means over the discs of the light source and the receiver.
 struct MaterialRequest {
   /// Largest entrance angle, in degrees; >= 1 and <= 40.
   double entrance_deg = 20.0;

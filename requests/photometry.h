@@ -9,7 +9,8 @@
 
 namespace retrace {
 
-/// Settings of a photometric test, as in `retrace photometry`. For empty settings, the values of the standard are used.
+/// Settings of a photometric test, as in `retrace photometry`. The standard defines the rotations and the diameters of
+/// source and receiver if the request gives no values for them.
 struct PhotometryRequest {
   /// Standard: r150, j594, bicycle, d4956, iso20471, stvzvo, or a limits file. Required.
   std::string standard = {};

@@ -1,6 +1,6 @@
 #pragma once
 
-// Requests for traces of rays: of rays from a file or an emitter, and of rays in memory.
+// Requests for ray tracing: of rays from a file or an emitter (RaysRequest), and of rays in memory (TraceRequest).
 
 #include <array>
 #include <cstdint>

@@ -8,7 +8,7 @@
 
 namespace retrace {
 
-/// Settings for the retroreflective efficiency over the roughness of the facets, as in `retrace roughness`.
+/// Settings for curves of the retroreflective efficiency as a function of facet roughness, as in `retrace roughness`.
 struct RoughnessRequest {
   /// Sa of the roughness for the points of each curve, in nm.
   std::vector<double> sa_nm = {0.0, 2.0, 5.0, 10.0, 15.0, 20.0, 30.0, 40.0, 50.0, 75.0, 100.0, 150.0, 200.0};

@@ -1,7 +1,7 @@
 #pragma once
 
-// Describes requests as constant data: their fields, the allowed values, and how a field is spelled on the command line
-// and in Python. The command line, Python, documentation and checks of ranges are made from these data.
+// Types that describe requests as constant data: the fields, their allowed values, and their names on the command line
+// and in Python. Options, Python keywords, documentation and range checks are generated from these data.
 
 #include <span>
 #include <string_view>
@@ -12,42 +12,43 @@
 
 namespace retrace::requests {
 
-/// Condition under which a field has an effect: a list of conditions on other fields, of which at least one must hold.
+/// Alternative conditions on other fields of the request. A field has an effect only if at least one of them holds.
 using Need = std::span<const schema::Condition>;
 
 /// Notation of a value on the command line.
 enum class Notation {
   plain,
-  commas,       ///< one number, or numbers separated by commas, such as X,Y,Z
-  by_x,         ///< numbers separated by x, such as 400x300
-  number_list,  ///< numbers and ranges, such as 0,10:40:5
-  /// "--no-NAME" sets a flag, which is set by default, to false. The description of the field begins with a verb,
-  /// because help of the option shows it after "do not".
+  commas,       ///< one number, or numbers separated by commas, such as 0,0,100
+  by_x,         ///< numbers separated by the letter x, such as 400x300
+  number_list,  ///< numbers and ranges start:stop:step, such as 0,10:40:5
+  /// Option --no-NAME, which sets a flag to false that is true by default. The description of the field must begin with
+  /// a verb, because the help text of the option is "do not" followed by the description.
   absent
 };
 
-/// Spelling of a field.
+/// Spelling of a field on the command line, in Python and in messages.
 struct Spelling {
   std::string_view value = {};  ///< placeholder for the value on the command line, such as "DIR"; empty for flags
   Notation notation = Notation::plain;
-  std::string_view option = {};     ///< name of the option, such as "--incidence"; empty: the name of the field
-  std::string_view keyword = {};    ///< keyword in Python; empty: the name of the field
-  std::string_view otherwise = {};  ///< description of the default if no value is given, such as "as in the file"
-  /// Value that is used if no value is given, written as on the command line. Giving it is not the same, because it is
-  /// refused where the field has no effect.
+  std::string_view option = {};     ///< option, such as "--incidence"; if empty, it is made from the name of the field
+  std::string_view keyword = {};    ///< keyword in Python; if empty, the name of the field is used
+  std::string_view otherwise = {};  ///< describes the behaviour if no value is given, such as "as in the file"
+  /// Default of an optional field, written as on the command line. It is used if the field has no value. If a user
+  /// gives this value explicitly, Row::needs is checked as for any other value.
   std::string_view usual = {};
-  /// Name of the field in messages if it differs from that of a field of another request with another option:
-  /// "road.distance_m". The part up to the dot is not shown in C++.
+  /// Name of the field in messages, such as "road.distance_m". It is needed if another request has a field with the
+  /// same name but a different option. If empty, `name` is used. Messages in C++ omit the part up to the dot.
   std::string_view qualified = {};
-  bool is_no_option = false;   ///< true if the command line has another way to set the field
-  bool is_no_keyword = false;  ///< true if Python has another way to set the field
+  bool is_no_option = false;   ///< true if no option is generated, because the program sets the field in another way
+  bool is_no_keyword = false;  ///< true if no keyword is generated, because Python sets the field in another way
 };
 
-/// Field of a request. Its default is the initialiser of the member.
+/// Description of a field of a request. The default value is the initialiser of the C++ member, so it is not repeated
+/// here.
 struct Row {
-  std::string_view name;     ///< name of the field; the suffix is the unit
-  schema::Kind kind;         ///< kind and range of the value
-  std::string_view meaning;  ///< description, without a full stop at the end
+  std::string_view name;     ///< name of the field; a suffix such as _mm is the unit
+  schema::Kind kind;         ///< type of the value and its allowed range or words
+  std::string_view meaning;  ///< description for help and documentation, without a full stop at the end
   schema::Access access;
   Spelling spelling = {};
   std::span<const Need> needs = {};  ///< conditions, all of which must hold if the field is not at its default
@@ -56,55 +57,56 @@ struct Row {
   Field field() const { return {spelling.qualified.empty() ? name : spelling.qualified}; }
 };
 
-/// Description of a request.
+/// Description of a request, which is a struct with the settings of a computation.
 struct Request {
   std::string_view name;     ///< name of the type without "Request", such as "camera" for CameraRequest
-  std::string_view command;  ///< command of the program; empty if only the library has the function
+  std::string_view command;  ///< command of the program, such as "image"; empty if the request has no command
   std::span<const Row> rows;
-  const void* (*initial)();  ///< returns an object with the defaults of all fields
-  /// Function that checks combinations of values, each of which is allowed by itself; may be null.
-  /// \throw InputError at a field
+  const void* (*initial)();  ///< returns an object of the request type with default values
+  /// Function that checks combinations of values that are allowed individually. It may be null.
+  /// \throw InputError if a combination is not allowed; the error names a field
   void (*check)(const void* request) = nullptr;
 };
 
-/// Returns an object with the defaults of all fields, for Request::initial.
+/// Returns a request object with default values in all fields. Used as Request::initial.
 template <class Type>
 const void* initial_object() {
   static const Type initial;
   return &initial;
 }
 
-/// Returns the description of a request. Each type of request has a specialisation in requests/rows/.
+/// Returns the description of the request type `Type`. Each request type has a specialisation in requests/rows/.
 template <class Type>
 const Request& description();
 
 /// Returns the descriptions of all requests.
 std::span<const Request* const> all_requests();
 
-/// Returns the row of a field, or null if the request has no such field.
+/// Returns the row of the field with this name, or null if the request has no such field.
 const Row* row_of(const Request& request, std::string_view name);
 
-/// Returns the option of a field, such as "--target-error".
+/// Returns the command-line option of a field, such as "--target-error".
 std::string option_of(const Row& row);
-/// Returns the option of a field that is named as in messages, see Row::field(). It is a FieldSpelling.
+/// Returns the command-line option of a field. The function can be used as a FieldSpelling (core/field.h).
+/// \param field name of the field in messages, as returned by Row::field()
 std::string option_of_field(std::string_view field);
 
-/// Sets a field.
-/// \param object object of the type of the request
-/// \throw InputError at the field if the value is not allowed
+/// Checks a value and assigns it to a field.
+/// \param object object of the request type to which the row belongs
+/// \throw InputError if the value is not allowed; the error names the field
 void set(const Row& row, void* object, const schema::Value& value);
-/// Sets a field to a value that is written as on the command line.
-/// \throw InputError at the field if the text or the value is not allowed
+/// Parses a value in the notation of the command line, checks it and assigns it to a field.
+/// \throw InputError if the text cannot be parsed or the value is not allowed; the error names the field
 void set_text(const Row& row, void* object, std::string_view text);
-/// Returns the value of a field as it is written on the command line. Returns an empty text if there is no value.
+/// Returns the value of a field in the notation of the command line. Returns an empty text if the field has no value.
 std::string text_of(const Row& row, const void* object);
 
-/// Checks all fields of a request and its rules.
-/// \param object object of the type of the request
-/// \throw InputError at the first field that is not allowed
+/// Checks the value of each field, the conditions in Row::needs, and combinations of values (Request::check).
+/// \param object object of the request type
+/// \throw InputError if a check fails; the error names the first field that is not allowed
 void check(const Request& request, const void* object);
-/// Checks all fields of a request and its rules.
-/// \throw InputError at the first field that is not allowed
+/// Checks the value of each field, the conditions in Row::needs, and combinations of values (Request::check).
+/// \throw InputError if a check fails; the error names the first field that is not allowed
 template <class Type>
 void check(const Type& request) {
   check(description<Type>(), static_cast<const void*>(&request));

@@ -10,7 +10,8 @@
 
 namespace retrace {
 
-/// Settings for the retroreflective efficiency over directions of the light, as in `retrace rre`.
+/// Settings for the retroreflective efficiency as a function of the direction of the incident light, as in
+/// `retrace rre`.
 struct RreRequest {
   /// Angles of incidence, in degrees; they may be an empty list if there are ranges with automatically chosen angles.
   std::vector<double> incidence_deg = {0.0};

@@ -29,7 +29,7 @@ double number_of(const Row& row, std::string_view text, std::string_view must_be
   return number->value;
 }
 
-/// Parses a decimal whole number. Leading zeros are refused, because they could mean an octal number.
+/// Parses a decimal integer. Leading zeros are refused because some languages use them to mark octal numbers.
 double whole_of(const Row& row, std::string_view text) {
   std::int64_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);

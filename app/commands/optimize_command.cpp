@@ -58,7 +58,8 @@ std::vector<std::string> inputs_of(const OptimizeOptions& options, const JobRequ
 /// \throw InputError
 void check_making_of(const OptimizeOptions& options, JobRequest request, const studies::Study& study) {
   if (options.job.empty()) return;
-  if (request.tool_width_mm == 0.0) request.tool_width_mm = 1.0;  // the width is a key of the study
+  // Without --tool-width-mm, the study determines the tool width of each design. The checks need any positive width.
+  if (request.tool_width_mm == 0.0) request.tool_width_mm = 1.0;
   studies::check_making(request);
   studies::check_element(studies::make_candidate(study, some_values(study)).design(), request);
 }

@@ -24,7 +24,7 @@ namespace {
 
 struct RoughnessOptions {
   std::string design;
-  std::vector<std::string> facets;  ///< tables of measured facets; if empty, the shipped tables are used
+  std::vector<std::string> facets;  ///< files with measured facets; if empty, the files shipped with retrace are used
   FieldTexts fields;
 };
 

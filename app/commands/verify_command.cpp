@@ -31,7 +31,7 @@ namespace fs = std::filesystem;
 namespace {
 
 struct VerifyOptions {
-  std::string job;  ///< file of a job or a part
+  std::string job;  ///< path of a job file, or of the file of a turned or planed part
   std::vector<std::string> programs;
   FieldTexts fields;
   std::string as_machined;  ///< output file for the design of the machined part; not written if empty

@@ -1,6 +1,6 @@
 #pragma once
 
-// Errors in formulas, with their position in the formula.
+// Error class for invalid formulas. An error contains the position in the formula.
 
 #include <cstddef>
 #include <string_view>
@@ -9,14 +9,14 @@
 
 namespace retrace {
 
-/// Error that a text is not a formula.
+/// Error for a text that is not a valid formula.
 class FormulaError : public InputError {
  public:
-  /// \param position number of the character at which parsing failed, counted from 1
+  /// \param position 1-based index of the character of the formula at which parsing failed
   FormulaError(const InputLocation& where, std::string_view text, std::size_t position)
       : InputError(where, text), position_(position) {}
 
-  /// Returns the number of the character at which parsing failed, counted from 1.
+  /// Returns the 1-based index of the character of the formula at which parsing failed.
   std::size_t position() const noexcept { return position_; }
 
  private:

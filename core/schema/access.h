@@ -40,7 +40,7 @@ inline constexpr bool is_array = false;
 template <std::size_t size>
 inline constexpr bool is_array<std::array<double, size>> = true;
 
-/// Converts a member to a value. An empty optional and an empty path are no value.
+/// Converts a member of an object to a Value. Returns std::monostate for an empty optional or an empty path.
 template <class Type>
 Value to_value(const Type& member) {
   if constexpr (is_optional<Type>)
@@ -55,8 +55,8 @@ Value to_value(const Type& member) {
     return member;
 }
 
-/// Sets a member to a value. std::monostate empties an optional or a path.
-/// \pre the value is of the member's type, and whole numbers are in its range
+/// Sets a member of an object from a Value. std::monostate clears an optional or a path.
+/// \pre the value has the alternative that to_value() returns for the member, and integers fit the type of the member
 template <class Type>
 void from_value(Type& member, const Value& value) {
   if constexpr (is_optional<Type>) {

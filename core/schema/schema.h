@@ -68,15 +68,15 @@ struct WordOrFile {
 struct NumberOrNumbers {
   NumberRange range;
   bool is_whole = false;                                       ///< true if all numbers must be integers
-  std::size_t most = std::numeric_limits<std::size_t>::max();  ///< maximum number of numbers; only for requests
-  bool may_be_empty = false;                                   ///< true if an empty list is allowed; only for requests
+  std::size_t most = std::numeric_limits<std::size_t>::max();  ///< maximum length of the list; only used for requests
+  bool may_be_empty = false;  ///< true if the list may be empty; only used for requests
 };
 /// A list of exactly `count` numbers.
 struct Numbers {
   std::size_t count;
   NumberRange range;
   std::string_view what = "numbers";  ///< text for the numbers in messages
-  bool is_whole = false;              ///< true if all numbers must be integers; only for requests
+  bool is_whole = false;              ///< true if all numbers must be integers; only used for requests
 };
 /// A list of one or more terms, each of which consists of `count` numbers.
 struct Terms {

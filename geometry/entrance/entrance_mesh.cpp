@@ -86,7 +86,7 @@ std::vector<Vec3> moved(const std::vector<Vec3>& vertices, const Vec3& move_mm) 
   return all;
 }
 
-/// Returns the message for a mesh that does not cover the part exactly once.
+/// Returns the error message for a mesh that has gaps or overlaps within the outline of the part.
 std::string refusal_text(const MeshCover& cover, MeshSide side) {
   const bool is_nearly_all = cover.fraction > 0.999 && cover.fraction < 1.001;
   std::string text =

@@ -21,18 +21,19 @@ enum class MeshSide {
   bottom
 };
 
-/// Triangles of a mesh through which light enters a part, and how they cover it.
+/// Triangles of a mesh that form the entrance surface of a part, and the result of checking their coverage.
 struct MeshCover {
-  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< oriented such that they face +z
-  double fraction = 0.0;                                ///< covered area divided by the area of the outline
-  std::optional<TilingGap> gap;                         ///< first gap, in the frame of the mesh
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< corner indices, in an order such that the normals face +z
+  double fraction = 0.0;         ///< total area of the triangles inside the outline / area of the outline (plan view)
+  std::optional<TilingGap> gap;  ///< first discontinuity found, in the mesh frame; empty if there is none
 
-  /// Returns true if the triangles cover the part exactly once.
+  /// Returns true if the triangles cover the outline without holes or overlaps, and their heights are continuous.
   bool is_exact() const;
 };
 
-/// Determines the triangles that cover the outline of a part.
-/// \param move_mm translation from the frame of the mesh to that of the part
+/// Determines the triangles of the requested side that are located within the outline of a part, in plan view. Checks
+/// that they cover the outline without gaps.
+/// \param move_mm translation from the frame of the mesh to the frame of the part
 MeshCover cover_of_mesh(const TriangleMesh& mesh, MeshSide side, const Vec3& move_mm, const Polygon& outline);
 
 /// Returns the entrance surface of a part from a mesh, as triangles that face +z.

@@ -13,19 +13,19 @@
 
 namespace retrace::geometry {
 
-/// Fault at a position at which the triangles are not continuous.
+/// Fault at a position at which adjacent triangles of a mesh do not join correctly.
 enum class TilingFault {
   hole,
   overlap,
   height_jump,
-  corner_on_side,    ///< a corner is located on the side of another triangle
-  no_area,           ///< a triangle has no area
-  upright_triangle,  ///< a triangle is vertical
-  overhang,          ///< a triangle faces -z and continues the sheet
-  reversed_triangle  ///< the corners of a triangle have the wrong order
+  corner_on_side,    ///< a corner of a triangle is located on a side of another triangle, between its ends
+  no_area,           ///< a triangle has zero area
+  upright_triangle,  ///< a triangle is vertical: its normal is perpendicular to z
+  overhang,          ///< a triangle faces -z although it has the same orientation as its neighbour across a side
+  reversed_triangle  ///< a triangle lists its corners in the opposite orientation to its neighbour
 };
 
-/// Returns the fault as a clause for messages, such as "there is a hole".
+/// Returns a clause for messages that describes the fault, such as "there is a hole".
 std::string_view text_of(TilingFault fault);
 
 /// Position at which the triangles are not continuous.
@@ -34,17 +34,18 @@ struct TilingGap {
   Vec2 at_mm = Vec2::Zero();
 };
 
-/// Checks that triangles which all face +z are continuous across each of their sides within a convex outline.
+/// Checks that triangles, all of which face +z, are continuous across their sides within a convex outline.
 ///
-/// The check has two steps. First, each side must be traversed equally often in both directions. The number of
-/// triangles above a point is then constant inside the outline. Second, the areas of the triangles over the outline
-/// must add up to the area of the outline. The number is then one, and the triangles tile the outline. Corners are
-/// shared in three dimensions, so heights are continuous.
-/// \param sheet triangles to check
-/// \param mesh all triangles of the mesh, which determine the fault at a gap
-/// \param tolerance_mm maximum distance at which a side counts as part of the outline, or a corner counts as a point on
-///     a side
-/// \return the first gap, or nothing
+/// Each side inside the outline must be traversed equally often in both directions by the triangles that contain it.
+/// Every point inside the outline is then covered by the same number of triangles. Heights are continuous, because
+/// adjacent triangles share their corners in three dimensions. The function does not check that the number of covering
+/// triangles is 1. The caller checks this: the total area of the triangles within the outline, in plan view, must equal
+/// the area of the outline.
+/// \param sheet triangles to check, as indices of `vertices`
+/// \param mesh all triangles of the mesh; they are used to determine the kind of the fault
+/// \param tolerance_mm tolerance in mm: sides closer to the outline than this are not checked, and corners closer to a
+///     side than this are located on the side
+/// \return the first discontinuity, or nothing if there is none
 std::optional<TilingGap> find_gap(const std::vector<Vec3>& vertices,
                                   const std::vector<std::array<std::uint32_t, 3>>& sheet,
                                   const std::vector<std::array<std::uint32_t, 3>>& mesh, const Polygon& outline,

@@ -1,7 +1,7 @@
 #pragma once
 
-// Sets fields of requests by name, and describes all requests. Programs that build forms, bindings or documentation
-// from the description need no code for single fields.
+// Sets fields of requests by name, and returns a description of all requests. Programs can generate forms, bindings or
+// documentation for all fields from this description.
 
 #include <string>
 #include <string_view>
@@ -21,14 +21,14 @@
 
 namespace retrace {
 
-/// Value of a field. Whole numbers are given as double, words and file names as std::string. std::monostate means that
-/// no value is given.
+/// Value of a field. Whole numbers have the type double; words and file names have the type std::string. std::monostate
+/// means that no value is given.
 using FieldValue = std::variant<std::monostate, bool, double, std::string, std::vector<double>,
                                 std::vector<std::vector<double>>, std::vector<std::string>>;
 
 /// Sets a field of a request.
 /// \param field name of the member, or "pixels" for the columns and rows of a camera picture
-/// \throw InputError at the field if there is no such field, or if the value is not allowed
+/// \throw InputError that names the field, if the request has no such field or the value is not allowed
 RETRACE_API void assign(DetectorRequest& request, std::string_view field, const FieldValue& value);
 RETRACE_API void assign(CameraRequest& request, std::string_view field, const FieldValue& value);
 RETRACE_API void assign(RoadRequest& request, std::string_view field, const FieldValue& value);
@@ -48,7 +48,8 @@ RETRACE_API void assign(VerificationRequest& request, std::string_view field, co
 /// command line and in Python. It is the document of `retrace list requests --json -` without its header.
 RETRACE_API std::string request_description();
 
-/// Returns the keyword of a field in Python, for Error::message(). The field is named as in the message.
+/// Returns the Python keyword of a field. This function can be passed to Error::message() as the spelling.
+/// \param field name of the field, as in Field::name (core/field.h)
 RETRACE_API std::string python_keyword(std::string_view field);
 
 }  // namespace retrace

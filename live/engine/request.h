@@ -32,9 +32,10 @@ Type get(const Json& request, const char* key, const Type& otherwise) {
   return request.contains(key) ? get<Type>(request, key) : otherwise;
 }
 
-/// Returns a request of the library in which those fields are set for which `request` has a key. The key is the name of
-/// the option with underscores, such as "area_cm2". Empty texts are ignored.
-/// \throw InputError at a field whose value is not allowed
+/// Creates a request of the library from the JSON object `request`. The key of a field is the name of its option
+/// without the leading dashes, with underscores instead of hyphens, such as "area_cm2". Fields without a key or with an
+/// empty text keep their defaults.
+/// \throw InputError that names the field, if its value is not allowed
 template <class Type>
 Type fields_of(const Json& request) {
   Type fields;

@@ -60,7 +60,7 @@ void translate(std::exception_ptr error) {
   }
 }
 
-/// Converts a value that the package gives to the value of a field.
+/// Converts a Python value (None, bool, int, float, str or list) to the value of a request field.
 FieldValue field_value(const py::object& value) {
   if (value.is_none()) return std::monostate();
   if (py::isinstance<py::bool_>(value)) return value.cast<bool>();
@@ -72,7 +72,7 @@ FieldValue field_value(const py::object& value) {
   return value.cast<std::vector<double>>();
 }
 
-/// Binds a request, whose fields the package sets by name.
+/// Binds a type of request. The Python package sets the fields of a request by name with the method `assign`.
 template <class Request>
 py::class_<Request> request_class(py::module_& module, const char* name) {
   return py::class_<Request>(module, name)

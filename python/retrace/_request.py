@@ -22,7 +22,7 @@ class Field(NamedTuple):
     meaning: str
 
 
-#: Fields of a request by keyword.
+#: Dictionary from the keywords of a Python function to the fields of the request.
 Fields = dict[str, Field]
 
 

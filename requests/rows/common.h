@@ -1,6 +1,6 @@
 #pragma once
 
-// Rows, ranges and conditions that several requests share.
+// Rows, ranges and conditions that the descriptions of several requests use.
 
 #include <string_view>
 
@@ -13,7 +13,8 @@ using schema::File, schema::Flag, schema::Number, schema::NumberOrNumbers, schem
     schema::Text, schema::Texts, schema::Whole, schema::Word, schema::WordOrFile;
 
 inline constexpr NumberRange kIncidence{.low = -90.0, .low_included = false, .high = 90.0, .high_included = false};
-/// Larger azimuths are refused because they leave too few digits after the decimal point.
+/// Allowed azimuths, in degrees. Larger azimuths are refused, because a floating-point number of large magnitude has
+/// fewer digits after the decimal point.
 inline constexpr NumberRange kAzimuth{.low = -360.0, .high = 360.0};
 inline constexpr NumberRange kCutoff{.low = 0.0, .low_included = false, .high = 1.0, .high_included = false};
 inline constexpr NumberRange kSamples{.low = 1.0, .high = 0x1p36};
@@ -23,7 +24,7 @@ inline constexpr double kFarthestMm = 1e9;
 inline constexpr NumberRange kPlaceMm{.low = -kFarthestMm, .high = kFarthestMm};
 inline constexpr NumberRange kUnsigned32{.low = 0.0, .high = 4294967295.0};
 
-/// Engines that trace every part: all but stochastic and cell.
+/// Engines that can trace any part. The engines "stochastic" and "cell" cannot.
 inline constexpr std::string_view kEnginesOfParts[] = {"auto", "exact", "montecarlo", "embree"};
 inline constexpr std::string_view kExactEngines[] = {"auto", "exact"};
 inline constexpr std::string_view kRayEngines[] = {"auto", "montecarlo", "embree"};
@@ -33,11 +34,11 @@ inline constexpr schema::Condition kIsByRays[] = {schema::is("engine", kRayEngin
 inline constexpr Need kNeedExact[] = {kIsExact};
 inline constexpr Need kNeedRays[] = {kIsByRays};
 
-/// Names of the shipped dyes, and the name for no dye.
+/// Names of the dyes that are shipped with the program. The name "none" means no dye.
 inline constexpr std::string_view kDyes[] = {"none", "red", "amber"};
 inline constexpr WordOrFile kDye{kDyes, ".csv", "none, red, amber or a file"};
 
-/// Returns the row of the seed. The command line has --seed for all commands.
+/// Returns the row of the field `seed`. The row creates no option, because all commands have the common option --seed.
 template <class Type>
 constexpr Row seed_row() {
   return {"seed",

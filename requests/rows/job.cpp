@@ -11,15 +11,15 @@ namespace {
 
 using schema::access;
 
-/// Names of the shipped machines and processes.
+/// Names of the machines and processes that are shipped with the program.
 constexpr std::string_view kMachines[] = {"ideal", "paper", "thesis", "ideal-dmc"};
 constexpr std::string_view kProcesses[] = {"thesis-acrylic", "thesis-forces", "thesis-forces-10um", "paper-pmma"};
 
 constexpr std::string_view kStrategies[] = {"unidirectional", "bidirectional", "two-step", "dmc"};
 constexpr std::string_view kWorkpieces[] = {"mould", "direct"};
 
-/// Allowed widths of chisels. The range of the field is wider, because it also covers tools for diamond micro chiseling
-/// (dmc).
+/// Allowed tool widths, in mm, for all strategies except diamond micro chiseling ("dmc"). The row of `tool_width_mm`
+/// allows a wider range, because it also covers the strategy "dmc".
 constexpr NumberRange kChiselWidthMm{.low = 0.1, .high = 2.0};
 
 void check_making_request(const void* object) {
@@ -61,10 +61,10 @@ constexpr Row kJobRows[] = {{.name = "tool_width_mm",
                              access<&JobRequest::shrinkage_percent>,
                              {.value = "S"}}};
 
-/// Dialects of NC programs.
+/// NC dialects in which programs can be written.
 constexpr std::string_view kProgramDialects[] = {"rs274ngc", "sinumerik", "fanuc", "pmac", "a3200", "automation1"};
 
-/// Largest number of elements, passes and visits.
+/// Upper limit of element numbers, pass numbers and numbers of visits: the largest signed 32-bit integer.
 constexpr double kMaxVisits = 2147483647.0;
 
 constexpr schema::Condition kFromElement[] = {schema::beside("from_element")};

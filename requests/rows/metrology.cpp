@@ -73,7 +73,7 @@ constexpr Row kMetrologyRows[] = {
     {"edge", schema::Flag{}, "rows are profiles across an edge: fit its radius and chamfer",
      access<&MetrologyRequest::edge>}};
 
-/// Rows of the fields that are needed to read a height map.
+/// Rows of the fields that control the reading of a height map: pixel_um, height_unit, lateral_unit and channel.
 constexpr Row kReadingRows[] = {kMetrologyRows[0], kMetrologyRows[3], kMetrologyRows[4], kMetrologyRows[5]};
 
 }  // namespace

@@ -16,13 +16,13 @@ constexpr std::string_view kRreEngines[] = {"auto", "exact", "stochastic", "mont
 constexpr std::string_view kRreRayEngines[] = {"auto", "montecarlo", "cell", "embree"};
 /// Engines that stop tracing light below a cut-off power.
 constexpr std::string_view kRreCutoffEngines[] = {"auto", "exact", "montecarlo", "cell", "embree"};
-/// Engines that trace light until a target error is reached, even if the request gives a cut-off power.
+/// Engines that use the target error even if the request also gives a cut-off power.
 constexpr std::string_view kRreTargetEngines[] = {"auto", "stochastic", "montecarlo", "cell", "embree"};
 constexpr std::string_view kRreSamplings[] = {"stratified", "plain"};
 
 constexpr schema::Condition kRreByRays[] = {schema::is("engine", kRreRayEngines)};
 constexpr schema::Condition kRreWithCutoff[] = {schema::is("engine", kRreCutoffEngines)};
-// The exact engine uses either the cut-off or the target error.
+// Condition of the field target_error. The exact engine cannot use it together with a cut-off power.
 constexpr schema::Condition kRreWithTarget[] = {schema::is("engine", kRreTargetEngines), schema::without("cutoff")};
 constexpr schema::Condition kRreNoCutoffOrDerivatives[] = {schema::without("cutoff"), schema::without("derivatives")};
 constexpr schema::Condition kRreNoCutoffOrFootprint[] = {schema::without("cutoff"), schema::without("footprint")};

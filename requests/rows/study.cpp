@@ -9,7 +9,7 @@ using schema::access;
 
 constexpr std::string_view kActionsIfExists[] = {"refuse", "resume", "overwrite"};
 
-// The command line has --set, --seed, --out, --resume and --overwrite for these fields.
+// These rows create no options, because the command line defines --set, --seed, --out, --resume and --overwrite itself.
 constexpr Row kStudyRows[] = {
     {"overrides",
      Texts{},

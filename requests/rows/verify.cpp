@@ -7,10 +7,11 @@ namespace {
 
 using schema::access;
 
-/// Dialects of NC programs, and the word for recognising the dialect from the text.
+/// NC dialects in which programs can be read. For "auto", the dialect is recognised from the text of the program.
 constexpr std::string_view kReadDialects[] = {"auto", "rs274ngc", "sinumerik", "fanuc", "pmac", "a3200", "automation1"};
 
-// Texts of files in memory (VerificationRequest::texts) have no row, because only callers in C++ and Python have them.
+// The member VerificationRequest::texts (texts of files in memory) has no row, because only callers in C++ and Python
+// can set it.
 constexpr Row kVerificationRows[] = {
     {.name = "job",
      .kind = File{"a job file"},

@@ -272,8 +272,9 @@ class Composer {
       composition.proof = has_intervals(study_) ? Proof::catalogue : Proof::family;
   }
 
-  /// Returns the indices of the bounds over the part that together exclude all mixtures.
-  /// \param relaxed best mixture without limits on the number and the minimum area of zones
+  /// Returns the indices of those bounds over the part that together exclude every mixture of cells. Returns an empty
+  /// list if a mixture exists without the limits on zones, or if there are no cells.
+  /// \param relaxed best mixture without limits on the number of zones and on the minimum area of a zone
   std::vector<std::size_t> excluding_bounds(const Composition& composition, const Mixture& relaxed) const {
     std::vector<std::size_t> bounds;
     if (composition.catalogue.empty() || relaxed.is_there()) return bounds;
@@ -282,7 +283,8 @@ class Composer {
     return bounds;
   }
 
-  /// Returns the reason why no mixture satisfies the bounds, as text.
+  /// Returns a text for the user that explains why no mixture of cells satisfies the bounds.
+  /// \param relaxed best mixture without limits on the number of zones and on the minimum area of a zone
   /// \pre composition.excluding is set
   std::string why_none(const Composition& composition, const Mixture& relaxed) const {
     if (composition.catalogue.empty())

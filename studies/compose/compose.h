@@ -109,10 +109,10 @@ struct Composition {
   std::vector<FamilyCell> catalogue;  ///< all cells that satisfy the constraints, in the order of their evaluation
   std::optional<PartOfZones> best;    ///< none if no mixture satisfies the bounds
   std::string none_because;           ///< bounds that exclude all mixtures; empty if there is a best part
-  /// Indices of the bounds over the part (ComposeRequest::of_part) that together exclude all mixtures. Empty if there
-  /// is a best part, and if other rules exclude the mixtures.
+  /// Indices of those bounds over the part (see ComposeRequest::of_part) that together exclude all mixtures. Empty if
+  /// there is a best part, or if the mixtures are excluded for other reasons, such as limits on zones.
   std::vector<std::size_t> excluding;
-  std::optional<FamilyCell> single;  ///< cell of the best part with only one kind of cell, as found by `optimise`
+  std::optional<FamilyCell> single;  ///< cell of the best part that has only one kind of cell
   Proof proof = Proof::none;
   bool has_converged = false;         ///< true if the last search by dual prices found no cell with a positive gain
   double unlimited = 0.0;             ///< merit without limits on the number and the areas of zones

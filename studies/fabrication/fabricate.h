@@ -27,8 +27,8 @@ struct FabricationResult {
   std::string program_file(std::size_t k) const { return plan.programs[k].name + file_ending; }
 };
 
-/// Reads and plans a job.
-/// \param job job file; relative names in the job start at its folder
+/// Reads a fabrication job and plans its cuts.
+/// \param job job file. Relative file names in the job refer to the folder of the job file.
 /// \throw InputError for an invalid job or request
 FabricationResult fabricate(const std::filesystem::path& job, const FabricationRequest& request = {});
 

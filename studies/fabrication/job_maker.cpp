@@ -32,8 +32,8 @@ namespace {
 
 using fabrication::Job, geometry::Arrangement, geometry::PartSpec;
 
-/// Returns the enumerator of a word.
-/// \pre `words` contains the word
+/// Returns the enumerator whose value is the index of `word` in `words`.
+/// \pre `words` contains `word`
 template <class Enumeration>
 Enumeration enumerator_of(const std::string& word, std::span<const std::string_view> words) {
   return static_cast<Enumeration>(std::ranges::find(words, word) - words.begin());
@@ -55,8 +55,8 @@ fabrication::Machine machine_at_field(const std::string& name_or_file) {
   return read_named(Field{"machine"}, [&] { return fabrication::load_machine(name_or_file, {}); });
 }
 
-/// Returns the process of a request.
-/// \throw InputError at the field `process` if the process does not exist, or if the file is invalid
+/// Loads the process that a request names.
+/// \throw InputError at the field `process` if the process does not exist, or if its file is invalid
 fabrication::Process process_of(const JobRequest& request) {
   return read_named(Field{"process"}, [&] { return fabrication::load_process(request.process, {}); });
 }

@@ -23,16 +23,17 @@ struct MadeJob {
   Warnings warnings;
 };
 
-/// Checks the fields of a request, its machine and its process, which do not depend on a design.
+/// Checks everything in a request that does not depend on a design: its fields, its machine and its process.
 /// \throw InputError for an invalid value
 void check_making(const JobRequest& request);
 
-/// Checks that the strategy supports designs with zones.
-/// \throw InputError at the field `strategy` if it does not
+/// Checks that the requested strategy can cut designs with zones.
+/// \throw InputError at the field `strategy` if the strategy cannot cut them
 void check_cuts_zones(const JobRequest& request);
 
-/// Checks that the strategy can cut the elements of the design.
-/// \throw InputError at the field `strategy`, or for a design that no strategy can cut
+/// Checks that the requested strategy can cut the elements of the design.
+/// \throw InputError at the field `strategy` if only another strategy can cut them
+/// \throw InputError at a key of the design if no strategy can cut them
 void check_element(const Design& design, const JobRequest& request);
 
 /// Returns the fabrication job of a design, which is an array of elements or has zones of cube corners. The job

@@ -29,7 +29,8 @@ std::array<double, 2> film_of(const CameraRequest& r) {
   return r.film_mm.value_or(kUsualFilmMm);
 }
 
-/// Checks the sheet. Its width must not cover more than half the circumference of the cylinder.
+/// Checks the size of the sheet and the radius of the cylinder on which the sheet is mounted. The sheet may cover at
+/// most half of the circumference. Both values are allowed only for infinite parts.
 void check_film(const CameraRequest& r, bool is_infinite) {
   if (!is_infinite) {
     constexpr std::string_view need = "needs a design with extent = \"infinite\": ";

@@ -27,7 +27,7 @@ inline constexpr std::array<double, 2> kUsualFilmMm = {100.0, 100.0};
 struct CameraResult {
   Design design;
   CameraRequest request;
-  std::optional<PhotometricLamp> lamp;  ///< lamp of the file of the request
+  std::optional<PhotometricLamp> lamp;  ///< lamp that was read from the requested file; empty if no file was requested
   raytrace::CameraScene scene;
   raytrace::CameraImage image;
   std::string engine;            ///< "cell" (with Embree at borders) or "embree"
@@ -49,7 +49,7 @@ class CameraStudy {
   static constexpr std::uint32_t kPassesToJudge = 64;
 
   /// \param discs method by which the luminance is averaged over the lamp and the pupil
-  /// \throw InputError for numbers out of range, for an eye or a lamp inside the part, and for polarised light
+  /// \throw InputError if a number is out of range, if the eye or the lamp is inside the part, or if light is polarised
   CameraStudy(Design design, CameraRequest request, raytrace::DiscAverage discs = raytrace::DiscAverage::kernel);
 
   /// Computes the picture.

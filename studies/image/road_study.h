@@ -34,8 +34,8 @@ struct RoadScene {
 
   double lamp_cd = 10'000.0;            ///< intensity of each dipped headlamp; not used with `lamp`
   std::optional<PhotometricLamp> lamp;  ///< photometric data of each headlamp
-  double lamp_aim_deg = 0.0;            ///< angle by which the axis of `lamp` is rotated downwards
-  std::string dye;                      ///< name or file of the reflectors' dye; empty if they have none
+  double lamp_aim_deg = 0.0;            ///< angle by which the axis of `lamp` is tilted downwards from the horizontal
+  std::string dye;                      ///< name or file of the reflectors' dye; empty: no dye
 
   std::size_t columns = 480;  ///< number of pixels of each picture
   std::size_t rows = 330;

@@ -27,7 +27,8 @@ constexpr double kLeastPointsPerLength = 2.0;
 /// Range on each side of a scratch with which the scratch is compared, in cut-off lengths.
 constexpr double kBesideScratch = 0.25;
 
-/// Checks that the spacing of a map is fine enough for the cut-off.
+/// Checks that the cut-off wavelength is at least twice the point spacing of a height map.
+/// \param name name of the map, for error messages
 void check_spacing(const std::string& name, double cutoff_um, const HeightMap& map) {
   const double coarser = map.is_profile() ? map.x_pixel_um : std::max(map.x_pixel_um, map.y_pixel_um);
   if (cutoff_um < kLeastPointsPerCutoff * coarser)
@@ -36,8 +37,8 @@ void check_spacing(const std::string& name, double cutoff_um, const HeightMap& m
         fmt::format("must be at least twice the spacing of {} um, got {}", shortest(coarser), shortest(cutoff_um)));
 }
 
-/// Returns the degree of the polynomial of a form: 0 for "none", 1 for "plane", k for "poly<k>".
-/// \pre `form` is one of these words
+/// Returns the degree of the polynomial that is fitted as the form: 0 for "none", 1 for "plane", k for "poly<k>".
+/// \pre `form` is "none", "plane" or "poly<k>"
 int degree_of(const std::string& form) {
   return form == "none" ? 0 : form == "plane" ? 1 : form.back() - '0';
 }

@@ -35,7 +35,7 @@ struct EdgeResult {
 
 /// Result of the evaluation of a height map.
 struct MetrologyResult {
-  std::string file;  ///< name of the height map
+  std::string file;  ///< file name of the height map
   MetrologyRequest request;
   std::string format;
   std::size_t missing = 0;            ///< number of points without a height
@@ -56,7 +56,7 @@ struct MetrologyResult {
   Warnings warnings;
 };
 
-/// Returns the settings for reading a height map.
+/// Returns the options with which the height map of a request is read.
 surface_models::HeightMapOptions reading_of(const MetrologyRequest& request);
 
 /// Returns the frequency, in Hz, with which waves pass the tool at a feed.
@@ -64,7 +64,7 @@ double frequency_hz(double frequency_per_mm, double feed_mm_per_min);
 
 /// Measures a surface that has already been read.
 /// \param name name of the surface, for messages
-/// \param request request, whose settings for reading are only checked
+/// \param request settings of the evaluation. Options for reading a file are checked but have no other effect.
 /// \throw InputError for an invalid request
 MetrologyResult measure_surface(const std::string& name, const MetrologyRequest& request,
                                 surface_models::HeightMapFile file);

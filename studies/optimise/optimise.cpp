@@ -356,7 +356,7 @@ std::optional<Variant> cheaper_than(const Optimum& optimum, const OptimiseReques
   return is_worth_it ? found : std::nullopt;
 }
 
-/// Returns the effect of each constraint on the designs that could be computed.
+/// Returns, for each constraint, how many evaluated designs violate it, and the smallest violation.
 std::vector<Exclusion> exclusions_of(const OptimiseRequest& request, const Evaluator& evaluator) {
   std::vector<Exclusion> exclusions(request.constraints.size());
   for (const Variant& variant : evaluator.seen()) {
@@ -371,7 +371,7 @@ std::vector<Exclusion> exclusions_of(const OptimiseRequest& request, const Evalu
   return exclusions;
 }
 
-/// Returns why no design is feasible.
+/// Returns a text for the user that explains why no design is feasible.
 std::string why_none(const OptimiseRequest& request, const std::vector<Exclusion>& exclusions,
                      const std::vector<Variant>& seen) {
   const auto judged =

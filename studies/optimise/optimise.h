@@ -69,17 +69,17 @@ struct ToleranceBand {
   std::optional<double> up;
 };
 
-/// Evaluated designs that a constraint excludes.
+/// Number of evaluated designs that violate a constraint, and smallest violation of that constraint.
 struct Exclusion {
   std::size_t designs = 0;  ///< number of designs that violate the constraint
-  /// Smallest violation of all evaluated designs; infinite if the quantity has no value for any of them.
+  /// Smallest violation over all evaluated designs; infinite if the constrained quantity has no value for any design.
   double least_violation = std::numeric_limits<double>::infinity();
 };
 
 struct Optimum {
   std::optional<Variant> best;  ///< none if no design is feasible
   std::string none_because;     ///< why no design is feasible; empty if there is a best design
-  /// Effect of each constraint of the request. Empty if there is a best design.
+  /// Designs that each constraint excludes, in the order of the constraints. Empty if there is a best design.
   std::vector<Exclusion> exclusions;
   std::vector<Variant> front;  ///< feasible designs that no other design dominates
   std::vector<Rejected> rejected;

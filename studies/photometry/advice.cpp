@@ -21,8 +21,8 @@ constexpr std::array<double, 14> kAngleSteps = {0.5,  -0.5, 1.0,  -1.0, 1.5,  -1
 // Factors of the element size that are tried.
 constexpr std::array<double, 8> kSizeFactors = {0.7, 1.4, 0.5, 2.0, 0.35, 2.8, 0.25, 4.0};
 constexpr int kBisections = 4;
-// Maximum number of tables that are measured. For each of the two parameters, one more table is measured after the
-// bisections: that of the returned change.
+// Maximum number of tables of readings that are measured. For each of the two parameters, these are the tables of all
+// tried values, of the bisections, and of the returned change.
 constexpr double kMostTables = kAngleSteps.size() + kSizeFactors.size() + 2.0 * (kBisections + 1);
 // Minimum ratio of a reading to its limit that counts as passing during the search. It is above 1 because the search
 // uses few wavelengths and is therefore less accurate.

@@ -95,7 +95,7 @@ bool is_near(const ColourPoint& point) {
   return std::abs(point.margin) < kErrorsOfAColour * point.std_error;
 }
 
-/// Returns the reason of an undetermined verdict on a colour.
+/// Returns why the verdict on a colour is undetermined. Returns an empty reason for any other verdict.
 OpenReason reason_of(const PhotometricColour& colour, const Photometer& photometer) {
   using Cause = OpenReason::Cause;
   if (colour.verdict() != Verdict::undetermined) return {};

@@ -17,9 +17,9 @@ PhotometrySettings request_of_response(const PhotometrySettings& request, std::s
 /// Measures the colour in the geometry for which the standard defines colour boundaries. If it defines none, the colour
 /// is measured in the geometry of the first test point. The tristimulus values are measured separately, each with its
 /// own wavelengths. Returns nothing if the measurement was cancelled.
-/// \param photometer photometer of the design and the request; the colour is measured with its engine
-/// \param v_deg angles V at which the colour is measured; the worst result counts
-/// \param progress receives the finished fraction; may be null
+/// \param photometer photometer that was made for `design` and `request`; its engine measures the colour
+/// \param v_deg angles V at which the colour is measured; the result with the smallest margin is returned
+/// \param progress object that receives the finished fraction; may be null
 /// \pre the light is a CIE illuminant, and the test plan has points
 std::optional<PhotometricColour> measured_colour(const Design& design, const PhotometrySettings& request,
                                                  const Photometer& photometer, const std::vector<double>& v_deg,

@@ -39,8 +39,13 @@ bool concerns(const LimitLine& line, const TestProgramme& programme) {
          (line.colour.empty() || known_colour(line.colour) == programme.colour);
 }
 
-/// Returns the requested name, or the only available name if none was requested.
-/// \param field field of the request that contains the name, for error messages
+/// Returns the requested name, or the only available name if no name was requested. Returns an empty name if there are
+/// no available names.
+/// \param there_are available names
+/// \param asked requested name
+/// \param field field of the request that contains the requested name, for error messages
+/// \param of_what object that the names belong to, for error messages
+/// \throw InputError at `field` if the requested name is not available, or if a name is required but missing
 std::string choice(const std::vector<std::string>& there_are, const std::optional<std::string>& asked, Field field,
                    std::string_view of_what) {
   if (there_are.empty()) {

@@ -91,8 +91,8 @@ class Photometer {
   /// Returns advice for reducing standard errors, for messages.
   std::string remedy_for_noise() const { return is_exact_ ? "give a lower cut-off" : "give more samples"; }
   bool has_diffraction() const { return is_exact_ && request_.diffraction; }
-  /// Returns the reason why readings lack diffraction.
-  /// \pre readings lack diffraction
+  /// Returns the reason why the readings do not include diffraction.
+  /// \pre the readings do not include diffraction
   NoDiffraction why_undiffracted() const;
   /// Returns the smallest cell width, in mm, for which diffraction is not significant.
   double least_undiffracted_mm() const;

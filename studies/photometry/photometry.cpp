@@ -50,8 +50,8 @@ void check_discs(const raytrace::PhotometricApertures& apertures) {
 
 void check(const PhotometrySettings& settings) {
   check_discs(settings.apertures);
-  // The settings of sweeps and other studies may contain engines and cut-offs that only the computation of RRE
-  // supports.
+  // Settings that come from sweeps and other studies may contain an engine or a cut-off that is valid for RRE but not
+  // for photometry.
   if (settings.engine == Engine::cell || settings.engine == Engine::stochastic)
     throw InputError(Field{"engine"},
                      fmt::format("must be auto, exact, montecarlo or embree, got {}", engine_name(settings.engine)));
@@ -383,7 +383,7 @@ bool raise_to_mean_field(const Photometer& photometer, const PhotometrySettings&
   return true;
 }
 
-/// Returns the reason of undetermined points.
+/// Returns why the verdict on some test points is undetermined. Returns an empty reason if there are no such points.
 OpenReason reason_of(const std::vector<PhotometricPoint>& points, const Photometer& photometer) {
   const auto is_open = [](const PhotometricPoint& p) { return p.verdict() == Verdict::undetermined; };
   if (std::none_of(points.begin(), points.end(), is_open)) return {};
@@ -416,17 +416,18 @@ bool measures_colour(const PhotometrySettings& request) {
   return request.colour && request.light != PhotometricLight::of_design && !request.programme.points.empty();
 }
 
-/// Returns true if a change of the design is to be searched for in case the design fails.
+/// Returns true if the study searches for a change with which the design passes, in case the design fails. The search
+/// must be requested, and the design must have elements and a plane entrance face.
 bool may_search_change(const Design& design, const PhotometrySettings& request) {
   return request.advice && design.elements() && !design.entrance;
 }
 
-/// Progress of the stages of PhotometryStudy::run().
+/// Progress objects of the stages of PhotometryStudy::run(). Each stage fills a fraction of the whole progress.
 struct StageProgress {
   PartOfProgress readings, colour, pictures, change;
 };
 
-/// Divides the progress of a run among its stages. The durations of the stages are estimates, relative to the first.
+/// Divides the progress of a run among its stages, in proportion to estimates of their durations.
 StageProgress stages_of(Progress* whole, const Design& design, const PhotometrySettings& request) {
   const double colour = 1.0 + (measures_colour(request) ? 0.3 : 0.0);
   const double pictures = colour + (request.pictures ? 0.3 : 0.0);

@@ -29,15 +29,15 @@ enum class PhotometricLight {
 };
 /// Returns the name of the light: "a", "d65" or "design".
 std::string_view light_name(PhotometricLight light);
-/// Returns the light with a name.
+/// Returns the light whose light_name() is `name`.
 /// \throw InputError at the field `light` for an unknown name
 PhotometricLight light_from_name(std::string_view name);
 
 /// Default number of rays per direction of incidence.
 inline constexpr std::uint64_t kUsualRaysOfDirection = std::uint64_t{1} << 20;
 
-/// Settings of the study. They are those of a PhotometryRequest, in which the files of the standard and of the dye are
-/// read; see resolve() in io/standard_reader.h.
+/// Settings of the study. resolve() in io/standard_reader.h makes them from a PhotometryRequest and reads the files of
+/// the standard and of the dye.
 struct PhotometrySettings {
   TestProgramme programme;
   std::string limits_source;  ///< origin of the limits: the name of a standard or a file
@@ -140,34 +140,34 @@ struct PhotometricChange {
   bool passes() const { return every_point_holds(verdict); }
 };
 
-/// Reason why readings lack diffraction.
+/// Reason why photometric readings do not include diffraction.
 enum class NoDiffraction {
   not_requested,
   balls,
   curved_entrance,
-  unequal_backs,        ///< the faces of the back differ
-  unequal_cells,        ///< the cells differ too much
-  form_and_texture,     ///< the facets have both a form and a texture
+  unequal_backs,        ///< the media behind the elements are not all the same
+  unequal_cells,        ///< the cells of the part differ too much from each other
+  form_and_texture,     ///< the facets have both a form error and a texture
   scattering_entrance,  ///< the entrance face scatters light
-  no_phases,            ///< the model of the texture contains no information on phases
-  too_many_beams,       ///< the exact engine would need too many beams
-  monte_carlo           ///< the request selects the Monte-Carlo engine
+  no_phases,            ///< the texture model does not determine the phases of the reflected light
+  too_many_beams,       ///< the exact engine exceeds its budget of beams
+  monte_carlo           ///< the request selects Monte Carlo, which traces rays without phases
 };
-/// Returns the reason as a clause for messages, such as "balls are traced by rays".
+/// Returns the reason as a clause for use in messages, such as "balls are traced by rays".
 std::string_view text_of(NoDiffraction reason);
 
 /// Reason of an undetermined verdict.
 struct OpenReason {
   enum class Cause {
-    none,           ///< the verdict is not undetermined
-    noise,          ///< a value is nearer to its limit than its noise
-    diffraction,    ///< diffraction is significant but not included
-    no_light,       ///< no light returns
-    another_light,  ///< the limits are defined for another light
+    none,           ///< there is no reason, because the verdict is determined
+    noise,          ///< a value is within two standard errors of its limit
+    diffraction,    ///< diffraction is significant, but the result does not include it
+    no_light,       ///< no light returns in the measured geometry
+    another_light,  ///< the limits are defined for CIE A, but the study uses another light
   };
   Cause cause = Cause::none;
-  std::optional<NoDiffraction> no_diffraction;  ///< only if the cause is `diffraction`
-  std::string text;                             ///< one line for the user; empty if there is no reason
+  std::optional<NoDiffraction> no_diffraction;  ///< set only if `cause` is `diffraction`
+  std::string text;                             ///< message for the user, one line; empty if the verdict is determined
 };
 
 /// Boundary of the allowed colours, and distance of the returned light's colour from it.
@@ -207,9 +207,9 @@ struct PhotometryResult {
   std::vector<std::vector<PhotometricPoint>> readings;
   std::vector<PhotometricDirection> directions;
   Verdict verdict = Verdict::fail;
-  OpenReason reason;                        ///< reason of undetermined points
+  OpenReason reason;                        ///< reason why points are undetermined; empty if all are determined
   std::optional<PhotometricColour> colour;  ///< colour, which has its own verdict
-  /// For a failing design: a change with which it passes, or else the best change that was tried.
+  /// Proposed change of a failing design: one with which the design passes, or else the best one that was tried.
   std::optional<PhotometricChange> change;
   std::vector<FarFieldMap> maps;
   std::vector<ObservationCurve> curves;
@@ -244,9 +244,10 @@ Verdict area_verdict(const TestProgramme& programme, double area_cm2);
 /// Photometric study of a design. The constructor checks the settings, and run() computes the readings.
 class PhotometryStudy {
  public:
-  /// \throw InputError for an observation angle outside the window, for point apertures, for an engine that does not
-  /// support the design, and for an unknown material
-  /// \pre each setting is within the range of its field in PhotometryRequest, except the engine and the cut-off
+  /// \throw InputError if an observation angle is outside the window, if the apertures of source and receiver are
+  /// points, if the engine does not support the design, or if a material is unknown
+  /// \pre All settings except the engine and the cut-off are in the ranges of the fields of PhotometryRequest. The
+  /// constructor checks the engine and the cut-off itself.
   PhotometryStudy(Design design, PhotometrySettings settings);
   ~PhotometryStudy();
 

@@ -34,8 +34,8 @@ struct Emitter {
   std::uint32_t seed = 1;
 };
 
-/// Returns the kind of emitter with this name.
-/// \pre the name is one of kEmitterNames
+/// Returns the kind of emitter that has the given name.
+/// \pre `name` is one of kEmitterNames
 EmitterKind emitter_from_name(std::string_view name);
 
 /// Request for an emitter.

@@ -10,8 +10,8 @@
 
 namespace retrace::studies {
 
-/// Position and direction that are requested for a source. The angles and the distance must be empty if
-/// `at_mm` is given.
+/// Requested position and direction of a ray source. The position is given either by `at_mm` or by the two angles and
+/// the distance, but not by both.
 struct RayPlacementRequest {
   std::optional<std::array<double, 3>> at_mm;   ///< origin of the source in the part frame
   std::optional<std::array<double, 3>> aim_mm;  ///< point at which the +z axis of the source is aimed

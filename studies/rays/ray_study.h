@@ -20,10 +20,10 @@
 
 namespace retrace::studies {
 
-/// Settings of a study: a resolved RaysRequest or TraceRequest.
+/// Settings of a ray study. resolve() makes them from a RaysRequest or a TraceRequest.
 struct RayRequest {
   RayPlacementRequest placement;
-  std::optional<EmitterRequest> emitter = {};  ///< requested emitter; empty: rays come from another source
+  std::optional<EmitterRequest> emitter = {};  ///< requested emitter; empty: a file or the caller gives the rays
   /// Minimum fraction of a ray's power for which both branches at an interface are traced. Below it, one branch is
   /// chosen at random and carries the power of both. With 1, at most one ray leaves for each incident ray.
   double split = 1.0;
@@ -33,8 +33,9 @@ struct RayRequest {
   std::uint32_t seed = 1;
 };
 
-/// Checks a request and returns its settings. An emitter without a requested position is in front of the entrance face.
-/// \throw InputError at the first field that is not allowed
+/// Checks a request and returns its settings. An emitter without a requested position is placed in front of the
+/// entrance face.
+/// \throw InputError at the first field whose value is not allowed
 RayRequest resolve(const RaysRequest& request);
 RayRequest resolve(const TraceRequest& request);
 
@@ -66,7 +67,7 @@ struct RayResult {
 /// in proportion to their weights. Rays with a spectrum get wavelengths of their spectrum.
 class RayStudy {
  public:
-  /// \pre each value of the request is allowed by itself, as resolve() ensures
+  /// \pre each value of `request` is in its allowed range; resolve() ensures this
   /// \throw InputError if the elements are balls, or if the source would be aimed at its own position
   RayStudy(Design design, RayRequest request);
   RayStudy(const RayStudy&) = delete;

@@ -33,7 +33,7 @@ struct RoughnessPoint {
   double roughness_sa_nm = 0.0;
   double waviness_sa_nm = 0.0;
   double correlation_length_um = 0.0;
-  std::optional<std::size_t> measured;  ///< index of the group of measured facets; none: point of a curve
+  std::optional<std::size_t> measured;  ///< index of the group of measured facets; none: the point belongs to a curve
   double rre = 0.0;
   double std_error = 0.0;
 };

@@ -39,22 +39,22 @@ double value_of(const Design& design, RreParameter parameter);
 /// \throw InputError if the design with this value is invalid
 Design with(const Design& design, RreParameter parameter, double value);
 
-/// Reason why there is no derivative of RRE.
+/// Reason why the derivative of RRE with respect to a parameter is not available.
 enum class NoDerivative {
-  count_changes,    ///< the number of elements changes
-  too_many_beams,   ///< parts with nearby values of the parameter need too many beams
-  no_part,          ///< parts with nearby values of the parameter cannot be built
-  truncated_power,  ///< the noise of the truncated power is too large
-  not_smooth        ///< RRE has a kink or a discontinuity
+  count_changes,    ///< the number of elements of the part changes near the value of the parameter
+  too_many_beams,   ///< tracing the part at nearby values of the parameter needs too many beams
+  no_part,          ///< the part cannot be built at nearby values of the parameter
+  truncated_power,  ///< the truncated power causes too much noise in the derivative
+  not_smooth        ///< RRE has a kink or a discontinuity near the value of the parameter
 };
-/// Returns the reason as a clause for messages, such as "no part can be built nearby".
+/// Returns the reason as a clause for use in messages, such as "no part can be built nearby".
 std::string_view text_of(NoDerivative reason);
 
 /// Derivative of RRE with respect to one parameter. The name of the parameter contains its unit.
 struct RreDerivative {
   RreParameter parameter = RreParameter::incidence_deg;
   Derivative derivative;
-  std::optional<NoDerivative> left_out;  ///< none if there is a derivative
+  std::optional<NoDerivative> left_out;  ///< reason why the derivative is missing; none if `derivative` is valid
 };
 
 /// Direction of incidence of a design, with the result of tracing it.

@@ -1,4 +1,4 @@
-// Names of engines in requests, and checks of the values of options.
+// Conversion between the engines and their names in requests.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

@@ -16,7 +16,7 @@
 namespace retrace::studies {
 namespace {
 
-/// Returns the fields of the requested results that only the exact engine computes.
+/// Returns the fields of those requested results that only the exact engine can compute.
 std::vector<Field> exact_results(const RreSettings& request) {
   std::vector<Field> fields;
   if (request.footprint) fields.push_back({"footprint"});
@@ -25,8 +25,8 @@ std::vector<Field> exact_results(const RreSettings& request) {
   return fields;
 }
 
-/// Checks that the settings can be combined.
-/// \throw InputError at the field that needs another setting
+/// Checks that the engine supports the requested sampling and the requested results.
+/// \throw InputError at the field that needs another engine
 void check(const RreSettings& request) {
   const std::string engine = reference({"engine"});
   if (request.sampling == raytrace::Sampling::Kind::plain && !is_one_of(request.engine, kRayEnginesOfParts))

@@ -40,7 +40,7 @@ inline constexpr Engine kRayEnginesOfParts[] = {Engine::automatic, Engine::monte
 inline constexpr Engine kExactEngines[] = {Engine::exact, Engine::automatic};
 /// Returns true if `engine` is one of `engines`.
 bool is_one_of(Engine engine, std::span<const Engine> engines);
-/// Default of RreSettings::target_error, as a fraction of the incident power.
+/// Default value of RreSettings::target_error, as a fraction of the incident power.
 inline constexpr double kUsualTargetError = 1e-4;
 /// Maximum error of linear interpolation between automatically chosen incidences, as a fraction of the incident power.
 /// It is used instead of target_error if target_error is smaller.
@@ -133,7 +133,7 @@ struct RreResult {
 /// computes the points.
 class RreStudy {
  public:
-  /// \throw InputError for an engine that does not support a design or a requested result, and for an unknown material
+  /// \throw InputError if the engine does not support a design or a requested result, or if a material is unknown
   RreStudy(std::vector<Design> designs, RreSettings request);
   ~RreStudy();
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Converts the request that users write into the settings of the RRE study.
+// Conversion of a user's RRE request into the settings of the RRE study.
 
 #include "requests/rre.h"
 #include "studies/rre/rre.h"
@@ -8,7 +8,7 @@
 namespace retrace::studies {
 
 /// Checks a request and returns its settings.
-/// \throw InputError at the first field that is not allowed
+/// \throw InputError at the first field whose value is not allowed
 RreSettings resolve(const RreRequest& request);
 
 }  // namespace retrace::studies

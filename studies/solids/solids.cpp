@@ -20,6 +20,7 @@ namespace {
 
 constexpr std::array<std::string_view, 3> kKinds = {"element", "array", "mould"};
 
+/// Returns the kind of solid that has the given name.
 /// \pre `word` is in kKinds
 SolidKind kind_of(const std::string& word) {
   return static_cast<SolidKind>(std::ranges::find(kKinds, word) - kKinds.begin());

@@ -41,10 +41,10 @@ struct Solid {
   Warnings warnings;
 };
 
-/// Builds the boundary of a solid. Facets are plane and smooth. Of the design's table [surface], only angle errors and
-/// edges are used.
-/// \throw InputError for an invalid request, an infinite array (a single element is allowed), a mask that cannot be
-/// read, and more than kMostSolidElements elements
+/// Builds the closed boundary of the requested solid. Its facets are plane and smooth: only the angle errors and the
+/// edges of the design's table [surface] are used.
+/// \throw InputError if the request is invalid, if a whole infinite array is requested, if the mask cannot be read, or
+/// if the solid has more than kMostSolidElements elements
 Solid make_solid(const Design& design, const SolidRequest& request);
 
 }  // namespace retrace::studies

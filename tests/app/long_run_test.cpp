@@ -56,7 +56,7 @@ TEST(LongRunOfTheProgram, OfAStudyIsReportedBeforeItsFirstPointIsFinished) {
   EXPECT_NE(outcome.err.find("analysis.samples"), std::string::npos) << outcome.err;
 }
 
-/// Returns the arguments of a photometry by ray tracing with `rays` rays for each direction of light.
+/// Returns the arguments of a photometry run that traces `rays` rays per direction of incidence.
 Arguments photometry_with_rays(std::uint64_t rays) {
   return {"photometry",
           example("reflex_reflector.toml"),
@@ -69,7 +69,8 @@ Arguments photometry_with_rays(std::uint64_t rays) {
           "--samples=" + std::to_string(rays)};
 }
 
-/// Runs the program with one thread and interrupts it when it has printed preliminary readings.
+/// Runs the program with one thread. Interrupts it as soon as it has printed preliminary readings, or after a time
+/// limit.
 Outcome interrupted_after_preliminary_readings(const TemporaryFolder& folder, const Arguments& arguments) {
   Child child(folder.path(), with(with({RETRACE_PROGRAM}, arguments), {"--threads=1"}));
   const auto limit = std::chrono::steady_clock::now() + patient(60);
@@ -80,7 +81,7 @@ Outcome interrupted_after_preliminary_readings(const TemporaryFolder& folder, co
   return child.wait(patient(60));
 }
 
-// A run of about half a minute prints no note that it will take long. It prints preliminary readings nevertheless.
+// A run of about half a minute is too short for the note on long runs, but it prints preliminary readings.
 TEST(LongRunOfTheProgram, PhotometryGivesPreliminaryReadingsAfterSomeSeconds) {
   const TemporaryFolder folder;
   const Outcome outcome = interrupted_after_preliminary_readings(folder, photometry_with_rays(1500000));
@@ -88,8 +89,8 @@ TEST(LongRunOfTheProgram, PhotometryGivesPreliminaryReadingsAfterSomeSeconds) {
   EXPECT_NE(outcome.err.find("preliminary readings"), std::string::npos) << outcome.err;
 }
 
-// The program prints preliminary readings to standard error during the run. They do not change the standard output of
-// an interrupted run.
+// The program prints preliminary readings to standard error during a long run, unless --quiet is given. The readings do
+// not change the standard output of an interrupted run.
 TEST(LongRunOfTheProgram, PhotometryGivesPreliminaryReadings) {
   const TemporaryFolder folder;
   const Arguments arguments = photometry_with_rays(4294967296);

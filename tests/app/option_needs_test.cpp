@@ -134,7 +134,7 @@ TEST(OptionNeeds, AreCheckedForEveryOptionOfEveryCommand) {
         SCOPED_TRACE(text_of(line.arguments()));
         const Outcome outcome = retrace(folder, line.arguments());
         EXPECT_EQ(outcome.code, 2) << outcome.err;
-        // Another option of the line may have the violated requirement as well.
+        // The message may name any option that has the violated requirement, not only the tested one.
         const bool is_refused = std::ranges::any_of(command["arguments"], [&](const Json& other) {
           const bool has_need = other.contains("needs") && std::ranges::count(other["needs"], violated) > 0;
           return has_need && outcome.err.starts_with("retrace: " + name_of(other) + ": needs ");

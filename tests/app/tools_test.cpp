@@ -55,10 +55,10 @@ class ToolsRun : public ::testing::Test {
   }
   /// Returns the arguments of apt-get calls, one call per line.
   std::string asked() const { return fs::exists(folder_.path() / "asked") ? folder_.read("asked") : ""; }
-  /// Expects exit code 3 and no build folder. On standard error, the last line and `others` further lines must be lines
-  /// of tools/run itself, which begin with "run: ".
-  /// \param named command, version or system that the last line must contain
-  /// \return the last line
+  /// Expects that tools/run ended with exit code 3 and did not create a build folder. Exactly `others` + 1 lines of
+  /// standard error, including the last one, must begin with "run: ", which marks messages of tools/run itself.
+  /// \param named name of a command, version or system that the last line must contain
+  /// \return the last line of standard error
   std::string expect_gives_up(const Outcome& outcome, const std::string& named = "", std::ptrdiff_t others = 0) const {
     EXPECT_EQ(outcome.code, 3) << outcome.err;
     EXPECT_EQ(outcome.out, "");

@@ -170,8 +170,8 @@ TEST(Formula, SaysWhereItDoesNotParse) {
   }
 }
 
-/// Returns the number of the character at which a formula fails to parse. Returns nothing if the formula is refused
-/// without a position.
+/// Returns the position of the character at which parsing a formula fails; the first character has position 1. Returns
+/// nothing if the error has no position.
 std::optional<std::size_t> failed_at(const std::string& text) {
   try {
     formula(text);

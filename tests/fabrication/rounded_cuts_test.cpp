@@ -322,8 +322,9 @@ TEST(RoundedCuts, CubeCornersOfEveryIncrementSystemPassOrAreRefused) {
       }
 }
 
-/// The limits of refused jobs are accepted. Smaller wedge angles and larger increments are refused. Messages contain
-/// the limit, and no number in a message has more than eight digits.
+/// If a job is refused, its error reports a minimum wedge angle or a maximum increment. A job at this limit is
+/// accepted, and a job beyond the limit is refused. Messages contain the limit, and their numbers have at most eight
+/// digits.
 TEST(RoundedCuts, LimitsOfRefusedJobsAreAccepted) {
   const auto refusal = [](const Job& job, const Machine& m) -> std::optional<LimitError> {
     try {

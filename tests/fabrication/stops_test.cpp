@@ -102,8 +102,8 @@ class Stops : public ::testing::TestWithParam<NcDialect> {
   }
 };
 
-/// Returns the longest length of cut of a visit. A visit is one call of a cutting subroutine at an element. The length
-/// is the limit that is reported if a shorter edge life is refused.
+/// Returns the maximum length of cut, in mm, of a visit, which is one call of a cutting subroutine at an element. A
+/// shorter edge life is refused with this length as the limit, so the edge life is raised until the job is accepted.
 double longest_visit_mm(const Case& c, const Machine& machine) {
   Job job = c.job;
   job.tool.edge_life_mm = 1e-3;

@@ -298,8 +298,8 @@ TEST_F(Faults, FixturesAreConvexBodiesAndNotTheirBoxes) {
 }
 
 TEST_F(Faults, TheDiamondRunsIntoAFixtureWithinTheArray) {
-  // A pin of 0.1 mm next to the last element, as high as the clearance plane. Without bodies that move with the tool,
-  // only the diamond can collide.
+  // The fixture is a pin, 0.1 mm wide, next to the last element. It reaches up to the clearance plane. All bodies that
+  // move with the tool are removed, so that only the diamond can collide with the pin.
   Machine m = machine_with("workpiece", box({0.2, 0.2, 0.0}, {0.3, 0.3, 0.3}));
   std::erase_if(m.bodies, [](const MachineBody& body) { return body.carrier == Carrier::tool; });
   const Verification v = verify_texts(job_, m, {text_of(lines_)});

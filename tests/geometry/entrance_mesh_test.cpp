@@ -58,8 +58,8 @@ class Sheet {
 constexpr std::uint32_t kCells = 8;
 const Polygon kOutline = to_polygon({Vec2(0.9, 0.8), Vec2(7.1, 7.2)});
 
-/// Returns how a mesh covers an outline. Expects that entrance_of_mesh() refuses the mesh unless it covers the outline
-/// exactly once.
+/// Determines how a mesh covers an outline. Also expects that entrance_of_mesh() accepts the mesh if and only if it
+/// covers every point of the outline one time.
 MeshCover cover(const TriangleMesh& mesh, const Polygon& outline = kOutline, MeshSide side = MeshSide::top,
                 const Vec3& move_mm = Vec3::Zero()) {
   MeshCover found = cover_of_mesh(mesh, side, move_mm, outline);
@@ -69,14 +69,16 @@ MeshCover cover(const TriangleMesh& mesh, const Polygon& outline = kOutline, Mes
   return found;
 }
 
-/// Expects one of the faults at a gap near a position in the frame of the mesh.
+/// Expects that the cover has a gap with one of the given faults.
+/// \param near expected position of the gap in the frame of the mesh, in mm
+/// \param within_mm maximum distance of the gap from `near`
 void expect_gap(const MeshCover& found, const std::set<TilingFault>& faults, const Vec2& near, double within_mm = 2.0) {
   ASSERT_TRUE(found.gap);
   EXPECT_TRUE(faults.contains(found.gap->fault)) << text_of(found.gap->fault);
   EXPECT_LT((found.gap->at_mm - near).norm(), within_mm) << found.gap->at_mm.transpose() << ", " << near.transpose();
 }
 
-/// Records the message with which a mesh is refused.
+/// Expects that entrance_of_mesh() refuses a mesh, and records the message.
 void expect_refused(const TriangleMesh& mesh, const Polygon& outline, MeshSide side = MeshSide::top,
                     const Vec3& move_mm = Vec3::Zero()) {
   EXPECT_EQ(refusal_of([&] { entrance_of_mesh(mesh, side, move_mm, outline); }), "refused");
@@ -209,7 +211,7 @@ TEST(EntranceMesh, StepsAreRefused) {
   EXPECT_TRUE(cover(body, outline).is_exact());
 }
 
-// The position of a gap refers to the frame of the mesh.
+// The position of a gap is given in the frame of the mesh, even if the mesh is moved to the part.
 TEST(EntranceMesh, PositionsAreInTheFrameOfTheMesh) {
   const Vec3 move(5.0, -3.0, 1.0);
   const Polygon outline = to_polygon({Vec2(5.0, -3.0), Vec2(7.0, -1.0)});

@@ -23,8 +23,9 @@ rt.job(BRICK, **WIDTH).save(JOB)
 rt.fabricate(JOB).save(FOLDER.name)
 PROGRAM = str(next(pathlib.Path(FOLDER.name).glob("*.ngc")))
 STANDARD = {"standard": "r150", "class_": "IA", "colour": "red", "area_cm2": 30}
-#: For each request: a function of the package without its other arguments, the type of the module
-#: _core, and the arguments with which the program makes the same request, if it can.
+#: Contains three items for each request: a function of the package that takes only the fields of
+#: the request, the request's type in the module _core, and the command-line arguments of the same
+#: request, or None if the program does not support it.
 CALLS = {
     "detector": (
         partial(rt.image.detector, BRICK),

@@ -1,4 +1,4 @@
-// Tests of the descriptions of requests: every field of every request obeys the same rules.
+// Tests of the descriptions of requests. Each test checks one rule for every field of every request.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,8 @@ using schema::Value;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Numbers outside of a range: beyond each bound, the bound itself if it is excluded, infinities and NaN.
+/// Returns numbers that a range does not allow: the nearest number beyond each bound, each excluded bound, both
+/// infinities and NaN. If the range is one of integers, a number with a fraction is added.
 std::vector<double> outside(const NumberRange& range, bool is_whole) {
   std::vector<double> numbers = {kInfinity, -kInfinity, std::nan("")};
   if (std::isfinite(range.low)) {
@@ -66,7 +67,7 @@ std::vector<Value> wrong_values(const schema::Kind& kind) {
   return wrong;
 }
 
-/// Calls a function with each request and an object that holds its defaults.
+/// Calls `action` for each kind of request with its description and a pointer to a request with default values.
 void for_each_request(const auto& action) {
   const auto with_defaults = [&]<class Type>(const Type& defaults) {
     Type object = defaults;
@@ -130,7 +131,7 @@ TEST(Requests, WrongValuesAreRefusedAtTheirField) {
   });
 }
 
-// A value that is written as on the command line and read again is the same.
+// A value does not change if it is written as text for the command line and read again. Invalid numbers are refused.
 TEST(Requests, TextsOfValuesAreRead) {
   for_each_request([](const Request& request, void* object) {
     for (const Row& row : request.rows) {

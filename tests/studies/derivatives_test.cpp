@@ -55,7 +55,7 @@ RreDerivative by(RreParameter parameter, const RrePoint& point) {
   return {};
 }
 
-/// Returns the reason why a derivative is left out, and records its text. Returns nothing if there is a derivative.
+/// Returns the reason why a derivative is missing, and records its text. Returns nothing if the derivative exists.
 std::optional<NoDerivative> reason(RreParameter parameter, const RrePoint& point) {
   const std::optional<NoDerivative> found = by(parameter, point).left_out;
   if (found) record_message(text_of(*found));

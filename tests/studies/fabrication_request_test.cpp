@@ -14,8 +14,8 @@
 #include "tests/support/prism_jobs.h"
 #include "tests/support/refusals.h"
 
-// Requests for fabrication jobs, NC programs and verifications: the words of their rows, and the values that are
-// refused.
+// Tests of the requests for fabrication jobs, NC programs and verifications. They check which words the fields allow
+// and which values are refused.
 
 namespace retrace::studies::fabrication_request_test {
 namespace {
@@ -26,7 +26,7 @@ Words words_of(const std::span<const std::string_view> words) {
   return {words.begin(), words.end()};
 }
 
-/// Returns the words that a field may have, sorted.
+/// Returns the words that a field of a request allows, in alphabetical order. Returns nothing for an unknown field.
 template <class Request>
 Words words_of_field(std::string_view name) {
   const requests::Row* const row = requests::row_of(requests::description<Request>(), name);

@@ -80,7 +80,7 @@ TEST(PhotometricFirstAnswer, CostsLess) {
   EXPECT_EQ(by_rays.first_answer(1.0)->points[0].r_a, result.points[0].r_a) << "with all rays it is the final reading";
 }
 
-/// Records the reported progress.
+/// Stores all reported values of the progress, which are fractions from 0 to 1.
 class Shares : public Progress {
  public:
   void at(double share) override { shares.push_back(share); }

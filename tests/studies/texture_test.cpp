@@ -109,13 +109,15 @@ double specular_share_of_two(double index, double sq_nm, double incidence_deg) {
   return std::exp(-phase2);
 }
 
-/// Returns identifiers and positions of the warnings of a design.
+/// Returns the identifier and the position in the input of each warning about a design.
+/// \param surface content of the design's table [surface]
+/// \param file file name of the design
 std::vector<std::string> warnings_of(const std::string& surface, const std::string& file) {
   const Design design = parse_design(kPrism + "[surface]\n" + surface, file);
   return facts_of(make_model(design, materials::MaterialLibrary::shipped()).warnings);
 }
 
-// Each model warns if it is used outside of its range.
+// Every texture model warns if its parameters are outside the range in which the model is valid.
 TEST(DesignTexture, WarnsOutsideTheRangeOfEveryModel) {
   const Folder folder;
   const std::string file = (folder.path() / "d.toml").string();

@@ -63,7 +63,7 @@ def with_comments(header: str, request: str, fields: list[dict]) -> str:
     if not found:
         return header
     by_name = {field["name"]: field for field in fields}
-    # Members that one field sets together.
+    # The field `pixels` sets the two members `columns` and `rows`.
     by_name |= {"columns": by_name.get("pixels"), "rows": by_name.get("pixels")} if "pixels" in by_name else {}
     lines: list[str] = []
     for line in found[1].splitlines():

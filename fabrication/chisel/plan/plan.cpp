@@ -559,7 +559,10 @@ class ProgramMaker {
   std::int64_t roughing_done_ = 0;
 };
 
-/// Checks the options whose limits depend on the job.
+/// Checks the options whose allowed values depend on the job.
+/// \param elements number of elements of the job
+/// \param passes number of passes of the job
+/// \throw InputError that names the option, if its value is out of range
 void check_options(const PlanOptions& options, std::size_t elements, std::size_t passes) {
   const auto most = static_cast<std::int64_t>(elements) - 1;
   if (options.from_element && (*options.from_element < 0 || *options.from_element > most))

@@ -87,7 +87,8 @@ struct Plan {
 
 /// Plans a job on a machine.
 /// \pre `stop_every` is >= 1, `split_hours` is > 0, and `from_pass` is only given together with `from_element`
-/// \throw InputError naming axis and element for a job that the machine cannot cut, or for options that do not apply
+/// \throw InputError if the machine cannot cut the job (the message names axis and element), or if an option is not
+///     applicable to the job
 Plan make_plan(const Job& job, const Machine& machine, const PlanOptions& options = {});
 
 /// Returns the minimum Z position, in mm, at which the rotary axes may move. It is the maximum height of the corners of

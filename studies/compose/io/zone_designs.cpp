@@ -90,7 +90,7 @@ std::string changes_text(const Study& study, const PointValues& values) {
   return text.empty() ? text : fmt::format("set = [{}]\n", text);
 }
 
-/// Returns the field of the request that sets the given key in the design of the whole part.
+/// Returns the field of a ZonedDesignRequest that determines the given key of the design of the whole part.
 Field field_of(std::string_view key) {
   if (key == "array.x_length_mm") return {"x_length_mm"};
   return {key == "array.y_length_mm" ? "y_length_mm" : "design"};
@@ -176,7 +176,7 @@ std::string zoned_design_text(const Study& study, const std::vector<Zone>& zones
     if (turn_deg != 0.0) text += fmt::format("rotation_deg = {}\n", shortest(turn_deg));
     text += changes_text(study, values);
   }
-  parse_design(text, "the design of zones");  // refuses zones that are too small for their elements
+  parse_design(text, "the design of zones");  // throws InputError if a zone is too small for its elements
   return text;
 }
 

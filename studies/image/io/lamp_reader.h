@@ -11,9 +11,9 @@
 
 namespace retrace::studies {
 
-/// Reads the file of a lamp. The ending of the file's name determines the format.
-/// \param field field that names the file
-/// \throw InputError that names the file and the line, or at `field` for an unknown ending
+/// Reads the photometric data of a lamp. The extension of the file name determines the format.
+/// \param field request field that contains the file name, for error messages
+/// \throw InputError at the file and line of an error, or at `field` if the extension is unknown
 PhotometricLamp read_lamp(const std::filesystem::path& file, Field field);
 
 /// Reads a photometric file of the editions LM-63-86, -91, -95, -2002 and -19 (ANSI/IESNA). The planes may be of type

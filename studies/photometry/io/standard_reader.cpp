@@ -23,7 +23,7 @@ std::vector<std::string_view> names_of_standards() {
   return names;
 }
 
-/// Returns settings with the limits, apertures and rotations of the standard of a request.
+/// Returns default settings in which the limits, apertures and rotations are those of the requested standard.
 PhotometrySettings settings_of_standard(const PhotometryRequest& request) {
   const fs::path file = limits_file_of(request.standard);
   const ShippedStandard* const shipped = find_standard(request.standard);

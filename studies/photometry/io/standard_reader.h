@@ -1,6 +1,6 @@
 #pragma once
 
-// Reads the files of a photometric test: limits and dyes.
+// Reads the files of a photometric test, which contain limits and dyes, and resolves requests into settings.
 
 #include <filesystem>
 #include <optional>
@@ -11,21 +11,22 @@
 
 namespace retrace::studies {
 
-/// Returns the file with the limits: a shipped file, or a file of the user.
-/// \param standard name in shipped_standards(), or a file with limits
-/// \throw InputError at the field `standard`
+/// Returns the path of the file that contains the limits of a standard.
+/// \param standard name of a standard in shipped_standards(), or path of a file with limits
+/// \throw InputError at the field `standard` if it is neither a known name nor an existing file
 std::filesystem::path limits_file_of(const std::string& standard);
 
-/// Returns the file of a dye. Empty if there is no dye.
-/// \param dye none, red, amber or the name of a file; by default the dye of the colour
-/// \param design_is_coloured true if the design has a spectral absorption; only an explicit dye is then used
-/// \throw InputError at the field `dye`
+/// Returns the path of the file that contains the absorption of a dye. The path is empty if no dye is used.
+/// \param dye "none", "red", "amber" or the path of a file. By default, `colour` determines the dye.
+/// \param design_is_coloured true if the design has a spectral absorption. There is then no default dye.
+/// \param colour colour of the part in the test plan
+/// \throw InputError at the field `dye` if it is neither a known name nor an existing file
 std::filesystem::path dye_file_of(const std::optional<std::string>& dye, bool design_is_coloured,
                                   const std::string& colour);
 
-/// Checks a request, reads the limits and the dye, and returns the settings of the study. The colour of the returned
-/// light is computed. For empty fields, the settings of the standard are used.
-/// \param design_is_coloured see dye_file_of()
+/// Checks a request, reads the limits and the dye, and returns the settings of the study. Empty fields of the request
+/// get the values of the standard. The settings request that the colour of the returned light is computed.
+/// \param design_is_coloured true if the design has a spectral absorption; see dye_file_of()
 /// \throw InputError at a field of the request, or at a line of the file with limits
 PhotometrySettings resolve(const PhotometryRequest& request, bool design_is_coloured);
 

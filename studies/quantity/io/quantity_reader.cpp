@@ -91,10 +91,13 @@ Quantities read_share(const std::string& name, const Document& document, const s
   return shares_of(name, spec);
 }
 
-/// Returns the settings for a request. Errors in its fields are located at the keys of the quantity.
+/// Resolves a request into settings. Errors in fields of the request are reported at the corresponding keys of the
+/// quantity in the document.
+/// \param at key of the quantity
 PhotometrySettings settings_of(const PhotometryRequest& request, const Document& document, const std::string& at) {
   try {
-    // Whether a design is coloured is not known before the designs of the study are read.
+    // The designs have not been read yet, so it is unknown whether they are coloured. The settings contain the dye for
+    // designs that are not.
     PhotometrySettings settings = resolve(request, false);
     settings.colour = false;
     return settings;
@@ -136,7 +139,7 @@ std::shared_ptr<const PhotometricTable> read_photometric_table(const Document& d
       document.fail(at + ".window_deg", fmt::format("must be >= {}, an observation angle of the standard, got {}",
                                                     shortest(point.observation_deg), shortest(settings.window_deg)));
   const std::filesystem::path dye_file = dye_file_of(request.dye, false, settings.programme.colour);
-  if (request.dye && dye_file == *request.dye)  // the dye is a file of the user and not a shipped one
+  if (request.dye && dye_file == *request.dye)  // the user gave the dye as a file
     files.push_back({dye_file, at + ".dye", document.where(at + ".dye")});
   table.dye_unless_coloured = !request.dye;
   table.key =

@@ -10,16 +10,19 @@
 
 namespace retrace::studies {
 
-/// Opens a file of rays.
-/// \throw InputError with the file and the position of an error, or with the location `field` for an unknown ending
+/// Opens a ray file for reading. The extension of the file name determines the format.
+/// \param field request field that contains the file name, for error messages
+/// \throw InputError at the position of an error in the file, or at `field` if the extension is unknown
 std::unique_ptr<RaySource> open_ray_file(const std::filesystem::path& file, Field field);
 
-/// Creates a file of rays. The file exists under its name only after RaySink::finish().
-/// \throw InputError with the location `field` for an unknown ending
+/// Creates a ray file for writing. The file does not appear under its name until RaySink::finish() is called.
+/// \param field request field that contains the file name, for error messages
+/// \throw InputError at `field` if the extension of the file name is unknown
 /// \throw OutputError if the file cannot be written
 std::unique_ptr<RaySink> make_ray_file(const std::filesystem::path& file, Field field);
-/// Checks that a file of rays can be created.
-/// \throw InputError, OutputError in the same cases as make_ray_file()
+/// Checks that make_ray_file() can create a file.
+/// \throw InputError at `field` if the extension of the file name is unknown
+/// \throw OutputError if the file cannot be written
 void check_ray_file(const std::filesystem::path& file, Field field);
 
 }  // namespace retrace::studies

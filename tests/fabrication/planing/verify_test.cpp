@@ -221,8 +221,8 @@ std::vector<std::string> lines_of(const std::string& text) {
 const std::string kStarts[] = {"G97 S800 M3", "S800 M3", "G97 S800 M3", "M103", "M103", "M103"};
 const std::string kStops[] = {"M5", "M5", "M5", "M105", "M105", "M105"};
 
-/// Returns the kinds of all findings, with the speed of the spindle and the program line: "feed" for a feed move,
-/// "stop" for a line that only stops the spindle, and "end" for other lines. Records their messages.
+/// Returns a list of all findings as text, and records their messages. Each finding is given by its kind, the spindle
+/// speed, and its program line: "feed" for a feed move, "stop" for the spindle stop, and "end" for any other line.
 std::string spindle_findings(const PlanedPart& part, const std::string& text, NcDialect dialect) {
   const std::vector<std::string> lines = lines_of(text);
   std::string found;

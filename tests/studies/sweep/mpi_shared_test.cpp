@@ -74,8 +74,9 @@ class CommandsByMpi : public ByMpi {
   }
 };
 
-/// Returns the numbers in the warnings about lost ranks: the rank, and the time in s for a rank that was silent.
-/// Also records the warnings for tests/messages.txt.
+/// Returns all numbers in the warnings about lost MPI ranks: the number of the rank and, if the rank stopped
+/// responding, the time in s for which it was silent. Also records the warnings for tests/messages.txt.
+/// \param said text of standard error
 std::vector<int> numbers_of_lost_ranks(const std::string& said) {
   Outcome outcome;
   outcome.err = said;
