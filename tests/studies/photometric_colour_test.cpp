@@ -242,5 +242,19 @@ TEST(PhotometricColour, IsMeasuredBesideTheMirrorImage) {
   EXPECT_EQ(std::abs(run(design_of(honeycomb()), request).colour->v_deg), 5.0);
 }
 
+// The reported colour is that of the geometry with the smallest margin to any boundary. The margin to the boundary -x
+// <= 5 is always large. Alone, it selects the geometry with the smaller x; beside a nearer boundary, it has no effect.
+TEST(PhotometricColour, SmallestMarginDeterminesTheGeometry) {
+  PhotometrySettings request = colour_request();
+  const auto v_deg = [&](std::vector<ColourBoundary> boundaries) {
+    request.programme.boundaries = std::move(boundaries);
+    request.programme.boundaries[0].v_beside_deg = {5.0, 20.0};
+    return run(design_of(honeycomb()), request).colour->v_deg;
+  };
+  const double of_larger_x = v_deg({at_most(1.0, 0.0, 0.448)});
+  EXPECT_NE(v_deg({at_most(-1.0, 0.0, 5.0)}), of_larger_x);
+  EXPECT_EQ(v_deg({at_most(1.0, 0.0, 0.448), at_most(-1.0, 0.0, 5.0)}), of_larger_x);
+}
+
 }  // namespace
 }  // namespace retrace::studies::photometric_colour_test
