@@ -37,14 +37,6 @@ std::vector<SharedOption> options_of(std::span<const CommandRequest> of_command)
   return options;
 }
 
-/// Returns the default of a field as text for help. Returns an empty text if the field has no default.
-std::string default_text(const FieldOfCommand& field) {
-  const requests::Spelling& spelling = field.row->spelling;
-  if (!spelling.otherwise.empty()) return std::string(spelling.otherwise);
-  return spelling.usual.empty() ? requests::text_of(*field.row, field.of->request.initial())
-                                : std::string(spelling.usual);
-}
-
 /// Returns true if help shows the initial value of the field as its default, instead of a special text. If such a field
 /// is the only one of its option, the command-line parser adds the default to help as "=VALUE".
 bool has_plain_default(const Row& row) {
@@ -79,7 +71,7 @@ std::string help_of(const SharedOption& option) {
   std::vector<Part> parts;
   for (const FieldOfCommand& field : option.fields) {
     const bool is_flag = std::holds_alternative<schema::Flag>(field.row->kind);
-    const std::string otherwise = is_flag ? "" : default_text(field);
+    const std::string otherwise = is_flag ? "" : requests::default_text(field.of->request, *field.row);
     const bool is_shown_by_parser = option.fields.size() == 1 && has_plain_default(*field.row);
     const std::string text =
         meaning_of(field) + (otherwise.empty() || is_shown_by_parser ? "" : fmt::format(" [{}]", otherwise));
@@ -160,8 +152,8 @@ Argument argument_of(const SharedOption& option, FieldTexts& texts) {
   }
   argument.name += " " + placeholder(option);
   argument.target = &texts.values[option.option];
-  if (option.fields.size() == 1 && has_plain_default(*first.row) && !first.row->is_required)
-    argument.shown_default = default_text(first);
+  if (option.fields.size() == 1 && has_plain_default(*first.row))
+    argument.shown_default = requests::default_text(first.of->request, *first.row);
   return argument;
 }
 

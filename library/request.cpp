@@ -14,7 +14,10 @@ template <class Request>
 void assign_field(Request& request, std::string_view field, const FieldValue& value) {
   const requests::Row* const row = requests::row_of(requests::description<Request>(), field);
   if (row == nullptr) throw InputError(Field{field}, "there is no such field");
-  std::visit([&](const auto& given) { requests::set(*row, &request, schema::Value(given)); }, value);
+  if (std::holds_alternative<std::monostate>(value))
+    requests::reset(requests::description<Request>(), *row, &request);
+  else
+    std::visit([&](const auto& given) { requests::set(*row, &request, schema::Value(given)); }, value);
 }
 
 }  // namespace

@@ -94,7 +94,11 @@ class KindCheck {
     check_numbers(numbers, kind.range, kind.is_whole);
   }
   void operator()(const schema::NumberRows& kind) const {
-    for (const std::vector<double>& numbers : taken<std::vector<std::vector<double>>>(kind)) {
+    const auto& rows = taken<std::vector<std::vector<double>>>(kind);
+    if (rows.size() < kind.least || rows.size() > kind.most)
+      refuse(row_, fmt::format("{} to {} {}", kind.least, kind.most, kind.what),
+             fmt::format("{} of them", rows.size()));
+    for (const std::vector<double>& numbers : rows) {
       if (numbers.size() != kind.columns) refuse(row_, schema::allowed(kind), shown(value_));
       check_numbers(numbers, kind.range, false);
     }
@@ -120,6 +124,18 @@ class KindCheck {
   const Row& row_;
   const Value& value_;
 };
+
+/// Returns a value in the form that the kind of a field requires. One number is also a list of numbers, and an empty
+/// list of numbers is also an empty list of rows or texts.
+Value as_kind(const schema::Kind& kind, const Value& value) {
+  const double* const number = std::get_if<double>(&value);
+  if (number != nullptr && std::holds_alternative<schema::NumberOrNumbers>(kind)) return std::vector{*number};
+  const auto* const numbers = std::get_if<std::vector<double>>(&value);
+  const bool is_empty = numbers != nullptr && numbers->empty();
+  if (is_empty && std::holds_alternative<schema::NumberRows>(kind)) return std::vector<std::vector<double>>();
+  if (is_empty && std::holds_alternative<schema::Texts>(kind)) return std::vector<std::string>();
+  return value;
+}
 
 void check_kind(const Row& row, const Value& value) {
   std::visit(KindCheck(row, value), row.kind);
@@ -177,11 +193,13 @@ class Conditions {
 }  // namespace
 
 void set(const Row& row, void* object, const Value& value) {
-  const double* const number = std::get_if<double>(&value);
-  const bool is_list = std::holds_alternative<schema::NumberOrNumbers>(row.kind);
-  const Value& taken = number != nullptr && is_list ? Value(std::vector<double>{*number}) : value;
-  if (!std::holds_alternative<std::monostate>(taken)) check_kind(row, taken);
+  const Value taken = as_kind(row.kind, value);
+  check_kind(row, taken);
   row.access.set(object, taken);
+}
+
+void reset(const Request& request, const Row& row, void* object) {
+  row.access.set(object, row.access.get(request.initial()));
 }
 
 void check(const Request& request, const void* object) {

@@ -65,6 +65,7 @@ Json field_json(const Request& request, const Row& row) {
   if (const std::string_view unit = schema::unit_of(row.name); !unit.empty()) json["unit"] = unit;
   json["meaning"] = row.meaning;
   json["default"] = json_of(row.access.get(request.initial()));
+  json["default_text"] = default_text(request, row);
   if (!row.spelling.otherwise.empty()) json["otherwise"] = row.spelling.otherwise;
   if (!row.spelling.usual.empty()) json["usual"] = row.spelling.usual;
   if (row.is_required) json["required"] = true;

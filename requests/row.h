@@ -93,13 +93,20 @@ std::string option_of_field(std::string_view field);
 
 /// Checks a value and assigns it to a field.
 /// \param object object of the request type to which the row belongs
+/// \param value value other than std::monostate; see reset() for removing a value
 /// \throw InputError if the value is not allowed; the error names the field
 void set(const Row& row, void* object, const schema::Value& value);
+/// Assigns its default to a field.
+/// \param object object of the type of `request`
+void reset(const Request& request, const Row& row, void* object);
 /// Parses a value in the notation of the command line, checks it and assigns it to a field.
 /// \throw InputError if the text cannot be parsed or the value is not allowed; the error names the field
 void set_text(const Row& row, void* object, std::string_view text);
 /// Returns the value of a field in the notation of the command line. Returns an empty text if the field has no value.
 std::string text_of(const Row& row, const void* object);
+/// Returns a text for the default of a field: Spelling::otherwise, Spelling::usual, or the value of the default.
+/// Returns an empty text if the field is required or has no default.
+std::string default_text(const Request& request, const Row& row);
 
 /// Checks the value of each field, the conditions in Row::needs, and combinations of values (Request::check).
 /// \param object object of the request type

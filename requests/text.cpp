@@ -90,4 +90,13 @@ std::string text_of(const Row& row, const void* object) {
       row.access.get(object));
 }
 
+std::string default_text(const Request& request, const Row& row) {
+  if (!row.spelling.otherwise.empty()) return std::string(row.spelling.otherwise);
+  if (!row.spelling.usual.empty()) return std::string(row.spelling.usual);
+  if (row.is_required) return {};
+  const bool is_set = std::holds_alternative<bool>(row.access.get(request.initial()));
+  if (is_set) return row.spelling.notation == Notation::absent ? "on" : "off";
+  return text_of(row, request.initial());
+}
+
 }  // namespace retrace::requests

@@ -99,6 +99,10 @@ class Requests(unittest.TestCase):
         self.assertEqual(set(CALLS), names - {"roughness"})  # which only the program has
         self.assertEqual(names, set(FIELDS))
 
+    def test_an_empty_list_is_a_default(self):
+        empty = rt.rre(BRICK, incidence_spans_deg=[], engine="exact")
+        self.assertEqual(empty.rre, rt.rre(BRICK, engine="exact").rre)
+
     def test_wrong_requests_get_the_same_answer(self):
         chance = random.Random(61)
         fields = [

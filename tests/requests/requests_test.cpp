@@ -148,6 +148,24 @@ TEST(Requests, TextsOfValuesAreRead) {
   });
 }
 
+TEST(Requests, ResetRestoresEveryDefault) {
+  for_each_request([](const Request& request, void* object) {
+    for (const Row& row : request.rows) {
+      reset(request, row, object);
+      EXPECT_EQ(row.access.get(object), row.access.get(request.initial())) << row.name;
+      EXPECT_EQ(unrecorded_refusal_of([&] { set(row, object, Value()); }), std::string(row.name));
+    }
+  });
+}
+
+// An empty list has no type of its entries.
+TEST(Requests, EmptyListsAreOfEveryType) {
+  RreRequest request;
+  request.incidence_spans_deg = {{0.0, 1.0}};
+  set(*row_of(description<RreRequest>(), "incidence_spans_deg"), &request, std::vector<double>());
+  EXPECT_TRUE(request.incidence_spans_deg.empty());
+}
+
 TEST(Requests, ConditionsAreChecked) {
   CameraRequest request;
   check(request);

@@ -97,19 +97,6 @@ def needs_text(field: dict, fields: list[dict]) -> str:
     return " ".join(sentences)
 
 
-def default_text(field: dict) -> str:
-    if field.get("usual") or field.get("otherwise"):
-        return field.get("usual") or field["otherwise"]
-    default = field["default"]
-    if default is None or default == "":
-        return ""
-    if isinstance(default, bool):
-        return "on" if default else "off"
-    if isinstance(default, list):
-        return ("x" if field.get("is_whole") else ",").join(f"{number:g}" for number in default)
-    return f"{default:g}" if isinstance(default, (int, float)) else str(default)
-
-
 def table(fields: list[dict]) -> str:
     lines = ["| option | default | does |", "|---|---|---|"]
     for field in fields:
@@ -118,7 +105,7 @@ def table(fields: list[dict]) -> str:
         option = f"{field['option']} {field['value']}".strip().replace("|", "\\|")
         does = [meaning(field), range_of(field)]
         text = "; ".join(part for part in does if part) + ". " + needs_text(field, fields)
-        default = default_text(field).replace("|", "\\|")
+        default = field["default_text"].replace("|", "\\|")
         lines.append(f"| `{option}` | {default} | {text.strip()} |")
     return "\n".join(lines) + "\n"
 
