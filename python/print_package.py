@@ -7,11 +7,11 @@ FOLDER/files.py contains a TypedDict for each table of designs, jobs, studies an
 FOLDER/_fields.py contains the fields of each request of the library.
 SOURCES are Python files that are copied to FOLDER. In the copies, three kinds of lines are replaced
 by code for the request NAME:
-    # the build inserts the fields of NAME
+    # generated: keywords of the request NAME
         Replaced by one keyword per field, in the signature of a function that has more keywords.
-    **fields: object,  # the build inserts the fields of NAME
+    **fields: object,  # generated: keywords of the request NAME
         Replaced by one keyword per field, in the signature of a function without more keywords.
-    request = _core.X()  # the build inserts the fields of NAME
+    request = _core.X()  # generated: sets the fields of the request NAME
         Replaced by code that creates a request and sets its fields to the values of the keywords.
 """
 
@@ -227,8 +227,8 @@ def expanded(text: str, requests: dict[str, list[dict]]) -> str:
     """Replaces the lines of a Python file that stand for the fields of a request."""
     lines = []
     for line in text.splitlines():
-        in_signature = re.fullmatch(r"    (\*\*fields: object,  )?# the build inserts the fields of (\w+)", line)
-        in_body = re.fullmatch(r"    request = (_core\.\w+\(\))  # the build inserts the fields of (\w+)", line)
+        in_signature = re.fullmatch(r"    (\*\*fields: object,  )?# generated: keywords of the request (\w+)", line)
+        in_body = re.fullmatch(r"    request = (_core\.\w+\(\))  # generated: sets the fields of the request (\w+)", line)
         if in_signature:
             lines += ["    *,"] if in_signature[1] else []
             lines += keywords(requests[in_signature[2]])

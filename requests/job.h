@@ -34,8 +34,8 @@ struct FabricationRequest {
   /// Number of the element at which the programs start, with the first visit of the tool; a whole number >= 0 and <=
   /// 2147483647. Default: the first.
   std::optional<std::uint64_t> from_element = {};
-  /// Number, from 1, of the pass in that visit at which the programs start; a narrow tool needs several passes per
-  /// element; a whole number >= 1 and <= 2147483647. Default: 1.
+  /// Number, counted from 1, of the tool pass at which the programs start, within the first visit to the element; a
+  /// narrow tool needs several passes for each element; a whole number >= 1 and <= 2147483647. Default: 1.
   std::optional<std::uint64_t> from_pass = {};
   /// Number of visits of the tool to an element between optional stops; a whole number >= 1 and <= 2147483647. Default:
   /// no stops.

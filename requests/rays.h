@@ -33,9 +33,11 @@ struct RaysRequest {
   std::optional<double> azimuth_deg = {};
   /// Distance of the source from the centre of the face, in mm; > 0 and <= 1e+09. Default: 10.
   std::optional<double> distance_mm = {};
-  /// Position of the source's origin, instead of angles and distance, in mm. Default: files: the part's origin.
+  /// Position of the source's origin, instead of angles and distance, in mm. Default: the origin of the part, for a
+  /// file of rays.
   std::optional<std::array<double, 3>> at_mm = {};
-  /// Point at which the source's +z axis is aimed, in mm. Default: files: parallel to the part's +z axis.
+  /// Point at which the source's +z axis is aimed, in mm. Default: parallel to the +z axis of the part, for a file of
+  /// rays.
   std::optional<std::array<double, 3>> aim_mm = {};
   /// Minimum power, as a fraction of the launched ray, for following both branches; 1: never; >= 0 and <= 1.
   double split = 1.0;

@@ -10,7 +10,7 @@ namespace retrace {
 
 /// Settings for curves of the retroreflective efficiency as a function of facet roughness, as in `retrace roughness`.
 struct RoughnessRequest {
-  /// Sa of the roughness for the points of each curve, in nm.
+  /// Sa values of the roughness, in nm; each curve has one point for each value.
   std::vector<double> sa_nm = {0.0, 2.0, 5.0, 10.0, 15.0, 20.0, 30.0, 40.0, 50.0, 75.0, 100.0, 150.0, 200.0};
   /// Correlation lengths, one curve each, in um; the first is for measured facets.
   std::vector<double> correlation_length_um = {5.0, 20.0, 50.0};

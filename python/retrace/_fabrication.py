@@ -143,10 +143,10 @@ class Verification(Result):
 @described(FIELDS["job"])
 def job(
     design: AnyDesign,
-    **fields: object,  # the build inserts the fields of job
+    **fields: object,  # generated: keywords of the request job
 ) -> Job:
     """Computes the fabrication job of a design, as `retrace job`."""
-    request = _core.JobRequest()  # the build inserts the fields of job
+    request = _core.JobRequest()  # generated: sets the fields of the request job
     return Job(_core.make_job(design_of(design)._core, request))
 
 
@@ -162,11 +162,11 @@ def _job_file(value: object) -> tuple[str, str | None]:
 @described(FIELDS["fabrication"])
 def fabricate(
     job: AnyJob,
-    **fields: object,  # the build inserts the fields of fabrication
+    **fields: object,  # generated: keywords of the request fabrication
 ) -> Fabrication:
     """Computes the NC programs of a job and their machining time, as `retrace fabricate`."""
     name, text = _job_file(job)
-    request = _core.FabricationRequest()  # the build inserts the fields of fabrication
+    request = _core.FabricationRequest()  # generated: sets the fields of the request fabrication
     request.job_text = text
     return Fabrication(_core.fabricate(name, request))
 
@@ -194,7 +194,7 @@ def verify(
     job: AnyJob,
     programs: AnyPrograms,
     *,
-    # the build inserts the fields of verification
+    # generated: keywords of the request verification
     threads: int | None = None,
     progress: Progress = None,
 ) -> Verification:
@@ -203,7 +203,7 @@ def verify(
     names, texts = _programs(programs)
     if not names:
         raise InputError("must be one or more, got none", key="programs")
-    request = _core.VerificationRequest()  # the build inserts the fields of verification
+    request = _core.VerificationRequest()  # generated: sets the fields of the request verification
     request.job = name
     request.programs = names
     request.texts = {**texts, **({} if text is None else {name: text})}

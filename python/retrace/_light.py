@@ -138,7 +138,7 @@ class Footprint(Result):
 def rre(
     designs: AnyDesign | Sequence[AnyDesign],
     *,
-    # the build inserts the fields of rre
+    # generated: keywords of the request rre
     threads: int | None = None,
     progress: Progress = None,
 ) -> RreResult:
@@ -149,7 +149,7 @@ def rre(
     which additional angles of incidence are chosen, as many as the curve requires. threads: maximum
     number of threads [all cores]."""
     taken = designs_of(designs)
-    request = _core.RreRequest()  # the build inserts the fields of rre
+    request = _core.RreRequest()  # generated: sets the fields of the request rre
     count = thread_count(threads)
     with teller(progress, "tracing") as tell:
         return RreResult(_core.rre([design._core for design in taken], request, tell, count))
@@ -215,7 +215,7 @@ class PhotometryResult(Result):
 def photometry(
     design: AnyDesign,
     *,
-    # the build inserts the fields of photometry
+    # generated: keywords of the request photometry
     threads: int | None = None,
     progress: Progress = None,
 ) -> PhotometryResult:
@@ -226,7 +226,7 @@ def photometry(
     the design if a point fails. pictures: make the drawings "far_field" and "r_a", which takes
     time."""
     taken = design_of(design)
-    request = _core.PhotometryRequest()  # the build inserts the fields of photometry
+    request = _core.PhotometryRequest()  # generated: sets the fields of the request photometry
     count = thread_count(threads)
     with teller(progress, "tracing") as tell:
         return PhotometryResult(_core.photometry(taken._core, request, tell, count))

@@ -104,10 +104,10 @@ class Inspection(Result):
 @described(FIELDS["solid"])
 def mesh(
     design: AnyDesign,
-    **fields: object,  # the build inserts the fields of solid
+    **fields: object,  # generated: keywords of the request solid
 ) -> Mesh:
     """Returns the solid of a design as a triangle mesh."""
-    request = _core.SolidRequest()  # the build inserts the fields of solid
+    request = _core.SolidRequest()  # generated: sets the fields of the request solid
     return Mesh(_core.mesh(design_of(design)._core, request))
 
 
@@ -115,11 +115,11 @@ def mesh(
 def export(
     design: AnyDesign,
     file: PathLike,
-    **fields: object,  # the build inserts the fields of solid
+    **fields: object,  # generated: keywords of the request solid
 ) -> ExportResult:
     """Writes the solid of a design as STL, OBJ, glTF or STEP, as `retrace export`. The ending of
     the file name determines the format."""
-    request = _core.SolidRequest()  # the build inserts the fields of solid
+    request = _core.SolidRequest()  # generated: sets the fields of the request solid
     return ExportResult(_core.export_solid(design_of(design)._core, path("file", file), request))
 
 
@@ -128,7 +128,7 @@ def export_material(
     design: AnyDesign,
     file: PathLike,
     *,
-    # the build inserts the fields of material
+    # generated: keywords of the request material
     threads: int | None = None,
     progress: Progress = None,
 ) -> MaterialResult:
@@ -136,7 +136,7 @@ def export_material(
     simulators. `retrace export` does the same. The formats are a table (.json and a .csv file), a
     BSDF for Radiance (.xml), and lobes in a shader (.glsl)."""
     taken = design_of(design)
-    request = _core.MaterialRequest()  # the build inserts the fields of material
+    request = _core.MaterialRequest()  # generated: sets the fields of the request material
     count = thread_count(threads)
     with teller(progress, "material") as tell:
         return MaterialResult(

@@ -100,7 +100,7 @@ def trace(
     *,
     axes: ArrayLike | None = None,
     wavelength_nm: Numbers | None = None,
-    # the build inserts the fields of trace
+    # generated: keywords of the request trace
     threads: int | None = None,
     progress: Progress = None,
 ) -> TracedRays:
@@ -124,7 +124,7 @@ def trace(
         if waves.dtype.kind not in "iuf" or waves.ndim > 1 or waves.size not in (1, len(places)):
             raise refuse("wavelength_nm", f"a number, or {len(places)} of them", wavelength_nm)
         waves = np.ascontiguousarray(waves, dtype=np.float64).reshape(-1)
-    request = _core.TraceRequest()  # the build inserts the fields of trace
+    request = _core.TraceRequest()  # generated: sets the fields of the request trace
     light = _stokes(stokes, len(places))
     count = thread_count(threads)
     with teller(progress, "tracing") as tell:
@@ -137,7 +137,7 @@ def trace(
 def rays(
     design: AnyDesign,
     *,
-    # the build inserts the fields of rays
+    # generated: keywords of the request rays
     threads: int | None = None,
     progress: Progress = None,
 ) -> RaysResult:
@@ -147,7 +147,7 @@ def rays(
     taken = design_of(design)
     if (source is None) == (emitter is None):
         raise InputError("one of source and emitter must be given", key="source")
-    request = _core.RaysRequest()  # the build inserts the fields of rays
+    request = _core.RaysRequest()  # generated: sets the fields of the request rays
     count = thread_count(threads)
     with teller(progress, "tracing") as tell:
         return RaysResult(_core.rays(taken._core, request, tell, count))

@@ -69,7 +69,7 @@ def _heights(value: object) -> Array:
 @described(FIELDS["metrology"])
 def metrology(
     heights: Union[PathLike, ArrayLike],
-    **fields: object,  # the build inserts the fields of metrology
+    **fields: object,  # generated: keywords of the request metrology
 ) -> MetrologyResult:
     """Computes roughness, waviness, dominant waves, scratches and edge radius of a measured height
     map or profile, as `retrace metrology`.
@@ -77,7 +77,7 @@ def metrology(
     heights: file (text, SDF, GSF or GWY), or an array of heights in nm, positive out of the
     material, NaN where nothing was measured. pixel_um: required for arrays; one number, or two for
     x and y."""
-    request = _core.MetrologyRequest()  # the build inserts the fields of metrology
+    request = _core.MetrologyRequest()  # generated: sets the fields of the request metrology
     if isinstance(heights, str) or hasattr(heights, "__fspath__"):
         return MetrologyResult(_core.measure_file(path("heights", heights), request))
     for name, value in (

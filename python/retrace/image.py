@@ -79,13 +79,13 @@ class ImageResult(Result):
 def detector(
     design: AnyDesign,
     *,
-    # the build inserts the fields of detector
+    # generated: keywords of the request detector
     threads: int | None = None,
     progress: Progress = None,
 ) -> ImageResult:
     """Computes maps of the returned light by position ("irradiance") and by direction ("angular"),
     as `retrace image --detector`."""
-    request = _core.DetectorRequest()  # the build inserts the fields of detector
+    request = _core.DetectorRequest()  # generated: sets the fields of the request detector
     taken, count = design_of(design), thread_count(threads)
     with teller(progress, "tracing") as tell:
         return ImageResult(_core.detector(taken._core, request, tell, count))
@@ -95,7 +95,7 @@ def detector(
 def camera(
     design: AnyDesign,
     *,
-    # the build inserts the fields of camera
+    # generated: keywords of the request camera
     threads: int | None = None,
     progress: Progress = None,
 ) -> ImageResult:
@@ -104,7 +104,7 @@ def camera(
 
     eye_mm, lamp_mm: positions, three numbers each. film_mm: two numbers. lamp: a photometric
     file."""
-    request = _core.CameraRequest()  # the build inserts the fields of camera
+    request = _core.CameraRequest()  # generated: sets the fields of the request camera
     taken, count = design_of(design), thread_count(threads)
     with teller(progress, "rendering") as tell:
         return ImageResult(_core.camera(taken._core, request, tell, count))
@@ -114,13 +114,13 @@ def camera(
 def road(
     design: AnyDesign,
     *,
-    # the build inserts the fields of road
+    # generated: keywords of the request road
     threads: int | None = None,
     progress: Progress = None,
 ) -> ImageResult:
     """Computes a driver's view at night of a car ahead with two such reflectors ("road"), as
     `retrace image --road`."""
-    request = _core.RoadRequest()  # the build inserts the fields of road
+    request = _core.RoadRequest()  # generated: sets the fields of the request road
     taken, count = design_of(design), thread_count(threads)
     with teller(progress, "tracing") as tell:
         return ImageResult(_core.road(taken._core, request, tell, count))

@@ -89,8 +89,8 @@ constexpr Row kFabricationRows[] = {
      {.value = "N", .otherwise = "the first"}},
     {"from_pass",
      Whole{{.low = 1.0, .high = kMaxVisits}},
-     "number, from 1, of the pass in that visit at which the programs start; a narrow tool needs several passes per "
-     "element",
+     "number, counted from 1, of the tool pass at which the programs start, within the first visit to the element; a "
+     "narrow tool needs several passes for each element",
      access<&FabricationRequest::from_pass>,
      {.value = "K", .usual = "1"},
      kNeedFromElement},

@@ -14,7 +14,7 @@ constexpr Need kRoughnessNeedNoSamples[] = {kRoughnessNoSamples};
 
 constexpr Row kRoughnessRows[] = {{"sa_nm",
                                    NumberOrNumbers{{.low = 0.0, .high = 1e5}},
-                                   "Sa of the roughness for the points of each curve",
+                                   "Sa values of the roughness; each curve has one point for each value",
                                    access<&RoughnessRequest::sa_nm>,
                                    {.value = "LIST", .notation = Notation::number_list, .option = "--sa"}},
                                   {"correlation_length_um",

@@ -104,7 +104,8 @@ OpenReason reason_of(const PhotometricColour& colour, const Photometer& photomet
     const NoDiffraction why = photometer.why_undiffracted();
     return {Cause::diffraction, why, fmt::format("diffraction is left out, as {}", text_of(why))};
   }
-  if (colour.is_of_another_light) return {Cause::another_light, std::nullopt, "the boundaries are of CIE A"};
+  if (colour.is_of_another_light)
+    return {Cause::another_light, std::nullopt, "the boundaries are defined for CIE illuminant A only"};
   return {Cause::noise, std::nullopt,
           "the colour is nearer to a boundary than two standard errors: " + photometer.remedy_for_noise()};
 }

@@ -235,7 +235,7 @@ std::string_view text_of(NoDerivative reason) {
     case NoDerivative::count_changes: return "the number of elements changes here";
     case NoDerivative::too_many_beams: return "far more beams are needed nearby";
     case NoDerivative::no_part: return "no part can be built nearby";
-    case NoDerivative::truncated_power: return "what is cut off hides it";
+    case NoDerivative::truncated_power: return "the truncated power is too large for a derivative here";
     case NoDerivative::not_smooth: return "RRE has a kink or a jump here";
   }
   return "";

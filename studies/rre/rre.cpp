@@ -76,7 +76,7 @@ void check_entrance(const Design& design, const RreSettings& request) {
   if (!design.entrance) return;
   if (request.engine == Engine::exact || request.engine == Engine::stochastic || request.engine == Engine::cell)
     throw InputError(Field{"engine"},
-                     fmt::format("{} takes a plane entrance face alone, {} has a [front]: use {} embree",
+                     fmt::format("{} supports only plane entrance faces, but {} has a [front]: use {} embree",
                                  engine_name(request.engine), design.source_name(), reference({"engine"})));
   for (const Field result : exact_results(request)) check_taken(design, {.what = reference(result), .solids = true});
 }
