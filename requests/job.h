@@ -28,8 +28,8 @@ struct JobRequest {
 struct FabricationRequest {
   /// Dialect of the programs: rs274ngc, sinumerik, fanuc, pmac, a3200 or automation1.
   std::string dialect = "rs274ngc";
-  /// Stages in the programs: all, roughing, finishing, or one stage such as finishing-1-facet-2; with + also all later
-  /// stages.
+  /// Stages in the programs: all, roughing, finishing, or one stage such as finishing-1-facet-2; a + after the name
+  /// includes all later stages.
   std::string phase = "all";
   /// Number of the element at which the programs start, with the first visit of the tool; a whole number >= 0 and <=
   /// 2147483647. Default: the first.

@@ -20,7 +20,7 @@ struct PhotometryRequest {
   std::optional<std::string> colour = {};
   /// Area of the whole part, of which the design may be a section; > 0 and <= 1e+06. Required.
   double area_cm2 = 0.0;
-  /// Rotations of the part about its normal (the one with the smallest reading counts), in degrees. Default: the
+  /// Rotations of the part about its normal, in degrees; the smallest reading over all rotations is used. Default: the
   /// standard's.
   std::optional<std::vector<double>> rotation_deg = {};
   /// Dye of the part: none, red, amber (illustrative) or a file. Default: by the colour, unless the design's absorption
@@ -32,7 +32,7 @@ struct PhotometryRequest {
   std::optional<double> receiver_arcmin = {};
   /// Half angle of the far field that is computed, in degrees; >= 0.05 and <= 10.
   double window_deg = 2.0;
-  /// Light: a or d65, which are CIE illuminants as the eye sees them, or design, the light of the design.
+  /// Light: the CIE illuminant a or d65 as seen by the eye, or design for the light that the design file describes.
   std::string light = "a";
   /// Method of tracing: beams (exact), rays (montecarlo or embree), or auto: beams if possible.
   std::string engine = "auto";

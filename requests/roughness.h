@@ -12,7 +12,7 @@ namespace retrace {
 struct RoughnessRequest {
   /// Sa values of the roughness, in nm; each curve has one point for each value.
   std::vector<double> sa_nm = {0.0, 2.0, 5.0, 10.0, 15.0, 20.0, 30.0, 40.0, 50.0, 75.0, 100.0, 150.0, 200.0};
-  /// Correlation lengths, one curve each, in um; the first is for measured facets.
+  /// Correlation lengths, one for each curve, in um; measured facets use the first one.
   std::vector<double> correlation_length_um = {5.0, 20.0, 50.0};
   /// Period of the waviness of measured facets, in um; > 0 and <= 1e+06.
   double waviness_length_um = 200.0;

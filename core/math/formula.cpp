@@ -137,7 +137,7 @@ Formula parse_formula(const std::string& text, const std::vector<std::string>& v
           std::find_if(text.begin(), text.end(),
                        [](char c) { return std::iscntrl(static_cast<unsigned char>(c)) != 0 && c != '\t'; });
       at != text.end())
-    throw failed_at(static_cast<std::size_t>(at - text.begin()) + 1, "it is none that shows");
+    throw failed_at(static_cast<std::size_t>(at - text.begin()) + 1, "control characters are not allowed");
   // muParser always accepts conditions (a ? b : c). They cannot be differentiated here and are refused.
   if (const std::size_t at = text.find_first_of("?:"); at != std::string::npos)
     throw failed_at(at + 1, "conditions are not allowed");

@@ -78,8 +78,8 @@ constexpr Row kFabricationRows[] = {
      {.value = "DIALECT"}},
     {"phase",
      Text{"all, roughing, finishing or the name of a stage"},
-     "stages in the programs: all, roughing, finishing, or one stage such as finishing-1-facet-2; with + also all "
-     "later stages",
+     "stages in the programs: all, roughing, finishing, or one stage such as finishing-1-facet-2; a + after "
+     "the name includes all later stages",
      access<&FabricationRequest::phase>,
      {.value = "PHASE"}},
     {"from_element",

@@ -147,7 +147,7 @@ Photometer::Photometer(const Design& design, const PhotometrySettings& request, 
   const materials::MaterialLibrary library = materials::MaterialLibrary::shipped();
   if (design_.balls()) check_balls(design_, request);
   if (design_.entrance && (request.engine == Engine::exact || request.engine == Engine::cell))
-    throw InputError(Field{"engine"}, "must be auto, montecarlo or embree for a [front]");
+    throw InputError(Field{"engine"}, "must be auto, montecarlo or embree if the design has a [front]");
   if (request.light == PhotometricLight::of_design) {
     model_ = model_of(design_, library);
     for (const SpectralOptics& light : model_.spectral) weights_.push_back(light.weight);

@@ -281,7 +281,7 @@ std::string_view text_of(NoDiffraction reason) {
     case NoDiffraction::balls: return "balls are traced by rays";
     case NoDiffraction::curved_entrance: return "curved fronts are traced by rays";
     case NoDiffraction::unequal_backs: return "backs that are not all alike are traced by rays";
-    case NoDiffraction::unequal_cells: return "its cells differ too much to diffract the light of each";
+    case NoDiffraction::unequal_cells: return "its cells differ too much to compute the diffraction of each";
     case NoDiffraction::form_and_texture: return "facets with both a form and a texture are traced by rays";
     case NoDiffraction::scattering_entrance: return "an entrance face that scatters is traced by rays";
     case NoDiffraction::no_phases:
