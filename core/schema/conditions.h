@@ -1,8 +1,8 @@
 #pragma once
 
-// Functions that create conditions. A condition states when a key or table of a format has an effect. The parameter
-// `refusal` is the message for a key that is given although its condition does not hold. If `refusal` is empty, the
-// message is made from the condition.
+// Functions that create conditions, and rows with conditions. A condition states when a key or table of a format has an
+// effect. The parameter `refusal` is the message for a key that is given although its condition does not hold. If
+// `refusal` is empty, the message is made from the condition.
 
 #include <algorithm>
 
@@ -32,6 +32,19 @@ constexpr Condition beside(std::string_view key, std::string_view refusal = {}) 
 }
 constexpr Condition without(std::string_view key, std::string_view refusal = {}) {
   return {key, Condition::Is::absent, {}, refusal};
+}
+
+/// Returns a copy of a row that several formats share, with the conditions of one format.
+constexpr Row where(Row row, When when, bool may_be_zero = false) {
+  row.when = when;
+  row.zero_is_none = may_be_zero;
+  return row;
+}
+/// Returns a copy of a row that several formats share, with the access functions and conditions of one format.
+constexpr Row with(Row row, Access access, When when = {}) {
+  row.access = access;
+  row.when = when;
+  return row;
 }
 
 }  // namespace retrace::schema

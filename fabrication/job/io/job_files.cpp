@@ -21,6 +21,7 @@
 #include "fabrication/job/v_tool.h"
 #include "fabrication/job/zone_cells.h"
 #include "geometry/elements/whole_elements.h"
+#include "geometry/io/element_keys.h"
 #include "geometry/io/substrate_rows.h"
 #include "geometry/part/substrate_part.h"
 
@@ -34,15 +35,9 @@ using geometry::Arrangement;
 using geometry::ArrayLayout;
 using geometry::RtpElement;
 
-constexpr Words kArrangements = {"single", "aligned", "offset", "checker"};
-constexpr Words kHexagonalArrangements = {"single", "honeycomb"};
-constexpr Words kTriangularArrangements = {"single", "triangular"};
-constexpr Words kRowParities = {"even", "odd"};
-constexpr Words kElements = {"rtp", "hexagonal_icc", "triangular_icc"};
-
 /// Range of sizes in mm: 0.1 micrometre to 10 metres. Positions in nanometres then fit into 64-bit integers.
 constexpr Kind kSize = Number{{.low = 1e-4, .high = 1e4}};
-constexpr Kind kGap = Number{{.low = 0.0, .high = 1e4}};
+constexpr geometry::SizeKeys kSizeKeys(kSize, Number{{.low = 0.0, .high = 1e4}});
 constexpr Kind kThreeErrors = Numbers{3, {.low = -300.0, .high = 300.0}};
 constexpr Kind kWedge = Number{{.low = 10.0, .high = kMaxWedgeDeg}};
 /// Maximum number of elements. It limits the memory of a plan, which needs about 1 KiB per element.
@@ -135,11 +130,11 @@ bool has_edge_life(const Tool& tool) {
 }
 
 constexpr std::string_view kElementKind = "element.kind";
-constexpr Condition kOfPrisms[] = {is(kElementKind, only(kElements, "rtp"))};
-constexpr Condition kOfCubes[] = {is(kElementKind, only(kElements, "hexagonal_icc", "triangular_icc"))};
-constexpr Condition kOfHexagons[] = {is(kElementKind, only(kElements, "hexagonal_icc"))};
-constexpr Condition kOfTriangles[] = {is(kElementKind, only(kElements, "triangular_icc"))};
-constexpr Condition kOfArrays[] = {is_not("arrangement", only(kArrangements, "single"))};
+constexpr Condition kOfPrisms[] = {is(kElementKind, only(geometry::kElementKinds, "rtp"))};
+constexpr Condition kOfCubes[] = {is(kElementKind, geometry::kCubeKinds)};
+constexpr Condition kOfHexagons[] = {is(kElementKind, only(geometry::kElementKinds, "hexagonal_icc"))};
+constexpr Condition kOfTriangles[] = {is(kElementKind, only(geometry::kElementKinds, "triangular_icc"))};
+constexpr Condition kOfArrays[] = {is_not("arrangement", only(geometry::kArrangementWords, "single"))};
 constexpr Condition kOfChisels[] = {is_not("strategy", only(kStrategyWords, "dmc"))};
 constexpr Condition kOfVTools[] = {is("strategy", only(kStrategyWords, "dmc"))};
 
@@ -163,17 +158,13 @@ constexpr Row kWorkpieceRows[] = {
     {"shrinkage_percent", Number{{.low = 0.0, .high = 10.0}}, 0.0,
      "All sizes of the blank are those of the part times 1 + this / 100.", access<&Workpiece::shrinkage_percent>}};
 constexpr Row kElementRows[] = {
-    {"kind", Word{only(kElements, "rtp")}, kRequired, "Prisms.", access_by<get_prism, set_prism>, kOfChisels},
-    {"kind", Word{only(kElements, "hexagonal_icc", "triangular_icc")}, kRequired, "Cube corners.",
-     access_by<get_cube, set_cube>, kOfVTools},
-    {"base_mm", kSize, kRequired, "Across the roof edge, of the part.", access_in<&Job::element, &RtpElement::base_mm>,
-     kOfPrisms},
-    {"width_mm", kSize, kRequired, "Along the roof edge, of the part.", access_in<&Job::element, &RtpElement::width_mm>,
-     kOfPrisms},
-    {"apex_angle_deg", Number{{.low = 60.0, .high = 120.0}}, 90.0, "Included angle of the two facets.",
-     access_in<&Job::element, &RtpElement::apex_angle_deg>, kOfPrisms},
-    {"aperture_mm", kSize, kRequired, "Diameter of the circle round the aperture, of the part.",
-     access_by<get_aperture, set_aperture>, kOfCubes},
+    {"kind", Word{only(geometry::kElementKinds, "rtp")}, kRequired, "Prisms.", access_by<get_prism, set_prism>,
+     kOfChisels},
+    {"kind", Word{geometry::kCubeKinds}, kRequired, "Cube corners.", access_by<get_cube, set_cube>, kOfVTools},
+    with(kSizeKeys.base_mm, access_in<&Job::element, &RtpElement::base_mm>, kOfPrisms),
+    with(kSizeKeys.width_mm, access_in<&Job::element, &RtpElement::width_mm>, kOfPrisms),
+    with(geometry::kApexAngleKey, access_in<&Job::element, &RtpElement::apex_angle_deg>, kOfPrisms),
+    with(kSizeKeys.aperture_mm, access_by<get_aperture, set_aperture>, kOfCubes),
     {"dihedral_error_arcmin", kThreeErrors, kNone,
      "Intended errors of the three dihedral angles; positive if larger than 90 degrees, as in a "
      "[design](design_file.md).",
@@ -198,26 +189,24 @@ constexpr Row kZoneRows[] = {
      "`[[x, y], ...]`: positions of the apexes of its elements in plan, from the lower left corner of the part.",
      access_by<get_apexes, set_apexes>}};
 constexpr Row kArrayRows[] = {
-    {"arrangement", Word{kArrangements}, kRequired, "Of prisms, as in a [design](design_file.md).",
+    {"arrangement", Word{geometry::kPrismArrangements}, kRequired, geometry::kArrangementMeaning,
      access<&ArrayLayout::arrangement>, kOfPrisms},
-    {"arrangement", Word{kHexagonalArrangements}, kRequired, "Likewise.",
-     access_by<get_tiled, set_tiled<Arrangement::honeycomb>>, kOfHexagons},
-    {"arrangement", Word{kTriangularArrangements}, kRequired, "Likewise.",
+    {"arrangement", Word{only(geometry::kHexagonalArrangements, "single", "honeycomb")}, kRequired,
+     geometry::kArrangementMeaning, access_by<get_tiled, set_tiled<Arrangement::honeycomb>>, kOfHexagons},
+    {"arrangement", Word{geometry::kTriangularArrangements}, kRequired, geometry::kArrangementMeaning,
      access_by<get_tiled, set_tiled<Arrangement::triangular>>, kOfTriangles},
-    {"shifted_rows", Word{kRowParities}, "even", "As in a design.", access<&ArrayLayout::shifted_rows>, kOfPrisms},
-    {"overlap_percent", Number{{.low = 0.0, .high = 100.0, .high_included = false}}, 50.0, "As in a design.",
-     access<&ArrayLayout::overlap_percent>, kOfPrisms},
-    {"x_length_mm", kSize, kRequired, "Of the extent; none of `single`.", access<&ArrayLayout::x_length_mm>, kOfArrays},
-    {"y_length_mm", kSize, kRequired, "Of the extent; none of `single`.", access<&ArrayLayout::y_length_mm>, kOfArrays},
-    {"x_gap_mm", kGap, 0.0, "Flat land between elements.", access<&ArrayLayout::x_gap_mm>, kOfPrisms},
-    {"y_gap_mm", kGap, 0.0, "Flat land between elements.", access<&ArrayLayout::y_gap_mm>, kOfPrisms},
-    {"x_offset_mm", kGap, 0.0, "Margin on both borders.", access<&ArrayLayout::x_offset_mm>},
-    {"y_offset_mm", kGap, 0.0, "Margin on both borders.", access<&ArrayLayout::y_offset_mm>},
+    with(geometry::kShiftedRowsKey, access<&ArrayLayout::shifted_rows>, kOfPrisms),
+    with(geometry::kOverlapKey, access<&ArrayLayout::overlap_percent>, kOfPrisms),
+    with(kSizeKeys.x_length_mm, access<&ArrayLayout::x_length_mm>, kOfArrays),
+    with(kSizeKeys.y_length_mm, access<&ArrayLayout::y_length_mm>, kOfArrays),
+    with(kSizeKeys.x_gap_mm, access<&ArrayLayout::x_gap_mm>, kOfPrisms),
+    with(kSizeKeys.y_gap_mm, access<&ArrayLayout::y_gap_mm>, kOfPrisms),
+    with(kSizeKeys.x_offset_mm, access<&ArrayLayout::x_offset_mm>),
+    with(kSizeKeys.y_offset_mm, access<&ArrayLayout::y_offset_mm>),
     {"pattern", Texts{}, kNone,
-     "Which cells are cut: a text for each row, that of largest y first, `#` for a cell that is cut and `-` for one "
-     "that is not. Of a shifted row the last cell lies beyond the border and is never cut. Of cube corners a row has "
-     "the "
-     "cells of one y that lie wholly within the margins.",
+     "Elements that are cut: one text per row, beginning with the row of largest y; `#` marks an element that is cut, "
+     "`-` one that is not. The last element of a shifted row is beyond the border and is never cut. A row of cube "
+     "corners has the elements of one y that lie completely within the margins.",
      access<&ArrayLayout::pattern>, kOfArrays}};
 constexpr Row kChipRows[] = {
     {"position_um", Number{}, kRequired, "Of its middle, from the edge's middle towards +X of the machine.",

@@ -2,6 +2,7 @@
 
 #include "core/overloaded.h"
 #include "core/schema/writer.h"
+#include "geometry/io/element_keys.h"
 #include "studies/design/io/design_format.h"
 #include "studies/design/io/file_names.h"
 
@@ -48,8 +49,7 @@ class Keys {
 };
 
 std::string_view word_of(const PartSpec& part) {
-  constexpr std::string_view words[] = {"single", "aligned", "offset", "checker", "honeycomb", "triangular"};
-  return part.is_pin_bundle ? "pins" : words[static_cast<std::size_t>(part.array.arrangement)];
+  return part.is_pin_bundle ? "pins" : geometry::kArrangementWords[static_cast<std::size_t>(part.array.arrangement)];
 }
 
 void set_cube(Keys& keys, std::string_view kind, double aperture_mm, const Cant& cant) {

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "core/schema/conditions.h"
+#include "geometry/io/element_keys.h"
 
 namespace retrace::studies {
 
@@ -28,10 +29,9 @@ std::span<const schema::Row> form_rows();
 std::span<const schema::Row> form_term_rows();
 std::span<const schema::Row> idealisation_rows();
 
-inline constexpr schema::Words kRtp = {"rtp"};
-inline constexpr schema::Words kBall = {"ball"};
+inline constexpr auto kRtp = schema::only(geometry::kElementKinds, "rtp");
+inline constexpr auto kBall = schema::only(geometry::kElementKinds, "ball");
 inline constexpr schema::Words kAxes = {"x", "y"};
-inline constexpr schema::Words kCubes = {"hexagonal_icc", "triangular_icc"};
 
 inline constexpr NumberRange kAboveZero{.low = 0.0, .low_included = false};
 /// Range of sizes, from one nanometre to one kilometre. Outside of it, differences of coordinates have too few digits.

@@ -126,7 +126,7 @@ constexpr Row kDetectorRows[] = {{"acceptance_half_angle_deg",
 constexpr Condition kErrorOfPrism[] = {without("part.mesh", kOfAMesh), without("part.plate_mm", kOfAMesh),
                                        is(kKind, kRtp)};
 constexpr Condition kErrorOfCube[] = {without("part.mesh", kOfAMesh), without("part.plate_mm", kOfAMesh),
-                                      is(kKind, kCubes)};
+                                      is(kKind, geometry::kCubeKinds)};
 constexpr Condition kErrors[] = {without("part.mesh", kOfAMesh), without("part.plate_mm", kOfAMesh)};
 constexpr Condition kModelOfMap[] = {beside("height_map")};
 constexpr Condition kModelOfOthers[] = {without("height_map")};

@@ -1,10 +1,10 @@
 #include "studies/design/io/part_reader.h"
 
 #include <algorithm>
-#include <array>
 #include <vector>
 
 #include "core/schema/reader.h"
+#include "geometry/io/element_keys.h"
 #include "geometry/io/substrate_rows.h"
 
 namespace retrace::studies {
@@ -24,10 +24,9 @@ geometry::Element element_of(const Document& document) {
 }
 
 Arrangement arrangement_of(const std::string& word) {
-  constexpr std::array<std::string_view, 6> words = {"single",  "aligned",   "offset",
-                                                     "checker", "honeycomb", "triangular"};
   if (word == "pins") return Arrangement::honeycomb;
-  return static_cast<Arrangement>(std::ranges::find(words, word) - words.begin());
+  const auto& words = geometry::kArrangementWords;
+  return static_cast<Arrangement>(std::ranges::find(words, word) - std::begin(words));
 }
 
 void read_angle_errors(const Document& document, PartSpec& part) {

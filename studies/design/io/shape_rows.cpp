@@ -5,25 +5,17 @@ namespace {
 
 using namespace schema;
 
-constexpr NumberRange kGap{.low = 0.0, .high = 1e6};
+constexpr Kind kGap = Number{{.low = 0.0, .high = 1e6}};
+constexpr geometry::SizeKeys kSizeKeys(kSize, kGap);
 constexpr NumberRange kPlace{.low = -1e6, .high = 1e6};
 
-constexpr Words kKinds = {"rtp", "hexagonal_icc", "triangular_icc", "ball"};
-constexpr Words kHexagonal = {"hexagonal_icc"};
-constexpr Words kTriangular = {"triangular_icc"};
-constexpr Words kRtpArrangements = {"aligned", "offset", "checker", "single"};
-constexpr Words kHexagonalArrangements = {"honeycomb", "pins", "single"};
-constexpr Words kTriangularArrangements = {"triangular", "single"};
-constexpr Words kBallArrangements = {"packed", "single"};
-constexpr Words kSingle = {"single"};
-constexpr Words kPacked = {"packed"};
-constexpr Words kOffset = {"offset"};
-constexpr Words kPins = {"pins"};
-constexpr Words kSingleOrPacked = {"single", "packed"};
+constexpr Words kBallArrangements = {"single", "packed"};
+constexpr auto kPacked = only(kBallArrangements, "packed");
+constexpr auto kOffset = only(geometry::kArrangementWords, "offset");
+constexpr auto kSingle = only(geometry::kArrangementWords, "single");
 constexpr Words kExtents = {"finite", "infinite"};
 constexpr Words kFinite = {"finite"};
 constexpr Words kInfinite = {"infinite"};
-constexpr Words kRowParities = {"even", "odd"};
 constexpr Words kPartialElements = {"cut", "omit"};
 constexpr Words kSides = {"top", "bottom"};
 
@@ -33,24 +25,25 @@ constexpr Condition kArrayOfNoBall =
 
 constexpr Condition kPrismOnly[] = {kElementOfNoBall,
                                     is(kKind, kRtp, "only allowed for kind = \"rtp\", others have aperture_mm")};
-constexpr Condition kCubeOnly[] = {kElementOfNoBall,
-                                   is(kKind, kCubes, "not allowed for kind = \"rtp\", which has base_mm and width_mm")};
-constexpr Condition kCantOnly[] = {kElementOfNoBall, is(kKind, kCubes, "only allowed for cube corners")};
+constexpr Condition kCubeOnly[] = {
+    kElementOfNoBall,
+    is(kKind, geometry::kCubeKinds, "not allowed for kind = \"rtp\", which has base_mm and width_mm")};
+constexpr Condition kCantOnly[] = {kElementOfNoBall, is(kKind, geometry::kCubeKinds, "only allowed for cube corners")};
 constexpr Condition kBallOnly[] = {is(kKind, kBall)};
 
 constexpr Row kElementRows[] = {
-    {"kind", Word{kKinds}, kRequired, "What the elements are."},
-    {"base_mm", kSize, kRequired, "Length across the roof edge.", kPrismOnly},
-    {"width_mm", kSize, kRequired, "Length along the roof edge.", kPrismOnly},
-    {"apex_angle_deg", Number{{.low = 60.0, .high = 120.0}}, 90.0, "Included angle of the two facets.", kPrismOnly},
-    {"aperture_mm", kSize, kRequired, "Diameter of the circle round the aperture.", kCubeOnly},
+    {"kind", Word{geometry::kElementKinds}, kRequired, "What the elements are."},
+    where(kSizeKeys.base_mm, kPrismOnly),
+    where(kSizeKeys.width_mm, kPrismOnly),
+    where(geometry::kApexAngleKey, kPrismOnly),
+    where(kSizeKeys.aperture_mm, kCubeOnly),
     // Facets would become vertical at a cant of 35.26 degrees.
     {"cant_deg", Number{{.low = 0.0, .high = 30.0}}, 0.0,
      "Angle between the cube's axis, from the apex into the part, and +z.", kCantOnly, kZeroIsNone},
     {"cant_azimuth_deg", Number{kAzimuth}, 0.0, "Azimuth towards which the axis leans, from +x towards +y.", kCantOnly,
      kZeroIsNone},
     {"diameter_mm", kSize, kRequired, "Diameter of a ball.", kBallOnly},
-    {"mirror_offset_mm", Number{kGap}, Computed{"0: the ball's own back is coated"},
+    {"mirror_offset_mm", kGap, Computed{"0: the ball's own back is coated"},
      "From the ball to a mirror that is a bowl about the same centre; it needs a mirror, of aluminium or ideal.",
      kBallOnly},
     {"mirror_half_angle_deg", Number{{.low = 0.0, .low_included = false, .high = 90.0}},
@@ -59,12 +52,12 @@ constexpr Row kElementRows[] = {
      kBallOnly}};
 
 constexpr Condition kOfPrisms[] = {is(kKind, kRtp)};
-constexpr Condition kOfHexagons[] = {is(kKind, kHexagonal)};
-constexpr Condition kOfTriangles[] = {is(kKind, kTriangular)};
+constexpr Condition kOfHexagons[] = {is(kKind, only(geometry::kElementKinds, "hexagonal_icc"))};
+constexpr Condition kOfTriangles[] = {is(kKind, only(geometry::kElementKinds, "triangular_icc"))};
 constexpr Condition kOfBalls[] = {is(kKind, kBall)};
 constexpr Condition kOfSingle[] = {is(kArrangement, kSingle)};
 constexpr Condition kOfPacked[] = {is(kArrangement, kPacked)};
-constexpr Condition kOfOthers[] = {is_not(kArrangement, kSingleOrPacked)};
+constexpr Condition kOfOthers[] = {is_not(kArrangement, kBallArrangements)};
 constexpr Condition kFiniteOnly[] = {
     kArrayOfNoBall,
     is_not(kArrangement, kSingle, "not allowed for arrangement = \"single\", whose extent is the element's aperture"),
@@ -79,30 +72,26 @@ constexpr Condition kMaskOnly[] = {
 constexpr Condition kThresholdOnly[] = {kArrayOfNoBall, beside("array.mask")};
 constexpr Condition kBallGapOnly[] = {is(kKind, kBall), is_not(kArrangement, kSingle)};
 
-constexpr std::string_view kHowLaid = "How the elements are laid out.";
 constexpr Row kArrayRows[] = {
-    {"arrangement", Word{kRtpArrangements}, "aligned",
-     "How the elements are laid out; `\"checker\"` wants base = width.", kOfPrisms},
-    {"arrangement", Word{kHexagonalArrangements}, "honeycomb",
-     "How the elements are laid out; `\"pins\"` is a honeycomb of the ends of pins, see [base].", kOfHexagons},
-    {"arrangement", Word{kTriangularArrangements}, "triangular", kHowLaid, kOfTriangles},
-    {"arrangement", Word{kBallArrangements}, "packed", "How the balls are laid out; `\"packed\"` is an endless layer.",
+    {"arrangement", Word{geometry::kPrismArrangements}, "aligned",
+     "Arrangement of the elements; `\"checker\"` needs base = width.", kOfPrisms},
+    {"arrangement", Word{geometry::kHexagonalArrangements}, "honeycomb",
+     "Arrangement of the elements; `\"pins\"` is a honeycomb of the ends of pins, see [base].", kOfHexagons},
+    {"arrangement", Word{geometry::kTriangularArrangements}, "triangular", geometry::kArrangementMeaning, kOfTriangles},
+    {"arrangement", Word{kBallArrangements}, "packed", "Arrangement of the balls; `\"packed\"` is an infinite layer.",
      kOfBalls},
     {"extent", Word{kFinite}, "finite", "A single element is finite.", kOfSingle},
     {"extent", Word{kInfinite}, "infinite", "A layer of balls is endless.", kOfPacked},
     {"extent", Word{kExtents}, "finite", "`\"infinite\"`: one periodic cell.", kOfOthers},
-    {"x_length_mm", kSize, kRequired, "Length of a finite part, with room for at least one element.", kFiniteOnly},
-    {"y_length_mm", kSize, kRequired, "Length of a finite part, with room for at least one element.", kFiniteOnly},
-    {"x_offset_mm", Number{kGap}, 0.0, "Of finite parts: flat margin kept free on both borders.", kFiniteOnly,
-     kZeroIsNone},
-    {"y_offset_mm", Number{kGap}, 0.0, "Of finite parts: flat margin kept free on both borders.", kFiniteOnly,
-     kZeroIsNone},
+    where(kSizeKeys.x_length_mm, kFiniteOnly),
+    where(kSizeKeys.y_length_mm, kFiniteOnly),
+    where(kSizeKeys.x_offset_mm, kFiniteOnly, kZeroIsNone),
+    where(kSizeKeys.y_offset_mm, kFiniteOnly, kZeroIsNone),
     {"partial_elements", Word{kPartialElements}, "cut", "What becomes of elements across the border.", kNoBallArray},
-    {"x_gap_mm", Number{kGap}, 0.0, "Flat land between elements.", kGapOnly, kZeroIsNone},
-    {"y_gap_mm", Number{kGap}, 0.0, "Flat land between elements.", kGapOnly, kZeroIsNone},
-    {"overlap_percent", Number{{.low = 0.0, .high = 100.0, .high_included = false}}, 50.0,
-     "The shift in percent of the base.", kOffsetOnly},
-    {"shifted_rows", Word{kRowParities}, "even", "Which rows are shifted, counted from 1.", kOffsetOnly},
+    where(kSizeKeys.x_gap_mm, kGapOnly, kZeroIsNone),
+    where(kSizeKeys.y_gap_mm, kGapOnly, kZeroIsNone),
+    where(geometry::kOverlapKey, kOffsetOnly),
+    where(geometry::kShiftedRowsKey, kOffsetOnly),
     {"mask", File{"a picture"}, kNone,
      "A picture with one pixel for each element, whose dark pixels are elements; row 0 is the row of largest y. The "
      "others, and partial elements, are left out: there is flat back. Not together with `angle_error_sigma_arcmin` "
@@ -110,7 +99,7 @@ constexpr Row kArrayRows[] = {
      kMaskOnly},
     {"mask_threshold", Number{{.low = 0.0, .low_included = false, .high = 1.0}}, 0.7,
      "Pixels with grey < threshold * 255 are elements (0.7: 178 and below).", kThresholdOnly},
-    {"gap_mm", Number{kGap}, 0.0, "Between neighbouring balls.", kBallGapOnly}};
+    {"gap_mm", kGap, 0.0, "Between neighbouring balls.", kBallGapOnly}};
 
 constexpr std::string_view kScaleMeaning =
     "Factor from the unit of the STL file to mm: 1 for mm, 1000 for metres, 25.4 for inches, 0.001 for micrometres.";

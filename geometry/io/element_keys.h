@@ -1,0 +1,56 @@
+#pragma once
+
+// Keys of the tables [element] and [array] that design files and job files have in common. Each format adds the members
+// of its objects or the conditions under which a key applies (core/schema/conditions.h).
+
+#include <span>
+#include <string_view>
+
+#include "core/schema/conditions.h"
+#include "geometry/elements/array_layout.h"
+
+namespace retrace::geometry {
+
+/// Words of `element.kind`, in the order of the alternatives of Element. Designs also take balls.
+inline constexpr schema::Words kElementKinds = {"rtp", "hexagonal_icc", "triangular_icc", "ball"};
+inline constexpr auto kCubeKinds = schema::only(kElementKinds, "hexagonal_icc", "triangular_icc");
+
+/// Words of `array.arrangement`, in the order of the enumerators of Arrangement.
+inline constexpr schema::Words kArrangementWords = {"single",  "aligned",   "offset",
+                                                    "checker", "honeycomb", "triangular"};
+inline constexpr auto kPrismArrangements = schema::only(kArrangementWords, "single", "checker");
+/// In designs, a honeycomb may also consist of the ends of pins.
+inline constexpr schema::Words kHexagonalArrangements = {"single", "honeycomb", "pins"};
+inline constexpr schema::Words kTriangularArrangements = {"single", "triangular"};
+inline constexpr std::string_view kArrangementMeaning = "Arrangement of the elements.";
+/// In the order of the enumerators of RowParity.
+inline constexpr schema::Words kRowParityWords = {"even", "odd"};
+
+/// Keys whose numbers are sizes. The range of sizes and gaps depends on the format.
+struct SizeKeys {
+  constexpr SizeKeys(schema::Kind size, schema::Kind gap)
+      : base_mm("base_mm", size, schema::kRequired, "Length across the roof edge."),
+        width_mm("width_mm", size, schema::kRequired, "Length along the roof edge."),
+        aperture_mm("aperture_mm", size, schema::kRequired, "Diameter of the circumscribed circle of the aperture."),
+        x_length_mm("x_length_mm", size, schema::kRequired,
+                    "Length of the part along x; at least one element must fit."),
+        y_length_mm("y_length_mm", size, schema::kRequired,
+                    "Length of the part along y; at least one element must fit."),
+        x_gap_mm("x_gap_mm", gap, 0.0, "Width of the flat land between elements that are neighbours along x."),
+        y_gap_mm("y_gap_mm", gap, 0.0, "Width of the flat land between elements that are neighbours along y."),
+        x_offset_mm("x_offset_mm", gap, 0.0, "Width of the flat margin at the left and right borders of the part."),
+        y_offset_mm("y_offset_mm", gap, 0.0, "Width of the flat margin at the lower and upper borders of the part.") {}
+
+  schema::Row base_mm, width_mm, aperture_mm;
+  schema::Row x_length_mm, y_length_mm, x_gap_mm, y_gap_mm, x_offset_mm, y_offset_mm;
+};
+
+inline constexpr schema::Row kApexAngleKey = {"apex_angle_deg", schema::Number{{.low = 60.0, .high = 120.0}}, 90.0,
+                                              "Angle between the two facets."};
+inline constexpr schema::Row kShiftedRowsKey = {"shifted_rows", schema::Word{kRowParityWords}, "even",
+                                                "Rows that are shifted, counted from 1 at the smallest y."};
+inline constexpr schema::Row kOverlapKey = {"overlap_percent",
+                                            schema::Number{{.low = 0.0, .high = 100.0, .high_included = false}}, 50.0,
+                                            "Shift of these rows along x, in percent of the base."};
+
+}  // namespace retrace::geometry
