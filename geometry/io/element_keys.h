@@ -51,6 +51,6 @@ inline constexpr schema::Row kShiftedRowsKey = {"shifted_rows", schema::Word{kRo
                                                 "Rows that are shifted, counted from 1 at the smallest y."};
 inline constexpr schema::Row kOverlapKey = {"overlap_percent",
                                             schema::Number{{.low = 0.0, .high = 100.0, .high_included = false}}, 50.0,
-                                            "Shift of these rows along x, in percent of the base."};
+                                            "Displacement of the shifted rows along x, in percent of the base."};
 
 }  // namespace retrace::geometry

@@ -9,6 +9,7 @@
 #include "raytrace/exact/beam_tracer.h"
 #include "tests/support/designs.h"
 #include "tests/support/engines.h"
+#include "tests/support/sample_size.h"
 #include "tests/support/statistics.h"
 
 namespace retrace::testing::reference_test {
@@ -84,8 +85,8 @@ TEST_P(AgainstReference, EveryAccountAgrees) {
   optics.entrance_layers = c.entrance_layers;
   // The cone is wide, so that there is light inside and outside of it.
   const double cone_deg = 8.0;
-  const ReferenceResult reference =
-      reference_trace(part, optics, from(c.incidence_deg, c.azimuth_deg), cone_deg, 40000, 7);
+  const ReferenceResult reference = reference_trace(part, optics, from(c.incidence_deg, c.azimuth_deg), cone_deg,
+                                                    test::sample_size<std::uint64_t>(10000, 40000), 7);
   const MonteCarloResult traced =
       MonteCarlo(part).trace(optics, from(c.incidence_deg, c.azimuth_deg), {cone_deg}, rays(1U << 17), {});
   const Ledger& ledger = traced.cones[0].ledger;
