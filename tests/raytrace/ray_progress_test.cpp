@@ -95,7 +95,7 @@ TEST(BeamProgress, RisesAndTheResultIsThatOfOneTraceWithoutPauses) {
   const geometry::Part part = many_cubes();
   const BeamTracer tracer(part);
   BeamPolicy policy;
-  policy.cutoff = 1e-9;
+  policy.cutoff = 1e-8;
   Reports reports;
   const BeamResult told = tracer.trace(pmma(), from(25.0, 7.0), {0.5}, policy, nullptr, {}, &reports);
   const Optics optics = pmma();

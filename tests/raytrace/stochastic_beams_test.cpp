@@ -64,11 +64,11 @@ TEST(StochasticBeams, AgreeWithBeamsAndBookAllPower) {
   optics.absorption_per_mm = 0.01;
   const std::vector<double> cones = {0.5, 60.0};
   const double error = test::sample_size(8e-5, 2e-5);
-  for (const Question& question : questions())
+  for (const Question& question : questions()) {
+    BeamPolicy policy;
+    policy.truncated_goal = 1e-5;
+    const BeamResult exact = BeamTracer(question.part).trace(optics, question.light, cones, policy);
     for (const Elements elements : {Elements::each_by_itself, Elements::equal_at_once}) {
-      BeamPolicy policy;
-      policy.truncated_goal = 1e-5;
-      const BeamResult exact = BeamTracer(question.part).trace(optics, question.light, cones, policy);
       const MonteCarloResult result =
           traced(BeamTracer(question.part, elements), optics, question.light, cones, until(error));
       EXPECT_TRUE(result.reached_target && result.complete) << question.name;
@@ -87,6 +87,7 @@ TEST(StochasticBeams, AgreeWithBeamsAndBookAllPower) {
               << question.name << ", " << static_cast<int>(account);
       }
     }
+  }
 }
 
 Optics rough(double sq_nm, double correlation_length_um) {

@@ -1,0 +1,58 @@
+// The first two bytes of an input select a field of a request, and the rest is its text as on the command line. For any
+// text, the field either has a value whose own text gives the same value again, or an InputError of one line is thrown.
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <vector>
+
+#include "core/error.h"
+#include "requests/descriptions.h"
+
+namespace {
+
+using namespace retrace;
+
+bool is_control(char c) {
+  return static_cast<unsigned char>(c) < 0x20;
+}
+
+void check_message(const InputError& error) {
+  const std::string message = error.what();
+  if (message.empty() || std::any_of(message.begin(), message.end(), is_control)) std::abort();
+}
+
+template <class Type>
+void try_text(std::uint8_t row_number, std::string_view text) {
+  const requests::Request& description = requests::description<Type>();
+  const requests::Row& row = description.rows[row_number % description.rows.size()];
+  Type request;
+  try {
+    requests::set_text(row, &request, text);
+    const std::string own = requests::text_of(row, &request);
+    // A field without value has an empty text.
+    if (!own.empty()) requests::set_text(row, &request, own);
+    if (requests::text_of(row, &request) != own) std::abort();
+    requests::check(request);
+  } catch (const InputError& error) {
+    check_message(error);
+  }
+}
+
+template <class... Types>
+std::vector<void (*)(std::uint8_t, std::string_view)> tries_of(std::tuple<Types...>*) {
+  return {try_text<Types>...};
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size < 2) return 0;
+  static const auto tries = tries_of(static_cast<requests::AllRequests*>(nullptr));
+  tries[data[0] % tries.size()](data[1], {reinterpret_cast<const char*>(data) + 2, size - 2});
+  return 0;
+}
