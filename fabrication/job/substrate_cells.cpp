@@ -12,8 +12,8 @@
 #include "core/error.h"
 #include "core/number_format.h"
 #include "geometry/elements/element_cells.h"
+#include "geometry/elements/substrate_checks.h"
 #include "geometry/elements/whole_elements.h"
-#include "geometry/part/substrate_part.h"
 
 namespace retrace::fabrication {
 namespace {

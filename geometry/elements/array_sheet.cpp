@@ -6,8 +6,8 @@
 #include "core/error.h"
 #include "geometry/elements/facet_planes.h"
 #include "geometry/elements/plane_polygon.h"
+#include "geometry/elements/substrate_checks.h"
 #include "geometry/elements/whole_elements.h"
-#include "geometry/part/substrate_part.h"
 
 namespace retrace::geometry {
 namespace {

@@ -1,7 +1,6 @@
 #pragma once
 
 // Elements whose facets have individual planes, from a measurement or from the simulation of a machining program.
-// Builds the part that consists of such elements.
 
 #include <array>
 #include <cstddef>
@@ -12,7 +11,7 @@
 #include <vector>
 
 #include "geometry/elements/element_cells.h"
-#include "geometry/part/part.h"
+#include "geometry/elements/part_spec.h"
 
 namespace retrace::geometry {
 
@@ -76,11 +75,5 @@ Cell cell_with_planes(const Cell& cell, const ElementPlanes& element, const Vec2
 /// Returns land on z = 0 that replaces a missing hexagonal cube corner, without the corners that the flares cut off.
 /// \pre the outline of `cell` is the hexagon, beginning with its corner at 0 degrees
 Cell flared_land(const Cell& cell, const ElementPlanes& element, const Vec2& centre_mm);
-
-/// Builds a finite part as build_part(spec) does, but with individual facets for each element. Elements that are not
-/// given are replaced by flat land. Outlines are nominal, and vertical walls connect neighbours of different height.
-/// \pre spec.array.extent is finite; the facets slope in the same directions as nominal facets
-/// \throw InputError in the same cases as build_part(spec), and if planes belong to no complete element of the array
-Part build_part(const PartSpec& spec, const FacetPlanes& planes);
 
 }  // namespace retrace::geometry

@@ -7,7 +7,7 @@
 
 #include "geometry/elements/array_sheet.h"
 #include "geometry/elements/element_cells.h"
-#include "geometry/part/substrate_part.h"
+#include "geometry/elements/substrate_checks.h"
 
 namespace retrace::geometry {
 namespace {

@@ -14,6 +14,8 @@
 
 namespace retrace::geometry {
 
+class FacetPlanes;
+
 /// Placement of a patch of the back surface in the part frame.
 struct Placement {
   std::uint32_t patch = 0;
@@ -82,7 +84,26 @@ struct Part {
 /// \throw InputError if the part contains no complete element, or if a rim reaches the entrance face
 Part build_part(const PartSpec& spec, const Vec2& origin_mm = Vec2::Zero());
 
+/// Builds a finite part as build_part(spec) does, but with individual facets for each element. Elements that are not
+/// given are replaced by flat land. Outlines are nominal, and vertical walls connect neighbours of different height.
+/// \pre spec.array.extent is finite; the facets slope in the same directions as nominal facets
+/// \throw InputError in the same cases as build_part(spec), and if planes belong to no complete element of the array
+Part build_part(const PartSpec& spec, const FacetPlanes& planes);
+
 /// Returns the area of a facet in mm2.
 double facet_area(const SurfacePatch& patch, const PatchFacet& facet);
+
+/// Exposed walls between neighbouring elements of a part.
+struct InnerWalls {
+  double area_mm2 = 0.0;
+  double highest_mm = 0.0;  ///< largest difference in height between neighbouring elements
+  /// Area of the walls projected along the substrate's mean normal. The walls block this cross section for light from
+  /// that direction.
+  double projected_mm2 = 0.0;
+};
+
+/// Measures the walls of a finite part.
+/// \param towards unit vector along which the walls are projected
+InnerWalls inner_walls(const Part& part, const Vec3& towards);
 
 }  // namespace retrace::geometry

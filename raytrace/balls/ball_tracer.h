@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "raytrace/balls/ball_layer.h"
-#include "raytrace/paths/monte_carlo.h"
+#include "raytrace/light/path_policy.h"
+#include "raytrace/sampling/replicates.h"
 
 namespace retrace::raytrace {
 

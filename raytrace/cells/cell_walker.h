@@ -12,9 +12,9 @@
 #include "raytrace/cells/cell_lanes.h"
 #include "raytrace/cells/ray_store.h"
 #include "raytrace/faces/formed_facet.h"
+#include "raytrace/faces/soiled_entrance.h"
 #include "raytrace/light/light_setup.h"
 #include "raytrace/light/path_policy.h"
-#include "raytrace/paths/soiled_entrance.h"
 
 namespace retrace::raytrace {
 

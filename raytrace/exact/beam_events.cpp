@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "raytrace/exact/beam_walk.h"
-#include "raytrace/paths/textured_facet.h"
+#include "raytrace/faces/textured_facet.h"
 
 namespace retrace::raytrace {
 

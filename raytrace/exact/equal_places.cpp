@@ -5,7 +5,7 @@
 #include <map>
 
 #include "geometry/elements/lattice.h"
-#include "raytrace/exact/point_lookup.h"
+#include "geometry/point_lookup.h"
 
 namespace retrace::raytrace {
 namespace {
@@ -149,7 +149,7 @@ CellPlace EqualPlaces::place_of(const SurfacePatch& patch, const PatchCell& cell
 /// Finds the rectangle in which shifts by one period map cells to identical cells. If a cell has no identical cell one
 /// period away, the rectangle is reduced on the side that is nearer to the cell.
 void EqualPlaces::find_region(const Part& part, const Vec2& centre_mm) {
-  PointLookup<std::uint64_t> cells(near_mm_);
+  geometry::PointLookup<std::uint64_t> cells(near_mm_);
   const auto visit_all = [&](const auto& visit) {
     for (const Placement& placement : part.placements)
       for (const PatchCell& cell : part.patches[placement.patch].cells)
@@ -201,7 +201,7 @@ void EqualPlaces::find_regions(const Part& part, const Vec2& centre_mm) {
 /// rows and checkered arrays have such a shift.
 void EqualPlaces::find_shift_within_period(const Part& part) {
   const SurfacePatch& patch = part.patches.front();
-  PointLookup<std::uint64_t> cells(near_mm_);
+  geometry::PointLookup<std::uint64_t> cells(near_mm_);
   for (const PatchCell& cell : patch.cells) {
     const CellPlace place = place_of(patch, cell, Vec2::Zero());
     cells.insert(in_plan(place.offset_mm), place.id);

@@ -9,7 +9,7 @@
 #include <optional>
 #include <utility>
 
-#include "raytrace/exact/point_lookup.h"
+#include "geometry/point_lookup.h"
 
 namespace retrace::raytrace {
 namespace {
@@ -237,7 +237,7 @@ class Fusion {
   double near_mm_;
   double value_tolerance_;
   std::vector<ValuedPolygon> pieces_;  ///< an empty polygon marks an entry that was joined to another entry
-  PointLookup<Edge> edges_;
+  geometry::PointLookup<Edge> edges_;
   std::deque<std::size_t> open_;
 };
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "raytrace/paths/textured_facet.h"
+#include "raytrace/faces/textured_facet.h"
 
 namespace retrace::raytrace {
 namespace {

@@ -11,7 +11,7 @@
 #include "core/progress.h"
 #include "raytrace/exact/beam_tracer.h"
 #include "raytrace/exact/scattered_light.h"
-#include "raytrace/paths/monte_carlo.h"
+#include "raytrace/sampling/replicates.h"
 
 namespace retrace::raytrace {
 

@@ -8,7 +8,7 @@
 
 #include "core/memory_budget.h"
 #include "geometry/centroid.h"
-#include "raytrace/exact/point_lookup.h"
+#include "geometry/point_lookup.h"
 
 namespace retrace::raytrace {
 namespace {
@@ -89,7 +89,7 @@ class FacetsByPlace {
 
   double near_mm_;
   std::vector<StandingFacet> facets_;
-  PointLookup<std::size_t> by_middle_;
+  geometry::PointLookup<std::size_t> by_middle_;
 };
 
 /// Returns the facets of the central period of an infinite part. The patch of such a part contains several periods,

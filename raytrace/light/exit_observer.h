@@ -2,7 +2,6 @@
 
 // Interface of objects that record the light that leaves a part, such as detectors and files of rays.
 
-#include "raytrace/faces/surface_ray.h"
 #include "raytrace/light/ledger.h"
 #include "raytrace/light/light.h"
 

@@ -8,9 +8,9 @@
 
 #include "geometry/part/part.h"
 #include "raytrace/light/coherent_light.h"
+#include "raytrace/light/direction_score.h"
 #include "raytrace/light/ledger.h"
 #include "raytrace/light/optics.h"
-#include "raytrace/observers/direction_score.h"
 
 namespace retrace::raytrace {
 

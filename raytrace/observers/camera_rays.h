@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "raytrace/observers/aperture_kernel.h"
+#include "raytrace/light/aperture_kernel.h"
 #include "raytrace/observers/camera.h"
 
 namespace retrace::raytrace {

@@ -9,9 +9,9 @@
 #include "core/progress.h"
 #include "geometry/part/part.h"
 #include "raytrace/exact/beam_tracer.h"
+#include "raytrace/light/direction_score.h"
 #include "raytrace/light/optics.h"
 #include "raytrace/light/path_policy.h"
-#include "raytrace/observers/direction_score.h"
 #include "raytrace/observers/pixel_grid.h"
 
 namespace retrace::raytrace {

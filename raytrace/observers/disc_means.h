@@ -9,7 +9,7 @@
 
 #include "core/progress.h"
 #include "geometry/vec.h"
-#include "raytrace/observers/aperture_kernel.h"
+#include "raytrace/light/aperture_kernel.h"
 #include "raytrace/observers/far_field.h"
 
 namespace retrace::raytrace {

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "core/progress.h"
+#include "geometry/point_lookup.h"
 #include "raytrace/exact/beam_tracer.h"
-#include "raytrace/exact/point_lookup.h"
+#include "raytrace/light/direction_score.h"
 #include "raytrace/observers/aperture_field.h"
-#include "raytrace/observers/direction_score.h"
 #include "raytrace/observers/scattered_field.h"
 
 namespace retrace::raytrace {
@@ -204,7 +204,7 @@ class FarFieldCollector {
   std::uint64_t alone_ = 0;  ///< number of waves and beams with a Place of their own
   /// Place::beam for each pair of CellTrail::met and a wave.
   std::map<std::pair<std::uint64_t, WaveKey>, std::uint64_t> mixed_;
-  PointLookup<std::size_t> directions_;  ///< indices into FarField::rays()
+  geometry::PointLookup<std::size_t> directions_;  ///< indices into FarField::rays()
 };
 
 }  // namespace retrace::raytrace

@@ -13,7 +13,7 @@
 
 #include "core/error.h"
 #include "raytrace/exact/flat_polygon.h"
-#include "raytrace/observers/aperture_kernel.h"
+#include "raytrace/light/aperture_kernel.h"
 
 namespace retrace::raytrace {
 namespace {

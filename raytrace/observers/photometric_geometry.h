@@ -4,7 +4,7 @@
 
 #include "core/angle.h"
 #include "geometry/vec.h"
-#include "raytrace/observers/return_frame.h"
+#include "raytrace/light/return_frame.h"
 
 namespace retrace::raytrace {
 

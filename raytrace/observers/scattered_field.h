@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/progress.h"
-#include "raytrace/observers/aperture_kernel.h"
+#include "raytrace/light/aperture_kernel.h"
 #include "raytrace/observers/coherent_group.h"
 #include "raytrace/observers/field_lanes.h"
 

@@ -15,24 +15,11 @@
 #include "raytrace/light/light_setup.h"
 #include "raytrace/light/optics.h"
 #include "raytrace/light/path_policy.h"
-#include "raytrace/sampling/replicate_means.h"
+#include "raytrace/sampling/replicates.h"
 
 namespace retrace::raytrace {
 
 struct PathSetup;
-
-/// Random numbers of a Monte Carlo run and the criteria that end it.
-struct Sampling {
-  /// Method of choosing entry points and branches. `stratified` uses Sobol points and splits rays at interfaces.
-  /// `plain` uses pseudo-random points and one random branch per interface. `plain` is slower, is meant for
-  /// comparisons, and requires Engine::embree.
-  enum class Kind { stratified, plain };
-  Kind kind = Kind::stratified;
-  std::uint32_t seed = 1;
-  std::optional<std::uint64_t> rays;  ///< number of rays, rounded up to whole replicates; not set: as many as needed
-  double target_error = 1e-4;         ///< target standard error of the RRE, > 0
-  std::uint64_t max_rays = 1U << 26;  ///< maximum number of rays if `rays` is not set
-};
 
 /// Estimates the distribution of light with Owen-scrambled Sobol points on the entrance face. The result depends only
 /// on the seed and the parameters, and not on the number of threads.
@@ -46,10 +33,6 @@ class MonteCarlo {
   /// Returns true if Engine::cell can be used: for infinite parts, and for finite arrays of identical elements with an
   /// inner region. Rays at the borders of such arrays are traced with Embree.
   static bool cell_serves(const geometry::Part& part);
-
-  /// Number of independent scrambles of the points. The estimate is the mean of the results of all scrambles, and its
-  /// standard error is computed from their spread.
-  static constexpr std::uint32_t kReplicates = 32;
 
   /// \param part must outlive the tracer
   /// \param entrance_face replaces the plane entrance face of the part; null for the plane face

@@ -11,11 +11,11 @@
 #include "geometry/part/part.h"
 #include "raytrace/faces/back_surface.h"
 #include "raytrace/faces/entrance_face.h"
+#include "raytrace/faces/soiled_entrance.h"
+#include "raytrace/faces/textured_facet.h"
 #include "raytrace/light/exit_observer.h"
 #include "raytrace/light/light_setup.h"
 #include "raytrace/light/path_policy.h"
-#include "raytrace/paths/soiled_entrance.h"
-#include "raytrace/paths/textured_facet.h"
 
 namespace retrace::raytrace {
 

@@ -6,9 +6,10 @@
 #include <vector>
 
 #include "geometry/part/part.h"
-#include "raytrace/faces/surface_ray.h"
 
 namespace retrace::raytrace {
+
+using geometry::Vec2;
 
 /// Distributes points of the unit square uniformly over the entrance face, or over one period of an infinite part. The
 /// results are relative to the centre of the face.

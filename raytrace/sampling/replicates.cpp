@@ -14,7 +14,7 @@
 namespace retrace::raytrace {
 namespace {
 
-constexpr std::uint32_t kReplicates = MonteCarlo::kReplicates;
+constexpr std::uint32_t kReplicates = Sampling::kReplicates;
 // Number of rays of a replicate per task. It is small enough for load balancing and large enough to make the overhead
 // negligible.
 constexpr std::uint32_t kRaysPerTask = 2048;

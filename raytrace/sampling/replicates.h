@@ -9,12 +9,28 @@
 #include <optional>
 #include <vector>
 
-#include "raytrace/paths/monte_carlo.h"
+#include "core/progress.h"
+#include "raytrace/light/light_setup.h"
+#include "raytrace/sampling/replicate_means.h"
 
 namespace retrace::raytrace {
 
-/// Monte Carlo tracers use MonteCarlo::kReplicates independent scrambles of the same points. The result of one scramble
-/// is a replicate. The estimate is the mean of the replicates, and its error is computed from their spread.
+/// Random numbers of a Monte Carlo run and the criteria that end it.
+struct Sampling {
+  /// Number of independent scrambles of the points. The result of one scramble is a replicate. The estimate is the mean
+  /// of all replicates, and its standard error is computed from their spread.
+  static constexpr std::uint32_t kReplicates = 32;
+
+  /// Method of choosing entry points and branches. `stratified` uses Sobol points and splits rays at interfaces.
+  /// `plain` uses pseudo-random points and one random branch per interface. `plain` is slower, is meant for
+  /// comparisons, and requires MonteCarlo::Engine::embree.
+  enum class Kind { stratified, plain };
+  Kind kind = Kind::stratified;
+  std::uint32_t seed = 1;
+  std::optional<std::uint64_t> rays;  ///< number of rays, rounded up to whole replicates; not set: as many as needed
+  double target_error = 1e-4;         ///< target standard error of the RRE, > 0
+  std::uint64_t max_rays = 1U << 26;  ///< maximum number of rays if `rays` is not set
+};
 
 /// Numbers of the Philox random streams: for the scrambles of entry points, and for the choices along a path.
 inline constexpr std::uint32_t kScrambleStream = 1;

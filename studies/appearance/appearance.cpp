@@ -17,7 +17,7 @@
 #include "geometry/direction.h"
 #include "materials/chromaticity.h"
 #include "materials/io/spectrum_reader.h"
-#include "raytrace/observers/aperture_kernel.h"
+#include "raytrace/light/aperture_kernel.h"
 #include "raytrace/observers/coefficients.h"
 #include "raytrace/observers/disc_means.h"
 #include "raytrace/observers/photometric_geometry.h"

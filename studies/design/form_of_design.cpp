@@ -10,7 +10,7 @@
 #include "core/overloaded.h"
 #include "geometry/elements/element_cells.h"
 #include "raytrace/faces/formed_facet.h"
-#include "raytrace/observers/aperture_kernel.h"
+#include "raytrace/light/aperture_kernel.h"
 #include "surface_models/form.h"
 #include "surface_models/io/height_map_reader.h"
 

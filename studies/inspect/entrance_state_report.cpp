@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "raytrace/faces/soiled_entrance.h"
 #include "raytrace/light/light_setup.h"
-#include "raytrace/paths/soiled_entrance.h"
 
 namespace retrace::studies {
 namespace {

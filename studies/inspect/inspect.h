@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/warning.h"
-#include "geometry/part/substrate_part.h"
+#include "geometry/elements/substrate_checks.h"
 #include "materials/io/material_library.h"
 #include "studies/design/design.h"
 #include "studies/design/form_of_design.h"

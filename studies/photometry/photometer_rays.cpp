@@ -41,7 +41,7 @@ Photometer::Piece Photometer::measure_by_rays(const PhotometerSetting& setting, 
   // with_unseen() adds an allowance for this light. A single ray contributes at most its power times the maximum of the
   // receiver's kernel.
   for (double& error : piece.error_per_sr)
-    error = raytrace::with_unseen(raytrace::student_factor(raytrace::MonteCarlo::kReplicates) * error,
+    error = raytrace::with_unseen(raytrace::student_factor(raytrace::Sampling::kReplicates) * error,
                                   static_cast<double>(traced.rays), kernel_.per_sr(0.0));
   if (score.grid)
     for (std::size_t bin = 0; bin < score.grid->size(); ++bin)

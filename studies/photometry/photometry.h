@@ -14,7 +14,7 @@
 #include "core/warning.h"
 #include "materials/chromaticity.h"
 #include "materials/spectrum.h"
-#include "raytrace/observers/aperture_kernel.h"
+#include "raytrace/light/aperture_kernel.h"
 #include "studies/design/design.h"
 #include "studies/photometry/limits.h"
 #include "studies/rre/rre.h"

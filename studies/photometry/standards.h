@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "raytrace/observers/aperture_kernel.h"
+#include "raytrace/light/aperture_kernel.h"
 
 namespace retrace::studies {
 

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "geometry/point_lookup.h"
 #include "raytrace/exact/beam_tracer.h"
-#include "raytrace/exact/point_lookup.h"
 
 namespace retrace::studies {
 
@@ -49,7 +49,7 @@ class FarFieldBuilder {
   FarFieldSpot seen_from_source(const Spot& spot) const;
 
   std::vector<Spot> spots_;  ///< the first spot is the direction back to the source, even if it has no light
-  raytrace::PointLookup<std::size_t> places_;
+  geometry::PointLookup<std::size_t> places_;
 };
 
 }  // namespace retrace::studies

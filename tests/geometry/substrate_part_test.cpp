@@ -1,4 +1,4 @@
-#include "geometry/part/substrate_part.h"
+#include "geometry/elements/substrate_checks.h"
 
 #include <gtest/gtest.h>
 

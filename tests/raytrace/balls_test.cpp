@@ -164,7 +164,7 @@ TEST(Balls, ShareWithinAConeByAngles) {
   // Rays are stratified by height. The error at the border of the cone is therefore less than one ray of a
   // replicate.
   const std::uint64_t rays = 1U << 17;
-  const double one_ray = static_cast<double>(MonteCarlo::kReplicates) / static_cast<double>(rays);
+  const double one_ray = static_cast<double>(Sampling::kReplicates) / static_cast<double>(rays);
   for (const double index : {1.8, 1.9, 2.0, 2.1}) {
     const MonteCarloResult result = traced(single(), ideal(index), at(0.0), 1.0, rays);
     EXPECT_NEAR(result.cones[0].rre, share_within(pi / 180.0, index, 1.0, 1.0), one_ray) << index;
@@ -196,7 +196,7 @@ TEST(Balls, SharesOfTheApertureByIndex) {
     double index, half_degree_percent, degree_percent;
   };
   const int rays = 100000;
-  const double one_ray = static_cast<double>(MonteCarlo::kReplicates) / (1U << 15);
+  const double one_ray = static_cast<double>(Sampling::kReplicates) / (1U << 15);
   for (const auto& [index, half_degree_percent, degree_percent] :
        {Case{1.9, 8.5, 19.7}, {1.91, 9.5, 23.0}, {1.93, 12.4, 34.0}, {1.95, 21.5, 28.7}, {2.0, 10.3, 15.9}})
     for (const auto& [cone_deg, percent] : {std::pair(0.5, half_degree_percent), {1.0, degree_percent}}) {

@@ -194,7 +194,7 @@ TEST(BeamTracer, AgreesWithMonteCarlo) {
   const std::size_t count = test::sample_size<std::size_t>(40, 200);
   const std::vector<RandomCase> cases =
       rc::gen::container<std::vector<RandomCase>>(count, random_case())(rc::Random(11), rc::kNominalSize).value();
-  const double t95 = student_bound_of(0.05, MonteCarlo::kReplicates);
+  const double t95 = student_bound_of(0.05, Sampling::kReplicates);
   int within = 0;
   int cell_cases = 0;
   int cell_within = 0;

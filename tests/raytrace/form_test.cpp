@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "geometry/part/substrate_part.h"
+#include "geometry/elements/substrate_checks.h"
 #include "raytrace/faces/formed_facet.h"
 #include "raytrace/paths/monte_carlo.h"
 #include "raytrace/paths/path_tracer.h"

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <random>
 
-#include "raytrace/exact/point_lookup.h"
+#include "geometry/point_lookup.h"
 
 namespace retrace::raytrace::overlay_test {
 namespace {
@@ -168,7 +168,7 @@ TEST(Fused, RandomOverlaysKeepAreaValueAndPlace) {
 }
 
 TEST(PointLookup, FindsWithinItsToleranceAndNotBeyond) {
-  PointLookup<int> lookup(1e-9);
+  geometry::PointLookup<int> lookup(1e-9);
   const geometry::Vec3 p(0.3, -0.7, 8e-9);  // on a border of cells
   lookup.insert(p, 1);
   const auto count = [&](const geometry::Vec3& at) {

@@ -50,7 +50,7 @@ TEST(RayProgress, OneLongRunOfABillionRaysIsReportedFromTheFirstThousandthOn) {
       },
       &reports);
   while (!rounds.advance()) continue;
-  EXPECT_EQ(traced, kRays / MonteCarlo::kReplicates);
+  EXPECT_EQ(traced, kRays / Sampling::kReplicates);
   EXPECT_LE(longest, traced / 100) << "between two reports at most 1 % of the rays";
   ASSERT_FALSE(reports.shares.empty());
   EXPECT_LT(reports.shares.front(), 1e-3);
@@ -62,7 +62,7 @@ TEST(RayProgress, ReportsTheFractionOfTheRaysAndChangesNoResult) {
   const geometry::Part part =
       geometry::build_part(infinite(geometry::RtpElement{1.0, 1.0}, geometry::Arrangement::aligned, 1.0));
   const MonteCarlo tracer(part);
-  const Sampling sampling = sampling_of(MonteCarlo::kReplicates * 2048);
+  const Sampling sampling = sampling_of(Sampling::kReplicates * 2048);
   Reports reports;
   const MonteCarloResult told = tracer.trace(pmma(), from(10.0), {0.5}, sampling, {}, nullptr, nullptr, &reports);
   const MonteCarloResult silent = tracer.trace(pmma(), from(10.0), {0.5}, sampling, {});

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "raytrace/exact/beam_tracer.h"
-#include "raytrace/paths/textured_facet.h"
+#include "raytrace/faces/textured_facet.h"
 #include "tests/support/designs.h"
 #include "tests/support/statistics.h"
 

@@ -32,7 +32,7 @@ TEST(RoughVariance, ErrorsAreTrue) {
   constexpr std::uint32_t kSeeds = 60;
   const Part part = build_part(kCubes);
   const ConeResult truth = trace(part, 1U << 18, 1000, {}).cones[0];
-  const double t95 = student_bound_of(0.05, MonteCarlo::kReplicates);
+  const double t95 = student_bound_of(0.05, Sampling::kReplicates);
   int within = 0;
   for (std::uint32_t seed = 1; seed <= kSeeds; ++seed) {
     const ConeResult run = trace(part, 1U << 13, seed, {}).cones[0];

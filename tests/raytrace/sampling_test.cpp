@@ -188,7 +188,7 @@ TEST(StandardError, IsTrue) {
     const Part part = build_part(truth.spec);
     const MonteCarlo tracer(part);
     int covered = 0;
-    const double t95 = student_bound_of(0.05, MonteCarlo::kReplicates);
+    const double t95 = student_bound_of(0.05, Sampling::kReplicates);
     for (std::uint32_t seed = 1; seed <= 200; ++seed) {
       const ConeResult result =
           tracer.trace(truth.optics, truth.illumination, {0.5}, rays(1U << 13, seed), {}).cones[0];

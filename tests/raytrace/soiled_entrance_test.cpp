@@ -1,6 +1,6 @@
 // Tests of entrance faces with layers, water, dust, scratches and haze: closed forms, an independent trace of a drop,
 // reciprocity, and ledgers that add up to 1 in every engine.
-#include "raytrace/paths/soiled_entrance.h"
+#include "raytrace/faces/soiled_entrance.h"
 
 #include <gtest/gtest.h>
 

@@ -50,7 +50,7 @@ MonteCarloResult sampled(const ReturningRegion& region, double target_error, std
   sampling.seed = seed;
   sampling.target_error = target_error;
   Rounds rounds(sampling, {0.5}, 0, [&](std::uint32_t from, std::uint32_t until, std::vector<Tally>& replicates) {
-    for (std::uint32_t k = 0; k < MonteCarlo::kReplicates; ++k) {
+    for (std::uint32_t k = 0; k < Sampling::kReplicates; ++k) {
       const auto keys = scramble_keys(seed, k);
       const SobolSquare square(keys[0], keys[1]);
       for (std::uint32_t ray = from; ray < until; ++ray) {

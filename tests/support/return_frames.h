@@ -1,7 +1,7 @@
 #pragma once
 
 #include "raytrace/light/light_setup.h"
-#include "raytrace/observers/return_frame.h"
+#include "raytrace/light/return_frame.h"
 
 namespace retrace::testing {
 

@@ -20,10 +20,10 @@
 #include "fabrication/job/substrate_cells.h"
 #include "fabrication/job/v_tool.h"
 #include "fabrication/job/zone_cells.h"
+#include "geometry/elements/substrate_checks.h"
 #include "geometry/elements/whole_elements.h"
 #include "geometry/io/element_keys.h"
 #include "geometry/io/substrate_rows.h"
-#include "geometry/part/substrate_part.h"
 
 namespace retrace::fabrication {
 namespace fs = std::filesystem;

@@ -1,4 +1,4 @@
-#include "raytrace/observers/direction_score.h"
+#include "raytrace/light/direction_score.h"
 
 #include <algorithm>
 #include <cmath>

@@ -11,7 +11,7 @@
 #include "core/number_format.h"
 #include "geometry/direction.h"
 #include "geometry/elements/element_cells.h"
-#include "geometry/part/substrate_part.h"
+#include "geometry/elements/substrate_checks.h"
 
 namespace retrace::geometry {
 namespace {

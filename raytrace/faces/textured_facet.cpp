@@ -1,4 +1,4 @@
-#include "raytrace/paths/textured_facet.h"
+#include "raytrace/faces/textured_facet.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "raytrace/observers/aperture_kernel.h"
+#include "raytrace/light/aperture_kernel.h"
 
 #include <algorithm>
 #include <cmath>

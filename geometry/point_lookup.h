@@ -1,7 +1,6 @@
 #pragma once
 
-// Lookup of values that are stored at points in space. Coordinates are compared with a tolerance. The lookup finds, for
-// example, beams with nearly the same direction.
+// Lookup of values that are stored at points in space. Coordinates are compared with a tolerance.
 
 #include <array>
 #include <cmath>
@@ -10,7 +9,7 @@
 
 #include "geometry/vec.h"
 
-namespace retrace::raytrace {
+namespace retrace::geometry {
 
 /// Values that are stored at points in space. A search finds all points within a tolerance in each coordinate.
 template <class Value>
@@ -19,12 +18,12 @@ class PointLookup {
   /// \param tolerance > 0, and much larger than the rounding errors of the coordinates
   explicit PointLookup(double tolerance) : tolerance_(tolerance), cell_(8.0 * tolerance) {}
 
-  void insert(const geometry::Vec3& p, Value value) { entries_.emplace(key_of(p), Entry{p, std::move(value)}); }
+  void insert(const Vec3& p, Value value) { entries_.emplace(key_of(p), Entry{p, std::move(value)}); }
 
   /// Calls visit(value) for every value whose point is within the tolerance of `p`, in arbitrary order.
   template <class Visit>
-  void visit(const geometry::Vec3& p, const Visit& visit) const {
-    const geometry::Vec3 reach = geometry::Vec3::Constant(tolerance_);
+  void visit(const Vec3& p, const Visit& visit) const {
+    const Vec3 reach = Vec3::Constant(tolerance_);
     const Key low = key_of(p - reach);
     const Key high = key_of(p + reach);
     Key key;
@@ -48,11 +47,11 @@ class PointLookup {
     }
   };
   struct Entry {
-    geometry::Vec3 at;
+    Vec3 at;
     Value value;
   };
 
-  Key key_of(const geometry::Vec3& p) const {
+  Key key_of(const Vec3& p) const {
     Key key;
     for (Eigen::Index k = 0; k < 3; ++k)
       key[static_cast<std::size_t>(k)] = static_cast<std::int64_t>(std::floor(p[k] / cell_));
@@ -64,4 +63,4 @@ class PointLookup {
   std::unordered_multimap<Key, Entry, Hash> entries_;
 };
 
-}  // namespace retrace::raytrace
+}  // namespace retrace::geometry

@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "raytrace/observers/aperture_kernel.h"
-#include "raytrace/observers/return_frame.h"
+#include "raytrace/light/aperture_kernel.h"
+#include "raytrace/light/return_frame.h"
 
 namespace retrace::raytrace {
 

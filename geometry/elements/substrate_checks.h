@@ -1,9 +1,8 @@
 #pragma once
 
-// Parts whose elements are placed on a substrate. Checks that the substrate can carry the elements, and measures the
-// exposed walls between neighbours.
+// Checks whether a substrate can carry the elements of a part.
 
-#include "geometry/part/part.h"
+#include "geometry/elements/part_spec.h"
 #include "geometry/substrate/substrate_surface.h"
 
 namespace retrace::geometry {
@@ -21,18 +20,5 @@ SubstrateMeasures check_substrate(const PartSpec& spec);
 
 /// Returns the diameter of the circle around an element's aperture.
 double width_across_mm(const Element& element);
-
-/// Exposed walls between neighbouring elements of a part.
-struct InnerWalls {
-  double area_mm2 = 0.0;
-  double highest_mm = 0.0;  ///< largest difference in height between neighbouring elements
-  /// Area of the walls projected along the substrate's mean normal. The walls block this cross section for light from
-  /// that direction.
-  double projected_mm2 = 0.0;
-};
-
-/// Measures the walls of a finite part.
-/// \param towards unit vector along which the walls are projected
-InnerWalls inner_walls(const Part& part, const Vec3& towards);
 
 }  // namespace retrace::geometry

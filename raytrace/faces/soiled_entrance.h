@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "raytrace/paths/textured_facet.h"
+#include "raytrace/faces/textured_facet.h"
 
 namespace retrace::raytrace {
 

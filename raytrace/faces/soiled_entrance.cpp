@@ -1,4 +1,4 @@
-#include "raytrace/paths/soiled_entrance.h"
+#include "raytrace/faces/soiled_entrance.h"
 
 #include <cmath>
 #include <limits>
