@@ -1,12 +1,14 @@
 #include "tests/layering/layer_rules.h"
 
 #include <algorithm>
+#include <cctype>
+#include <compare>
 #include <fstream>
 #include <functional>
-#include <map>
-#include <optional>
+#include <iterator>
+#include <nlohmann/json.hpp>
 #include <regex>
-#include <set>
+#include <sstream>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -15,76 +17,15 @@ namespace retrace::layering {
 namespace fs = std::filesystem;
 namespace {
 
-using Names = std::set<std::string>;
-
-/// Layers: the folders that each folder may include, in addition to itself.
-const std::map<std::string, Names>& folders() {
-  static const std::map<std::string, Names> order = {
-      {"core", {}},
-      {"requests", {"core"}},
-      {"geometry", {"core"}},
-      {"materials", {"core"}},
-      {"surface_models", {"core", "geometry", "materials"}},
-      {"raytrace", {"core", "geometry", "materials", "surface_models"}},
-      {"fabrication", {"core", "geometry"}},
-      {"studies", {"core", "requests", "geometry", "materials", "surface_models", "raytrace", "fabrication"}},
-      {"report", {"core", "geometry", "studies"}},
-      {"library", {"core", "requests", "geometry", "materials", "raytrace", "fabrication", "studies", "report"}},
-      {"live", {"core", "requests", "geometry", "materials", "surface_models", "raytrace", "studies"}},
-      {"python", {"library", "core", "requests"}},
-      {"app",
-       {"core", "requests", "geometry", "materials", "surface_models", "raytrace", "fabrication", "studies",
-        "report"}}};
+/// Returns the folders or rooms of a table with the names that each of them may include.
+Order order_of(const nlohmann::ordered_json& table) {
+  Order order;
+  for (const auto& [name, lower] : table.items()) {
+    for (const std::string& other : lower.get<Names>())
+      if (!order.contains(other)) throw std::runtime_error(name + " is not listed after " + other);
+    order[name] = lower.get<Names>();
+  }
   return order;
-}
-
-/// Subfolders ("rooms") of studies/, and the subfolders that each of them may include. A subfolder is listed after
-/// those that it may include.
-const std::map<std::string, Names>& study_rooms() {
-  static const std::map<std::string, Names> rooms = {
-      {"design", {}},
-      {"rre", {"design"}},
-      {"roughness", {"design", "rre"}},
-      {"photometry", {"design", "rre"}},
-      {"image", {"design", "rre", "photometry"}},
-      {"appearance", {"design", "rre", "photometry"}},
-      {"rays", {"design"}},
-      {"inspect", {"design"}},
-      {"scene", {"design"}},
-      {"solids", {"design"}},
-      {"drawing", {"design"}},
-      {"metrology", {}},
-      {"fabrication", {"design"}},
-      {"calibration", {"design", "fabrication"}},
-      {"forces", {}},
-      {"turning", {}},
-      {"planing", {}},
-      {"closed_loop", {"design"}},
-      {"setup", {"design", "rre", "photometry", "fabrication", "closed_loop"}},
-      {"store", {}},
-      {"quantity", {"design", "rre", "inspect", "photometry", "fabrication", "closed_loop"}},
-      {"sweep", {"design", "store", "quantity"}},
-      {"optimise", {"design", "store", "quantity", "sweep"}},
-      {"compose", {"design", "store", "quantity", "sweep", "optimise"}},
-      {"tolerance", {"design", "store", "quantity", "sweep"}},
-      {"validation", {"roughness", "quantity"}}};
-  return rooms;
-}
-
-/// Subfolders ("rooms") of fabrication/, and the subfolders that each of them may include: machine and programs first,
-/// then one subfolder for each process.
-const std::map<std::string, Names>& fabrication_rooms() {
-  static const std::map<std::string, Names> rooms = {{"job", {}},
-                                                     {"machine", {}},
-                                                     {"program", {"machine"}},
-                                                     {"post", {"machine", "program"}},
-                                                     {"read", {"machine"}},
-                                                     {"check", {"machine", "read"}},
-                                                     {"forces", {"job"}},
-                                                     {"chisel", {"job", "machine", "program", "read", "check"}},
-                                                     {"planing", {"machine", "program", "read", "check"}},
-                                                     {"turning", {"machine", "program", "read", "check"}}};
-  return rooms;
 }
 
 /// Sides of fabrication/: code that plans and writes programs, and code that reads and verifies them. Neither side may
@@ -96,19 +37,6 @@ Side side_of(const std::string& path) {
   if (!path.starts_with("fabrication/")) return Side::neither;
   if (lies_in("/plan/") || lies_in("/program/") || lies_in("/post/")) return Side::plans;
   return lies_in("/check/") || lies_in("/read/") ? Side::judges : Side::neither;
-}
-
-/// Subfolders of studies/ that may include fabrication/, directly or indirectly. A design does not depend on tools.
-const Names& rooms_that_see_fabrication() {
-  static const Names rooms = {"calibration", "closed_loop", "compose", "fabrication", "forces",  "optimise",  "planing",
-                              "quantity",    "setup",       "sweep",   "tolerance",   "turning", "validation"};
-  return rooms;
-}
-
-/// Returns the subfolder rules of a folder, or null if it has none.
-const std::map<std::string, Names>* rooms_of(const std::string& folder) {
-  if (folder == "studies") return &study_rooms();
-  return folder == "fabrication" ? &fabrication_rooms() : nullptr;
 }
 
 /// Returns true for folders that may include everything or contain no code of the program.
@@ -123,7 +51,7 @@ struct Place {
   std::string folder;
   std::string room;
 
-  bool operator==(const Place&) const = default;
+  auto operator<=>(const Place&) const = default;
 };
 
 Place place_of(const std::string& path) {
@@ -195,38 +123,155 @@ const Library* library_of(const std::string& included) {
   return nullptr;
 }
 
-struct Include {
+/// A header that a file includes, or a header that declares a type that the file uses.
+struct Reference {
   int line = 0;
   bool is_quoted = false;
-  std::string target;
+  std::string header;
+  std::string type;  ///< name of the type; empty for an include
+
+  std::string text() const { return (type.empty() ? "include " : "use " + type + " of ") + header; }
+};
+
+/// A source file: its includes, and the names in its code.
+struct Source {
+  std::vector<Reference> includes;
+  std::map<std::string, int> names;       ///< names that begin with an upper-case letter, with their first lines
+  std::map<std::string, int> namespaces;  ///< names before `::` and after `using namespace`, with their first lines
+  Names types;                            ///< types of a header that are declared outside of classes and functions
+  Names other_types;                      ///< the remaining types, and parameters of templates
 };
 
 /// Returns the path of an included file relative to the root of the tree. Installed headers of the library include each
 /// other in the way in which users include them.
-std::string from_root(const std::string& target, const std::string& path) {
-  if ((path.starts_with("library/") || path.starts_with("python/")) && target.starts_with("retrace/"))
-    return "library/" + target;
-  if (path.starts_with("core/") && (target == "api.h" || target == "field.h")) return "core/" + target;
-  return target;
+std::string from_root(const std::string& header, const std::string& path) {
+  if ((path.starts_with("library/") || path.starts_with("python/")) && header.starts_with("retrace/"))
+    return "library/" + header;
+  if (path.starts_with("core/") && (header == "api.h" || header == "field.h")) return "core/" + header;
+  return header;
 }
 
-std::vector<Include> includes_of(const fs::path& file, const std::string& path) {
-  std::ifstream stream(file);
-  if (!stream) throw std::runtime_error("cannot read " + file.string());
+std::vector<Reference> includes_of(const std::string& text, const std::string& path) {
   static const std::regex directive(R"re(^\s*#\s*include\s*(["<])([^">]+)[">])re");
-  std::vector<Include> includes;
-  std::string text;
-  for (int line = 1; std::getline(stream, text); ++line) {
+  std::vector<Reference> includes;
+  std::istringstream stream(text);
+  std::string row;
+  for (int line = 1; std::getline(stream, row); ++line) {
     std::smatch match;
-    if (std::regex_search(text, match, directive))
-      includes.push_back({line, match[1] == "\"", from_root(match[2], path)});
+    if (std::regex_search(row, match, directive))
+      includes.push_back({line, match[1] == "\"", from_root(match[2], path), {}});
   }
   return includes;
 }
 
+bool is_of_name(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+}
+
+/// Replaces comments and literals by spaces. Ends of lines are kept.
+std::string code_of(std::string text) {
+  const auto blank = [&](std::size_t from, std::size_t until) {
+    until = std::min(until, text.size());
+    for (std::size_t k = from; k < until; ++k)
+      if (text[k] != '\n') text[k] = ' ';
+    return until;
+  };
+  const auto after = [&](std::string_view mark, std::size_t from) {
+    const std::size_t found = text.find(mark, from);
+    return found == std::string::npos ? text.size() : found + mark.size();
+  };
+  for (std::size_t k = 0; k < text.size();) {
+    if (text.compare(k, 2, "//") == 0) {
+      k = blank(k, text.find('\n', k));
+    } else if (text.compare(k, 2, "/*") == 0) {
+      k = blank(k, after("*/", k + 2));
+    } else if (text.compare(k, 2, "R\"") == 0) {
+      const std::string mark = ")" + text.substr(k + 2, text.find('(', k) - k - 2) + "\"";
+      k = blank(k, after(mark, k));
+    } else if (text[k] == '"' || (text[k] == '\'' && (k == 0 || !is_of_name(text[k - 1])))) {
+      std::size_t end = k + 1;
+      while (end < text.size() && text[end] != text[k]) end += text[end] == '\\' ? 2 : 1;
+      k = blank(k, end + 1);
+    } else {
+      ++k;
+    }
+  }
+  return text;
+}
+
+/// Collects the names in the code of a source file.
+class NameReader {
+ public:
+  NameReader(const std::string& code, bool is_header, Source& source)
+      : code_(code), is_header_(is_header), source_(source) {}
+
+  void read() {
+    int line = 1;
+    for (std::size_t k = 0; k < code_.size();) {
+      if (code_[k] == '\n') ++line;
+      if (!is_of_name(code_[k])) {
+        ++k;
+        continue;
+      }
+      const std::size_t begin = k;
+      while (k < code_.size() && is_of_name(code_[k])) ++k;
+      take(code_.substr(begin, k - begin), line, begin == 0 || code_[begin - 1] == '\n', k);
+    }
+  }
+
+ private:
+  /// Processes one word.
+  /// \param end position after the word
+  void take(const std::string& word, int line, bool starts_line, std::size_t end) {
+    static const Names keys = {"class", "struct", "union", "enum", "typename", "concept", "using"};
+    const std::size_t next = std::min(code_.find_first_not_of(" \n", end), code_.size());
+    const bool is_qualifier = code_.compare(next, 2, "::") == 0;
+    if (is_qualifier || (last_ == "namespace" && last_but_one_ == "using")) source_.namespaces.emplace(word, line);
+    if (std::isupper(static_cast<unsigned char>(word[0])) != 0) source_.names.emplace(word, line);
+    if (keys.contains(word)) {
+      // In `enum class`, the first word is the one that may start the line.
+      if (last_ != "enum") key_starts_line_ = starts_line;
+      key_ = last_ == "friend" || last_ == "using" ? "" : word;
+    } else if (!key_.empty() && !is_qualifier && !word.starts_with("RETRACE_")) {
+      declare(word, next);
+      key_.clear();
+    }
+    last_but_one_ = std::exchange(last_, word);
+  }
+
+  /// Processes the name after a keyword such as `class`.
+  /// \param next position of the first character after the name
+  void declare(const std::string& name, std::size_t next) {
+    const bool is_final = code_.compare(next, 6, "final ") == 0;
+    if (next >= code_.size() || (is_of_name(code_[next]) && !is_final)) return;  // a use, as in `struct tm time`
+    if (key_ == "using" && code_[next] != '=') return;
+    const bool is_forward =
+        key_ != "using" && code_[std::min(code_.find_first_of("{;>", next), code_.size() - 1)] == ';';
+    if (is_forward && key_starts_line_) return;
+    (key_starts_line_ && is_header_ ? source_.types : source_.other_types).insert(name);
+  }
+
+  const std::string& code_;
+  bool is_header_;
+  Source& source_;
+  std::string last_, last_but_one_;
+  std::string key_;  ///< keyword of a declaration whose name has not been read yet; empty if there is none
+  bool key_starts_line_ = false;
+};
+
+Source read_source(const fs::path& file, const std::string& path) {
+  std::ifstream stream(file);
+  if (!stream) throw std::runtime_error("cannot read " + file.string());
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  Source source;
+  source.includes = includes_of(text, path);
+  NameReader(code_of(text), is_header(path), source).read();
+  return source;
+}
+
 class Checker {
  public:
-  explicit Checker(const fs::path& root) {
+  Checker(const fs::path& root, const Rules& rules) : rules_(rules) {
     if (!fs::is_directory(root / "core")) throw std::runtime_error("no source tree: " + (root / "core").string());
     for (const fs::directory_entry& top : fs::directory_iterator(root)) {
       const std::string folder = top.path().filename().string();
@@ -235,82 +280,110 @@ class Checker {
         const std::string extension = entry.path().extension().string();
         if (!entry.is_regular_file() || (extension != ".h" && extension != ".cpp")) continue;
         const std::string path = fs::relative(entry.path(), root).generic_string();
-        files_[path] = includes_of(entry.path(), path);
+        files_[path] = read_source(entry.path(), path);
       }
     }
     if (files_.empty()) throw std::runtime_error("no source files below " + root.string());
+    find_headers_of_types();
   }
 
   std::vector<Violation> run() {
-    for (const auto& [path, includes] : files_) {
-      if (!folders().contains(place_of(path).folder)) {
+    for (const auto& [path, source] : files_) {
+      if (!rules_.folders.contains(place_of(path).folder)) {
         report(path, 1, "folder " + place_of(path).folder + "/ has no place in the order of layers");
         continue;
       }
-      for (const Include& include : includes) check(path, include);
+      for (const Reference& include : source.includes) check_include(path, include);
+      check_names(path, source);
     }
     return std::move(violations_);
   }
 
  private:
+  /// Finds the headers of all types whose name is declared in a single folder or room, and on one side of fabrication/.
+  void find_headers_of_types() {
+    std::map<std::string, std::set<std::pair<Place, Side>>> places;
+    for (const auto& [path, source] : files_) {
+      for (const std::string& type : source.types) header_of_type_[type] = path;
+      for (const Names* types : {&source.types, &source.other_types})
+        for (const std::string& type : *types) places[type].emplace(place_of(path), side_of(path));
+    }
+    std::erase_if(header_of_type_, [&](const auto& entry) { return places[entry.first].size() > 1; });
+  }
+
   void report(const std::string& path, int line, std::string text) {
     violations_.push_back({path, line, std::move(text)});
   }
 
-  void check(const std::string& path, const Include& include) {
-    if (const Library* const library = library_of(include.target)) {
+  void check_include(const std::string& path, const Reference& include) {
+    if (const Library* const library = library_of(include.header)) {
       if (!library->may_include(path))
         report(path, include.line,
                std::string(library->name) + " may be included only in " + std::string(library->where));
       return;
     }
-    const Place target = place_of(include.target);
-    if (!folders().contains(target.folder)) {
+    const Place target = place_of(include.header);
+    if (!rules_.folders.contains(target.folder)) {
       if (include.is_quoted)
-        report(path, include.line, "\"" + include.target + "\" is no path from the root of the source tree");
+        report(path, include.line, "\"" + include.header + "\" is no path from the root of the source tree");
       return;
     }
-    check_order(path, include, target);
-    check_side(path, include);
-    check_fabrication(path, include);
+    check_order(path, include);
+    for (const std::string& header : reached_from(include.header)) check_sight(path, include.line, header);
     // Types of an external library must not reach other files indirectly, through a header.
     if (!(place_of(path) == target))
-      for (const Library* library : leaked_by(include.target))
+      for (const Library* library : leaked_by(include.header))
         if (!library->may_include(path))
-          report(path, include.line, include.target + " brings " + std::string(library->name) + " out of its room");
+          report(path, include.line, include.header + " brings " + std::string(library->name) + " out of its room");
   }
 
-  void check_order(const std::string& path, const Include& include, const Place& target) {
+  /// Checks the types and namespaces that a file uses. Headers of types may be included indirectly or not at all.
+  void check_names(const std::string& path, const Source& source) {
     const Place from = place_of(path);
-    if (target.folder != from.folder && !folders().at(from.folder).contains(target.folder)) {
-      report(path, include.line, from.folder + "/ may not include " + include.target);
+    for (const auto& [name, line] : source.names) {
+      const auto found = header_of_type_.find(name);
+      if (found == header_of_type_.end()) continue;
+      const std::string& header = found->second;
+      const bool is_included = std::any_of(source.includes.begin(), source.includes.end(),
+                                           [&](const Reference& include) { return include.header == header; });
+      if (is_included) continue;
+      check_order(path, {line, true, header, name});
+      check_sight(path, line, header);
+    }
+    for (const auto& [name, line] : source.namespaces)
+      if (rules_.folders.contains(name) && name != from.folder && !rules_.folders.at(from.folder).contains(name))
+        report(path, line, from.folder + "/ may not use namespace " + name);
+  }
+
+  void check_order(const std::string& path, const Reference& reference) {
+    const Place from = place_of(path);
+    const Place target = place_of(reference.header);
+    if (target.folder != from.folder) {
+      if (!rules_.folders.at(from.folder).contains(target.folder))
+        report(path, reference.line, from.folder + "/ may not " + reference.text());
       return;
     }
-    const auto* const rooms = rooms_of(from.folder);
-    if (rooms == nullptr || target.folder != from.folder || from.room == target.room) return;
-    const auto room = rooms->find(from.room);
-    if (room == rooms->end()) {
-      report(path, include.line, "room " + from.folder + "/" + from.room + "/ has no place in the order of rooms");
-    } else if (!room->second.contains(target.room)) {
-      report(path, include.line, from.folder + "/" + from.room + "/ may not include " + include.target);
+    const auto rooms = rules_.rooms.find(from.folder);
+    if (rooms == rules_.rooms.end() || target.room.empty() || target.room == from.room) return;
+    const std::string name = from.folder + "/" + (from.room.empty() ? "" : from.room + "/");
+    const auto room = rooms->second.find(from.room);
+    if (room == rooms->second.end() && !from.room.empty()) {
+      report(path, reference.line, "room " + name + " has no place in the order of rooms");
+    } else if (from.room.empty() || !room->second.contains(target.room)) {
+      report(path, reference.line, name + " may not " + reference.text());
     }
   }
 
-  void check_side(const std::string& path, const Include& include) {
+  /// Checks rules that also apply to headers that are included indirectly.
+  void check_sight(const std::string& path, int line, const std::string& header) {
     const Side side = side_of(path);
-    if (side == Side::neither) return;
-    for (const std::string& header : reached_from(include.target))
-      if (const Side other = side_of(header); other != Side::neither && other != side)
-        report(path, include.line,
-               std::string(side == Side::plans ? "what plans" : "what judges") + " may not see " + header);
-  }
-
-  void check_fabrication(const std::string& path, const Include& include) {
+    const Side other = side_of(header);
+    if (side != Side::neither && other != Side::neither && other != side)
+      report(path, line, std::string(side == Side::plans ? "what plans" : "what judges") + " may not see " + header);
     const Place from = place_of(path);
-    if (from.folder != "studies" || rooms_that_see_fabrication().contains(from.room)) return;
-    for (const std::string& header : reached_from(include.target))
-      if (header.starts_with("fabrication/"))
-        report(path, include.line, "studies/" + from.room + "/ may not see " + header);
+    if (from.folder == "studies" && header.starts_with("fabrication/") &&
+        !rules_.studies_that_see_fabrication.contains(from.room))
+      report(path, line, "studies/" + from.room + "/ may not see " + header);
   }
 
   /// Returns the files that are included directly or indirectly by `path`, and `path` itself.
@@ -322,7 +395,7 @@ class Checker {
       open.pop_back();
       if (!seen.insert(next).second) continue;
       if (const auto file = files_.find(next); file != files_.end())
-        for (const Include& include : file->second) open.push_back(include.target);
+        for (const Reference& include : file->second.includes) open.push_back(include.header);
     }
     return seen;
   }
@@ -331,13 +404,13 @@ class Checker {
   std::set<const Library*> leaked_by(const std::string& path) {
     std::set<const Library*> leaked;
     for (const std::string& header : reached_from(path))
-      if (const auto file = files_.find(header); file != files_.end())
-        for (const Include& include : file->second)
-          if (const Library* const library = library_of(include.target)) leaked.insert(library);
+      if (const Library* const library = library_of(header)) leaked.insert(library);
     return leaked;
   }
 
-  std::map<std::string, std::vector<Include>> files_;
+  const Rules& rules_;
+  std::map<std::string, Source> files_;
+  std::map<std::string, std::string> header_of_type_;
   std::vector<Violation> violations_;
 };
 
@@ -347,28 +420,16 @@ std::string to_string(const Violation& violation) {
   return violation.file + ":" + std::to_string(violation.line) + ": " + violation.text;
 }
 
-std::vector<Violation> check_tree(const fs::path& root) {
-  return Checker(root).run();
+Rules read_rules(const fs::path& file) {
+  std::ifstream stream(file);
+  const auto document = nlohmann::ordered_json::parse(stream);
+  Rules rules{order_of(document.at("folders")), {}, document.at("studies_that_see_fabrication").get<Names>()};
+  for (const auto& [folder, rooms] : document.at("rooms").items()) rules.rooms[folder] = order_of(rooms);
+  return rules;
 }
 
-std::string layer_picture() {
-  // A folder is one floor above the highest folder that it may include.
-  const std::function<int(const std::string&)> floor_of = [&](const std::string& folder) {
-    int floor = 0;
-    for (const std::string& below : folders().at(folder)) floor = std::max(floor, floor_of(below) + 1);
-    return floor;
-  };
-  std::vector<std::pair<int, std::string>> order;
-  for (const auto& [folder, below] : folders()) order.emplace_back(-floor_of(folder), folder);
-  std::sort(order.begin(), order.end());
-  std::string picture;
-  for (const auto& [floor, folder] : order) {
-    std::string names;
-    for (const std::string& below : folders().at(folder)) names += (names.empty() ? "" : ", ") + below;
-    picture += std::to_string(-floor) + "  " + folder + std::string(16 - folder.size(), ' ') +
-               (names.empty() ? "-" : names) + "\n";
-  }
-  return picture;
+std::vector<Violation> check_tree(const fs::path& root, const Rules& rules) {
+  return Checker(root, rules).run();
 }
 
 }  // namespace retrace::layering

@@ -1,12 +1,30 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <set>
 #include <string>
 #include <vector>
 
 namespace retrace::layering {
 
-/// An include that violates the order of folders and rooms (subfolders).
+using Names = std::set<std::string>;
+/// Folders or rooms (subfolders), each with the others that it may include.
+using Order = std::map<std::string, Names>;
+
+/// Order of folders, and of the rooms in a folder. Files directly in a folder with rooms are below all of its rooms.
+struct Rules {
+  Order folders;
+  std::map<std::string, Order> rooms;  ///< key: name of the folder
+  /// Rooms of studies/ that may include fabrication/, directly or indirectly. A design does not depend on tools.
+  Names studies_that_see_fabrication;
+};
+
+/// Reads the rules from a JSON file.
+/// \throw std::runtime_error if a folder or room is not listed after all that it may include
+Rules read_rules(const std::filesystem::path& file);
+
+/// An include, or the use of a type or namespace, that violates the order of folders and rooms.
 struct Violation {
   std::string file;  ///< path relative to the root of the tree
   int line = 0;
@@ -16,13 +34,10 @@ struct Violation {
 /// Returns the violation as one line in the format of compilers: `file:line: text`.
 std::string to_string(const Violation& violation);
 
-/// Checks the includes of every source file below `root`: which folders and rooms (subfolders) a file may include, and
-/// in which files an external library may be used.
+/// Checks every source file below `root`: which folders and rooms it includes, and in which files an external library
+/// may be used. The types that a file uses count like includes of the headers that declare them, if only one folder or
+/// room declares a type of this name.
 /// \throw std::runtime_error if `root` is not a source tree (there is no core/, or no file to check)
-std::vector<Violation> check_tree(const std::filesystem::path& root);
-
-/// Returns a text with one line for each folder, from the highest to the lowest: its floor, its name and the folders
-/// that it may include.
-std::string layer_picture();
+std::vector<Violation> check_tree(const std::filesystem::path& root, const Rules& rules);
 
 }  // namespace retrace::layering
