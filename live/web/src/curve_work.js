@@ -2,7 +2,7 @@
 // the design changes. Finer curves follow. If the user makes no changes, all points are then computed again with higher
 // accuracy.
 import { directionOf, nameOf } from "./directions.js";
-import { AT_ONCE, MOVING } from "./session.js";
+import { AT_ONCE, MOVING } from "./target_errors.js";
 
 const PIECE_S = 0.012;
 const PATIENCE_MS = 700; // time after which an incomplete coarse curve is shown

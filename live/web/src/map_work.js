@@ -1,7 +1,7 @@
 // Computes RRE over all directions on rings of constant incidence, from coarse to fine. The number of points increases
 // with the radius of the ring. Of directions that are equivalent by symmetry, only one is traced.
 import { directionOf, nameOf } from "./directions.js";
-import { AT_ONCE } from "./session.js";
+import { AT_ONCE } from "./target_errors.js";
 
 const PIECE_S = 0.004;
 const RING_STEPS_DEG = [20, 10, 5, 2.5];

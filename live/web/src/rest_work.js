@@ -1,7 +1,7 @@
 // Computations that run while the user makes no changes: the result for the current direction with the highest
 // accuracy, the test points of a standard, and the curves of pinned designs.
 import { CurvePass } from "./curve_work.js";
-import { RESTING } from "./session.js";
+import { RESTING } from "./target_errors.js";
 
 const DIRECTION_S = 20;
 const PHOTOMETRY_S = 60;

@@ -4,11 +4,8 @@ import { Curve } from "./curve_work.js";
 import { DirectionMap } from "./map_work.js";
 import { Measure } from "./measure.js";
 import { Rest } from "./rest_work.js";
+import { AT_ONCE, MOVING } from "./target_errors.js";
 
-// Target errors of RRE. They are standard errors if weak beams are resampled, and otherwise the untraced power.
-export const MOVING = 1e-4; // while the user makes changes
-export const RESTING = 1e-6; // while the user makes no changes
-export const AT_ONCE = 1e-3; // first accuracy for the many directions of curves and maps
 const REST_MS = 260; // time without changes after which the computations in rest_work.js begin
 const MOST_S = 1.5; // maximum time for one direction during changes
 const PACE_MS = 66; // minimum time between two directions during changes, so that the page has time to draw
