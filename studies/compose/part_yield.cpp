@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
+#include <compare>
 #include <limits>
 #include <set>
 #include <utility>
@@ -12,8 +13,13 @@
 namespace retrace::studies {
 namespace {
 
-/// Indices of a part and of one of its goals.
-using PartGoal = std::pair<std::size_t, std::size_t>;
+/// A goal of a random part.
+struct PartGoal {
+  std::size_t part = 0;  ///< index of the part
+  std::size_t goal = 0;  ///< index of the goal
+
+  auto operator<=>(const PartGoal&) const = default;
+};
 
 double value_of(const std::vector<std::vector<double>>& zones, const std::vector<double>& shares, std::size_t goal) {
   double value = 0.0;
@@ -96,7 +102,7 @@ std::optional<std::vector<double>> best_shares(const DrawnParts& parts, double w
   const std::size_t zones = parts.front().size();
   std::vector<double> shares(zones, 1.0 / static_cast<double>(zones));
   std::set<PartGoal> rows;
-  for (std::size_t part = 0; part < parts.size(); ++part) rows.emplace(part, worst_goal(parts[part], shares));
+  for (std::size_t part = 0; part < parts.size(); ++part) rows.insert({part, worst_goal(parts[part], shares)});
   // Rows that the current solution violates are added until there are none. The solution then satisfies all rows,
   // including those that were never added.
   for (;;) {
@@ -108,7 +114,7 @@ std::optional<std::vector<double>> best_shares(const DrawnParts& parts, double w
       const std::size_t goal = worst_goal(parts[part], shares);
       const double missed =
           optimum.values[zones] - optimum.values[zones + 1 + part] - value_of(parts[part], shares, goal);
-      if (missed > 1e-9 * (1.0 + std::abs(optimum.objective))) rows.emplace(part, goal);
+      if (missed > 1e-9 * (1.0 + std::abs(optimum.objective))) rows.insert({part, goal});
     }
     if (rows.size() == before) return shares;
   }
