@@ -70,7 +70,7 @@ std::size_t drawn_points(const Series& series) {
 }
 
 bool has_markers(const Series& series) {
-  return drawn_points(series) <= kMostMarkers;
+  return !series.has_line || drawn_points(series) <= kMostMarkers;
 }
 
 /// Returns the ranges of both axes.
@@ -270,7 +270,7 @@ void draw_legend(Canvas& canvas, const Layout& layout) {
 /// Returns the radius of markers, which is smaller for dense points so that markers do not overlap.
 double marker_radius(const Series& series, const Layout& layout) {
   double closest = kPlotWidth;
-  for (std::size_t i = 1; i < series.x.size(); ++i) {
+  for (std::size_t i = 1; series.has_line && i < series.x.size(); ++i) {
     if (!is_drawn(series, i - 1) || !is_drawn(series, i)) continue;
     closest = std::min(closest, std::hypot(layout.x.at(series.x[i]) - layout.x.at(series.x[i - 1]),
                                            layout.y.at(series.y[i]) - layout.y.at(series.y[i - 1])));
@@ -285,7 +285,7 @@ void draw_series(Canvas& canvas, const Layout& layout, const Series& series, con
   canvas.clip({layout.corner.x - 1.5, layout.corner.y - 1.5}, {kPlotWidth + 3.0, kPlotHeight + 3.0});
   std::vector<Point> stretch;
   const auto draw_stretch = [&] {
-    if (stretch.size() > 1) canvas.line(stretch, {look.colour, 1.8, look.dashes});
+    if (series.has_line && stretch.size() > 1) canvas.line(stretch, {look.colour, 1.8, look.dashes});
     stretch.clear();
   };
   for (std::size_t i = 0; i < series.x.size(); ++i) {

@@ -17,6 +17,7 @@ struct Series {
   std::vector<double> x;
   std::vector<double> y;        ///< as many as x
   std::vector<double> y_error;  ///< standard errors, as many as `x`, or none
+  bool has_line = true;         ///< false: the points have markers and no line between them
 
   void add(double at, double value) {
     x.push_back(at);

@@ -3,11 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <filesystem>
 #include <tuple>
 
 #include "core/number_format.h"
+#include "report/page/design_names.h"
 #include "report/page/document_view.h"
+#include "report/plot_contents.h"
 
 namespace retrace::report::document {
 
@@ -50,15 +54,19 @@ PageSection photometry_section(const ResultDocument& document, const ResultFolde
   return section;
 }
 
-PageSection roughness_section(const ResultDocument& document, const ResultFolder&) {
+PageSection roughness_section(const ResultDocument& document, const ResultFolder& folder) {
   PageSection section = titled("Roughness");
-  PageChart chart{"Efficiency against the roughness of the facets", "Sa (nm)", "RRE (%)", {}, {}};
-  for (const Json& p : list(document.json, "points")) {
-    const double length = number(p, "correlation_length_um");
-    series_of(chart, fmt::format("correlation length {} um", shown(length)))
-        .add(number(p, "sa_nm"), 100.0 * number(p, "rre"));
+  std::vector<RoughnessValue> values;
+  for (const Json& p : list(document.json, "points"))
+    values.push_back({number(p, "sa_nm"), number_or_0(p, "correlation_length_um"), {}, number(p, "rre"), 0.0});
+  for (const Json& p : list(document.json, "measured")) {
+    const std::size_t facets = count_in(p, "facets");
+    values.push_back(
+        {number(p, "roughness_sa_nm"), number_or_0(p, "correlation_length_um"),
+         MeasuredFacets{facets > 1, text(p, "name"), text(p, "table"), facets, number_or_0(p, "waviness_sa_nm")},
+         number(p, "rre"), 0.0});
   }
-  section.charts.push_back(chart);
+  section.charts.push_back(roughness_plot(DesignNames(folder).of(document, 0.0), values));
   section.tables.push_back(table_of(list(document.json, "points"),
                                     {"correlation_length_um", "sa_nm", "sq_nm", "rre", "std_error"}, "Curves",
                                     csv_name(document, "curves")));
@@ -71,27 +79,30 @@ PageSection roughness_section(const ResultDocument& document, const ResultFolder
 
 namespace {
 
-/// Returns the tool path through one element, grouped by kinds of motion.
+/// Returns the tool path through one element. Kinds without moves are omitted.
+/// \param document document of the job
 /// \param path JSON object with `name` and `moves`
-PagePath tool_path(const Json& path, bool is_dmc) {
-  const std::string name = text(path, "name");
-  PagePath shown{"The way of the tool through one element: " + name,
-                 is_dmc ? "along the facet's level line (mm)" : "across the root (mm)",
-                 "above the root (mm)",
-                 {{"plunge", {}}, {"plough", {}}, {"retract", {}}, {"translate", {}}}};
+PathPlot tool_path(const Json& document, const Json& path) {
+  // Words of the document for the kinds of moves of tool_path_plot().
+  constexpr std::array kMotions = {"plunge", "plough", "retract", "translate"};
+  PathPlot plot = tool_path_plot({.job = std::filesystem::path(text(document, "job")).filename().string(),
+                                  .machine = text(document, "machine"),
+                                  .elements = count_in(document, "elements"),
+                                  .is_roughing = text(path, "name") == "roughing",
+                                  .is_layered = text(document, "strategy") == "bidirectional",
+                                  .is_cube_corner = text(document, "strategy") == "dmc"});
   for (const Json& move : list(path, "moves")) {
     if (!move.is_array() || move.size() != 5 || !move[0].is_string()) continue;
-    std::array<double, 4> ends{};
-    bool is_whole = true;
-    for (std::size_t k = 0; k < 4; ++k) {
-      is_whole = is_whole && move[k + 1].is_number();
-      if (is_whole) ends[k] = move[k + 1].get<double>();
-    }
-    for (PathMoves& kind : shown.kinds)
-      if (is_whole && kind.label == move[0].get<std::string>()) kind.moves.push_back(ends);
+    if (!std::all_of(move.begin() + 1, move.end(), [](const Json& c) { return c.is_number(); })) continue;
+    const auto kind = std::ranges::find(kMotions, move[0].get<std::string>());
+    const auto point = [&](std::size_t at) {
+      return geometry::Vec2(move[at].get<double>(), move[at + 1].get<double>());
+    };
+    if (kind != kMotions.end())
+      plot.kinds[static_cast<std::size_t>(kind - kMotions.begin())].moves.emplace_back(point(1), point(3));
   }
-  std::erase_if(shown.kinds, [](const PathMoves& kind) { return kind.moves.empty(); });
-  return shown;
+  std::erase_if(plot.kinds, [](const PathKind& kind) { return kind.moves.empty(); });
+  return plot;
 }
 
 }  // namespace
@@ -106,8 +117,8 @@ PageSection fabrication_section(const ResultDocument& document, const ResultFold
                    {"Strategy", text(json, "strategy"), ""},
                    {"Dialect", text(json, "dialect"), ""}};
   for (const Json& path : list(json, "section_path")) {
-    PagePath shown = tool_path(path, text(json, "strategy") == "dmc");
-    if (!shown.kinds.empty()) section.paths.push_back(std::move(shown));
+    PathPlot plot = tool_path(json, path);
+    if (!plot.kinds.empty()) section.paths.push_back(std::move(plot));
   }
   section.tables.push_back(table_of(list(json, "stages"), {"name", "a_deg", "c_deg", "elements", "time_s"},
                                     "Stages of the program", csv_name(document, "stages")));
@@ -143,55 +154,55 @@ PageSection verification_section(const ResultDocument& document, const ResultFol
 
 PageSection forces_section(const ResultDocument& document, const ResultFolder&) {
   PageSection section = titled("Cutting forces");
-  PageChart chart{"Forces on the tool over one cycle", "time (s)", "force (N)", {}, {}};
-  for (const char* key : {"fx_n", "fy_n", "fz_n"}) {
-    ChartSeries series{column_name(key), {}, {}};
-    for (const Json& sample : list(document.json, "profile")) series.add(number(sample, "time_s"), number(sample, key));
-    chart.series.push_back(std::move(series));
-  }
-  section.charts.push_back(std::move(chart));
+  LinePlot plot =
+      forces_plot(ForcesOfCut{text(document.json, "configuration"), number_or_0(document.json, "depth_of_cut_um"),
+                              number_or_0(document.json, "width_mm")});
+  constexpr std::array kForces = {"fx_n", "fy_n", "fz_n"};
+  for (std::size_t axis = 0; axis < kForces.size(); ++axis)
+    for (const Json& sample : list(document.json, "profile"))
+      plot.series[axis].add(number(sample, "time_s"), number(sample, kForces[axis]));
+  section.charts.push_back(std::move(plot));
   section.tables.push_back(figures_of(document.json, "Figures of the cycle", csv_name(document, "figures")));
   return section;
 }
 
 namespace {
 
-/// Returns a chart of the first quantity over the last numeric parameter of a sweep. It has one curve for each
+/// Returns a plot of the first quantity over the last numeric parameter of a sweep. It has one curve for each
 /// combination of the other parameters.
-PageChart sweep_chart(const Json& json) {
+LinePlot sweep_plot(const Json& json) {
   const std::vector<std::string> parameters = words(list(json, "parameters"));
   const std::vector<std::string> quantities = words(list(json, "quantities"));
-  PageChart chart;
-  if (parameters.empty() || quantities.empty()) return chart;
+  LinePlot plot;
+  if (parameters.empty() || quantities.empty()) return plot;
   const Json& points = list(json, "points");
   const auto is_axis = [&](const std::string& key) {
     return !points.empty() && std::isfinite(number(points.front(), key.c_str()));
   };
   const auto axis = std::find_if(parameters.rbegin(), parameters.rend(), is_axis);
-  if (axis == parameters.rend()) return chart;
-  chart.title = fmt::format("{} against {}", column_name(quantities.front()), column_name(*axis));
-  chart.x_label = column_name(*axis);
-  chart.y_label = column_name(quantities.front());
+  if (axis == parameters.rend()) return plot;
+  plot.title = fmt::format("{} against {}", column_name(quantities.front()), column_name(*axis));
+  plot.x_label = column_name(*axis);
+  plot.y_label = column_name(quantities.front());
   constexpr std::size_t most_series = 20;
   for (const Json& p : points) {
     std::vector<std::string> others;
     for (const std::string& key : parameters)
       if (key != *axis) others.push_back(key + " " + cell_of(member(p, key.c_str())).text);
-    const std::string label = others.empty() ? chart.y_label : fmt::format("{}", fmt::join(others, ", "));
+    const std::string label = others.empty() ? plot.y_label : fmt::format("{}", fmt::join(others, ", "));
     if (!std::isfinite(number(p, quantities.front().c_str()))) continue;
-    const auto is_it = [&](const ChartSeries& series) { return series.label == label; };
-    if (chart.series.size() == most_series && std::none_of(chart.series.begin(), chart.series.end(), is_it)) continue;
-    series_of(chart, label).add(number(p, axis->c_str()), number(p, quantities.front().c_str()));
+    const auto is_it = [&](const Series& series) { return series.label == label; };
+    if (plot.series.size() == most_series && std::ranges::none_of(plot.series, is_it)) continue;
+    series_of(plot, label).add(number(p, axis->c_str()), number(p, quantities.front().c_str()));
   }
-  return chart;
+  return plot;
 }
 
 }  // namespace
 
 PageSection sweep_section(const ResultDocument& document, const ResultFolder&) {
   PageSection section = titled("Sweep");
-  const PageChart chart = sweep_chart(document.json);
-  if (!chart.series.empty()) section.charts.push_back(chart);
+  if (LinePlot plot = sweep_plot(document.json); !plot.series.empty()) section.charts.push_back(std::move(plot));
   const Json& points = list(document.json, "points");
   section.tables.push_back(table_of(points, keys_of(points), "Points", csv_name(document, "points")));
   return section;

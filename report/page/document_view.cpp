@@ -21,6 +21,15 @@ double number(const Json& json, const char* key) {
   return value.is_number() ? value.get<double>() : NAN;
 }
 
+double number_or_0(const Json& json, const char* key) {
+  const double value = number(json, key);
+  return std::isfinite(value) ? value : 0.0;
+}
+
+std::size_t count_in(const Json& json, const char* key) {
+  return static_cast<std::size_t>(std::clamp(number_or_0(json, key), 0.0, 1e15));
+}
+
 std::string text(const Json& json, const char* key) {
   const Json& value = member(json, key);
   return value.is_string() ? value.get<std::string>() : std::string();
@@ -125,12 +134,11 @@ std::string csv_name(const ResultDocument& document, const char* what) {
   return name + "_" + what + ".csv";
 }
 
-ChartSeries& series_of(PageChart& chart, const std::string& label) {
-  const auto is_it = [&](const ChartSeries& series) { return series.label == label; };
-  const auto found = std::find_if(chart.series.begin(), chart.series.end(), is_it);
-  if (found != chart.series.end()) return *found;
-  chart.series.push_back({label, {}, {}});
-  return chart.series.back();
+Series& series_of(LinePlot& plot, const std::string& label) {
+  const auto found = std::ranges::find(plot.series, label, &Series::label);
+  if (found != plot.series.end()) return *found;
+  plot.series.push_back({label, {}, {}, {}});
+  return plot.series.back();
 }
 
 std::string verdict_style(const std::string& verdict) {

@@ -19,6 +19,9 @@ inline constexpr std::size_t kMostRows = 400;
 
 const Json& member(const Json& json, const char* key);  ///< returns a member; null if absent
 double number(const Json& json, const char* key);       ///< returns a number; NaN if absent
+double number_or_0(const Json& json, const char* key);  ///< returns a number; 0 if absent
+/// Returns a number of objects. Returns 0 if the number is absent or negative.
+std::size_t count_in(const Json& json, const char* key);
 std::string text(const Json& json, const char* key);
 bool flag(const Json& json, const char* key);
 const Json& list(const Json& json, const char* key);  ///< returns a list; empty if absent
@@ -40,7 +43,7 @@ PageTable figures_of(const Json& json, const std::string& caption, const std::st
 std::string csv_name(const ResultDocument& document, const char* what);
 
 /// Returns the series with the given label. Adds an empty series if there is none.
-ChartSeries& series_of(PageChart& chart, const std::string& label);
+Series& series_of(LinePlot& plot, const std::string& label);
 
 /// Returns the style of a verdict: "good", "bad" or "open".
 std::string verdict_style(const std::string& verdict);

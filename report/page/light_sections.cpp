@@ -1,49 +1,38 @@
 // Sections of the page on efficiency, footprint and far field, with their charts and drawings.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <set>
+#include <iterator>
+#include <map>
+#include <ranges>
 
-#include "core/number_format.h"
 #include "core/text.h"
+#include "geometry/polygon.h"
 #include "report/page/design_names.h"
 #include "report/page/document_sections.h"
 #include "report/page/document_view.h"
+#include "report/plot_contents.h"
 
 namespace retrace::report::document {
 
 namespace {
 
-/// Returns the chart of the efficiency over the angle of incidence, with one curve for each design, azimuth and
-/// acceptance angle. If only the azimuth varies, the chart is over the azimuth.
-PageChart rre_chart(const ResultDocument& document, const DesignNames& names) {
-  const Json& points = list(document.json, "points");
-  const auto several = [&](const char* key) {
-    std::set<double> values;
-    for (const Json& p : points) values.insert(number(p, key));
-    return values.size() > 1;
-  };
-  const bool over_azimuth = !several("incidence_deg") && several("azimuth_deg");
-  const char* const along = over_azimuth ? "azimuth_deg" : "incidence_deg";
-  const bool tell_azimuth = !over_azimuth && several("azimuth_deg");
-  const bool tell_cone = several("acceptance_half_angle_deg");
-  const bool tell_design = several("design");
-  PageChart chart;
-  chart.title =
-      "Retroreflective efficiency against the " + std::string(over_azimuth ? "azimuth" : "angle of incidence");
-  chart.x_label = over_azimuth ? "azimuth (deg)" : "angle of incidence (deg)";
-  chart.y_label = "RRE (%)";
-  for (const Json& p : points) {
-    std::vector<std::string> words;
-    if (tell_design) words.push_back(names.of(document, number(p, "design")));
-    if (tell_azimuth) words.push_back(fmt::format("azimuth {} deg", shown(number(p, "azimuth_deg"))));
-    if (tell_cone) words.push_back(fmt::format("within {} deg", shown(number(p, "acceptance_half_angle_deg"))));
-    const std::string label = words.empty() ? "RRE (%)" : fmt::format("{}", fmt::join(words, ", "));
-    series_of(chart, label).add(number(p, along), 100.0 * number(p, "rre"));
+using geometry::Polygon, geometry::Rectangle;
+
+/// Returns the points of the document. Points without a direction are omitted.
+std::vector<EfficiencyPoint> efficiency_points(const ResultDocument& document, const DesignNames& names) {
+  std::map<double, std::string> known;
+  std::vector<EfficiencyPoint> points;
+  for (const Json& p : list(document.json, "points")) {
+    if (!std::isfinite(number(p, "incidence_deg")) || !std::isfinite(number(p, "azimuth_deg"))) continue;
+    const auto [design, is_new] = known.try_emplace(number_or_0(p, "design"));
+    if (is_new) design->second = names.of(document, design->first);
+    points.push_back({design->second, number(p, "incidence_deg"), number(p, "azimuth_deg"),
+                      number_or_0(p, "acceptance_half_angle_deg"), number(p, "rre"), number(p, "std_error")});
   }
-  return chart;
+  return points;
 }
 
 /// Returns a table with one row for each point. Its columns are the accounts of the ledger (the terms of the energy
@@ -84,9 +73,9 @@ PageSection rre_section(const ResultDocument& document, const ResultFolder& fold
       "Efficiency",
       "RRE is the power that comes back into the acceptance cone over the incident power. The standard error covers "
       "sampling alone; the exact engine has none.");
-  const PageChart chart = rre_chart(document, names);
-  if (std::any_of(chart.series.begin(), chart.series.end(), [](const ChartSeries& s) { return s.x.size() > 1; }))
-    section.charts.push_back(chart);
+  LinePlot plot = rre_plot(efficiency_points(document, names));
+  if (std::ranges::any_of(plot.series, [](const Series& s) { return s.x.size() > 1; }))
+    section.charts.push_back(std::move(plot));
   section.tables.push_back(ledger_table(document, names));
   return section;
 }
@@ -97,30 +86,14 @@ constexpr std::size_t kMostPanels = 6;
 constexpr std::size_t kMostRegions = 1500;  // per panel
 constexpr std::size_t kMostSpots = 600;
 
-struct Extent {
-  double low_x = INFINITY;
-  double low_y = INFINITY;
-  double high_x = -INFINITY;
-  double high_y = -INFINITY;
-
-  void include(double x, double y) {
-    low_x = std::min(low_x, x);
-    low_y = std::min(low_y, y);
-    high_x = std::max(high_x, x);
-    high_y = std::max(high_y, y);
-  }
-  bool empty() const { return !(high_x > low_x && high_y > low_y); }
-  double size() const { return std::max(high_x - low_x, high_y - low_y); }
-};
-
-/// Returns the vertices of the outer ring of a GeoJSON polygon.
-std::vector<std::array<double, 2>> ring_of(const Json& feature) {
-  std::vector<std::array<double, 2>> ring;
+/// Returns the outer ring of a GeoJSON polygon.
+Polygon ring_of(const Json& feature) {
+  Polygon ring;
   const Json& rings = list(member(feature, "geometry"), "coordinates");
   if (rings.empty() || !rings.front().is_array()) return ring;
   for (const Json& p : rings.front())
     if (p.is_array() && p.size() >= 2 && p[0].is_number() && p[1].is_number())
-      ring.push_back({p[0].get<double>(), p[1].get<double>()});
+      ring.emplace_back(p[0].get<double>(), p[1].get<double>());
   return ring;
 }
 
@@ -131,24 +104,24 @@ bool is_of(const Json& feature, const Json& region) {
   return true;
 }
 
-/// Returns the beginning of a caption. It is the name of the design if the folder has several designs; otherwise it is
-/// empty.
-std::string prefix_of(const DesignNames& names, const ResultDocument& document, double design) {
-  return names.are_several() ? names.of(document, design) + ". " : std::string();
+/// Returns the name of a design if the folder has several designs. Otherwise, returns an empty text.
+std::string name_if_several(const DesignNames& names, const ResultDocument& document, double design) {
+  return names.are_several() ? names.of(document, design) : std::string();
 }
 
-/// Returns the SVG of a scale bar. Its length is 1, 2 or 5 times a power of ten and at most a quarter of the width.
-std::string scale_bar(const Extent& extent) {
-  const double about = 0.25 * (extent.high_x - extent.low_x);
+/// Returns the SVG of a scale bar below a rectangle. Its length is 1, 2 or 5 times a power of ten and at most a quarter
+/// of the width.
+std::string scale_bar(const Rectangle& face) {
+  const double about = 0.25 * face.size().x();
   const double decade = std::pow(10.0, std::floor(std::log10(about)));
   const double length = (about >= 5.0 * decade ? 5.0 : about >= 2.0 * decade ? 2.0 : 1.0) * decade;
-  const double unit = extent.size() / 100.0;
-  const double y = extent.high_y + 4.0 * unit;
+  const double unit = face.size().maxCoeff() / 100.0;
+  const double y = 4.0 * unit - face.lower.y();
   return fmt::format(
       "<line x1=\"{0:.6g}\" y1=\"{2:.6g}\" x2=\"{1:.6g}\" y2=\"{2:.6g}\" "
       "style=\"stroke:var(--text);stroke-width:{3:.3g}\"/>"
       "<text x=\"{4:.6g}\" y=\"{5:.6g}\" font-size=\"{6:.3g}\">{7:.6g} mm</text>",
-      extent.low_x, extent.low_x + length, y, 0.8 * unit, extent.low_x + length + 2.0 * unit, y + 1.3 * unit,
+      face.lower.x(), face.lower.x() + length, y, 0.8 * unit, face.lower.x() + length + 2.0 * unit, y + 1.3 * unit,
       4.0 * unit, length);
 }
 
@@ -168,16 +141,16 @@ std::vector<const Json*> spread(const Json& entries) {
   return chosen;
 }
 
-/// Returns the bounding box of all active regions of a design in drawing coordinates (y down). If `design` gives the
-/// size of the entrance face, the bounding box also contains this face.
+/// Returns the bounding box of all active regions of a design. If `design` gives the size of the entrance face, the
+/// bounding box also contains this face.
 /// \param json footprint document
 /// \param number_of_design index of the design in the result
 /// \param design JSON object of the design, or null if it is unknown
-Extent face_extent(const Json& json, double number_of_design, const Json* design) {
-  Extent extent;
+Rectangle face_of(const Json& json, double number_of_design, const Json* design) {
+  Polygon corners;
   for (const Json& feature : list(json, "features"))
     if (number(member(feature, "properties"), "design") == number_of_design)
-      for (const auto& [x, y] : ring_of(feature)) extent.include(x, -y);
+      std::ranges::copy(ring_of(feature), std::back_inserter(corners));
   if (design != nullptr) {
     const Json& array = member(*design, "array");
     const Json& element = member(*design, "element");
@@ -185,46 +158,59 @@ Extent face_extent(const Json& json, double number_of_design, const Json* design
     const double x_mm = is_single ? number(element, "base_mm") : number(array, "x_length_mm");
     const double y_mm = is_single ? number(element, "width_mm") : number(array, "y_length_mm");
     if (std::isfinite(x_mm) && std::isfinite(y_mm)) {
-      extent.include(0.0, 0.0);
-      extent.include(x_mm, -y_mm);
+      corners.emplace_back(0.0, 0.0);
+      corners.emplace_back(x_mm, y_mm);
     }
   }
-  return extent.empty() ? Extent{0.0, 0.0, 1.0, 1.0} : extent;
+  const Rectangle box = corners.empty() ? Rectangle{} : geometry::bounding_box(corners);
+  return box.empty() ? Rectangle{{0.0, 0.0}, {1.0, 1.0}} : box;
 }
 
-/// Draws the active regions of the entrance face for one direction of the light. Regions that return more light are
-/// darker.
+/// Returns the active regions of the entrance face for one direction of the light.
 /// \param json footprint document
 /// \param region entry of the list `regions`, which gives the design and the direction
-/// \param extent bounding box of the drawing (y down)
-/// \param of_design beginning of the caption, see prefix_of()
-PageFigure footprint_panel(const Json& json, const Json& region, const Extent& extent, const std::string& of_design) {
+/// \param design name of the design; empty if the folder has only one design
+MapPanel panel_of(const Json& json, const Json& region, const Rectangle& face, const std::string& design) {
+  const Json& regions = list(json, "regions");
+  const bool has_azimuths = std::any_of(regions.begin(), regions.end(),
+                                        [](const Json& other) { return number_or_0(other, "azimuth_deg") != 0.0; });
+  MapPanel panel =
+      footprint_panel({.design = design,
+                       .incidence_deg = number(region, "incidence_deg"),
+                       .azimuth_deg = has_azimuths ? std::optional(number_or_0(region, "azimuth_deg")) : std::nullopt,
+                       .active_share = number_or_0(region, "active_share"),
+                       .rre_shown = number_or_0(region, "rre_shown")});
+  panel.outline = geometry::to_polygon(face);
+  for (const Json& feature : list(json, "features"))
+    if (is_of(feature, region))
+      panel.regions.push_back({ring_of(feature), 100.0 * number(member(feature, "properties"), "efficiency")});
+  return panel;
+}
+
+/// Draws a panel. Regions with a higher value, which is an efficiency in percent, are darker. If there are more than
+/// kMostRegions regions, the other ones are omitted.
+PageFigure figure_of(const MapPanel& panel) {
   std::string shapes;
-  std::size_t drawn = 0;
-  for (const Json& feature : list(json, "features")) {
-    if (!is_of(feature, region)) continue;
-    const auto ring = ring_of(feature);
-    if (++drawn > kMostRegions) continue;
-    const double efficiency = number(member(feature, "properties"), "efficiency");
+  for (const MapRegion& region : panel.regions | std::views::take(kMostRegions)) {
     shapes += fmt::format("<polygon class=\"region\" fill-opacity=\"{:.3f}\" points=\"",
-                          0.15 + 0.85 * std::clamp(efficiency, 0.0, 1.0));
-    for (const auto& [x, y] : ring) shapes += fmt::format("{:.6g},{:.6g} ", x, -y);
-    shapes += fmt::format("\"><title>{} comes back</title></polygon>", percent(efficiency));
+                          0.15 + 0.85 * std::clamp(0.01 * region.value, 0.0, 1.0));
+    for (const geometry::Vec2& p : region.outline) shapes += fmt::format("{:.6g},{:.6g} ", p.x(), -p.y());
+    shapes += fmt::format("\"><title>{} comes back</title></polygon>", percent(0.01 * region.value));
   }
   PageFigure figure;
-  figure.caption = fmt::format("{}Incidence {} deg, azimuth {} deg: {} of the face is active and returns {}.",
-                               of_design, shown(number(region, "incidence_deg")), shown(number(region, "azimuth_deg")),
-                               percent(number(region, "active_share")), percent(number(region, "rre_shown")));
-  if (drawn > kMostRegions) figure.caption += fmt::format(" {} of {} regions are drawn.", kMostRegions, drawn);
-  const double margin = 0.04 * extent.size();
+  figure.caption = fmt::format("{}: {}.", panel.title, fmt::join(panel.remarks, "; "));
+  if (panel.regions.size() > kMostRegions)
+    figure.caption += fmt::format(" {} of {} regions are drawn.", kMostRegions, panel.regions.size());
+  const Rectangle face = geometry::bounding_box(panel.outline);
+  const geometry::Vec2 size = face.size();
+  const double margin = 0.04 * size.maxCoeff();
   figure.svg = fmt::format(
       "<svg role=\"img\" aria-label=\"{0}\" viewBox=\"{1:.6g} {2:.6g} {3:.6g} {4:.6g}\">"
       "<rect class=\"face\" x=\"{5:.6g}\" y=\"{6:.6g}\" width=\"{7:.6g}\" height=\"{8:.6g}\" stroke-width=\"{9:.3g}\"/>"
       "{10}{11}</svg>",
-      markup_text(figure.caption), extent.low_x - margin, extent.low_y - margin,
-      extent.high_x - extent.low_x + 2.0 * margin, extent.high_y - extent.low_y + 3.0 * margin, extent.low_x,
-      extent.low_y, extent.high_x - extent.low_x, extent.high_y - extent.low_y, 0.004 * extent.size(), shapes,
-      scale_bar(extent));
+      markup_text(figure.caption), face.lower.x() - margin, -face.upper.y() - margin, size.x() + 2.0 * margin,
+      size.y() + 3.0 * margin, face.lower.x(), -face.upper.y(), size.x(), size.y(), 0.004 * size.maxCoeff(), shapes,
+      scale_bar(face));
   return figure;
 }
 
@@ -239,8 +225,9 @@ PageSection footprint_section(const ResultDocument& document, const ResultFolder
   const DesignNames names(folder);
   for (const Json* region : spread(regions)) {
     const double design = number(*region, "design");
-    const Extent extent = face_extent(document.json, design, design_of(folder, document, design));
-    section.figures.push_back(footprint_panel(document.json, *region, extent, prefix_of(names, document, design)));
+    const Rectangle face = face_of(document.json, design, design_of(folder, document, design));
+    section.figures.push_back(
+        figure_of(panel_of(document.json, *region, face, name_if_several(names, document, design))));
   }
   Json rows = regions;
   if (names.are_several())
@@ -258,8 +245,8 @@ namespace {
 /// Draws one spot for each direction in which light is returned. The centre of the drawing is the direction to the
 /// source. The area of a spot is proportional to the power in its direction.
 /// \param direction entry of the list `directions` of a far-field document
-/// \param of_design beginning of the caption, see prefix_of()
-PageFigure far_field_panel(const Json& direction, const std::string& of_design) {
+/// \param design name of the design; empty if the folder has only one design
+PageFigure far_field_panel(const Json& direction, const std::string& design) {
   const Json& spots = list(direction, "spots");
   double reach = 1.0;
   double other_reach = 0.0;
@@ -294,8 +281,8 @@ PageFigure far_field_panel(const Json& direction, const std::string& of_design) 
   figure.caption = fmt::format(
       "{}Incidence {} deg, azimuth {} deg. {} of the light leaves more than {:.0f} arcmin from the direction to the "
       "source.",
-      of_design, shown(number(direction, "incidence_deg")), shown(number(direction, "azimuth_deg")),
-      percent(other_reach), kWindowArcmin);
+      design.empty() ? design : design + ". ", shown(number(direction, "incidence_deg")),
+      shown(number(direction, "azimuth_deg")), percent(other_reach), kWindowArcmin);
   figure.svg = fmt::format("<svg role=\"img\" aria-label=\"{}\" viewBox=\"-100 -100 200 200\">{}</svg>",
                            markup_text(figure.caption), shapes);
   return figure;
@@ -311,7 +298,8 @@ PageSection far_field_section(const ResultDocument& document, const ResultFolder
   const DesignNames names(folder);
   Json rows = Json::array();
   for (const Json* direction : spread(list(document.json, "directions")))
-    section.figures.push_back(far_field_panel(*direction, prefix_of(names, document, number(*direction, "design"))));
+    section.figures.push_back(
+        far_field_panel(*direction, name_if_several(names, document, number(*direction, "design"))));
   for (const Json& direction : list(document.json, "directions")) {
     for (const Json& spot : list(direction, "spots")) {
       if (!spot.is_object()) continue;

@@ -1,6 +1,7 @@
 #include "report/page/page.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <iterator>
@@ -28,32 +29,33 @@ std::string json_list(const Values& values, const Text& text) {
   return json + "]";
 }
 
-std::string json_of(const PageChart& chart) {
-  return fmt::format(R"({{"title":{},"x_label":{},"y_label":{},"y_from":{},"series":{}}})", json_string(chart.title),
-                     json_string(chart.x_label), json_string(chart.y_label),
-                     chart.y_from ? json_number(*chart.y_from) : "null",
-                     json_list(chart.series, [](const ChartSeries& s) {
-                       return fmt::format(R"({{"label":{},"x":{},"y":{}}})", json_string(s.label),
+std::string json_of(const LinePlot& plot) {
+  return fmt::format(R"({{"title":{},"x_label":{},"y_label":{},"y_from":{},"series":{}}})", json_string(plot.title),
+                     json_string(plot.x_label), json_string(plot.y_label),
+                     plot.y_range ? json_number(plot.y_range->low) : "null",
+                     json_list(plot.series, [&](const Series& s) {
+                       return fmt::format(R"({{"label":{},"line":{},"x":{},"y":{}}})",
+                                          json_string(s.label.empty() ? plot.y_label : s.label), s.has_line,
                                           json_list(s.x, json_number), json_list(s.y, json_number));
                      }));
 }
 
-/// Returns the coordinates of a tool move in mm as JSON, rounded to 1 nm.
-std::string json_move(const std::array<double, 4>& move) {
-  return json_list(move, [](double c) { return shortest(std::round(c * 1e6) / 1e6 + 0.0); });
+/// Returns the coordinates of points in mm as JSON, rounded to 1 nm.
+template <std::size_t count>
+std::string json_coordinates(const std::array<double, count>& coordinates) {
+  return json_list(coordinates, [](double c) { return shortest(std::round(c * 1e6) / 1e6 + 0.0); });
 }
 
-std::string json_of(const PagePath& path) {
-  return fmt::format(
-      R"({{"title":{},"x_label":{},"y_label":{},"kinds":{}}})", json_string(path.title), json_string(path.x_label),
-      json_string(path.y_label), json_list(path.kinds, [](const PathMoves& kind) {
-        return fmt::format(R"({{"label":{},"moves":{}}})", json_string(kind.label), json_list(kind.moves, json_move));
-      }));
-}
-
-/// Returns the coordinates of a point in mm as JSON, rounded to 1 nm.
-std::string json_point(const std::array<double, 3>& p) {
-  return json_list(p, [](double c) { return shortest(std::round(c * 1e6) / 1e6 + 0.0); });
+std::string json_of(const PathPlot& plot) {
+  return fmt::format(R"({{"title":{},"x_label":{},"y_label":{},"kinds":{}}})", json_string(plot.title),
+                     json_string(plot.x_label), json_string(plot.y_label),
+                     json_list(plot.kinds, [](const PathKind& kind) {
+                       return fmt::format(R"({{"label":{},"dashed":{},"moves":{}}})", json_string(kind.label),
+                                          kind.dashed, json_list(kind.moves, [](const auto& move) {
+                                            const auto& [from, to] = move;
+                                            return json_coordinates(std::array{from.x(), from.y(), to.x(), to.y()});
+                                          }));
+                     }));
 }
 
 std::string json_of(const SceneView& scene) {
@@ -61,10 +63,11 @@ std::string json_of(const SceneView& scene) {
     return json_list(list, [](std::uint32_t v) { return std::to_string(v); });
   };
   return fmt::format(R"({{"vertices":{},"triangles":{},"edges":{},"paths":{}}})",
-                     json_list(scene.vertices_mm, json_point), json_list(scene.triangles, numbers),
+                     json_list(scene.vertices_mm, json_coordinates<3>), json_list(scene.triangles, numbers),
                      json_list(scene.edges, numbers), json_list(scene.paths, [](const ScenePathView& p) {
                        return fmt::format(R"({{"label":{},"points":{},"events":{}}})", json_string(p.label),
-                                          json_list(p.points_mm, json_point), json_list(p.events, json_string));
+                                          json_list(p.points_mm, json_coordinates<3>),
+                                          json_list(p.events, json_string));
                      }));
 }
 
@@ -125,8 +128,8 @@ class HtmlWriter {
     write_steps(section.steps);
     if (section.has_scene && page_.scene) write_scene();
     if (section.has_live && page_.live) add("<div id=\"live\"></div>\n");
-    for (const PageChart& chart : section.charts) write_chart(chart);
-    for (const PagePath& path : section.paths) write_path(path);
+    for (const LinePlot& chart : section.charts) write_chart(chart);
+    for (const PathPlot& path : section.paths) write_path(path);
     write_figures(section.figures);
     for (const PageTable& table : section.tables) write_table(table);
     for (const auto& [title, content] : section.details)
@@ -161,7 +164,7 @@ class HtmlWriter {
     add("</ul></noscript></div>\n</div>\n");
   }
 
-  void write_chart(const PageChart& chart) {
+  void write_chart(const LinePlot& chart) {
     if (chart_count_ > 0) charts_ += ',';
     charts_ += json_of(chart);
     add("<figure data-chart=\"{}\"><div class=\"plot\"></div><figcaption>{}. Drag to zoom, double click for all; with "
@@ -169,12 +172,12 @@ class HtmlWriter {
         chart_count_++, markup_text(chart.title));
   }
 
-  void write_path(const PagePath& path) {
+  void write_path(const PathPlot& path) {
     if (path_count_ > 0) paths_ += ',';
     paths_ += json_of(path);
-    add("<figure data-path=\"{}\"><div class=\"path\"></div><figcaption>{}. Wheel with the control key, or + and -, to "
-        "zoom; drag or arrows to move; 0 or double click for all.</figcaption></figure>\n",
-        path_count_++, markup_text(path.title));
+    add("<figure data-path=\"{}\"><div class=\"path\"></div><figcaption>{}: {}. Wheel with the control key, "
+        "or + and -, to zoom; drag or arrows to move; 0 or double click for all.</figcaption></figure>\n",
+        path_count_++, markup_text(path.title), markup_text(fmt::format("{}", fmt::join(path.remarks, "; "))));
   }
 
   void write_figures(const std::vector<PageFigure>& figures) {

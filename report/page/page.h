@@ -11,6 +11,8 @@
 
 #include "report/page/html_text.h"
 #include "report/page/live_page.h"
+#include "report/path_plot.h"
+#include "report/plot.h"
 
 namespace retrace::report {
 
@@ -36,40 +38,6 @@ struct PageTable {
   std::size_t left_out = 0;  ///< number of rows of the result that were omitted
 };
 
-struct ChartSeries {
-  std::string label;
-  std::vector<double> x;
-  std::vector<double> y;
-
-  void add(double at, double value) {
-    x.push_back(at);
-    y.push_back(value);
-  }
-};
-
-/// Chart with curves. The reader can zoom it and read off values.
-struct PageChart {
-  std::string title;
-  std::string x_label;
-  std::string y_label;
-  std::vector<ChartSeries> series;
-  std::optional<double> y_from;  ///< lower end of the y axis; if there is no value, it is determined by the data
-};
-
-/// Straight tool moves of one kind, in mm.
-struct PathMoves {
-  std::string label;
-  std::vector<std::array<double, 4>> moves;  ///< start x, y and end x, y of each move
-};
-
-/// Tool path in a section, to scale. The reader can zoom it and hide kinds of moves.
-struct PagePath {
-  std::string title;
-  std::string x_label;
-  std::string y_label;
-  std::vector<PathMoves> kinds;
-};
-
 /// A drawing (SVG made by retrace) or a picture from a file of the result folder.
 struct PageFigure {
   std::string caption;
@@ -91,8 +59,8 @@ struct PageSection {
   std::vector<std::string> paragraphs;
   std::vector<PageFact> facts;
   std::vector<std::string> steps;  ///< steps in order, which the reader can tick off
-  std::vector<PageChart> charts;
-  std::vector<PagePath> paths;
+  std::vector<LinePlot> charts;    ///< plots that the reader can zoom, and whose values the reader can read off
+  std::vector<PathPlot> paths;  ///< tool paths that the reader can zoom, and whose kinds of moves the reader can hide
   std::vector<PageFigure> figures;
   std::vector<PageTable> tables;
   std::vector<std::pair<std::string, std::string>> details;  ///< collapsed texts: title and content

@@ -53,8 +53,8 @@ std::vector<std::string> pictures_of(const std::string& kind) {
 std::string caption_of(const std::string& picture) {
   if (picture == "far_field") return "Far field with the test points";
   if (picture == "r_a") return "R_A over the observation angle";
-  if (picture == "roughing") return "The way of the tool through one element: roughing";
-  if (picture == "finishing") return "The way of the tool through one element: finishing";
+  if (picture == "roughing") return "Tool path through one element: roughing";
+  if (picture == "finishing") return "Tool path through one element: finishing";
   if (picture == "arrangement") return "The elements in the order in which they are cut";
   if (picture == "plan") return "Plan: the part seen from the light, lengths in mm";
   if (picture == "section") return "Section across the elements, lengths in mm";

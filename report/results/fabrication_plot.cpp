@@ -71,17 +71,12 @@ std::string sizes_of(const fabrication::Job& job) {
 
 PathPlot tool_path_plot(const studies::FabricationResult& result, bool roughing) {
   const auto [half_mm, depth_mm] = section_of(result.job);
-  const bool is_dmc = result.job.strategy == fabrication::Strategy::dmc;
-  PathPlot plot;
-  plot.title = fmt::format("{}: {}", name_of(result),
-                           roughing                                                      ? "roughing"
-                           : result.job.strategy == fabrication::Strategy::bidirectional ? "layers"
-                                                                                         : "finishing");
-  plot.remarks = {fmt::format("one element of {}, {}; machine {}", result.plan.elements.size(),
-                              is_dmc ? "in the plane of one of its three facets" : "in the section across its root",
-                              result.machine.name)};
-  plot.x_label = is_dmc ? "along the facet's level line (mm)" : "across the root (mm)";
-  plot.y_label = is_dmc ? "up the facet from the apex (mm)" : "above the root (mm)";
+  PathPlot plot = tool_path_plot({.job = name_of(result),
+                                  .machine = result.machine.name,
+                                  .elements = result.plan.elements.size(),
+                                  .is_roughing = roughing,
+                                  .is_layered = result.job.strategy == fabrication::Strategy::bidirectional,
+                                  .is_cube_corner = result.job.strategy == fabrication::Strategy::dmc});
   plot.material = {{-2.0 * half_mm, -0.25 * depth_mm},
                    {2.0 * half_mm, -0.25 * depth_mm},
                    {2.0 * half_mm, depth_mm},
@@ -90,7 +85,6 @@ PathPlot tool_path_plot(const studies::FabricationResult& result, bool roughing)
                    {-half_mm, depth_mm},
                    {-2.0 * half_mm, depth_mm},
                    {-2.0 * half_mm, -0.25 * depth_mm}};
-  plot.kinds = {{"plunge", false, {}}, {"plough", false, {}}, {"retract", false, {}}, {"to the next cut", true, {}}};
   for (const studies::SectionMove& move : studies::section_moves(result, roughing))
     plot.kinds[static_cast<std::size_t>(move.motion)].moves.push_back(
         {{move.from_u_mm, move.from_z_mm}, {move.to_u_mm, move.to_z_mm}});

@@ -1,10 +1,5 @@
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <cmath>
-#include <string>
 
-#include "core/number_format.h"
 #include "report/results/result_plots.h"
 #include "studies/design/io/design_json.h"
 #include "studies/rre/rre.h"
@@ -14,28 +9,16 @@ namespace {
 
 using studies::EntranceFace, studies::ReturnedLight, studies::RreResult;
 
-std::string angle(double deg) {
-  return (deg < 0.0 ? "\u2212" : "") + shortest(std::abs(deg)) + "°";
-}
-
-std::string direction_of(const RreResult& result, const ReturnedLight& light) {
-  const bool has_azimuths = std::any_of(result.returned.begin(), result.returned.end(),
-                                        [](const ReturnedLight& other) { return other.at.azimuth_deg != 0.0; });
-  std::string text = "incidence " + angle(light.at.incidence_deg);
-  if (has_azimuths) text += ", azimuth " + angle(light.at.azimuth_deg);
-  return text;
-}
-
 MapPanel panel_of(const RreResult& result, const ReturnedLight& light) {
   const EntranceFace& face = result.faces[light.at.design];
-  MapPanel panel;
-  panel.title = direction_of(result, light);
-  if (result.designs.size() > 1) {
-    panel.remarks.push_back(panel.title);
-    panel.title = short_name(result.designs[light.at.design]);
-  }
-  panel.remarks.push_back(fmt::format("{} % active, returns {} %", fixed(100.0 * light.footprint->active_share(), 1),
-                                      fixed(100.0 * light.footprint->rre_shown(), 1)));
+  const bool has_azimuths =
+      std::ranges::any_of(result.returned, [](const ReturnedLight& other) { return other.at.azimuth_deg != 0.0; });
+  MapPanel panel = footprint_panel(
+      {.design = result.designs.size() > 1 ? short_name(result.designs[light.at.design]) : std::string(),
+       .incidence_deg = light.at.incidence_deg,
+       .azimuth_deg = has_azimuths ? std::optional(light.at.azimuth_deg) : std::nullopt,
+       .active_share = light.footprint->active_share(),
+       .rre_shown = light.footprint->rre_shown()});
   panel.outline = face.outline_mm;
   panel.is_periodic = face.is_periodic;
   panel.lines = face.rims_mm;

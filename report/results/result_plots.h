@@ -13,6 +13,7 @@
 #include "report/mixture_plot.h"
 #include "report/path_plot.h"
 #include "report/plot.h"
+#include "report/plot_contents.h"
 #include "report/polar_plot.h"
 #include "report/surface_plot.h"
 
@@ -41,9 +42,7 @@ struct TurningResult;
 
 namespace retrace::report {
 
-/// Returns a plot of RRE in percent over the angle of incidence, with one curve for each design, azimuth and acceptance
-/// cone. If there is only one angle of incidence, the axis is the azimuth. If there is only one direction, the axis is
-/// the acceptance half angle.
+/// Returns a plot of RRE, see rre_plot() in report/plot_contents.h.
 LinePlot rre_plot(const studies::RreResult& result);
 
 /// Maximum number of directions in the drawing of footprints.
@@ -54,8 +53,7 @@ inline constexpr std::size_t kMostFootprintPanels = 24;
 /// \pre a footprint was requested
 MapPlot footprint_plot(const studies::RreResult& result);
 
-/// Returns a plot of RRE over the Sa of the roughness, with a curve for each correlation length and with measured
-/// facets as points.
+/// Returns a plot of RRE over the Sa of the roughness, see roughness_plot() in report/plot_contents.h.
 LinePlot roughness_plot(const studies::RoughnessResult& result);
 
 /// Returns a plot of R_A around the direction to the source, with the test points. It has one panel for each map of the

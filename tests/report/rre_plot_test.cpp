@@ -38,7 +38,7 @@ TEST(RrePlot, DesignsOfTheSameTitleAreCurvesOfTheirOwn) {
 TEST(RrePlot, CurvesRunFromLeftToRight) {
   const LinePlot plot = rre_plot(result_of({"Prisms"}, {20.0, 0.0, -5.0, 10.0}));
   ASSERT_EQ(plot.series.size(), 1U);
-  EXPECT_EQ(plot.title, "Prisms");
+  EXPECT_EQ(plot.title, "Prisms: retroreflective efficiency");
   EXPECT_EQ(plot.series[0].label, "");
   EXPECT_EQ(plot.series[0].x, (std::vector<double>{-5.0, 0.0, 10.0, 20.0}));
   EXPECT_DOUBLE_EQ(plot.series[0].y[3], 2.0);

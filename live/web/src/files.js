@@ -48,6 +48,8 @@ function xmlText(text) {
   return text.replaceAll("&", "&amp;").replaceAll("<", "&lt;").replaceAll(">", "&gt;").replaceAll('"', "&quot;");
 }
 
+/** Labels of the axes of curves. */
+export const CURVE_AXES = { x: "Incidence (°)", y: "RRE (%)" };
 const BOX = { left: 64, top: 24, width: 560, height: 320 };
 
 function svgAxes([low, high]) {
@@ -63,8 +65,8 @@ function svgAxes([low, high]) {
     parts.push(`<path class="grid" d="M${at} ${top}V${top + height}"/><text x="${at}" y="${top + height + 18}" text-anchor="middle">${x}</text>`);
   }
   parts.push(
-    `<text x="${left + width / 2}" y="${top + height + 40}" text-anchor="middle">Incidence (°)</text>`,
-    `<text transform="translate(18 ${top + height / 2}) rotate(-90)" text-anchor="middle">RRE (%)</text>`,
+    `<text x="${left + width / 2}" y="${top + height + 40}" text-anchor="middle">${CURVE_AXES.x}</text>`,
+    `<text transform="translate(18 ${top + height / 2}) rotate(-90)" text-anchor="middle">${CURVE_AXES.y}</text>`,
   );
   return parts.join("\n");
 }

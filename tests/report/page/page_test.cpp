@@ -33,7 +33,7 @@ TEST(Page, TextsAreTextsWhateverTheyHold) {
   section.paragraphs = {nasty};
   section.facts = {{nasty, nasty, ""}};
   section.tables = {{nasty, {nasty}, {{PageCell(nasty)}}, nasty, 0}};
-  section.charts = {{nasty, nasty, nasty, {{nasty, {1.0}, {2.0}}}, {}}};
+  section.charts = {{nasty, nasty, nasty, {{nasty, {1.0}, {2.0}, {}}}, {}, {}}};
   section.details = {{nasty, nasty}};
   section.has_scene = true;
   page.sections = {section};
@@ -99,7 +99,7 @@ TEST(StudyPage, CurvesAreSplitByAzimuthAndGoOverIncidence) {
   ASSERT_NE(section, page.sections.end());
   ASSERT_EQ(section->charts.size(), 1U);
   ASSERT_EQ(section->charts[0].series.size(), 2U);
-  EXPECT_EQ(section->charts[0].series[1].label, "azimuth 90 deg");
+  EXPECT_EQ(section->charts[0].series[1].label, "azimuth 90°");
   EXPECT_EQ(section->charts[0].series[1].x, (std::vector<double>{0.0, 10.0}));
   EXPECT_NEAR(section->charts[0].series[1].y[1], 100.0, 1e-9);
   ASSERT_EQ(section->tables.size(), 1U);
@@ -283,7 +283,7 @@ TEST(StudyPage, DifferentDesignsHaveDifferentNames) {
     if (section.title == "Footprint" || section.title == "Far field") all_differ(captions, designs.size());
     if (section.title != "Efficiency") continue;
     std::vector<std::string> labels;
-    for (const ChartSeries& series : section.charts.at(0).series) labels.push_back(series.label);
+    for (const Series& series : section.charts.at(0).series) labels.push_back(series.label);
     all_differ(labels, designs.size());
   }
 }

@@ -1,6 +1,6 @@
 retrace_test(studies_tests
-  SOURCES report/page/page_test.cpp
-  LIBRARIES retrace::report_page)
+  SOURCES report/page/page_test.cpp report/page/same_plots_test.cpp
+  LIBRARIES retrace::report_page retrace::report_studies)
 retrace_test(command_tests
   SOURCES report/page/explore_command_test.cpp report/page/report_command_test.cpp
   LIBRARIES retrace::core nlohmann_json::nlohmann_json)

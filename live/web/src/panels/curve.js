@@ -3,7 +3,7 @@ import uPlot from "uplot";
 import { h } from "../dom.js";
 import { button, panel } from "../frame.js";
 import { percent, short } from "../units.js";
-import { curveSvg, save, curveCsv } from "../files.js";
+import { CURVE_AXES, curveSvg, save, curveCsv } from "../files.js";
 import { aligned, axis } from "../../../../report/page/web/src/charts.js";
 import { colour } from "../../../../report/page/web/src/theme.js";
 
@@ -70,7 +70,7 @@ export class CurvePanel {
       legend: { show: false },
       cursor: { drag: { x: false, y: false }, points: { show: false }, x: true, y: false },
       scales: { x: { time: false, range: () => this.reachOf() }, y: { range: () => [0, 100] } },
-      axes: [axis("Incidence (°)", 40), axis("RRE (%)", 44)],
+      axes: [axis(CURVE_AXES.x, 40), axis(CURVE_AXES.y, 44)],
       series: [{}, ...GHOSTS.map((name) => line("pinned", name, { dash: [5, 4], width: 1.5 })), line("this design", "--curve-0", { width: 2.5 })],
       hooks: { draw: [(plot) => this.drawPointer(plot)] },
     };

@@ -24,7 +24,7 @@ function linesOf(kind, index) {
   node.setAttribute("d", kind.moves.map((m) => `M${m[0]} ${-m[1]}L${m[2]} ${-m[3]}`).join(""));
   node.setAttribute("vector-effect", "non-scaling-stroke");
   node.style.stroke = `var(--curve-${index % 7})`;
-  if (kind.label === "translate") node.style.strokeDasharray = "4 3";
+  if (kind.dashed) node.style.strokeDasharray = "4 3";
   return node;
 }
 
