@@ -26,15 +26,15 @@ PageSection photometry_section(const ResultDocument& document, const ResultFolde
   const Json& programme = member(json, "programme");
   const std::string verdict = text(json, "verdict");
   PageSection section = titled("Photometry");
-  section.facts = {{"Standard", text(programme, "standard"), ""},
-                   {"Class and colour", text(programme, "class") + " " + text(programme, "colour"), ""},
-                   {"Area", measured(number(json, "area_cm2"), " cm2"), ""},
-                   {"Verdict", verdict, verdict_style(verdict)}};
-  if (json.contains("reason")) section.facts.push_back({"Reason", text(json, "reason"), ""});
+  section.facts = {{"Standard", text(programme, "standard")},
+                   {"Class and colour", text(programme, "class") + " " + text(programme, "colour")},
+                   {"Area", measured(number(json, "area_cm2"), " cm2")},
+                   {"Verdict", verdict, rating_of(verdict)}};
+  if (json.contains("reason")) section.facts.push_back({"Reason", text(json, "reason")});
   if (const Json& colour = member(json, "chromaticity"); colour.contains("x"))
     section.facts.push_back({"Colour",
                              fmt::format("x {}, y {}", fixed(number(colour, "x"), 4), fixed(number(colour, "y"), 4)),
-                             colour.contains("verdict") ? verdict_style(text(colour, "verdict")) : ""});
+                             colour.contains("verdict") ? rating_of(text(colour, "verdict")) : Rating::none});
   section.paragraphs.push_back(
       "R_I at the test points of the standard. Limits that are recalled, not confirmed, make a verdict unconfirmed. It "
       "is no approval test.");
@@ -45,9 +45,11 @@ PageSection photometry_section(const ResultDocument& document, const ResultFolde
                "Test points", csv_name(document, "points"));
   for (std::size_t c = 0; c < table.columns.size(); ++c)
     if (table.columns[c] == "verdict") {
-      for (auto& row : table.rows) row[c].style = verdict_style(row[c].text);
+      for (auto& row : table.rows) row[c].rating = rating_of(row[c].text);
       // Sorts the rows: failed points first, then undetermined points.
-      const auto rank = [&](const auto& row) { return row[c].style == "bad" ? 0 : row[c].style == "open" ? 1 : 2; };
+      const auto rank = [&](const auto& row) {
+        return row[c].rating == Rating::bad ? 0 : row[c].rating == Rating::open ? 1 : 2;
+      };
       std::ranges::stable_sort(table.rows, {}, rank);
     }
   section.tables.push_back(std::move(table));
@@ -110,12 +112,12 @@ PathPlot tool_path(const Json& document, const Json& path) {
 PageSection fabrication_section(const ResultDocument& document, const ResultFolder&) {
   const Json& json = document.json;
   PageSection section = titled("Tool path");
-  section.facts = {{"Machining time", measured(number(json, "time_s") / 3600.0, 3, " h"), ""},
-                   {"Time an element", measured(number(json, "time_per_element_s"), 2, " s"), ""},
-                   {"Elements", shown(number(json, "elements")), ""},
-                   {"Machine", text(json, "machine"), ""},
-                   {"Strategy", text(json, "strategy"), ""},
-                   {"Dialect", text(json, "dialect"), ""}};
+  section.facts = {{"Machining time", measured(number(json, "time_s") / 3600.0, 3, " h")},
+                   {"Time an element", measured(number(json, "time_per_element_s"), 2, " s")},
+                   {"Elements", shown(number(json, "elements"))},
+                   {"Machine", text(json, "machine")},
+                   {"Strategy", text(json, "strategy")},
+                   {"Dialect", text(json, "dialect")}};
   for (const Json& path : list(json, "section_path")) {
     PathPlot plot = tool_path(json, path);
     if (!plot.kinds.empty()) section.paths.push_back(std::move(plot));
@@ -131,8 +133,8 @@ PageSection verification_section(const ResultDocument& document, const ResultFol
   const std::string verdict = text(json, "verdict");
   const Json& findings = list(json, "findings");
   PageSection section = titled("Verification");
-  section.facts = {{"Verdict", verdict, verdict_style(verdict)},
-                   {"Findings", std::to_string(findings.size()), findings.empty() ? "good" : "bad"}};
+  section.facts = {{"Verdict", verdict, rating_of(verdict)},
+                   {"Findings", std::to_string(findings.size()), findings.empty() ? Rating::good : Rating::bad}};
   const std::tuple<const char*, const char*, const char*> figures[] = {
       {"Facets off by at most", "facet_distance_nm_max", " nm"},
       {"Angles off by at most", "facet_angle_arcmin_max", " arcmin"},
@@ -140,7 +142,7 @@ PageSection verification_section(const ResultDocument& document, const ResultFol
       {"Lowest block", "block_low_nm", " nm"}};
   for (const auto& [name, key, unit] : figures)
     if (const double value = number(json, key); std::isfinite(value))
-      section.facts.push_back({name, measured(value, unit), ""});
+      section.facts.push_back({name, measured(value, unit)});
   section.paragraphs.push_back(
       "The text of the programs was read back, the machine's axes moved and the blank cut again; planner and writers "
       "take no part in it.");

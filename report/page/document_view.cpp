@@ -141,9 +141,9 @@ Series& series_of(LinePlot& plot, const std::string& label) {
   return plot.series.back();
 }
 
-std::string verdict_style(const std::string& verdict) {
-  if (verdict == "pass") return "good";
-  return verdict == "fail" ? "bad" : "open";
+Rating rating_of(const std::string& verdict) {
+  if (verdict == "pass") return Rating::good;
+  return verdict == "fail" ? Rating::bad : Rating::open;
 }
 
 std::string name_of_design(const Json& design) {

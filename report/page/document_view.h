@@ -45,8 +45,8 @@ std::string csv_name(const ResultDocument& document, const char* what);
 /// Returns the series with the given label. Adds an empty series if there is none.
 Series& series_of(LinePlot& plot, const std::string& label);
 
-/// Returns the style of a verdict: "good", "bad" or "open".
-std::string verdict_style(const std::string& verdict);
+/// Returns the rating of a verdict: good for "pass", bad for "fail", and open for all others.
+Rating rating_of(const std::string& verdict);
 std::string name_of_design(const Json& design);
 /// Returns the keys that occur in the first objects of a list, in the order in which they first occur.
 std::vector<std::string> keys_of(const Json& rows);

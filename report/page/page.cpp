@@ -79,6 +79,17 @@ bool is_numeric(const PageTable& table, std::size_t column) {
   return true;
 }
 
+/// Returns the class of a rating in the style sheet of the page.
+std::string_view class_of(Rating rating) {
+  switch (rating) {
+    case Rating::none: return "";
+    case Rating::good: return "good";
+    case Rating::bad: return "bad";
+    case Rating::open: return "open";
+  }
+  return "";
+}
+
 class HtmlWriter {
  public:
   explicit HtmlWriter(const Page& page) : page_(page) {}
@@ -142,7 +153,7 @@ class HtmlWriter {
     constexpr std::size_t long_text = 24;
     add("<dl class=\"facts\">\n");
     for (const PageFact& fact : facts)
-      add("<div><dt>{}</dt><dd class=\"{}{}\">{}</dd></div>\n", markup_text(fact.name), fact.style,
+      add("<div><dt>{}</dt><dd class=\"{}{}\">{}</dd></div>\n", markup_text(fact.name), class_of(fact.rating),
           fact.value.size() > long_text ? " long" : "", markup_text(fact.value));
     add("</dl>\n");
   }
@@ -207,7 +218,7 @@ class HtmlWriter {
     for (const auto& row : table.rows) {
       add("<tr>");
       for (std::size_t c = 0; c < row.size(); ++c) {
-        add("<td class=\"{} {}\"", style[c], row[c].style);
+        add("<td class=\"{} {}\"", style[c], class_of(row[c].rating));
         if (!row[c].full.empty()) add(" data-v=\"{}\"", markup_text(row[c].full));
         add(">{}</td>", markup_text(row[c].text));
       }

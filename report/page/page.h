@@ -16,11 +16,14 @@
 
 namespace retrace::report {
 
+/// Rating of a value, which determines its colour.
+enum class Rating { none, good, bad, open };
+
 /// Cell of a table: the text that is shown, and the full value for the CSV file if it differs.
 struct PageCell {
   std::string text;
-  std::string full;   ///< value for the CSV file; if empty, `text` is used
-  std::string style;  ///< "good", "bad", "open" or none
+  std::string full;  ///< value for the CSV file; if empty, `text` is used
+  Rating rating = Rating::none;
 
   PageCell() = default;
   PageCell(std::string shown) : text(std::move(shown)) {}
@@ -50,7 +53,7 @@ struct PageFigure {
 struct PageFact {
   std::string name;
   std::string value;
-  std::string style;  ///< style like PageCell::style
+  Rating rating = Rating::none;
 };
 
 struct PageSection {

@@ -92,10 +92,10 @@ void add_efficiencies(const Json& points, double design, const std::string& whos
     if (best == nullptr || number(p, "rre") > number(*best, "rre")) best = &p;
     if (normal == nullptr && number(p, "incidence_deg") == 0.0) normal = &p;
   }
-  if (normal != nullptr) facts.push_back({"RRE at normal incidence" + whose, percent(number(*normal, "rre")), ""});
+  if (normal != nullptr) facts.push_back({"RRE at normal incidence" + whose, percent(number(*normal, "rre"))});
   if (best != nullptr && best != normal)
     facts.push_back({fmt::format("Greatest RRE, at {} deg{}", shown(number(*best, "incidence_deg")), whose),
-                     percent(number(*best, "rre")), ""});
+                     percent(number(*best, "rre"))});
 }
 
 /// Determines the texts that are appended to the names of the facts in the summary. If the folder has several designs
@@ -141,16 +141,16 @@ void add_summary_facts(const ResultDocument& document, const Subjects& subjects,
   const std::string whose = subjects.of(document);
   if (document.kind == "inspect") {
     if (const double n = number(json, "elements_full"); std::isfinite(n))
-      facts.push_back({"Whole elements" + whose, fmt::format("{:.0f}", n), ""});
+      facts.push_back({"Whole elements" + whose, fmt::format("{:.0f}", n)});
     if (const double limit = number(json, "tir_limit_deg"); std::isfinite(limit))
-      facts.push_back({"Total reflection up to" + whose, fixed_visible(limit, 2) + " deg", ""});
+      facts.push_back({"Total reflection up to" + whose, fixed_visible(limit, 2) + " deg"});
   }
   if (document.kind == "photometry")
-    facts.push_back({"Photometry" + whose, text(json, "verdict"), verdict_style(text(json, "verdict"))});
+    facts.push_back({"Photometry" + whose, text(json, "verdict"), rating_of(text(json, "verdict"))});
   if (document.kind == "fabrication")
-    facts.push_back({"Machining time" + whose, measured(number(json, "time_s") / 3600.0, 2, " h"), ""});
+    facts.push_back({"Machining time" + whose, measured(number(json, "time_s") / 3600.0, 2, " h")});
   if (document.kind == "verification")
-    facts.push_back({"Verification" + whose, text(json, "verdict"), verdict_style(text(json, "verdict"))});
+    facts.push_back({"Verification" + whose, text(json, "verdict"), rating_of(text(json, "verdict"))});
 }
 
 PageSection summary_section(const ResultFolder& folder) {
@@ -165,9 +165,9 @@ PageSection summary_section(const ResultFolder& folder) {
     warnings += list(document.json, "warnings").size();
     is_complete = is_complete && (flag(document.json, "complete") || !document.json.contains("complete"));
   }
-  section.facts.push_back({"Documents", std::to_string(folder.documents.size()), ""});
-  if (warnings > 0) section.facts.push_back({"Warnings", fmt::format("{}, see Provenance", warnings), "open"});
-  if (!is_complete) section.facts.push_back({"Completeness", "interrupted: not all is computed", "bad"});
+  section.facts.push_back({"Documents", std::to_string(folder.documents.size())});
+  if (warnings > 0) section.facts.push_back({"Warnings", fmt::format("{}, see Provenance", warnings), Rating::open});
+  if (!is_complete) section.facts.push_back({"Completeness", "interrupted: not all is computed", Rating::bad});
   return section;
 }
 

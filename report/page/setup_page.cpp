@@ -69,28 +69,27 @@ PageSection section(std::string id, std::string title, std::string paragraph = {
 PageSection overview(const FabricationResult& result) {
   PageSection s = section("job", "Job");
   const Job& job = result.job;
-  s.facts = {{"Job", std::filesystem::path(job.source).filename().string(), ""},
-             {"Machine", result.machine.name, ""},
-             {"Dialect", result.dialect, ""},
-             {"Strategy", std::string(kStrategyWords[static_cast<std::size_t>(job.strategy)]), ""},
-             {"Process", job.process.name, ""},
-             {"Elements", std::to_string(result.plan.elements.size()), ""},
-             {"Programs", std::to_string(result.plan.programs.size()), ""},
-             {"Time", hours(result.plan.time.total_s()), ""}};
+  s.facts = {{"Job", std::filesystem::path(job.source).filename().string()},
+             {"Machine", result.machine.name},
+             {"Dialect", result.dialect},
+             {"Strategy", std::string(kStrategyWords[static_cast<std::size_t>(job.strategy)])},
+             {"Process", job.process.name},
+             {"Elements", std::to_string(result.plan.elements.size())},
+             {"Programs", std::to_string(result.plan.programs.size())},
+             {"Time", hours(result.plan.time.total_s())}};
   return s;
 }
 
 PageSection blank_section(const FabricationResult& result, const SetupSheet& sheet) {
   const studies::BlankSetup& blank = sheet.blank;
   PageSection s = section("blank", "1. Blank and fixture");
-  s.facts = {{"Blank", std::string(kWorkpieceWords[static_cast<std::size_t>(result.job.workpiece.kind)]), ""},
+  s.facts = {{"Blank", std::string(kWorkpieceWords[static_cast<std::size_t>(result.job.workpiece.kind)])},
              {fmt::format("Array along X and Y at {}0 C0", tilt_word(result)),
-              fmt::format("{} x {} mm", fixed(blank.array_mm.x(), 3), fixed(blank.array_mm.y(), 3)), ""},
-             {"Deepest cut below the face", mm(blank.deepest_mm, 6), ""}};
+              fmt::format("{} x {} mm", fixed(blank.array_mm.x(), 3), fixed(blank.array_mm.y(), 3))},
+             {"Deepest cut below the face", mm(blank.deepest_mm, 6)}};
   if (blank.fixture_height_mm)
-    s.facts.push_back({"Table to face, blank with its fixture", mm(*blank.fixture_height_mm, 3), ""});
-  if (blank.free_radius_mm > 0.0)
-    s.facts.push_back({"Face and clamps may reach, from C", mm(blank.free_radius_mm, 2), ""});
+    s.facts.push_back({"Table to face, blank with its fixture", mm(*blank.fixture_height_mm, 3)});
+  if (blank.free_radius_mm > 0.0) s.facts.push_back({"Face and clamps may reach, from C", mm(blank.free_radius_mm, 2)});
   if (!blank.base.empty()) s.paragraphs.push_back(blank.base);
   for (const std::string& zone : blank.zones) s.paragraphs.push_back(zone);
   const double tilt_nm = 1e6 * 0.5 * blank.array_mm.maxCoeff() * std::tan(Angle::from_deg(1.0 / 3600.0).rad());
@@ -136,13 +135,13 @@ PageSection tool_section(const FabricationResult& result, const SetupSheet& shee
   const Tool& tool = result.job.tool;
   PageSection s = section("tool", "2. Tool");
   const bool is_dmc = result.job.strategy == Strategy::dmc;
-  s.facts = {{is_dmc ? "V, width across its edges" : "Chisel, width of its edge", mm(tool.width_mm), ""},
-             {"Wedge", shortest(tool.wedge_deg) + " degrees", ""},
-             {"Clearance as mounted", shortest(tool.clearance_deg) + " degrees", ""},
-             {"Rake while it plunges", fixed(sheet.tool.plunge_rake_deg, 2) + " degrees", ""},
-             {is_dmc ? "Radius of its nose" : "Radius of its edge", shortest(tool.edge_radius_um) + " um", ""}};
-  if (is_dmc) s.facts.push_back({"Between its edges", shortest(tool.nose_angle_deg) + " degrees", ""});
-  if (sheet.tool.free_length_mm) s.facts.push_back({"Free below the holder", mm(*sheet.tool.free_length_mm, 2), ""});
+  s.facts = {{is_dmc ? "V, width across its edges" : "Chisel, width of its edge", mm(tool.width_mm)},
+             {"Wedge", shortest(tool.wedge_deg) + " degrees"},
+             {"Clearance as mounted", shortest(tool.clearance_deg) + " degrees"},
+             {"Rake while it plunges", fixed(sheet.tool.plunge_rake_deg, 2) + " degrees"},
+             {is_dmc ? "Radius of its nose" : "Radius of its edge", shortest(tool.edge_radius_um) + " um"}};
+  if (is_dmc) s.facts.push_back({"Between its edges", shortest(tool.nose_angle_deg) + " degrees"});
+  if (sheet.tool.free_length_mm) s.facts.push_back({"Free below the holder", mm(*sheet.tool.free_length_mm, 2)});
   const ToolMount& mount = result.machine.mount;
   if (mount.offset_mm.value != Vec3::Zero() || mount.turn_deg.value != Vec3::Zero())
     s.paragraphs.push_back(fmt::format(

@@ -31,7 +31,7 @@ TEST(Page, TextsAreTextsWhateverTheyHold) {
   section.id = "s0";
   section.title = nasty;
   section.paragraphs = {nasty};
-  section.facts = {{nasty, nasty, ""}};
+  section.facts = {{nasty, nasty}};
   section.tables = {{nasty, {nasty}, {{PageCell(nasty)}}, nasty, 0}};
   section.charts = {{nasty, nasty, nasty, {{nasty, {1.0}, {2.0}, {}}}, {}, {}}};
   section.details = {{nasty, nasty}};
@@ -192,7 +192,7 @@ TEST(StudyPage, VerdictsAndFindingsAreShown) {
        {}},
       "");
   EXPECT_EQ(page.sections[0].facts[0].value, "fail");
-  EXPECT_EQ(page.sections[0].facts[0].style, "bad");
+  EXPECT_EQ(page.sections[0].facts[0].rating, Rating::bad);
   EXPECT_EQ(page.sections[1].title, "Verification");
   EXPECT_EQ(page.sections[1].tables[0].rows[0][2].text, "12");
 }
