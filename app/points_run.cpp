@@ -45,8 +45,8 @@ class PointsBar : public studies::SweepObserver {
 };
 
 /// Returns `code` unless every point failed. In that case, writes a message and returns ExitCode::answer_is_no.
-ExitCode exit_code_of(const std::vector<studies::StoredPoint>& points, ExitCode code) {
-  const auto failed = [](const studies::StoredPoint& point) { return point.failed; };
+ExitCode exit_code_of(const std::vector<compute::StoredPoint>& points, ExitCode code) {
+  const auto failed = [](const compute::StoredPoint& point) { return point.failed; };
   if (points.empty() || !std::all_of(points.begin(), points.end(), failed)) return code;
   say(fmt::format("retrace: every point failed, the first of {}: {}", points.size(), points.front().reason));
   return ExitCode::answer_is_no;
@@ -55,7 +55,7 @@ ExitCode exit_code_of(const std::vector<studies::StoredPoint>& points, ExitCode 
 /// Computes the missing points and writes the results.
 /// \param session MPI session; null if the program does not run under MPI
 ExitCode compute(const StudyOptions& options, const CommonOptions& common, const PointsCommand& command,
-                 studies::MpiSession* session) {
+                 compute::MpiSession* session) {
   const auto start = std::chrono::steady_clock::now();
   const studies::Sweep sweep = command.read();
   const OrderlyInterrupt interrupt;
@@ -64,7 +64,7 @@ ExitCode compute(const StudyOptions& options, const CommonOptions& common, const
   command.add_files(files, result);
   const std::filesystem::path file = files.reserve(command.store);
   files.prepare();
-  studies::ResultStore store(file, sweep.layout(), if_exists_of(options));
+  compute::ResultStore store(file, sweep.layout(), if_exists_of(options));
   bool complete = false;
   {
     PointsBar bar({command.doing, to_shorten_study(sweep.study(), command.fewer_points)}, common);
@@ -88,7 +88,7 @@ ExitCode compute(const StudyOptions& options, const CommonOptions& common, const
 
 ExitCode run_points(const StudyOptions& options, const CommonOptions& common, const PointsCommand& command) {
   return run_on_ranks(
-      common, slots(common), [&](studies::MpiSession* session) { return compute(options, common, command, session); },
+      common, slots(common), [&](compute::MpiSession* session) { return compute(options, common, command, session); },
       [&]() -> ComputeTask {
         const auto sweep = std::make_shared<const studies::Sweep>(command.read());
         return [sweep](std::uint64_t point, const Cancellation* cancel) {

@@ -15,7 +15,7 @@ namespace {
 /// reports the failure and continues without this rank. The exit code is always 0, because mpirun would otherwise end
 /// the whole job.
 ExitCode serve(const CommonOptions& common, std::size_t at_a_time, const std::function<ComputeTask()>& help,
-               studies::MpiSession& session) {
+               compute::MpiSession& session) {
   try {
     const ComputeTask compute = help();
     const OrderlyInterrupt interrupt;
@@ -33,10 +33,10 @@ std::size_t slots(const CommonOptions& common) {
 }
 
 ExitCode run_on_ranks(const CommonOptions& common, std::size_t at_a_time,
-                      const std::function<ExitCode(studies::MpiSession* session)>& lead,
+                      const std::function<ExitCode(compute::MpiSession* session)>& lead,
                       const std::function<ComputeTask()>& help) {
-  if (!studies::MpiSession::is_launched()) return lead(nullptr);
-  studies::MpiSession session;
+  if (!compute::MpiSession::is_launched()) return lead(nullptr);
+  compute::MpiSession session;
   const ExitCode code = session.rank() == 0 ? lead(&session) : serve(common, at_a_time, help, session);
   if (session.end()) return code;
   // Some ranks have ended, and finalizing MPI could wait for them forever. Therefore, MPI is not finalized.
@@ -44,14 +44,14 @@ ExitCode run_on_ranks(const CommonOptions& common, std::size_t at_a_time,
   ::_exit(static_cast<int>(code));
 }
 
-ShareTasks share_among(studies::MpiSession* session, std::size_t at_a_time, const Cancellation* cancel) {
+ShareTasks share_among(compute::MpiSession* session, std::size_t at_a_time, const Cancellation* cancel) {
   if (session == nullptr) return {};
   return [session, at_a_time, cancel](const ComputeTask& compute, TaskLedger& ledger) {
     return session->deal(compute, ledger, at_a_time, cancel);
   };
 }
 
-Warnings remarks_of(const studies::MpiSession* session) {
+Warnings remarks_of(const compute::MpiSession* session) {
   return session != nullptr ? session->remarks() : Warnings();
 }
 

@@ -6,10 +6,10 @@
 #include <functional>
 
 #include "app/command.h"
+#include "compute/ranks/mpi_session.h"
 #include "core/error.h"
 #include "core/shared_tasks.h"
 #include "core/warning.h"
-#include "studies/sweep/mpi_session.h"
 
 namespace retrace::app {
 
@@ -24,13 +24,13 @@ std::size_t slots(const CommonOptions& common);
 /// the tasks assigned by rank 0.
 /// \throw Error thrown by `lead`
 ExitCode run_on_ranks(const CommonOptions& common, std::size_t at_a_time,
-                      const std::function<ExitCode(studies::MpiSession* session)>& lead,
+                      const std::function<ExitCode(compute::MpiSession* session)>& lead,
                       const std::function<ComputeTask()>& help);
 
 /// Returns the function that distributes tasks over all ranks. It is empty if `session` is null.
-ShareTasks share_among(studies::MpiSession* session, std::size_t at_a_time, const Cancellation* cancel);
+ShareTasks share_among(compute::MpiSession* session, std::size_t at_a_time, const Cancellation* cancel);
 
 /// Returns messages of rank 0 about the other ranks. The list is empty if `session` is null.
-Warnings remarks_of(const studies::MpiSession* session);
+Warnings remarks_of(const compute::MpiSession* session);
 
 }  // namespace retrace::app

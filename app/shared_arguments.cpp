@@ -44,9 +44,9 @@ std::vector<Argument> study_arguments(StudyOptions& options) {
            {.excludes = "--resume", .needs = {any_given({"--out"})}}}};
 }
 
-studies::IfExists if_exists_of(const StudyOptions& options) {
-  if (options.resume) return studies::IfExists::resume;
-  return options.overwrite ? studies::IfExists::overwrite : studies::IfExists::refuse;
+compute::IfExists if_exists_of(const StudyOptions& options) {
+  if (options.resume) return compute::IfExists::resume;
+  return options.overwrite ? compute::IfExists::overwrite : compute::IfExists::refuse;
 }
 
 }  // namespace retrace::app

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "app/command.h"
+#include "compute/store/store.h"
 #include "studies/rre/rre.h"
-#include "studies/store/store.h"
 
 namespace retrace::app {
 
@@ -34,6 +34,6 @@ struct StudyOptions {
 std::vector<Argument> study_arguments(StudyOptions& options);
 
 /// Returns the action if the store exists already: resume it, overwrite it, or refuse to run.
-studies::IfExists if_exists_of(const StudyOptions& options);
+compute::IfExists if_exists_of(const StudyOptions& options);
 
 }  // namespace retrace::app

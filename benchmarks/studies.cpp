@@ -15,11 +15,11 @@
 #include <string>
 #include <thread>
 
+#include "compute/ranks/mpi_session.h"
 #include "core/threads.h"
 #include "core/version.h"
 #include "studies/quantity/io/study_reader.h"
 #include "studies/sweep/io/sweep_reader.h"
-#include "studies/sweep/mpi_session.h"
 #include "studies/sweep/shared_sweep.h"
 
 namespace retrace::benchmarks::studies_benchmark {
@@ -67,17 +67,17 @@ class TemporaryStore {
       : folder_(fs::temp_directory_path() / ("retrace_benchmark_" + std::to_string(::getpid()))) {
     fs::create_directories(folder_);
     store_ =
-        std::make_unique<studies::ResultStore>(folder_ / "store.sqlite", sweep.layout(), studies::IfExists::overwrite);
+        std::make_unique<compute::ResultStore>(folder_ / "store.sqlite", sweep.layout(), compute::IfExists::overwrite);
   }
   ~TemporaryStore() {
     store_.reset();
     fs::remove_all(folder_);
   }
-  studies::ResultStore& store() { return *store_; }
+  compute::ResultStore& store() { return *store_; }
 
  private:
   fs::path folder_;
-  std::unique_ptr<studies::ResultStore> store_;
+  std::unique_ptr<compute::ResultStore> store_;
 };
 
 void exact_points(benchmark::State& state) {
@@ -137,7 +137,7 @@ BENCHMARK(many_points)->Iterations(1)->UseRealTime()->Unit(benchmark::kMilliseco
 int run_under_mpi() {
   constexpr int points = 900;
   const studies::Sweep sweep = sleeping_sweep(points);
-  studies::MpiSession session;
+  compute::MpiSession session;
   if (session.rank() != 0) {
     const ComputeTask compute = [&](std::uint64_t point, const Cancellation* cancel) {
       return studies::compute_shared(sweep, point, cancel);
@@ -153,7 +153,7 @@ int run_under_mpi() {
   });
   const double elapsed_s = seconds_since(start);
   double points_s = 0.0;
-  for (const studies::StoredPoint& point : temporary.store().points()) points_s += point.elapsed_s;
+  for (const compute::StoredPoint& point : temporary.store().points()) points_s += point.elapsed_s;
   const double ranks = std::stod(std::getenv("OMPI_COMM_WORLD_SIZE"));
   std::printf("%g ranks, %d points of %.2f ms: %.2f s, overhead %.1f %%\n", ranks, points, 1e3 * points_s / points,
               elapsed_s, 100.0 * (elapsed_s * ranks / points_s - 1.0));
@@ -165,7 +165,7 @@ int run_under_mpi() {
 }  // namespace retrace::benchmarks::studies_benchmark
 
 int main(int argc, char** argv) {
-  if (retrace::studies::MpiSession::is_launched()) return retrace::benchmarks::studies_benchmark::run_under_mpi();
+  if (retrace::compute::MpiSession::is_launched()) return retrace::benchmarks::studies_benchmark::run_under_mpi();
   benchmark::Initialize(&argc, argv);
   benchmark::RunSpecifiedBenchmarks();
   return 0;

@@ -34,9 +34,9 @@ studies::Study to_study(const Study& study, const StudyRequest& request) {
 
 /// Returns the action to take if the store of the study already exists.
 /// \pre requests::check() has accepted the request
-studies::IfExists if_exists_of(const StudyRequest& request) {
-  if (request.if_exists == "resume") return studies::IfExists::resume;
-  return request.if_exists == "overwrite" ? studies::IfExists::overwrite : studies::IfExists::refuse;
+compute::IfExists if_exists_of(const StudyRequest& request) {
+  if (request.if_exists == "resume") return compute::IfExists::resume;
+  return request.if_exists == "overwrite" ? compute::IfExists::overwrite : compute::IfExists::refuse;
 }
 
 /// Reports the progress of a sweep to a Progress object. A value that is smaller than an earlier one is not reported.
@@ -67,7 +67,7 @@ struct Swept {
 /// \param held sweep; it must exist as long as the result is used
 studies::SweepResult carried_out(Swept& held, const StudyRequest& request, const Running& running) {
   const Clock::time_point start = Clock::now();
-  studies::ResultStore store(request.store, held.sweep.layout(), if_exists_of(request));
+  compute::ResultStore store(request.store, held.sweep.layout(), if_exists_of(request));
   Share share(running.progress);
   bool complete = false;
   run_with_threads(running.threads,
@@ -119,7 +119,7 @@ StudyResult optimize(const Study& study, const StudyRequest& request, const Runn
   const Clock::time_point start = Clock::now();
   const studies::Study of_study = to_study(study, request);
   const studies::OptimiseRequest asked = studies::read_optimise(of_study);
-  studies::ResultStore store(request.store, studies::optimise_layout(of_study), if_exists_of(request));
+  compute::ResultStore store(request.store, studies::optimise_layout(of_study), if_exists_of(request));
   studies::Optimum optimum;
   run_with_threads(running.threads,
                    [&] { optimum = studies::optimise(of_study, asked, store, nullptr, running.cancellation); });

@@ -118,7 +118,7 @@ WholePart whole_part_of(const ComposeOptions& options, const JobRequest& making,
 
 /// Searches for the best composition and writes the results.
 /// \param session MPI session; null if the program does not run under MPI
-ExitCode compose_part(const ComposeOptions& options, const CommonOptions& common, studies::MpiSession* session) {
+ExitCode compose_part(const ComposeOptions& options, const CommonOptions& common, compute::MpiSession* session) {
   const auto start = std::chrono::steady_clock::now();
   const studies::Study study = studies::read_study(options.study, common.overrides, common.seed);
   const studies::ComposeRequest request = studies::read_compose(study);
@@ -146,7 +146,7 @@ ExitCode compose_part(const ComposeOptions& options, const CommonOptions& common
   files.add_named("--job", options.job, [&] { return whole.job ? job_text_at(*whole.job, options.job) : ""; });
   const std::filesystem::path file = files.reserve("composition.sqlite");
   files.prepare();
-  studies::ResultStore store(file, studies::compose_layout(study), if_exists_of(options));
+  compute::ResultStore store(file, studies::compose_layout(study), if_exists_of(options));
   {
     SearchBar bar(
         {"composing", to_shorten_study(study, fmt::format("give a smaller compose.scan (now {})", request.scan))},
@@ -174,7 +174,7 @@ ExitCode compose_part(const ComposeOptions& options, const CommonOptions& common
 
 ExitCode run_compose(const ComposeOptions& options, const CommonOptions& common) {
   return run_on_ranks(
-      common, slots(common), [&](studies::MpiSession* session) { return compose_part(options, common, session); },
+      common, slots(common), [&](compute::MpiSession* session) { return compose_part(options, common, session); },
       [&]() -> ComputeTask {
         const studies::Study study = studies::read_study(options.study, common.overrides, common.seed);
         const auto scan =

@@ -129,7 +129,7 @@ class Preview {
 
 /// Computes the camera picture and writes the results.
 /// \param session MPI session; null if the program does not run under MPI
-ExitCode photograph(const ImageOptions& options, const CommonOptions& common, studies::MpiSession* session) {
+ExitCode photograph(const ImageOptions& options, const CommonOptions& common, compute::MpiSession* session) {
   studies::Design design = studies::read_design(options.design, common.overrides);
   studies::CameraResult result;
   std::vector<std::string> inputs = files_read({design});
@@ -160,7 +160,7 @@ ExitCode photograph(const ImageOptions& options, const CommonOptions& common, st
 
 ExitCode run_camera(const ImageOptions& options, const CommonOptions& common) {
   return run_on_ranks(
-      common, kPassesAtATime, [&](studies::MpiSession* session) { return photograph(options, common, session); },
+      common, kPassesAtATime, [&](compute::MpiSession* session) { return photograph(options, common, session); },
       [&]() -> ComputeTask {
         const auto study = std::make_shared<const studies::CameraStudy>(
             studies::read_design(options.design, common.overrides), request_of<CameraRequest>(options.fields, common));

@@ -66,7 +66,7 @@ void check_making_of(const OptimizeOptions& options, JobRequest request, const s
 
 /// Searches for the best design and writes the results.
 /// \param session MPI session; null if the program does not run under MPI
-ExitCode look(const OptimizeOptions& options, const CommonOptions& common, studies::MpiSession* session) {
+ExitCode look(const OptimizeOptions& options, const CommonOptions& common, compute::MpiSession* session) {
   const auto start = std::chrono::steady_clock::now();
   const studies::Study study = studies::read_study(options.study, common.overrides, common.seed);
   const studies::OptimiseRequest request = studies::read_optimise(study);
@@ -80,7 +80,7 @@ ExitCode look(const OptimizeOptions& options, const CommonOptions& common, studi
   files.add_named("--job", options.job, [&] { return made ? job_text_at(*made, options.job) : ""; });
   const std::filesystem::path file = files.reserve("optimum.sqlite");
   files.prepare();
-  studies::ResultStore store(file, studies::optimise_layout(study), if_exists_of(options));
+  compute::ResultStore store(file, studies::optimise_layout(study), if_exists_of(options));
   {
     SearchBar bar(
         {"searching", to_shorten_study(study, fmt::format("give a smaller optimize.scan (now {})", request.scan))},
@@ -114,7 +114,7 @@ ExitCode look(const OptimizeOptions& options, const CommonOptions& common, studi
 
 ExitCode run(const OptimizeOptions& options, const CommonOptions& common) {
   return run_on_ranks(
-      common, slots(common), [&](studies::MpiSession* session) { return look(options, common, session); },
+      common, slots(common), [&](compute::MpiSession* session) { return look(options, common, session); },
       [&]() -> ComputeTask {
         const studies::Study study = studies::read_study(options.study, common.overrides, common.seed);
         const auto scan =

@@ -53,7 +53,7 @@ std::vector<studies::FacetGroup> facets_in(const std::vector<std::filesystem::pa
 
 /// Computes all points and writes the results.
 /// \param session MPI session; null if the program does not run under MPI
-ExitCode trace(const RoughnessOptions& options, const CommonOptions& common, studies::MpiSession* session) {
+ExitCode trace(const RoughnessOptions& options, const CommonOptions& common, compute::MpiSession* session) {
   const studies::Design design = studies::read_design(options.design, common.overrides);
   const std::vector<std::filesystem::path> tables = tables_of(options);
   std::vector<std::string> inputs = files_read({design});
@@ -81,7 +81,7 @@ ExitCode trace(const RoughnessOptions& options, const CommonOptions& common, stu
 
 ExitCode run(const RoughnessOptions& options, const CommonOptions& common) {
   return run_on_ranks(
-      common, slots(common), [&](studies::MpiSession* session) { return trace(options, common, session); },
+      common, slots(common), [&](compute::MpiSession* session) { return trace(options, common, session); },
       [&]() -> ComputeTask {
         const auto study = std::make_shared<const studies::RoughnessStudy>(
             studies::read_design(options.design, common.overrides),

@@ -47,7 +47,8 @@ void check(const MeasuredParts& measured, const std::vector<CutPart>& parts) {
 /// observable error. The covariance is the mean over random machines with the assumed deviations kUntoldArcsec and
 /// kUntoldUm.
 Eigen::MatrixXd spread_of_untold(const std::vector<CutPart>& parts, const MeasuredParts& measured,
-                                 const Estimate& fitted, const Estimate& first, const std::vector<PartPose>& poses) {
+                                 const compute::LeastSquaresEstimate& fitted,
+                                 const compute::LeastSquaresEstimate& first, const std::vector<PartPose>& poses) {
   constexpr int kMachines = 64;
   const auto quantities = setup_quantities(measured.plans.front().machine.tilt);
   const Machine& nominal = measured.plans.front().machine;
@@ -68,7 +69,8 @@ Eigen::MatrixXd spread_of_untold(const std::vector<CutPart>& parts, const Measur
     VectorXd change = VectorXd::Zero(model.residual.size());
     change.head(now.size()) =
         now - residual_of(parts, measured.measurements, machine(fitted.value + untold), measured.map_faces, poses);
-    const VectorXd moved = estimate(model.of_setup * first.told, model.of_poses, change, 2.0 * kSetUpByEye).value;
+    const VectorXd moved =
+        compute::estimate(model.of_setup * first.told, model.of_poses, change, 2.0 * kSetUpByEye).value;
     spread += moved * moved.transpose() / kMachines;
   }
   return first.told * spread * first.told.transpose();
@@ -78,14 +80,14 @@ Eigen::MatrixXd spread_of_untold(const std::vector<CutPart>& parts, const Measur
 /// combinations are not varied. They change the measurements only by second-order terms, and these must not be mistaken
 /// for observations. The poses of the parts are estimated as well, because they can be as large as the errors of the
 /// machine, and measurements from height maps depend on products of both.
-Estimate fit(const std::vector<CutPart>& parts, const MeasuredParts& measured) {
+compute::LeastSquaresEstimate fit(const std::vector<CutPart>& parts, const MeasuredParts& measured) {
   const Machine& nominal = measured.plans.front().machine;
   std::vector<PartPose> poses(parts.size());
   LinearModel model = linear_model(parts, measured.measurements, nominal, measured.map_faces, poses);
   // Observability is determined from the measurements only, before the priors on the poses are added.
-  Estimate result = estimate(model.of_setup, model.of_poses, model.residual, kSetUpByEye);
+  compute::LeastSquaresEstimate result = compute::estimate(model.of_setup, model.of_poses, model.residual, kSetUpByEye);
   model = with_poses_by_eye(std::move(model), poses);
-  const Estimate first = result;
+  const compute::LeastSquaresEstimate first = result;
   const Eigen::MatrixXd& told = first.told;
   VectorXd left = model.residual - model.of_setup * result.value;
   for (int step = 0; step < kMostSteps; ++step) {
@@ -95,7 +97,8 @@ Estimate fit(const std::vector<CutPart>& parts, const MeasuredParts& measured) {
     model = with_poses_by_eye(
         linear_model(parts, measured.measurements, with_errors(nominal, amounts), measured.map_faces, poses), poses);
     const Eigen::MatrixXd of_told = model.of_setup * told;
-    const Estimate next = estimate(of_told, model.of_poses, model.residual + of_told * before, 2.0 * kSetUpByEye);
+    const compute::LeastSquaresEstimate next =
+        compute::estimate(of_told, model.of_poses, model.residual + of_told * before, 2.0 * kSetUpByEye);
     left = model.residual - of_told * (next.value - before);
     result.value = told * next.value;
     result.covariance = told * next.covariance * told.transpose();
@@ -112,7 +115,7 @@ Estimate fit(const std::vector<CutPart>& parts, const MeasuredParts& measured) {
 
 /// Returns the index of the measurement with the largest deviation from the fit, and this deviation in standard
 /// deviations.
-std::pair<std::size_t, double> worst(const Estimate& estimate, std::size_t measurements) {
+std::pair<std::size_t, double> worst(const compute::LeastSquaresEstimate& estimate, std::size_t measurements) {
   std::pair<std::size_t, double> found{0, 0.0};
   for (Index k = 0; k < static_cast<Index>(measurements); ++k) {
     if (estimate.leverage[k] >= kUnchecked) continue;
@@ -219,7 +222,7 @@ void tell_source(Machine& machine, const CalibratedQuantity& found, const std::s
   }
 }
 
-void tell(Calibration& result, const Estimate& fitted) {
+void tell(Calibration& result, const compute::LeastSquaresEstimate& fitted) {
   const Machine& nominal = result.parts.plans.front().machine;
   const auto quantities = setup_quantities(nominal.tilt);
   result.machine = with_errors(nominal, {fitted.value.data(), static_cast<std::size_t>(fitted.value.size())});
@@ -243,8 +246,8 @@ void tell(Calibration& result, const Estimate& fitted) {
 
 }  // namespace
 
-std::vector<std::string> untold_words(const Estimate& estimate, Tilt tilt) {
-  const Eigen::MatrixXd untold = reduced_combinations(estimate.untold);
+std::vector<std::string> untold_words(const compute::LeastSquaresEstimate& estimate, Tilt tilt) {
+  const Eigen::MatrixXd untold = compute::reduced_combinations(estimate.untold);
   std::vector<std::string> words;
   for (Index k = 0; k < untold.cols(); ++k) words.push_back(words_of(untold.col(k), setup_quantities(tilt)));
   return words;
@@ -271,7 +274,7 @@ Calibration calibrate(MeasuredParts measured) {
   std::vector<Measurement>& measurements = measured.measurements;
   const auto most = static_cast<std::size_t>(std::ceil(kMostOutliers * static_cast<double>(measurements.size())));
   const double by_chance = most_by_chance(measurements.size());
-  Estimate fitted = fit(parts, measured);
+  compute::LeastSquaresEstimate fitted = fit(parts, measured);
   for (auto [at, deviations] = worst(fitted, measurements.size()); deviations > by_chance;) {
     result.outliers.push_back({measurements[at], deviations});
     if (result.outliers.size() > most) refuse(measured, result.outliers);

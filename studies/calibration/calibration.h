@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "compute/estimation/least_squares.h"
 #include "core/file_texts.h"
 #include "core/warning.h"
 #include "fabrication/machine/setup.h"
-#include "studies/calibration/estimate.h"
 #include "studies/calibration/measured_facets.h"
 
 namespace retrace::studies {
@@ -67,7 +67,7 @@ struct Calibration {
 inline constexpr double kSetUpByEye = 100.0;
 
 /// Returns the unobservable combinations of an estimate as text, such as "-0.707 c_lean_x_arcsec + a_lean_y_arcsec".
-std::vector<std::string> untold_words(const Estimate& estimate, fabrication::Tilt tilt);
+std::vector<std::string> untold_words(const compute::LeastSquaresEstimate& estimate, fabrication::Tilt tilt);
 
 /// Returns the measured parts, in the order of Measurement::part, with their measured elements.
 std::vector<CutPart> cut_parts(const MeasuredParts& measured);

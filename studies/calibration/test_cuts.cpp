@@ -76,8 +76,8 @@ LinearModel rows_of(const LinearModel& all, const std::vector<Index>& chosen) {
   return {all.of_setup(chosen, Eigen::all), all.of_poses(chosen, Eigen::all), all.residual(chosen)};
 }
 
-Estimate estimate_of(const LinearModel& model) {
-  return estimate(model.of_setup, model.of_poses, model.residual, kSetUpByEye);
+compute::LeastSquaresEstimate estimate_of(const LinearModel& model) {
+  return compute::estimate(model.of_setup, model.of_poses, model.residual, kSetUpByEye);
 }
 
 /// Chooses measurements one by one.
@@ -102,7 +102,7 @@ class Chooser {
  private:
   bool is_enough(const std::vector<Index>& chosen) const {
     if (static_cast<Index>(chosen.size()) < rows_.cols()) return false;
-    const Estimate now = estimate_of(rows_of(all_, chosen));
+    const compute::LeastSquaresEstimate now = estimate_of(rows_of(all_, chosen));
     if (now.told.cols() < of_all_.told.cols()) return false;
     constexpr double kChecked = 0.95;
     return now.leverage.maxCoeff() < kChecked && std::all_of(told_.begin(), told_.end(), [&](Index k) {
@@ -131,7 +131,7 @@ class Chooser {
   }
 
   const LinearModel& all_;
-  Estimate of_all_;
+  compute::LeastSquaresEstimate of_all_;
   MatrixXd rows_;        ///< derivatives with respect to all unknowns, including poses
   MatrixXd covariance_;  ///< covariance matrix from the measurements taken so far
   Eigen::Array<bool, Eigen::Dynamic, 1> taken_;
@@ -139,8 +139,8 @@ class Chooser {
 };
 
 void tell(TestCuts& cuts, const LinearModel& chosen, Tilt tilt) {
-  const Estimate all = estimate_of(chosen);
-  std::vector<Estimate> without;
+  const compute::LeastSquaresEstimate all = estimate_of(chosen);
+  std::vector<compute::LeastSquaresEstimate> without;
   for (std::size_t part = 0; part < cuts.parts.jobs.size(); ++part) {
     std::vector<Index> rows;
     for (std::size_t k = 0; k < cuts.parts.measurements.size(); ++k)

@@ -9,9 +9,9 @@
 #include <limits>
 #include <utility>
 
+#include "compute/estimation/least_squares.h"
 #include "core/error.h"
 #include "core/number_format.h"
-#include "studies/calibration/estimate.h"
 
 namespace retrace::studies {
 namespace {
@@ -133,7 +133,7 @@ class Fit {
     const Eigen::MatrixXd nothing(static_cast<Index>(programs_.rows.size()), 0);
     VectorXd left = residual(unknowns);
     for (int k = 0; k < kMostTimeSteps; ++k) {
-      const Unknowns step = estimate(free_derivatives(unknowns, left), nothing, left, 1.0).value;
+      const Unknowns step = compute::estimate(free_derivatives(unknowns, left), nothing, left, 1.0).value;
       double share = 1.0;
       Unknowns next;
       VectorXd next_left;
@@ -191,8 +191,8 @@ void tell_sources(TimeCalibration& result) {
     tell(axis->acceleration_deg_per_s2, TimeQuantity::rotary_acceleration);
 }
 
-std::vector<std::string> not_told_apart(const Estimate& fitted) {
-  const Eigen::MatrixXd combinations = reduced_combinations(fitted.untold);
+std::vector<std::string> not_told_apart(const compute::LeastSquaresEstimate& fitted) {
+  const Eigen::MatrixXd combinations = compute::reduced_combinations(fitted.untold);
   std::vector<std::string> words;
   for (Index k = 0; k < combinations.cols(); ++k) {
     std::string& keys = words.emplace_back();
@@ -205,7 +205,7 @@ std::vector<std::string> not_told_apart(const Estimate& fitted) {
   return words;
 }
 
-void warn_of_misses(TimeCalibration& result, const Estimate& fitted) {
+void warn_of_misses(TimeCalibration& result, const compute::LeastSquaresEstimate& fitted) {
   for (std::size_t k = 0; k < result.residuals.size(); ++k) {
     const auto row = static_cast<Index>(k);
     const double spare = 1.0 - fitted.leverage[row];
@@ -241,7 +241,7 @@ TimeCalibration calibrate_times(TimedPrograms programs, const Machine& machine) 
   const Unknowns found = fit.best();
   const VectorXd left = fit.residual(found);
   const Eigen::MatrixXd nothing(left.size(), 0);
-  const Estimate fitted = estimate(fit.derivatives(found), nothing, left, 1.0);
+  const compute::LeastSquaresEstimate fitted = compute::estimate(fit.derivatives(found), nothing, left, 1.0);
   result.residuals.assign(left.begin(), left.end());
   result.freedom =
       static_cast<std::size_t>(std::max(0L, std::lround(static_cast<double>(left.size()) - fitted.leverage.sum())));

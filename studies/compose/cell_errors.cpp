@@ -42,7 +42,7 @@ Study with_errors(const Study& study, const std::vector<double>& errors_arcmin) 
 
 /// Returns the goals of a computed design.
 /// \throw InputError if a goal has no value
-std::vector<double> goals_from(const Study& study, const ComposeRequest& request, const StoredPoint& point) {
+std::vector<double> goals_from(const Study& study, const ComposeRequest& request, const compute::StoredPoint& point) {
   std::vector<double> goals;
   for (const std::string& goal : request.goals)
     for (std::size_t k = 0; k < point.outputs.size(); ++k)
@@ -64,14 +64,14 @@ std::vector<std::vector<double>> goals_with_errors(const Study& study, const Com
                                                    const std::vector<std::vector<double>>& errors_arcmin,
                                                    const Cancellation* cancel) {
   const std::vector<double> own = own_errors(study, cell.values);
-  std::vector<std::optional<StoredPoint>> points(errors_arcmin.size());
+  std::vector<std::optional<compute::StoredPoint>> points(errors_arcmin.size());
   for_each_in_parallel(points.size(), [&](std::size_t k) {
     std::vector<double> errors = own;
     for (std::size_t angle = 0; angle < errors.size(); ++angle) errors[angle] += errors_arcmin[k][angle];
     points[k] = compute_point(with_errors(study, errors), 0, cell.values, cancel);
   });
   std::vector<std::vector<double>> goals;
-  for (const std::optional<StoredPoint>& point : points) {
+  for (const std::optional<compute::StoredPoint>& point : points) {
     if (!point || is_cancelled(cancel)) throw Interrupted{};
     goals.push_back(goals_from(study, request, *point));
   }

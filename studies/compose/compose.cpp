@@ -77,7 +77,7 @@ class CellReader {
 /// Runs one composition from the scan to the result.
 class Composer {
  public:
-  Composer(const Study& study, const ComposeRequest& request, ResultStore& store, OptimiseObserver* observer,
+  Composer(const Study& study, const ComposeRequest& request, compute::ResultStore& store, OptimiseObserver* observer,
            const Cancellation* cancel)
       : study_(study),
         request_(request),
@@ -117,7 +117,7 @@ class Composer {
   MixtureRules rules(std::optional<std::size_t> most_zones) const {
     MixtureRules rules;
     for (const Constraint& constraint : request_.of_part) {
-      Bounds bounds;
+      compute::Bounds bounds;
       if (constraint.least) bounds.least = *constraint.least;
       if (constraint.most) bounds.most = *constraint.most;
       rules.means.push_back(bounds);
@@ -321,7 +321,7 @@ class Composer {
     if (!request_.front) return;
     const double sign = request_.front->largest ? 1.0 : -1.0;
     MixtureRules along = rules(request_.most_zones);
-    Bounds& bounds = along.means.back();
+    compute::Bounds& bounds = along.means.back();
     double best = -std::numeric_limits<double>::infinity();
     for (const FamilyCell& cell : composition.catalogue) best = std::max(best, sign * cell.mixed.means.back());
     const double of_best = sign * composition.best->mixture.means.back();
@@ -337,7 +337,7 @@ class Composer {
 
   const Study& study_;
   const ComposeRequest& request_;
-  ResultStore& store_;
+  compute::ResultStore& store_;
   OptimiseObserver* observer_;
   const Cancellation* cancel_;
   OptimiseRequest single_;
@@ -352,8 +352,8 @@ std::vector<Zone> zones_for_worst(const Composition& composition) {
   return has_them ? composition.errors->for_worst->zones : std::vector<Zone>{};
 }
 
-StoreLayout compose_layout(const Study& study) {
-  StoreLayout layout = optimise_layout(study);
+compute::StoreLayout compose_layout(const Study& study) {
+  compute::StoreLayout layout = optimise_layout(study);
   layout.kind = kStoreKind;
   // Constraints and objectives of the mixture do not change the values of cells, so that they are not part of the
   // store's identity.
@@ -367,8 +367,8 @@ Sweep compose_scan(const Study& study, const ComposeRequest& request) {
   return optimise_scan(study, single_request(request));
 }
 
-Composition compose(const Study& study, const ComposeRequest& request, ResultStore& store, OptimiseObserver* observer,
-                    const Cancellation* cancel) {
+Composition compose(const Study& study, const ComposeRequest& request, compute::ResultStore& store,
+                    OptimiseObserver* observer, const Cancellation* cancel) {
   Composition composition;
   Composer composer(study, request, store, observer, cancel);
   try {

@@ -129,7 +129,7 @@ struct Composition {
 /// none.
 std::vector<Zone> zones_for_worst(const Composition& composition);
 
-StoreLayout compose_layout(const Study& study);
+compute::StoreLayout compose_layout(const Study& study);
 
 /// Returns the cells of the first scan as points of a sweep, so that they can be computed before the search.
 /// \throw InputError for too many combinations of discrete values
@@ -140,7 +140,7 @@ Sweep compose_scan(const Study& study, const ComposeRequest& request);
 /// its linear programme (column generation). The search ends when no further cell improves the mixture. Cells that are
 /// already in the store are not computed again, and the result is the same.
 /// \throw OutputError under the same conditions as ResultStore::record()
-Composition compose(const Study& study, const ComposeRequest& request, ResultStore& store, OptimiseObserver* observer,
-                    const Cancellation* cancel);
+Composition compose(const Study& study, const ComposeRequest& request, compute::ResultStore& store,
+                    OptimiseObserver* observer, const Cancellation* cancel);
 
 }  // namespace retrace::studies

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <numeric>
 
+#include "compute/sampling/unit_samples.h"
 #include "studies/compose/cell_errors.h"
 #include "studies/compose/error_response.h"
 #include "studies/compose/part_yield.h"
 #include "studies/optimise/evaluator.h"
-#include "studies/sweep/sampling.h"
 
 namespace retrace::studies {
 namespace {
@@ -31,7 +31,7 @@ double step_of(const ErrorSpread& spread) {
 
 /// Returns random angle errors between minus and plus `step_arcmin`.
 std::vector<std::vector<double>> errors_to_check(std::size_t angles, double step_arcmin, std::uint32_t seed) {
-  const UnitSamples samples(UnitSamples::Kind::sobol, angles, kChecked, seed);
+  const compute::UnitSamples samples(compute::UnitSamples::Kind::sobol, angles, kChecked, seed);
   std::vector<std::vector<double>> errors;
   for (std::size_t k = 0; k < kChecked; ++k) {
     errors.push_back(samples.at(k));

@@ -26,11 +26,12 @@ struct CellSet {
 
 /// Returns the linear programme of a set of cells. Columns are the fractions of the cells and the minimum goal. Rows
 /// are the goals, the means and the whole area.
-LinearProgramme programme_of(const std::vector<MixedCell>& cells, const CellSet& set, const MixtureRules& rules) {
-  LinearProgramme programme;
+compute::LinearProgramme programme_of(const std::vector<MixedCell>& cells, const CellSet& set,
+                                      const MixtureRules& rules) {
+  compute::LinearProgramme programme;
   for (const std::size_t cell : set.cells) programme.add_column({set.least_share, rules.most_share}, -cells[cell].cost);
   const std::size_t least = programme.add_column({}, 1.0);
-  using Terms = std::vector<LinearProgramme::Term>;
+  using Terms = std::vector<compute::LinearProgramme::Term>;
   const auto weighted = [&](auto value) {
     Terms terms;
     for (std::size_t k = 0; k < set.cells.size(); ++k) terms.emplace_back(k, value(cells[set.cells[k]]));
@@ -81,14 +82,14 @@ void add_up(const std::vector<MixedCell>& cells, const CellSet& set, const std::
 /// Returns the best mixture of a set of cells, without a limit on their number.
 Mixture mixture_of(const std::vector<MixedCell>& cells, const CellSet& set, const MixtureRules& rules,
                    const Cancellation* cancel) {
-  const LinearOptimum optimum = solve(programme_of(cells, set, rules), cancel);
+  const compute::LinearOptimum optimum = solve(programme_of(cells, set, rules), cancel);
   Mixture mixture;
-  if (optimum.kind == LinearOptimum::Kind::interrupted) {
+  if (optimum.kind == compute::LinearOptimum::Kind::interrupted) {
     mixture.kind = Mixture::Kind::interrupted;
     return mixture;
   }
   mixture.prices = prices_of(optimum.prices, cells.front().goals.size(), rules.means.size());
-  if (optimum.kind != LinearOptimum::Kind::optimal) return mixture;
+  if (optimum.kind != compute::LinearOptimum::Kind::optimal) return mixture;
   mixture.kind = Mixture::Kind::optimal;
   add_up(cells, set, optimum.values, mixture);
   mixture.bound = mixture.merit;

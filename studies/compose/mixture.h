@@ -7,8 +7,8 @@
 #include <limits>
 #include <vector>
 
+#include "compute/linear/linear_programme.h"
 #include "core/progress.h"
-#include "studies/compose/linear_programme.h"
 
 namespace retrace::studies {
 
@@ -21,7 +21,7 @@ struct MixedCell {
 
 /// Rules for the fractions of the area.
 struct MixtureRules {
-  std::vector<Bounds> means = {};                                    ///< bounds of the part's means
+  std::vector<compute::Bounds> means = {};                           ///< bounds of the part's means
   double least_share = 0.0;                                          ///< minimum fraction of a cell that is used; 0..1
   double most_share = 1.0;                                           ///< maximum fraction of each cell; above 0
   std::size_t most_zones = std::numeric_limits<std::size_t>::max();  ///< maximum number of cells that are used

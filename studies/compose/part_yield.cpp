@@ -8,7 +8,7 @@
 #include <set>
 #include <utility>
 
-#include "studies/sweep/sampling.h"
+#include "compute/sampling/unit_samples.h"
 
 namespace retrace::studies {
 namespace {
@@ -40,11 +40,11 @@ std::size_t worst_goal(const std::vector<std::vector<double>>& zones, const std:
 
 /// Returns the linear programme of best_shares(). Its columns are the fractions of the area, the value below which a
 /// part is among the worst, and the shortfall of each part below this value.
-LinearProgramme yield_programme(const DrawnParts& parts, double worst_share, const Bounds& bounds,
-                                const std::set<PartGoal>& rows) {
-  LinearProgramme programme;
+compute::LinearProgramme yield_programme(const DrawnParts& parts, double worst_share, const compute::Bounds& bounds,
+                                         const std::set<PartGoal>& rows) {
+  compute::LinearProgramme programme;
   const std::size_t zones = parts.front().size();
-  std::vector<LinearProgramme::Term> whole;
+  std::vector<compute::LinearProgramme::Term> whole;
   for (std::size_t z = 0; z < zones; ++z) whole.emplace_back(programme.add_column(bounds, 0.0), 1.0);
   const std::size_t threshold = programme.add_column({}, 1.0);
   const double weight = -1.0 / (worst_share * static_cast<double>(parts.size()));
@@ -52,7 +52,7 @@ LinearProgramme yield_programme(const DrawnParts& parts, double worst_share, con
   for (std::size_t part = 0; part < parts.size(); ++part) programme.add_column({.least = 0.0}, weight);
   programme.add_row({1.0, 1.0}, whole);
   for (const auto& [part, goal] : rows) {
-    std::vector<LinearProgramme::Term> terms = {{threshold, -1.0}, {first + part, 1.0}};
+    std::vector<compute::LinearProgramme::Term> terms = {{threshold, -1.0}, {first + part, 1.0}};
     for (std::size_t z = 0; z < zones; ++z) terms.emplace_back(z, parts[part][z][goal]);
     programme.add_row({.least = 0.0}, std::move(terms));
   }
@@ -65,7 +65,7 @@ DrawnParts drawn_parts(const std::vector<ErrorResponse>& responses, double sigma
                        std::uint32_t seed) {
   std::size_t angles = 0;
   for (const ErrorResponse& response : responses) angles += response.angles();
-  const UnitSamples samples(UnitSamples::Kind::sobol, std::max<std::size_t>(1, angles), parts, seed);
+  const compute::UnitSamples samples(compute::UnitSamples::Kind::sobol, std::max<std::size_t>(1, angles), parts, seed);
   const boost::math::normal_distribution<double> normal;
   DrawnParts drawn;
   for (std::size_t part = 0; part < parts; ++part) {
@@ -97,8 +97,8 @@ double mean_of_worst(std::vector<double> values, double share) {
   return sum / count;
 }
 
-std::optional<std::vector<double>> best_shares(const DrawnParts& parts, double worst_share, const Bounds& bounds,
-                                               const Cancellation* cancel) {
+std::optional<std::vector<double>> best_shares(const DrawnParts& parts, double worst_share,
+                                               const compute::Bounds& bounds, const Cancellation* cancel) {
   const std::size_t zones = parts.front().size();
   std::vector<double> shares(zones, 1.0 / static_cast<double>(zones));
   std::set<PartGoal> rows;
@@ -106,8 +106,8 @@ std::optional<std::vector<double>> best_shares(const DrawnParts& parts, double w
   // Rows that the current solution violates are added until there are none. The solution then satisfies all rows,
   // including those that were never added.
   for (;;) {
-    const LinearOptimum optimum = solve(yield_programme(parts, worst_share, bounds, rows), cancel);
-    if (optimum.kind != LinearOptimum::Kind::optimal) return std::nullopt;
+    const compute::LinearOptimum optimum = solve(yield_programme(parts, worst_share, bounds, rows), cancel);
+    if (optimum.kind != compute::LinearOptimum::Kind::optimal) return std::nullopt;
     shares.assign(optimum.values.begin(), optimum.values.begin() + static_cast<std::ptrdiff_t>(zones));
     const std::size_t before = rows.size();
     for (std::size_t part = 0; part < parts.size(); ++part) {
@@ -130,7 +130,7 @@ DrawnParts parts_of(const DrawnParts& parts, const std::vector<std::size_t>& zon
 }
 
 std::optional<CellShares> best_set(const DrawnParts& parts, double worst_share, std::size_t most_zones,
-                                   const Bounds& bounds, const Cancellation* cancel) {
+                                   const compute::Bounds& bounds, const Cancellation* cancel) {
   const std::size_t cells = parts.front().size();
   std::optional<CellShares> best;
   double most = -std::numeric_limits<double>::infinity();

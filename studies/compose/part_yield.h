@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "compute/linear/linear_programme.h"
 #include "core/progress.h"
 #include "studies/compose/error_response.h"
-#include "studies/compose/linear_programme.h"
 
 namespace retrace::studies {
 
@@ -35,8 +35,8 @@ double mean_of_worst(std::vector<double> values, double share);
 /// programme (Rockafellar and Uryasev 2000) with a row for each part and each goal that may be the minimum.
 /// \param bounds bounds of each fraction
 /// \return nothing if the computation was cancelled or no fractions are allowed
-std::optional<std::vector<double>> best_shares(const DrawnParts& parts, double worst_share, const Bounds& bounds,
-                                               const Cancellation* cancel);
+std::optional<std::vector<double>> best_shares(const DrawnParts& parts, double worst_share,
+                                               const compute::Bounds& bounds, const Cancellation* cancel);
 
 /// Cells and their fractions of the area, the largest first.
 using CellShares = std::vector<std::pair<std::size_t, double>>;
@@ -46,7 +46,7 @@ using CellShares = std::vector<std::pair<std::size_t, double>>;
 /// \param parts random parts with one zone for each cell
 /// \return nothing if the computation was cancelled or no set is allowed
 std::optional<CellShares> best_set(const DrawnParts& parts, double worst_share, std::size_t most_zones,
-                                   const Bounds& bounds, const Cancellation* cancel);
+                                   const compute::Bounds& bounds, const Cancellation* cancel);
 
 /// Returns a copy of the random parts that has only the given zones, in the given order.
 DrawnParts parts_of(const DrawnParts& parts, const std::vector<std::size_t>& zones);

@@ -40,12 +40,12 @@ std::string Evaluator::key_of(const PointValues& design) {
   return key;
 }
 
-Evaluator::Evaluator(const Study& study, const OptimiseRequest& request, ResultStore& store, OptimiseObserver* observer,
-                     const Cancellation* cancel)
+Evaluator::Evaluator(const Study& study, const OptimiseRequest& request, compute::ResultStore& store,
+                     OptimiseObserver* observer, const Cancellation* cancel)
     : study_(study), request_(request), store_(store), observer_(observer), cancel_(cancel) {
-  for (StoredPoint& point : store.points()) {
+  for (compute::StoredPoint& point : store.points()) {
     std::string key;
-    for (const StoredValue& value : point.inputs) key += text_of(value) + '\n';
+    for (const compute::StoredValue& value : point.inputs) key += text_of(value) + '\n';
     taken_.insert(point.point);
     stored_.emplace(std::move(key), std::move(point));
   }
@@ -78,7 +78,7 @@ std::vector<Variant> Evaluator::look_at(const std::vector<PointValues>& designs)
   GroupProgress group(observer_, unknown);
   group.at(0.0);
   TaskProgress all(&group, std::max<std::size_t>(1, unknown));
-  std::vector<std::optional<StoredPoint>> points(open.size());
+  std::vector<std::optional<compute::StoredPoint>> points(open.size());
   // `char` instead of bool: threads write to neighbouring elements at the same time, which vector<bool> does not allow.
   std::vector<char> ran_out(open.size());
   for_each_in_parallel(open.size(), [&](std::size_t k) {
@@ -116,7 +116,7 @@ void Evaluator::take_in(const std::vector<Variant>& seen) {
   }
 }
 
-Variant Evaluator::variant_of(const StoredPoint& point, const PointValues& design) const {
+Variant Evaluator::variant_of(const compute::StoredPoint& point, const PointValues& design) const {
   Variant variant;
   variant.number = point.point;
   variant.values = design;

@@ -18,7 +18,7 @@ struct Interrupted {};
 /// Evaluates designs: takes their results from the store or computes them, and checks the constraints.
 class Evaluator {
  public:
-  Evaluator(const Study& study, const OptimiseRequest& request, ResultStore& store, OptimiseObserver* observer,
+  Evaluator(const Study& study, const OptimiseRequest& request, compute::ResultStore& store, OptimiseObserver* observer,
             const Cancellation* cancel);
 
   /// Evaluates designs and returns the results in the given order. Several designs are computed in parallel.
@@ -46,16 +46,17 @@ class Evaluator {
   static std::string key_of(const PointValues& design);
   std::uint64_t free_number();
   void judge(Variant& variant) const;
-  Variant variant_of(const StoredPoint& point, const PointValues& design) const;
+  Variant variant_of(const compute::StoredPoint& point, const PointValues& design) const;
 
   const Study& study_;
   const OptimiseRequest& request_;
-  ResultStore& store_;
+  compute::ResultStore& store_;
   OptimiseObserver* observer_;
   const Cancellation* cancel_;
   /// Index in `seen_` of each evaluated design; the key is a text of its parameter values.
   std::map<std::string, std::size_t> numbers_;
-  std::map<std::string, StoredPoint> stored_;  ///< points of an earlier run; the key is a text of the parameter values
+  std::map<std::string, compute::StoredPoint>
+      stored_;  ///< points of an earlier run; the key is a text of the parameter values
   std::vector<Variant> seen_;
   std::set<std::uint64_t> taken_;  ///< numbers of the points in the store
   std::size_t ran_out_ = 0;

@@ -8,11 +8,11 @@
 #include <memory>
 #include <utility>
 
+#include "compute/sampling/unit_samples.h"
 #include "core/number_format.h"
 #include "studies/optimise/bands.h"
 #include "studies/optimise/evaluator.h"
 #include "studies/optimise/refine.h"
-#include "studies/sweep/sampling.h"
 
 namespace retrace::studies {
 namespace {
@@ -31,11 +31,11 @@ constexpr const char* kStoreKind = "retrace.optimum/1";
 
 }  // namespace
 
-StoreLayout optimise_layout(const Study& study) {
-  StoreLayout layout{kStoreKind, study.source, study.parts, {}, {}};
+compute::StoreLayout optimise_layout(const Study& study) {
+  compute::StoreLayout layout{kStoreKind, study.source, study.parts, {}, {}};
   for (const Parameter& parameter : study.parameters) layout.inputs.push_back(parameter.name);
   for (const auto& quantity : study.quantities) layout.outputs.push_back(quantity->name());
-  layout.fault_of = [study](const StoredPoint& point) -> std::string {
+  layout.fault_of = [study](const compute::StoredPoint& point) -> std::string {
     return values_of(study, point.inputs) ? "" : "the study's parameters do not allow its values";
   };
   return layout;
@@ -105,7 +105,7 @@ class Scan {
       for (std::size_t k = 0; k < dimensions; ++k) shares.push_back((corner >> k) % 2 == 0 ? 0.0 : 1.0);
       designs.push_back(with(combination, shares));
     }
-    const UnitSamples samples(UnitSamples::Kind::sobol, dimensions, request_.scan, study_.seed);
+    const compute::UnitSamples samples(compute::UnitSamples::Kind::sobol, dimensions, request_.scan, study_.seed);
     for (std::size_t k = 0; k < request_.scan; ++k) designs.push_back(with(combination, samples.at(k)));
     return designs;
   }
@@ -425,8 +425,8 @@ Sweep optimise_scan(const Study& study, const OptimiseRequest& request) {
   return {study, kStoreKind, std::make_shared<ScannedPoints>(study, request)};
 }
 
-Optimum optimise(const Study& study, const OptimiseRequest& request, ResultStore& store, OptimiseObserver* observer,
-                 const Cancellation* cancel) {
+Optimum optimise(const Study& study, const OptimiseRequest& request, compute::ResultStore& store,
+                 OptimiseObserver* observer, const Cancellation* cancel) {
   Evaluator evaluator(study, request, store, observer, cancel);
   return optimise(study, request, evaluator, cancel);
 }

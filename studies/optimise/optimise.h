@@ -11,10 +11,10 @@
 #include <utility>
 #include <vector>
 
+#include "compute/store/store.h"
 #include "core/progress.h"
 #include "studies/quantity/constraint.h"
 #include "studies/quantity/study.h"
-#include "studies/store/store.h"
 #include "studies/sweep/sweep.h"
 
 namespace retrace::studies {
@@ -46,7 +46,7 @@ struct Variant {
   PointValues values;        ///< values of the parameters, in the order of the study
   bool failed = false;
   std::string reason;  ///< error message if the computation failed
-  std::vector<StoredOutput> outputs;
+  std::vector<compute::StoredOutput> outputs;
   std::optional<double> objective;  ///< none if the computation failed or a quantity has no value
   std::vector<std::size_t> broken;  ///< indices of the violated constraints
   bool feasible() const { return objective.has_value() && broken.empty(); }
@@ -108,7 +108,7 @@ class OptimiseObserver {
   }
 };
 
-StoreLayout optimise_layout(const Study& study);
+compute::StoreLayout optimise_layout(const Study& study);
 
 /// Returns the designs of the first scan as points of a sweep, so that they can be computed before the search. The
 /// search then finds them in the store.
@@ -120,7 +120,7 @@ Sweep optimise_scan(const Study& study, const OptimiseRequest& request);
 /// within bounds and constraints. Finally, values are rounded if this does not make the design worse. Designs that are
 /// already in the store are not computed again, and the result is the same.
 /// \throw OutputError if a result cannot be stored
-Optimum optimise(const Study& study, const OptimiseRequest& request, ResultStore& store, OptimiseObserver* observer,
-                 const Cancellation* cancel);
+Optimum optimise(const Study& study, const OptimiseRequest& request, compute::ResultStore& store,
+                 OptimiseObserver* observer, const Cancellation* cancel);
 
 }  // namespace retrace::studies

@@ -12,9 +12,9 @@ using PointJson = nlohmann::json;
 
 constexpr std::chrono::milliseconds kWaitForClaims{50};
 
-std::string to_message(const StoredPoint& point) {
+std::string to_message(const compute::StoredPoint& point) {
   PointJson outputs = PointJson::array();
-  for (const StoredOutput& output : point.outputs)
+  for (const compute::StoredOutput& output : point.outputs)
     outputs.push_back(output.value ? PointJson{*output.value, output.std_error} : PointJson());
   return PointJson{{"point", point.point}, {"failed", point.failed},       {"reason", point.reason},
                    {"outputs", outputs},   {"elapsed_s", point.elapsed_s}, {"version", point.version}}
@@ -23,16 +23,16 @@ std::string to_message(const StoredPoint& point) {
 
 /// Reads a point from the message of another process.
 /// \param sweep sweep from which the inputs of the point are taken, because the message does not contain them
-StoredPoint from_message(const std::string& message, const Sweep& sweep) {
+compute::StoredPoint from_message(const std::string& message, const Sweep& sweep) {
   const PointJson json = PointJson::parse(message);
-  StoredPoint point;
+  compute::StoredPoint point;
   point.point = json.at("point");
   point.failed = json.at("failed");
   point.reason = json.at("reason");
   point.elapsed_s = json.at("elapsed_s");
   point.version = json.at("version");
   for (const PointJson& output : json.at("outputs")) {
-    StoredOutput stored;
+    compute::StoredOutput stored;
     if (!output.is_null()) stored.value = output.at(0).get<double>();
     if (!output.is_null() && output.at(1).is_number()) stored.std_error = output.at(1).get<double>();
     point.outputs.push_back(stored);
@@ -45,7 +45,7 @@ StoredPoint from_message(const std::string& message, const Sweep& sweep) {
 /// are awaited.
 class SweepLedger : public TaskLedger {
  public:
-  SweepLedger(const Sweep& sweep, ResultStore& store, SweepObserver* observer)
+  SweepLedger(const Sweep& sweep, compute::ResultStore& store, SweepObserver* observer)
       : sweep_(sweep), store_(store), count_(sweep, store, observer) {
     refill();
   }
@@ -65,7 +65,7 @@ class SweepLedger : public TaskLedger {
   }
 
   void finish(std::uint64_t, const std::string& bytes) override {
-    const StoredPoint point = from_message(bytes, sweep_);
+    const compute::StoredPoint point = from_message(bytes, sweep_);
     store_.record(point);
     TaskProgress::Task(count_.points()).finish();
     count_.finished(point.failed);
@@ -85,7 +85,7 @@ class SweepLedger : public TaskLedger {
   }
 
   const Sweep& sweep_;
-  ResultStore& store_;
+  compute::ResultStore& store_;
   SweepCount count_;
   std::deque<std::uint64_t> open_;
 };
@@ -93,11 +93,11 @@ class SweepLedger : public TaskLedger {
 }  // namespace
 
 std::optional<std::string> compute_shared(const Sweep& sweep, std::uint64_t number, const Cancellation* cancel) {
-  const std::optional<StoredPoint> point = compute_point(sweep.study(), number, sweep.values(number), cancel);
+  const std::optional<compute::StoredPoint> point = compute_point(sweep.study(), number, sweep.values(number), cancel);
   return point ? std::optional(to_message(*point)) : std::nullopt;
 }
 
-bool share_sweep(const Sweep& sweep, ResultStore& store, SweepObserver* observer, const ShareTasks& share) {
+bool share_sweep(const Sweep& sweep, compute::ResultStore& store, SweepObserver* observer, const ShareTasks& share) {
   SweepLedger ledger(sweep, store, observer);
   return share(
       [&sweep](std::uint64_t number, const Cancellation* cancel) { return compute_shared(sweep, number, cancel); },

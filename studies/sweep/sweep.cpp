@@ -24,11 +24,11 @@ namespace {
 constexpr std::chrono::milliseconds kWaitForOthers{50};
 
 /// Returns the sampling method of a combination. Returns nothing for combinations without sampling.
-std::optional<UnitSamples::Kind> samples_of(Combine combine) {
+std::optional<compute::UnitSamples::Kind> samples_of(Combine combine) {
   switch (combine) {
-    case Combine::sobol: return UnitSamples::Kind::sobol;
-    case Combine::latin_hypercube: return UnitSamples::Kind::latin_hypercube;
-    case Combine::monte_carlo: return UnitSamples::Kind::monte_carlo;
+    case Combine::sobol: return compute::UnitSamples::Kind::sobol;
+    case Combine::latin_hypercube: return compute::UnitSamples::Kind::latin_hypercube;
+    case Combine::monte_carlo: return compute::UnitSamples::Kind::monte_carlo;
     case Combine::grid:
     case Combine::zipped: break;
   }
@@ -107,21 +107,21 @@ namespace {
 
 /// Returns true if a stored value equals the value in the study. Numbers may differ by rounding errors, because another
 /// machine may have computed them.
-bool is_same(const StoredValue& stored, const StoredValue& of_study) {
+bool is_same(const compute::StoredValue& stored, const compute::StoredValue& of_study) {
   const double* const a = std::get_if<double>(&stored);
   const double* const b = std::get_if<double>(&of_study);
   if (a == nullptr || b == nullptr) return stored == of_study;
   return std::abs(*a - *b) <= std::max(1e-9 * std::abs(*b), 1e-15);
 }
 
-std::string text_of_value(const StoredValue& value) {
+std::string text_of_value(const compute::StoredValue& value) {
   const double* const number = std::get_if<double>(&value);
   return number != nullptr ? shortest(*number) : in_quotes(std::get<std::string>(value));
 }
 
 /// Compares the number and the parameter values of a stored point with those of the sweep. Returns a message about the
 /// first difference. The text is empty if there is none.
-std::string fault_of(const Sweep& sweep, const StoredPoint& point) {
+std::string fault_of(const Sweep& sweep, const compute::StoredPoint& point) {
   if (point.point >= sweep.size()) return fmt::format("the study has only {} points", sweep.size());
   const PointValues values = sweep.values(point.point);
   for (std::size_t k = 0; k < values.size(); ++k)
@@ -133,11 +133,11 @@ std::string fault_of(const Sweep& sweep, const StoredPoint& point) {
 
 }  // namespace
 
-StoreLayout Sweep::layout() const {
-  StoreLayout layout{kind_, study_.source, study_.parts, {}, {}};
+compute::StoreLayout Sweep::layout() const {
+  compute::StoreLayout layout{kind_, study_.source, study_.parts, {}, {}};
   for (const Parameter& parameter : study_.parameters) layout.inputs.push_back(parameter.name);
   for (const auto& quantity : study_.quantities) layout.outputs.push_back(quantity->name());
-  layout.fault_of = [sweep = *this](const StoredPoint& point) { return fault_of(sweep, point); };
+  layout.fault_of = [sweep = *this](const compute::StoredPoint& point) { return fault_of(sweep, point); };
   return layout;
 }
 
@@ -166,11 +166,11 @@ class QuantityProgress {
 };
 
 /// Computes all quantities of a point. Returns nothing if the computation was cancelled.
-std::optional<std::vector<StoredOutput>> measure_all(const Study& study, const PointValues& values,
-                                                     const Cancellation* cancel, Progress* progress) {
+std::optional<std::vector<compute::StoredOutput>> measure_all(const Study& study, const PointValues& values,
+                                                              const Cancellation* cancel, Progress* progress) {
   Candidate candidate = make_candidate(study, values);
   QuantityProgress of_quantities(study.quantities, progress);
-  std::vector<StoredOutput> outputs;
+  std::vector<compute::StoredOutput> outputs;
   for (const auto& quantity : study.quantities) {
     PartOfProgress part = of_quantities.of(*quantity);
     candidate.report_to(&part);
@@ -185,10 +185,10 @@ std::optional<std::vector<StoredOutput>> measure_all(const Study& study, const P
 
 }  // namespace
 
-std::optional<StoredPoint> compute_point(const Study& study, std::uint64_t number, const PointValues& values,
-                                         const Cancellation* cancel, bool* ran_out, Progress* progress) {
+std::optional<compute::StoredPoint> compute_point(const Study& study, std::uint64_t number, const PointValues& values,
+                                                  const Cancellation* cancel, bool* ran_out, Progress* progress) {
   const auto start = std::chrono::steady_clock::now();
-  StoredPoint point;
+  compute::StoredPoint point;
   point.point = number;
   point.version = kVersion;
   for (const ParameterValue& value : values) point.inputs.push_back(value.shown);
@@ -231,7 +231,7 @@ struct SweepCount::Share : Progress {
   double begin;
 };
 
-SweepCount::SweepCount(const Sweep& sweep, const ResultStore& store, SweepObserver* observer)
+SweepCount::SweepCount(const Sweep& sweep, const compute::ResultStore& store, SweepObserver* observer)
     : state_(std::make_unique<State>()) {
   state_->observer = observer;
   state_->done = store.finished().size();
@@ -254,7 +254,7 @@ void SweepCount::finished(bool failed) {
   state_->tell();
 }
 
-std::vector<std::uint64_t> unfinished(const Sweep& sweep, const ResultStore& store) {
+std::vector<std::uint64_t> unfinished(const Sweep& sweep, const compute::ResultStore& store) {
   const std::vector<std::uint64_t> finished = store.finished();
   std::vector<std::uint64_t> open;
   auto next = finished.begin();
@@ -271,7 +271,7 @@ namespace {
 
 /// Computes the points that no other process has claimed.
 /// \return number of computed points
-std::size_t work_off(const Sweep& sweep, const std::vector<std::uint64_t>& points, ResultStore& store,
+std::size_t work_off(const Sweep& sweep, const std::vector<std::uint64_t>& points, compute::ResultStore& store,
                      SweepCount& count, const Cancellation* cancel) {
   std::atomic<std::size_t> next{0};
   std::atomic<std::size_t> computed{0};
@@ -281,7 +281,7 @@ std::size_t work_off(const Sweep& sweep, const std::vector<std::uint64_t>& point
     const std::uint64_t number = points[next.fetch_add(1)];
     if (is_cancelled(cancel) || !store.claim(number)) return;
     TaskProgress::Task task(count.points());
-    const std::optional<StoredPoint> point =
+    const std::optional<compute::StoredPoint> point =
         compute_point(sweep.study(), number, sweep.values(number), cancel, nullptr, &task);
     if (!point) {
       store.give_up(number);
@@ -297,7 +297,7 @@ std::size_t work_off(const Sweep& sweep, const std::vector<std::uint64_t>& point
 
 }  // namespace
 
-bool run_sweep(const Sweep& sweep, ResultStore& store, SweepObserver* observer, const Cancellation* cancel) {
+bool run_sweep(const Sweep& sweep, compute::ResultStore& store, SweepObserver* observer, const Cancellation* cancel) {
   SweepCount count(sweep, store, observer);
   for (;;) {
     const std::vector<std::uint64_t> open = unfinished(sweep, store);
@@ -308,16 +308,16 @@ bool run_sweep(const Sweep& sweep, ResultStore& store, SweepObserver* observer, 
   }
 }
 
-SweepResult collect(const Sweep& sweep, const ResultStore& store, bool complete) {
+SweepResult collect(const Sweep& sweep, const compute::ResultStore& store, bool complete) {
   SweepResult result{sweep, store.points(), 0.0, complete, keys_without_effect(sweep.study())};
-  const auto failed = [](const StoredPoint& point) { return point.failed; };
+  const auto failed = [](const compute::StoredPoint& point) { return point.failed; };
   const auto first = std::find_if(result.points.begin(), result.points.end(), failed);
   if (first != result.points.end())
     result.warnings.push_back(
         {"points_failed", fmt::format("{} of {} points failed, the first of them point {}: {}",
                                       std::count_if(result.points.begin(), result.points.end(), failed),
                                       result.points.size(), first->point, first->reason)});
-  for (const StoredPoint& point : result.points)
+  for (const compute::StoredPoint& point : result.points)
     if (point.version != kVersion) {
       result.warnings.push_back({"other_version", fmt::format("some points are from version {}, this is version {}",
                                                               point.version, kVersion)});

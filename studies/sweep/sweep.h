@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
+#include "compute/sampling/unit_samples.h"
+#include "compute/store/store.h"
 #include "core/progress.h"
 #include "core/task_progress.h"
 #include "core/warning.h"
 #include "studies/quantity/study.h"
-#include "studies/store/store.h"
-#include "studies/sweep/sampling.h"
 
 namespace retrace::studies {
 
@@ -58,7 +58,7 @@ class Sweep {
   std::uint64_t size() const { return size_; }
   /// \pre point < size()
   PointValues values(std::uint64_t point) const;
-  StoreLayout layout() const;
+  compute::StoreLayout layout() const;
 
  private:
   Study study_;
@@ -66,7 +66,7 @@ class Sweep {
   std::shared_ptr<const PointPlan> plan_;  ///< null: the parameters are combined by `combine_`
   Combine combine_ = Combine::grid;
   std::uint64_t size_ = 0;
-  std::optional<UnitSamples> samples_;
+  std::optional<compute::UnitSamples> samples_;
 };
 
 /// Computes one point of a study. An error is not thrown but recorded in the point. Returns nothing if the computation
@@ -74,9 +74,9 @@ class Sweep {
 /// \param ran_out receives true if the point failed because the budget of memory or beams was exhausted; may be null
 /// \param progress receives the finished fraction of the point; may be null
 /// \throw std::bad_alloc if memory is exhausted; a later attempt with more free memory may succeed
-std::optional<StoredPoint> compute_point(const Study& study, std::uint64_t number, const PointValues& values,
-                                         const Cancellation* cancel, bool* ran_out = nullptr,
-                                         Progress* progress = nullptr);
+std::optional<compute::StoredPoint> compute_point(const Study& study, std::uint64_t number, const PointValues& values,
+                                                  const Cancellation* cancel, bool* ran_out = nullptr,
+                                                  Progress* progress = nullptr);
 
 /// Receives the progress of a sweep. Only one thread at a time calls its functions.
 class SweepObserver {
@@ -91,7 +91,7 @@ class SweepObserver {
 /// Counts finished points and reports them to an observer, which may be null. Several threads may use an object.
 class SweepCount {
  public:
-  SweepCount(const Sweep& sweep, const ResultStore& store, SweepObserver* observer);
+  SweepCount(const Sweep& sweep, const compute::ResultStore& store, SweepObserver* observer);
   ~SweepCount();
   void finished(bool failed);
   /// Returns the object that receives the progress of the unfinished points. The progress is passed on to
@@ -107,24 +107,24 @@ class SweepCount {
 };
 
 /// Returns the numbers of the points of a sweep that are not in the store, in ascending order.
-std::vector<std::uint64_t> unfinished(const Sweep& sweep, const ResultStore& store);
+std::vector<std::uint64_t> unfinished(const Sweep& sweep, const compute::ResultStore& store);
 
 /// Computes the points that are not in the store, several at a time. Other processes may work on the same sweep. For
 /// points that they have claimed, the function waits.
 /// \return true if all points are finished, false if the computation was cancelled
 /// \throw OutputError if the store cannot be written
-bool run_sweep(const Sweep& sweep, ResultStore& store, SweepObserver* observer, const Cancellation* cancel);
+bool run_sweep(const Sweep& sweep, compute::ResultStore& store, SweepObserver* observer, const Cancellation* cancel);
 
 /// Sweep with its finished points.
 struct SweepResult {
   const Sweep& sweep;
-  std::vector<StoredPoint> points;  ///< in ascending order of their numbers
+  std::vector<compute::StoredPoint> points;  ///< in ascending order of their numbers
   double elapsed_s = 0.0;
   bool complete = true;
   Warnings warnings;
 };
 
 /// Returns the finished points of a store, with warnings about failed points and other versions.
-SweepResult collect(const Sweep& sweep, const ResultStore& store, bool complete);
+SweepResult collect(const Sweep& sweep, const compute::ResultStore& store, bool complete);
 
 }  // namespace retrace::studies

@@ -46,24 +46,24 @@ namespace {
 /// finished.
 class Finished {
  public:
-  Finished(const Sweep& sweep, const ToleranceRequest& request, const std::vector<StoredPoint>& points)
+  Finished(const Sweep& sweep, const ToleranceRequest& request, const std::vector<compute::StoredPoint>& points)
       : rows_(request.samples),
         parameters_(sweep.study().parameters.size()),
         points_of_row_(request.indices ? parameters_ + 2 : 1),
         points_(sweep.size(), nullptr) {
-    for (const StoredPoint& point : points)
+    for (const compute::StoredPoint& point : points)
       if (point.point < points_.size()) points_[point.point] = &point;
   }
 
-  const StoredPoint* nominal() const { return points_[0]; }
+  const compute::StoredPoint* nominal() const { return points_[0]; }
   std::uint64_t rows() const { return rows_; }
   std::size_t parameters() const { return parameters_; }
-  const StoredPoint* at(std::uint64_t row, std::uint64_t place) const {
+  const compute::StoredPoint* at(std::uint64_t row, std::uint64_t place) const {
     return points_[1 + row * points_of_row_ + place];
   }
   /// Returns the points that represent manufactured parts: the points A and, with indices, also the points B.
-  std::vector<const StoredPoint*> parts() const {
-    std::vector<const StoredPoint*> parts;
+  std::vector<const compute::StoredPoint*> parts() const {
+    std::vector<const compute::StoredPoint*> parts;
     for (std::uint64_t place = 0; place < std::min<std::uint64_t>(2, points_of_row_); ++place)
       for (std::uint64_t row = 0; row < rows_; ++row)
         if (at(row, place) != nullptr) parts.push_back(at(row, place));
@@ -74,20 +74,20 @@ class Finished {
   std::uint64_t rows_;
   std::size_t parameters_;
   std::uint64_t points_of_row_;
-  std::vector<const StoredPoint*> points_;
+  std::vector<const compute::StoredPoint*> points_;
 };
 
-std::optional<double> value_of(const StoredPoint* point, std::size_t quantity) {
+std::optional<double> value_of(const compute::StoredPoint* point, std::size_t quantity) {
   if (point == nullptr || point->failed) return std::nullopt;
   return point->outputs.at(quantity).value;
 }
 
 /// Returns the values of a row, or nothing if one of its points has no value.
-std::optional<SaltelliRow> row_of(const Finished& finished, std::uint64_t row, std::size_t quantity) {
+std::optional<compute::SaltelliRow> row_of(const Finished& finished, std::uint64_t row, std::size_t quantity) {
   const auto a = value_of(finished.at(row, 0), quantity);
   const auto b = value_of(finished.at(row, 1), quantity);
   if (!a || !b) return std::nullopt;
-  SaltelliRow values{*a, *b, {}};
+  compute::SaltelliRow values{*a, *b, {}};
   for (std::size_t k = 0; k < finished.parameters(); ++k) {
     const auto mixed = value_of(finished.at(row, 2 + k), quantity);
     if (!mixed) return std::nullopt;
@@ -98,11 +98,11 @@ std::optional<SaltelliRow> row_of(const Finished& finished, std::uint64_t row, s
 
 void add_indices(const Finished& finished, std::size_t quantity, const ToleranceRequest& request, std::uint32_t seed,
                  QuantityTolerance& result) {
-  std::vector<SaltelliRow> rows;
+  std::vector<compute::SaltelliRow> rows;
   for (std::uint64_t row = 0; row < finished.rows(); ++row)
     if (auto values = row_of(finished, row, quantity)) rows.push_back(std::move(*values));
   result.rows = rows.size();
-  result.indices = sobol_indices(rows, request.confidence, seed);
+  result.indices = compute::sobol_indices(rows, request.confidence, seed);
 }
 
 QuantityTolerance tolerance_of(const Sweep& sweep, const Finished& finished, const ToleranceRequest& request,
@@ -111,7 +111,7 @@ QuantityTolerance tolerance_of(const Sweep& sweep, const Finished& finished, con
   result.quantity = sweep.study().quantities[quantity]->name();
   result.nominal = value_of(finished.nominal(), quantity);
   double squared_errors = 0.0;
-  for (const StoredPoint* const part : finished.parts()) {
+  for (const compute::StoredPoint* const part : finished.parts()) {
     const std::optional<double> value = value_of(part, quantity);
     if (!value) {
       ++result.without;
@@ -122,17 +122,18 @@ QuantityTolerance tolerance_of(const Sweep& sweep, const Finished& finished, con
   }
   result.parts = result.values.size();
   if (result.values.empty()) return result;
-  result.spread = spread_of(result.values, request.confidence);
+  result.spread = compute::spread_of(result.values, request.confidence);
   if (result.spread->deviation > 0.0)
     result.noise = std::sqrt(squared_errors / static_cast<double>(result.parts)) / result.spread->deviation;
   std::sort(result.values.begin(), result.values.end());
-  for (const double share : kPercentiles) result.percentiles.emplace_back(share, percentile(result.values, share));
+  for (const double share : kPercentiles)
+    result.percentiles.emplace_back(share, compute::percentile(result.values, share));
   if (request.indices) add_indices(finished, quantity, request, sweep.study().seed, result);
   return result;
 }
 
 /// Returns true if a part satisfies a limit. A missing value violates every limit.
-bool holds(const Sweep& sweep, const StoredPoint& part, const Constraint& limit) {
+bool holds(const Sweep& sweep, const compute::StoredPoint& part, const Constraint& limit) {
   for (std::size_t k = 0; k < sweep.study().quantities.size(); ++k)
     if (sweep.study().quantities[k]->name() == limit.quantity) return limit.violation(value_of(&part, k)) <= 0.0;
   return false;
@@ -140,21 +141,22 @@ bool holds(const Sweep& sweep, const StoredPoint& part, const Constraint& limit)
 
 void add_yields(const Sweep& sweep, const Finished& finished, const ToleranceRequest& request,
                 ToleranceResult& result) {
-  const std::vector<const StoredPoint*> parts = finished.parts();
+  const std::vector<const compute::StoredPoint*> parts = finished.parts();
   if (request.constraints.empty() || parts.empty()) return;
   const auto count = [&](const auto& is_good) {
     return static_cast<std::size_t>(std::count_if(parts.begin(), parts.end(), is_good));
   };
-  const std::size_t good = count([&](const StoredPoint* part) {
+  const std::size_t good = count([&](const compute::StoredPoint* part) {
     return std::all_of(request.constraints.begin(), request.constraints.end(),
                        [&](const Constraint& limit) { return holds(sweep, *part, limit); });
   });
-  result.yield = yield_of(good, parts.size(), request.confidence);
+  result.yield = compute::yield_of(good, parts.size(), request.confidence);
   result.is_enough = !request.least_yield || result.yield->value >= *request.least_yield;
   for (const Constraint& limit : request.constraints)
-    result.limits.push_back(
-        {limit.text(), yield_of(count([&](const StoredPoint* part) { return holds(sweep, *part, limit); }),
-                                parts.size(), request.confidence)});
+    result.limits.push_back({limit.text(), compute::yield_of(count([&](const compute::StoredPoint* part) {
+                                                               return holds(sweep, *part, limit);
+                                                             }),
+                                                             parts.size(), request.confidence)});
 }
 
 void add_warnings(const ToleranceRequest& request, ToleranceResult& result) {
@@ -178,13 +180,14 @@ void add_warnings(const ToleranceRequest& request, ToleranceResult& result) {
 
 }  // namespace
 
-ToleranceResult analyse(const Sweep& sweep, const ToleranceRequest& request, const std::vector<StoredPoint>& points) {
+ToleranceResult analyse(const Sweep& sweep, const ToleranceRequest& request,
+                        const std::vector<compute::StoredPoint>& points) {
   const Finished finished(sweep, request, points);
   ToleranceResult result;
-  const std::vector<const StoredPoint*> parts = finished.parts();
+  const std::vector<const compute::StoredPoint*> parts = finished.parts();
   result.parts = parts.size();
   result.failed = static_cast<std::size_t>(
-      std::count_if(parts.begin(), parts.end(), [](const StoredPoint* part) { return part->failed; }));
+      std::count_if(parts.begin(), parts.end(), [](const compute::StoredPoint* part) { return part->failed; }));
   for (std::size_t k = 0; k < sweep.study().quantities.size(); ++k)
     result.quantities.push_back(tolerance_of(sweep, finished, request, k));
   add_yields(sweep, finished, request, result);

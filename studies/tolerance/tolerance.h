@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "compute/estimation/sample_statistics.h"
 #include "core/warning.h"
 #include "studies/quantity/constraint.h"
 #include "studies/sweep/sweep.h"
-#include "studies/tolerance/indices.h"
 
 namespace retrace::studies {
 
@@ -20,7 +20,7 @@ namespace retrace::studies {
 struct ToleranceRequest {
   /// Number of rows; with Sobol indices, a row consists of 2 parts and of one more point for each parameter.
   std::uint64_t samples = 256;
-  UnitSamples::Kind sampling = UnitSamples::Kind::sobol;
+  compute::UnitSamples::Kind sampling = compute::UnitSamples::Kind::sobol;
   bool indices = true;
   double confidence = 0.95;             ///< confidence level of all intervals
   std::optional<double> least_yield;    ///< minimum yield; below it, the study fails
@@ -45,7 +45,7 @@ class TolerancePlan final : public PointPlan {
   std::uint64_t rows_;
   std::uint64_t points_of_row_;
   std::size_t parameters_;
-  UnitSamples samples_;
+  compute::UnitSamples samples_;
 };
 
 /// Returns a sweep over the points of the plan.
@@ -57,11 +57,11 @@ struct QuantityTolerance {
   std::optional<double> nominal;
   std::size_t parts = 0;    ///< number of parts with a value
   std::size_t without = 0;  ///< number of parts that could not be computed or have no value
-  std::optional<Spread> spread;
+  std::optional<compute::Spread> spread;
   /// Pairs of a fraction of the parts and the value below which this fraction lies.
   std::vector<std::pair<double, double>> percentiles;
   /// Sobol indices, in the order of the parameters; empty if they were not requested or are not defined.
-  std::vector<SobolIndex> indices;
+  std::vector<compute::SobolIndex> indices;
   std::size_t rows = 0;  ///< number of rows from which the indices were computed
   /// Root mean square of the values' standard errors, divided by their standard deviation. It shows how much of the
   /// spread is noise.
@@ -72,12 +72,12 @@ struct QuantityTolerance {
 /// Fraction of the parts that satisfy a limit.
 struct LimitYield {
   std::string text;  ///< text of the limit
-  Estimate yield;
+  compute::IntervalEstimate yield;
 };
 
 struct ToleranceResult {
   std::vector<QuantityTolerance> quantities;
-  std::optional<Estimate> yield;  ///< fraction of parts that satisfy all limits; none without limits
+  std::optional<compute::IntervalEstimate> yield;  ///< fraction of parts that satisfy all limits; none without limits
   std::vector<LimitYield> limits;
   std::size_t parts = 0;   ///< number of manufactured parts
   std::size_t failed = 0;  ///< number of parts that could not be computed; they count as violating the limits
@@ -87,6 +87,7 @@ struct ToleranceResult {
 
 /// Computes the result of a tolerance study.
 /// \param points points of `sweep`, which tolerance_sweep() has made for this request; may be incomplete
-ToleranceResult analyse(const Sweep& sweep, const ToleranceRequest& request, const std::vector<StoredPoint>& points);
+ToleranceResult analyse(const Sweep& sweep, const ToleranceRequest& request,
+                        const std::vector<compute::StoredPoint>& points);
 
 }  // namespace retrace::studies

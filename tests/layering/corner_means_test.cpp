@@ -55,8 +55,8 @@ TEST(CornerMeans, NoneIsAPosition) {
   const fs::path root = RETRACE_SOURCE_DIR;
   std::set<std::string> met;
   std::size_t files = 0;
-  for (const char* folder : {"core", "requests", "geometry", "materials", "surface_models", "raytrace", "fabrication",
-                             "studies", "report", "live", "app"})
+  for (const char* folder : {"core", "compute", "requests", "geometry", "materials", "surface_models", "raytrace",
+                             "fabrication", "studies", "report", "live", "app"})
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / folder)) {
       const std::string extension = entry.path().extension().string();
       if (extension != ".cpp" && extension != ".h") continue;

@@ -238,7 +238,7 @@ TEST(ZonedDesign, StudiesVaryWhatIsAllOverThePart) {
                                "[[quantity]]\nkind = \"" +
                                    quantity + "\"\n[analysis]\nengine = \"exact\"\n",
                                "study.toml", {}, 1, {{"d.toml", zoned(kHalves)}}));
-    ResultStore store("", sweep.layout(), IfExists::refuse);
+    compute::ResultStore store("", sweep.layout(), compute::IfExists::refuse);
     EXPECT_TRUE(run_sweep(sweep, store, nullptr, nullptr));
     return collect(sweep, store, true).points;
   };

@@ -87,7 +87,7 @@ std::string front_csv(const Study& study, const Optimum& optimum) {
         csv.add(*number);
       else
         csv.add_quoted(std::get<std::string>(value.shown));
-    for (const StoredOutput& output : variant.outputs) csv.add(output.value);
+    for (const compute::StoredOutput& output : variant.outputs) csv.add(output.value);
     csv.row(*variant.objective);
   }
   return csv.text();

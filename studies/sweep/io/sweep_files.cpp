@@ -19,16 +19,16 @@ using Json = nlohmann::ordered_json;
 /// Maximum number of rows in the table for the terminal. Files contain all rows.
 constexpr std::size_t kMostRows = 200;
 
-Json value_json(const StoredValue& value) {
+Json value_json(const compute::StoredValue& value) {
   return std::visit([](const auto& v) { return Json(v); }, value);
 }
 
-std::string value_text(const StoredValue& value) {
+std::string value_text(const compute::StoredValue& value) {
   const double* const number = std::get_if<double>(&value);
   return number != nullptr ? shortest(*number) : std::get<std::string>(value);
 }
 
-Json point_json(const StoredPoint& point, const StoreLayout& layout) {
+Json point_json(const compute::StoredPoint& point, const compute::StoreLayout& layout) {
   Json json = {{"point", point.point}, {"status", point.failed ? "failed" : "done"}};
   for (std::size_t k = 0; k < layout.inputs.size(); ++k) json[layout.inputs[k]] = value_json(point.inputs[k]);
   if (point.failed) json["reason"] = point.reason;
@@ -42,14 +42,14 @@ Json point_json(const StoredPoint& point, const StoreLayout& layout) {
 
 using Row = std::vector<std::string>;
 
-Row table_row(const StoredPoint& point) {
+Row table_row(const compute::StoredPoint& point) {
   Row row;
-  for (const StoredValue& input : point.inputs) row.push_back(printable(value_text(input), 40));
+  for (const compute::StoredValue& input : point.inputs) row.push_back(printable(value_text(input), 40));
   if (point.failed) {
     row.push_back("failed: " + printable(point.reason, 100));
     return row;
   }
-  for (const StoredOutput& output : point.outputs)
+  for (const compute::StoredOutput& output : point.outputs)
     row.push_back(output.value ? fmt::format("{:.6g}", *output.value) : "-");
   return row;
 }
@@ -57,7 +57,7 @@ Row table_row(const StoredPoint& point) {
 }  // namespace
 
 std::string sweep_json(const SweepResult& result) {
-  const StoreLayout layout = result.sweep.layout();
+  const compute::StoreLayout layout = result.sweep.layout();
   const Study& study = result.sweep.study();
   Json json = {{"study", study.source}};
   if (!study.title.empty()) json["title"] = study.title;
@@ -67,23 +67,23 @@ std::string sweep_json(const SweepResult& result) {
   json["points_in_all"] = result.sweep.size();
   json["failed"] = std::count_if(result.points.begin(), result.points.end(), [](const auto& p) { return p.failed; });
   json["points"] = Json::array();
-  for (const StoredPoint& point : result.points) json["points"].push_back(point_json(point, layout));
+  for (const compute::StoredPoint& point : result.points) json["points"].push_back(point_json(point, layout));
   json["elapsed_s"] = result.elapsed_s;
   return result_text("retrace.sweep/1", json, result.warnings, result.complete);
 }
 
 std::string sweep_csv(const SweepResult& result) {
-  const StoreLayout layout = result.sweep.layout();
+  const compute::StoreLayout layout = result.sweep.layout();
   CsvWriter csv;
   std::vector<std::string> outputs;
   for (const std::string& name : layout.outputs) outputs.insert(outputs.end(), {name, name + "_std_error"});
   csv.row("point", "status", layout.inputs, outputs, "version", "reason");
-  for (const StoredPoint& point : result.points) {
+  for (const compute::StoredPoint& point : result.points) {
     csv.add(point.point);
     csv.add(point.failed ? "failed" : "done");
-    for (const StoredValue& input : point.inputs) csv.add(value_text(input));
+    for (const compute::StoredValue& input : point.inputs) csv.add(value_text(input));
     for (std::size_t k = 0; k < layout.outputs.size(); ++k) {
-      const StoredOutput output = k < point.outputs.size() ? point.outputs[k] : StoredOutput{};
+      const compute::StoredOutput output = k < point.outputs.size() ? point.outputs[k] : compute::StoredOutput{};
       csv.add(output.value);
       csv.add(output.value ? std::optional(output.std_error) : std::nullopt);
     }
@@ -93,11 +93,11 @@ std::string sweep_csv(const SweepResult& result) {
 }
 
 std::string sweep_table(const SweepResult& result) {
-  const StoreLayout layout = result.sweep.layout();
+  const compute::StoreLayout layout = result.sweep.layout();
   std::vector<Row> rows(1);
   for (const auto* names : {&layout.inputs, &layout.outputs})
     for (const std::string& name : *names) rows.front().push_back(printable(name, 40));
-  for (const StoredPoint& point : result.points) {
+  for (const compute::StoredPoint& point : result.points) {
     if (rows.size() > kMostRows) break;
     rows.push_back(table_row(point));
   }

@@ -17,7 +17,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kPercentPerShare = 100.0;
 
-Json estimate_json(const Estimate& estimate) {
+Json estimate_json(const compute::IntervalEstimate& estimate) {
   return {{"value", estimate.value}, {"low", estimate.low}, {"high", estimate.high}};
 }
 
@@ -27,7 +27,7 @@ Json quantity_json(const Study& study, const QuantityTolerance& quantity) {
   json["parts"] = quantity.parts;
   json["without_value"] = quantity.without;
   if (quantity.spread) {
-    const Spread& spread = *quantity.spread;
+    const compute::Spread& spread = *quantity.spread;
     json["mean"] = estimate_json(spread.mean_interval);
     json["standard_deviation"] = spread.deviation;
     json["least"] = spread.least;
@@ -46,22 +46,22 @@ Json quantity_json(const Study& study, const QuantityTolerance& quantity) {
   return json;
 }
 
-const char* sampling_name(UnitSamples::Kind kind) {
+const char* sampling_name(compute::UnitSamples::Kind kind) {
   switch (kind) {
-    case UnitSamples::Kind::sobol: return "sobol";
-    case UnitSamples::Kind::latin_hypercube: return "latin_hypercube";
-    case UnitSamples::Kind::monte_carlo: break;
+    case compute::UnitSamples::Kind::sobol: return "sobol";
+    case compute::UnitSamples::Kind::latin_hypercube: return "latin_hypercube";
+    case compute::UnitSamples::Kind::monte_carlo: break;
   }
   return "monte_carlo";
 }
 
-std::string percent_text(const Estimate& share, double confidence) {
+std::string percent_text(const compute::IntervalEstimate& share, double confidence) {
   return fmt::format("{:.2f} % ({:g} % confidence: {:.2f} to {:.2f} %)", kPercentPerShare * share.value,
                      kPercentPerShare * confidence, kPercentPerShare * share.low, kPercentPerShare * share.high);
 }
 
 /// Returns the indices of the parameters in descending order of their total Sobol index.
-std::vector<std::size_t> by_contribution(const std::vector<SobolIndex>& indices) {
+std::vector<std::size_t> by_contribution(const std::vector<compute::SobolIndex>& indices) {
   std::vector<std::size_t> order(indices.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
@@ -83,7 +83,7 @@ std::string quantity_text(const Study& study, const QuantityTolerance& quantity)
     text += "\n";
   }
   for (const std::size_t k : by_contribution(quantity.indices)) {
-    const SobolIndex& index = quantity.indices[k];
+    const compute::SobolIndex& index = quantity.indices[k];
     text += fmt::format("    {:<36} alone {:6.3f} ({:.3f} to {:.3f})   with others {:6.3f} ({:.3f} to {:.3f})\n",
                         printable(study.parameters[k].name, 36), index.first_order.value, index.first_order.low,
                         index.first_order.high, index.total.value, index.total.low, index.total.high);

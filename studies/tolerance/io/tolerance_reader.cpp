@@ -21,9 +21,9 @@ void check_parameters(const Study& study) {
 void check_size(const Study& study, const ToleranceRequest& request) {
   const std::size_t parameters = study.parameters.size();
   const std::size_t dimensions = (request.indices ? 2 : 1) * parameters;
-  if (dimensions > UnitSamples::most_dimensions)
+  if (dimensions > compute::UnitSamples::most_dimensions)
     study.document->fail("tolerance.indices", fmt::format("are known for at most {} parameters, got {}",
-                                                          UnitSamples::most_dimensions / 2, parameters));
+                                                          compute::UnitSamples::most_dimensions / 2, parameters));
   const std::uint64_t points = 1 + request.samples * (request.indices ? parameters + 2 : 1);
   if (points > Sweep::most_points)
     study.document->fail("tolerance.samples",
@@ -38,7 +38,7 @@ ToleranceRequest read_tolerance(const Study& study) {
   check_parameters(study);
   ToleranceRequest request;
   request.samples = static_cast<std::uint64_t>(document.number("tolerance.samples"));
-  request.sampling = document.choice<UnitSamples::Kind>("tolerance.sampling");
+  request.sampling = document.choice<compute::UnitSamples::Kind>("tolerance.sampling");
   request.indices = document.text("tolerance.indices") == "sobol";
   request.confidence = kOfPercent * document.number("tolerance.confidence_percent");
   request.constraints = read_constraints(study);

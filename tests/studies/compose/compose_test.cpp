@@ -71,7 +71,7 @@ struct Composed {
 };
 
 Composed composed(const Study& study) {
-  ResultStore store("", compose_layout(study), IfExists::refuse);
+  compute::ResultStore store("", compose_layout(study), compute::IfExists::refuse);
   const ComposeRequest request = read_compose(study);
   return {study, request, compose(study, request, store, nullptr, nullptr)};
 }
@@ -145,7 +145,7 @@ TEST(Compose, WithOneZoneFindsWhatOptimiseFinds) {
                                                                               }}};
   const Study study =
       analytic_study("[optimize]\nmaximize = \"least\"\n[compose]\nmaximize = \"g\"\nmost_zones = 1\n", functions);
-  ResultStore store("", optimise_layout(study), IfExists::refuse);
+  compute::ResultStore store("", optimise_layout(study), compute::IfExists::refuse);
   const Optimum optimum = optimise(study, read_optimise(study), store, nullptr, nullptr);
   const Composition composition = composed(study).composition;
   ASSERT_TRUE(composition.best && optimum.best);
@@ -218,7 +218,7 @@ TEST(Compose, SaysWhatOneZoneMoreIsWorth) {
 TEST(Compose, GoesOnWithWhatTheStoreHas) {
   const Study study = analytic_study(kMaximize, kThreePoints);
   const ComposeRequest request = read_compose(study);
-  ResultStore store("", compose_layout(study), IfExists::refuse);
+  compute::ResultStore store("", compose_layout(study), compute::IfExists::refuse);
   const Composition first = compose(study, request, store, nullptr, nullptr);
   Cancellation cancel;
   cancel.request();
@@ -234,16 +234,16 @@ TEST(Compose, GoesOnWithWhatTheStoreHas) {
 TEST(Compose, IsTheSameWhateverAKilledRunLeft) {
   const Study study = analytic_study(std::string(kMaximize) + "most_zones = 2\nscan = 17\n", kThreePoints);
   const ComposeRequest request = read_compose(study);
-  ResultStore whole("", compose_layout(study), IfExists::refuse);
+  compute::ResultStore whole("", compose_layout(study), compute::IfExists::refuse);
   const std::string expected = composition_json(study, request, compose(study, request, whole, nullptr, nullptr), 0.0);
-  const std::vector<StoredPoint> points = whole.points();
+  const std::vector<compute::StoredPoint> points = whole.points();
   ASSERT_GT(points.size(), 40U);
   std::mt19937 random(30);
   for (int kill = 0; kill < 20; ++kill) {
     // Up to eight points are computed in parallel. If a run is killed, the store may lack some of the last eight points
     // that it began.
     const std::size_t begun = random() % points.size();
-    ResultStore left("", compose_layout(study), IfExists::refuse);
+    compute::ResultStore left("", compose_layout(study), compute::IfExists::refuse);
     for (std::size_t k = 0; k < begun; ++k)
       if (k + 8 < begun || random() % 2 == 0) left.record(points[k]);
     EXPECT_EQ(composition_json(study, request, compose(study, request, left, nullptr, nullptr), 0.0), expected)
@@ -259,7 +259,7 @@ TEST(Compose, IsTheSameWhateverOtherRunsLeft) {
   };
   const Study other = analytic_study(std::string(kMaximize) + "most_zones = 3\nscan = 33\n", kThreePoints);
   const Study study = analytic_study(std::string(kMaximize) + "most_zones = 2\nscan = 17\n", kThreePoints);
-  ResultStore store("", compose_layout(other), IfExists::refuse);
+  compute::ResultStore store("", compose_layout(other), compute::IfExists::refuse);
   compose(other, read_compose(other), store, nullptr, nullptr);
   const Composition after = compose(study, read_compose(study), store, nullptr, nullptr);
   const Composition alone = composed(study).composition;

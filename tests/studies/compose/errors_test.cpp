@@ -169,7 +169,7 @@ TEST(ComposeErrors, AreThoseOfTheClosedForm) {
   const Study study = study_of_peaks(
       "least = 1.5\nmost_zones = 1\ncell_sigma_arcmin = 0.3\nzone_sigma_arcmin = 0.4\nparts = 4096\nworst_share = "
       "0.1\n");
-  ResultStore store("", compose_layout(study), IfExists::refuse);
+  compute::ResultStore store("", compose_layout(study), compute::IfExists::refuse);
   const ComposeRequest request = read_compose(study);
   const Composition composition = compose(study, request, store, nullptr, nullptr);
   ASSERT_TRUE(composition.errors.has_value());

@@ -1,4 +1,4 @@
-// Linear programmes with known optima, prices and certificates; mixtures against closed forms, duality and brute force.
+// Mixtures are compared with closed forms, duality and brute force.
 
 #include "studies/compose/mixture.h"
 
@@ -9,62 +9,12 @@
 #include <cmath>
 #include <random>
 
-#include "studies/compose/linear_programme.h"
-
 namespace retrace::testing::mixture_test {
 namespace {
 
 using namespace studies;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-TEST(LinearProgramme, FindsTheOptimumAndItsPrices) {
-  // The classic of two products and three rooms: 3 a + 5 b with a <= 4, 2 b <= 12, 3 a + 2 b <= 18.
-  LinearProgramme programme;
-  const std::size_t a = programme.add_column({.least = 0.0}, 3.0);
-  const std::size_t b = programme.add_column({.least = 0.0}, 5.0);
-  programme.add_row({-kInfinity, 4.0}, {{a, 1.0}});
-  programme.add_row({-kInfinity, 12.0}, {{b, 2.0}});
-  programme.add_row({-kInfinity, 18.0}, {{a, 3.0}, {b, 2.0}});
-  const LinearOptimum optimum = solve(programme);
-  ASSERT_EQ(optimum.kind, LinearOptimum::Kind::optimal);
-  EXPECT_NEAR(optimum.objective, 36.0, 1e-12);
-  EXPECT_NEAR(optimum.values[a], 2.0, 1e-12);
-  EXPECT_NEAR(optimum.values[b], 6.0, 1e-12);
-  EXPECT_NEAR(optimum.prices[0], 0.0, 1e-12);
-  EXPECT_NEAR(optimum.prices[1], 1.5, 1e-12);
-  EXPECT_NEAR(optimum.prices[2], 1.0, 1e-12);
-}
-
-TEST(LinearProgramme, SaysWhichRowsExcludeEachOther) {
-  // x + y >= 3 and x - y >= 2 leave y <= 1 no room where x <= 2: the second wants y <= 0, the first y >= 1.
-  LinearProgramme programme;
-  const std::size_t x = programme.add_column({0.0, 2.0}, 1.0);
-  const std::size_t y = programme.add_column({0.0, 1.0}, 0.0);
-  programme.add_row({.least = 3.0}, {{x, 1.0}, {y, 1.0}});
-  programme.add_row({.least = 2.0}, {{x, 1.0}, {y, -1.0}});
-  programme.add_row({.least = -5.0}, {{x, 1.0}});
-  const LinearOptimum optimum = solve(programme);
-  ASSERT_EQ(optimum.kind, LinearOptimum::Kind::infeasible);
-  // Farkas: the rows times their multipliers, added up, ask for more than the columns' bounds give.
-  const std::vector<double>& m = optimum.prices;
-  EXPECT_NEAR(std::abs(m[0]) + std::abs(m[1]) + std::abs(m[2]), 1.0, 1e-12);
-  EXPECT_LE(*std::ranges::max_element(m), 0.0);
-  const double asked = 3.0 * -m[0] + 2.0 * -m[1] - 5.0 * -m[2];
-  const double most = 2.0 * std::max(0.0, -m[0] - m[1] - m[2]) + std::max(0.0, -m[0] + m[1]);
-  EXPECT_GT(asked, most + 0.1);
-  EXPECT_EQ(m[2], 0.0);
-}
-
-TEST(LinearProgramme, TellsTheUnboundedAndTheInterrupted) {
-  LinearProgramme programme;
-  const std::size_t x = programme.add_column({.least = 0.0}, 1.0);
-  programme.add_row({.least = 1.0}, {{x, 1.0}});
-  EXPECT_EQ(solve(programme).kind, LinearOptimum::Kind::unbounded);
-  Cancellation cancel;
-  cancel.request();
-  EXPECT_EQ(solve(programme, &cancel).kind, LinearOptimum::Kind::interrupted);
-}
 
 /// A Gaussian lobe about `middle` at points on a line.
 MixedCell lobe(double middle, const std::vector<double>& points) {

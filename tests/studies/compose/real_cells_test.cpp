@@ -38,7 +38,7 @@ Study study_of_corners(const std::string& keys) {
 }
 
 Composition composed(const Study& study) {
-  ResultStore store("", compose_layout(study), IfExists::refuse);
+  compute::ResultStore store("", compose_layout(study), compute::IfExists::refuse);
   return compose(study, read_compose(study), store, nullptr, nullptr);
 }
 
@@ -107,7 +107,7 @@ TEST(RealCells, OfOneZoneAreWhatOptimiseFinds) {
   const Study least = study_of_corners(
       "[[quantity]]\nkind = \"rre\"\nname = \"least\"\nover_directions = \"least\"\nincidence_deg = 35\n"
       "azimuth_deg = [0, 60, 120, 210]\n[optimize]\nmaximize = \"least\"\n");
-  ResultStore store("", optimise_layout(least), IfExists::refuse);
+  compute::ResultStore store("", optimise_layout(least), compute::IfExists::refuse);
   const Optimum optimum = optimise(least, read_optimise(least), store, nullptr, nullptr);
   ASSERT_TRUE(optimum.best.has_value());
   EXPECT_EQ(composition.best->mixture.least, *optimum.best->objective);

@@ -18,9 +18,10 @@ const std::string kFolder = std::string(RETRACE_SOURCE_DIR) + "/examples/studies
 
 /// Returns a quantity of an example study as a function of the angle of incidence.
 /// \param only if given, only points with this value of the first parameter
-std::map<double, StoredOutput> curve(const std::string& file, std::size_t quantity,
-                                     const std::vector<std::string>& overrides = {}, const std::string& only = "",
-                                     const std::vector<double>& incidence_deg = {}) {
+std::map<double, compute::StoredOutput> curve(const std::string& file, std::size_t quantity,
+                                              const std::vector<std::string>& overrides = {},
+                                              const std::string& only = "",
+                                              const std::vector<double>& incidence_deg = {}) {
   Study study = read_study(kFolder + file, overrides);
   if (!incidence_deg.empty()) {
     study.parameters.back().values.clear();
@@ -28,12 +29,12 @@ std::map<double, StoredOutput> curve(const std::string& file, std::size_t quanti
   }
   study.quantities = {study.quantities.at(quantity)};
   const Sweep sweep(std::move(study), Combine::grid, 0);
-  ResultStore store("", sweep.layout(), IfExists::refuse);
+  compute::ResultStore store("", sweep.layout(), compute::IfExists::refuse);
   run_sweep(sweep, store, nullptr, nullptr);
-  std::map<double, StoredOutput> values;
-  for (const StoredPoint& point : store.points()) {
+  std::map<double, compute::StoredOutput> values;
+  for (const compute::StoredPoint& point : store.points()) {
     EXPECT_FALSE(point.failed) << point.reason;
-    if (only.empty() || point.inputs.front() == StoredValue(only))
+    if (only.empty() || point.inputs.front() == compute::StoredValue(only))
       values[std::get<double>(point.inputs.back())] = point.outputs.at(0);
   }
   return values;

@@ -51,7 +51,7 @@ Study analytic_study(const std::string& keys,
 }
 
 Optimum optimum_of(const Study& study) {
-  ResultStore store("", optimise_layout(study), IfExists::refuse);
+  compute::ResultStore store("", optimise_layout(study), compute::IfExists::refuse);
   return optimise(study, read_optimise(study), store, nullptr, nullptr);
 }
 
@@ -90,7 +90,7 @@ class Groups : public OptimiseObserver {
 TEST(Optimise, ReportsTheProgressOfEachGroupOfDesigns) {
   const Study study = analytic_study("[optimize]\nmaximize = \"f\"\nscan = 20\n",
                                      {{"f", [](double x, double y) { return -std::pow(x - 1.7, 2) - y; }}});
-  ResultStore store("", optimise_layout(study), IfExists::refuse);
+  compute::ResultStore store("", optimise_layout(study), compute::IfExists::refuse);
   Groups groups;
   const Optimum optimum = optimise(study, read_optimise(study), store, &groups, nullptr);
   ASSERT_FALSE(groups.sizes.empty());
@@ -132,13 +132,13 @@ TEST(Optimise, SlopesServeWhereThereAreAny) {
   const Optimum optimum = optimum_of(study);
   EXPECT_EQ(optimum.method, "exact slopes");
   EXPECT_GT(quantity->asked, 1);
-  ResultStore store("", optimise_layout(study), IfExists::refuse);
+  compute::ResultStore store("", optimise_layout(study), compute::IfExists::refuse);
   const OptimiseRequest request = read_optimise(study);
   optimise(study, request, store, nullptr, nullptr);
   // The designs that were evaluated with derivatives include the maximum itself. The design that the program chooses
   // has rounder values and is equally good within the tolerance.
   double nearest_mm = 1.0;
-  for (const StoredPoint& point : store.points())
+  for (const compute::StoredPoint& point : store.points())
     nearest_mm = std::min(nearest_mm, std::abs(std::get<double>(point.inputs[0]) - top_mm));
   EXPECT_LT(nearest_mm, 1e-7);
   EXPECT_NEAR(number(optimum.best->values[0]), top_mm, 1e-3);
@@ -226,7 +226,7 @@ TEST(Optimise, AResumedSearchComputesNothingAgain) {
                                                                                       ++computed;
                                                                                       return -x * x - y;
                                                                                     }}});
-  ResultStore store("", optimise_layout(study), IfExists::refuse);
+  compute::ResultStore store("", optimise_layout(study), compute::IfExists::refuse);
   const OptimiseRequest request = read_optimise(study);
   const Optimum first = optimise(study, request, store, nullptr, nullptr);
   const int once = computed.exchange(0);
@@ -241,13 +241,13 @@ TEST(Optimise, IsTheSameWhateverAKilledRunLeft) {
       "[optimize]\nmaximize = \"f\"\nscan = 20\n",
       {{"f", [](double x, double y) { return 1.0 - std::pow(x - 1.7, 2) - 2.0 * std::pow(y - 2.2, 2); }}});
   const OptimiseRequest request = read_optimise(study);
-  ResultStore whole("", optimise_layout(study), IfExists::refuse);
+  compute::ResultStore whole("", optimise_layout(study), compute::IfExists::refuse);
   const std::string expected = optimum_json(study, request, optimise(study, request, whole, nullptr, nullptr), 0.0);
-  const std::vector<StoredPoint> points = whole.points();
+  const std::vector<compute::StoredPoint> points = whole.points();
   std::mt19937 random(30);
   for (int kill = 0; kill < 20; ++kill) {
     const std::size_t begun = random() % points.size();
-    ResultStore left("", optimise_layout(study), IfExists::refuse);
+    compute::ResultStore left("", optimise_layout(study), compute::IfExists::refuse);
     for (std::size_t k = 0; k < begun; ++k)
       if (k + 8 < begun || random() % 2 == 0) left.record(points[k]);
     const Optimum optimum = optimise(study, request, left, nullptr, nullptr);
@@ -263,7 +263,7 @@ TEST(Optimise, TheSmallestPrismThatTheToolCutsIsChosenAndTheSingleOneRejectedByT
   study.parameters[0].interval->from = 0.8;
   OptimiseRequest request = read_optimise(study);
   request.scan = 21;
-  ResultStore store("", optimise_layout(study), IfExists::refuse);
+  compute::ResultStore store("", optimise_layout(study), compute::IfExists::refuse);
   const Optimum optimum = optimise(study, request, store, nullptr, nullptr);
   ASSERT_TRUE(optimum.best.has_value()) << optimum.none_because;
   EXPECT_EQ(number(optimum.best->values[0]), 1.0);
@@ -288,7 +288,7 @@ TEST(Optimise, AKeyThatIsACurveHasNoBand) {
   OptimiseRequest request = read_optimise(study);
   request.scan = 3;
   request.bands_of = {"body.absorption_per_mm"};
-  ResultStore store("", optimise_layout(study), IfExists::refuse);
+  compute::ResultStore store("", optimise_layout(study), compute::IfExists::refuse);
   const Optimum optimum = optimise(study, request, store, nullptr, nullptr);
   ASSERT_EQ(optimum.bands.size(), 1U);
   EXPECT_FALSE(optimum.bands[0].up.has_value());

@@ -28,13 +28,13 @@ namespace {
 const std::string kFolder = std::string(RETRACE_SOURCE_DIR) + "/examples/";
 
 SweepResult swept(const Sweep& sweep) {
-  ResultStore store("", sweep.layout(), IfExists::refuse);
+  compute::ResultStore store("", sweep.layout(), compute::IfExists::refuse);
   EXPECT_TRUE(run_sweep(sweep, store, nullptr, nullptr));
   return collect(sweep, store, true);
 }
 
 double output(const SweepResult& result, std::size_t point, const std::string& quantity) {
-  const StoreLayout layout = result.sweep.layout();
+  const compute::StoreLayout layout = result.sweep.layout();
   for (std::size_t k = 0; k < layout.outputs.size(); ++k)
     if (layout.outputs[k] == quantity) return result.points.at(point).outputs.at(k).value.value();
   throw std::runtime_error("no " + quantity);
@@ -237,12 +237,12 @@ TEST_F(PhotometricStudy, TheWorstMarginIsMaximised) {
   std::string keys = text("name = \"worst\"\n|name = \"m\"\npoints = \"each\"\n");
   keys.replace(keys.find("values = [1]"), 12, "values = [0, 0.5, 1, 2, 3]");
   const Study study = parse_study(keys + "[optimize]\nmaximize = \"worst\"\n", (folder_ / "study.toml").string());
-  ResultStore store("", optimise_layout(study), IfExists::refuse);
+  compute::ResultStore store("", optimise_layout(study), compute::IfExists::refuse);
   const Optimum optimum = optimise(study, read_optimise(study), store, nullptr, nullptr);
   ASSERT_TRUE(optimum.best.has_value()) << optimum.none_because;
   std::optional<double> best;
-  std::optional<StoredValue> at;
-  for (const StoredPoint& point : store.points()) {
+  std::optional<compute::StoredValue> at;
+  for (const compute::StoredPoint& point : store.points()) {
     double worst = std::numeric_limits<double>::infinity();
     for (std::size_t k = 1; k <= 3; ++k) worst = std::min(worst, point.outputs.at(k).value.value());
     if (best && worst <= *best) continue;
@@ -312,7 +312,7 @@ TEST(MachiningLoop, TheProcessIsAQuantity) {
 
 TEST(Sweep, ResultsDoNotDependOnWhatIsAlreadyThere) {
   const Sweep sweep = read_sweep(read_study(kFolder + "studies/table1.toml"));
-  ResultStore store("", sweep.layout(), IfExists::refuse);
+  compute::ResultStore store("", sweep.layout(), compute::IfExists::refuse);
   store.record(*compute_point(sweep.study(), 3, sweep.values(3), nullptr));
   EXPECT_EQ(unfinished(sweep, store), (std::vector<std::uint64_t>{0, 1, 2, 4}));
   EXPECT_TRUE(run_sweep(sweep, store, nullptr, nullptr));
@@ -347,7 +347,7 @@ TEST(Sweep, APointThatIsBeingComputedCountsInPart) {
     study.quantities.push_back(std::make_shared<HalfReported>(name, tracing));
   const Sweep sweep(study, Combine::zipped, 0);
   ASSERT_EQ(sweep.size(), 5U);
-  ResultStore store("", sweep.layout(), IfExists::refuse);
+  compute::ResultStore store("", sweep.layout(), compute::IfExists::refuse);
   for (const std::uint64_t point : {0U, 1U, 3U, 4U})
     store.record(*compute_point(sweep.study(), point, sweep.values(point), nullptr));
   SharesOfSweep seen;
@@ -368,14 +368,14 @@ TEST(Sweep, ALackOfMemoryIsNoResultOfAPoint) {
   Study study = read_study(kFolder + "studies/table1.toml");
   study.quantities = {std::make_shared<Greedy>()};
   const Sweep sweep(study, Combine::grid, 0);
-  ResultStore store("", sweep.layout(), IfExists::refuse);
+  compute::ResultStore store("", sweep.layout(), compute::IfExists::refuse);
   EXPECT_THROW(run_sweep(sweep, store, nullptr, nullptr), std::bad_alloc);
   EXPECT_TRUE(store.points().empty());
 }
 
 TEST(Sweep, ACancelledSweepKeepsWhatIsFinished) {
   const Sweep sweep = read_sweep(read_study(kFolder + "studies/table1.toml"));
-  ResultStore store("", sweep.layout(), IfExists::refuse);
+  compute::ResultStore store("", sweep.layout(), compute::IfExists::refuse);
   Cancellation cancel;
   cancel.request();
   EXPECT_FALSE(run_sweep(sweep, store, nullptr, &cancel));

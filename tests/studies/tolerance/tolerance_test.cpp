@@ -57,7 +57,7 @@ struct StudyRun {
   explicit StudyRun(Study study)
       : request(read_tolerance(study)),
         sweep(tolerance_sweep(std::move(study), request)),
-        store("", sweep.layout(), IfExists::refuse) {}
+        store("", sweep.layout(), compute::IfExists::refuse) {}
 
   void compute() {
     EXPECT_TRUE(run_sweep(sweep, store, nullptr, nullptr));
@@ -70,7 +70,7 @@ struct StudyRun {
 
   ToleranceRequest request;
   Sweep sweep;
-  ResultStore store;
+  compute::ResultStore store;
   ToleranceResult result;
 };
 
@@ -150,7 +150,7 @@ TEST(Tolerance, YieldsAreThoseOfTheNormalDistribution) {
                        [](double x, double, double) { return x; }));
     run.compute();
     ASSERT_EQ(run.result.limits.size(), 2U);
-    const auto holds = [](const Estimate& yield, double exact) {
+    const auto holds = [](const compute::IntervalEstimate& yield, double exact) {
       EXPECT_LE(yield.low, exact);
       EXPECT_GE(yield.high, exact);
       EXPECT_LT(yield.high - yield.low, 0.06);

@@ -1,13 +1,11 @@
-#include "studies/sweep/sampling.h"
+#include "compute/sampling/unit_samples.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <set>
 
-#include "studies/quantity/study.h"
-
-namespace retrace::studies::sampling_test {
+namespace retrace::compute::unit_samples_test {
 namespace {
 
 using Kind = UnitSamples::Kind;
@@ -108,4 +106,4 @@ TEST(Interval, LogarithmicStepsAreEqualRatios) {
 }
 
 }  // namespace
-}  // namespace retrace::studies::sampling_test
+}  // namespace retrace::compute::unit_samples_test

@@ -1,4 +1,4 @@
-#include "studies/store/store.h"
+#include "compute/store/store.h"
 
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <fmt/format.h>
@@ -13,12 +13,12 @@
 #include <system_error>
 #include <thread>
 
+#include "compute/store/process_locks.h"
 #include "core/error.h"
 #include "core/message_text.h"
 #include "core/version.h"
-#include "studies/store/process_locks.h"
 
-namespace retrace::studies {
+namespace retrace::compute {
 namespace fs = std::filesystem;
 namespace {
 
@@ -471,4 +471,4 @@ StoredPoint ResultStore::Database::point_in(const SQLite::Statement& row) const 
   return point;
 }
 
-}  // namespace retrace::studies
+}  // namespace retrace::compute

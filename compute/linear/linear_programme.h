@@ -10,7 +10,7 @@
 
 #include "core/progress.h"
 
-namespace retrace::studies {
+namespace retrace::compute {
 
 /// Interval from `least` to `most`. Missing limits are infinite.
 struct Bounds {
@@ -74,4 +74,4 @@ struct LinearOptimum {
 /// \throw BudgetError if the numbers do not allow a reliable result
 LinearOptimum solve(const LinearProgramme& programme, const Cancellation* cancel = nullptr);
 
-}  // namespace retrace::studies
+}  // namespace retrace::compute

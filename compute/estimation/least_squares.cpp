@@ -1,10 +1,10 @@
-#include "studies/calibration/estimate.h"
+#include "compute/estimation/least_squares.h"
 
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <cmath>
 
-namespace retrace::studies {
+namespace retrace::compute {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -23,12 +23,12 @@ MatrixXd span_of(const MatrixXd& columns) {
 
 }  // namespace
 
-bool Estimate::is_told(Index unknown) const {
+bool LeastSquaresEstimate::is_told(Index unknown) const {
   return untold.cols() == 0 || untold.row(unknown).norm() < kLeastShare;
 }
 
-Estimate estimate(const MatrixXd& derivatives, const MatrixXd& of_nuisance, const VectorXd& observations,
-                  double most_uncertain) {
+LeastSquaresEstimate estimate(const MatrixXd& derivatives, const MatrixXd& of_nuisance, const VectorXd& observations,
+                              double most_uncertain) {
   const MatrixXd nuisance = span_of(of_nuisance);
   const MatrixXd a = derivatives - nuisance * (nuisance.transpose() * derivatives);
   const VectorXd r = observations - nuisance * (nuisance.transpose() * observations);
@@ -37,7 +37,7 @@ Estimate estimate(const MatrixXd& derivatives, const MatrixXd& of_nuisance, cons
   while (told < svd.singularValues().size() && svd.singularValues()[told] * most_uncertain > 1.0) ++told;
   const MatrixXd u = svd.matrixU().leftCols(told);
   const VectorXd deviation = svd.singularValues().head(told).cwiseInverse();
-  Estimate result;
+  LeastSquaresEstimate result;
   result.told = svd.matrixV().leftCols(told);
   result.untold = svd.matrixV().rightCols(svd.matrixV().cols() - told);
   result.value = result.told * deviation.asDiagonal() * (u.transpose() * r);
@@ -62,4 +62,4 @@ MatrixXd reduced_combinations(const MatrixXd& untold) {
   return rows.unaryExpr([](double share) { return std::abs(share) < kLeastShareInWords ? 0.0 : share; }).transpose();
 }
 
-}  // namespace retrace::studies
+}  // namespace retrace::compute

@@ -1,4 +1,4 @@
-#include "studies/compose/linear_programme.h"
+#include "compute/linear/linear_programme.h"
 
 #include <glpk.h>
 
@@ -8,7 +8,7 @@
 
 #include "core/error.h"
 
-namespace retrace::studies {
+namespace retrace::compute {
 namespace {
 
 struct ProblemDeleter {
@@ -165,4 +165,4 @@ LinearOptimum solve(const LinearProgramme& programme, const Cancellation* cancel
   return optimum;
 }
 
-}  // namespace retrace::studies
+}  // namespace retrace::compute

@@ -1,4 +1,4 @@
-#include "studies/store/store.h"
+#include "compute/store/store.h"
 
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 #include "core/error.h"
 #include "tests/support/refusals.h"
 
-namespace retrace::studies::store_test {
+namespace retrace::compute::store_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -337,4 +337,4 @@ TEST_F(Store, InMemoryNothingIsWritten) {
 }
 
 }  // namespace
-}  // namespace retrace::studies::store_test
+}  // namespace retrace::compute::store_test

@@ -1,8 +1,8 @@
-#include "studies/sweep/mpi_mailbox.h"
+#include "compute/ranks/mpi_mailbox.h"
 
 #include "core/module.h"
 
-namespace retrace::studies {
+namespace retrace::compute {
 
 std::unique_ptr<MpiMailbox> open_mpi_mailbox(std::chrono::milliseconds sign_of_life) {
   // The module is loaded with global symbols. OpenMPI loads components that use symbols of its libraries but are not
@@ -20,4 +20,4 @@ std::unique_ptr<MpiMailbox> open_mpi_mailbox(std::chrono::milliseconds sign_of_l
   return mailbox;
 }
 
-}  // namespace retrace::studies
+}  // namespace retrace::compute

@@ -1,4 +1,4 @@
-#include "studies/sweep/sampling.h"
+#include "compute/sampling/unit_samples.h"
 
 #include <boost/random/sobol.hpp>
 #include <numeric>
@@ -6,7 +6,7 @@
 
 #include "core/random.h"
 
-namespace retrace::studies {
+namespace retrace::compute {
 namespace {
 
 /// Streams of random numbers that are used only in this file.
@@ -97,4 +97,4 @@ std::vector<double> UnitSamples::monte_carlo(std::uint64_t point) const {
   return coordinates;
 }
 
-}  // namespace retrace::studies
+}  // namespace retrace::compute

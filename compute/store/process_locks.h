@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 
-namespace retrace::studies {
+namespace retrace::compute {
 
 /// Locks that show which processes are alive. Each process locks one byte of a common file. The system releases the
 /// lock when the process ends for any reason.
@@ -28,4 +28,4 @@ class ProcessLocks {
   std::int64_t own_ = 0;
 };
 
-}  // namespace retrace::studies
+}  // namespace retrace::compute

@@ -1,4 +1,4 @@
-#include "studies/tolerance/indices.h"
+#include "compute/estimation/sample_statistics.h"
 
 #include <algorithm>
 #include <boost/math/distributions/binomial.hpp>
@@ -8,7 +8,7 @@
 
 #include "core/random.h"
 
-namespace retrace::studies {
+namespace retrace::compute {
 namespace {
 
 /// Stream of random numbers that is used only in this file.
@@ -77,7 +77,7 @@ std::vector<Sums> grouped(const std::vector<SaltelliRow>& rows, double centre) {
   return sums;
 }
 
-Estimate interval_of(double value, std::vector<double>& resampled, double confidence) {
+IntervalEstimate interval_of(double value, std::vector<double>& resampled, double confidence) {
   std::sort(resampled.begin(), resampled.end());
   return {value, percentile(resampled, 0.5 * (1.0 - confidence)), percentile(resampled, 0.5 * (1.0 + confidence))};
 }
@@ -112,7 +112,7 @@ std::vector<SobolIndex> sobol_indices(const std::vector<SaltelliRow>& rows, doub
   return indices;
 }
 
-Estimate yield_of(std::size_t good, std::size_t parts, double confidence) {
+IntervalEstimate yield_of(std::size_t good, std::size_t parts, double confidence) {
   using Binomial = boost::math::binomial_distribution<double>;
   const auto n = static_cast<double>(parts);
   const auto k = static_cast<double>(good);
@@ -145,4 +145,4 @@ double percentile(const std::vector<double>& ascending, double share) {
   return ascending[below] + (place - static_cast<double>(below)) * (ascending[below + 1] - ascending[below]);
 }
 
-}  // namespace retrace::studies
+}  // namespace retrace::compute

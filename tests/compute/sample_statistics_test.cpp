@@ -1,4 +1,4 @@
-#include "studies/tolerance/indices.h"
+#include "compute/estimation/sample_statistics.h"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 #include <numbers>
 #include <vector>
 
-#include "studies/sweep/sampling.h"
+#include "compute/sampling/unit_samples.h"
 
-namespace retrace::studies::indices_test {
+namespace retrace::compute::sample_statistics_test {
 namespace {
 
 using Function = std::function<double(const std::vector<double>&)>;
@@ -40,7 +40,7 @@ double normal(double share) {
   return boost::math::quantile(boost::math::normal_distribution<double>(), share);
 }
 
-void expect_estimate(const Estimate& estimate, double exact, double tolerance) {
+void expect_estimate(const IntervalEstimate& estimate, double exact, double tolerance) {
   EXPECT_NEAR(estimate.value, exact, tolerance);
   EXPECT_LE(estimate.low, estimate.value);
   EXPECT_GE(estimate.high, estimate.value);
@@ -112,7 +112,9 @@ TEST(SobolIndices, IntervalsHoldTheTruthAsOftenAsTheySay) {
   for (int study = 0; study < studies; ++study) {
     const auto seed = static_cast<std::uint32_t>(study + 1);
     const auto indices = sobol_indices(rows_of(f, 2, 200, UnitSamples::Kind::monte_carlo, seed), 0.9, seed);
-    const auto holds = [](const Estimate& e, double exact) { return e.low <= exact && exact <= e.high ? 1 : 0; };
+    const auto holds = [](const IntervalEstimate& e, double exact) {
+      return e.low <= exact && exact <= e.high ? 1 : 0;
+    };
     first += holds(indices[0].first_order, 0.8);
     total += holds(indices[1].total, 0.2);
   }
@@ -145,7 +147,7 @@ TEST(Yield, IntervalsHoldTheTruthAtLeastAsOftenAsTheySay) {
     const boost::math::binomial_distribution<double> outcomes(static_cast<double>(parts), truth);
     double held = 0.0;
     for (std::size_t good = 0; good <= parts; ++good) {
-      const Estimate yield = yield_of(good, parts, 0.95);
+      const IntervalEstimate yield = yield_of(good, parts, 0.95);
       if (yield.low <= truth && truth <= yield.high) held += boost::math::pdf(outcomes, static_cast<double>(good));
     }
     EXPECT_GE(held, 0.95) << truth;
@@ -176,4 +178,4 @@ TEST(Percentile, LiesBetweenNeighbours) {
 }
 
 }  // namespace
-}  // namespace retrace::studies::indices_test
+}  // namespace retrace::compute::sample_statistics_test

@@ -12,7 +12,7 @@
 #include <variant>
 #include <vector>
 
-namespace retrace::studies {
+namespace retrace::compute {
 
 /// Stored value of a parameter: a number, or a text for values of other types.
 using StoredValue = std::variant<double, std::string>;
@@ -88,4 +88,4 @@ class ResultStore {
   std::unique_ptr<Database> database_;
 };
 
-}  // namespace retrace::studies
+}  // namespace retrace::compute

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-namespace retrace::studies {
+namespace retrace::compute {
 
 /// Message from one rank to another.
 struct Letter {
@@ -59,4 +59,4 @@ class MpiMailbox {
 /// \throw OutputError if the module that contains MPI cannot be loaded
 std::unique_ptr<MpiMailbox> open_mpi_mailbox(std::chrono::milliseconds sign_of_life);
 
-}  // namespace retrace::studies
+}  // namespace retrace::compute

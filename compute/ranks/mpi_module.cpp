@@ -12,9 +12,9 @@
 #include <utility>
 #include <vector>
 
-#include "studies/sweep/mpi_mailbox.h"
+#include "compute/ranks/mpi_mailbox.h"
 
-namespace retrace::studies {
+namespace retrace::compute {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -269,9 +269,9 @@ class Mailbox final : public MpiMailbox {
 };
 
 }  // namespace
-}  // namespace retrace::studies
+}  // namespace retrace::compute
 
 extern "C" __attribute__((visibility("default"))) void retrace_mpi_mailbox(
-    std::chrono::milliseconds sign_of_life, std::unique_ptr<retrace::studies::MpiMailbox>& mailbox) {
-  mailbox = std::make_unique<retrace::studies::Mailbox>(sign_of_life);
+    std::chrono::milliseconds sign_of_life, std::unique_ptr<retrace::compute::MpiMailbox>& mailbox) {
+  mailbox = std::make_unique<retrace::compute::Mailbox>(sign_of_life);
 }

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace retrace::studies {
+namespace retrace::compute {
 
 /// Points of the unit cube. The number of a point determines its coordinates, so that any process can compute any
 /// point.
@@ -38,4 +38,4 @@ class UnitSamples {
   std::vector<std::vector<std::uint32_t>> permutations_;
 };
 
-}  // namespace retrace::studies
+}  // namespace retrace::compute

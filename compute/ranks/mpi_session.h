@@ -11,7 +11,7 @@
 #include "core/shared_tasks.h"
 #include "core/warning.h"
 
-namespace retrace::studies {
+namespace retrace::compute {
 
 /// Computation that is distributed over several machines. Rank 0 has the ledger of tasks and deals them out; the other
 /// ranks request tasks when they have none. MPI is used only if mpirun or srun launched the process. Ranks that are
@@ -58,4 +58,4 @@ class MpiSession {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace retrace::studies
+}  // namespace retrace::compute

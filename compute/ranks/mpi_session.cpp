@@ -1,4 +1,4 @@
-#include "studies/sweep/mpi_session.h"
+#include "compute/ranks/mpi_session.h"
 
 #include <fmt/format.h>
 
@@ -15,13 +15,13 @@
 #include <string_view>
 #include <thread>
 
+#include "compute/ranks/mpi_mailbox.h"
 #include "core/error.h"
 #include "core/leading_number.h"
 #include "core/message_text.h"
 #include "core/threads.h"
-#include "studies/sweep/mpi_mailbox.h"
 
-namespace retrace::studies {
+namespace retrace::compute {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -371,4 +371,4 @@ void MpiSession::leave(const std::string& why) {
   state_->mailbox->post(0, Tag::leaving, why);
 }
 
-}  // namespace retrace::studies
+}  // namespace retrace::compute

@@ -6,17 +6,17 @@
 #include <cstdint>
 #include <vector>
 
-namespace retrace::studies {
+namespace retrace::compute {
 
-/// Estimate with a confidence interval.
-struct Estimate {
+/// IntervalEstimate with a confidence interval.
+struct IntervalEstimate {
   double value = 0.0, low = 0.0, high = 0.0;
 };
 
 /// Fractions of a quantity's variance that one parameter causes.
 struct SobolIndex {
-  Estimate first_order;  ///< effect of the parameter alone
-  Estimate total;        ///< effect including interactions with all other parameters
+  IntervalEstimate first_order;  ///< effect of the parameter alone
+  IntervalEstimate total;        ///< effect including interactions with all other parameters
 };
 
 /// Values of a quantity at the points of one row in the design of Saltelli et al. (2010). The points are two
@@ -38,13 +38,13 @@ std::vector<SobolIndex> sobol_indices(const std::vector<SaltelliRow>& rows, doub
 /// \param good number of good parts
 /// \param parts number of all parts
 /// \pre good <= parts, parts > 0
-Estimate yield_of(std::size_t good, std::size_t parts, double confidence);
+IntervalEstimate yield_of(std::size_t good, std::size_t parts, double confidence);
 
 /// Spread (mean, deviation and extremes) of the values of a sample.
 struct Spread {
   double mean = 0.0;
-  Estimate mean_interval;  ///< confidence interval of the mean, from Student's t distribution
-  double deviation = 0.0;  ///< standard deviation; 0 for a single value
+  IntervalEstimate mean_interval;  ///< confidence interval of the mean, from Student's t distribution
+  double deviation = 0.0;          ///< standard deviation; 0 for a single value
   double least = 0.0, most = 0.0;
 };
 /// Returns the spread of values.
@@ -56,4 +56,4 @@ Spread spread_of(const std::vector<double>& values, double confidence);
 /// \pre values is ascending and not empty, 0 <= share <= 1
 double percentile(const std::vector<double>& ascending, double share);
 
-}  // namespace retrace::studies
+}  // namespace retrace::compute

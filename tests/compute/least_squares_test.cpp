@@ -1,4 +1,4 @@
-#include "studies/calibration/estimate.h"
+#include "compute/estimation/least_squares.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 // Least squares against normal equations, and what observations cannot tell.
 
-namespace retrace::studies::estimate_test {
+namespace retrace::compute::least_squares_test {
 namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
@@ -29,7 +29,7 @@ TEST(Estimate, IsThatOfTheNormalEquations) {
     all << a, nuisance;
     const MatrixXd inverse = (all.transpose() * all).inverse();
     const VectorXd expected = inverse * all.transpose() * r;
-    const Estimate found = estimate(a, nuisance, r, 1e6);
+    const LeastSquaresEstimate found = estimate(a, nuisance, r, 1e6);
     EXPECT_EQ(found.told.cols(), 4);
     EXPECT_LT((found.value - expected.head(4)).norm(), 1e-10);
     EXPECT_LT((found.covariance - inverse.topLeftCorner(4, 4)).norm(), 1e-9);
@@ -46,7 +46,7 @@ TEST(Estimate, SaysWhatIsNotTold) {
   MatrixXd nuisance(4, 1);
   nuisance << 0, 0, 2, 2;
   const VectorXd r = a * VectorXd::LinSpaced(4, 3.0, 3.0) + 5.0 * nuisance.col(0);
-  const Estimate found = estimate(a, nuisance, r, 1e6);
+  const LeastSquaresEstimate found = estimate(a, nuisance, r, 1e6);
   EXPECT_EQ(found.told.cols(), 2);
   EXPECT_FALSE(found.is_told(0));
   EXPECT_FALSE(found.is_told(1));
@@ -63,11 +63,11 @@ TEST(Estimate, SaysWhatIsNotTold) {
 
 TEST(Estimate, WhatIsTooUncertainIsNotTold) {
   const MatrixXd a = Eigen::Vector2d(1.0, 1e-3).asDiagonal();
-  const Estimate found = estimate(a, MatrixXd(2, 0), VectorXd::Ones(2), 500.0);
+  const LeastSquaresEstimate found = estimate(a, MatrixXd(2, 0), VectorXd::Ones(2), 500.0);
   EXPECT_TRUE(found.is_told(0));
   EXPECT_FALSE(found.is_told(1));
   EXPECT_EQ(found.value[1], 0.0);
 }
 
 }  // namespace
-}  // namespace retrace::studies::estimate_test
+}  // namespace retrace::compute::least_squares_test

@@ -1,4 +1,4 @@
-#include "studies/store/process_locks.h"
+#include "compute/store/process_locks.h"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -8,7 +8,7 @@
 
 #include "core/error.h"
 
-namespace retrace::studies {
+namespace retrace::compute {
 namespace {
 
 constexpr std::int64_t kMostProcesses = 4096;
@@ -53,4 +53,4 @@ bool ProcessLocks::is_alive(std::int64_t owner) const {
   return ::fcntl(descriptor_, F_OFD_GETLK, &lock) != 0 || lock.l_type != F_UNLCK;
 }
 
-}  // namespace retrace::studies
+}  // namespace retrace::compute
