@@ -190,7 +190,7 @@ std::string code_of(std::string text) {
       k = blank(k, after(mark, k));
     } else if (text[k] == '"' || (text[k] == '\'' && (k == 0 || !is_of_name(text[k - 1])))) {
       std::size_t end = k + 1;
-      while (end < text.size() && text[end] != text[k]) end += text[end] == '\\' ? 2 : 1;
+      while (end < text.size() && text[end] != text[k]) end += text[end] == '\\' ? 2U : 1U;
       k = blank(k, end + 1);
     } else {
       ++k;
