@@ -24,15 +24,7 @@ Json anything_json(const std::vector<std::string>& texts) {
 Json value_json(const Kind& kind, const Value& value) {
   if (std::holds_alternative<Anything>(kind)) return anything_json(std::get<std::vector<std::string>>(value));
   if (std::holds_alternative<Whole>(kind)) return static_cast<std::int64_t>(std::get<double>(value));
-  return std::visit(Overloaded{[](std::monostate) { return Json(); },
-                               [](const Named& named) {
-                                 Json json = Json::object();
-                                 for (const auto& [name, each] : named)
-                                   std::visit([&, &key = name](const auto& v) { json[key] = v; }, each);
-                                 return json;
-                               },
-                               [](const auto& each) { return Json(each); }},
-                    value);
+  return to_json(value);
 }
 
 Json table_json(const Document& document, const Table& table, const std::string& path) {
@@ -60,6 +52,18 @@ std::string toml_value(const Json& value) {
 }
 
 }  // namespace
+
+Json to_json(const Value& value) {
+  return std::visit(Overloaded{[](std::monostate) { return Json(); },
+                               [](const Named& named) {
+                                 Json json = Json::object();
+                                 for (const auto& [name, each] : named)
+                                   std::visit([&, &key = name](const auto& v) { json[key] = v; }, each);
+                                 return json;
+                               },
+                               [](const auto& each) { return Json(each); }},
+                    value);
+}
 
 Json to_json(const Document& document) {
   return table_json(document, document.table(), "");

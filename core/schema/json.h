@@ -9,6 +9,9 @@
 
 namespace retrace::schema {
 
+/// Returns a value as JSON: null if it is not given.
+nlohmann::ordered_json to_json(const Value& value);
+
 /// Returns the keys that are given in a document as JSON, in the order of the format.
 nlohmann::ordered_json to_json(const Document& document);
 

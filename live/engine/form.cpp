@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/number_format.h"
 #include "core/overloaded.h"
+#include "core/schema/json.h"
 #include "core/toml_file.h"
 #include "studies/design/io/design_format.h"
 
@@ -123,18 +124,6 @@ void add_groups(const Table& table, const std::string& path, Json& groups) {
     add_groups(inner, path_in(path, inner.name) + (inner.presence == Presence::list ? "[]" : ""), groups);
 }
 
-Json json_of(const Value& value) {
-  return std::visit(Overloaded{[](std::monostate) { return Json(); },
-                               [](const Named& named) {
-                                 Json json = Json::object();
-                                 for (const auto& [name, each] : named)
-                                   std::visit([&, &key = name](const auto& v) { json[key] = v; }, each);
-                                 return json;
-                               },
-                               [](const auto& v) { return Json(v); }},
-                    value);
-}
-
 class Keys {
  public:
   explicit Keys(const Document& document) : document_(document) {}
@@ -161,7 +150,7 @@ class Keys {
     std::size_t row = 0;
     for (const Row* other = table.rows.data(); other != served; ++other) row += other->key == served->key ? 1U : 0U;
     Json key = {{"path", path}, {"row", row}, {"given", document_.has(path)}};
-    if (Json value = json_of(document_.value(path)); !value.is_null()) key["value"] = std::move(value);
+    if (Json value = to_json(document_.value(path)); !value.is_null()) key["value"] = std::move(value);
     keys_.push_back(std::move(key));
   }
 

@@ -71,10 +71,10 @@ void scatter(const Ray& ray, const Optics& optics, const LocalEvent& local, Lobe
     add(ray, local, *out, result);
 }
 
-/// Returns the Fresnel coefficients of the light that is not diffracted.
-materials::FresnelCoefficients kept(const materials::FresnelCoefficients& f,
-                                    const surface_models::DiffractionMeans& means) {
-  const auto factor = [](double mean) { return std::exp(-0.5 * mean); };
+/// Multiplies each Fresnel coefficient by a function of the mean number of diffractions of its light.
+template <class Factor>
+materials::FresnelCoefficients scaled(const materials::FresnelCoefficients& f,
+                                      const surface_models::DiffractionMeans& means, const Factor& factor) {
   materials::FresnelCoefficients left = f;
   left.r_s *= factor(means.reflected[0]);
   left.r_p *= factor(means.reflected[1]);
@@ -83,19 +83,19 @@ materials::FresnelCoefficients kept(const materials::FresnelCoefficients& f,
   return left;
 }
 
+/// Returns the Fresnel coefficients of the light that is not diffracted.
+materials::FresnelCoefficients kept(const materials::FresnelCoefficients& f,
+                                    const surface_models::DiffractionMeans& means) {
+  return scaled(f, means, [](double mean) { return std::exp(-0.5 * mean); });
+}
+
 /// Returns the Fresnel coefficients of the light that is diffracted at least two times.
 materials::FresnelCoefficients diffracted_again(const materials::FresnelCoefficients& f,
                                                 const surface_models::DiffractionMeans& means) {
   // The factor is the square root of 1 - exp(-x) (1 + x). For small x, a series avoids cancellation.
-  const auto factor = [](double x) {
+  return scaled(f, means, [](double x) {
     return std::sqrt(x < 1e-2 ? x * x * (0.5 - x * (1.0 / 3.0 - 0.125 * x)) : -std::expm1(-x) - x * std::exp(-x));
-  };
-  materials::FresnelCoefficients left = f;
-  left.r_s *= factor(means.reflected[0]);
-  left.r_p *= factor(means.reflected[1]);
-  left.t_s *= factor(means.transmitted[0]);
-  left.t_p *= factor(means.transmitted[1]);
-  return left;
+  });
 }
 
 /// Reduces the number of branches. As long as the smallest power is below `least`, the two smallest branches are

@@ -19,30 +19,14 @@
 #include "studies/compose/io/composition_files.h"
 #include "studies/optimise/io/optimise_reader.h"
 #include "studies/quantity/io/study_reader.h"
+#include "tests/support/analytic_study.h"
 #include "tests/support/refusals.h"
 
 namespace retrace::testing::compose_test {
 namespace {
 
 using namespace studies;
-
-const std::string kFolder = std::string(RETRACE_SOURCE_DIR) + "/examples/studies/";
-
-/// A quantity that is a function of the thickness of the plate and the index behind the facets. It replaces a traced
-/// quantity.
-class Analytic : public Quantity {
- public:
-  using Function = std::function<double(double x, double y)>;
-  Analytic(std::string name, Function f) : Quantity(std::move(name)), f_(std::move(f)) {}
-  std::optional<Measured> measure(const Candidate& candidate, const Cancellation*) const override {
-    return Measured{f_(candidate.design().part().thickness_mm, candidate.design().substance.back_index), 0.0};
-  }
-
- private:
-  Function f_;
-};
-
-using Functions = std::vector<std::pair<std::string, Analytic::Function>>;
+using test::Analytic, test::analytic_study, test::Functions, test::kIntervals;
 
 /// Returns a function of the center x and the sharpness y of a lobe: the value of the lobe at the given point. The lobe
 /// is narrower and higher for larger y.
@@ -50,19 +34,6 @@ Analytic::Function lobe_at(double point) {
   return [point](double x, double y) { return y * std::exp(-std::pow(y * (x - point), 2.0)); };
 }
 const Functions kThreePoints = {{"g.1", lobe_at(0.8)}, {"g.2", lobe_at(1.6)}, {"g.3", lobe_at(2.7)}};
-
-constexpr const char* kIntervals =
-    "[[parameter]]\nkey = \"body.thickness_mm\"\nname = \"x\"\nfrom = 0.5\nto = 3\n"
-    "[[parameter]]\nkey = \"body.back_index\"\nname = \"y\"\nfrom = 1\nto = 3\n";
-
-Study analytic_study(const std::string& keys, const Functions& functions, const std::string& parameters = kIntervals) {
-  std::string text = "design = \"../rtp_brick_1mm.toml\"\n" + parameters;
-  for (const auto& [name, f] : functions) text += "[[quantity]]\nkind = \"elements_full\"\nname = \"" + name + "\"\n";
-  Study study = parse_study(text + keys, kFolder + "study.toml");
-  study.quantities.clear();
-  for (const auto& [name, f] : functions) study.quantities.push_back(std::make_shared<Analytic>(name, f));
-  return study;
-}
 
 struct Composed {
   Study study;

@@ -14,41 +14,13 @@
 #include "studies/optimise/io/optimise_reader.h"
 #include "studies/optimise/io/optimum_files.h"
 #include "studies/quantity/io/study_reader.h"
+#include "tests/support/analytic_study.h"
 #include "tests/support/refusals.h"
 
 namespace retrace::studies::optimise_test {
 namespace {
 
-const std::string kFolder = std::string(RETRACE_SOURCE_DIR) + "/examples/studies/";
-
-/// A quantity that is a function of the thickness of the plate and the index behind the facets. It replaces a traced
-/// quantity.
-class Analytic : public Quantity {
- public:
-  using Function = std::function<double(double x, double y)>;
-  Analytic(std::string name, Function f) : Quantity(std::move(name)), f_(std::move(f)) {}
-  std::optional<Measured> measure(const Candidate& candidate, const Cancellation*) const override {
-    return Measured{f_(candidate.design().part().thickness_mm, candidate.design().substance.back_index), 0.0};
-  }
-
- private:
-  Function f_;
-};
-
-/// Returns a study with the parameters x, the thickness, from 0.5 to 3, and y, the index behind the facets, from 1 to
-/// 3.
-/// \param keys keys of the optimization
-Study analytic_study(const std::string& keys,
-                     const std::vector<std::pair<std::string, Analytic::Function>>& functions) {
-  std::string text =
-      "design = \"../rtp_brick_1mm.toml\"\n[[parameter]]\nkey = \"body.thickness_mm\"\nfrom = 0.5\nto = 3\n"
-      "[[parameter]]\nkey = \"body.back_index\"\nfrom = 1\nto = 3\n";
-  for (const auto& [name, f] : functions) text += "[[quantity]]\nkind = \"elements_full\"\nname = \"" + name + "\"\n";
-  Study study = parse_study(text + keys, kFolder + "study.toml");
-  study.quantities.clear();
-  for (const auto& [name, f] : functions) study.quantities.push_back(std::make_shared<Analytic>(name, f));
-  return study;
-}
+using test::Analytic, test::analytic_study, test::kStudies;
 
 Optimum optimum_of(const Study& study) {
   compute::ResultStore store("", optimise_layout(study), compute::IfExists::refuse);
@@ -124,7 +96,7 @@ TEST(Optimise, SlopesServeWhereThereAreAny) {
   Study study = parse_study(
       "design = \"../rtp_brick_1mm.toml\"\n[[parameter]]\nkey = \"body.thickness_mm\"\nfrom = 0.5\nto = 3\n"
       "[[quantity]]\nkind = \"elements_full\"\nname = \"f\"\n[optimize]\nmaximize = \"f\"\nscan = 4\n",
-      kFolder + "study.toml");
+      kStudies + "study.toml");
   constexpr double top_mm = 1.2345678;
   const auto f = [](double x) { return 1.0 - std::pow(x - top_mm, 2); };
   const auto quantity = std::make_shared<WithSlope>(f, [](double x) { return -2.0 * (x - top_mm); });
@@ -150,7 +122,7 @@ TEST(Optimise, SlopesOfTheExactEngineServe) {
   const Study study = parse_study(
       "design = \"../rtp_brick_1mm.toml\"\n[[parameter]]\nkey = \"body.refractive_index\"\nfrom = 1.45\nto = 1.6\n"
       "[[quantity]]\nkind = \"rre\"\n[analysis]\nengine = \"exact\"\n[optimize]\nmaximize = \"rre\"\nscan = 3\n",
-      kFolder + "study.toml");
+      kStudies + "study.toml");
   const Optimum optimum = optimum_of(study);
   ASSERT_TRUE(optimum.best.has_value());
   EXPECT_EQ(optimum.method, "exact slopes");
@@ -196,7 +168,7 @@ TEST(Optimise, DiscreteAndContinuousTogether) {
       "design = \"../rtp_brick_1mm.toml\"\n[[parameter]]\nkey = \"body.thickness_mm\"\nvalues = [1, 2, 3]\n"
       "[[parameter]]\nkey = \"body.back_index\"\nfrom = 1\nto = 3\n"
       "[[quantity]]\nkind = \"elements_full\"\nname = \"f\"\n[optimize]\nmaximize = \"f\"\n",
-      kFolder + "study.toml");
+      kStudies + "study.toml");
   study.quantities = {std::make_shared<Analytic>(
       "f", [](double x, double y) { return -std::pow(x - 2.2, 2) - std::pow(y - 0.5 * x - 0.3, 2); })};
   const Optimum optimum = optimum_of(study);
@@ -258,7 +230,7 @@ TEST(Optimise, IsTheSameWhateverAKilledRunLeft) {
 
 /// This is the example study with fewer sizes below the smallest size that the tool can cut.
 TEST(Optimise, TheSmallestPrismThatTheToolCutsIsChosenAndTheSingleOneRejectedByTheLens) {
-  const Study whole = read_study(kFolder + "element_size.toml", std::vector<std::string>{});
+  const Study whole = read_study(kStudies + "element_size.toml", std::vector<std::string>{});
   Study study = whole;
   study.parameters[0].interval->from = 0.8;
   OptimiseRequest request = read_optimise(study);
@@ -282,7 +254,7 @@ TEST(Optimise, TheSmallestPrismThatTheToolCutsIsChosenAndTheSingleOneRejectedByT
 }
 
 TEST(Optimise, AKeyThatIsACurveHasNoBand) {
-  Study study = read_study(kFolder + "element_size.toml",
+  Study study = read_study(kStudies + "element_size.toml",
                            std::vector<std::string>{"body.absorption_per_mm=[[400, 0], [700, 0]]"});
   study.parameters[0].interval->from = 0.8;
   OptimiseRequest request = read_optimise(study);
