@@ -19,7 +19,7 @@ namespace retrace::fabrication {
 namespace {
 
 void check_tilt(const Job& job, const Machine& machine) {
-  const bool is_dmc = job.strategy == Strategy::dmc;
+  const bool is_dmc = !cuts_prisms(job);
   if (is_dmc == (machine.tilt == Tilt::head)) return;
   throw InputError(
       job.where("machine"),
@@ -114,7 +114,7 @@ bool has_finishing_cuts(const Job& job) {
 void check_on_machine(const Job& job, const Machine& machine) {
   check_tilt(job, machine);
   check_increments(job, machine);
-  if (job.strategy == Strategy::dmc)
+  if (!cuts_prisms(job))
     for (std::size_t zone = 0; zone < zone_count(job); ++zone) check_fins(job, machine, blank_corner(job, zone));
   const Process& p = job.process;
   if (has_finishing_cuts(job) && p.finishing_depth_um > p.roughing_depth_um)

@@ -19,6 +19,10 @@ InputLocation Job::where(std::string_view key) const {
   return document ? document->where(key) : InputLocation{source, 0, std::string(key)};
 }
 
+bool cuts_prisms(const Job& job) {
+  return std::holds_alternative<geometry::RtpElement>(job.element);
+}
+
 const geometry::RtpElement& prism_of(const Job& job) {
   const auto* const prism = std::get_if<geometry::RtpElement>(&job.element);
   if (prism == nullptr) throw InputError(job.where("element.kind"), "must be \"rtp\" for this");

@@ -164,6 +164,10 @@ struct CutElement {
   std::size_t zone = 0;  ///< index of the zone in the job; 0 without zones
 };
 
+/// Returns true if the job cuts prisms with a chisel. Otherwise, it cuts cube corners with a V-shaped tool (strategy
+/// `dmc`).
+bool cuts_prisms(const Job& job);
+
 /// Returns the prism that a job cuts.
 /// \throw InputError if the job cuts cube corners
 const geometry::RtpElement& prism_of(const Job& job);

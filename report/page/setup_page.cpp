@@ -110,7 +110,7 @@ PageSection blank_section(const FabricationResult& result, const SetupSheet& she
 
 /// Returns the steps for mounting and checking the tool, a chisel or a V-shaped diamond.
 std::vector<std::string> tool_steps(const FabricationResult& result, const SetupSheet& sheet) {
-  const bool is_dmc = result.job.strategy == Strategy::dmc;
+  const bool is_dmc = !cuts_prisms(result.job);
   std::vector<std::string> steps;
   steps.push_back(fmt::format(
       "Mount the diamond so that its clearance face stands {} degrees off the facet that it cuts: looked at "
@@ -134,7 +134,7 @@ std::vector<std::string> tool_steps(const FabricationResult& result, const Setup
 PageSection tool_section(const FabricationResult& result, const SetupSheet& sheet) {
   const Tool& tool = result.job.tool;
   PageSection s = section("tool", "2. Tool");
-  const bool is_dmc = result.job.strategy == Strategy::dmc;
+  const bool is_dmc = !cuts_prisms(result.job);
   s.facts = {{is_dmc ? "V, width across its edges" : "Chisel, width of its edge", mm(tool.width_mm)},
              {"Wedge", shortest(tool.wedge_deg) + " degrees"},
              {"Clearance as mounted", shortest(tool.clearance_deg) + " degrees"},
@@ -153,7 +153,7 @@ PageSection tool_section(const FabricationResult& result, const SetupSheet& shee
 }
 
 PageSection zero_section(const FabricationResult& result, const SetupSheet& sheet) {
-  const bool is_dmc = result.job.strategy == Strategy::dmc;
+  const bool is_dmc = !cuts_prisms(result.job);
   PageSection s = section("zero", "3. Zero");
   s.paragraphs.push_back(fmt::format(
       "The work zero is the centre of the array on the face of the blank{}, at {}0 C0. The tool reference point is {}.",

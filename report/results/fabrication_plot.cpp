@@ -29,7 +29,7 @@ Polygon rectangle(const Vec2& low, const Vec2& high) {
 /// Returns the size of the section in which the tool path is drawn: half of its width, and its full height. The width
 /// is measured at the face of the blank.
 std::pair<double, double> section_of(const fabrication::Job& job) {
-  if (job.strategy != fabrication::Strategy::dmc) {
+  if (cuts_prisms(job)) {
     const geometry::RtpElement prism = fabrication::blank_prism(job);
     return {0.5 * prism.base_mm, fabrication::root_depth_mm(prism)};
   }
@@ -76,7 +76,7 @@ PathPlot tool_path_plot(const studies::FabricationResult& result, bool roughing)
                                   .elements = result.plan.elements.size(),
                                   .is_roughing = roughing,
                                   .is_layered = result.job.strategy == fabrication::Strategy::bidirectional,
-                                  .is_cube_corner = result.job.strategy == fabrication::Strategy::dmc});
+                                  .is_cube_corner = !cuts_prisms(result.job)});
   plot.material = {{-2.0 * half_mm, -0.25 * depth_mm},
                    {2.0 * half_mm, -0.25 * depth_mm},
                    {2.0 * half_mm, depth_mm},

@@ -69,7 +69,7 @@ class DesignSurface {
     const auto element = map_.at(x_mm, y_mm);
     if (!element) return {0, 0, true};
     Region region{*element, 0, false};
-    for (std::size_t f = 1; f < grooves_[*element].facets.size(); ++f)
+    for (std::size_t f = 1; f < common(grooves_[*element]).facets.size(); ++f)
       if (z_of(*element, f, x_mm, y_mm) > z_of(*element, region.facet, x_mm, y_mm)) region.facet = f;
     return region;
   }
@@ -85,9 +85,11 @@ class DesignSurface {
       if (!lies_in(middle, p.x() + off.x(), p.y() + off.y())) return std::nullopt;
     return middle;
   }
-  Vec3 normal(const Region& r) const { return r.is_face ? Vec3::UnitZ() : grooves_[r.element].facets[r.facet].normal; }
+  Vec3 normal(const Region& r) const {
+    return r.is_face ? Vec3::UnitZ() : common(grooves_[r.element]).facets[r.facet].normal;
+  }
   double height_mm(const Region& r, const Vec3& p) const {
-    return r.is_face ? p.z() : grooves_[r.element].facets[r.facet].height_mm(p);
+    return r.is_face ? p.z() : common(grooves_[r.element]).facets[r.facet].height_mm(p);
   }
   const std::vector<Groove>& grooves() const { return grooves_; }
 
@@ -96,16 +98,16 @@ class DesignSurface {
   /// follows from the dimensions of the element.
   bool lies_in(const Region& r, double x_mm, double y_mm) const {
     if (r.is_face) return !map_.at(x_mm, y_mm);
-    const Groove& groove = grooves_[r.element];
-    if (groove.is_cube() || groove.axis != Vec3::UnitZ()) return region(x_mm, y_mm) == r;
-    const Vec2 from_root(x_mm - groove.root_mm.x(), y_mm - groove.root_mm.y());
-    const Vec2 along = groove.root_direction.head<2>();
-    const Vec2 outward = groove.facets[r.facet].up_slope.head<2>().normalized();
+    const auto* const prism = std::get_if<PrismGroove>(&grooves_[r.element]);
+    if (prism == nullptr || prism->axis != Vec3::UnitZ()) return region(x_mm, y_mm) == r;
+    const Vec2 from_root(x_mm - prism->root_mm.x(), y_mm - prism->root_mm.y());
+    const Vec2 along = prism->root_direction.head<2>();
+    const Vec2 outward = prism->facets[r.facet].up_slope.head<2>().normalized();
     const double across = from_root.dot(outward);
-    return across >= 0.0 && across <= groove.half_base_mm && std::abs(from_root.dot(along)) <= groove.half_width_mm;
+    return across >= 0.0 && across <= prism->half_base_mm && std::abs(from_root.dot(along)) <= prism->half_width_mm;
   }
   double z_of(std::size_t element, std::size_t facet, double x_mm, double y_mm) const {
-    const DesignFacet& f = grooves_[element].facets[facet];
+    const DesignFacet& f = common(grooves_[element]).facets[facet];
     return (f.offset_mm - f.normal.x() * x_mm - f.normal.y() * y_mm) / f.normal.z();
   }
 
@@ -158,9 +160,9 @@ class Registration {
         coarse_(thinned(points_, kCoarsePoints)),
         fine_(thinned(points_, kFinePoints)) {
     const Groove& groove = surface.grooves().front();
-    margin_mm_ = std::max(kMargin * groove.facet_length_mm,
+    margin_mm_ = std::max(kMargin * common(groove).facet_length_mm,
                           kMarginPixels * 1e-3 * std::max(map.heights.x_pixel_um, map.heights.y_pixel_um));
-    reach_mm_ = std::max(groove.half_base_mm, groove.half_width_mm);
+    reach_mm_ = half_size_mm(groove);
     if (points_.size() < 3 * kLeastPoints)
       throw InputError({map.file, 0, ""}, fmt::format("must have at least {} points with a height, got {}",
                                                       3 * kLeastPoints, points_.size()));
@@ -177,7 +179,7 @@ class Registration {
     }
     refine(best, true);
     least = off_mm(best);
-    const double most = kMostOff * surface_.grooves().front().depth_mm;
+    const double most = kMostOff * common(surface_.grooves().front()).depth_mm;
     if (!(least < most))
       throw InputError(
           {map.file, 0, ""},
@@ -416,10 +418,9 @@ RegisteredMap registered(const FacetMap& map, const FabricationResult& plan) {
       continue;
     }
     elements.insert(region->element);
-    const Groove& groove = grooves[region->element];
-    const Vec3 from_root = at - groove.root_mm;
-    by_region[*region].emplace_back(groove.facets[region->facet].up_slope.dot(from_root),
-                                    groove.level_of(region->facet).dot(from_root), height);
+    const DesignFacet& facet = common(grooves[region->element]).facets[region->facet];
+    const Vec3 from_root = at - common(grooves[region->element]).root_mm;
+    by_region[*region].emplace_back(facet.up_slope.dot(from_root), facet.along.dot(from_root), height);
   }
   if (count > 0) result.rms_nm = kNmPerMm * std::sqrt(sum / static_cast<double>(count));
   const std::map<FacetPlace, EdgeView> views = edge_views(plan, {elements.begin(), elements.end()});
@@ -434,12 +435,11 @@ RegisteredMap registered(const FacetMap& map, const FabricationResult& plan) {
     }
     const auto view = views.find({region.element, region.facet});
     if (view == views.end()) continue;
-    const Groove& groove = grooves[region.element];
-    const auto pitch = [&, facet = region.facet](Eigen::Index axis) {
+    const DesignFacet& facet = common(grooves[region.element]).facets[region.facet];
+    const auto pitch = [&](Eigen::Index axis) {
       // Direction along the edge (axis 0) or along its motion (axis 1).
       return pitch_mm(map, result.part_from_map,
-                      view->second.of_up[axis] * groove.facets[facet].up_slope +
-                          view->second.of_along[axis] * groove.level_of(facet));
+                      view->second.of_up[axis] * facet.up_slope + view->second.of_along[axis] * facet.along);
     };
     FacetRest rest;
     rest.at = {region.element, region.facet};

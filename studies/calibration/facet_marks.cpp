@@ -122,9 +122,9 @@ std::map<FacetPlace, EdgeView> edge_views(const FabricationResult& plan, const s
   std::map<FacetPlace, EdgeView> views;
   for (const FacetEdgeCut& made : facet_edge_cuts(plan.job, plan.plan, elements)) {
     if (!made.ends_at_root && !made.is_ploughed) continue;
-    const Groove& groove = grooves[made.element];
+    const DesignElement& groove = common(grooves[made.element]);
     const Vec3& up = groove.facets[made.facet].up_slope;
-    const Vec3 level = groove.level_of(made.facet);
+    const Vec3& level = groove.facets[made.facet].along;
     const EdgeCut& cut = made.cut;
     const RigidMotion back = machine_from_workpiece(plan.machine, rotary_pose(plan.machine, cut.at)).inverse();
     const Vec3 middle = back.point(machine_point(plan.machine, cut.at) + edge_frame(plan.machine) * cut.tip_mm);

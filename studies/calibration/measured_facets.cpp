@@ -62,15 +62,15 @@ std::string CutPart::fault_of(const Measurement& m) const {
     if (!place) continue;
     if (place->element >= grooves_.size())
       return fmt::format("the job cuts elements 0 to {}, got {}", grooves_.size() - 1, place->element);
-    const std::size_t facets = grooves_[place->element].facets.size();
+    const std::size_t facets = common(grooves_[place->element]).facets.size();
     if (place->facet >= facets)
       return fmt::format("its elements have facets 1 to {}, got {}", facets, place->facet + 1);
     if (!cuts_.contains({place->element, place->facet})) return fmt::format("element {} is not cut", place->element);
   }
   if (m.what == FacetQuantity::angle) {
     if (!m.from) return "an angle is one with another facet: from_element and from_facet must be given";
-    const Vec3& a = grooves_[m.at.element].facets[m.at.facet].normal;
-    const Vec3& b = grooves_[m.from->element].facets[m.from->facet].normal;
+    const Vec3& a = common(grooves_[m.at.element]).facets[m.at.facet].normal;
+    const Vec3& b = common(grooves_[m.from->element]).facets[m.from->facet].normal;
     if (a.cross(b).norm() < kParallel) return "facets that are parallel include no angle";
   }
   if (m.what == FacetQuantity::end && m.from)
@@ -83,7 +83,8 @@ std::string CutPart::positive_sense(const Measurement& m) const {
   switch (m.what) {
     case FacetQuantity::distance: return "material is left";
     case FacetQuantity::up: return "rises away from the root";
-    case FacetQuantity::along: return "rises towards " + direction_text(grooves_[m.at.element].level_of(m.at.facet));
+    case FacetQuantity::along:
+      return "rises towards " + direction_text(common(grooves_[m.at.element]).facets[m.at.facet].along);
     case FacetQuantity::angle: return "opens the groove";
     case FacetQuantity::depth: return "deeper";
     case FacetQuantity::end: break;
@@ -94,7 +95,7 @@ std::string CutPart::positive_sense(const Measurement& m) const {
 CutPart::MadeFacet CutPart::made(const FacetPlace& at, const Machine& real, const PartPose& pose) const {
   const Groove& groove = grooves_[at.element];
   MadeFacet facet{&groove, at.facet, {}};
-  facet.plane = cut_plane(real, cuts_.at({at.element, at.facet}), groove.facets[at.facet].normal);
+  facet.plane = cut_plane(real, cuts_.at({at.element, at.facet}), facet.design().normal);
   const Eigen::Matrix3d rotation = pose.rotation();
   facet.plane.point_mm = kMmPerUm * pose.shift_um + rotation * facet.plane.point_mm;
   facet.plane.normal = rotation * facet.plane.normal;
@@ -102,7 +103,7 @@ CutPart::MadeFacet CutPart::made(const FacetPlace& at, const Machine& real, cons
 }
 
 double CutPart::depth_nm(const FacetPlace& at, const Machine& real, const PartPose& pose) const {
-  const Groove& groove = grooves_[at.element];
+  const DesignElement& groove = common(grooves_[at.element]);
   const auto facets = static_cast<Eigen::Index>(groove.facets.size());
   Eigen::MatrixXd normals(facets, 3);
   Eigen::VectorXd heights(facets);
@@ -116,7 +117,7 @@ double CutPart::depth_nm(const FacetPlace& at, const Machine& real, const PartPo
 }
 
 double CutPart::end_nm(const Measurement& m, const Machine& real) const {
-  const std::size_t facets = grooves_[m.at.element].facets.size();
+  const std::size_t facets = common(grooves_[m.at.element]).facets.size();
   const MadeFacet other = made({m.at.element, (m.at.facet + 1) % facets}, real, {});
   const EdgeCut& cut = cuts_.at({m.at.element, m.at.facet});
   const RigidMotion back = machine_from_workpiece(real, rotary_pose(real, cut.at)).inverse();
@@ -130,13 +131,13 @@ double CutPart::of_one(const Measurement& m, const FacetPlace& at, const Machine
   const MadeFacet facet = made(at, real, pose);
   switch (m.what) {
     case FacetQuantity::distance: {
-      const Vec3 place = m.place_mm ? Vec3(facet.groove->root_mm + m.place_mm->x() * facet.design().up_slope +
-                                           m.place_mm->y() * facet.groove->level_of(at.facet))
-                                    : facet.groove->facet_middle(at.facet);
+      const Vec3 place = m.place_mm ? Vec3(common(*facet.groove).root_mm + m.place_mm->x() * facet.design().up_slope +
+                                           m.place_mm->y() * facet.design().along)
+                                    : facet_middle(*facet.groove, at.facet);
       return kNmPerMm * facet.height_mm(place);
     }
     case FacetQuantity::up: return kArcsecPerRad * facet.rise(facet.design().up_slope);
-    case FacetQuantity::along: return kArcsecPerRad * facet.rise(facet.groove->level_of(at.facet));
+    case FacetQuantity::along: return kArcsecPerRad * facet.rise(facet.design().along);
     case FacetQuantity::angle: {
       const MadeFacet other = made(*m.from, real, pose);
       return kArcsecPerRad * (included_rad(facet.plane.normal, other.plane.normal) -

@@ -105,7 +105,7 @@ class CutPart {
     std::size_t facet = 0;
     fabrication::CutPlane plane;
 
-    const fabrication::DesignFacet& design() const { return groove->facets[facet]; }
+    const fabrication::DesignFacet& design() const { return common(*groove).facets[facet]; }
     double height_mm(const geometry::Vec3& at) const { return plane.height_mm(at, design().normal); }
     double rise(const geometry::Vec3& along) const {
       return -plane.normal.dot(along) / plane.normal.dot(design().normal);

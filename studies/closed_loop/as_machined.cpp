@@ -127,16 +127,15 @@ Unlikeness unlikeness_of(const VerificationRun& run, const std::vector<double>& 
 }
 
 /// Returns the planes that verification fitted to an element's facets.
-ElementCutPlanes fitted_planes(const Groove& groove, const ElementFigures& figures) {
+ElementCutPlanes fitted_planes(const DesignElement& groove, const ElementFigures& figures) {
   ElementCutPlanes planes;
   for (std::size_t f = 0; f < figures.facets.size(); ++f) {
     const FacetFigures& facet = figures.facets[f];
     const DesignFacet& design = groove.facets[f];
-    const Vec3 level = groove.level_of(f);
     CutPlane plane;
-    plane.point_mm = groove.root_mm + facet.mean_up_mm * design.up_slope + facet.mean_along_mm * level +
+    plane.point_mm = groove.root_mm + facet.mean_up_mm * design.up_slope + facet.mean_along_mm * design.along +
                      1e-6 * facet.mean_nm * design.normal;
-    plane.normal = (design.normal - facet.slope_up * design.up_slope - facet.slope_along * level).normalized();
+    plane.normal = (design.normal - facet.slope_up * design.up_slope - facet.slope_along * design.along).normalized();
     planes.push_back(plane);
   }
   return planes;
@@ -146,7 +145,8 @@ geometry::FacetPlanes facet_planes_of(const VerificationRun& run) {
   const std::vector<Groove> grooves = designed_grooves(run.job);
   std::vector<ElementCutPlanes> planes(grooves.size());
   for (std::size_t i = 0; i < grooves.size(); ++i)
-    if (run.result.elements[i].figures.is_cut) planes[i] = fitted_planes(grooves[i], run.result.elements[i].figures);
+    if (run.result.elements[i].figures.is_cut)
+      planes[i] = fitted_planes(common(grooves[i]), run.result.elements[i].figures);
   return part_planes(run.job, planes);
 }
 

@@ -37,7 +37,7 @@ geometry::Vec2 in_section(const FabricationResult& result, const fabrication::Cu
   const Vec3 tip = fabrication::forward(result.machine, axes).reference_mm;
   const Vec3 root(0.0, 0.0, -geometry::element_depth_mm(fabrication::blank_element(result.job, element.zone)));
   const Vec3 from_root = element.turn.transpose() * (tip - element.foot_mm) - root;
-  if (result.job.strategy == fabrication::Strategy::dmc) {
+  if (!cuts_prisms(result.job)) {
     const fabrication::CubeCorner corner = fabrication::blank_corner(result.job, element.zone, element.rotated);
     const auto& [first, second, third] = corner.edges;
     return {(second - first).normalized().dot(from_root), (second + first).normalized().dot(from_root)};
@@ -65,7 +65,7 @@ FabricationResult fabricate(const std::filesystem::path& job, const FabricationR
 }
 
 std::vector<SectionMove> section_moves(const FabricationResult& result, bool roughing) {
-  const bool is_dmc = result.job.strategy == fabrication::Strategy::dmc;
+  const bool is_dmc = !cuts_prisms(result.job);
   // Subroutines are identified by their titles, because each program has its own numbers for the subroutines that it
   // calls.
   std::set<std::string> wanted;

@@ -265,7 +265,7 @@ fabrication::Tool tool_of(const Job& job, const JobRequest& request) {
   fabrication::Tool tool;
   tool.width_mm = request.tool_width_mm;
   const Field at{"tool_width_mm"};
-  if (job.strategy == fabrication::Strategy::dmc) {
+  if (!cuts_prisms(job)) {
     tool.wedge_deg = fabrication::kDmcWedgeDeg;
     for (std::size_t zone = 0; zone < fabrication::zone_count(job); ++zone)
       fabrication::check_v_tool(fabrication::blank_element(job, zone), fabrication::angle_errors_of(job, zone), tool,
@@ -327,7 +327,7 @@ MadeJob make_job(const Design& design, const JobRequest& request) {
     job.array.pattern = geometry::mask_pattern(design.mask()->file, design.mask()->threshold,
                                                geometry::prism_block(job.array, fabrication::prism_of(job)).counts,
                                                design.where("array.mask"));
-  if (job.strategy == fabrication::Strategy::dmc && request.workpiece != fabrication::kWorkpieceWords[0])
+  if (!cuts_prisms(job) && request.workpiece != fabrication::kWorkpieceWords[0])
     throw InputError(Field{"workpiece"},
                      "must be mould for cube corners, because the cavities differ from the elements, got " +
                          in_quotes(request.workpiece));

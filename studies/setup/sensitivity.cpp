@@ -40,7 +40,7 @@ class PlacedCut {
 
   const FacetEdgeCut& cut() const { return *cut_; }
   const Groove& groove() const { return *groove_; }
-  const DesignFacet& design() const { return groove_->facets[cut_->facet]; }
+  const DesignFacet& design() const { return common(*groove_).facets[cut_->facet]; }
 
  private:
   const Machine* machine_;
@@ -50,14 +50,14 @@ class PlacedCut {
 };
 
 FacetEffect effect_of(const PlacedCut& placed, const PlaneChange& change) {
-  const Vec3 middle = placed.groove().facet_middle(placed.cut().facet);
+  const Vec3 middle = facet_middle(placed.groove(), placed.cut().facet);
   FacetEffect effect;
   const double at_middle = placed.height_mm(change, middle);
   const auto slope = [&](const Vec3& along) { return placed.height_mm(change, middle + along) - at_middle; };
   effect.distance_nm = kNmPerMm * at_middle;
   effect.up_arcmin = kArcminPerRad * slope(placed.design().up_slope);
-  effect.along_arcmin = kArcminPerRad * slope(placed.groove().level_of(placed.cut().facet));
-  for (const Vec3& corner : placed.groove().facet_corners(placed.cut().facet)) {
+  effect.along_arcmin = kArcminPerRad * slope(placed.design().along);
+  for (const Vec3& corner : facet_corners(placed.groove(), placed.cut().facet)) {
     const double nm = kNmPerMm * placed.height_mm(change, corner);
     if (std::abs(nm) > std::abs(effect.farthest_nm)) effect.farthest_nm = nm;
   }
@@ -73,7 +73,7 @@ double chip_change_nm(const std::vector<PlacedCut>& cuts, const SetupQuantity& q
   double most = 0.0;
   std::optional<double> before;
   for (const PlacedCut& placed : cuts) {
-    const Vec3 middle = placed.groove().facet_middle(placed.cut().facet);
+    const Vec3 middle = facet_middle(placed.groove(), placed.cut().facet);
     const double height = placed.height_mm(placed.change(quantity), middle);
     if (before) most = std::max(most, std::abs(*before - height));
     before = height;
@@ -114,7 +114,7 @@ void tell_root(const Machine& machine, const PlacedCut& ending, const PlacedCut&
 /// \param planned machine for which the axis positions were planned
 std::vector<Vec3> wall_places(const Machine& machine, const Machine& planned, const PlacedCut& ending,
                               double half_width_mm) {
-  const Groove& groove = ending.groove();
+  const DesignElement& groove = common(ending.groove());
   EdgeCut cut = ending.cut().cut;
   const RigidMotion motion = machine_from_workpiece(planned, rotary_pose(planned, cut.at));
   const AxisPositions at_root = cut.at;
@@ -139,7 +139,7 @@ void tell_walls(const Machine& machine, const PlacedCut& ending, double half_wid
   const std::vector<Vec3> before = wall_places(machine, machine, ending, half_width_mm);
   const std::vector<Vec3> after = wall_places(with_error(machine, quantity, 1.0), machine, ending, half_width_mm);
   for (std::size_t k = 0; k < before.size(); ++k)
-    row.wall_nm = std::max(row.wall_nm, kNmPerMm * std::abs(ending.groove().root_direction.dot(after[k] - before[k])));
+    row.wall_nm = std::max(row.wall_nm, kNmPerMm * std::abs(ending.design().along.dot(after[k] - before[k])));
 }
 
 /// Returns the effects of one set-up quantity.
@@ -163,7 +163,7 @@ Sensitivity row_of(const Machine& machine, double half_width_mm, const SetupQuan
     row.chip_nm = std::max(row.chip_nm, chip_change_nm(list, quantity));
     if (!list.back().cut().ends_at_root) continue;
     tell_walls(machine, list.back(), half_width_mm, quantity, row);
-    for (std::size_t other = 0; other < list.back().groove().facets.size(); ++other)
+    for (std::size_t other = 0; other < common(list.back().groove()).facets.size(); ++other)
       if (const auto found = cuts.find({element, other}); other != facet && found != cuts.end())
         tell_root(machine, list.back(), found->second.back(), half_width_mm, quantity, row);
   }

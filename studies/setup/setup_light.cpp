@@ -54,7 +54,7 @@ class LastCuts {
   LastCuts(const Job& job, const Machine& machine) : grooves_(designed_grooves(job)) {
     cuts_.resize(grooves_.size());
     const Plan plan = make_plan(job, machine);
-    for (std::size_t i = 0; i < grooves_.size(); ++i) cuts_[i].resize(grooves_[i].facets.size());
+    for (std::size_t i = 0; i < grooves_.size(); ++i) cuts_[i].resize(common(grooves_[i]).facets.size());
     for (const FacetEdgeCut& cut : facet_edge_cuts(job, plan))
       if (cut.ends_at_root || cut.is_ploughed) take(machine, cut);
   }
@@ -63,7 +63,7 @@ class LastCuts {
     std::vector<ElementCutPlanes> elements(cuts_.size());
     for (std::size_t i = 0; i < cuts_.size(); ++i)
       for (std::size_t f = 0; f < cuts_[i].size(); ++f)
-        elements[i].push_back(cut_plane(machine, cuts_[i][f]->cut, grooves_[i].facets[f].normal));
+        elements[i].push_back(cut_plane(machine, cuts_[i][f]->cut, common(grooves_[i]).facets[f].normal));
     return elements;
   }
   std::size_t size() const { return cuts_.size(); }
@@ -71,9 +71,9 @@ class LastCuts {
  private:
   void take(const Machine& machine, const FacetEdgeCut& cut) {
     std::optional<FacetEdgeCut>& known = cuts_[cut.element][cut.facet];
-    const Groove& groove = grooves_[cut.element];
+    const DesignElement& design = common(grooves_[cut.element]);
     const auto off_middle = [&](const FacetEdgeCut& c) {
-      return std::abs(groove.along_mm(forward(machine, c.cut.at).reference_mm));
+      return std::abs(design.facets[cut.facet].along.dot(forward(machine, c.cut.at).reference_mm - design.root_mm));
     };
     if (!known || cut.stage != known->stage || off_middle(cut) < off_middle(*known)) known = cut;
   }

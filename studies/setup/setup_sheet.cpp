@@ -92,7 +92,7 @@ ToolSetup tool_of(const FabricationResult& result) {
   if (const auto low = end_of_bodies(result.machine, Carrier::tool, false); low && *low > 0.0)
     tool.free_length_mm = low;
   tool.plunge_rake_deg = plunge_angles(result.job.tool).rake_deg;
-  if (result.job.strategy != Strategy::dmc) tool.plough_rake_deg = plough_angles(result.job.tool).rake_deg;
+  if (cuts_prisms(result.job)) tool.plough_rake_deg = plough_angles(result.job.tool).rake_deg;
   return tool;
 }
 
@@ -141,7 +141,7 @@ class Standing {
   }
   /// Returns the current depth of the root (prism) or the apex (cube corner); 0 until all facets are cut.
   double root_depth_mm() const {
-    const bool is_cube = job_.strategy == Strategy::dmc;
+    const bool is_cube = !cuts_prisms(job_);
     const std::size_t facets = is_cube ? 3 : 2;
     double sum_um = 0.0;
     for (std::size_t f = 0; f < facets; ++f) {
@@ -193,7 +193,7 @@ std::vector<StageCheck> checks_of(const FabricationResult& result) {
     check.program = program->second;
     check.ends_s = seconds;
     check.left_um = kUmPerMm * stage.left_mm;
-    alike.cut(pose.facet.facet, stage.roughs && result.job.strategy != Strategy::dmc, check.left_um);
+    alike.cut(pose.facet.facet, stage.roughs && cuts_prisms(result.job), check.left_um);
     check.root_depth_mm = alike.root_depth_mm();
     checks.push_back(std::move(check));
   }

@@ -42,9 +42,14 @@ class DexelFacet {
   /// \param high_mm upper bounds of the field
   /// \param lines number of lines along the longer side
   DexelFacet(const Groove& groove, std::size_t facet, const Vec3& low_mm, const Vec3& high_mm, std::size_t lines)
-      : groove_(groove), normal_(groove.facets[facet].normal), box_{low_mm, high_mm}, lines_(lines) {
+      : root_mm_(common(groove).root_mm),
+        normal_(common(groove).facets[facet].normal),
+        is_cube_(std::holds_alternative<CubeCavity>(groove)),
+        box_{low_mm, high_mm},
+        lines_(lines) {
     // Axes of the field: z is the normal, and x and y are in the facet.
-    const Vec3 y = groove.is_cube() ? groove.edges[(facet + 1) % 3] : groove.facets[facet].up_slope;
+    const Vec3 y =
+        is_cube_ ? std::get<CubeCavity>(groove).edges[(facet + 1) % 3] : common(groove).facets[facet].up_slope;
     from_workpiece_.row(0) = y.cross(normal_).transpose();
     from_workpiece_.row(1) = y.transpose();
     from_workpiece_.row(2) = normal_.transpose();
@@ -60,7 +65,7 @@ class DexelFacet {
   Chip cut(const SweptVolume& sweep, const RigidMotion& pose, const ToolWedge& wedge) {
     RigidMotion from_field;
     from_field.rotation = pose.rotation * from_workpiece_.transpose();
-    from_field.translation_mm = pose.point(groove_.root_mm);
+    from_field.translation_mm = pose.point(root_mm_);
     SweptVolume alone = sweep;
     alone.pose = 0;
     const DexelField field = cut_dexels({&alone, 1}, {&from_field, 1}, wedge, box_, 2, lines_);
@@ -78,7 +83,7 @@ class DexelFacet {
     // True if the move runs along the facet. A V-shaped tool runs along two facets at the same time; only the facet
     // that its clearance face faces counts.
     const bool goes_along = std::abs(travel.normalized().dot(normal_)) < 0.02;
-    return goes_along && (!groove_.is_cube() || looks.dot(normal_) < -0.9) ? chip : Chip{};
+    return goes_along && (!is_cube_ || looks.dot(normal_) < -0.9) ? chip : Chip{};
   }
 
  private:
@@ -88,7 +93,7 @@ class DexelFacet {
     const double x = (static_cast<double>(i % field.columns) + 0.5) / static_cast<double>(field.columns);
     const double y = (static_cast<double>(i / field.columns) + 0.5) / static_cast<double>(field.rows);
     const Vec3 foot(box_.low_mm.x() + x * size.x(), box_.low_mm.y() + y * size.y(), 0.0);
-    const Vec3 p = groove_.root_mm + from_workpiece_.transpose() * foot;
+    const Vec3 p = root_mm_ + from_workpiece_.transpose() * foot;
     return -p.z() / normal_.z();
   }
 
@@ -111,8 +116,9 @@ class DexelFacet {
     return length;
   }
 
-  const Groove& groove_;
+  Vec3 root_mm_;
   Vec3 normal_;
+  bool is_cube_;
   DexelBox box_;
   std::size_t lines_;
   Eigen::Matrix3d from_workpiece_;
@@ -137,14 +143,14 @@ double true_excess_um(const Job& job, const Machine& m, const std::string& text)
   const Workpiece3d workpiece = workpiece_of(job, m);
   const Groove& groove = workpiece.grooves.front();
   const ToolWedge wedge = wedge_of(job, m);
-  const double length_mm = groove.facet_length_mm;
+  const double length_mm = common(groove).facet_length_mm;
   const double allowance_um = job.strategy == Strategy::two_step || job.strategy == Strategy::dmc
                                   ? job.process.finishing_cuts * job.process.finishing_depth_um
                                   : 0.0;
   std::vector<std::pair<std::size_t, DexelFacet>> fields;
-  for (std::size_t f = 0; f < groove.facets.size(); ++f) {
+  for (std::size_t f = 0; f < common(groove).facets.size(); ++f) {
     const double top = 3.0 * length_mm;
-    if (groove.is_cube()) {
+    if (!cuts_prisms(job)) {
       fields.emplace_back(f, DexelFacet(groove, f, {0.0, 0.0, -0.1 * length_mm}, {length_mm, length_mm, top}, 24));
       continue;
     }

@@ -61,10 +61,10 @@ struct Effect {
   double slope_along = 0.0;
 };
 
-Effect predicted(const Made& made, const Groove& groove, const FacetEdgeCut& cut, const FacetFigures& figures,
+Effect predicted(const Made& made, const DesignElement& groove, const FacetEdgeCut& cut, const FacetFigures& figures,
                  const SetupQuantity& quantity, double amount) {
   const DesignFacet& design = groove.facets[cut.facet];
-  const Vec3 level = groove.level_of(cut.facet);
+  const Vec3& level = design.along;
   const Vec3 there = groove.root_mm + figures.mean_up_mm * design.up_slope + figures.mean_along_mm * level;
   const CutPlane plane = cut_plane(made.taken_for, cut.cut, design.normal);
   const PlaneChange change = plane_change(made.taken_for, cut.cut, quantity, design.normal);
@@ -80,7 +80,7 @@ void expect_effects(const Made& made, const SetupQuantity& quantity, double amou
   const Workpiece3d workpiece = workpiece_of(made.job, made.taken_for);
   for (const auto& [place, cut] : made.last) {
     SCOPED_TRACE(fmt::format("element {} facet {}", cut.element, cut.facet + 1));
-    const Groove& groove = workpiece.grooves[cut.element];
+    const DesignElement& groove = workpiece.design(cut.element);
     const FacetFigures& before = without.elements[cut.element].figures.facets[cut.facet];
     const FacetFigures& after = with.elements[cut.element].figures.facets[cut.facet];
     const Effect effect = predicted(made, groove, cut, after, quantity, amount);

@@ -86,7 +86,7 @@ TEST(OnSubstrate, ElementsStandWhereThePartHasThem) {
     const auto* const prism = std::get_if<geometry::RtpElement>(&named.job.element);
     std::vector<Groove> grooves;
     for (const CutElement& element : elements)
-      grooves.push_back(prism != nullptr ? groove_of(element, *prism) : cavity_of(element, named.job.element, {}));
+      grooves.push_back(prism != nullptr ? Groove(groove_of(element, *prism)) : cavity_of(element, named.job.element));
     const geometry::BoundaryMesh mesh = geometry::closed_boundary(part);
     std::set<std::pair<std::size_t, std::size_t>> seen;
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -101,8 +101,8 @@ TEST(OnSubstrate, ElementsStandWhereThePartHasThem) {
       const Vec3 into_cavity = -across.normalized();
       double nearest = 1.0;
       for (std::size_t i = 0; i < grooves.size(); ++i)
-        for (std::size_t f = 0; f < grooves[i].facets.size(); ++f) {
-          const DesignFacet& facet = grooves[i].facets[f];
+        for (std::size_t f = 0; f < common(grooves[i]).facets.size(); ++f) {
+          const DesignFacet& facet = common(grooves[i]).facets[f];
           if (facet.normal.dot(into_cavity) < 1.0 - 1e-9) continue;
           double off = 0.0;
           for (const Vec3& corner : corners) off = std::max(off, std::abs(facet.height_mm(corner)));
@@ -398,12 +398,14 @@ double lowest_cut_mm(const std::vector<Groove>& grooves, double x_mm, double y_m
   is_beside_an_end = false;
   for (const Groove& groove : grooves) {
     double height_mm = -1e9;
-    for (const DesignFacet& facet : groove.facets)
+    for (const DesignFacet& facet : common(groove).facets)
       height_mm =
           std::max(height_mm, (facet.offset_mm - facet.normal.head<2>().dot(Vec2(x_mm, y_mm))) / facet.normal.z());
-    const double over_mm = std::abs(groove.along_mm({x_mm, y_mm, height_mm})) - groove.half_width_mm;
-    if (!groove.is_cube() && std::abs(over_mm) < 1e-6) is_beside_an_end = true;
-    if (groove.is_cube() || over_mm < 0.0) lowest_mm = std::min(lowest_mm, height_mm);
+    const auto* const prism = std::get_if<PrismGroove>(&groove);
+    const double over_mm =
+        prism != nullptr ? std::abs(prism->along_mm({x_mm, y_mm, height_mm})) - prism->half_width_mm : -1.0;
+    if (std::abs(over_mm) < 1e-6) is_beside_an_end = true;
+    if (over_mm < 0.0) lowest_mm = std::min(lowest_mm, height_mm);
   }
   return lowest_mm;
 }
@@ -419,7 +421,7 @@ TEST(OnSubstrate, WhatIsLeftIsTheLowestOfAllCavities) {
     const Workpiece3d workpiece = workpiece_of(named.job, m);
     const Vec2 half = 0.45 * blank_extent_mm(named.job);
     double lowest_mm = 0.0;
-    for (const Groove& groove : workpiece.grooves) lowest_mm = std::min(lowest_mm, groove.root_mm.z());
+    for (const Groove& groove : workpiece.grooves) lowest_mm = std::min(lowest_mm, common(groove).root_mm.z());
     const DexelBox box{{-half.x(), -half.y(), lowest_mm - 0.1}, {half.x(), half.y(), 0.0}};
     const DexelField field = cut_dexels(sink.sweeps, sink.poses, wedge_of(named.job, m), box, 2, 41);
     double worst_mm = 0.0;

@@ -24,16 +24,24 @@ inline const studies::FabricationResult& four_prisms() {
   return made;
 }
 
+/// Returns the grooves of a job that cuts prisms.
+inline std::vector<fabrication::PrismGroove> prism_grooves(const fabrication::Job& job) {
+  std::vector<fabrication::PrismGroove> grooves;
+  for (const fabrication::Groove& groove : fabrication::designed_grooves(job))
+    grooves.push_back(std::get<fabrication::PrismGroove>(groove));
+  return grooves;
+}
+
 /// Cut surface of a part: the facet planes that the verifier computes, and the face, as heights over the plane.
 class CutSurface {
  public:
   explicit CutSurface(const fabrication::Machine& real, const studies::FabricationResult& made = four_prisms())
-      : grooves_(fabrication::designed_grooves(made.job)), figures_(cut_on(real, made)) {
+      : grooves_(prism_grooves(made.job)), figures_(cut_on(real, made)) {
     for (std::size_t element = 0; element < grooves_.size(); ++element)
       for (std::size_t facet = 0; facet < 2; ++facet) {
         const fabrication::FacetFigures& f = figures_[2 * element + facet];
         const fabrication::DesignFacet& design = grooves_[element].facets[facet];
-        const geometry::Vec3 along = grooves_[element].level_of(facet);
+        const geometry::Vec3& along = design.along;
         const geometry::Vec3 point = grooves_[element].root_mm + f.mean_up_mm * design.up_slope +
                                      f.mean_along_mm * along + 1e-6 * f.mean_nm * design.normal;
         const geometry::Vec3 normal =
@@ -45,7 +53,7 @@ class CutSurface {
   double z(double x, double y) const {
     const geometry::Vec3 p(x, y, 0.0);
     for (std::size_t element = 0; element < grooves_.size(); ++element) {
-      const fabrication::Groove& groove = grooves_[element];
+      const fabrication::PrismGroove& groove = grooves_[element];
       const double along = groove.along_mm(p);
       const double across =
           groove.root_direction.x() * (y - groove.root_mm.y()) - groove.root_direction.y() * (x - groove.root_mm.x());
@@ -67,9 +75,9 @@ class CutSurface {
     Eigen::VectorXd off(3 * facets);
     for (Eigen::Index k = 0; k < facets; ++k) {
       const fabrication::FacetFigures& f = figures_[static_cast<std::size_t>(k)];
-      const fabrication::Groove& groove = grooves_[static_cast<std::size_t>(k / 2)];
+      const fabrication::PrismGroove& groove = grooves_[static_cast<std::size_t>(k / 2)];
       const fabrication::DesignFacet& design = groove.facets[static_cast<std::size_t>(k % 2)];
-      const geometry::Vec3 along = groove.level_of(static_cast<std::size_t>(k % 2));
+      const geometry::Vec3& along = design.along;
       const geometry::Vec3 at = groove.root_mm + f.mean_up_mm * design.up_slope + f.mean_along_mm * along;
       const geometry::Vec3& n = design.normal;
       of_pose.row(3 * k) << at.cross(n).transpose(), n.x(), n.y();
@@ -95,7 +103,7 @@ class CutSurface {
     return most;
   }
 
-  const std::vector<fabrication::Groove>& grooves() const { return grooves_; }
+  const std::vector<fabrication::PrismGroove>& grooves() const { return grooves_; }
   const fabrication::FacetFigures& figures(std::size_t element, std::size_t facet) const {
     return figures_[2 * element + facet];
   }
@@ -110,7 +118,7 @@ class CutSurface {
     return figures;
   }
 
-  std::vector<fabrication::Groove> grooves_;
+  std::vector<fabrication::PrismGroove> grooves_;
   std::vector<fabrication::FacetFigures> figures_;  ///< figures of all facets
   std::vector<std::pair<geometry::Vec3, geometry::Vec3>> planes_;
 };
@@ -134,7 +142,7 @@ class PatternedSurface {
     const double plain = cut_.z(x, y);
     if (plain >= 0.0) return plain;
     const geometry::Vec3 p(x, y, plain);
-    for (const fabrication::Groove& groove : grooves_) {
+    for (const fabrication::PrismGroove& groove : grooves_) {
       const geometry::Vec3 from_root = p - groove.root_mm;
       const geometry::Vec3 across = from_root - groove.root_direction * groove.root_direction.dot(from_root);
       if (std::abs(groove.along_mm(p)) > groove.half_width_mm || across.head<2>().norm() > groove.half_base_mm)
@@ -150,7 +158,7 @@ class PatternedSurface {
 
  private:
   const CutSurface& cut_;
-  std::vector<fabrication::Groove> grooves_;
+  std::vector<fabrication::PrismGroove> grooves_;
   Pattern pattern_;
 };
 
@@ -158,17 +166,17 @@ class PatternedSurface {
 /// \param figures values that the verifier computes for the facet, in the workpiece frame
 inline double measured_of(const fabrication::Groove& groove, const fabrication::FacetFigures& figures,
                           std::size_t facet, studies::FacetQuantity what, const fabrication::RigidMotion& pose) {
-  const fabrication::DesignFacet& design = groove.facets[facet];
-  const geometry::Vec3 along = groove.level_of(facet);
+  const fabrication::DesignFacet& design = fabrication::common(groove).facets[facet];
+  const geometry::Vec3& along = design.along;
   const geometry::Vec3 normal =
       pose.direction(design.normal - figures.slope_up * design.up_slope - figures.slope_along * along);
-  const geometry::Vec3 point = pose.point(groove.root_mm + figures.mean_up_mm * design.up_slope +
+  const geometry::Vec3 point = pose.point(fabrication::common(groove).root_mm + figures.mean_up_mm * design.up_slope +
                                           figures.mean_along_mm * along + 1e-6 * figures.mean_nm * design.normal);
   switch (what) {
     case studies::FacetQuantity::up:
       return -studies::kArcsecPerRad * normal.dot(design.up_slope) / normal.dot(design.normal);
     case studies::FacetQuantity::along: return -studies::kArcsecPerRad * normal.dot(along) / normal.dot(design.normal);
-    default: return 1e6 * normal.dot(point - groove.facet_middle(facet)) / normal.dot(design.normal);
+    default: return 1e6 * normal.dot(point - fabrication::facet_middle(groove, facet)) / normal.dot(design.normal);
   }
 }
 

@@ -25,25 +25,26 @@ double standing_mm(std::span<const ConvexPiece> pieces, const Vec2& foot, const 
   return sum;
 }
 
-/// Returns the point of a section that the edge of a chisel, or the tip of a V-shaped tool, reaches at the deeper end
-/// of its move.
-Vec2 deepest_place(const SectionPlane& plane, const Groove& groove, const ToolWedge& wedge, const SweptVolume& sweep,
-                   const RigidMotion& back) {
-  const Vec3 from = back.point(sweep.from_mm);
-  const Vec3 to = back.point(sweep.to_mm);
-  const Vec3 tip = groove.over_face_mm(from) < groove.over_face_mm(to) ? from : to;
-  if (groove.is_cube()) {
-    // Move the tip into the section plane, parallel to the dihedral edge that crosses the section. If the element has
-    // angle errors, this edge is not perpendicular to the section.
-    const auto across = [&](const Vec3& edge) { return std::abs(plane.normal.dot(edge)); };
-    const Vec3& edge = *std::ranges::max_element(groove.edges, {}, across);
-    return plane.point(tip - plane.beside_mm(tip) / plane.normal.dot(edge) * edge);
-  }
+/// Returns the point of a section that the edge of a chisel reaches.
+/// \param tip position of the edge's center at the deeper end of the move
+Vec2 deepest_place(const SectionPlane& plane, const PrismGroove&, const ToolWedge& wedge, const RigidMotion& back,
+                   const Vec3& tip) {
   const Vec3 edge = back.direction(wedge.edge);
   const double across = plane.normal.dot(edge);
   if (wedge.half_width_mm <= 0.0 || std::abs(across) < 0.5) return plane.point(tip);
   const double by_mm = std::clamp(-plane.beside_mm(tip) / across, -wedge.half_width_mm, wedge.half_width_mm);
   return plane.point(tip + by_mm * edge);
+}
+
+/// Returns the point of a section that belongs to the tip of a V-shaped tool. The tip is moved into the section
+/// parallel to the dihedral edge that crosses the section. If the element has angle errors, this edge is not
+/// perpendicular to the section.
+/// \param tip position of the tip at the deeper end of the move
+Vec2 deepest_place(const SectionPlane& plane, const CubeCavity& cavity, const ToolWedge&, const RigidMotion&,
+                   const Vec3& tip) {
+  const auto across = [&](const Vec3& edge) { return std::abs(plane.normal.dot(edge)); };
+  const Vec3& edge = *std::ranges::max_element(cavity.edges, {}, across);
+  return plane.point(tip - plane.beside_mm(tip) / plane.normal.dot(edge) * edge);
 }
 
 }  // namespace
@@ -52,12 +53,14 @@ ChipCheck::ChipCheck(const Workpiece3d& workpiece, std::size_t element, Standing
                      const ToolWedge& wedge, std::span<const RigidMotion> poses)
     : workpiece_(workpiece),
       groove_(workpiece.grooves[element]),
+      design_(workpiece.design(element)),
+      is_cube_(std::holds_alternative<CubeCavity>(groove_)),
       element_(element),
       material_(material),
       wedge_(wedge),
       poses_(poses),
       allowance_mm_(finishing_allowance_mm(workpiece)),
-      is_begun_(groove_.facets.size(), false) {
+      is_begun_(design_.facets.size(), false) {
   if (allowance_mm_ > 0.0) add_lines();
 }
 
@@ -71,9 +74,9 @@ void ChipCheck::add_lines() {
   for (std::size_t s = 0; s < sections.size(); ++s) {
     const SectionPlane& plane = sections[s].plane;
     // In a cube corner, sections close to the apex are inside the layers of the third facet.
-    if (groove_.is_cube() && (plane.origin_mm - groove_.root_mm).norm() < least_mm) continue;
-    for (std::size_t f = 0; f < groove_.facets.size(); ++f) {
-      const DesignFacet& facet = groove_.facets[f];
+    if (is_cube_ && (plane.origin_mm - design_.root_mm).norm() < least_mm) continue;
+    for (std::size_t f = 0; f < design_.facets.size(); ++f) {
+      const DesignFacet& facet = design_.facets[f];
       const Vec2 normal = plane.direction(facet.normal);
       if (normal.norm() < kLeastInPlane) continue;
       FacetLine line;
@@ -83,7 +86,7 @@ void ChipCheck::add_lines() {
       const Vec2 level(line.direction.y(), -line.direction.x());
       const Vec2 up_slope = level.y() > 0.0 ? level : Vec2(-level);
       for (const double share : {0.0, 0.15, 0.35, 0.6, 0.8, 0.97}) {
-        line.foot_mm = std::max(least_mm, share * groove_.facet_length_mm) * up_slope;
+        line.foot_mm = std::max(least_mm, share * design_.facet_length_mm) * up_slope;
         if (standing_mm(sections[s].pieces, line.foot_mm, line.direction, allowance_mm_) < allowance_mm_ - 1e-8)
           continue;
         lines_.push_back(line);
@@ -103,7 +106,7 @@ void ChipCheck::cut(const SweptVolume& sweep) {
   }
   if (!is_cut || sweep.is_rapid) return;
   const RigidMotion back = pose.inverse();
-  const std::optional<FacetCut> cut = facet_cut(groove_, wedge_, sweep, back);
+  const std::optional<FacetCut> cut = facet_cut(design_, wedge_, sweep, back);
   check_chips(sweep, cut, back, removed);
   if (cut && is_finishing(workpiece_, *cut)) count_finishing(sweep, *cut, removed);
 }
@@ -111,6 +114,9 @@ void ChipCheck::cut(const SweptVolume& sweep) {
 void ChipCheck::check_chips(const SweptVolume& sweep, const std::optional<FacetCut>& cut, const RigidMotion& back,
                             std::span<const std::vector<ConvexPiece>> removed) {
   const Vec3 normal = back.direction(swept_normal(wedge_, sweep));
+  const Vec3 from = back.point(sweep.from_mm);
+  const Vec3 to = back.point(sweep.to_mm);
+  const Vec3& tip = design_.over_face_mm(from) < design_.over_face_mm(to) ? from : to;
   const ChipLimit limit(workpiece_, element_, cut, wedge_, back);
   double worst_mm = 0.0;
   double allowed_mm = 0.0;
@@ -120,16 +126,15 @@ void ChipCheck::check_chips(const SweptVolume& sweep, const std::optional<FacetC
     const Vec2 square = plane.direction(normal);
     if (removed[s].empty() || square.norm() < kLeastInPlane) continue;
     const Vec2 along = Vec2(-square.y(), square.x()).normalized();
-    const double deepest_mm = along.dot(deepest_place(plane, groove_, wedge_, sweep, back));
-    const double beside_mm = groove_.is_cube() ? std::min(std::abs(plane.beside_mm(back.point(sweep.from_mm))),
-                                                          std::abs(plane.beside_mm(back.point(sweep.to_mm))))
-                                               : 0.0;
+    const double deepest_mm = along.dot(
+        std::visit([&](const auto& groove) { return deepest_place(plane, groove, wedge_, back, tip); }, groove_));
+    const double beside_mm = std::min(std::abs(plane.beside_mm(from)), std::abs(plane.beside_mm(to)));
     std::vector<double> bends;
     for (const double bend : limit.bends_mm())
       for (const double side : {-1.0, 1.0}) bends.push_back(deepest_mm + side * (bend + 1e-9));
     // Chip thicknesses are measured along parallel lines in a cross-section of the element. If the element has angle
     // errors, these lines are slightly inclined to the facet's normal. The factor `upright` corrects the lengths.
-    const double upright = groove_.is_cube() ? square.norm() : 1.0;
+    const double upright = is_cube_ ? square.norm() : 1.0;
     for (const LineLength& line : line_lengths(removed[s], along, bends)) {
       const double most_mm = limit.at(std::abs(line.at_mm - deepest_mm), beside_mm);
       const double length_mm = upright * line.length_mm;
@@ -141,7 +146,7 @@ void ChipCheck::check_chips(const SweptVolume& sweep, const std::optional<FacetC
     }
   }
   figures_.thickest_mm = std::max(figures_.thickest_mm, thickest_mm);
-  if (cut && cut->is_by_clearance && !groove_.is_cube()) check_rubbing(sweep, *cut, thickest_mm);
+  if (cut && cut->is_by_clearance && !is_cube_) check_rubbing(sweep, *cut, thickest_mm);
   constexpr double kRoundingMm = 1e-7;
   if (worst_mm <= allowed_mm + kRoundingMm) return;
   find("chip_too_thick", sweep,

@@ -61,6 +61,8 @@ class ChipCheck {
 
   const Workpiece3d& workpiece_;
   const Groove& groove_;
+  const DesignElement& design_;
+  bool is_cube_;
   std::size_t element_;
   StandingMaterial& material_;
   const ToolWedge& wedge_;

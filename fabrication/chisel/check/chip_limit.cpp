@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/overloaded.h"
 #include "fabrication/machine/edge_cut.h"
 
 namespace retrace::fabrication {
@@ -16,7 +17,7 @@ struct BesideEdge {
   double reach = 1.0;      ///< maximum distance from the dihedral edge
 };
 
-BesideEdge beside_edges(const Groove& cavity, std::size_t facet, const Vec3& spine) {
+BesideEdge beside_edges(const CubeCavity& cavity, std::size_t facet, const Vec3& spine) {
   BesideEdge most;
   const Vec3& normal = cavity.facets[facet].normal;
   const std::size_t next = (facet + 1) % 3;
@@ -46,20 +47,26 @@ BesideEdge beside_edges(const Groove& cavity, std::size_t facet, const Vec3& spi
 
 ChipLimit::ChipLimit(const Workpiece3d& workpiece, std::size_t element, const std::optional<FacetCut>& cut,
                      const ToolWedge& wedge, const RigidMotion& back) {
-  const Groove& groove = workpiece.grooves[element];
-  const Tool& tool = workpiece.job->tool;
   depth_mm_ = depth_of_cut_mm(workpiece, cut);
   slack_mm_ = workpiece.tolerance_mm + workpiece.prediction(element).root_mm;
-  if (groove.is_cube()) {
-    if (!cut) return;
-    kind_ = Kind::v_shaped;
-    const double depth_mm = depth_mm_ + slack_mm_;
-    const BesideEdge beside = beside_edges(groove, cut->facet, back.direction(wedge.rake_direction));
-    share_ = beside.thickness;
-    reach_mm_ = beside.reach * depth_mm;
-    bends_mm_ = {reach_mm_, reach_mm_};
-    return;
-  }
+  std::visit(Overloaded{[&](const PrismGroove& groove) { limit_chisel(workpiece, element, groove, cut); },
+                        [&](const CubeCavity& cavity) {
+                          if (cut) limit_v_tool(cavity, *cut, back.direction(wedge.rake_direction));
+                        }},
+             workpiece.grooves[element]);
+}
+
+void ChipLimit::limit_v_tool(const CubeCavity& cavity, const FacetCut& cut, const Vec3& spine) {
+  kind_ = Kind::v_shaped;
+  const BesideEdge beside = beside_edges(cavity, cut.facet, spine);
+  share_ = beside.thickness;
+  reach_mm_ = beside.reach * (depth_mm_ + slack_mm_);
+  bends_mm_ = {reach_mm_, reach_mm_};
+}
+
+void ChipLimit::limit_chisel(const Workpiece3d& workpiece, std::size_t element, const PrismGroove& groove,
+                             const std::optional<FacetCut>& cut) {
+  const Tool& tool = workpiece.job->tool;
   const Angle rake = Angle::from_rad(Angle::from_deg(tool.clearance_deg + tool.wedge_deg).rad() +
                                      clearance_change(*workpiece.machine).rad());
   apex_ = Angle::from_rad(std::acos(-groove.facets[0].normal.dot(groove.facets[1].normal)));

@@ -32,6 +32,10 @@ class ChipLimit {
  private:
   enum class Kind { plunge, plough, between, v_shaped };
 
+  void limit_chisel(const Workpiece3d& workpiece, std::size_t element, const PrismGroove& groove,
+                    const std::optional<FacetCut>& cut);
+  /// \param spine direction of the line in which the tool's clearance face and its other flank meet
+  void limit_v_tool(const CubeCavity& cavity, const FacetCut& cut, const geometry::Vec3& spine);
   double plunge_at(double from_tip_mm) const;
 
   Kind kind_ = Kind::between;

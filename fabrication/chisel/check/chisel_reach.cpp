@@ -44,7 +44,6 @@ class Cutter {
  public:
   Cutter(const geometry::Element& element, const Tool& tool)
       : cavity_(cavity_of({}, element)),
-        is_hexagonal_(std::holds_alternative<geometry::HexagonalCube>(element)),
         half_mm_(0.5 * tool.width_mm),
         wedge_(tool_wedge(tool, still_machine(), Angle::from_deg(90.0))) {
     for (std::size_t k = 0; k < 3; ++k) plunge(k);
@@ -54,13 +53,13 @@ class Cutter {
   double open_share() const {
     constexpr int kGrid = 60;
     constexpr double kOpenMm = 1e-5;
-    const double side_mm = is_hexagonal_ ? 0.5 * cavity_.facet_length_mm : cavity_.facet_length_mm;
+    const double side_mm = cavity_.is_hexagonal ? 0.5 * cavity_.facet_length_mm : cavity_.facet_length_mm;
     int open = 0;
     int all = 0;
     for (int i = 0; i < kGrid; ++i)
       for (int j = 0; j < kGrid; ++j) {
         const Vec2 place((i + 0.5) / kGrid * side_mm, (j + 0.5) / kGrid * side_mm);
-        if (!is_hexagonal_ && place.sum() > side_mm) continue;
+        if (!cavity_.is_hexagonal && place.sum() > side_mm) continue;
         ++all;
         const Vec3 point = cavity_.root_mm + place.x() * cavity_.edges[0] + place.y() * cavity_.edges[1];
         if (is_open(point + kOpenMm * cavity_.facets[0].normal)) ++open;
@@ -76,10 +75,9 @@ class Cutter {
   void plunge(std::size_t k) {
     constexpr int kPasses = 1201;  // odd, so that one pass is at the center
     const DesignFacet& facet = cavity_.facets[k];
-    const Vec3 level = (cavity_.edges[(k + 1) % 3] - cavity_.edges[k]).normalized();
     // In the frame of the tool, the facet is the plane y = 0. Its normal is -y, and its upward direction is z.
     RigidMotion pose;
-    pose.rotation.row(0) = level.transpose();
+    pose.rotation.row(0) = facet.along.transpose();
     pose.rotation.row(1) = -facet.normal.transpose();
     pose.rotation.row(2) = facet.up_slope.transpose();
     const auto index = static_cast<std::uint32_t>(poses_.size());
@@ -89,7 +87,7 @@ class Cutter {
     for (int i = 0; i < kPasses; ++i) {
       const double along_mm = most_mm * (2.0 * i / (kPasses - 1) - 1.0);
       const Vec3 tip =
-          pose.point(cavity_.root_mm + along_mm * level + (std::abs(along_mm) + half_mm_) * facet.up_slope);
+          pose.point(cavity_.root_mm + along_mm * facet.along + (std::abs(along_mm) + half_mm_) * facet.up_slope);
       sweeps_.push_back({index, {1, 0}, false, tip + Vec3(0.0, 0.0, 4.0 * reach_mm), tip});
     }
   }
@@ -114,8 +112,7 @@ class Cutter {
     return surface_along(spans_, -point.z() / direction.z()).top;
   }
 
-  Groove cavity_;
-  bool is_hexagonal_;
+  CubeCavity cavity_;
   double half_mm_;
   ToolWedge wedge_;
   std::vector<RigidMotion> poses_;

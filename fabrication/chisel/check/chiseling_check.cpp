@@ -17,7 +17,8 @@ using geometry::Vec3;
 ChiselingCheck::ChiselingCheck(const Workpiece3d& workpiece, const ToolWedge& wedge, ControlCheck& control,
                                FindingList& findings)
     : CutCheck(workpiece, wedge, control, findings) {
-  for (const Groove& cavity : workpiece.grooves) {
+  for (const Groove& groove : workpiece.grooves) {
+    const auto& cavity = std::get<CubeCavity>(groove);
     State state;
     // Before the first cut, the whole cavity is filled with material. This is equivalent to a layer with its apex in
     // the face of the blank.
@@ -30,7 +31,7 @@ void ChiselingCheck::move(const CutMove& cut) {
   check_feed(cut);
   const Vec3 travel = cut.sweep.to_mm - cut.sweep.from_mm;
   if (travel.dot(wedge_.sides[0].outward) > kMostSlip * travel.norm()) find_clearance_face(cut);
-  const bool goes_down = workpiece_.grooves[cut.element].axis.dot(cut.back.direction(travel)) < 0.0;
+  const bool goes_down = workpiece_.design(cut.element).axis.dot(cut.back.direction(travel)) < 0.0;
   if (goes_down) {
     close();
     open(cut);
@@ -40,7 +41,7 @@ void ChiselingCheck::move(const CutMove& cut) {
 }
 
 void ChiselingCheck::open(const CutMove& move) {
-  const Groove& cavity = workpiece_.grooves[move.element];
+  const DesignElement& cavity = workpiece_.design(move.element);
   const Vec3 clearance_face = move.back.direction(wedge_.sides[0].outward);
   OpenCut cut;
   cut.element = move.element;
@@ -60,7 +61,7 @@ void ChiselingCheck::open(const CutMove& move) {
 }
 
 double ChiselingCheck::short_limit_mm(const OpenCut& cut, std::size_t other) const {
-  const Groove& cavity = workpiece_.grooves[cut.element];
+  const DesignElement& cavity = workpiece_.design(cut.element);
   const Vec3& normal = cavity.facets[cut.facet].normal;
   const double cosine = normal.dot(cavity.facets[other].normal);
   const double sine = normal.cross(cavity.facets[other].normal).norm();

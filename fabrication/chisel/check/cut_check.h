@@ -58,7 +58,7 @@ class CutCheck {
   /// Checks that a cut follows a facet, and that its feed is allowed. The swept plane determines whether the feed for
   /// roughing or the feed for finishing applies.
   void check_feed(const CutMove& cut) {
-    const auto along = facet_cut(workpiece_.grooves[cut.element], wedge_, cut.sweep, cut.back);
+    const auto along = facet_cut(workpiece_.design(cut.element), wedge_, cut.sweep, cut.back);
     if (!along)
       find("off_facet", cut.motion.place, cut.element,
            "the edge does not cut along any facet: the rotary axes are not in a pose of this element");

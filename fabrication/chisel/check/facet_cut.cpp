@@ -22,16 +22,16 @@ Vec3 swept_normal(const ToolWedge& wedge, const SweptVolume& sweep) {
   return normal.norm() < kLeastMm ? Vec3(Vec3::Zero()) : Vec3(normal.normalized());
 }
 
-std::optional<FacetCut> facet_cut(const Groove& groove, const ToolWedge& wedge, const SweptVolume& sweep,
+std::optional<FacetCut> facet_cut(const DesignElement& element, const ToolWedge& wedge, const SweptVolume& sweep,
                                   const RigidMotion& back) {
   const Vec3 normal = back.direction(swept_normal(wedge, sweep));
   const Vec3 clearance_face = back.direction(wedge.sides[0].outward);
   std::optional<FacetCut> cut;
   double most = kAlongFacet;
   std::size_t by_clearance = 0;
-  for (std::size_t f = 0; f < groove.facets.size(); ++f) {
-    const Vec3& outward = groove.facets[f].normal;
-    if (clearance_face.dot(outward) < clearance_face.dot(groove.facets[by_clearance].normal)) by_clearance = f;
+  for (std::size_t f = 0; f < element.facets.size(); ++f) {
+    const Vec3& outward = element.facets[f].normal;
+    if (clearance_face.dot(outward) < clearance_face.dot(element.facets[by_clearance].normal)) by_clearance = f;
     if (std::abs(normal.dot(outward)) <= most) continue;
     most = std::abs(normal.dot(outward));
     cut = FacetCut{f, 1e9, false};
@@ -40,8 +40,9 @@ std::optional<FacetCut> facet_cut(const Groove& groove, const ToolWedge& wedge, 
   cut->is_by_clearance = cut->facet == by_clearance;
   for (const Vec3& tip : {sweep.from_mm, sweep.to_mm})
     for (const double side : {-1.0, 1.0})
-      cut->left_mm = std::min(
-          cut->left_mm, groove.facets[cut->facet].height_mm(back.point(tip + side * wedge.half_width_mm * wedge.edge)));
+      cut->left_mm =
+          std::min(cut->left_mm,
+                   element.facets[cut->facet].height_mm(back.point(tip + side * wedge.half_width_mm * wedge.edge)));
   return cut;
 }
 

@@ -20,7 +20,7 @@ struct FacetCut {
 /// Returns the facet along which a move cuts. Returns nothing if the move is along no facet, such as a retract between
 /// the two facets.
 /// \param back transformation from the machine frame to the workpiece frame
-std::optional<FacetCut> facet_cut(const Groove& groove, const ToolWedge& wedge, const SweptVolume& sweep,
+std::optional<FacetCut> facet_cut(const DesignElement& element, const ToolWedge& wedge, const SweptVolume& sweep,
                                   const RigidMotion& back);
 
 /// Returns the normal of the plane that the edge sweeps, in the machine frame. Returns zero if the edge moves along

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "core/angle.h"
+#include "core/overloaded.h"
 #include "fabrication/job/cube_corner.h"
 #include "geometry/centroid.h"
 #include "geometry/elements/element_cells.h"
@@ -17,26 +18,38 @@ using geometry::Vec3;
 
 namespace {
 
-/// Moves a groove from its local frame to its position and orientation on the blank. The local frame is that of an
+/// Moves an element from its local frame to its position and orientation on the blank. The local frame is that of an
 /// element on a flat blank, with the origin at the center of its aperture.
-void stand(Groove& groove, const CutElement& element, double stock_mm) {
-  groove.zone = element.zone;
-  groove.axis = element.turn.col(2);
-  groove.face_mm = groove.axis.dot(element.foot_mm) + stock_mm;
-  groove.stock_mm = stock_mm;
-  groove.root_mm = element.foot_mm + element.turn * groove.root_mm;
-  groove.root_direction = element.turn * groove.root_direction;
-  for (Vec3& edge : groove.edges) edge = element.turn * edge;
-  for (DesignFacet& facet : groove.facets) {
+void stand(DesignElement& design, const CutElement& element, double stock_mm) {
+  design.zone = element.zone;
+  design.axis = element.turn.col(2);
+  design.face_mm = design.axis.dot(element.foot_mm) + stock_mm;
+  design.stock_mm = stock_mm;
+  design.root_mm = element.foot_mm + element.turn * design.root_mm;
+  for (DesignFacet& facet : design.facets) {
     facet.normal = element.turn * facet.normal;
     facet.up_slope = element.turn * facet.up_slope;
-    facet.offset_mm = facet.normal.dot(groove.root_mm);
+    facet.offset_mm = facet.normal.dot(design.root_mm);
   }
+}
+
+/// Returns the distance of a point from the axis of an element, or nothing if the point is outside of the aperture. The
+/// distance from a prism is 0, because the apertures of prisms do not overlap.
+/// \param from_root position relative to the root, perpendicular to the axis
+std::optional<double> distance_mm(const PrismGroove& groove, const Vec3& from_root) {
+  const double along = groove.root_direction.dot(from_root);
+  const double across = (from_root - groove.root_direction * along).norm();
+  const bool is_inside = std::abs(along) <= groove.half_width_mm && across <= groove.half_base_mm;
+  return is_inside ? std::optional(0.0) : std::nullopt;
+}
+std::optional<double> distance_mm(const CubeCavity& cavity, const Vec3& from_root) {
+  const double distance_mm = from_root.norm();
+  return distance_mm > cavity.radius_mm ? std::nullopt : std::optional(distance_mm);
 }
 
 }  // namespace
 
-double Groove::cavity_height_mm(const geometry::Vec2& place) const {
+double CubeCavity::height_mm(const geometry::Vec2& place) const {
   const geometry::Vec2 from_apex = place - root_mm.head<2>();
   double height_mm = root_mm.z();
   for (const DesignFacet& facet : facets)
@@ -44,33 +57,42 @@ double Groove::cavity_height_mm(const geometry::Vec2& place) const {
   return height_mm;
 }
 
-Vec3 Groove::level_of(std::size_t facet) const {
-  return is_cube() ? Vec3((edges[(facet + 1) % 3] - edges[facet]).normalized()) : root_direction;
+double half_size_mm(const Groove& groove) {
+  return std::visit(
+      Overloaded{[](const PrismGroove& prism) { return std::max(prism.half_base_mm, prism.half_width_mm); },
+                 [](const CubeCavity& cavity) { return cavity.radius_mm; }},
+      groove);
 }
 
-std::vector<Vec3> Groove::facet_corners(std::size_t facet) const {
-  if (is_cube())
-    return {root_mm, root_mm + edge_length_mm(facet) * edges[facet],
-            root_mm + edge_length_mm((facet + 1) % 3) * edges[(facet + 1) % 3]};
-  const Vec3 up = facet_length_mm * facets[facet].up_slope;
-  const Vec3 along = half_width_mm * root_direction;
-  return {root_mm - along, root_mm + along, root_mm + up + along, root_mm + up - along};
+std::vector<Vec3> facet_corners(const Groove& groove, std::size_t facet) {
+  const Vec3& root_mm = common(groove).root_mm;
+  return std::visit(Overloaded{[&](const PrismGroove& prism) -> std::vector<Vec3> {
+                                 const Vec3 up = prism.facet_length_mm * prism.facets[facet].up_slope;
+                                 const Vec3 along = prism.half_width_mm * prism.root_direction;
+                                 return {root_mm - along, root_mm + along, root_mm + up + along, root_mm + up - along};
+                               },
+                               [&](const CubeCavity& cavity) -> std::vector<Vec3> {
+                                 const std::size_t next = (facet + 1) % 3;
+                                 return {root_mm, root_mm + cavity.edge_length_mm(facet) * cavity.edges[facet],
+                                         root_mm + cavity.edge_length_mm(next) * cavity.edges[next]};
+                               }},
+                    groove);
 }
 
-Vec3 Groove::facet_middle(std::size_t facet) const {
-  return geometry::centroid(std::span<const Vec3>(facet_corners(facet)));
+Vec3 facet_middle(const Groove& groove, std::size_t facet) {
+  return geometry::centroid(std::span<const Vec3>(facet_corners(groove, facet)));
 }
 
-Groove groove_of(const CutElement& element, const geometry::RtpElement& size, double stock_mm) {
+PrismGroove groove_of(const CutElement& element, const geometry::RtpElement& size, double stock_mm) {
   const double half_apex = 0.5 * Angle::from_deg(size.apex_angle_deg).rad();
   const Vec3 across = element.rotated ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
-  Groove groove;
+  PrismGroove groove;
   groove.half_base_mm = 0.5 * size.base_mm;
   groove.half_width_mm = 0.5 * size.width_mm;
   groove.facet_length_mm = groove.half_base_mm / std::sin(half_apex);
   groove.depth_mm = groove.half_base_mm / std::tan(half_apex);
   groove.root_mm = {0.0, 0.0, -groove.depth_mm};
-  groove.root_direction = element.rotated ? Vec3(0, 1, 0) : Vec3(1, 0, 0);
+  groove.root_direction = element.turn * (element.rotated ? Vec3(0, 1, 0) : Vec3(1, 0, 0));
   groove.facets.resize(2);
   for (std::size_t f = 0; f < 2; ++f) {
     // The first facet is on the positive side of the root, and its normal points to the negative side.
@@ -78,28 +100,31 @@ Groove groove_of(const CutElement& element, const geometry::RtpElement& size, do
     DesignFacet& facet = groove.facets[f];
     facet.normal = -side * std::cos(half_apex) * across + std::sin(half_apex) * Vec3::UnitZ();
     facet.up_slope = side * std::sin(half_apex) * across + std::cos(half_apex) * Vec3::UnitZ();
+    facet.along = groove.root_direction;
   }
   stand(groove, element, stock_mm);
   return groove;
 }
 
-Groove cavity_of(const CutElement& element, const geometry::Element& size, const geometry::AngleErrors& errors,
-                 double stock_mm) {
+CubeCavity cavity_of(const CutElement& element, const geometry::Element& size, const geometry::AngleErrors& errors,
+                     double stock_mm) {
   const CubeCorner corner = cube_corner(size, errors, element.rotated);
-  Groove cavity;
+  CubeCavity cavity;
   cavity.depth_mm = corner.depth_mm;
   cavity.root_mm = {0.0, 0.0, -cavity.depth_mm};
   cavity.facet_length_mm = std::numbers::sqrt3 * cavity.depth_mm;
-  cavity.half_base_mm = cavity.half_width_mm = geometry::element_cell(size).outline.front().norm();
-  cavity.edges.assign(corner.edges.begin(), corner.edges.end());
+  cavity.radius_mm = geometry::element_cell(size).outline.front().norm();
+  cavity.is_hexagonal = std::holds_alternative<geometry::HexagonalCube>(size);
   cavity.layer_rise = corner.layer_rise();
+  for (std::size_t k = 0; k < 3; ++k) cavity.edges[k] = element.turn * corner.edges[k];
   for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t next = (k + 1) % 3;
     DesignFacet facet;
     facet.normal = corner.normals[k];
-    facet.up_slope = (corner.edges[k] + corner.edges[(k + 1) % 3]).normalized();
+    facet.up_slope = (corner.edges[k] + corner.edges[next]).normalized();
+    facet.along = (cavity.edges[next] - cavity.edges[k]).normalized();
     cavity.facets.push_back(facet);
   }
-  cavity.root_direction = Vec3::UnitZ().cross(cavity.facets.front().normal).normalized();
   stand(cavity, element, stock_mm);
   return cavity;
 }
@@ -107,8 +132,8 @@ Groove cavity_of(const CutElement& element, const geometry::Element& size, const
 Groove groove_of(const CutElement& element, const Job& job, double stock_mm) {
   const geometry::Element size = blank_element(job, element.zone);
   const auto* const prism = std::get_if<geometry::RtpElement>(&size);
-  return prism != nullptr ? groove_of(element, *prism, stock_mm)
-                          : cavity_of(element, size, angle_errors_of(job, element.zone), stock_mm);
+  if (prism != nullptr) return groove_of(element, *prism, stock_mm);
+  return cavity_of(element, size, angle_errors_of(job, element.zone), stock_mm);
 }
 
 std::vector<Groove> designed_grooves(const Job& job) {
@@ -120,12 +145,14 @@ std::vector<Groove> designed_grooves(const Job& job) {
 GrooveMap::GrooveMap(const std::vector<Groove>& grooves) : grooves_(grooves) {
   for (const Groove& groove : grooves) {
     // Seen along Z, the aperture of an inclined element is displaced from its root, so more cells must be searched.
-    if (groove.axis != Vec3::UnitZ()) cells_around_ = 3;
-    cell_mm_ = std::max({cell_mm_ == 1.0 ? 0.0 : cell_mm_, groove.half_base_mm, groove.half_width_mm});
+    if (common(groove).axis != Vec3::UnitZ()) cells_around_ = 3;
+    cell_mm_ = std::max(cell_mm_ == 1.0 ? 0.0 : cell_mm_, half_size_mm(groove));
   }
   cells_.reserve(grooves.size());
-  for (std::size_t i = 0; i < grooves.size(); ++i)
-    cells_.emplace(cell_of(grooves[i].root_mm.x(), grooves[i].root_mm.y(), 0, 0), i);
+  for (std::size_t i = 0; i < grooves.size(); ++i) {
+    const Vec3& root_mm = common(grooves[i]).root_mm;
+    cells_.emplace(cell_of(root_mm.x(), root_mm.y(), 0, 0), i);
+  }
 }
 
 GrooveMap::Cell GrooveMap::cell_of(double x_mm, double y_mm, int dx, int dy) const {
@@ -143,26 +170,22 @@ std::optional<std::size_t> GrooveMap::at(const Vec3& p) const {
     for (int dy = -cells_around_; dy <= cells_around_; ++dy) {
       const auto [first, last] = cells_.equal_range(cell_of(p.x(), p.y(), dx, dy));
       for (auto entry = first; entry != last; ++entry) {
-        const Groove& groove = grooves_[entry->second];
-        Vec3 from_root = p - groove.root_mm;
-        from_root -= groove.axis * groove.axis.dot(from_root);
-        if (groove.is_cube()) {
-          const double distance_mm = from_root.norm();
-          if (distance_mm > groove.half_base_mm || (nearest && distance_mm >= least_mm)) continue;
-          nearest = entry->second;
-          least_mm = distance_mm;
-          continue;
-        }
-        const double along = std::abs(groove.root_direction.dot(from_root));
-        const double across = (from_root - groove.root_direction * groove.root_direction.dot(from_root)).norm();
-        if (along <= groove.half_width_mm && across <= groove.half_base_mm) return entry->second;
+        const DesignElement& element = common(grooves_[entry->second]);
+        Vec3 from_root = p - element.root_mm;
+        from_root -= element.axis * element.axis.dot(from_root);
+        const auto distance =
+            std::visit([&](const auto& groove) { return distance_mm(groove, from_root); }, grooves_[entry->second]);
+        if (!distance || (nearest && *distance >= least_mm)) continue;
+        nearest = entry->second;
+        least_mm = *distance;
+        if (least_mm == 0.0) return nearest;
       }
     }
   return nearest;
 }
 
 std::optional<std::size_t> GrooveMap::deepest(double x_mm, double y_mm) const {
-  if (grooves_.empty() || !grooves_.front().is_cube()) return at(x_mm, y_mm);
+  if (grooves_.empty() || std::holds_alternative<PrismGroove>(grooves_.front())) return at(x_mm, y_mm);
   // Cavities of hexagonal elements extend up to twice their radius, which is two cells.
   constexpr int kCells = 2;
   std::optional<std::size_t> best;
@@ -171,8 +194,7 @@ std::optional<std::size_t> GrooveMap::deepest(double x_mm, double y_mm) const {
     for (int dy = -kCells; dy <= kCells; ++dy) {
       const auto [first, last] = cells_.equal_range(cell_of(x_mm, y_mm, dx, dy));
       for (auto entry = first; entry != last; ++entry) {
-        const Groove& cavity = grooves_[entry->second];
-        const double height_mm = cavity.cavity_height_mm({x_mm, y_mm});
+        const double height_mm = std::get<CubeCavity>(grooves_[entry->second]).height_mm({x_mm, y_mm});
         if (height_mm >= lowest_mm) continue;
         lowest_mm = height_mm;
         best = entry->second;

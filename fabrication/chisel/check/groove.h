@@ -5,8 +5,10 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <unordered_map>
+#include <variant>
 #include <vector>
 
 #include "fabrication/job/job.h"
@@ -21,13 +23,16 @@ struct DesignFacet {
   geometry::Vec3 normal = geometry::Vec3::UnitZ();  ///< unit normal, outward from the material
   double offset_mm = 0.0;
   geometry::Vec3 up_slope = geometry::Vec3::UnitZ();  ///< unit vector in the facet, from the root towards the rim
+  /// Unit vector across the facet: parallel to the root of a prism, or from the first dihedral edge of the facet
+  /// towards the second one in a cube corner.
+  geometry::Vec3 along = geometry::Vec3::UnitX();
 
   /// Returns the signed distance of a point from the facet plane; negative inside the material.
   double height_mm(const geometry::Vec3& p) const { return normal.dot(p) - offset_mm; }
 };
 
-/// An element as designed, in the frame of the blank: the groove of a prism or the cavity of a cube corner.
-struct Groove {
+/// An element as designed, in the frame of the blank: the properties that prism grooves and cube cavities share.
+struct DesignElement {
   geometry::Vec3 axis = geometry::Vec3::UnitZ();  ///< unit vector out of the blank
   /// Position of the blank's face along the axis: the face is the plane axis . p = face_mm. On a curved blank, it is
   /// the plane above which the blank has no material within the opening of the element. On a flat blank, it is z_w = 0.
@@ -36,26 +41,11 @@ struct Groove {
   double stock_mm = 0.0;  ///< height of the face above the rims
 
   geometry::Vec3 root_mm = geometry::Vec3::Zero();  ///< center of the root line, or the apex
-  geometry::Vec3 root_direction = geometry::Vec3::UnitX();
-  /// Facets of the element. Prism: the normal of the first facet points towards -y_w (rotated element: -x_w), the
-  /// normal of the second one towards +y_w (+x_w). Cube corner: facets[k] is between edges[k] and edges[(k + 1) % 3].
-  std::vector<DesignFacet> facets;
-  double half_width_mm = 0.0;  ///< half of the length along the root; cube corner: radius of the aperture
-  double half_base_mm = 0.0;   ///< half of the length across the root; cube corner: radius of the aperture
+  std::vector<DesignFacet> facets;                  ///< two facets of a prism, or three facets of a cube corner
   /// Length of a facet from the root to the rim. Cube corner: length of a dihedral edge from the apex to the plane of
   /// the rims, without errors of angle.
   double facet_length_mm = 0.0;
-  /// Index in Workpiece3d::predictions; elements of equal shape and orientation have the same index.
-  std::size_t group = 0;
   std::size_t zone = 0;  ///< index of the zone in the job; 0 without zones
-  /// Unit vectors along the three dihedral edges of a cube corner, from the apex; empty for a prism. The first edge
-  /// points towards -y_w (rotated element: +y_w).
-  std::vector<geometry::Vec3> edges;
-  /// Cube corner: distance along its axis between the nominal apex and the apex of a layer, per mm of material that the
-  /// layer leaves on each facet.
-  double layer_rise = 0.0;
-
-  bool is_cube() const { return !edges.empty(); }
 
   /// Returns the height of a point above the blank's face.
   double over_face_mm(const geometry::Vec3& p) const { return axis.dot(p) - face_mm; }
@@ -63,30 +53,59 @@ struct Groove {
   double to_face_mm(const geometry::Vec3& p, const geometry::Vec3& direction) const {
     return -over_face_mm(p) / axis.dot(direction);
   }
-  /// Returns the length of a dihedral edge of a cube corner from the apex to the plane of the rims.
+};
+
+/// Groove of a prism. The normal of the first facet points towards -y_w (rotated element: -x_w), the normal of the
+/// second one towards +y_w (+x_w).
+struct PrismGroove : DesignElement {
+  geometry::Vec3 root_direction = geometry::Vec3::UnitX();
+  double half_width_mm = 0.0;  ///< half of the length along the root
+  double half_base_mm = 0.0;   ///< half of the length across the root
+
+  /// Returns the coordinate of a point along the root, measured from the center of the root.
+  double along_mm(const geometry::Vec3& p) const { return root_direction.dot(p - root_mm); }
+};
+
+/// Cavity of a cube corner. facets[k] is between edges[k] and edges[(k + 1) % 3].
+struct CubeCavity : DesignElement {
+  /// Unit vectors along the three dihedral edges, from the apex. The first edge points towards -y_w (rotated element:
+  /// +y_w).
+  std::array<geometry::Vec3, 3> edges = {geometry::Vec3::UnitZ(), geometry::Vec3::UnitZ(), geometry::Vec3::UnitZ()};
+  double radius_mm = 0.0;     ///< radius of the aperture, from its center to its corners
+  bool is_hexagonal = false;  ///< true: hexagonal aperture, which is smaller than the triangular cavity
+  /// Distance along the axis between the nominal apex and the apex of a layer, per mm of material that the layer leaves
+  /// on each facet.
+  double layer_rise = 0.0;
+
+  /// Returns the length of a dihedral edge from the apex to the plane of the rims.
   double edge_length_mm(std::size_t edge) const { return depth_mm / axis.dot(edges[edge]); }
   /// Returns the z coordinate of the cavity's surface at a point of the plane z = 0. Outside of the cavity, the result
   /// is positive.
-  /// \pre the element is a cube corner on a flat blank
-  double cavity_height_mm(const geometry::Vec2& place) const;
-  /// Returns the coordinate of a point along the root, measured from the center of the root.
-  double along_mm(const geometry::Vec3& p) const { return root_direction.dot(p - root_mm); }
-  /// Returns a unit vector across a facet: parallel to the root of a prism, or from the first dihedral edge of the
-  /// facet towards the second one in a cube corner.
-  geometry::Vec3 level_of(std::size_t facet) const;
-  /// Returns the corners of a facet.
-  std::vector<geometry::Vec3> facet_corners(std::size_t facet) const;
-  /// Returns the mean of the corners of a facet.
-  geometry::Vec3 facet_middle(std::size_t facet) const;
+  /// \pre the blank is flat
+  double height_mm(const geometry::Vec2& place) const;
 };
+
+/// An element as designed, in the frame of the blank.
+using Groove = std::variant<PrismGroove, CubeCavity>;
+
+/// Returns the properties that both kinds of elements have.
+inline const DesignElement& common(const Groove& groove) {
+  return std::visit([](const DesignElement& element) -> const DesignElement& { return element; }, groove);
+}
+/// Returns half of the longer side of a prism's aperture, or the radius of a cube corner's aperture.
+double half_size_mm(const Groove& groove);
+/// Returns the corners of a facet.
+std::vector<geometry::Vec3> facet_corners(const Groove& groove, std::size_t facet);
+/// Returns the mean of the corners of a facet.
+geometry::Vec3 facet_middle(const Groove& groove, std::size_t facet);
 
 /// Returns the groove of a prism.
 /// \param stock_mm height of the blank's face above the element's rims
-Groove groove_of(const CutElement& element, const geometry::RtpElement& size, double stock_mm = 0.0);
+PrismGroove groove_of(const CutElement& element, const geometry::RtpElement& size, double stock_mm = 0.0);
 /// Returns the cavity of a cube corner.
 /// \pre `size` is a cube corner
-Groove cavity_of(const CutElement& element, const geometry::Element& size, const geometry::AngleErrors& errors = {},
-                 double stock_mm = 0.0);
+CubeCavity cavity_of(const CutElement& element, const geometry::Element& size, const geometry::AngleErrors& errors = {},
+                     double stock_mm = 0.0);
 /// Returns the groove or cavity of one element of a job.
 Groove groove_of(const CutElement& element, const Job& job, double stock_mm = 0.0);
 /// Returns all elements of a job, in the order of cut_elements(), for a blank whose face is at the height of the rims.

@@ -16,7 +16,7 @@ using geometry::Vec3;
 constexpr double kMostlyDown = 0.9;
 /// Returns true if a move is a retract. The plunged facet is vertical, and a plough moves along the other facet. A
 /// retract moves up, at an angle to the vertical of at most two thirds of the apex angle.
-bool retracts(const Groove& groove, const Vec3& travel) {
+bool retracts(const DesignElement& groove, const Vec3& travel) {
   const double apex_rad = std::acos(-groove.facets[0].normal.dot(groove.facets[1].normal));
   return travel.z() >= travel.norm() * std::cos(apex_rad * 2.0 / 3.0);
 }
@@ -25,7 +25,7 @@ bool retracts(const Groove& groove, const Vec3& travel) {
 
 void PlungeCheck::move(const CutMove& cut) {
   const Vec3 travel = cut.sweep.to_mm - cut.sweep.from_mm;
-  if (retracts(workpiece_.grooves[cut.element], travel)) return close();
+  if (retracts(workpiece_.design(cut.element), travel)) return close();
   // Only a retract may move the tool towards the facet next to its clearance face.
   if (travel.dot(plunged_normal(*workpiece_.machine)) < -kMostSlip * travel.norm()) find_clearance_face(cut);
   if (travel.z() < -kMostlyDown * travel.norm()) return plunge(cut);
@@ -46,7 +46,7 @@ void PlungeCheck::plunge(const CutMove& cut) {
   const auto& [motion, sweep, there, back, element] = cut;
   close();
   check_feed(cut);
-  const Groove& groove = workpiece_.grooves[element];
+  const DesignElement& groove = workpiece_.design(element);
   const Vec3 upright = there.direction(groove.facets[0].normal);
   OpenPlunge plunge;
   plunge.element = element;

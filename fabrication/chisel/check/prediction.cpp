@@ -14,7 +14,7 @@ using geometry::Vec3;
 
 namespace {
 
-Prediction predict_cube(const Machine& machine, const Groove& cavity, const ToolWedge& wedge) {
+Prediction predict(const Machine& machine, const CubeCavity& cavity, const ToolWedge& wedge) {
   Prediction prediction;
   prediction.step_mm = 1e-6 * static_cast<double>(machine.increments.linear_nm);
   for (const DesignFacet& facet : cavity.facets) {
@@ -42,8 +42,8 @@ Prediction predict_cube(const Machine& machine, const Groove& cavity, const Tool
 /// element (docs/theory/verification.md).
 /// \param motion rigid motion of the workpiece while the facet is plunged
 /// \param length_mm length of the facet from the root to the face of the blank
-double wall_overcut_mm(const Groove& groove, const ToolWedge& wedge, const Vec3& pass_normal, const RigidMotion& motion,
-                       double length_mm) {
+double wall_overcut_mm(const PrismGroove& groove, const ToolWedge& wedge, const Vec3& pass_normal,
+                       const RigidMotion& motion, double length_mm) {
   const Vec3 root = motion.direction(groove.root_direction);
   double drift = 0.0;
   for (const DesignFacet& facet : groove.facets) {
@@ -56,10 +56,7 @@ double wall_overcut_mm(const Groove& groove, const ToolWedge& wedge, const Vec3&
   return drift * length_mm + std::max(0.0, reach_mm / std::abs(pass_normal.dot(root)) - wedge.half_width_mm);
 }
 
-}  // namespace
-
-Prediction predict(const Machine& machine, const Groove& groove, const ToolWedge& wedge) {
-  if (groove.is_cube()) return predict_cube(machine, groove, wedge);
+Prediction predict(const Machine& machine, const PrismGroove& groove, const ToolWedge& wedge) {
   Prediction prediction;
   prediction.poses.resize(2);
   prediction.pass_normal = machine.y.direction.value.cross(machine.z.direction.value).normalized();
@@ -95,6 +92,12 @@ Prediction predict(const Machine& machine, const Groove& groove, const ToolWedge
     floor.shift_mm = -rise_mm * prediction.pass_normal.dot(design) / prediction.pass_normal.dot(root);
   }
   return prediction;
+}
+
+}  // namespace
+
+Prediction predict(const Machine& machine, const Groove& groove, const ToolWedge& wedge) {
+  return std::visit([&](const auto& element) { return predict(machine, element, wedge); }, groove);
 }
 
 }  // namespace retrace::fabrication

@@ -37,9 +37,8 @@ ControlRule control_rule_of(const Job& job, const Machine& machine) {
 
 std::unique_ptr<CutCheck> cut_check_of(const Workpiece3d& workpiece, const ToolWedge& wedge, ControlCheck& control,
                                        FindingList& findings) {
-  if (workpiece.job->strategy == Strategy::dmc)
-    return std::make_unique<ChiselingCheck>(workpiece, wedge, control, findings);
-  return std::make_unique<PlungeCheck>(workpiece, wedge, control, findings);
+  if (cuts_prisms(*workpiece.job)) return std::make_unique<PlungeCheck>(workpiece, wedge, control, findings);
+  return std::make_unique<ChiselingCheck>(workpiece, wedge, control, findings);
 }
 
 }  // namespace
@@ -162,8 +161,8 @@ void ProgramCheck::find_corners(const SweptVolume& sweep, std::optional<std::siz
   const BlankFace& face = way_.face();
   // Outside of the elements, the face is approximated by its tangent plane below the tool.
   const Vec3 tip = back.point(sweep.to_mm);
-  const Vec3 out = element ? workpiece_.grooves[*element].axis : face.normal_at(tip);
-  const double face_mm = element          ? workpiece_.grooves[*element].face_mm
+  const Vec3 out = element ? workpiece_.design(*element).axis : face.normal_at(tip);
+  const double face_mm = element          ? workpiece_.design(*element).face_mm
                          : face.is_flat() ? 0.0
                                           : out.dot(tip) - face.height_mm(tip);
   const auto height_mm = [&](const Vec3& p) { return out.dot(p) - face_mm; };
@@ -196,7 +195,7 @@ std::optional<std::size_t> ProgramCheck::element_of(const SweptVolume& sweep) co
 }
 
 void ProgramCheck::check_cut(const NcMotion& motion, const SweptVolume& sweep, std::size_t element) {
-  const Groove& groove = workpiece_.grooves[element];
+  const auto* const prism = std::get_if<PrismGroove>(&workpiece_.grooves[element]);
   const Prediction& prediction = workpiece_.prediction(element);
   const auto find = [&](const char* kind, std::string message, double value_mm, double limit_mm) {
     findings_.add(kind, motion.place.line, std::move(message), value_mm * kNmPerMm, limit_mm * kNmPerMm,
@@ -205,8 +204,9 @@ void ProgramCheck::check_cut(const NcMotion& motion, const SweptVolume& sweep, s
   double gouge_mm = 0.0;
   double wall_mm = 0.0;
   for (const Vec3& corner : corners_) {
-    for (const DesignFacet& facet : groove.facets) gouge_mm = std::max(gouge_mm, -facet.height_mm(corner));
-    if (!groove.is_cube()) wall_mm = std::max(wall_mm, std::abs(groove.along_mm(corner)) - groove.half_width_mm);
+    for (const DesignFacet& facet : workpiece_.design(element).facets)
+      gouge_mm = std::max(gouge_mm, -facet.height_mm(corner));
+    if (prism != nullptr) wall_mm = std::max(wall_mm, std::abs(prism->along_mm(corner)) - prism->half_width_mm);
   }
   deepest_wall_mm_ = std::max(deepest_wall_mm_, wall_mm);
   if (gouge_mm > workpiece_.tolerance_mm)

@@ -37,7 +37,7 @@ void StopCheck::stop(double now_s) {
 
 void StopCheck::cut(const CutMove& cut, double now_s) {
   check_time(cut.motion.place, static_cast<std::int64_t>(cut.element), now_s);
-  const auto along = facet_cut(workpiece_.grooves[cut.element], wedge_, cut.sweep, cut.back);
+  const auto along = facet_cut(workpiece_.design(cut.element), wedge_, cut.sweep, cut.back);
   if (!along) return;
   check_length(cut, *along);
   check_inspection(cut, *along);
@@ -46,11 +46,12 @@ void StopCheck::cut(const CutMove& cut, double now_s) {
 void StopCheck::check_length(const CutMove& cut, const FacetCut& along) {
   const auto& life_mm = workpiece_.job->tool.edge_life_mm;
   const Vec3 travel = cut.sweep.to_mm - cut.sweep.from_mm;
-  const Groove& groove = workpiece_.grooves[cut.element];
+  const DesignElement& design = workpiece_.design(cut.element);
   // A chisel that moves up along the plunged facet does not cut, so this move does not wear the edge.
-  if (!life_mm || (!groove.is_cube() && along.is_by_clearance && travel.z() > 0.0)) return;
-  const double from_mm = groove.over_face_mm(cut.back.point(cut.sweep.from_mm));
-  const double to_mm = groove.over_face_mm(cut.back.point(cut.sweep.to_mm));
+  const bool is_chisel = std::holds_alternative<PrismGroove>(workpiece_.grooves[cut.element]);
+  if (!life_mm || (is_chisel && along.is_by_clearance && travel.z() > 0.0)) return;
+  const double from_mm = design.over_face_mm(cut.back.point(cut.sweep.from_mm));
+  const double to_mm = design.over_face_mm(cut.back.point(cut.sweep.to_mm));
   const double below_mm = std::max(0.0, -from_mm) + std::max(0.0, -to_mm);
   const bool crosses = (from_mm > 0.0) != (to_mm > 0.0);
   if (below_mm > 0.0) cut_mm_ += travel.norm() * (crosses ? below_mm / std::abs(from_mm - to_mm) : 1.0);

@@ -12,6 +12,7 @@
 
 #include "core/error.h"
 #include "core/number_format.h"
+#include "core/overloaded.h"
 #include "core/threads.h"
 #include "fabrication/chisel/check/chip_check.h"
 #include "fabrication/chisel/check/program_check.h"
@@ -61,15 +62,22 @@ void refuse_other_machine(const Job& job, const Machine& machine, const std::vec
   }
 }
 
+/// Returns the error of the angle between the two facets of a prism, in arc minutes. A facet with a positive slope is
+/// inclined into the groove, which reduces this angle.
+double apex_error_arcmin(const PrismGroove&, const ElementFigures& figures) {
+  double error_arcmin = 0.0;
+  for (const FacetFigures& facet : figures.facets) error_arcmin -= std::atan(facet.slope_up) * kArcminPerRad;
+  return error_arcmin;
+}
+
 /// Returns the largest error of the three dihedral angles of a cube corner, relative to the design, in arc minutes. The
 /// result is positive if the angle is too large.
-double dihedral_error_arcmin(const Groove& cavity, const ElementFigures& figures) {
+double apex_error_arcmin(const CubeCavity& cavity, const ElementFigures& figures) {
   std::vector<Vec3> normals;
   for (std::size_t f = 0; f < figures.facets.size(); ++f) {
     const DesignFacet& design = cavity.facets[f];
-    const Vec3 level = cavity.level_of(f);
     normals.push_back(
-        (design.normal - figures.facets[f].slope_up * design.up_slope - figures.facets[f].slope_along * level)
+        (design.normal - figures.facets[f].slope_up * design.up_slope - figures.facets[f].slope_along * design.along)
             .normalized());
   }
   double largest = 0.0;
@@ -90,10 +98,9 @@ ElementResult result_of(const Groove& groove, const ElementFigures& figures) {
   for (std::size_t f = 0; f < figures.facets.size(); ++f) {
     const FacetFigures& facet = figures.facets[f];
     result.facet_angle_arcmin[f] = std::atan(std::hypot(facet.slope_up, facet.slope_along)) * kArcminPerRad;
-    // A facet with a positive slope is inclined into the groove, which reduces the angle between the facets.
-    result.apex_error_arcmin -= std::atan(facet.slope_up) * kArcminPerRad;
   }
-  if (groove.is_cube()) result.apex_error_arcmin = dihedral_error_arcmin(groove, figures);
+  result.apex_error_arcmin =
+      std::visit([&](const auto& element) { return apex_error_arcmin(element, figures); }, groove);
   return result;
 }
 
@@ -123,7 +130,7 @@ class Judge {
   /// Returns the predicted residual material at the root of a facet. It comes from the plunges along the other facet.
   /// For a unidirectional job, returns the larger of the values of both facets, because only one facet is plunged.
   double root_limit_mm(const Prediction& prediction, std::size_t facet) const {
-    if (workpiece_.job->strategy == Strategy::dmc) return prediction.fin_mm;
+    if (!cuts_prisms(*workpiece_.job)) return prediction.fin_mm;
     return workpiece_.job->strategy == Strategy::unidirectional ? prediction.root_mm : prediction.root_of_mm[1 - facet];
   }
 
@@ -170,22 +177,22 @@ double design_volume_mm3(const Job& job, std::size_t zone) {
 /// where a is the edge length of the cubes, N the number of cut elements, and M the number of distinct hexagon corners
 /// at their dihedral edges (docs/theory/micro_chiseling.md). On a substrate, the formula applies to the unrolled array.
 double border_overcut_mm3(const Workpiece3d& workpiece, const std::vector<ElementResult>& elements) {
-  const std::vector<Groove>& cavities = workpiece.grooves;
   std::set<std::pair<std::int64_t, std::int64_t>> corners;
   std::int64_t cut = 0;
   double edge_mm = 0.0;
-  for (std::size_t i = 0; i < cavities.size(); ++i) {
+  for (std::size_t i = 0; i < elements.size(); ++i) {
     if (!elements[i].figures.is_cut) continue;
+    const auto& cavity = std::get<CubeCavity>(workpiece.grooves[i]);
     ++cut;
-    edge_mm = 0.5 * cavities[i].facet_length_mm;
+    edge_mm = 0.5 * cavity.facet_length_mm;
     for (int k = 0; k < 3; ++k) {
       // The dihedral edges have the azimuths -90, 30 and 150 degrees, because hexagonal elements are not rotated.
       const double azimuth = 2.0 * std::numbers::pi / 3.0 * k - 0.5 * std::numbers::pi;
       const geometry::Vec2 outwards(std::cos(azimuth), std::sin(azimuth));
       const geometry::Vec2 from_first =
-          workpiece.elements[i].centre_mm - workpiece.elements.front().centre_mm + cavities[i].half_base_mm * outwards;
+          workpiece.elements[i].centre_mm - workpiece.elements.front().centre_mm + cavity.radius_mm * outwards;
       // The corners are points of a grid with the steps half width (in x) and half radius (in y) of the hexagons.
-      const double half_radius_mm = 0.5 * cavities[i].half_base_mm;
+      const double half_radius_mm = 0.5 * cavity.radius_mm;
       corners.emplace(std::llround(from_first.x() / (std::numbers::sqrt3 * half_radius_mm)),
                       std::llround(from_first.y() / half_radius_mm));
     }
@@ -237,7 +244,8 @@ void cut_with_nose(const Workpiece3d& workpiece, const ProgramCheck& check, cons
   std::vector<NoseResidue> residues(workpiece.grooves.size());
   for_each_in_parallel(residues.size(), [&](std::size_t i) {
     if (result.elements[i].figures.is_cut)
-      residues[i] = nose_residue(workpiece.grooves[i], 1e-3 * tool.edge_radius_um, check.sweeps()[i], poses, nosed);
+      residues[i] = nose_residue(std::get<CubeCavity>(workpiece.grooves[i]), 1e-3 * tool.edge_radius_um,
+                                 check.sweeps()[i], poses, nosed);
   });
   for (const NoseResidue& residue : residues) {
     result.root_chamfer_um = std::max(result.root_chamfer_um, 1e3 * std::numbers::sqrt2 * residue.strip_mm);
@@ -292,7 +300,7 @@ Verification verify_programs(const Job& job, const Machine& given_machine, const
                              const Cancellation* cancellation) {
   Machine machine = given_machine;
   machine.increments = increments_in(given_machine, programs);
-  check_on_machine(job, job.strategy == Strategy::dmc ? machine : given_machine);
+  check_on_machine(job, cuts_prisms(job) ? given_machine : machine);
   const Workpiece3d workpiece =
       workpiece_of(job, machine, options.tolerance_nm.value_or(usual_tolerance_nm(machine, programs)));
   FindingList findings;
@@ -325,12 +333,17 @@ Verification verify_programs(const Job& job, const Machine& given_machine, const
   for_each_in_parallel(result.elements.size(), [&](std::size_t i) {
     if (cancellation != nullptr && cancellation->requested()) return;
     const Prediction& prediction = workpiece.prediction(i);
-    const Groove& groove = workpiece.grooves[i];
-    const ElementFigures figures = groove.is_cube() ? cavity_figures(groove, is_hexagonal, check.sweeps()[i], poses,
-                                                                     check.wedge(), job.tool.nose_angle_deg, prediction)
-                                                    : element_figures(groove, check.sweeps()[i], poses, check.wedge(),
-                                                                      prediction, ploughs, workpiece.tolerance_mm);
-    result.elements[i] = result_of(groove, figures);
+    const std::vector<SweptVolume>& sweeps = check.sweeps()[i];
+    const ElementFigures figures = std::visit(
+        Overloaded{[&](const PrismGroove& groove) {
+                     return element_figures(groove, sweeps, poses, check.wedge(), prediction, ploughs,
+                                            workpiece.tolerance_mm);
+                   },
+                   [&](const CubeCavity& cavity) {
+                     return cavity_figures(cavity, sweeps, poses, check.wedge(), job.tool.nose_angle_deg, prediction);
+                   }},
+        workpiece.grooves[i]);
+    result.elements[i] = result_of(workpiece.grooves[i], figures);
     chips[i] = chips_of(workpiece, face, i, check.sweeps()[i], poses, check.wedge());
   });
 
@@ -361,10 +374,10 @@ Verification verify_programs(const Job& job, const Machine& given_machine, const
   if (is_hexagonal) find_overcut(workpiece, result);
   if (job.substrate || has_errors(job)) result.rim_overcut_um_max = 1e3 * rim_overcut_mm(workpiece.grooves);
   result.removed_volume_mm3 += result.border_overcut_mm3;
-  if (job.strategy == Strategy::dmc)
-    cut_with_nose(workpiece, check, poses, result);
-  else
+  if (cuts_prisms(job))
     result.root_radius_um = job.tool.edge_radius_um;
+  else
+    cut_with_nose(workpiece, check, poses, result);
   result.free_tool_length_mm = check.least_free_tool_mm();
   result.time = check.time() - standing_time;
   result.findings = findings.take();

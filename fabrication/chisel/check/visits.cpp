@@ -32,7 +32,7 @@ void VisitFinder::motion(const NcMotion& motion, const NcSettings&) {
   const Vec3 tip = back.point(machine_point(machine_, motion.to) + tip_mm_);
   const std::optional<std::size_t> element = map_.at(tip);
   if (!element) return;
-  const double depth_mm = -grooves_[*element].over_face_mm(tip);
+  const double depth_mm = -common(grooves_[*element]).over_face_mm(tip);
   if (elements_.back() && depth_mm <= depth_mm_) return;
   elements_.back() = element;
   depth_mm_ = depth_mm;

@@ -20,7 +20,7 @@ constexpr double kClearanceShare = 0.9;
 /// file describes the holder above it.
 double diamond_mm(const Workpiece3d& workpiece) {
   constexpr double kDepths = 2.0;
-  return workpiece.grooves.empty() ? 1.0 : kDepths * workpiece.grooves.front().depth_mm;
+  return workpiece.grooves.empty() ? 1.0 : kDepths * workpiece.design(0).depth_mm;
 }
 
 }  // namespace

@@ -17,17 +17,16 @@ Workpiece3d workpiece_of(const Job& job, const Machine& machine, double toleranc
   const ToolWedge wedge = wedge_of(job, machine);
   std::map<std::pair<bool, std::int32_t>, std::size_t> groups;
   for (const CutElement& element : workpiece.elements) {
-    Groove groove = groove_of(element, job, stock);
+    workpiece.grooves.push_back(groove_of(element, job, stock));
     const auto [group, is_new] = groups.try_emplace({element.rotated, element.orientation}, groups.size());
-    if (is_new) workpiece.predictions.push_back(predict(machine, groove, wedge));
-    groove.group = group->second;
-    workpiece.grooves.push_back(std::move(groove));
+    if (is_new) workpiece.predictions.push_back(predict(machine, workpiece.grooves.back(), wedge));
+    workpiece.groups.push_back(group->second);
   }
   return workpiece;
 }
 
 ToolWedge wedge_of(const Job& job, const Machine& machine) {
-  if (job.strategy == Strategy::dmc) return v_tool_wedge(job.tool, machine);
+  if (!cuts_prisms(job)) return v_tool_wedge(job.tool, machine);
   return tool_wedge(job.tool, machine, Angle::from_deg(prism_of(job).apex_angle_deg));
 }
 

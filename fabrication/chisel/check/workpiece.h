@@ -17,11 +17,13 @@ struct Workpiece3d {
   const Job* job = nullptr;
   const Machine* machine = nullptr;
   std::vector<Groove> grooves;
-  std::vector<Prediction> predictions;  ///< one for each combination of element shape and orientation (Groove::group)
+  std::vector<Prediction> predictions;  ///< one for each combination of element shape and orientation
+  std::vector<std::size_t> groups;      ///< index in `predictions` for each element
   std::vector<CutElement> elements;
   double tolerance_mm = 1e-5;
 
-  const Prediction& prediction(std::size_t element) const { return predictions[grooves[element].group]; }
+  const DesignElement& design(std::size_t element) const { return common(grooves[element]); }
+  const Prediction& prediction(std::size_t element) const { return predictions[groups[element]]; }
 };
 
 /// Builds the data for the verification of a job's programs.

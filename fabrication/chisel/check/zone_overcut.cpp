@@ -29,7 +29,7 @@ class Overcutter {
  public:
   Overcutter(const Workpiece3d& workpiece, const std::vector<bool>& is_cut)
       : grooves_(workpiece.grooves), elements_(workpiece.elements) {
-    for (const Groove& cavity : grooves_) width_mm_ = std::max(width_mm_, 2.0 * cavity.half_base_mm);
+    for (const Groove& cavity : grooves_) width_mm_ = std::max(width_mm_, 2.0 * half_size_mm(cavity));
     for (std::size_t i = 0; i < grooves_.size(); ++i)
       if (is_cut[i]) squares_[square_of(apex_of(i))].push_back(i);
   }
@@ -46,7 +46,8 @@ class Overcutter {
  private:
   using Square = std::pair<std::int64_t, std::int64_t>;
 
-  Vec2 apex_of(std::size_t i) const { return grooves_[i].root_mm.head<2>(); }
+  const CubeCavity& cavity(std::size_t i) const { return std::get<CubeCavity>(grooves_[i]); }
+  Vec2 apex_of(std::size_t i) const { return cavity(i).root_mm.head<2>(); }
   Square square_of(const Vec2& p) const {
     return {static_cast<std::int64_t>(std::floor(p.x() / width_mm_)),
             static_cast<std::int64_t>(std::floor(p.y() / width_mm_))};
@@ -63,12 +64,12 @@ class Overcutter {
   }
 
   /// Returns the depth of a cavity below a point of the blank's face; 0 outside of the cavity.
-  double depth_mm(std::size_t i, const Vec2& p) const { return std::max(0.0, -grooves_[i].cavity_height_mm(p)); }
+  double depth_mm(std::size_t i, const Vec2& p) const { return std::max(0.0, -cavity(i).height_mm(p)); }
 
   /// Returns true if a point is inside the hexagon of an element. Angle errors do not change the hexagon.
   bool is_in_hexagon(std::size_t i, const Vec2& p) const {
     const Vec2 v = elements_[i].turn.topLeftCorner<2, 2>().transpose() * (p - apex_of(i));
-    const double inner_mm = 0.5 * std::numbers::sqrt3 * grooves_[i].half_base_mm;
+    const double inner_mm = 0.5 * std::numbers::sqrt3 * cavity(i).radius_mm;
     return std::ranges::all_of(std::array{0.0, 60.0, 120.0},
                                [&](double azimuth) { return std::abs(v.dot(towards(azimuth))) <= inner_mm; });
   }
@@ -78,7 +79,7 @@ class Overcutter {
     bool is_there = false;
     for_each_near(apex, [&](std::size_t k) {
       is_there |=
-          elements_[k].zone == elements_[i].zone && (apex_of(k) - apex).norm() < kSameShare * grooves_[i].half_base_mm;
+          elements_[k].zone == elements_[i].zone && (apex_of(k) - apex).norm() < kSameShare * cavity(i).radius_mm;
     });
     return is_there;
   }
@@ -87,7 +88,7 @@ class Overcutter {
   /// half is an equilateral triangle inside the hexagon of one neighbour.
   /// \param side -1 or 1, to select one of the two halves
   void add_half_corner(std::size_t i, int k, double side) {
-    const double radius_mm = grooves_[i].half_base_mm;
+    const double radius_mm = cavity(i).radius_mm;
     const double edge_deg = 120.0 * k - 90.0;
     const auto place = [&](double azimuth_deg, double mm) -> Vec2 {
       return apex_of(i) + elements_[i].turn.topLeftCorner<2, 2>() * (mm * towards(azimuth_deg));

@@ -22,7 +22,7 @@ constexpr int kMostSteps = 400;
 ClearWay::ClearWay(const Job& job, const Machine& machine)
     : machine_(machine),
       face_(job),
-      half_edge_mm_(job.strategy == Strategy::dmc ? 0.0 : 0.5 * job.tool.width_mm),
+      half_edge_mm_(cuts_prisms(job) ? 0.5 * job.tool.width_mm : 0.0),
       clearance_mm_(kShare * job.process.clearance_mm) {
   double least_mm = std::numeric_limits<double>::infinity();
   for (std::size_t zone = 0; zone < zone_count(job); ++zone)

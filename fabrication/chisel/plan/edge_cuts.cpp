@@ -17,12 +17,12 @@ using geometry::Vec3;
 /// tool reference point is the intersection of the circle's vertical and horizontal tangents
 /// (docs/theory/verification.md).
 Vec3 tip_of(const Job& job, const Section& section) {
-  if (job.strategy == Strategy::dmc) return Vec3::Zero();
+  if (!cuts_prisms(job)) return Vec3::Zero();
   return -Vec3::UnitZ() * section.edge_mm / std::sin(section.apex.rad());
 }
 
 Angle edge_rise(const Job& job) {
-  return Angle::from_deg(job.strategy == Strategy::dmc ? 90.0 - 0.5 * job.tool.nose_angle_deg : 0.0);
+  return Angle::from_deg(cuts_prisms(job) ? 0.0 : 90.0 - 0.5 * job.tool.nose_angle_deg);
 }
 
 /// Collects the cuts of all visits. A visit is one call of a subroutine at an element.
@@ -61,7 +61,7 @@ class Collector {
       if (move == nullptr) continue;
       const Place by(move->to[kX].value_or(0), move->to[kY].value_or(0), move->to[kZ].value_or(0));
       at += by;
-      const bool is_way_up = job_.strategy == Strategy::dmc && move->motion == Motion::retract;
+      const bool is_way_up = !cuts_prisms(job_) && move->motion == Motion::retract;
       if (move->motion != Motion::plunge && move->motion != Motion::plough && !is_way_up) continue;
       const bool ploughs = move->motion == Motion::plough;
       if (move->motion == Motion::plunge) last[1].reset();
@@ -82,7 +82,7 @@ class Collector {
     cut.stage = stage;
     cut.is_ploughed = ploughs;
     const Vec3 words = millimetres(at);
-    const bool tilts_head = job_.strategy == Strategy::dmc;
+    const bool tilts_head = !cuts_prisms(job_);
     cut.cut.at = {words.x(),          words.y(),
                   words.z(),          tilts_head ? 0.0 : pose.rounded.a_deg,
                   pose.rounded.c_deg, tilts_head ? pose.rounded.a_deg : 0.0};

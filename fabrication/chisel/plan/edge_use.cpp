@@ -17,7 +17,7 @@ using geometry::Vec3;
 constexpr double kSecondsPerMinute = 60.0;
 
 bool cuts(const Job& job, Motion motion) {
-  const bool goes_up_edge = job.strategy == Strategy::dmc && motion == Motion::retract;
+  const bool goes_up_edge = !cuts_prisms(job) && motion == Motion::retract;
   return motion == Motion::plunge || motion == Motion::plough || goes_up_edge;
 }
 
@@ -37,8 +37,7 @@ double length_of_cut_mm(const Job& job, const Machine& machine, const CutElement
                         const Visit& visit, const Subroutine& routine, double stock_mm) {
   // Distance from the tool reference point down to the intersection of the edge circle's tangents in the two facets
   // (docs/theory/verification.md).
-  const double below_mm =
-      job.strategy == Strategy::dmc ? 0.0 : pose.section.edge_mm / std::sin(pose.section.apex.rad());
+  const double below_mm = cuts_prisms(job) ? pose.section.edge_mm / std::sin(pose.section.apex.rad()) : 0.0;
   const Vec3 tip = edge_frame(machine) * Vec3(0.0, 0.0, -below_mm);
   const auto height_mm = [&](const Vec3& words) {
     AxisPositions axes{words.x(), words.y(), words.z(), 0.0, pose.rounded.c_deg};

@@ -573,7 +573,7 @@ void check_options(const PlanOptions& options, std::size_t elements, std::size_t
 }
 
 ProcessFacts facts_of(const Job& job, const Plan& plan) {
-  const auto facts = job.strategy == Strategy::dmc ? chiseling_facts : plunging_facts;
+  const auto facts = cuts_prisms(job) ? plunging_facts : chiseling_facts;
   return facts(job, plan.stock_mm, plan.elements.size());
 }
 

@@ -26,7 +26,7 @@ class StageMaker {
   }
 
   std::vector<RoutineStart> run() {
-    if (job_.strategy == Strategy::dmc) {
+    if (!cuts_prisms(job_)) {
       chisel();
       return std::move(starts_);
     }
@@ -84,7 +84,7 @@ class StageMaker {
   /// Returns the thickness of the material that a layer or a finishing cut leaves on the facets.
   double left_mm(std::string_view what, int cut, int cuts, std::size_t zone = 0) const {
     if (what == "finishing") return 1e-3 * job_.process.finishing_depth_um * (cuts - cut);
-    const bool is_dmc = job_.strategy == Strategy::dmc;
+    const bool is_dmc = !cuts_prisms(job_);
     const double across_mm =
         is_dmc ? chiseling_across_mm(job_, zone, plan_.stock_mm) : roughing_across_mm(job_, plan_.stock_mm);
     // The second plunge of the first layer has the thinnest chip. Its material is the remainder of the triangular

@@ -290,10 +290,6 @@ const Table kJobTables[] = {
     process_table("process", child<&Job::process>)};
 // Checks that involve several keys.
 
-bool is_prism(const Job& job) {
-  return std::holds_alternative<RtpElement>(job.element);
-}
-
 void check_chips(const Job& job, const Refuse& refuse) {
   const auto& chips = job.tool.edge_chips;
   if (chips.size() > kMostChips)
@@ -395,7 +391,7 @@ void check_room(const Job& job, const Refuse& refuse) {
   if (const double elements = geometry::element_estimate(array, job.element); elements > kMostElements)
     refuse("array.x_length_mm",
            fmt::format("the array would have {:.6g} elements, at most {:.0f} are allowed", elements, kMostElements));
-  if (is_prism(job)) {
+  if (cuts_prisms(job)) {
     const geometry::CellCounts counts = geometry::prism_block(array, prism_of(job)).counts;
     for (const auto& [count, key, length_mm] : {std::tuple(counts.columns, "array.x_length_mm", array.x_length_mm),
                                                 {counts.rows, "array.y_length_mm", array.y_length_mm}})
@@ -448,13 +444,13 @@ void check_machine(const Job& job, const Refuse& refuse) {
 }
 
 void check_workpiece(const Job& job, const Refuse& refuse) {
-  if (!is_prism(job) && job.workpiece.kind == WorkpieceKind::direct)
+  if (!cuts_prisms(job) && job.workpiece.kind == WorkpieceKind::direct)
     refuse("workpiece.kind",
            "must be \"mould\" for cube corners, whose cavities are not their elements, got \"direct\"");
 }
 
 void check_tool(const Job& job, const Refuse& refuse) {
-  if (is_prism(job))
+  if (cuts_prisms(job))
     check_chisel(job, refuse);
   else
     for (std::size_t zone = 0; zone < zone_count(job); ++zone)

@@ -158,7 +158,7 @@ std::string fabrication_json(const FabricationResult& result, const Json& setup)
                {"program_times_s", plan.program_times_s}};
   if (result.job.tool.edge_life_mm) json["program_cuts_mm"] = plan.program_cuts_mm;
   // A V-shaped tool cuts in both directions with its leading edge and always has the same rake.
-  if (result.job.strategy == fabrication::Strategy::dmc) json.erase("plough_rake_deg");
+  if (!cuts_prisms(result.job)) json.erase("plough_rake_deg");
   if (!setup.is_null()) json["setup"] = setup;
   return result_text("retrace.fabrication/1", json, result.warnings);
 }

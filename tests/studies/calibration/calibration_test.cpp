@@ -138,10 +138,10 @@ double largest_tilt_arcsec(const FabricationResult& plan, const Machine& real) {
   for (std::size_t element = 0; element < grooves.size(); ++element)
     for (std::size_t facet = 0; facet < 2; ++facet) {
       const FacetFigures& figures = v.elements[element].figures.facets[facet];
-      const DesignFacet& design = grooves[element].facets[facet];
+      const DesignFacet& design = common(grooves[element]).facets[facet];
       tilts.insert(tilts.end(), {kArcsecPerRad * figures.slope_up, kArcsecPerRad * figures.slope_along});
       of_turn.push_back(design.up_slope.cross(design.normal));
-      of_turn.push_back(grooves[element].level_of(facet).cross(design.normal));
+      of_turn.push_back(design.along.cross(design.normal));
     }
   Eigen::MatrixXd turns(static_cast<Eigen::Index>(tilts.size()), 3);
   for (std::size_t k = 0; k < tilts.size(); ++k) turns.row(static_cast<Eigen::Index>(k)) = of_turn[k].transpose();

@@ -133,10 +133,10 @@ TEST(FacetMarks, ChipsOfTheEdgeAreFound) {
 TEST(FacetMarks, AScratchOfOneFacetIsNotTheEdges) {
   std::mt19937 bits(3);
   const HiddenMachine machine(bits);
-  const Groove groove = designed_grooves(four_prisms().job).front();
+  const auto groove = std::get<PrismGroove>(designed_grooves(four_prisms().job).front());
   class Scratched {
    public:
-    Scratched(const CutSurface& cut, const Groove& groove) : cut_(cut), groove_(groove) {}
+    Scratched(const CutSurface& cut, const PrismGroove& groove) : cut_(cut), groove_(groove) {}
     double z(double x, double y) const {
       const double plain = cut_.z(x, y);
       const Vec3 p(x, y, plain);
@@ -148,7 +148,7 @@ TEST(FacetMarks, AScratchOfOneFacetIsNotTheEdges) {
 
    private:
     const CutSurface& cut_;
-    const Groove& groove_;
+    const PrismGroove& groove_;
   };
   const Correction found = correct(four_prisms(), {seen(Scratched(machine.cut, groove), bits)});
   ASSERT_EQ(found.marks.size(), 1U);

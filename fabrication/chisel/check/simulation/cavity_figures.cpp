@@ -96,7 +96,7 @@ LineSurface surface_at(const Vec3& point, const Vec3& direction, double exit, st
 /// - the width of the strip along a dihedral edge, if the point is in this strip,
 /// - the height of a fin, if the point is close to both other facets. Near the apex, the normal is nearly parallel to
 ///   the common dihedral edge of the other facets. Rounded positions may leave a fin (thin ridge) along this edge.
-double exit_of(const Groove& cavity, std::size_t facet, const Vec3& point, bool is_at_edge, double fin_mm) {
+double exit_of(const CubeCavity& cavity, std::size_t facet, const Vec3& point, bool is_at_edge, double fin_mm) {
   constexpr double kParallel = 1e-9;
   const Vec3& normal = cavity.facets[facet].normal;
   double exit = cavity.to_face_mm(point, normal);
@@ -131,7 +131,7 @@ void take(FacetFigures& figures, const Vec2& place, const LineSurface& surface) 
 
 }  // namespace
 
-ElementFigures cavity_figures(const Groove& cavity, bool is_hexagonal, std::span<const SweptVolume> sweeps,
+ElementFigures cavity_figures(const CubeCavity& cavity, std::span<const SweptVolume> sweeps,
                               std::span<const RigidMotion> poses, const ToolWedge& wedge, double nose_angle_deg,
                               const Prediction& prediction) {
   ElementFigures figures;
@@ -143,9 +143,8 @@ ElementFigures cavity_figures(const Groove& cavity, bool is_hexagonal, std::span
     const Vec3& first = cavity.edges[k];
     const Vec3& second = cavity.edges[(k + 1) % 3];
     const Vec2 edges_mm(cavity.edge_length_mm(k), cavity.edge_length_mm((k + 1) % 3));
-    const Vec3 level = cavity.level_of(k);
     const std::vector<Vec2> places =
-        Places(edges_mm, is_hexagonal, nose_angle_deg, prediction.poses[k].root_tilt, prediction.step_mm).all();
+        Places(edges_mm, cavity.is_hexagonal, nose_angle_deg, prediction.poses[k].root_tilt, prediction.step_mm).all();
     FacetFigures facet;
     PlaneFit plane;
     for (const Vec2& place : places) {
@@ -158,11 +157,11 @@ ElementFigures cavity_figures(const Groove& cavity, bool is_hexagonal, std::span
       const LineSurface surface = surface_at(point, normal, exit, sweeps, poses, wedge, spans);
       take(facet, place, surface);
       if (std::min(place.minCoeff(), at_face) < kPlaneMargin * edge_mm) continue;
-      plane.add(cavity.facets[k].up_slope.dot(from_apex), level.dot(from_apex), surface.lowest);
+      plane.add(cavity.facets[k].up_slope.dot(from_apex), cavity.facets[k].along.dot(from_apex), surface.lowest);
     }
     plane.fit(facet);
     facet.distance_nm = std::max(facet.highest.nm, -facet.deepest.nm);
-    const double area_mm2 = (is_hexagonal ? 0.25 : 0.5) * edges_mm.prod() * first.cross(second).norm();
+    const double area_mm2 = (cavity.is_hexagonal ? 0.25 : 0.5) * edges_mm.prod() * first.cross(second).norm();
     facet.residual_mm3 = facet.mean_nm / kNmPerMm * area_mm2;
     figures.facets.push_back(facet);
   }

@@ -44,15 +44,19 @@ struct ElementField {
   }
 };
 
-ElementField field_of(const Groove& groove, std::span<const SweptVolume> sweeps, std::span<const RigidMotion> poses,
-                      const ToolWedge& wedge, std::size_t lines) {
+/// Returns half of the extent of the simulated region of an element along x and y. The z component is 0.
+Vec3 half_extent_mm(const PrismGroove& groove) {
   const Vec3 across = groove.root_direction.cross(Vec3::UnitZ());
-  const Vec3 half =
-      groove.is_cube()
-          ? Vec3(kCavityReach * groove.half_base_mm, kCavityReach * groove.half_base_mm, 0.0)
-          : Vec3((groove.half_width_mm * groove.root_direction).cwiseAbs() + (groove.half_base_mm * across).cwiseAbs());
+  return (groove.half_width_mm * groove.root_direction).cwiseAbs() + (groove.half_base_mm * across).cwiseAbs();
+}
+Vec3 half_extent_mm(const CubeCavity& cavity) {
+  return {kCavityReach * cavity.radius_mm, kCavityReach * cavity.radius_mm, 0.0};
+}
+
+ElementField field_of(const DesignElement& element, const Vec3& half, std::span<const SweptVolume> sweeps,
+                      std::span<const RigidMotion> poses, const ToolWedge& wedge, std::size_t lines) {
   ElementField field;
-  field.box = {groove.root_mm - half + 2.0 * groove.root_mm.z() * Vec3::UnitZ(), groove.root_mm + half};
+  field.box = {element.root_mm - half + 2.0 * element.root_mm.z() * Vec3::UnitZ(), element.root_mm + half};
   field.box.high_mm.z() = 0.0;
   const DexelField dexels = cut_dexels(sweeps, poses, wedge, field.box, 2, lines);
   field.columns = dexels.columns;
@@ -67,7 +71,7 @@ ElementField field_of(const Groove& groove, std::span<const SweptVolume> sweeps,
       const Vec3 left(x, y, -dexels.removed_mm[row * dexels.columns + column]);
       // Use the height above the nearest facet. Residual material on another facet belongs to that facet.
       double height_mm = std::numeric_limits<double>::infinity();
-      for (const DesignFacet& facet : groove.facets) height_mm = std::min(height_mm, facet.height_mm(left));
+      for (const DesignFacet& facet : element.facets) height_mm = std::min(height_mm, facet.height_mm(left));
       // Outside of the cavity, the blank's face must remain. It has no error there.
       if (left.z() == 0.0) height_mm = std::max(height_mm, 0.0);
       field.height_nm.push_back(height_mm * kNmPerMm);
@@ -101,11 +105,10 @@ ErrorField error_field(const Job& job, const Machine& machine, const std::vector
 
   std::vector<ElementField> elements(workpiece.grooves.size());
   for_each_in_parallel(elements.size(), [&](std::size_t i) {
-    const Groove& groove = workpiece.grooves[i];
-    const double longest_mm =
-        2.0 * (groove.is_cube() ? kCavityReach : 1.0) * std::max(groove.half_width_mm, groove.half_base_mm);
+    const Vec3 half = std::visit([](const auto& groove) { return half_extent_mm(groove); }, workpiece.grooves[i]);
+    const double longest_mm = 2.0 * half.maxCoeff();
     const auto lines = std::clamp(static_cast<std::size_t>(std::ceil(longest_mm / pitch_mm)), kLeastLines, kMostLines);
-    elements[i] = field_of(groove, check.sweeps()[i], poses, check.wedge(), lines);
+    elements[i] = field_of(workpiece.design(i), half, check.sweeps()[i], poses, check.wedge(), lines);
   });
 
   const GrooveMap map(workpiece.grooves);

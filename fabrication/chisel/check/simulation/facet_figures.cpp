@@ -43,7 +43,7 @@ struct Stations {
 
 class Measurer {
  public:
-  Measurer(const Groove& groove, std::span<const SweptVolume> sweeps, std::span<const RigidMotion> poses,
+  Measurer(const PrismGroove& groove, std::span<const SweptVolume> sweeps, std::span<const RigidMotion> poses,
            const ToolWedge& wedge, const Prediction& prediction, double tolerance_mm)
       : groove_(groove), sweeps_(sweeps), poses_(poses), wedge_(wedge), prediction_(prediction) {
     for (const SweptVolume& sweep : sweeps) by_pose_.push_back(&sweep);
@@ -344,7 +344,7 @@ class Measurer {
     if (below_nm < figures.deepest.nm) figures.deepest = {below_nm, surface.lowest_line};
   }
 
-  const Groove& groove_;
+  const PrismGroove& groove_;
   std::span<const SweptVolume> sweeps_;
   std::span<const RigidMotion> poses_;
   const ToolWedge& wedge_;
@@ -363,7 +363,7 @@ class Measurer {
 
 }  // namespace
 
-ElementFigures element_figures(const Groove& groove, std::span<const SweptVolume> sweeps,
+ElementFigures element_figures(const PrismGroove& groove, std::span<const SweptVolume> sweeps,
                                std::span<const RigidMotion> poses, const ToolWedge& wedge, const Prediction& prediction,
                                bool is_one_facet_ploughed, double tolerance_mm) {
   ElementFigures figures;

@@ -47,18 +47,16 @@ struct ElementFigures {
 /// \param is_one_facet_ploughed true if the strategy plunges one facet and ploughs the other facet
 /// \param tolerance_mm tolerance of facets. A layer of this thickness on a facet is not counted as residual material at
 ///        the root
-ElementFigures element_figures(const Groove& groove, std::span<const SweptVolume> sweeps,
+ElementFigures element_figures(const PrismGroove& groove, std::span<const SweptVolume> sweeps,
                                std::span<const RigidMotion> poses, const ToolWedge& wedge, const Prediction& prediction,
                                bool is_one_facet_ploughed, double tolerance_mm);
 
 /// Measures the facets of a cube corner. The measuring lines are normal to each facet. They cover the whole facet and
 /// the strips along the dihedral edges. There are additional lines on both sides of the line where the tool's leading
 /// edge is when the tip is in the apex.
-/// \param is_hexagonal true: the facets are squares with half the length of the cavity's edges. False: they are
-///        triangles up to the blank's face
 /// \param nose_angle_deg nose angle of the tool
 /// \param prediction predicted errors and poses of this element
-ElementFigures cavity_figures(const Groove& cavity, bool is_hexagonal, std::span<const SweptVolume> sweeps,
+ElementFigures cavity_figures(const CubeCavity& cavity, std::span<const SweptVolume> sweeps,
                               std::span<const RigidMotion> poses, const ToolWedge& wedge, double nose_angle_deg,
                               const Prediction& prediction);
 

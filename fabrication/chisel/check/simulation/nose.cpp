@@ -28,7 +28,7 @@ Vec3 across(const Vec3& v, const Vec3& unit) {
 
 class Searcher {
  public:
-  Searcher(const Groove& cavity, double radius_mm, std::span<const SweptVolume> sweeps,
+  Searcher(const CubeCavity& cavity, double radius_mm, std::span<const SweptVolume> sweeps,
            std::span<const RigidMotion> poses, const ToolWedge& nosed)
       : cavity_(cavity), radius_mm_(radius_mm), poses_(poses), nosed_(nosed) {
     for (const SweptVolume& sweep : sweeps)
@@ -94,7 +94,7 @@ class Searcher {
     return high;
   }
 
-  const Groove& cavity_;
+  const CubeCavity& cavity_;
   double radius_mm_;
   std::span<const RigidMotion> poses_;
   const ToolWedge& nosed_;
@@ -128,7 +128,7 @@ ToolWedge nosed_wedge(const Tool& tool, const Machine& machine) {
   return wedge;
 }
 
-NoseResidue nose_residue(const Groove& cavity, double radius_mm, std::span<const SweptVolume> sweeps,
+NoseResidue nose_residue(const CubeCavity& cavity, double radius_mm, std::span<const SweptVolume> sweeps,
                          std::span<const RigidMotion> poses, const ToolWedge& nosed) {
   return Searcher(cavity, radius_mm, sweeps, poses, nosed).run();
 }

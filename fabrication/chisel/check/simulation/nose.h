@@ -27,7 +27,7 @@ struct NoseResidue {
 /// to 40 radii.
 /// \param sweeps swept volumes of the element
 /// \param poses machine_from_workpiece for each SweptVolume::pose
-NoseResidue nose_residue(const Groove& cavity, double radius_mm, std::span<const SweptVolume> sweeps,
+NoseResidue nose_residue(const CubeCavity& cavity, double radius_mm, std::span<const SweptVolume> sweeps,
                          std::span<const RigidMotion> poses, const ToolWedge& nosed);
 
 }  // namespace retrace::fabrication

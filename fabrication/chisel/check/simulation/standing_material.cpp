@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/overloaded.h"
+
 namespace retrace::fabrication {
 namespace {
 
@@ -23,9 +25,10 @@ constexpr double kBeyond = 0.2;
 constexpr int kStrips = 12;
 
 /// Returns the height of the blank's face in a section.
-double face_height_mm(const SectionPlane& plane, const Groove& groove, const BlankFace& face, double across_mm) {
+double face_height_mm(const SectionPlane& plane, const DesignElement& element, const BlankFace& face,
+                      double across_mm) {
   const Vec3 foot = plane.origin_mm + across_mm * plane.across;
-  double up_mm = groove.to_face_mm(foot, plane.up);
+  double up_mm = element.to_face_mm(foot, plane.up);
   if (face.is_flat()) return up_mm;
   constexpr int kRounds = 6;
   constexpr double kLeastRise = 0.05;
@@ -36,14 +39,14 @@ double face_height_mm(const SectionPlane& plane, const Groove& groove, const Bla
   return up_mm;
 }
 
-StandingSection section_of(const SectionPlane& plane, const Groove& groove, const BlankFace& face,
+StandingSection section_of(const SectionPlane& plane, const DesignElement& element, const BlankFace& face,
                            const Extent& extent) {
   StandingSection section;
   section.plane = plane;
   const int strips = face.is_flat() ? 1 : kStrips;
   const auto corner = [&](int k) -> Vec2 {
     const double u = extent.half_mm * (2.0 * k / strips - 1.0);
-    return {u, std::max(face_height_mm(plane, groove, face, u), -extent.below_mm)};
+    return {u, std::max(face_height_mm(plane, element, face, u), -extent.below_mm)};
   };
   for (int k = 0; k < strips; ++k) {
     const Vec2 a = corner(k);
@@ -55,7 +58,7 @@ StandingSection section_of(const SectionPlane& plane, const Groove& groove, cons
 
 /// Returns the positions of the sections along the root of a prism. There are sections near both ends, and at least two
 /// sections in each pass of the tool.
-std::vector<double> stations_mm(const Groove& groove, double wall_mm, double tool_width_mm) {
+std::vector<double> stations_mm(const PrismGroove& groove, double wall_mm, double tool_width_mm) {
   const double end_mm = std::max(0.5 * groove.half_width_mm, groove.half_width_mm - wall_mm);
   const int count = 1 + 2 * static_cast<int>(std::ceil(2.0 * groove.half_width_mm / tool_width_mm - 1e-9));
   std::vector<double> stations;
@@ -69,6 +72,36 @@ std::vector<double> stations_mm(const Groove& groove, double wall_mm, double too
 std::vector<double> places_mm(double edge_mm, double depth_mm) {
   const double first = std::min(edge_mm / 3.0 + 1.5 * depth_mm, 0.45 * edge_mm);
   return {0.12 * edge_mm, first, 0.6 * edge_mm};
+}
+
+std::vector<StandingSection> sections_of(const PrismGroove& groove, const BlankFace& face, double wall_mm,
+                                         double tool_width_mm) {
+  const Vec3 across = groove.axis.cross(groove.root_direction);
+  const double rise = groove.axis.dot(groove.facets[0].up_slope);
+  const double slope = std::sqrt(1.0 - rise * rise) / rise;
+  const Extent extent{(1.0 + kBeyond) * (groove.half_base_mm + slope * groove.stock_mm), kBeyond * groove.depth_mm};
+  std::vector<StandingSection> sections;
+  for (const double along : stations_mm(groove, wall_mm, tool_width_mm))
+    sections.push_back(section_of(
+        {groove.root_mm + along * groove.root_direction, across, groove.axis, across.cross(groove.axis).normalized()},
+        groove, face, extent));
+  return sections;
+}
+
+std::vector<StandingSection> sections_of(const CubeCavity& cavity, const BlankFace& face, double depth_mm) {
+  const double edge_mm = std::numbers::sqrt3 * (cavity.depth_mm + cavity.stock_mm);
+  std::vector<StandingSection> sections;
+  for (std::size_t k = 0; k < 3; ++k)
+    for (const double place : places_mm(edge_mm, depth_mm)) {
+      const Vec3& first = cavity.edges[(k + 1) % 3];
+      const Vec3& second = cavity.edges[(k + 2) % 3];
+      const Vec3 up = (first + second).normalized();
+      const Vec3 across = (first - second).normalized();
+      const double half_mm = (edge_mm - place) / std::numbers::sqrt2 + 0.5 * kBeyond * edge_mm;
+      sections.push_back(section_of({cavity.root_mm + place * cavity.edges[k], across, up, across.cross(up)}, cavity,
+                                    face, {half_mm, 0.5 * kBeyond * edge_mm}));
+    }
+  return sections;
 }
 
 }  // namespace
@@ -95,29 +128,10 @@ std::vector<ConvexPiece> StandingSection::cut(std::span<const ToolWedge::Side> s
 }
 
 StandingMaterial::StandingMaterial(const Groove& groove, const BlankFace& face, double wall_mm, double tool_width_mm,
-                                   double depth_mm) {
-  if (!groove.is_cube()) {
-    const Vec3 across = groove.axis.cross(groove.root_direction);
-    const double rise = groove.axis.dot(groove.facets[0].up_slope);
-    const double slope = std::sqrt(1.0 - rise * rise) / rise;
-    const Extent extent{(1.0 + kBeyond) * (groove.half_base_mm + slope * groove.stock_mm), kBeyond * groove.depth_mm};
-    for (const double along : stations_mm(groove, wall_mm, tool_width_mm))
-      sections_.push_back(section_of(
-          {groove.root_mm + along * groove.root_direction, across, groove.axis, across.cross(groove.axis).normalized()},
-          groove, face, extent));
-    return;
-  }
-  const double edge_mm = std::numbers::sqrt3 * (groove.depth_mm + groove.stock_mm);
-  for (std::size_t k = 0; k < 3; ++k)
-    for (const double place : places_mm(edge_mm, depth_mm)) {
-      const Vec3& first = groove.edges[(k + 1) % 3];
-      const Vec3& second = groove.edges[(k + 2) % 3];
-      const Vec3 up = (first + second).normalized();
-      const Vec3 across = (first - second).normalized();
-      const double half_mm = (edge_mm - place) / std::numbers::sqrt2 + 0.5 * kBeyond * edge_mm;
-      sections_.push_back(section_of({groove.root_mm + place * groove.edges[k], across, up, across.cross(up)}, groove,
-                                     face, {half_mm, 0.5 * kBeyond * edge_mm}));
-    }
-}
+                                   double depth_mm)
+    : sections_(std::visit(
+          Overloaded{[&](const PrismGroove& prism) { return sections_of(prism, face, wall_mm, tool_width_mm); },
+                     [&](const CubeCavity& cavity) { return sections_of(cavity, face, depth_mm); }},
+          groove)) {}
 
 }  // namespace retrace::fabrication
