@@ -33,13 +33,12 @@ struct EdgeUse {
   double seconds = 0.0;
 };
 
-/// Adds up the length of cut and the run time of the edge in use. Decides whether a stop or a new program is required
-/// before the next visit.
+/// Adds up the length of cut and the run time of the edge in use, in one program. Decides whether a stop or a new
+/// program is required before the next visit.
 class EdgeAccount {
  public:
   explicit EdgeAccount(const Job& job) : job_(job) {}
 
-  void begin_program() { used_ = {}; }
   void stop();
   void spend(double seconds) { used_.seconds += seconds; }
   void cut(double mm) { used_.cut_mm += mm; }

@@ -1,0 +1,87 @@
+#pragma once
+
+// A program while it is made: its moves and calls, the axis positions after them, and its run time.
+
+#include <cstdint>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "fabrication/chisel/plan/edge_use.h"
+#include "fabrication/chisel/plan/plan.h"
+#include "fabrication/job/job.h"
+#include "fabrication/machine/machine.h"
+#include "fabrication/program/program.h"
+
+namespace retrace::fabrication {
+
+/// Z positions of the tool while it does not cut.
+struct SafeHeights {
+  Nanometres safe_nm = 0;   ///< minimum height for moves of the rotary axes
+  Nanometres first_nm = 0;  ///< height of the first move after a standstill; not below `safe_nm`
+};
+
+/// Adds moves, calls and stops to a program. Keeps the axis positions, and adds up the run time and the use of the
+/// edge.
+class ProgramDraft {
+ public:
+  /// Starts a program. The axis positions are not known, so Z moves up first.
+  /// \param plan_time run time of all programs, to which the run time of this program is added
+  /// \pre all arguments outlive this object
+  ProgramDraft(const Job& job, const Machine& machine, const SafeHeights& heights, TimeShares& plan_time);
+
+  void add(Item item) { program_.items.push_back(std::move(item)); }
+  /// Moves up to the safe height if the tool is below it.
+  void raise();
+  /// Moves up to the safe height and moves the rotary axes, if they are at other positions.
+  void turn(RotaryUnits a, RotaryUnits c);
+  /// Moves one of the linear axes.
+  void traverse(Axis axis, double to_mm);
+  /// Adds the rapid moves to a visit and the call of its subroutine.
+  /// \param end end point of the subroutine's moves, relative to its start
+  /// \param routine run time of the subroutine
+  void visit(const Visit& visit, const Place& end, const TimeShares& routine, Stage& stage);
+  /// Adds a length of cut to the use of the edge.
+  void cut(double mm);
+  /// Moves the tool up to the height of the first move, and the rotary axes to 0.
+  void park();
+  /// Adds a stop for the operator, and a comment after it. The program then starts to move as at its beginning.
+  /// \pre the axes are parked
+  void stop(StopReason reason, std::string comment);
+
+  const Words& at() const { return at_; }
+  double seconds() const { return seconds_; }
+  double cut_mm() const { return cut_mm_; }
+  const EdgeAccount& edge() const { return edge_; }
+  bool has_visits() const { return !used_.empty(); }
+  /// Returns the indices of the subroutines that the program calls.
+  const std::set<std::uint32_t>& used() const { return used_; }
+  /// Returns the number of moves of C by more than 45 degrees.
+  int c_rotations() const { return c_rotations_; }
+
+  /// Returns the program.
+  /// \param all subroutines of the plan, in the order of Visit::subroutine
+  /// \param only_used true: the program contains only the subroutines that it calls
+  Program take(const std::vector<Subroutine>& all, bool only_used);
+
+ private:
+  void raise_to(Nanometres z_nm);
+  RotaryUnits rotation(char axis, RotaryUnits units) const;
+  void spend(double TimeShares::*share, double seconds, Stage* stage = nullptr);
+
+  const Job& job_;
+  const Machine& machine_;
+  const SafeHeights& heights_;
+  TimeShares& plan_time_;
+  Program program_;
+  Words at_{};
+  bool just_turned_ = true;  ///< true if no visit has been added since the last move of Z alone
+  double seconds_ = 0.0;
+  EdgeAccount edge_;
+  double cut_mm_ = 0.0;
+  int stops_ = 0;
+  int c_rotations_ = 0;
+  std::set<std::uint32_t> used_;
+};
+
+}  // namespace retrace::fabrication
