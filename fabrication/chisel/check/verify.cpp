@@ -200,8 +200,15 @@ double border_overcut_mm3(const Workpiece3d& workpiece, const std::vector<Elemen
   return edge_mm * edge_mm * edge_mm * static_cast<double>(static_cast<std::int64_t>(corners.size()) - cut) / 6.0;
 }
 
+bool has_errors(const Job& job) {
+  for (std::size_t zone = 0; zone < zone_count(job); ++zone)
+    if (angle_errors_of(job, zone) != geometry::AngleErrors{}) return true;
+  return false;
+}
+
 /// Computes the material that the triangular cavities of hexagonal elements remove outside of their hexagons.
-void find_overcut(const Workpiece3d& workpiece, Verification& result) {
+void find_cavity_overcut(const Workpiece3d& workpiece, Verification& result) {
+  if (!std::holds_alternative<geometry::HexagonalCube>(workpiece.job->element)) return;
   if (workpiece.job->zones.empty()) {
     result.border_overcut_mm3 = border_overcut_mm3(workpiece, result.elements);
     return;
@@ -213,12 +220,6 @@ void find_overcut(const Workpiece3d& workpiece, Verification& result) {
   result.zone_overcut_mm2 = overcut.area_mm2;
   result.zone_overcut_um_max = 1e3 * overcut.deepest_mm;
   result.elements_overcut = overcut.elements;
-}
-
-bool has_errors(const Job& job) {
-  for (std::size_t zone = 0; zone < zone_count(job); ++zone)
-    if (angle_errors_of(job, zone) != geometry::AngleErrors{}) return true;
-  return false;
 }
 
 /// Finds the element to which each run of cutting moves belongs (see VisitFinder). Returns an empty list for jobs
@@ -265,6 +266,115 @@ ChipFigures chips_of(const Workpiece3d& workpiece, const BlankFace& face, std::s
   return check.finish();
 }
 
+/// Simulates the programs.
+/// \param standing number of programs, at the beginning of the list, whose findings are discarded
+/// \return run time of these programs
+ProgramTime simulate(const std::vector<NcProgram>& programs, std::size_t standing, ProgramCheck& check,
+                     FindingList& findings) {
+  ProgramTime standing_time;
+  for (std::size_t k = 0; k < programs.size(); ++k) {
+    check.begin(programs[k]);
+    check.end(run_nc(programs[k], check));
+    if (k + 1 != standing) continue;
+    findings.take();
+    standing_time = check.time();
+  }
+  check.finish();
+  return standing_time;
+}
+
+/// Returns the rotary poses of all cuts, in the order of the programs.
+std::vector<RotaryPose> poses_of_cuts(const ProgramCheck& check) {
+  std::vector<bool> cuts(check.pose_words().size());
+  for (const std::vector<SweptVolume>& sweeps : check.sweeps())
+    for (const SweptVolume& sweep : sweeps) cuts[sweep.pose] = true;
+  std::vector<RotaryPose> poses;
+  for (std::size_t i = 0; i < cuts.size(); ++i)
+    if (cuts[i]) poses.push_back(check.pose_words()[i]);
+  return poses;
+}
+
+/// Measures the facets of an element.
+ElementFigures figures_of(const Workpiece3d& workpiece, std::size_t element, const ProgramCheck& check,
+                          std::span<const RigidMotion> poses) {
+  const Job& job = *workpiece.job;
+  const Prediction& prediction = workpiece.prediction(element);
+  const std::vector<SweptVolume>& sweeps = check.sweeps()[element];
+  return std::visit(
+      Overloaded{[&](const PrismGroove& groove) {
+                   return element_figures(groove, sweeps, poses, check.wedge(), prediction,
+                                          job.strategy == Strategy::unidirectional, workpiece.tolerance_mm);
+                 },
+                 [&](const CubeCavity& cavity) {
+                   return cavity_figures(cavity, sweeps, poses, check.wedge(), job.tool.nose_angle_deg, prediction);
+                 }},
+      workpiece.grooves[element]);
+}
+
+/// Facets and chips of all elements.
+struct MeasuredElements {
+  std::vector<ElementResult> elements;
+  std::vector<ChipFigures> chips;
+};
+
+MeasuredElements measured(const Workpiece3d& workpiece, const ProgramCheck& check, std::span<const RigidMotion> poses,
+                          const Cancellation* cancellation) {
+  const BlankFace face(*workpiece.job);
+  MeasuredElements all;
+  all.elements.resize(workpiece.grooves.size());
+  all.chips.resize(workpiece.grooves.size());
+  for_each_in_parallel(workpiece.grooves.size(), [&](std::size_t i) {
+    if (cancellation != nullptr && cancellation->requested()) return;
+    all.elements[i] = result_of(workpiece.grooves[i], figures_of(workpiece, i, check, poses));
+    all.chips[i] = chips_of(workpiece, face, i, check.sweeps()[i], poses, check.wedge());
+  });
+  return all;
+}
+
+/// Adds the maximum chip thicknesses to the result, and the findings about the chips of all programs that are checked.
+void add_chips(const std::vector<ChipFigures>& chips, const std::vector<NcProgram>& programs, std::size_t standing,
+               FindingList& findings, Verification& result) {
+  for (const ChipFigures& figures : chips) {
+    result.chip_um_max = std::max(result.chip_um_max, 1e3 * figures.thickest_mm);
+    result.chip_share_max = std::max(result.chip_share_max, figures.thickest_share);
+    for (std::size_t k = 0; k < figures.findings.size(); ++k) {
+      if (figures.programs[k] < standing) continue;
+      Finding finding = figures.findings[k];
+      finding.program = programs[figures.programs[k]].file;
+      findings.add(std::move(finding));
+    }
+  }
+}
+
+/// Returns the volume of the material that is removed inside of the elements.
+double removed_volume_mm3(const Workpiece3d& workpiece, const std::vector<ElementResult>& elements) {
+  std::vector<double> volumes_mm3;
+  for (std::size_t zone = 0; zone < zone_count(*workpiece.job); ++zone)
+    volumes_mm3.push_back(design_volume_mm3(*workpiece.job, zone));
+  double removed_mm3 = 0.0;
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    if (!elements[i].figures.is_cut) continue;
+    removed_mm3 += volumes_mm3[workpiece.elements[i].zone];
+    for (const FacetFigures& facet : elements[i].figures.facets) removed_mm3 -= facet.residual_mm3;
+  }
+  return removed_mm3;
+}
+
+/// Adds the unavoidable errors of all elements to the result.
+void add_predictions(const std::vector<Prediction>& predictions, Verification& result) {
+  for (const Prediction& prediction : predictions) {
+    result.root_residual_nm_predicted = std::max(result.root_residual_nm_predicted, prediction.root_mm * kNmPerMm);
+    result.wall_overcut_nm_predicted = std::max(result.wall_overcut_nm_predicted, prediction.wall_mm * kNmPerMm);
+  }
+}
+
+/// Returns the increments to which the control rounds the positions of the programs.
+Increments increments_in(const Machine& machine, const std::vector<NcProgram>& programs) {
+  const auto is_fanuc = [](const NcProgram& program) { return program.dialect == NcDialect::fanuc; };
+  return std::any_of(programs.begin(), programs.end(), is_fanuc) ? increments_of(machine.control.increment_system)
+                                                                 : Increments{};
+}
+
 }  // namespace
 
 std::string_view Verification::verdict() const {
@@ -277,17 +387,6 @@ std::string_view Verification::verdict() const {
   });
   return is_unfinished ? "incomplete" : "fail";
 }
-
-namespace {
-
-/// Returns the increments to which the control rounds the positions of the programs.
-Increments increments_in(const Machine& machine, const std::vector<NcProgram>& programs) {
-  const auto is_fanuc = [](const NcProgram& program) { return program.dialect == NcDialect::fanuc; };
-  return std::any_of(programs.begin(), programs.end(), is_fanuc) ? increments_of(machine.control.increment_system)
-                                                                 : Increments{};
-}
-
-}  // namespace
 
 double usual_tolerance_nm(const Machine& machine, const std::vector<NcProgram>& programs) {
   constexpr double kUsualNm = 10.0;
@@ -305,75 +404,24 @@ Verification verify_programs(const Job& job, const Machine& given_machine, const
       workpiece_of(job, machine, options.tolerance_nm.value_or(usual_tolerance_nm(machine, programs)));
   FindingList findings;
   ProgramCheck check(workpiece, findings, visits_of(workpiece, programs));
-  ProgramTime standing_time;
-  for (std::size_t k = 0; k < programs.size(); ++k) {
-    check.begin(programs[k]);
-    check.end(run_nc(programs[k], check));
-    if (k + 1 != options.standing) continue;
-    findings.take();
-    standing_time = check.time();
-  }
-  check.finish();
+  const ProgramTime standing_time = simulate(programs, options.standing, check, findings);
   const std::string first = programs.size() <= options.standing ? std::string() : programs[options.standing].file;
   Verification result;
   result.tolerance_nm = workpiece.tolerance_mm * kNmPerMm;
-  const std::vector<RigidMotion> poses = check.poses();
-  std::vector<bool> cuts(poses.size());
-  for (const std::vector<SweptVolume>& sweeps : check.sweeps())
-    for (const SweptVolume& sweep : sweeps) cuts[sweep.pose] = true;
-  for (std::size_t i = 0; i < poses.size(); ++i)
-    if (cuts[i]) result.poses.push_back(check.pose_words()[i]);
+  result.poses = poses_of_cuts(check);
   refuse_other_machine(job, machine, others, workpiece, result.poses, first);
 
-  const bool ploughs = job.strategy == Strategy::unidirectional;
-  const bool is_hexagonal = std::holds_alternative<geometry::HexagonalCube>(job.element);
-  const BlankFace face(job);
-  result.elements.resize(workpiece.grooves.size());
-  std::vector<ChipFigures> chips(workpiece.grooves.size());
-  for_each_in_parallel(result.elements.size(), [&](std::size_t i) {
-    if (cancellation != nullptr && cancellation->requested()) return;
-    const Prediction& prediction = workpiece.prediction(i);
-    const std::vector<SweptVolume>& sweeps = check.sweeps()[i];
-    const ElementFigures figures = std::visit(
-        Overloaded{[&](const PrismGroove& groove) {
-                     return element_figures(groove, sweeps, poses, check.wedge(), prediction, ploughs,
-                                            workpiece.tolerance_mm);
-                   },
-                   [&](const CubeCavity& cavity) {
-                     return cavity_figures(cavity, sweeps, poses, check.wedge(), job.tool.nose_angle_deg, prediction);
-                   }},
-        workpiece.grooves[i]);
-    result.elements[i] = result_of(workpiece.grooves[i], figures);
-    chips[i] = chips_of(workpiece, face, i, check.sweeps()[i], poses, check.wedge());
-  });
-
-  for (const ChipFigures& figures : chips) {
-    result.chip_um_max = std::max(result.chip_um_max, 1e3 * figures.thickest_mm);
-    result.chip_share_max = std::max(result.chip_share_max, figures.thickest_share);
-    for (std::size_t k = 0; k < figures.findings.size(); ++k) {
-      if (figures.programs[k] < options.standing) continue;
-      Finding finding = figures.findings[k];
-      finding.program = programs[figures.programs[k]].file;
-      findings.add(std::move(finding));
-    }
-  }
-  std::vector<double> volumes_mm3;
-  for (std::size_t zone = 0; zone < zone_count(job); ++zone) volumes_mm3.push_back(design_volume_mm3(job, zone));
+  const std::vector<RigidMotion> poses = check.poses();
+  MeasuredElements all = measured(workpiece, check, poses, cancellation);
+  result.elements = std::move(all.elements);
+  add_chips(all.chips, programs, options.standing, findings, result);
   Judge judge(workpiece, findings, result);
-  for (std::size_t i = 0; i < result.elements.size(); ++i) {
-    judge.element(i, first);
-    if (!result.elements[i].figures.is_cut) continue;
-    result.removed_volume_mm3 += volumes_mm3[workpiece.elements[i].zone];
-    for (const FacetFigures& facet : result.elements[i].figures.facets) result.removed_volume_mm3 -= facet.residual_mm3;
-  }
-  for (const Prediction& prediction : workpiece.predictions) {
-    result.root_residual_nm_predicted = std::max(result.root_residual_nm_predicted, prediction.root_mm * kNmPerMm);
-    result.wall_overcut_nm_predicted = std::max(result.wall_overcut_nm_predicted, prediction.wall_mm * kNmPerMm);
-  }
+  for (std::size_t i = 0; i < result.elements.size(); ++i) judge.element(i, first);
+  add_predictions(workpiece.predictions, result);
   result.wall_overcut_nm_max = check.deepest_wall_mm() * kNmPerMm;
-  if (is_hexagonal) find_overcut(workpiece, result);
+  find_cavity_overcut(workpiece, result);
   if (job.substrate || has_errors(job)) result.rim_overcut_um_max = 1e3 * rim_overcut_mm(workpiece.grooves);
-  result.removed_volume_mm3 += result.border_overcut_mm3;
+  result.removed_volume_mm3 = removed_volume_mm3(workpiece, result.elements) + result.border_overcut_mm3;
   if (cuts_prisms(job))
     result.root_radius_um = job.tool.edge_radius_um;
   else
