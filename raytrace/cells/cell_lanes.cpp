@@ -35,20 +35,20 @@ HWY_INLINE Way chosen(M mask, const Way& yes, const Way& no) {
 /// The nearest of the faces that have been tested.
 struct Nearest {
   Way way;
-  V which;
+  VI label;
   V3 normal;
 
-  HWY_INLINE M consider(const Way& next, V number) {
+  HWY_INLINE M consider(const Way& next, VI its_label) {
     const M nearer = is_less(next, way);
     way = chosen(nearer, next, way);
-    which = hn::IfThenElse(nearer, number, which);
+    label = chosen(nearer, its_label, label);
     return nearer;
   }
 };
 
-/// Returns an infinitely distant face with the number 1.
+/// Returns an infinitely distant face with the label of Hit::end.
 HWY_INLINE Nearest nothing() {
-  return {{splat(1.0), hn::Zero(D())}, splat(1.0), splat(geometry::Vec3(0.0, 0.0, 1.0))};
+  return {{splat(1.0), hn::Zero(D())}, splat(label_of(Hit::end)), splat(geometry::Vec3(0.0, 0.0, 1.0))};
 }
 
 /// Returns the path along rays to a plane that they approach from its inner side. Its length is never negative.
@@ -59,17 +59,17 @@ HWY_INLINE Way way_to(const Plane& plane, const V3& p, const V3& d) {
 }
 
 HWY_INLINE void find_border(std::span<const Plane> borders, const V3& p, const V3& d, Nearest& nearest) {
-  double number = 2.0;
+  Label label = label_of(Hit::border);
   for (const Plane& border : borders) {
-    nearest.consider(way_to(border, p, d), splat(number));
-    number += 1.0;
+    nearest.consider(way_to(border, p, d), splat(label));
+    label += kLabelStep;
   }
 }
 
 HWY_INLINE void store_met(const Nearest& nearest, V way, const V3& p, const V3& d, const Rays& rays, const Met& met,
                           std::size_t k) {
   store3(along(p, way, d), rays, kX, k);
-  store(nearest.which, met.which, k);
+  store(nearest.label, met.labels, k);
   store(nearest.normal.x, met.normal[0], k);
   store(nearest.normal.y, met.normal[1], k);
   store(nearest.normal.z, met.normal[2], k);
@@ -83,10 +83,10 @@ double advance_inside(const Rays& rays, std::size_t count, std::span<const Plane
     const V3 d = load3(rays, kDx, k);
     Nearest nearest = nothing();
     for (const Plane& facet : facets) {
-      const M nearer = nearest.consider(way_to(facet, p, d), hn::Zero(D()));
+      const M nearer = nearest.consider(way_to(facet, p, d), splat(label_of(Hit::facet)));
       nearest.normal = chosen(nearer, splat(facet.normal), nearest.normal);
     }
-    nearest.consider(way_to({geometry::Vec3::UnitZ(), top_mm}, p, d), splat(1.0));
+    nearest.consider(way_to({geometry::Vec3::UnitZ(), top_mm}, p, d), splat(label_of(Hit::end)));
     find_border(borders, p, d, nearest);
     const V way = nearest.way.length();
     store_met(nearest, way, p, d, rays, met, k);
@@ -102,7 +102,7 @@ void advance_outside(const Rays& rays, std::size_t count, std::span<const Plane>
     const V3 p = load3(rays, kX, k);
     const V3 d = load3(rays, kDx, k);
     Nearest nearest = nothing();
-    nearest.consider(way_to({-geometry::Vec3::UnitZ(), depth_mm}, p, d), splat(1.0));
+    nearest.consider(way_to({-geometry::Vec3::UnitZ(), depth_mm}, p, d), splat(label_of(Hit::end)));
     find_border(borders, p, d, nearest);
     V way = nearest.way.length();
     // A ray enters the convex body at the last plane that it crosses inward, and leaves it at the first plane that it
@@ -122,7 +122,7 @@ void advance_outside(const Rays& rays, std::size_t count, std::span<const Plane>
     const M is_hit = hn::And(hn::And(hn::Lt(in, out), hn::Gt(out, hn::Zero(D()))),
                              hn::And(hn::Lt(in, way), hn::Gt(in, hn::Neg(infinite))));
     way = hn::IfThenElse(is_hit, hn::Max(in, hn::Zero(D())), way);
-    nearest.which = hn::IfThenElse(is_hit, hn::Zero(D()), nearest.which);
+    nearest.label = chosen(is_hit, splat(label_of(Hit::facet)), nearest.label);
     store_met(nearest, way, p, d, rays, met, k);
   }
 }
@@ -131,19 +131,19 @@ HWY_INLINE V value(const LinearForm& form, V x, V y) {
   return hn::MulAdd(splat(form.x), x, hn::MulAdd(splat(form.y), y, splat(form.c)));
 }
 
-void refine(const Rays& rays, std::size_t count, const Border& border, double number, double to, double* which) {
+void refine(const Rays& rays, std::size_t count, const Border& border, Label* labels) {
   const D d;
   for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
-    const V before = load(which, i);
-    const M here = hn::Eq(before, splat(number));
+    const VI before = load(labels, i);
+    const M here = are(before, label_of(Hit::border, border.index));
     if (hn::AllFalse(d, here)) continue;
     const V3 p = load3(rays, kX, i);
     const V s = value(border.along, p.x, p.y);
-    V stretch = hn::Zero(d);
+    VI crossing = splat(label_of(Hit::crossing, border.first_interval));
     for (const double limit : border.limits)
-      stretch = hn::Add(stretch, hn::IfThenElseZero(hn::Ge(s, splat(limit)), splat(1.0)));
-    V result = hn::MulAdd(stretch, splat(2.0), splat(to));
-    double k = 0.0;
+      crossing = chosen(hn::Ge(s, splat(limit)), hn::Add(crossing, splat(kLabelStep)), crossing);
+    VI result = crossing;
+    std::size_t interval = border.first_interval;
     for (const Border::Stretch& beyond : border.stretches) {
       if (!beyond.is_level) {
         const V x = hn::Add(p.x, splat(beyond.shift.x()));
@@ -152,20 +152,21 @@ void refine(const Rays& rays, std::size_t count, const Border& border, double nu
         for (const LinearForm& form : beyond.heights) highest = hn::Max(highest, value(form, x, y));
         const M is_above = hn::Ge(p.z, highest);
         const M meets_wall = border.inside ? hn::Not(is_above) : is_above;
-        result = hn::Add(result, hn::IfThenElseZero(hn::And(meets_wall, hn::Eq(stretch, splat(k))), splat(1.0)));
+        const M is_here = are(crossing, label_of(Hit::crossing, interval));
+        result = chosen(hn::And(meets_wall, is_here), splat(label_of(Hit::wall, interval)), result);
       }
-      k += 1.0;
+      ++interval;
     }
-    store(hn::IfThenElse(here, result, before), which, i);
+    store(chosen(here, result, before), labels, i);
   }
 }
 
-std::size_t select(const double* which, double wanted, std::size_t count, const Rays& all_from, const Rays& all_to) {
+std::size_t select(const Label* labels, Label wanted, std::size_t count, const Rays& all_from, const Rays& all_to) {
   const Rays from = all_from;
   const Rays to = all_to;
   std::size_t found = 0;
   for (std::size_t i = 0; i < count; i += hn::Lanes(D())) {
-    const M mask = hn::And(hn::Eq(load(which, i), splat(wanted)), present(i, count));
+    const M mask = hn::And(are(load(labels, i), wanted), present(i, count));
     const std::size_t more = hn::CountTrue(D(), mask);
     if (more == 0) continue;
     for (std::size_t k = 0; k < from.numbers; ++k) append(load(from[k], i), mask, to[k] + found);
@@ -175,25 +176,25 @@ std::size_t select(const double* which, double wanted, std::size_t count, const 
 }
 
 void mark_polygon(const Rays& rays, std::size_t count, std::span<const LinearForm> forms,
-                  std::span<const std::uint32_t> first_form, double* which) {
+                  std::span<const std::uint32_t> first_form, Label* labels) {
   for (std::size_t i = 0; i < count; i += hn::Lanes(D())) {
     const V x = load(rays[kX], i);
     const V y = load(rays[kY], i);
-    V first = splat(static_cast<double>(first_form.size() - 1));
+    VI first = splat(static_cast<Label>(first_form.size() - 1));
     for (std::size_t k = first_form.size() - 1; k-- > 0;) {
       V least = hn::Inf(D());
       for (std::uint32_t f = first_form[k]; f < first_form[k + 1]; ++f) least = hn::Min(least, value(forms[f], x, y));
-      first = hn::IfThenElse(hn::Ge(least, hn::Zero(D())), splat(static_cast<double>(k)), first);
+      first = chosen(hn::Ge(least, hn::Zero(D())), splat(static_cast<Label>(k)), first);
     }
-    store(first, which, i);
+    store(first, labels, i);
   }
 }
 
-std::size_t mark_weak(const Rays& rays, double limit, std::size_t count, double* which) {
+std::size_t mark_weak(const Rays& rays, double limit, std::size_t count, Label* labels) {
   std::size_t found = 0;
   for (std::size_t i = 0; i < count; i += hn::Lanes(D())) {
     const M is_weak = hn::Lt(load(rays[kI], i), splat(limit));
-    store(hn::IfThenElseZero(is_weak, splat(1.0)), which, i);
+    store(chosen(is_weak, splat(kRemoved), splat(kKept)), labels, i);
     found += hn::CountTrue(D(), hn::And(is_weak, present(i, count)));
   }
   return found;
@@ -213,14 +214,14 @@ void shift(const Rays& rays, std::size_t count, const geometry::Vec2& shift) {
   }
 }
 
-std::size_t mark_beyond(const Rays& rays, std::size_t count, const Reach& reach, double of, double number,
-                        double* which) {
+std::size_t mark_beyond(const Rays& rays, std::size_t count, const Reach& reach, Label tested, Label beyond,
+                        Label* labels) {
   const D d;
   std::size_t found = 0;
   for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
-    const V before = load(which, i);
-    const M asked = hn::And(hn::Eq(before, splat(of)), present(i, count));
-    if (hn::AllFalse(d, asked)) continue;
+    const VI before = load(labels, i);
+    const M is_tested = hn::And(are(before, tested), present(i, count));
+    if (hn::AllFalse(d, is_tested)) continue;
     V x = hn::Add(load(rays[kX], i), load(rays[kOx], i));
     V y = hn::Add(load(rays[kY], i), load(rays[kOy], i));
     if (reach.height_mm != 0.0) {
@@ -230,9 +231,9 @@ std::size_t mark_beyond(const Rays& rays, std::size_t count, const Reach& reach,
     }
     const M within = hn::And(hn::And(hn::Ge(x, splat(reach.lower.x())), hn::Le(x, splat(reach.upper.x()))),
                              hn::And(hn::Ge(y, splat(reach.lower.y())), hn::Le(y, splat(reach.upper.y()))));
-    const M beyond = hn::AndNot(within, asked);
-    store(hn::IfThenElse(beyond, splat(number), before), which, i);
-    found += hn::CountTrue(d, beyond);
+    const M is_beyond = hn::AndNot(within, is_tested);
+    store(chosen(is_beyond, splat(beyond), before), labels, i);
+    found += hn::CountTrue(d, is_beyond);
   }
   return found;
 }
@@ -266,11 +267,11 @@ double sum(const Rays& rays, std::size_t count) {
   return total(power);
 }
 
-Share sum_of(const double* which, double wanted, const Rays& rays, std::size_t count) {
+Share sum_of(const Label* labels, Label wanted, const Rays& rays, std::size_t count) {
   Share share;
   V power = hn::Zero(D());
   for (std::size_t k = 0; k < count; k += hn::Lanes(D())) {
-    const M here = hn::And(hn::Eq(load(which, k), splat(wanted)), present(k, count));
+    const M here = hn::And(are(load(labels, k), wanted), present(k, count));
     power = hn::Add(power, hn::IfThenElseZero(here, load(rays[kI], k)));
     share.count += hn::CountTrue(D(), here);
   }
@@ -304,25 +305,25 @@ void advance_outside(const Rays& rays, std::size_t count, std::span<const Plane>
                      std::span<const Plane> borders, const Met& met) {
   HWY_DYNAMIC_DISPATCH(advance_outside)(rays, count, facets, depth_mm, borders, met);
 }
-void refine(const Rays& rays, std::size_t count, const Border& border, double number, double to, double* which) {
-  HWY_DYNAMIC_DISPATCH(refine)(rays, count, border, number, to, which);
+void refine(const Rays& rays, std::size_t count, const Border& border, Label* labels) {
+  HWY_DYNAMIC_DISPATCH(refine)(rays, count, border, labels);
 }
-std::size_t select(const double* which, double wanted, std::size_t count, const Rays& from, const Rays& to) {
-  return HWY_DYNAMIC_DISPATCH(select)(which, wanted, count, from, to);
+std::size_t select(const Label* labels, Label wanted, std::size_t count, const Rays& from, const Rays& to) {
+  return HWY_DYNAMIC_DISPATCH(select)(labels, wanted, count, from, to);
 }
 void mark_polygon(const Rays& rays, std::size_t count, std::span<const LinearForm> forms,
-                  std::span<const std::uint32_t> first_form, double* which) {
-  HWY_DYNAMIC_DISPATCH(mark_polygon)(rays, count, forms, first_form, which);
+                  std::span<const std::uint32_t> first_form, Label* labels) {
+  HWY_DYNAMIC_DISPATCH(mark_polygon)(rays, count, forms, first_form, labels);
 }
-std::size_t mark_weak(const Rays& rays, double limit, std::size_t count, double* which) {
-  return HWY_DYNAMIC_DISPATCH(mark_weak)(rays, limit, count, which);
+std::size_t mark_weak(const Rays& rays, double limit, std::size_t count, Label* labels) {
+  return HWY_DYNAMIC_DISPATCH(mark_weak)(rays, limit, count, labels);
 }
 void shift(const Rays& rays, std::size_t count, const geometry::Vec2& by) {
   HWY_DYNAMIC_DISPATCH(shift)(rays, count, by);
 }
-std::size_t mark_beyond(const Rays& rays, std::size_t count, const Reach& reach, double of, double number,
-                        double* which) {
-  return HWY_DYNAMIC_DISPATCH(mark_beyond)(rays, count, reach, of, number, which);
+std::size_t mark_beyond(const Rays& rays, std::size_t count, const Reach& reach, Label tested, Label beyond,
+                        Label* labels) {
+  return HWY_DYNAMIC_DISPATCH(mark_beyond)(rays, count, reach, tested, beyond, labels);
 }
 double fall(const Rays& rays, std::size_t count, double height_mm, double top_mm, const geometry::Vec2& period_mm,
             double absorption_per_mm) {
@@ -331,8 +332,8 @@ double fall(const Rays& rays, std::size_t count, double height_mm, double top_mm
 double sum(const Rays& rays, std::size_t count) {
   return HWY_DYNAMIC_DISPATCH(sum)(rays, count);
 }
-Share sum_of(const double* which, double wanted, const Rays& rays, std::size_t count) {
-  return HWY_DYNAMIC_DISPATCH(sum_of)(which, wanted, rays, count);
+Share sum_of(const Label* labels, Label wanted, const Rays& rays, std::size_t count) {
+  return HWY_DYNAMIC_DISPATCH(sum_of)(labels, wanted, rays, count);
 }
 
 }  // namespace retrace::raytrace::lanes

@@ -62,11 +62,34 @@ struct LinearForm {
   double x = 0.0, y = 0.0, c = 0.0;
 };
 
-/// Faces that rays have met. `which` contains a number per ray. 0 is a facet, whose normal is stored in `normal`. 1 is
-/// the top of the surface for rays inside the material. For rays outside, 1 means that they are below all facets and
-/// have met nothing. 2 + k is border k.
+/// Label of a ray, by which the loops select rays. Labels are as wide as doubles, so that a mask from a comparison of
+/// labels can be applied to the values of rays.
+using Label = std::int64_t;
+
+/// Kinds of faces that rays meet.
+enum class Hit : Label {
+  facet,     ///< a facet of the column
+  end,       ///< inside: the top of the surface; outside: the plane below all facets, where a ray has met nothing
+  border,    ///< a border of the column
+  crossing,  ///< an interval of a border, at which the ray continues in the neighbouring column
+  wall,      ///< an interval of a border, at which the ray meets the wall between surfaces of different height
+  limit      ///< the limit of the region in which the cell engine traces rays
+};
+inline constexpr Label kLabelStep = 8;  ///< difference between the labels of consecutive faces of one kind
+
+/// Returns the label of rays that meet a face of this kind.
+/// \param index number of the border, or of the interval among all intervals of the column's borders
+constexpr Label label_of(Hit hit, std::size_t index = 0) {
+  return static_cast<Label>(hit) + kLabelStep * static_cast<Label>(index);
+}
+
+/// Labels that mark rays for removal.
+inline constexpr Label kKept = 0;
+inline constexpr Label kRemoved = 1;
+
+/// Faces that rays have met: a label per ray, and the normal of the facet if the label is that of Hit::facet.
 struct Met {
-  double* which = nullptr;
+  Label* labels = nullptr;
   std::array<double*, 3> normal{};
 };
 
@@ -89,34 +112,37 @@ struct Border {
     geometry::Vec2 shift = geometry::Vec2::Zero();
     std::span<const LinearForm> heights;  ///< the height of the surface behind the border is their maximum
   };
+  std::size_t index = 0;           ///< index of the border among the borders of the column
+  std::size_t first_interval = 0;  ///< index of its first interval among all intervals of the column's borders
   LinearForm along;
   std::vector<double> limits;  ///< ends of all intervals along the border except the last, ascending
   std::vector<Stretch> stretches;
   bool inside = true;  ///< true if rays continue above the surface, false if below
 };
 
-/// Determines what rays meet at the border with the number `number`. `which` becomes `to` + 2 k for rays that cross
-/// interval k of the border, and `to` + 2 k + 1 for rays that meet a wall at interval k.
-void refine(const Rays& rays, std::size_t count, const Border& border, double number, double to, double* which);
+/// Determines what rays meet at a border. Their labels change from Hit::border to Hit::crossing or Hit::wall.
+void refine(const Rays& rays, std::size_t count, const Border& border, Label* labels);
 
-/// Copies the rays whose `which` is `wanted` and returns their number.
+/// Copies the rays with the label `wanted` and returns their number.
 /// \param to may be equal to `from`
-std::size_t select(const double* which, double wanted, std::size_t count, const Rays& from, const Rays& to);
+std::size_t select(const Label* labels, Label wanted, std::size_t count, const Rays& from, const Rays& to);
 
-/// Sets `which` to the index of the first polygon that contains the ray, which means that all of its linear forms are
-/// at least 0 at the position of the ray. If there is no such polygon, `which` becomes the number of polygons.
+/// Sets the label of each ray to the index of the first polygon that contains the ray, which means that all of its
+/// linear forms are at least 0 at the position of the ray. If there is no such polygon, the label becomes the number of
+/// polygons.
 /// \param first_form index of the first form of each polygon, followed by the total number of forms
 void mark_polygon(const Rays& rays, std::size_t count, std::span<const LinearForm> forms,
-                  std::span<const std::uint32_t> first_form, double* which);
+                  std::span<const std::uint32_t> first_form, Label* labels);
 
-/// Sets `which` to 1 for rays with less power than `limit`, else to 0. Returns the number of rays below the limit.
-std::size_t mark_weak(const Rays& rays, double limit, std::size_t count, double* which);
+/// Sets the labels of rays with less power than `limit` to kRemoved, and the other labels to kKept. Returns the number
+/// of rays below the limit.
+std::size_t mark_weak(const Rays& rays, double limit, std::size_t count, Label* labels);
 
 /// Converts positions to the coordinates of another period.
 void shift(const Rays& rays, std::size_t count, const geometry::Vec2& shift);
 
 /// Parameters of mark_beyond(). That function extrapolates rays to a height and tests whether they are then outside of
-/// a rectangle on the part. If so, their `which` becomes `number`. Only rays whose `which` equals `of` are tested. The
+/// a rectangle on the part. If so, their label becomes `beyond`. Only rays with the label `tested` are tested. The
 /// function returns the number of marked rays.
 /// \pre rays.have_periods()
 struct Reach {
@@ -124,8 +150,8 @@ struct Reach {
   geometry::Vec2 lower = geometry::Vec2::Zero();
   geometry::Vec2 upper = geometry::Vec2::Zero();
 };
-std::size_t mark_beyond(const Rays& rays, std::size_t count, const Reach& reach, double of, double number,
-                        double* which);
+std::size_t mark_beyond(const Rays& rays, std::size_t count, const Reach& reach, Label tested, Label beyond,
+                        Label* labels);
 
 /// Rays that have met faces of one kind, and the parameters by which branches are chosen. Both branches are traced if
 /// each has at least `split_power`. Otherwise, one branch is chosen in proportion to its power and receives the power
@@ -133,7 +159,7 @@ std::size_t mark_beyond(const Rays& rays, std::size_t count, const Reach& reach,
 /// number in [0, 1).
 struct Meeting {
   Met met;
-  double number = 0.0;         ///< value of `which` by which the rays are selected
+  Label label = 0;             ///< label of the selected rays
   double towards_light = 1.0;  ///< factor by which normals are multiplied so that they face the light
   double split_power = 0.0;
   double start = 0.0;
@@ -184,12 +210,12 @@ double fall(const Rays& rays, std::size_t count, double height_mm, double top_mm
 /// Returns the total power of rays.
 double sum(const Rays& rays, std::size_t count);
 
-/// Power and number of the rays whose `which` is `wanted`.
+/// Power and number of the rays with the label `wanted`.
 struct Share {
   double power = 0.0;
   std::size_t count = 0;
 };
-Share sum_of(const double* which, double wanted, const Rays& rays, std::size_t count);
+Share sum_of(const Label* labels, Label wanted, const Rays& rays, std::size_t count);
 
 /// Computes the points `first` to `first + count - 1` of SobolSquare(key_x, key_y), multiplied by `size`. The results
 /// are identical to those of SobolSquare.

@@ -141,7 +141,7 @@ HWY_INLINE Chosen choose(const Meeting& meeting, std::size_t k, M here, S& refle
 }
 
 HWY_INLINE M those(const Meeting& meeting, std::size_t k, std::size_t count) {
-  return hn::And(hn::Eq(load(meeting.met.which, k), splat(meeting.number)), present(k, count));
+  return hn::And(are(load(meeting.met.labels, k), meeting.label), present(k, count));
 }
 
 HWY_INLINE V3 normal_of(const Meeting& meeting, std::size_t k) {

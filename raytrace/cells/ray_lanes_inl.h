@@ -19,6 +19,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::ScalableTag<double>;
 using V = hn::Vec<D>;
 using M = hn::Mask<D>;
+using DI = hn::RebindToSigned<D>;
+using VI = hn::Vec<DI>;  ///< labels
 
 HWY_INLINE V splat(double value) {
   return hn::Set(D(), value);
@@ -28,6 +30,21 @@ HWY_INLINE V load(const double* from, std::size_t k) {
 }
 HWY_INLINE void store(V values, double* to, std::size_t k) {
   hn::StoreU(values, D(), to + k);
+}
+HWY_INLINE VI splat(Label label) {
+  return hn::Set(DI(), label);
+}
+HWY_INLINE VI load(const Label* from, std::size_t k) {
+  return hn::LoadU(DI(), from + k);
+}
+HWY_INLINE void store(VI labels, Label* to, std::size_t k) {
+  hn::StoreU(labels, DI(), to + k);
+}
+HWY_INLINE VI chosen(M mask, VI yes, VI no) {
+  return hn::IfThenElse(hn::RebindMask(DI(), mask), yes, no);
+}
+HWY_INLINE M are(VI labels, Label wanted) {
+  return hn::RebindMask(D(), hn::Eq(labels, splat(wanted)));
 }
 HWY_INLINE M present(std::size_t k, std::size_t count) {
   return k + hn::Lanes(D()) <= count ? hn::FirstN(D(), hn::Lanes(D())) : hn::FirstN(D(), count - k);

@@ -1,0 +1,64 @@
+#pragma once
+
+// Data of a run of the cell engine: its results, its random choices, and what a step reads and writes.
+
+#include <cstddef>
+#include <cstdint>
+
+#include "core/random.h"
+#include "raytrace/cells/column_faces.h"
+#include "raytrace/cells/ray_streams.h"
+#include "raytrace/light/path_policy.h"
+
+namespace retrace::raytrace {
+
+/// Receives the light that leaves the part in the cell engine, with the owner of each ray.
+class CellObserver {
+ public:
+  virtual ~CellObserver() = default;
+  /// Called when light leaves through the entrance face, see ExitObserver::leaves().
+  virtual void leaves(std::uint32_t owner, const Vec3& position, const Vec3& direction, double power) = 0;
+  /// Called when light leaves through the back.
+  virtual void is_transmitted(std::uint32_t owner, double power) = 0;
+};
+
+/// Results and random choices of a run. Each choice uses the number of earlier choices and the number of the first
+/// point as counters of the random generator.
+struct CellRun {
+  Tally& tally;
+  CellObserver* observer = nullptr;  ///< may be null
+  geometry::Rectangle outline_mm;    ///< finite parts: outline of the entrance face, relative to the centre
+  RandomKey key;
+  std::uint32_t replicate = 0;
+  std::uint32_t first = 0;
+  std::uint32_t choices = 0;
+
+  double random() { return unit_interval(philox(key, replicate, first, choices++)[0]); }
+  surface_models::RandomStream random_stream() { return {key, replicate, first, choices++}; }
+};
+
+/// A step of the rays of one stream.
+struct CellStep {
+  const LightSetup& setup;
+  const PathPolicy& policy;
+  const ColumnFaces& faces;
+  RayBatch& batch;
+  RayStreams& streams;  ///< receives the rays after the step
+  CellRun& run;
+
+  const StreamKey& stream() const { return batch.stream; }
+  lanes::Rays rays() const { return batch.rays.rays(); }
+  std::size_t size() const { return batch.rays.size(); }
+  /// Returns the parameters for the choice of branches of the rays with a label. Makes a random choice.
+  lanes::Meeting meeting(lanes::Label label) const {
+    return {batch.hits.met(), label, stream().inside() ? -1.0 : 1.0, policy.split_power, run.random()};
+  }
+  /// Ends the rays with a label and adds their power to an account of the ledger.
+  void book(lanes::Label label, Account account) const {
+    const lanes::Share share = lanes::sum_of(batch.hits.labels(), label, rays(), size());
+    run.tally.other[account] += share.power;
+    run.tally.segments += share.count;
+  }
+};
+
+}  // namespace retrace::raytrace
