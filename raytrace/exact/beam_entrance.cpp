@@ -1,0 +1,225 @@
+#include "raytrace/exact/beam_entrance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "raytrace/exact/beam_reach.h"
+
+namespace retrace::raytrace {
+namespace {
+
+// Number of facets of an element above which the incident light is divided into several fragments. Each fragment then
+// meets about this number of facets.
+constexpr double kFacetsOfPiece = 30.0;
+
+/// An interval of the entrance face along one axis, and the displacements to its copies.
+struct Span {
+  double from = 0.0;
+  double to = 0.0;
+  std::vector<double> shifts;
+};
+
+/// Divides a side of the entrance face into intervals, with `steps` intervals per period. Intervals that are a multiple
+/// of the period apart are one Span. The last interval of the side may be shorter and is then a Span of its own.
+std::vector<Span> spans(double lower, double upper, double period, int steps) {
+  std::vector<Span> all;
+  const double step = period / steps;
+  const double near = 1e-9 * step;
+  for (int k = 0; k < steps; ++k) {
+    const double from = lower + k * step;
+    Span whole{from, from + step, {}};
+    for (std::int64_t i = 0;; ++i) {
+      const double shift = static_cast<double>(i) * period;
+      if (from + shift + step <= upper + near) {
+        whole.shifts.push_back(shift);
+        continue;
+      }
+      if (from + shift < upper - near) all.push_back({from + shift, upper, {0.0}});
+      break;
+    }
+    if (!whole.shifts.empty()) all.push_back(std::move(whole));
+  }
+  return all;
+}
+
+/// Returns the part of a polygon whose projection along z is inside a convex outline.
+Corners within(Corners corners, const geometry::Polygon& outline) {
+  for (std::size_t k = 0; k < outline.size() && !corners.empty(); ++k) {
+    const Vec2 along = (outline[(k + 1) % outline.size()] - outline[k]).normalized();
+    const Vec3 inward(-along.y(), along.x(), 0.0);
+    corners = cut(corners, {inward, inward.head<2>().dot(outline[k])});
+  }
+  return corners;
+}
+
+/// Returns the part of a polygon between two values of the coordinate along an axis.
+Corners between(const Corners& corners, const Vec3& axis, double from, double to) {
+  return cut(cut(corners, {axis, from}), {-axis, -to});
+}
+
+/// Returns the bounding box of a beam in x and y.
+PlanBox plan_of(const Beam& beam) {
+  PlanBox box;
+  for (const Vec3& p : beam.corners) box.include(p.head<2>());
+  return box;
+}
+
+/// Returns the number of parts, along either axis, into which the light on an element is divided. The work of finding
+/// hidden facets grows as the square of the number of facets, and elements with rounded edges have dozens.
+double parts_of_element(const geometry::Part& part) {
+  double facets = 0.0;
+  for (const geometry::SurfacePatch& patch : part.patches)
+    facets = std::max(facets, static_cast<double>(patch.facets.size()) / static_cast<double>(patch.cells.size()));
+  return std::max(1.0, std::ceil(std::sqrt(facets / kFacetsOfPiece)));
+}
+
+/// Returns the maximum size in x and y of fragments of the incident beam. A fragment covers at most one element, so
+/// that it meets few facets.
+Vec2 step_of_entrance(const geometry::Part& part, double parts) {
+  Vec2 step = Vec2::Constant(part.size_mm);
+  if (const auto* rtp = std::get_if<geometry::RtpElement>(&part.spec.element))
+    step = Vec2(rtp->base_mm + part.spec.array.x_gap_mm, rtp->width_mm + part.spec.array.y_gap_mm);
+  return step / parts;
+}
+
+/// The incident beam and the fragments into which it is divided.
+class Division {
+ public:
+  Division(const BeamScene& scene, const Beam& whole, BeamQueue& queue)
+      : merge_mm_(scene.merge_mm), whole_(whole), queue_(queue), whole_area_(area_of(whole.corners)) {}
+
+  const Beam& whole() const { return whole_; }
+  /// Queues a fragment.
+  /// \param places positions of its copies; empty for the positions of the whole beam
+  /// \param region parts with zones: index in EqualPlaces::regions()
+  void add(Corners corners, BeamPlaces places = {}, std::uint32_t region = 0) {
+    if (corners.empty()) return;
+    Beam piece = whole_;
+    piece.corners = std::move(corners);
+    piece.share = whole_.share * (area_of(piece.corners) / whole_area_);
+    if (piece.share <= 0.0) return;
+    if (!places.empty()) piece.places = queue_.shared(std::move(places));
+    piece.region = region;
+    entered_ += piece.share * (piece.place_count() / whole_.place_count());
+    queue_.push(std::move(piece));
+  }
+  /// Returns the part of Beam::share that has entered.
+  double entered() const { return entered_; }
+
+ private:
+  double area_of(const Corners& corners) const { return area(flattened(corners, Frame(-Vec3::UnitZ()), merge_mm_)); }
+
+  double merge_mm_;
+  const Beam& whole_;
+  BeamQueue& queue_;
+  double whole_area_;
+  double entered_ = 0.0;
+};
+
+/// Divides a beam into fragments of the size `step`.
+void divide_by_step(const Vec2& step, Division& into) {
+  const PlanBox box = plan_of(into.whole());
+  for (double y = box.lower.y(); y < box.upper.y() - 1e-9 * step.y(); y += step.y()) {
+    const Corners row = between(into.whole().corners, Vec3::UnitY(), y, y + step.y());
+    for (double x = box.lower.x(); x < box.upper.x() - 1e-9 * step.x(); x += step.x())
+      into.add(between(row, Vec3::UnitX(), x, x + step.x()));
+  }
+}
+
+/// Divides a beam into fragments, each of which represents its copies at all full periods of the array.
+/// \param most_step maximum size of a fragment
+/// \pre the entrance face is a rectangle with sides along the x and y axes
+void divide_by_period(const Vec2& period, const Vec2& most_step, Division& into) {
+  const PlanBox box = plan_of(into.whole());
+  const Vec2 steps = period.cwiseQuotient(most_step).array().round().max(1.0);
+  const auto along = [&](Eigen::Index axis) {
+    return spans(box.lower[axis], box.upper[axis], period[axis], static_cast<int>(steps[axis]));
+  };
+  for (const Span& y : along(1)) {
+    const Corners row = between(into.whole().corners, Vec3::UnitY(), y.from, y.to);
+    for (const Span& x : along(0)) {
+      BeamPlaces places;
+      for (const double up : y.shifts)
+        for (const double right : x.shifts) places.emplace_back(right, up);
+      into.add(between(row, Vec3::UnitX(), x.from, x.to), std::move(places));
+    }
+  }
+}
+
+/// Divides the part of a beam above one region of a part with zones.
+void divide_region(const RepeatRegion& region, std::uint32_t number, const Vec2& most_step, Division& into) {
+  const auto add = [&](const geometry::Polygon& tile, BeamPlaces places) {
+    into.add(within(within(into.whole().corners, tile), region.outline_mm()), std::move(places), number);
+  };
+  for (const RepeatRegion::Tiles& tiles : region.tiles(most_step)) {
+    if (!tiles.inner.empty()) add(tiles.first, tiles.inner);
+    for (const geometry::Polygon& tile : tiles.at_border) add(tile, {});
+  }
+}
+
+Beam incident_beam(const BeamScene& scene, const geometry::Polygon& entrance) {
+  const LightSetup& setup = scene.setup;
+  Beam whole;
+  whole.direction = setup.entry.direction;
+  whole.light = setup.entry.light;
+  // The incident wave has phase 0 at the centre of the entrance face. Beam::phase_mm is extrapolated from there to the
+  // origin.
+  whole.phase_mm = -setup.optics.index * setup.entry.direction.z() * setup.thickness_mm;
+  whole.start = {-Vec3::UnitZ(), -setup.thickness_mm};
+  whole.path_length = PathLength{}.continued(whole.start, whole.direction, 1.0);
+  whole.entry.constant_mm = scene.centre_mm;
+  whole.entry.slope.leftCols<2>().setIdentity();
+  whole.entry = whole.entry.continued(whole.start, whole.direction);
+  for (const auto& p : entrance)
+    whole.corners.push_back({p.x() - scene.centre_mm.x(), p.y() - scene.centre_mm.y(), setup.thickness_mm});
+  return whole;
+}
+
+/// Reduces the beam on one period of an infinite part to one half if the two halves of the period are identical.
+void keep_half(const EqualPlaces& equal, Beam& whole, BeamQueue& queue) {
+  const auto& by = equal.within_period_mm();
+  if (!by) return;
+  const Eigen::Index axis = by->y() > 0.0 ? 1 : 0;
+  const double middle = plan_of(whole).lower[axis] + 0.5 * equal.period_mm()[axis];
+  whole.corners = cut(whole.corners, {-Vec3::Unit(axis), -middle});
+  whole.share = 0.5;
+  whole.places = queue.shared({Vec2::Zero(), *by});
+}
+
+/// Divides a beam as the symmetry of the part requires and returns the part of Beam::share that has entered.
+double divide(const BeamScene& scene, const Beam& whole, const Vec2& most_step, BeamQueue& queue) {
+  if (scene.equal == nullptr || scene.setup.infinite() || scene.equal->regions().empty()) {
+    Division into(scene, whole, queue);
+    if (scene.equal == nullptr || scene.setup.infinite())
+      divide_by_step(most_step, into);
+    else
+      divide_by_period(scene.equal->period_mm(), most_step, into);
+    return into.entered();
+  }
+  double entered = 0.0;
+  for (std::uint32_t number = 0; number < scene.equal->regions().size(); ++number) {
+    Division into(scene, whole, queue);
+    divide_region(scene.equal->regions()[number], number, most_step, into);
+    entered += into.entered();
+  }
+  return entered;
+}
+
+}  // namespace
+
+void enter_beams(const BeamScene& scene, const geometry::Polygon& entrance, BeamRecord& record, BeamQueue& queue) {
+  Beam whole = incident_beam(scene, entrance);
+  const double parts = parts_of_element(scene.part);
+  if (scene.setup.infinite()) {
+    if (scene.equal != nullptr) keep_half(*scene.equal, whole, queue);
+    if (parts == 1.0) return queue.push(std::move(whole));
+  }
+  const double entered = divide(scene, whole, step_of_entrance(scene.part, parts), queue);
+  record.book_rest(whole, whole.share - entered);
+}
+
+}  // namespace retrace::raytrace

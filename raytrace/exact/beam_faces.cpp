@@ -1,0 +1,245 @@
+#include "raytrace/exact/beam_faces.h"
+
+#include <algorithm>
+#include <boost/container/small_vector.hpp>
+#include <utility>
+
+#include "core/infinity.h"
+#include "raytrace/paths/textured_facet.h"
+
+namespace retrace::raytrace {
+namespace {
+
+using geometry::FacetRole, surface_models::Lobe;
+
+// Maximum number of steps of a nearly horizontal beam between two interfaces.
+constexpr std::uint32_t kMaxLevelSteps = 1000;
+
+/// Returns the power of a fragment at the plane where the beam starts.
+double power_at_start(const BeamStep& step, const Fragment& fragment) {
+  const Beam& from = step.beam;
+  const Plane start{from.start.normal, from.start.normal.dot(from.corners[0])};
+  const Corners corners = lifted(fragment.polygon, step.frame, Distance(step.frame, start));
+  return fragment.share * mean_transmission(corners, from.path_length, step.scene.setup.optics.absorption_per_mm) *
+         from.light.power();
+}
+
+/// Returns the fragment as a beam that meets a plane. The power that the material absorbs up to the plane is added to
+/// the ledger.
+Beam arrived(const BeamStep& step, const Fragment& fragment, const Plane& plane) {
+  const double absorption_per_mm = step.scene.setup.optics.absorption_per_mm;
+  Beam beam = step.beam;
+  beam.share = fragment.share;
+  beam.depth = step.beam.depth + 1;
+  beam.level_steps = 0;
+  beam.corners = lifted(fragment.polygon, step.frame, Distance(step.frame, plane));
+  beam.transmission = mean_transmission(beam.corners, beam.path_length, absorption_per_mm);
+  if (beam.inside && absorption_per_mm > 0.0)
+    step.record.book(beam, Account::absorbed, power_at_start(step, fragment) - power_of(beam));
+  return beam;
+}
+
+/// Queues a beam that starts at an interface.
+/// \param ahead normal of the plane, which points to the side into which the beam travels
+void send(const BeamStep& step, Beam&& beam, const Plane& plane, const Vec3& ahead, const Vec3& direction,
+          const CoherentLight& light, bool inside) {
+  // The field is continuous on the plane. The wave vectors before and after therefore differ only along the normal.
+  beam.phase_mm +=
+      (step.scene.index_at(beam.inside) * beam.direction - step.scene.index_at(inside) * direction).dot(plane.normal) *
+      plane.offset_mm;
+  beam.path_length = beam.path_length.continued(plane, direction, inside ? 1.0 : 0.0);
+  beam.entry = beam.entry.continued(plane, direction);
+  for (TexturedHit& hit : beam.hits) hit = hit.continued(plane, direction);
+  beam.start = {ahead, ahead.dot(plane.normal) * plane.offset_mm};
+  beam.direction = direction;
+  beam.light = light;
+  beam.inside = inside;
+  step.queue.push(std::move(beam));
+}
+
+/// Records that the beam meets a facet with a texture or a form, if the phases of the facet are needed later.
+/// \param beam beam that arrives at the facet
+void keep_phases(const BeamScene& scene, Beam& beam, const Candidate& facet, const materials::FresnelCoefficients& f,
+                 double cos_incidence, Lobe lobe) {
+  const Optics& optics = scene.setup.optics;
+  const bool has_texture = scene.policy.keeps_phases && !optics.is_smooth();
+  const bool has_form = facet.middle_mm && !optics.facet_form.is_plane();
+  if (facet.role != FacetRole::retro_facet || !(has_texture || has_form)) return;
+  TexturedHit hit;
+  hit.plane = facet.plane;
+  if (has_texture) hit.phase = phase_texture(optics, beam.inside, cos_incidence, lobe);
+  if (has_form) {
+    hit.frame = FacetFrame(hit.plane.normal, hit.plane.offset_mm, *facet.middle_mm);
+    // The path difference per height is the normal component of the wave vector before the facet minus that after the
+    // facet, in units of the vacuum wave number.
+    const double before = scene.index_at(beam.inside) * cos_incidence;
+    const double behind = lobe == Lobe::reflection ? -before : scene.index_at(!beam.inside) * f.cos_refracted;
+    hit.path_per_height = (beam.inside ? 1.0 : -1.0) * (before - behind);
+  }
+  beam.hits.push_back(hit);
+}
+
+/// Returns the reflected or transmitted field of a beam at a facet, without the light that the texture of a retro facet
+/// scatters. With BeamPolicy::keeps_phases, the scattered light is included.
+CoherentLight unscattered(const BeamScene& scene, const Beam& beam, const materials::FresnelCoefficients& f,
+                          FacetRole role, double cos_incidence, Lobe lobe) {
+  const Optics& optics = scene.setup.optics;
+  const auto passed = [&](const materials::FresnelCoefficients& by) {
+    return lobe == Lobe::reflection ? beam.light.reflected(by) : beam.light.transmitted(by);
+  };
+  if (role != FacetRole::retro_facet || optics.is_smooth() || scene.policy.keeps_phases) return passed(f);
+  CoherentLight light = passed(mean_field(optics, beam.inside, cos_incidence, f));
+  light.scale(mean_field_share(optics, beam.inside, cos_incidence, lobe));
+  return light;
+}
+
+/// Processes a fragment that meets an outer face from inside: the entrance face, a side or a border wall.
+void meet_hull(const BeamStep& step, const Fragment& fragment, const Plane& plane, FacetRole role) {
+  const Optics& optics = step.scene.setup.optics;
+  const Vec3& direction = step.beam.direction;
+  Beam beam = arrived(step, fragment, plane);
+  if (role == FacetRole::border_wall && optics.absorbing_walls) {
+    step.record.book(beam, Account::absorbed, power_of(beam));
+    return;
+  }
+  const bool is_entrance = role == FacetRole::entrance;
+  const Vec3 against = -plane.normal;
+  const double cos_incidence = plane.normal.dot(direction);
+  const double ratio = role == FacetRole::border_wall ? optics.ratio_at_back(true) : optics.index;
+  const materials::FresnelCoefficients f =
+      is_entrance ? fresnel_at_entrance(optics, true, cos_incidence) : materials::fresnel(ratio, cos_incidence);
+  const Vec3 out = refracted(direction, against, ratio, cos_incidence, f.cos_refracted);
+  beam.light.turn_to(direction, against);
+  if (is_entrance && optics.lossless_entrance) {
+    if (f.total_reflection)
+      step.record.leave_outside_cones(beam);
+    else
+      step.record.leave_through_entrance(beam, beam.light, out);
+    return;
+  }
+  const CoherentLight through = beam.light.transmitted(f);
+  const CoherentLight reflected = beam.light.reflected(f);
+  if (is_entrance)
+    step.record.book(beam, Account::absorbed,
+                     transmission_of(beam) * absorbed_at_entrance(optics, beam.light, reflected, through));
+  if (!f.total_reflection) {
+    if (is_entrance)
+      step.record.leave_through_entrance(beam, through, out);
+    else
+      step.record.book(beam, account_of_exit(role), transmission_of(beam) * through.power());
+  }
+  send(step, std::move(beam), plane, against, mirrored(direction, against), reflected, true);
+}
+
+/// Splits a fragment at the entrance face and the sides. Each face receives the part of the fragment for which it is
+/// the nearest face.
+void leave_hull(const BeamStep& step, const Fragment& fragment) {
+  struct Exit {
+    Plane plane;
+    Distance distance;
+    FacetRole role;
+  };
+  const LightSetup& setup = step.scene.setup;
+  const double merge_mm = step.scene.merge_mm;
+  boost::container::small_vector<Exit, 8> exits;
+  const auto offer = [&](const Plane& plane, FacetRole role) {
+    if (plane.normal.dot(step.beam.direction) > kGrazing) exits.push_back({plane, Distance(step.frame, plane), role});
+  };
+  offer({Vec3::UnitZ(), setup.thickness_mm}, FacetRole::entrance);
+  for (const auto& side : setup.sides) offer({side.normal, side.offset_mm}, FacetRole::side);
+
+  const double whole = area(fragment.polygon);
+  double used = 0.0;
+  const auto meet = [&](const Exit& exit, FacetRole role, const FlatPolygon& own) {
+    if (own.empty() || area(own) <= step.scene.least_area) return;
+    const double part = fragment.share * area(own) / whole;
+    used += part;
+    meet_hull(step, {own, part}, exit.plane, role);
+  };
+  for (std::size_t k = 0; k < exits.size(); ++k) {
+    FlatPolygon own = fragment.polygon;
+    for (std::size_t j = 0; j < exits.size() && !own.empty(); ++j) {
+      if (j == k) continue;
+      const Vec2 slope = exits[k].distance.slope - exits[j].distance.slope;
+      own = clipped(own, {slope.x(), slope.y(), exits[j].distance.constant - exits[k].distance.constant}, merge_mm);
+    }
+    if (exits[k].role == FacetRole::side && setup.optics.border_walls_differ()) {
+      // Below z = 0, a side plane belongs to border walls. In the coordinates across the beam, z = up . p + start.
+      const Frame& frame = step.frame;
+      const Distance& distance = exits[k].distance;
+      const Vec2 up = Vec2(frame.u.z(), frame.v.z()) + frame.w.z() * distance.slope;
+      const double start = frame.w.z() * distance.constant;
+      if (up.norm() > kGrazing) {
+        meet(exits[k], FacetRole::border_wall, clipped(own, {up.x(), up.y(), -start}, merge_mm));
+        meet(exits[k], FacetRole::side, clipped(own, {-up.x(), -up.y(), start}, merge_mm));
+        continue;
+      }
+    }
+    meet(exits[k], exits[k].role, own);
+  }
+  step.record.book_rest(step.beam, fragment.share - used);
+}
+
+/// Queues a fragment that has reached the limited horizon of its step.
+void stop_at_horizon(const BeamStep& step, const Fragment& fragment) {
+  double nearest = kInfinity;
+  for (const Vec3& p : step.beam.corners) nearest = std::min(nearest, step.frame.w.dot(p));
+  const Plane there{step.frame.w, nearest + step.horizon.t};
+  Beam beam = arrived(step, fragment, there);
+  beam.start = there;
+  beam.depth = step.beam.depth;
+  beam.level_steps = step.beam.level_steps + 1;
+  if (beam.level_steps < kMaxLevelSteps)
+    step.queue.push(std::move(beam));
+  else
+    step.record.book(beam, Account::truncated, power_of(beam));
+}
+
+}  // namespace
+
+void meet_facet(const BeamStep& step, const Fragment& fragment, const Candidate& facet) {
+  const Optics& optics = step.scene.setup.optics;
+  const Beam& from = step.beam;
+  const Plane& plane = facet.plane;
+  Beam beam = arrived(step, fragment, plane);
+  const bool is_wall = facet.role == FacetRole::inner_wall || facet.role == FacetRole::border_wall;
+  if (is_wall && optics.absorbing_walls) {
+    step.record.book(beam, Account::absorbed, power_of(beam));
+    return;
+  }
+  const Vec3 against = from.inside ? Vec3(-plane.normal) : plane.normal;
+  const double ratio = optics.ratio_at_back(from.inside);
+  const double cos_incidence = -against.dot(from.direction);
+  const materials::FresnelCoefficients f = fresnel_at_back(optics, facet.role, from.inside, cos_incidence);
+  beam.trail.meet(facet.cell);
+  beam.light.turn_to(from.direction, against);
+  const CoherentLight reflected = beam.light.reflected(f);
+  const CoherentLight transmitted = beam.light.transmitted(f);
+  step.record.book(beam, Account::absorbed,
+                   transmission_of(beam) * absorbed_at_back(optics, facet.role, beam.light, reflected, transmitted));
+  const CoherentLight back = unscattered(step.scene, beam, f, facet.role, cos_incidence, Lobe::reflection);
+  double scattered = reflected.power() - back.power();
+  if (!f.total_reflection) {
+    Beam through = beam;
+    if (from.inside) through.left_through = facet.role;
+    keep_phases(step.scene, through, facet, f, cos_incidence, Lobe::transmission);
+    const CoherentLight on = unscattered(step.scene, beam, f, facet.role, cos_incidence, Lobe::transmission);
+    scattered += transmitted.power() - on.power();
+    send(step, std::move(through), plane, -against,
+         refracted(from.direction, against, ratio, cos_incidence, f.cos_refracted), on, !from.inside);
+  }
+  if (scattered > 0.0) step.record.scatter(beam, plane, transmission_of(beam) * scattered);
+  keep_phases(step.scene, beam, facet, f, cos_incidence, Lobe::reflection);
+  send(step, std::move(beam), plane, against, mirrored(from.direction, against), back, from.inside);
+}
+
+void pass_facets(const BeamStep& step, const Fragment& fragment) {
+  const Beam& from = step.beam;
+  if (step.horizon.limited) return stop_at_horizon(step, fragment);
+  if (from.inside) return leave_hull(step, fragment);
+  const bool rises_through_plate = step.scene.setup.infinite() && from.direction.z() > 0.0;
+  step.record.book(from, rises_through_plate ? Account::truncated : account_of_exit(from.left_through),
+                   power_at_start(step, fragment));
+}
+
+}  // namespace retrace::raytrace

@@ -1,0 +1,34 @@
+#pragma once
+
+// What happens to fragments of a beam at the faces of the part.
+
+#include "raytrace/exact/beam_queue.h"
+#include "raytrace/exact/beam_record.h"
+#include "raytrace/exact/beam_scene.h"
+#include "raytrace/exact/visible_facets.h"
+
+namespace retrace::raytrace {
+
+/// The next step of a beam.
+struct BeamStep {
+  const BeamScene& scene;
+  const Beam& beam;
+  Frame frame;  ///< coordinate axes of the beam
+  Horizon horizon;
+  BeamRecord& record;
+  BeamQueue& queue;  ///< receives the beams after the step
+};
+
+/// Fragment of a beam.
+struct Fragment {
+  const FlatPolygon& polygon;
+  double share = 0.0;  ///< its part of Beam::share
+};
+
+/// Processes a fragment that meets a facet.
+void meet_facet(const BeamStep& step, const Fragment& fragment, const Candidate& facet);
+
+/// Processes a fragment that no facet within the horizon blocks.
+void pass_facets(const BeamStep& step, const Fragment& fragment);
+
+}  // namespace retrace::raytrace

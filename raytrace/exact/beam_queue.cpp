@@ -1,0 +1,98 @@
+#include "raytrace/exact/beam_queue.h"
+
+#include <fmt/format.h>
+
+namespace retrace::raytrace {
+namespace {
+
+// Maximum number of beams below the cut-off that are kept for a later pass with a lower cut-off. They take about 150
+// MB. Their memory is also limited to three quarters of beam_memory_bytes().
+constexpr std::size_t kMostDeferred = 200'000;
+// Work of moving one position of a beam between lists, in units of BeamWalk::work().
+constexpr std::uint64_t kWorkOfPlace = 1;
+
+/// Returns the memory in bytes of a queued beam, without its list of positions.
+std::uint64_t bytes_of(const Beam& beam) {
+  return sizeof(Beam) + beam.hits.capacity() * sizeof(TexturedHit);
+}
+
+}  // namespace
+
+void BeamQueue::push(Beam&& beam) {
+  beam.power = power_of(beam);
+  pending_.power += beam.total_power();
+  pending_.bytes += bytes_of(beam);
+  memory_->add(bytes_of(beam));
+  pending_.beams.push_back(std::move(beam));
+}
+
+Beam BeamQueue::pop() {
+  Beam beam = std::move(pending_.beams.back());
+  pending_.beams.pop_back();
+  pending_.power -= beam.total_power();
+  pending_.bytes -= bytes_of(beam);
+  memory_->remove(bytes_of(beam));
+  return beam;
+}
+
+void BeamQueue::take_pending(WaitingBeams& into) {
+  memory_->remove(pending_.bytes);
+  Waiting taken;  // a new queue replaces the old one, because clear() of an empty boost deque adds to a null pointer
+  pending_.swap(taken);
+  WaitingBeams().swap(into);
+  taken.beams.swap(into);
+}
+
+void BeamQueue::defer(Beam&& beam, bool may_discard) {
+  deferred_.power += beam.total_power();
+  if (may_discard && is_full()) return;
+  deferred_.bytes += bytes_of(beam);
+  memory_->add(bytes_of(beam));
+  deferred_.beams.push_back(std::move(beam));
+}
+
+bool BeamQueue::is_full() const {
+  return deferred_.beams.size() > kMostDeferred || deferred_.bytes > beam_memory_bytes() / 4 * 3;
+}
+
+WaitingBeams BeamQueue::take_deferred() {
+  memory_->remove(deferred_.bytes);
+  Waiting taken;
+  deferred_.swap(taken);
+  return std::move(taken.beams);
+}
+
+void BeamQueue::resume_deferred() {
+  pending_.swap(deferred_);
+  deferred_.power = 0.0;
+}
+
+void BeamQueue::discard_pending() {
+  for (const Beam& beam : pending_.beams) deferred_.power += beam.total_power();
+  memory_->remove(pending_.bytes);
+  Waiting none;
+  pending_.swap(none);
+}
+
+std::shared_ptr<const BeamPlaces> BeamQueue::shared(BeamPlaces places) {
+  if (places.size() <= 1) return nullptr;
+  places.shrink_to_fit();
+  const std::uint64_t bytes = places.size() * sizeof(Vec2);
+  work_ += kWorkOfPlace * places.size();
+  memory_->add(bytes);
+  return {new BeamPlaces(std::move(places)), [memory = memory_, bytes](const BeamPlaces* gone) {
+            memory->remove(bytes);
+            delete gone;
+          }};
+}
+
+void BeamQueue::require_memory() const {
+  if (memory_->is_exceeded())
+    throw TraceBudgetError(fmt::format(
+        "beams exceed {} with {:.3g} of the power not accounted for: give a larger {}, which follows fewer beams, a "
+        "larger budget, or {} montecarlo",
+        memory_budget_text(), open_power(), reference({"cutoff"}), reference({"engine"})));
+  memory_->require_shared();
+}
+
+}  // namespace retrace::raytrace

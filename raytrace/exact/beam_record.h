@@ -1,0 +1,60 @@
+#pragma once
+
+// Results of a run of the exact engine: the ledger, the beams that leave, and the light that rough facets scatter.
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "raytrace/exact/beam_scene.h"
+
+namespace retrace::raytrace {
+
+/// Records where the power of beams ends. All powers are those of a single beam. They are multiplied by the number of
+/// beams that the beam represents.
+class BeamRecord {
+ public:
+  BeamRecord(const BeamScene& scene, BeamObserver observer);
+
+  /// Makes the record append a ScatterSite to `sites` wherever a rough facet scatters light. Without this call, the
+  /// scattered power is added to `truncated`.
+  void collect(std::vector<ScatterSite>& sites) { sites_ = &sites; }
+  /// Sets the replicate number of the returned beams that the observer receives.
+  void serve_replicate(std::uint32_t replicate) { replicate_ = replicate; }
+
+  /// Adds power of a beam to the ledger.
+  void book(const Beam& beam, Account account, double power) { tally_.other[account] += beam.place_count() * power; }
+  /// Adds power that is not traced further to the ledger.
+  void book_truncated(double power) { tally_.other[Account::truncated] += power; }
+  /// Adds light that is lost by rounding to `truncated`. The value may be negative, because fragments may overlap.
+  /// \param share part of beam.share that is lost
+  void book_rest(const Beam& beam, double share) {
+    book(beam, Account::truncated, share / beam.share * power_of(beam));
+  }
+  /// Adds a scattering site, or adds the scattered power to `truncated` if sites are not collected.
+  /// \param beam beam that arrives; its light is expressed in the s and p axes of the facet
+  void scatter(const Beam& beam, const Plane& plane, double power);
+  /// Records the incident light that the entrance face reflects or absorbs.
+  void enter();
+  /// Records light that leaves through the entrance face.
+  /// \param direction direction of the light in air
+  void leave_through_entrance(const Beam& beam, const CoherentLight& light, const Vec3& direction);
+  /// Adds the light of a beam to the light that leaves through the entrance face outside of all cones.
+  void leave_outside_cones(const Beam& beam) { tally_.returned.back().i += beam.place_count() * power_of(beam); }
+
+  const Tally& tally() const { return tally_; }
+  /// Returns the ledger and the light of each cone.
+  BeamResult result() const;
+
+ private:
+  ReturnedBeam returned_beam(const Beam& beam, CoherentLight light, const Vec3& direction) const;
+  void observe_front() const;
+
+  BeamScene scene_;
+  BeamObserver observer_;
+  std::vector<ScatterSite>* sites_ = nullptr;
+  std::optional<std::uint32_t> replicate_;
+  Tally tally_;
+};
+
+}  // namespace retrace::raytrace
