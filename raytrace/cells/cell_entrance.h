@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "raytrace/cells/cell_step.h"
-#include "raytrace/paths/soiled_entrance.h"
+#include "raytrace/faces/soiled_entrance.h"
 
 namespace retrace::raytrace {
 

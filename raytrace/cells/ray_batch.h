@@ -10,7 +10,7 @@
 
 #include "raytrace/cells/cell_lanes.h"
 #include "raytrace/cells/ray_store.h"
-#include "raytrace/paths/textured_facet.h"
+#include "raytrace/faces/textured_facet.h"
 
 namespace retrace::raytrace {
 

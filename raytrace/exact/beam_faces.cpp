@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/infinity.h"
-#include "raytrace/paths/textured_facet.h"
+#include "raytrace/faces/textured_facet.h"
 
 namespace retrace::raytrace {
 namespace {

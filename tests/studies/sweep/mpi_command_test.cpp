@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <string>
 
-#include "tests/compute/ranks/mpi_run.h"
+#include "tests/studies/sweep/mpi_run.h"
 #include "tests/studies/sweep/stored_points.h"
 
 namespace retrace::test::mpi_command_test {

@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "tests/compute/ranks/mpi_run.h"
+#include "tests/studies/sweep/mpi_run.h"
 #include "tests/studies/sweep/stored_points.h"
 #include "tests/support/refusals.h"
 

@@ -1,0 +1,57 @@
+#pragma once
+
+// Lattice of the directions of light of a reflection table, and the cells whose directions are on it.
+
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "core/angle.h"
+#include "geometry/vec.h"
+#include "studies/appearance/reflection_table.h"
+
+namespace retrace::studies {
+
+/// Position on the lattice: entrance angle and azimuth, in lattice steps.
+using LatticePlace = std::pair<int, int>;
+
+/// Cell of the reflection table while the table is being made.
+struct PlannedCell {
+  std::array<int, 2> corner{};  ///< position of the lower corner on the lattice: entrance angle, azimuth
+  std::array<int, 2> size{};    ///< lattice steps along its sides: multiples of 3
+  double error = 0.0;           ///< relative error of values that are interpolated inside the cell
+
+  bool is_least() const { return size[0] <= 3 && size[1] <= 3; }
+};
+
+/// Lattice of directions of light, which is common to all cells. Neighbouring cells therefore share the directions on
+/// their common sides, even after they have been halved.
+class LightLattice {
+ public:
+  /// \param entrance_deg maximum entrance angle
+  /// \param table table whose range of directions the lattice covers
+  LightLattice(double entrance_deg, const ReflectionTable& table);
+
+  /// Returns the cells from which refinement starts.
+  std::vector<PlannedCell> first_cells() const;
+  /// Returns the lattice positions of a cell's 4 x 4 directions, ordered by azimuth and then by entrance angle. At
+  /// normal incidence, all azimuths are the same direction. If the azimuths cover a full circle, the last azimuth is
+  /// the same as the first.
+  std::vector<LatticePlace> places_of(const PlannedCell& cell) const;
+  Angle entrance_at(double place) const { return Angle::from_rad(place * entrance_step_.rad()); }
+  Angle azimuth_at(double place) const { return Angle::from_rad(first_azimuth_.rad() + place * azimuth_step_.rad()); }
+  /// Returns the direction to the source at a position within a cell, as fractions of its sides.
+  geometry::Vec3 to_source(const PlannedCell& cell, double entrance_share, double azimuth_share) const;
+  /// Returns the smallest extent of the cells in entrance angle.
+  double least_extent_deg(const std::vector<PlannedCell>& cells) const;
+
+ private:
+  int entrance_cells_;
+  int azimuth_cells_;
+  bool closes_;  ///< true if the azimuths cover a full circle
+  Angle first_azimuth_;
+  Angle entrance_step_;
+  Angle azimuth_step_;
+};
+
+}  // namespace retrace::studies

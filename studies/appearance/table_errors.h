@@ -1,0 +1,37 @@
+#pragma once
+
+// Comparison of a reflection table with the photometer at random views.
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "raytrace/observers/photometric_geometry.h"
+#include "studies/appearance/reflection_table.h"
+
+namespace retrace::studies {
+
+/// Number of random views at which a grid or the finished table is compared with the photometer.
+inline constexpr std::uint32_t kProbes = 200;
+
+/// Returns the relative error of the interpolated value `told`, compared with `truth`. If `truth` is below the fraction
+/// AppearanceError::kFloor of the maximum `most`, the error is relative to this fraction of `most`.
+double error_of(double told, double truth, double most);
+
+double quantile(std::vector<double> errors, double share);
+
+/// Returns the quantile that must be below the requested error.
+double judged_error(const std::vector<double>& errors);
+
+/// Returns the deviation of a random view from the central direction of the table.
+/// \param x and \param y random numbers
+geometry::Vec2 random_deviation(const ReflectionTable& table, std::uint32_t x, std::uint32_t y);
+
+/// Returns the directions to source and observer, or nothing if the deviation is too large for a unit vector.
+std::optional<raytrace::PhotometricDirections> view_at(const ReflectionTable& table, const geometry::Vec3& to_source,
+                                                       const geometry::Vec2& deviation);
+
+/// Returns the maximum of R_A over the grid points of the table, for the eye's response and one direction of light.
+double greatest_r_a(const ReflectionTable& table, const geometry::Vec3& to_source);
+
+}  // namespace retrace::studies
