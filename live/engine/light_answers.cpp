@@ -5,7 +5,8 @@
 
 #include "live/engine/answers.h"
 #include "live/engine/request.h"
-#include "studies/rre/beam_race.h"
+#include "raytrace/engines/beam_race.h"
+#include "raytrace/engines/wavelengths.h"
 #include "studies/rre/beam_tracing.h"
 #include "studies/rre/spectral_mean.h"
 
@@ -67,8 +68,8 @@ class Tracing {
     sampling_.target_error = way.target_error / std::sqrt(lit_.weight);
     raytrace::BeamPolicy policy;
     policy.truncated_goal = way.target_error;
-    studies::BeamRace race(opened_.require_tracer(), nullptr, lit_.optics, illumination_, cones(), policy, sampling_,
-                           {.may_resample = !way.is_exact, .observer = collector.observer()}, nullptr);
+    raytrace::BeamRace race(opened_.require_tracer(), nullptr, lit_.optics, illumination_, cones(), policy, sampling_,
+                            {.may_resample = !way.is_exact, .observer = collector.observer()}, nullptr);
     while (!race.advance())
       if (limit != nullptr && limit->is_over()) return std::nullopt;
     return race.is_exact() ? exact(race.exact(), way.question) : stochastic(race.stochastic(), collector);
@@ -114,18 +115,21 @@ std::optional<Found> traced(const OpenedDesign& opened, const studies::SceneLigh
   const std::size_t middle = middle_of(model);
   Found all;
   std::vector<std::vector<studies::SpectralPoint>> spectral(opened.design().detector.acceptance_half_angle_deg.size());
-  for (std::size_t k = 0; k < model.spectral.size(); ++k) {
+  TaskProgress unseen(nullptr, model.spectral.size());
+  const auto trace_one = [&](std::size_t, std::size_t k, Progress&) {
     Way of_wavelength = way;
     if (k != middle) of_wavelength.question = {};
     std::optional<Found> found = Tracing(opened, at, k).trace(of_wavelength, limit);
-    if (!found) return std::nullopt;
+    if (!found) return false;
     for (std::size_t cone = 0; cone < spectral.size(); ++cone)
       spectral[cone].push_back({model.spectral[k].weight, found->points[cone]});
-    if (k != middle) continue;
+    if (k != middle) return true;
     all.at_middle = found->points.back();
     all.footprint = std::move(found->footprint);
     all.far_field = std::move(found->far_field);
-  }
+    return true;
+  };
+  if (!raytrace::trace_wavelengths(1, model.spectral.size(), false, unseen, trace_one)) return std::nullopt;
   for (const std::vector<studies::SpectralPoint>& points : spectral) {
     all.points.push_back(points.size() == 1 ? points.front().point : studies::spectral_mean(at, points));
     all.points.back().acceptance_half_angle_deg = points.front().point.acceptance_half_angle_deg;

@@ -1,34 +1,20 @@
 #include "live/engine/opened_design.h"
 
-#include <fmt/format.h>
-
 #include "core/error.h"
+#include "studies/design/engine_facts.h"
 #include "studies/design/io/design_reader.h"
 #include "studies/design/io/file_names.h"
 
 namespace retrace::live {
-namespace {
-
-std::string why_not(const studies::Design& design, const raytrace::Optics* optics) {
-  if (design.balls()) return "balls are traced by Monte Carlo, which the live page has not";
-  if (!optics->is_smooth()) return "rough facets are traced by Monte Carlo, which the live page has not";
-  if (!optics->facet_form.is_plane())
-    return "facets with a form are traced by Monte Carlo, which the live page has not";
-  if (!optics->has_one_back())
-    return "backs that are not all alike are traced by Monte Carlo, which the live page has not";
-  if (optics->entrance.scatters())
-    return "an entrance face that scatters is traced by Monte Carlo, which the live page has not";
-  return {};
-}
-
-}  // namespace
-
 OpenedDesign::OpenedDesign(std::string toml, const std::string& source, const materials::MaterialLibrary& library)
     : toml_(std::move(toml)), design_(studies::parse_design(toml_, source)), library_(library) {
   studies::check_names_no_file(design_, "which the live page cannot read: use the program retrace");
   if (!design_.balls()) model_ = studies::make_model(design_, library_);
-  why_not_ = live::why_not(design_, model_ ? &model_->optics : nullptr);
-  if (why_not_.empty()) tracer_.emplace(model_->part, raytrace::BeamTracer::Elements::equal_at_once);
+  const raytrace::EngineFacts facts = studies::engine_facts(design_, model_ ? &model_->optics : nullptr);
+  if (const auto obstacle = raytrace::why_not(raytrace::Engine::exact, facts))
+    why_not_ = raytrace::traced_by(*obstacle, "Monte Carlo, which the live page has not");
+  else
+    tracer_.emplace(model_->part, raytrace::BeamTracer::Elements::equal_at_once);
 }
 
 std::string OpenedDesign::command() const {

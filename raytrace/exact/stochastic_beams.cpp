@@ -48,12 +48,6 @@ struct StochasticBeams::Replicate {
   std::uint64_t beam_count = 0;
 };
 
-bool StochasticBeams::serves(const Optics& optics) {
-  if (!optics.facet_form.is_plane() || !optics.has_one_back() || optics.entrance.scatters()) return false;
-  const auto* rough = std::get_if<surface_models::HarveyShack>(&optics.facet_scatter);
-  return optics.is_smooth() || (rough != nullptr && rough->roughness().waviness_sq_nm == 0.0);
-}
-
 StochasticBeams::StochasticBeams(const BeamTracer& tracer, const ScatteredLight* scattered, const Optics& optics,
                                  const Illumination& illumination, const std::vector<double>& cones_deg,
                                  const Sampling& sampling, const Cancellation* cancel, BeamObserver observer)

@@ -40,14 +40,10 @@ class StochasticBeams {
   /// one time, but survivors are traced in every replicate.
   static constexpr double kThinning = 32.0;
 
-  /// Returns true if the facets leave enough specular light in the beams. This is the case for smooth facets, and for
-  /// `harvey_shack` scattering without waviness.
-  static bool serves(const Optics& optics);
-
   /// \param sampling provides the seed and the target error
   /// \param scattered tracer of the scattered light for the same part and illumination; null if facets are smooth
   /// \param observer receives each returned beam that is traced exactly, one time
-  /// \pre serves(optics); `tracer`, `scattered` and `cancel` outlive this object
+  /// \pre why_not() allows the engine `stochastic`; `tracer`, `scattered` and `cancel` outlive this object
   StochasticBeams(const BeamTracer& tracer, const ScatteredLight* scattered, const Optics& optics,
                   const Illumination& illumination, const std::vector<double>& cones_deg, const Sampling& sampling,
                   const Cancellation* cancel = nullptr, BeamObserver observer = {});

@@ -42,13 +42,8 @@ struct Optics {
   bool border_walls_differ() const { return absorbing_walls || back_index != 1.0; }
   /// Returns true if facets do not scatter, so that a beam remains a beam at each facet.
   bool is_smooth() const { return std::holds_alternative<surface_models::Smooth>(facet_scatter); }
-  /// Returns true if retro facets act as smooth planes.
-  bool has_plane_facets() const { return is_smooth() && facet_form.is_plane(); }
   /// Returns true if the medium behind all elements is the same.
   bool has_one_back() const { return wet == nullptr; }
-  /// Returns true if no face of the part scatters, all retro facets are plane, and the same medium is behind all of
-  /// them.
-  bool keeps_beams() const { return has_plane_facets() && has_one_back() && !entrance.scatters(); }
   /// Returns true if there are no layers on the entrance face.
   bool has_bare_entrance() const { return entrance_layers.empty() && entrance.layers.empty(); }
   bool entrance_absorbs() const { return entrance_layers.absorbs() || entrance.absorbs(); }

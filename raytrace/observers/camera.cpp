@@ -161,9 +161,7 @@ struct CameraTracer::Hidden {
         luminaire(s.lamp, s.view, s.discs),
         entrance_mm(EntranceSampler(p).bounding_box()),
         tiles_along(std::clamp<std::size_t>(std::min(s.view.columns, s.view.rows) / kTilePixels, 1, kMostTiles)) {
-    const bool has_one_back =
-        std::ranges::all_of(light, [](const WeighedOptics& at) { return at.optics.has_one_back(); });
-    if (engine == CameraEngine::fastest && has_one_back) cells = CellArray::make(p);
+    if (engine == CameraEngine::fastest) cells = CellArray::make(p);
     double sum = 0.0;
     for (const WeighedOptics& at : light) {
       // The direction of incidence has no effect, because each path starts with a direction of its own.

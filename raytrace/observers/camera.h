@@ -119,7 +119,8 @@ class CameraTracer {
   /// Number of points per pixel and pass. The points are evenly distributed.
   static constexpr std::uint32_t kPointsPerPass = 4;
 
-  /// \pre the scene has a film if and only if the part is infinite; light is unpolarized; `part` outlives the tracer
+  /// \pre the scene has a film if and only if the part is infinite; light is unpolarized; `part` outlives the tracer;
+  /// why_not() allows the engine `cell` if `engine` is `fastest`
   CameraTracer(const geometry::Part& part, const std::vector<WeighedOptics>& light, const CameraScene& scene,
                const PathPolicy& policy, std::uint32_t seed, CameraEngine engine = CameraEngine::fastest);
   ~CameraTracer();

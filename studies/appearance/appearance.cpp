@@ -41,7 +41,7 @@ void check_engine(const Design& design, PhotometrySettings request) {
   if (!photometer.is_exact())
     throw InputError(design.where_facets(),
                      "a material is computed by the exact engine, which does not take this design: " +
-                         std::string(text_of(photometer.why_undiffracted())));
+                         text_of(photometer.why_undiffracted()));
 }
 
 /// Returns the value of ReflectionTable::back: for each axis, 1 if light reverses its direction component along the

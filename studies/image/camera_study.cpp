@@ -15,6 +15,7 @@
 #include "core/number_format.h"
 #include "raytrace/observers/photometric_geometry.h"
 #include "requests/descriptions.h"
+#include "studies/design/engine_facts.h"
 #include "studies/image/io/lamp_reader.h"
 
 namespace retrace::studies {
@@ -236,8 +237,10 @@ ComputeTask passes_by(const std::shared_ptr<const raytrace::CameraTracer>& trace
 std::shared_ptr<const raytrace::CameraTracer> CameraStudy::tracer() const {
   std::vector<raytrace::WeighedOptics> light;
   for (const SpectralOptics& at : model_.spectral) light.push_back({at.optics, at.weight});
-  return std::make_shared<const raytrace::CameraTracer>(model_.part, light, scene_, raytrace::kCameraPolicy,
-                                                        request_.seed);
+  const bool by_cells = !raytrace::why_not(raytrace::Engine::cell, engine_facts(design_, &model_.optics));
+  return std::make_shared<const raytrace::CameraTracer>(
+      model_.part, light, scene_, raytrace::kCameraPolicy, request_.seed,
+      by_cells ? raytrace::CameraEngine::fastest : raytrace::CameraEngine::embree);
 }
 
 ComputeTask CameraStudy::passes() const {

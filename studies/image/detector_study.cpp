@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/number_format.h"
 #include "core/task_progress.h"
+#include "raytrace/engines/wavelengths.h"
 #include "requests/descriptions.h"
 
 namespace retrace::studies {
@@ -76,32 +77,24 @@ void add(raytrace::DetectorMaps& sum, const raytrace::DetectorMaps& more, double
 DetectorStudy::DetectorStudy(Design design, DetectorRequest request)
     : design_(std::move(design)), request_(std::move(request)) {
   requests::check(request_);
-  engine_ = engine_from_name(request_.engine);
+  engine_ = raytrace::engine_from_name(request_.engine);
   model_ = make_model(design_, materials::MaterialLibrary::shipped());
-  if (engine_ == Engine::exact && !model_.optics.has_plane_facets())
-    throw InputError(
-        design_.where_facets(),
-        fmt::format("{} cannot be traced exactly: use {} montecarlo",
-                    model_.optics.is_smooth() ? "facets with a form" : "rough facets", reference({"engine"})));
-  if (engine_ == Engine::exact && !model_.optics.has_one_back())
-    throw InputError(design_.where("wet_back.index"), "backs that are not all alike cannot be traced exactly: use " +
-                                                          reference({"engine"}) + " montecarlo");
-  if (engine_ == Engine::exact && !model_.optics.keeps_beams())
-    throw InputError(
-        design_.where_entrance_scatters(),
-        "an entrance face that scatters cannot be traced exactly: use " + reference({"engine"}) + " montecarlo");
+  facts_ = engine_facts(design_, &model_.optics);
+  if (const auto obstacle = raytrace::why_not(Engine::exact, facts_); obstacle && engine_ == Engine::exact)
+    throw InputError(position_of(design_, *obstacle),
+                     fmt::format("{} cannot be traced exactly: use {} montecarlo", raytrace::subject_of(*obstacle),
+                                 reference({"engine"})));
 }
 
 raytrace::DetectorMaps DetectorStudy::trace(const SpectralOptics& light, const raytrace::DetectorSetting& setting,
                                             std::size_t number, bool exact, Progress* progress,
                                             const Cancellation* cancel) const {
-  constexpr std::uint32_t kGolden = 0x9e3779b9U;  // odd, so that all wavelengths have different seeds
   const raytrace::Illumination illumination = illumination_of(design_, request_);
   if (!exact)
     return raytrace::sampled_detector_maps(
         model_.part, light.optics, illumination, setting,
         std::max<std::uint64_t>(1, request_.samples.value_or(kUsualDetectorRays) / model_.spectral.size()),
-        request_.seed + kGolden * static_cast<std::uint32_t>(number), {}, progress, cancel);
+        raytrace::seed_at(request_.seed, number), {}, progress, cancel);
   raytrace::BeamPolicy policy;
   policy.cutoff = request_.cutoff;
   policy.truncated_goal = kTruncatedGoal;
@@ -124,17 +117,16 @@ DetectorResult DetectorStudy::run(Progress* progress, const Cancellation* cancel
        request_.angle_pixels},
       frame_of(illumination_of(design_, request_)),
       result.acceptance_half_angle_deg};
-  bool exact = model_.optics.keeps_beams() && (engine_ == Engine::exact || engine_ == Engine::automatic);
+  bool exact = raytrace::is_exact(engine_, facts_);
   AttemptProgress attempt(progress);
   const auto trace_all = [&] {
     result.maps = {};
     const std::size_t wavelengths = model_.spectral.size();
     TaskProgress all(&attempt, wavelengths);
-    for (std::size_t k = 0; k < wavelengths && result.maps.complete; ++k) {
-      TaskProgress::Task task(all);
+    raytrace::trace_wavelengths(1, wavelengths, false, all, [&](std::size_t, std::size_t k, Progress& task) {
       add(result.maps, trace(model_.spectral[k], setting, k, exact, &task, cancel), model_.spectral[k].weight);
-      task.finish();
-    }
+      return result.maps.complete;
+    });
   };
   try {
     trace_all();

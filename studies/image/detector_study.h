@@ -10,8 +10,8 @@
 #include "core/warning.h"
 #include "raytrace/observers/detector.h"
 #include "requests/image.h"
+#include "studies/design/engine_facts.h"
 #include "studies/design/optical_model.h"
-#include "studies/rre/rre.h"
 
 namespace retrace::studies {
 
@@ -50,6 +50,7 @@ class DetectorStudy {
   DetectorRequest request_;
   Engine engine_;
   OpticalModel model_;
+  raytrace::EngineFacts facts_;
 };
 
 }  // namespace retrace::studies

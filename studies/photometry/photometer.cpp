@@ -7,8 +7,8 @@
 
 #include "core/error.h"
 #include "core/task_progress.h"
-#include "core/within_memory.h"
 #include "materials/io/spectrum_reader.h"
+#include "raytrace/engines/wavelengths.h"
 #include "raytrace/faces/mirror_symmetry.h"
 #include "raytrace/observers/coefficients.h"
 #include "studies/design/part_of_design.h"
@@ -49,13 +49,37 @@ OpticalModel model_of(const Design& design, const materials::MaterialLibrary& li
   return design.balls() ? make_light_model(design, library) : make_model(design, library, Entrances::any);
 }
 
-/// Checks a design of balls. R_A requires an area, which a single ball does not have. Balls are traced only by rays.
-void check_balls(const Design& design, const PhotometrySettings& request) {
+/// Checks a design of balls. R_A requires an area, which a single ball does not have.
+void check_balls(const Design& design) {
   if (!design.balls()->pitch_mm)
     throw InputError(design.where("element.kind"),
                      "photometry takes layers of balls: give array.arrangement = \"packed\"");
-  if (request.engine != Engine::automatic && request.engine != Engine::montecarlo)
-    throw InputError(Field{"engine"}, "must be auto or montecarlo for balls");
+}
+
+/// Refuses an engine that cannot trace a design. Textures and entrance faces that scatter are refused by
+/// PhotometryStudy, because other studies measure them by rays.
+void check_engine(const Design& design, const raytrace::EngineFacts& facts, Engine engine) {
+  using raytrace::Obstacle;
+  const std::optional<Obstacle> obstacle = raytrace::why_not(engine, facts);
+  if (!obstacle) return;
+  switch (*obstacle) {
+    case Obstacle::balls: throw InputError(Field{"engine"}, "must be auto or montecarlo for balls");
+    case Obstacle::curved_entrance:
+      throw InputError(Field{"engine"}, "must be auto, montecarlo or embree if the design has a [front]");
+    case Obstacle::unequal_backs:
+      throw InputError(Field{"engine"}, "must be auto, montecarlo or embree for a [wet_back] behind some elements");
+    case Obstacle::texture:
+      if (!facts.has_form) return;
+      [[fallthrough]];
+    case Obstacle::form:
+    case Obstacle::form_and_texture:
+      throw InputError(
+          design.where_form(),
+          fmt::format("facets with a form are traced exactly with diffraction and without a texture alone: use {} "
+                      "montecarlo",
+                      reference({"engine"})));
+    default: return;
+  }
 }
 
 /// Returns the width of the cells whose edges diffract light. Returns 0 if the width is not known, for example for
@@ -145,9 +169,8 @@ Photometer::Photometer(const Design& design, const PhotometrySettings& request, 
                        PhotometricResponse response)
     : design_(dyed(design, request)), request_(request), kernel_(request.apertures) {
   const materials::MaterialLibrary library = materials::MaterialLibrary::shipped();
-  if (design_.balls()) check_balls(design_, request);
-  if (design_.entrance && (request.engine == Engine::exact || request.engine == Engine::cell))
-    throw InputError(Field{"engine"}, "must be auto, montecarlo or embree if the design has a [front]");
+  if (design_.balls()) check_balls(design_);
+  check_engine(design_, engine_facts(design_, nullptr), request.engine);
   if (request.light == PhotometricLight::of_design) {
     model_ = model_of(design_, library);
     for (const SpectralOptics& light : model_.spectral) weights_.push_back(light.weight);
@@ -158,21 +181,10 @@ Photometer::Photometer(const Design& design, const PhotometrySettings& request, 
     model_ = model_of(lit(design_, request, light), library);
     weights_ = light.weights;
   }
-  if (!model_.optics.has_one_back() && (request.engine == Engine::exact || request.engine == Engine::cell))
-    throw InputError(Field{"engine"}, "must be auto, montecarlo or embree for a [wet_back] behind some elements");
-  has_form_ = !model_.optics.facet_form.is_plane();
-  const bool keeps_beams_elsewhere = model_.optics.has_one_back() && !model_.optics.entrance.scatters();
-  keeps_phases_ = request.diffraction && !has_form_ && keeps_beams_elsewhere &&
-                  surface_models::has_phases(model_.optics.facet_scatter);
-  if (request.engine == Engine::exact && has_form_ && !(request.diffraction && model_.optics.is_smooth()))
-    throw InputError(
-        design_.where_form(),
-        fmt::format("facets with a form are traced exactly with diffraction and without a texture alone: use {} "
-                    "montecarlo",
-                    reference({"engine"})));
-  is_exact_ = !design_.balls() && !design_.entrance && keeps_beams_elsewhere &&
-              (model_.optics.is_smooth() || keeps_phases_) && (!has_form_ || request.diffraction) &&
-              (request.engine == Engine::exact || request.engine == Engine::automatic);
+  facts_ = engine_facts(design_, &model_.optics);
+  facts_.needs_phases = request.diffraction;
+  check_engine(design_, facts_, request.engine);
+  if (raytrace::is_exact(request.engine, facts_)) tracing_ = Tracing::beams;
 }
 
 materials::SpectralCurve lamp_power(PhotometricLight light) {
@@ -182,31 +194,26 @@ materials::SpectralCurve lamp_power(PhotometricLight light) {
 
 std::optional<Photometer> Photometer::mean_field() const {
   const bool is_asked = request_.engine == Engine::automatic && request_.diffraction;
-  if (!is_asked || is_exact_ || design_.balls() || design_.entrance || model_.optics.is_smooth() ||
-      !model_.optics.has_one_back() || model_.optics.entrance.scatters())
+  raytrace::EngineFacts of_mean_field = facts_;
+  of_mean_field.has_texture = false;
+  if (!is_asked || is_exact() || !facts_.has_texture || raytrace::why_not(Engine::exact, of_mean_field))
     return std::nullopt;
   Photometer bound = *this;
-  bound.is_exact_ = true;
-  bound.keeps_phases_ = false;
+  bound.tracing_ = Tracing::mean_field;
   return bound;
 }
 
 std::string Photometer::engine_name() const {
   if (design_.balls()) return "balls";
-  if (!is_exact_) return "embree";
+  if (!is_exact()) return "embree";
   return resamples_weak() ? "stochastic" : "exact";
 }
 
 NoDiffraction Photometer::why_undiffracted() const {
-  if (!request_.diffraction) return NoDiffraction::not_requested;
-  if (design_.balls()) return NoDiffraction::balls;
-  if (design_.entrance) return NoDiffraction::curved_entrance;
-  if (!model_.optics.has_one_back()) return NoDiffraction::unequal_backs;
-  if (is_exact_) return NoDiffraction::unequal_cells;
-  if (!model_.optics.is_smooth() && has_form_) return NoDiffraction::form_and_texture;
-  if (model_.optics.entrance.scatters()) return NoDiffraction::scattering_entrance;
-  if (!model_.optics.is_smooth() && !keeps_phases_) return NoDiffraction::no_phases;
-  return request_.engine == Engine::automatic ? NoDiffraction::too_many_beams : NoDiffraction::monte_carlo;
+  if (!request_.diffraction) return Undiffracted::not_requested;
+  if (const auto obstacle = raytrace::why_not(Engine::exact, facts_)) return *obstacle;
+  if (is_exact()) return Undiffracted::unequal_cells;
+  return request_.engine == Engine::automatic ? Undiffracted::too_many_beams : Undiffracted::monte_carlo;
 }
 
 double Photometer::least_undiffracted_mm() const {
@@ -226,11 +233,6 @@ std::size_t Photometer::middle_wavelength() const {
         std::abs(model_.spectral[best].wavelength_nm - model_.wavelength_nm))
       best = k;
   return best;
-}
-
-std::uint32_t Photometer::seed_of(std::size_t wavelength) const {
-  constexpr std::uint32_t kGolden = 0x9e3779b9U;  // odd, so that all wavelengths have different seeds
-  return request_.seed + kGolden * static_cast<std::uint32_t>(wavelength);
 }
 
 PhotometerReading Photometer::reading_of(const PhotometerSetting& setting, const std::vector<Piece>& pieces) const {
@@ -284,7 +286,7 @@ PhotometerReading Photometer::reading_of(const PhotometerSetting& setting, const
 std::array<bool, 2> Photometer::mirrors() const {
   const raytrace::Stokes& light = design_.light.polarisation;
   std::array<bool, 2> mirrors{};
-  if (design_.balls() || has_form_ || light.u != 0.0 || light.v != 0.0) return mirrors;
+  if (design_.balls() || facts_.has_form || light.u != 0.0 || light.v != 0.0) return mirrors;
   for (const std::size_t axis : {0U, 1U})
     mirrors[axis] = raytrace::is_its_own_mirror_image(model_.part, static_cast<Eigen::Index>(axis));
   return mirrors;
@@ -300,17 +302,17 @@ std::optional<std::vector<PhotometerReading>> Photometer::measure_in_one_light(
     const std::vector<PhotometerSetting>& settings, Progress* progress, const Cancellation* cancel) const {
   const std::size_t wavelengths = model_.spectral.size();
   std::vector<std::vector<Piece>> pieces(settings.size(), std::vector<Piece>(wavelengths));
-  if (is_exact_) {
+  if (is_exact()) {
     const raytrace::BeamTracer tracer = make_tracer();
     const std::vector<LitAlike> traced = settings_lit_alike(settings);
     TaskProgress all(progress, traced.size() * wavelengths);
-    for_each_within_memory(traced.size() * wavelengths, [&](std::size_t k) {
-      TaskProgress::Task task(all);
-      const LitAlike& alike = traced[k / wavelengths];
-      const std::vector<Piece> seen = measure_exactly(settings, alike, k % wavelengths, tracer, cancel);
-      for (std::size_t s = 0; s < alike.size(); ++s) pieces[alike[s].index][k % wavelengths] = seen[s];
-      task.finish();
-    });
+    raytrace::trace_wavelengths(
+        traced.size(), wavelengths, true, all, [&](std::size_t direction, std::size_t wavelength, Progress&) {
+          const LitAlike& alike = traced[direction];
+          const std::vector<Piece> seen = measure_exactly(settings, alike, wavelength, tracer, cancel);
+          for (std::size_t s = 0; s < alike.size(); ++s) pieces[alike[s].index][wavelength] = seen[s];
+          return true;
+        });
   } else if (!measure_by_rays(settings, progress, cancel, pieces)) {
     return std::nullopt;
   }

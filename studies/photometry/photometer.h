@@ -16,6 +16,10 @@
 #include "studies/photometry/lit_alike.h"
 #include "studies/photometry/photometry.h"
 
+namespace retrace::raytrace {
+class MonteCarlo;
+}
+
 namespace retrace::studies {
 
 /// Geometry of one measurement: a direction of light and several observation angles.
@@ -89,8 +93,8 @@ class Photometer {
   /// truncated.
   double cutoff_of_element() const;
   /// Returns advice for reducing standard errors, for messages.
-  std::string remedy_for_noise() const { return is_exact_ ? "give a lower cut-off" : "give more samples"; }
-  bool has_diffraction() const { return is_exact_ && request_.diffraction; }
+  std::string remedy_for_noise() const { return is_exact() ? "give a lower cut-off" : "give more samples"; }
+  bool has_diffraction() const { return is_exact() && request_.diffraction; }
   /// Returns the reason why the readings do not include diffraction.
   /// \pre the readings do not include diffraction
   NoDiffraction why_undiffracted() const;
@@ -103,15 +107,20 @@ class Photometer {
   /// engine or no diffraction.
   std::optional<Photometer> mean_field() const;
   /// Makes later measurements use Monte Carlo.
-  void leave_exact() { is_exact_ = false; }
-  bool is_exact() const { return is_exact_; }
-  /// Makes later measurements faster and less accurate, because fewer resampled beams represent the weak beams. Such
-  /// values may guide a search, but must not be shown to the user.
-  void only_guide() { is_guide_ = true; }
-  /// Makes later measurements even faster than only_guide(), for preliminary values that are shown with their errors.
-  /// The cut-off power of beams is higher. The search structures of the part may use at most half of their memory
-  /// budget, because another photometer measures the part at the same time.
-  void only_first_answer() { is_guide_ = is_first_answer_ = true; }
+  void leave_exact() { tracing_ = Tracing::rays; }
+  bool is_exact() const { return tracing_ != Tracing::rays; }
+  /// Accuracy of later measurements, and the time that they may take.
+  enum class Effort {
+    full,
+    /// Fewer resampled beams represent the weak beams. Such values may guide a search, but must not be shown to the
+    /// user.
+    guide,
+    /// Preliminary values that are shown with their errors. In addition to `guide`, the cut-off power of beams is
+    /// higher, and the search structures of the part may use at most half of their memory budget, because another
+    /// photometer measures the part at the same time.
+    first_answer
+  };
+  void set_effort(Effort effort) { effort_ = effort; }
   /// Ignores the mirror image of the light in later measurements. The mirror image is the light that the entrance face
   /// reflects, either at its outer side, or at its inner side between two retroreflections by elements.
   /// \pre is_exact()
@@ -145,6 +154,12 @@ class Photometer {
     double beyond_budget = 0.0;  ///< power that lacks diffraction because the budget of polygons is exhausted
     bool complete = false;
   };
+  /// Way in which light is traced.
+  enum class Tracing {
+    beams,       ///< all light as beams; the light that rough facets scatter is described by random phases
+    mean_field,  ///< beams without the light that rough facets scatter; readings are lower bounds
+    rays         ///< Monte Carlo
+  };
   /// Minimum width of cells for which diffraction need not be computed, in units of the wavelength divided by the
   /// angular diameter of the discs (apertures of source and receiver). For wider cells, diffraction carries less than 1
   /// % of the light past the edge of a disc (docs/theory/photometry.md).
@@ -170,9 +185,8 @@ class Photometer {
   std::vector<Piece> measure_exactly(const std::vector<PhotometerSetting>& settings, const LitAlike& alike,
                                      std::size_t wavelength, const raytrace::BeamTracer& tracer,
                                      const Cancellation* cancel) const;
-  /// Returns true if all light is traced, including the light that rough facets scatter. Otherwise only the mean field
-  /// is traced: the light that rough facets do not scatter. Readings are then lower bounds.
-  bool traces_all_light() const { return model_.optics.is_smooth() || keeps_phases_; }
+  /// Returns true if beams record random phases, which describe the light that rough facets scatter.
+  bool keeps_phases() const { return tracing_ == Tracing::beams && facts_.has_texture; }
   void estimate_missing(const std::vector<PhotometerSetting>& settings, const LitAlike& alike, std::size_t wavelength,
                         const Traced& traced, const raytrace::BeamTracer& tracer, const Cancellation* cancel,
                         std::vector<Piece>& pieces) const;
@@ -198,7 +212,6 @@ class Photometer {
                                                                      const Cancellation* cancel) const;
   PhotometerReading reading_of(const PhotometerSetting& setting, const std::vector<Piece>& pieces) const;
   std::size_t middle_wavelength() const;
-  std::uint32_t seed_of(std::size_t wavelength) const;
   bool resamples_weak() const;   ///< true: beams below the cut-off power are resampled; false: they are truncated
   double element_count() const;  ///< number of elements over which the light is distributed, >= 1
   double cutoff() const;
@@ -211,12 +224,10 @@ class Photometer {
   /// Weights of the wavelengths by flux, without absorption in the dye, which the tracer applies.
   std::vector<double> weights_;
   raytrace::ApertureKernel kernel_;
-  bool is_exact_ = true;
-  bool is_guide_ = false;
-  bool is_first_answer_ = false;
+  raytrace::EngineFacts facts_;
+  Tracing tracing_ = Tracing::rays;
+  Effort effort_ = Effort::full;
   bool has_mirror_image_ = true;
-  bool has_form_ = false;
-  bool keeps_phases_ = false;  ///< true: the exact engine describes roughness by random phases, with diffraction
 };
 
 /// Returns the relative spectral power of a CIE illuminant, per nm.

@@ -126,9 +126,9 @@ materials::Spectrum Photometer::Lamp::light(const std::vector<double>& knees_nm)
 std::map<std::vector<double>, std::vector<std::size_t>> Photometer::settings_by_knees(
     const std::vector<PhotometerSetting>& settings) const {
   std::map<std::vector<double>, std::vector<std::size_t>> groups;
-  const bool may_have_knees = lamp_ && lamp_->parts >= kLeastPartsOfValues && !is_guide_ && design_.elements() &&
-                              !design_.part().substrate && !design_.entrance && !design_.substance.refractive_index &&
-                              design_.needs_total_reflection();
+  const bool may_have_knees = lamp_ && lamp_->parts >= kLeastPartsOfValues && effort_ == Effort::full &&
+                              design_.elements() && !design_.part().substrate && !design_.entrance &&
+                              !design_.substance.refractive_index && design_.needs_total_reflection();
   std::vector<IndexAt> table;
   if (may_have_knees) table = index_table(design_, materials::resolved_spectrum(lamp_->power, &lamp_->response));
   for (std::size_t k = 0; k < settings.size(); ++k) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/memory_budget.h"
+#include "raytrace/engines/wavelengths.h"
 #include "raytrace/exact/element_memory.h"
 #include "raytrace/observers/small_angle.h"
 #include "studies/photometry/photometer.h"
@@ -107,7 +108,7 @@ double scattered_power(const raytrace::ReturnedBeam& beam) {
 /// Returns true if beams below the cut-off power are resampled instead of truncated. This requires the engine `auto`,
 /// plane facets, and that all light is traced.
 bool Photometer::resamples_weak() const {
-  return is_exact_ && request_.engine == Engine::automatic && traces_all_light() && !has_form_;
+  return tracing_ == Tracing::beams && request_.engine == Engine::automatic && !facts_.has_form;
 }
 
 double Photometer::element_count() const {
@@ -122,15 +123,16 @@ double Photometer::cutoff_of_element() const {
 double Photometer::cutoff() const {
   const double elements = element_count();
   const double given = request_.cutoff.value_or(0.0) / elements;
-  if (request_.cutoff && !is_first_answer_) return given;
+  const bool is_first_answer = effort_ == Effort::first_answer;
+  if (request_.cutoff && !is_first_answer) return given;
   const bool is_finite = !model_.part.period_mm && resamples_weak();
   const double usual = is_finite ? std::max(kCutoffOfFinite / elements, kCutoffOfAll) : kCutoff / elements;
-  if (is_first_answer_) return std::max(given, kCutoffOfFirstAnswer * usual);
-  return is_finite && is_guide_ ? kCutoffOfGuide * usual : usual;
+  if (is_first_answer) return std::max(given, kCutoffOfFirstAnswer * usual);
+  return is_finite && effort_ == Effort::guide ? kCutoffOfGuide * usual : usual;
 }
 
 std::uint32_t Photometer::replicates() const {
-  return is_guide_ ? kReplicatesOfGuide : kReplicates;
+  return effort_ == Effort::full ? kReplicates : kReplicatesOfGuide;
 }
 
 raytrace::FarFieldPolicy Photometer::far_field_policy(const SpectralOptics& light, const Cancellation* cancel) const {
@@ -139,7 +141,7 @@ raytrace::FarFieldPolicy Photometer::far_field_policy(const SpectralOptics& ligh
   policy.wavelength_nm = light.wavelength_nm;
   policy.window_rad = 1.5 * Angle::from_deg(request_.window_deg).rad();
   policy.finest_detail_rad = kernel_.reach_rad() / kWidthsWithoutDiffraction;
-  if (has_form_) policy.form = &light.optics.facet_form;
+  if (facts_.has_form) policy.form = &light.optics.facet_form;
   if (resamples_weak()) policy.replicates = replicates();
   policy.cancel = cancel;
   return policy;
@@ -147,10 +149,11 @@ raytrace::FarFieldPolicy Photometer::far_field_policy(const SpectralOptics& ligh
 
 raytrace::BeamPolicy Photometer::beam_policy(std::size_t wavelength, double coarseness) const {
   raytrace::BeamPolicy beams;
-  if (resamples_weak()) beams.weak = raytrace::WeakBeams{.seed = seed_of(wavelength), .replicates = replicates()};
+  if (resamples_weak())
+    beams.weak = raytrace::WeakBeams{.seed = raytrace::seed_at(request_.seed, wavelength), .replicates = replicates()};
   beams.cutoff = coarseness * cutoff();
   beams.by_cell = request_.diffraction;
-  beams.keeps_phases = keeps_phases_;
+  beams.keeps_phases = keeps_phases();
   if (request_.engine != Engine::exact) beams.max_beams = kMostBeams;
   return beams;
 }
@@ -159,7 +162,8 @@ raytrace::BeamTracer Photometer::make_tracer() const {
   const double cells = model_.part.period_mm ? 0.0 : static_cast<double>(model_.part.elements_full);
   const double bytes = cells * (kBytesPerCell + kLeastBeamsOfCell * kBytesPerBeamOfCell);
   if (request_.diffraction && bytes > static_cast<double>(beam_memory_bytes())) fail_on_memory();
-  if (is_first_answer_ && 2.0 * raytrace::element_cost(model_.part).bytes > static_cast<double>(element_memory_bytes()))
+  if (effort_ == Effort::first_answer &&
+      2.0 * raytrace::element_cost(model_.part).bytes > static_cast<double>(element_memory_bytes()))
     throw TraceBudgetError("preliminary values do not fit into memory next to the measurement itself");
   return raytrace::BeamTracer(model_.part, raytrace::BeamTracer::Elements::equal_at_once);
 }
@@ -213,7 +217,7 @@ std::vector<Photometer::Piece> Photometer::measure_exactly(const std::vector<Pho
   common.rre = traced->beams.ledgers.back()[raytrace::Account::retroreflected];
   common.std_error = traced->beams.std_error.back();
   common.truncated = traced->beams.ledgers.back()[raytrace::Account::truncated];
-  if (keeps_phases_) {
+  if (keeps_phases()) {
     // Adds the scattered power that falls into the acceptance cone, and subtracts the power that rough facets scatter
     // out of the beams in the cone.
     const Angle widest = Angle::from_deg(design_.detector.acceptance_half_angle_deg.back());
@@ -225,7 +229,7 @@ std::vector<Photometer::Piece> Photometer::measure_exactly(const std::vector<Pho
     look(settings[alike[k].index], alike[k], field, wavelength, pieces[k]);
   // After a cancellation, some contributions have no intensities. Empty contributions are therefore returned.
   if (is_cancelled(cancel)) return std::vector<Piece>(alike.size());
-  if (traces_all_light()) estimate_missing(settings, alike, wavelength, *traced, tracer, cancel, pieces);
+  if (tracing_ == Tracing::beams) estimate_missing(settings, alike, wavelength, *traced, tracer, cancel, pieces);
   for (Piece& piece : pieces) piece.complete = !is_cancelled(cancel);
   return pieces;
 }

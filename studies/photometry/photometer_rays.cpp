@@ -3,6 +3,7 @@
 
 #include "core/task_progress.h"
 #include "raytrace/balls/ball_tracer.h"
+#include "raytrace/engines/wavelengths.h"
 #include "raytrace/paths/monte_carlo.h"
 #include "studies/photometry/photometer.h"
 
@@ -21,7 +22,7 @@ Photometer::Piece Photometer::measure_by_rays(const PhotometerSetting& setting, 
     score.grid.emplace(raytrace::DirectionGrid::Layout::square, Angle::from_deg(request_.window_deg).rad(),
                        setting.map_columns, setting.map_columns);
   raytrace::Sampling sampling;
-  sampling.seed = seed_of(wavelength);
+  sampling.seed = raytrace::seed_at(request_.seed, wavelength);
   sampling.rays = std::max<std::uint64_t>(1, request_.rays.value_or(kUsualRaysOfDirection) / model_.spectral.size());
   const raytrace::Illumination illumination{source.incidence, source.azimuth, design_.light.polarisation};
   const std::vector<double>& cones = design_.detector.acceptance_half_angle_deg;
@@ -57,14 +58,13 @@ bool Photometer::measure_by_rays(const std::vector<PhotometerSetting>& settings,
     tracer.emplace(model_.part, raytrace::MonteCarlo::Engine::embree, model_.entrance ? &*model_.entrance : nullptr);
   const std::size_t wavelengths = model_.spectral.size();
   TaskProgress all(progress, settings.size() * wavelengths);
-  for (std::size_t k = 0; k < settings.size() * wavelengths; ++k) {
-    if (is_cancelled(cancel)) return false;
-    TaskProgress::Task task(all);
-    pieces[k / wavelengths][k % wavelengths] =
-        measure_by_rays(settings[k / wavelengths], k % wavelengths, tracer ? &*tracer : nullptr, task, cancel);
-    task.finish();
-  }
-  return true;
+  return raytrace::trace_wavelengths(
+      settings.size(), wavelengths, false, all, [&](std::size_t setting, std::size_t wavelength, Progress& task) {
+        if (is_cancelled(cancel)) return false;
+        pieces[setting][wavelength] =
+            measure_by_rays(settings[setting], wavelength, tracer ? &*tracer : nullptr, task, cancel);
+        return true;
+      });
 }
 
 }  // namespace retrace::studies

@@ -53,8 +53,8 @@ void check(const PhotometrySettings& settings) {
   // Settings that come from sweeps and other studies may contain an engine or a cut-off that is valid for RRE but not
   // for photometry.
   if (settings.engine == Engine::cell || settings.engine == Engine::stochastic)
-    throw InputError(Field{"engine"},
-                     fmt::format("must be auto, exact, montecarlo or embree, got {}", engine_name(settings.engine)));
+    throw InputError(Field{"engine"}, fmt::format("must be auto, exact, montecarlo or embree, got {}",
+                                                  raytrace::engine_name(settings.engine)));
   if (settings.cutoff == 0.0) throw InputError(Field{"cutoff"}, "must be > 0 for photometry, got 0");
   for (const TestPoint& point : settings.programme.points)
     if (!(point.observation_deg <= settings.window_deg))
@@ -211,7 +211,7 @@ class TablesOfChanges {
   std::optional<std::vector<PhotometricPoint>> table(const Design& design, std::size_t parts, double enough) {
     Photometer photometer(design, request_, parts);
     if (!exact_) photometer.leave_exact();
-    if (std::isfinite(enough)) photometer.only_guide();
+    if (std::isfinite(enough)) photometer.set_effort(Photometer::Effort::guide);
     Readings readings(plan_.settings.size());
     std::vector<PhotometricPoint> points;
     for (const LitAlike& alike : in_order(photometer.settings_lit_alike(plan_.settings))) {
@@ -275,20 +275,13 @@ PhotometricLight light_from_name(std::string_view name) {
   throw InputError(Field{"light"}, fmt::format("must be a, d65 or design, got {}", in_quotes(name)));
 }
 
-std::string_view text_of(NoDiffraction reason) {
-  switch (reason) {
-    case NoDiffraction::not_requested: return "it was not asked for";
-    case NoDiffraction::balls: return "balls are traced by rays";
-    case NoDiffraction::curved_entrance: return "curved fronts are traced by rays";
-    case NoDiffraction::unequal_backs: return "backs that are not all alike are traced by rays";
-    case NoDiffraction::unequal_cells: return "its cells differ too much to compute the diffraction of each";
-    case NoDiffraction::form_and_texture: return "facets with both a form and a texture are traced by rays";
-    case NoDiffraction::scattering_entrance: return "an entrance face that scatters is traced by rays";
-    case NoDiffraction::no_phases:
-      return "textures that say nothing of phases (abg, microfacet, height_map, roughness with a lay) are traced by "
-             "rays";
-    case NoDiffraction::too_many_beams: return "the exact engine would take too many beams";
-    case NoDiffraction::monte_carlo: return "the Monte-Carlo engine has none";
+std::string text_of(const NoDiffraction& reason) {
+  if (const auto* obstacle = std::get_if<raytrace::Obstacle>(&reason)) return raytrace::traced_by(*obstacle, "rays");
+  switch (std::get<Undiffracted>(reason)) {
+    case Undiffracted::not_requested: return "it was not asked for";
+    case Undiffracted::unequal_cells: return "its cells differ too much to compute the diffraction of each";
+    case Undiffracted::too_many_beams: return "the exact engine would take too many beams";
+    case Undiffracted::monte_carlo: return "the Monte-Carlo engine has none";
   }
   return "";
 }
@@ -518,7 +511,7 @@ std::optional<PhotometricFirstAnswer> PhotometryStudy::first_answer(double ray_s
   Plan plan = prepared_->plan;
   for (PhotometerSetting& setting : plan.settings) setting.split = false;
   Photometer photometer(prepared_->design, request, kFirstAnswerParts);
-  photometer.only_first_answer();
+  photometer.set_effort(Photometer::Effort::first_answer);
   const auto readings = readings_of(photometer, request, plan, nullptr, cancel);
   if (!readings) return std::nullopt;
   PhotometricFirstAnswer answer;

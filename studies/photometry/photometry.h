@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "core/progress.h"
@@ -16,8 +17,8 @@
 #include "materials/spectrum.h"
 #include "raytrace/light/aperture_kernel.h"
 #include "studies/design/design.h"
+#include "studies/design/engine_facts.h"
 #include "studies/photometry/limits.h"
-#include "studies/rre/rre.h"
 
 namespace retrace::studies {
 
@@ -140,21 +141,17 @@ struct PhotometricChange {
   bool passes() const { return every_point_holds(verdict); }
 };
 
-/// Reason why photometric readings do not include diffraction.
-enum class NoDiffraction {
+/// Reasons, other than obstacles of the exact engine, why photometric readings do not include diffraction.
+enum class Undiffracted {
   not_requested,
-  balls,
-  curved_entrance,
-  unequal_backs,        ///< the media behind the elements are not all the same
-  unequal_cells,        ///< the cells of the part differ too much from each other
-  form_and_texture,     ///< the facets have both a form error and a texture
-  scattering_entrance,  ///< the entrance face scatters light
-  no_phases,            ///< the texture model does not determine the phases of the reflected light
-  too_many_beams,       ///< the exact engine exceeds its budget of beams
-  monte_carlo           ///< the request selects Monte Carlo, which traces rays without phases
+  unequal_cells,   ///< the cells of the part differ too much from each other
+  too_many_beams,  ///< the exact engine exceeds its budget of beams
+  monte_carlo      ///< the request selects Monte Carlo, which traces rays without phases
 };
+/// Reason why photometric readings do not include diffraction.
+using NoDiffraction = std::variant<Undiffracted, raytrace::Obstacle>;
 /// Returns the reason as a clause for use in messages, such as "balls are traced by rays".
-std::string_view text_of(NoDiffraction reason);
+std::string text_of(const NoDiffraction& reason);
 
 /// Reason of an undetermined verdict.
 struct OpenReason {

@@ -72,7 +72,7 @@ class PhotometricQuantity final : public Quantity {
     request.engine = analysis.engine;
     // Photometry by rays has no cut-off. Therefore the cut-off is passed only to engines that trace beams. The study
     // reader refuses a cut-off that no quantity uses.
-    if (is_one_of(request.engine, kExactEngines)) request.cutoff = analysis.cutoff;
+    if (raytrace::may_be_exact(request.engine)) request.cutoff = analysis.cutoff;
     request.rays = analysis.rays;
     request.seed = analysis.seed;
     for (double& turn_deg : request.rotation_deg) turn_deg += analysis.rotation_deg;

@@ -29,7 +29,7 @@ RreRequest request_of(const AngleWindow& window, const AnalysisSettings& analysi
   request.azimuth_deg = window.azimuth_deg.value_or(std::vector{analysis.azimuth_deg});
   // Rotating the part by an angle is equivalent to rotating the light by the opposite angle.
   for (double& azimuth_deg : request.azimuth_deg) azimuth_deg -= analysis.rotation_deg;
-  request.engine = engine_name(analysis.engine);
+  request.engine = raytrace::engine_name(analysis.engine);
   request.target_error = analysis.target_error;
   request.samples = analysis.rays;
   request.cutoff = analysis.cutoff;
@@ -99,8 +99,8 @@ class ShareQuantity final : public Quantity {
     const bool is_rre = spec_.account == static_cast<std::size_t>(raytrace::Account::retroreflected);
     if (!is_rre || spec_.beyond_half_angle_deg || spec_.reduction == Reduction::least) return std::nullopt;
     RreRequest request = request_of(spec_.window, candidate.analysis());
-    if (!is_one_of(candidate.analysis().engine, kExactEngines)) return std::nullopt;
-    request.engine = engine_name(Engine::exact);
+    if (!raytrace::may_be_exact(candidate.analysis().engine)) return std::nullopt;
+    request.engine = raytrace::engine_name(Engine::exact);
     request.derivatives = true;
     // Resets those settings of the engine `auto` that the engine `exact` does not accept.
     request.samples.reset();

@@ -8,8 +8,6 @@
 
 #include "core/error.h"
 #include "core/number_format.h"
-#include "raytrace/exact/stochastic_beams.h"
-#include "raytrace/paths/monte_carlo.h"
 #include "studies/rre/request_tracing.h"
 #include "studies/rre/tracing.h"
 
@@ -29,11 +27,13 @@ std::vector<Field> exact_results(const RreSettings& request) {
 /// \throw InputError at the field that needs another engine
 void check(const RreSettings& request) {
   const std::string engine = reference({"engine"});
-  if (request.sampling == raytrace::Sampling::Kind::plain && !is_one_of(request.engine, kRayEnginesOfParts))
+  raytrace::EngineFacts facts;
+  facts.needs_plain_sampling = request.sampling == raytrace::Sampling::Kind::plain;
+  if (raytrace::why_not(request.engine, facts))
     throw InputError(Field{"sampling"},
                      fmt::format("plain needs {} montecarlo or embree, got {}", engine, engine_name(request.engine)));
   for (const Field result : exact_results(request))
-    if (!is_one_of(request.engine, kExactEngines) || !may_follow_beams(request))
+    if (!raytrace::may_be_exact(request.engine) || !may_follow_beams(request))
       throw InputError(result, fmt::format("needs {} exact", engine));
 }
 
@@ -71,57 +71,65 @@ double target_error_of(const RreSettings& request) {
 
 namespace {
 
-/// Refuses engines that support only plane entrance faces if the design has a curved one.
-void check_entrance(const Design& design, const RreSettings& request) {
-  if (!design.entrance) return;
-  if (request.engine == Engine::exact || request.engine == Engine::stochastic || request.engine == Engine::cell)
-    throw InputError(Field{"engine"},
-                     fmt::format("{} supports only plane entrance faces, but {} has a [front]: use {} embree",
-                                 engine_name(request.engine), design.source_name(), reference({"engine"})));
-  for (const Field result : exact_results(request)) check_taken(design, {.what = reference(result), .solids = true});
-}
-
-/// Refuses results and engines that require the same medium behind all elements.
-void check_backs(const Design& design, const OpticalModel& model, const RreSettings& request) {
-  if (model.optics.has_one_back()) return;
-  for (const Field result : exact_results(request)) check_taken(design, {.what = reference(result), .solids = true});
-  if (request.engine == Engine::exact || request.engine == Engine::stochastic || request.engine == Engine::cell)
-    throw InputError(
-        Field{"engine"},
-        fmt::format("{} takes backs that are all alike, {} has a [wet_back] behind some elements: use {} embree",
-                    engine_name(request.engine), design.source_name(), reference({"engine"})));
-}
-
-/// Refuses engines that trace beams if facets or the entrance face split or bend beams. Stochastic beams are allowed if
-/// some of the light stays specular.
-void check_beams(const Design& design, const raytrace::Optics& optics, Engine engine) {
-  const bool may_resample = raytrace::StochasticBeams::serves(optics);
-  if (engine == Engine::stochastic ? may_resample : optics.keeps_beams()) return;
-  const auto refused = [&](const InputLocation& where, std::string_view what) {
-    return InputError(where,
+/// Refuses an engine that cannot trace a design.
+void check_engine(const Design& design, const raytrace::EngineFacts& facts, Engine engine, const RreSettings& request) {
+  using raytrace::Obstacle;
+  const std::optional<Obstacle> obstacle = raytrace::why_not(engine, facts);
+  if (!obstacle) return;
+  const std::string_view name = raytrace::engine_name(request.engine);
+  const std::string source = design.source_name();
+  const std::string option = reference({"engine"});
+  const auto refused_beams = [&](std::string_view what) {
+    const bool may_resample = !raytrace::why_not(Engine::stochastic, facts);
+    return InputError(position_of(design, *obstacle),
                       fmt::format("{} a beam into infinitely many: use {} {}montecarlo, without {}, {} and {}", what,
-                                  reference({"engine"}), may_resample ? "stochastic or " : "", reference({"footprint"}),
+                                  option, may_resample ? "stochastic or " : "", reference({"footprint"}),
                                   reference({"far_field"}), reference({"derivatives"})));
   };
-  if (!optics.has_plane_facets())
-    throw refused(design.where_facets(), optics.is_smooth() ? "facets with a form bend" : "rough facets split");
-  throw refused(design.where_entrance_scatters(), "entrance faces that scatter split");
+  switch (*obstacle) {
+    case Obstacle::balls:
+      throw InputError(Field{"engine"}, fmt::format("must be auto or montecarlo for balls, got {}", name));
+    case Obstacle::plain_sampling: throw InputError(Field{"sampling"}, "must be stratified for balls, got plain");
+    case Obstacle::curved_entrance:
+      throw InputError(Field{"engine"},
+                       fmt::format("{} supports only plane entrance faces, but {} has a [front]: use {} embree", name,
+                                   source, option));
+    case Obstacle::unequal_backs:
+      throw InputError(
+          Field{"engine"},
+          fmt::format("{} takes backs that are all alike, {} has a [wet_back] behind some elements: use {} embree",
+                      name, source, option));
+    case Obstacle::unequal_cells:
+      throw InputError(Field{"engine"},
+                       fmt::format("cell takes endless arrays, and arrays of equal elements that reach more than two "
+                                   "elements from every border; {} is neither: use {} embree",
+                                   source, option));
+    case Obstacle::texture: throw refused_beams("rough facets split");
+    case Obstacle::form: throw refused_beams("facets with a form bend");
+    case Obstacle::scattering_entrance: throw refused_beams("entrance faces that scatter split");
+    default:
+      throw InputError(position_of(design, *obstacle),
+                       fmt::format("{} cannot trace {}: use {} embree", name, raytrace::subject_of(*obstacle), option));
+  }
 }
 
-/// Returns the model of a design. Balls have their own tracer. Therefore most options are refused for them.
-OpticalModel model_of(const Design& design, const materials::MaterialLibrary& library, const RreSettings& request) {
-  if (!design.balls()) {
-    check_entrance(design, request);
-    return make_model(design, library, Entrances::any);
+/// Refuses results that the exact engine does not compute for a kind of designs.
+void check_results(const Design& design, const raytrace::EngineFacts& facts, const RreSettings& request) {
+  for (const Field result : exact_results(request)) {
+    if (facts.has_balls) throw InputError(design.where("element.kind"), "balls have no " + reference(result));
+    if (facts.has_curved_entrance || facts.has_unequal_backs)
+      check_taken(design, {.what = reference(result), .solids = true});
   }
-  if (request.engine != Engine::automatic && request.engine != Engine::montecarlo)
-    throw InputError(Field{"engine"},
-                     fmt::format("must be auto or montecarlo for balls, got {}", engine_name(request.engine)));
-  if (request.sampling == raytrace::Sampling::Kind::plain)
-    throw InputError(Field{"sampling"}, "must be stratified for balls, got plain");
-  for (const Field result : exact_results(request))
-    throw InputError(design.where("element.kind"), "balls have no " + reference(result));
-  return make_light_model(design, library);
+}
+
+/// Returns the model of a design.
+/// \throw InputError if the engine does not support its shape
+OpticalModel model_of(const Design& design, const materials::MaterialLibrary& library, const RreSettings& request) {
+  raytrace::EngineFacts facts = engine_facts(design, nullptr);
+  facts.needs_plain_sampling = request.sampling == raytrace::Sampling::Kind::plain;
+  check_engine(design, facts, request.engine, request);
+  check_results(design, facts, request);
+  return design.balls() ? make_light_model(design, library) : make_model(design, library, Entrances::any);
 }
 
 }  // namespace
@@ -141,14 +149,9 @@ RreStudy::RreStudy(std::vector<Design> designs, RreSettings request) : prepared_
     check_planes(design, request);
     if (design.balls()) continue;
     if (request.derivatives) check_taken(design, {.what = reference({"derivatives"})});
-    check_backs(design, prepared_->models.back(), request);
-    if (must_be_exact(request) || request.engine == Engine::stochastic)
-      check_beams(design, prepared_->models.back().optics, request.engine);
-    if (request.engine == Engine::cell && !raytrace::MonteCarlo::cell_serves(prepared_->models.back().part))
-      throw InputError(Field{"engine"},
-                       fmt::format("cell takes endless arrays, and arrays of equal elements that reach more than two "
-                                   "elements from every border; {} is neither: use {} embree",
-                                   design.source_name(), reference({"engine"})));
+    const raytrace::EngineFacts facts = engine_facts(design, prepared_->models.back(), request);
+    check_results(design, facts, request);
+    check_engine(design, facts, must_be_exact(request) ? Engine::exact : request.engine, request);
   }
   prepared_->designs = std::move(designs);
   prepared_->request = std::move(request);
@@ -192,7 +195,7 @@ RreResult RreStudy::begun() const {
   const auto& [designs, request, models] = *prepared_;
   RreResult result;
   result.designs = designs;
-  result.engine_requested = engine_name(request.engine);
+  result.engine_requested = raytrace::engine_name(request.engine);
   result.seed = request.seed;
   for (const OpticalModel& model : models) result.light.push_back(model.spectral);
   for (const OpticalModel& model : models)

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,6 +15,7 @@
 #include "raytrace/light/ledger.h"
 #include "raytrace/paths/monte_carlo.h"
 #include "studies/design/design.h"
+#include "studies/design/engine_facts.h"
 #include "studies/design/optical_model.h"
 #include "studies/rre/adaptive_curve.h"
 #include "studies/rre/derivatives.h"
@@ -24,22 +24,6 @@
 
 namespace retrace::studies {
 
-/// Tracing method of a request. `automatic` selects for each direction and wavelength the method that is expected to
-/// reach the target error first: `exact`, `stochastic` or `montecarlo`. `montecarlo` is `cell` if that engine supports
-/// the part, otherwise `embree`.
-enum class Engine { automatic, exact, stochastic, montecarlo, cell, embree };
-
-/// Returns the engine with this name.
-/// \throw InputError that lists all engines if the name is unknown
-Engine engine_from_name(std::string_view name);
-std::string_view engine_name(Engine engine);
-
-/// Engines that trace rays and are available for photometry and pictures.
-inline constexpr Engine kRayEnginesOfParts[] = {Engine::automatic, Engine::montecarlo, Engine::embree};
-/// Engines that may trace all light as beams instead of random rays.
-inline constexpr Engine kExactEngines[] = {Engine::exact, Engine::automatic};
-/// Returns true if `engine` is one of `engines`.
-bool is_one_of(Engine engine, std::span<const Engine> engines);
 /// Default value of RreSettings::target_error, as a fraction of the incident power.
 inline constexpr double kUsualTargetError = 1e-4;
 /// Maximum error of linear interpolation between automatically chosen incidences, as a fraction of the incident power.

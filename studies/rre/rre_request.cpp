@@ -10,7 +10,7 @@ RreSettings resolve(const RreRequest& request) {
   settings.incidence_deg = request.incidence_deg;
   for (const auto& [from, to] : request.incidence_spans_deg) settings.incidence_spans.push_back({from, to});
   settings.azimuth_deg = request.azimuth_deg;
-  settings.engine = engine_from_name(request.engine);
+  settings.engine = raytrace::engine_from_name(request.engine);
   settings.rays = request.samples;
   settings.target_error = request.target_error;
   if (request.sampling == "plain") settings.sampling = raytrace::Sampling::Kind::plain;

@@ -25,12 +25,11 @@ struct Direction {
 
 /// Returns true if the request allows beam tracing. A number of rays or plain sampling excludes it.
 bool may_follow_beams(const RreSettings& request);
-/// Returns true if beams can be traced for the request and the design. They cannot be traced if facets bend beams, if
-/// all light is scattered, if the media behind the elements differ, if the entrance face is curved, and for balls.
-bool may_follow_beams(const Design& design, const OpticalModel& model, const RreSettings& request);
 /// Returns true if the request must be traced with the exact engine, however long this takes. This is the case if the
 /// engine is requested by name, or if results are requested that only this engine computes.
 bool must_be_exact(const RreSettings& request);
+/// Returns the facts about a design and a request on which the choice of the engine depends.
+raytrace::EngineFacts engine_facts(const Design& design, const OpticalModel& model, const RreSettings& request);
 
 class DesignTracing;
 

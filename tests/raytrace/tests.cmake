@@ -8,6 +8,7 @@ retrace_test(raytrace_tests
     ${CMAKE_CURRENT_LIST_DIR}/cant_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/closed_forms_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/edges_test.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/engines_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/equal_places_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/form_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/layers_test.cpp

@@ -110,7 +110,7 @@ TEST(EntranceState, OpticsAreThoseOfTheKeys) {
   EXPECT_NEAR(face.scratches.spread, sine(6.0), 1e-15);
   EXPECT_NEAR(*face.scratches.azimuth_rad, std::numbers::pi / 6.0, 1e-15);
   // An empty table [entrance], or fractions of 0, describe a clean face.
-  EXPECT_TRUE(make_light_model(read("dust_coverage = 0\ndust_albedo = 0.5\n"), library()).optics.keeps_beams());
+  EXPECT_FALSE(make_light_model(read("dust_coverage = 0\ndust_albedo = 0.5\n"), library()).optics.entrance.scatters());
   EXPECT_TRUE(make_light_model(read(""), library()).optics.has_bare_entrance());
 }
 
@@ -145,7 +145,7 @@ TEST(EntranceState, EnginesThatServe) {
   request.rays = 1U << 12;
   const PhotometryResult photometry = PhotometryStudy(design(kDust), request).run();
   EXPECT_TRUE(photometry.points.at(0).lacks_diffraction);
-  EXPECT_EQ(photometry.reason.no_diffraction, NoDiffraction::scattering_entrance);
+  EXPECT_EQ(photometry.reason.no_diffraction, NoDiffraction(raytrace::Obstacle::scattering_entrance));
   record_message(photometry.reason.text);
 }
 

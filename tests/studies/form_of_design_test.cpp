@@ -319,7 +319,7 @@ TEST(FormOfDesign, PhotometryTakesRaysBesideATexture) {
   design.surface.texture = HarveyShackTexture{.roughness_sq_nm = 5.0, .correlation_length_um = 20.0};
   const PhotometryResult rough = run(design, request);
   EXPECT_EQ(rough.engine, "embree");
-  EXPECT_EQ(rough.reason.no_diffraction, NoDiffraction::form_and_texture);
+  EXPECT_EQ(rough.reason.no_diffraction, NoDiffraction(raytrace::Obstacle::form_and_texture));
   record_message(rough.reason.text);
   request.engine = Engine::exact;
   EXPECT_EQ(refusal_of([&] { run(design, request); }), "form");

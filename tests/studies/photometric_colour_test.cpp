@@ -215,7 +215,7 @@ TEST(PhotometricColour, NearABoundaryOrWithoutDiffractionIsUndetermined) {
   const PhotometryResult result = run(design_of(honeycomb(0.0, 0.5)), request);
   EXPECT_EQ(result.colour->verdict(), Verdict::undetermined);
   EXPECT_EQ(result.colour->reason.cause, OpenReason::Cause::diffraction);
-  EXPECT_EQ(result.colour->reason.no_diffraction, NoDiffraction::not_requested);
+  EXPECT_EQ(result.colour->reason.no_diffraction, NoDiffraction(Undiffracted::not_requested));
   record_message(result.colour->reason.text);
   EXPECT_NE(photometry_table(result).find(result.colour->reason.text), std::string::npos);
 }

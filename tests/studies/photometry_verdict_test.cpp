@@ -158,7 +158,7 @@ TEST(PhotometryVerdict, TexturesWithoutPhasesThatTheBoundDoesNotLiftAreUndetermi
   const PhotometryResult result = run(scattering_by_abg(design_of(honeycomb(0.75, 0.5))), diffracted_request(1e3));
   EXPECT_EQ(result.verdict, Verdict::undetermined);
   EXPECT_EQ(result.reason.cause, Cause::diffraction);
-  EXPECT_EQ(result.reason.no_diffraction, NoDiffraction::no_phases);
+  EXPECT_EQ(result.reason.no_diffraction, NoDiffraction(raytrace::Obstacle::texture_without_phases));
   record_message(result.reason.text);
   EXPECT_FALSE(result.change);
   EXPECT_NE(photometry_table(result).find(result.reason.text), std::string::npos);
@@ -178,12 +178,12 @@ TEST(PhotometryVerdict, ReasonsForMissingDiffraction) {
     return result.reason.no_diffraction;
   };
   request.engine = Engine::montecarlo;
-  EXPECT_EQ(reason(smooth), NoDiffraction::monte_carlo);
-  EXPECT_EQ(reason(rough(smooth, 0.1)), NoDiffraction::monte_carlo);
-  EXPECT_EQ(reason(scattering_by_abg(smooth)), NoDiffraction::no_phases);
+  EXPECT_EQ(reason(smooth), NoDiffraction(Undiffracted::monte_carlo));
+  EXPECT_EQ(reason(rough(smooth, 0.1)), NoDiffraction(Undiffracted::monte_carlo));
+  EXPECT_EQ(reason(scattering_by_abg(smooth)), NoDiffraction(raytrace::Obstacle::texture_without_phases));
   request.engine = Engine::automatic;
   request.diffraction = false;
-  EXPECT_EQ(reason(smooth), NoDiffraction::not_requested);
+  EXPECT_EQ(reason(smooth), NoDiffraction(Undiffracted::not_requested));
 }
 
 // With discs of 10 arcmin, diffraction is negligible for cells of at least 64 wavelengths divided by 10 arcmin, which

@@ -197,7 +197,7 @@ std::string change_text(const PhotometricChange& change, const TestProgramme& pr
 std::string photometry_json(const PhotometryResult& result) {
   const PhotometrySettings& asked = result.request;
   Json json = {{"engine", result.engine},
-               {"engine_requested", engine_name(asked.engine)},
+               {"engine_requested", raytrace::engine_name(asked.engine)},
                {"diffraction", result.has_diffraction},
                {"design", to_json(result.design)},
                {"programme", programme_json(result)},

@@ -74,7 +74,7 @@ PhotometrySettings resolve(const PhotometryRequest& request, bool design_is_colo
   settings.window_deg = request.window_deg;
   settings.light = light_from_name(request.light);
   settings.diffraction = request.diffraction;
-  settings.engine = engine_from_name(request.engine);
+  settings.engine = raytrace::engine_from_name(request.engine);
   settings.cutoff = request.cutoff;
   settings.rays = request.samples;
   settings.seed = request.seed;

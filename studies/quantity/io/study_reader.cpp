@@ -69,7 +69,7 @@ void check_settings_have_effect(const Document& document, const Study& study) {
   if (is_traced(study, "rre")) return;
   refuse_setting(document, study, "analysis.target_error",
                  "needs a quantity of RRE: nothing else is traced to a target");
-  const bool is_exact = is_one_of(document.choice<Engine>("analysis.engine"), kExactEngines) ||
+  const bool is_exact = raytrace::may_be_exact(document.choice<Engine>("analysis.engine")) ||
                         parameter_of(study, "analysis.engine") != nullptr;
   if (!is_exact && is_traced(study, "photometry"))
     refuse_setting(document, study, "analysis.cutoff",

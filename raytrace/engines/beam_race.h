@@ -12,7 +12,7 @@
 #include "raytrace/exact/beam_tracer.h"
 #include "raytrace/exact/stochastic_beams.h"
 
-namespace retrace::studies {
+namespace retrace::raytrace {
 
 /// Returns the mean number of facets of a part's cells.
 double facets_of_cell(const geometry::Part& part);
@@ -30,15 +30,14 @@ class BeamRace {
   struct Options {
     bool may_resample = true;
     /// Receives the beams that are traced exactly while weak beams are resampled.
-    raytrace::BeamObserver observer = {};
+    BeamObserver observer = {};
   };
 
   /// \param scattered see StochasticBeams; if it is given, beams are always resampled
   /// \pre `tracer`, `scattered` and `cancel` exist as long as this object
-  BeamRace(const raytrace::BeamTracer& tracer, const raytrace::ScatteredLight* scattered,
-           const raytrace::Optics& optics, const raytrace::Illumination& illumination,
-           const std::vector<double>& cones_deg, const raytrace::BeamPolicy& policy, const raytrace::Sampling& sampling,
-           Options options, const Cancellation* cancel);
+  BeamRace(const BeamTracer& tracer, const ScatteredLight* scattered, const Optics& optics,
+           const Illumination& illumination, const std::vector<double>& cones_deg, const BeamPolicy& policy,
+           const Sampling& sampling, Options options, const Cancellation* cancel);
 
   /// Returns the total time that the faster method is expected to take. Infinite if both methods are abandoned.
   double expected_ns() const;
@@ -53,8 +52,8 @@ class BeamRace {
   /// Returns true if the exact method has reached the goal, and false if the stochastic method has reached it.
   /// \pre advance() has returned true
   bool is_exact() const { return is_exact_; }
-  raytrace::BeamResult exact() const { return beams_->result(); }
-  const raytrace::StochasticBeams& stochastic() const { return *stochastic_; }
+  BeamResult exact() const { return beams_->result(); }
+  const StochasticBeams& stochastic() const { return *stochastic_; }
 
  private:
   double beams_ns() const;
@@ -63,13 +62,13 @@ class BeamRace {
   bool advance_stochastic();
 
   const Cancellation* cancel_;
-  std::optional<raytrace::BeamTrace> beams_;  ///< none if facets scatter
+  std::optional<BeamTrace> beams_;  ///< none if facets scatter
   /// Creates the stochastic beams when they are needed for the first time.
-  std::function<std::unique_ptr<raytrace::StochasticBeams>()> make_stochastic_;
-  std::unique_ptr<raytrace::StochasticBeams> stochastic_;
+  std::function<std::unique_ptr<StochasticBeams>()> make_stochastic_;
+  std::unique_ptr<StochasticBeams> stochastic_;
   double first_looks_ = 0.0;
   bool may_resample_ = true;
   bool is_exact_ = false;
 };
 
-}  // namespace retrace::studies
+}  // namespace retrace::raytrace

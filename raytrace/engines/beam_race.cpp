@@ -1,4 +1,4 @@
-#include "studies/rre/beam_race.h"
+#include "raytrace/engines/beam_race.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "raytrace/exact/element_memory.h"
 
-namespace retrace::studies {
+namespace retrace::raytrace {
 namespace {
 
 // Time in ns per unit of work when beams are traced exactly, as measured by benchmarks/engine_choice.cpp.
@@ -45,20 +45,19 @@ double facets_of_cell(const geometry::Part& part) {
 }
 
 double beam_tracer_ns(const geometry::Part& part) {
-  const raytrace::ElementCost cost = raytrace::element_cost(part);
+  const ElementCost cost = element_cost(part);
   return cost.fits_memory() ? kNsPerLook * cost.work : kNever;
 }
 
-BeamRace::BeamRace(const raytrace::BeamTracer& tracer, const raytrace::ScatteredLight* scattered,
-                   const raytrace::Optics& optics, const raytrace::Illumination& illumination,
-                   const std::vector<double>& cones_deg, const raytrace::BeamPolicy& policy,
-                   const raytrace::Sampling& sampling, Options options, const Cancellation* cancel)
+BeamRace::BeamRace(const BeamTracer& tracer, const ScatteredLight* scattered, const Optics& optics,
+                   const Illumination& illumination, const std::vector<double>& cones_deg, const BeamPolicy& policy,
+                   const Sampling& sampling, Options options, const Cancellation* cancel)
     : cancel_(cancel), first_looks_(looks_of_stochastic(tracer.part())), may_resample_(options.may_resample) {
   if (optics.is_smooth()) beams_.emplace(tracer, optics, illumination, cones_deg, policy);
   make_stochastic_ = [&tracer, scattered, optics, illumination, cones_deg, sampling, cancel,
                       observer = std::move(options.observer)] {
-    return std::make_unique<raytrace::StochasticBeams>(tracer, scattered, optics, illumination, cones_deg, sampling,
-                                                       cancel, observer);
+    return std::make_unique<StochasticBeams>(tracer, scattered, optics, illumination, cones_deg, sampling, cancel,
+                                             observer);
   };
 }
 
@@ -107,4 +106,4 @@ bool BeamRace::advance_stochastic() try {
   return false;
 }
 
-}  // namespace retrace::studies
+}  // namespace retrace::raytrace

@@ -1,0 +1,77 @@
+#pragma once
+
+// The engines that trace light, and the rules that determine which of them can trace a model.
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "raytrace/light/optics.h"
+
+namespace retrace::raytrace {
+
+/// Tracing method of a request. `automatic` selects for each direction and wavelength the method that is expected to
+/// reach the target error first: `exact`, `stochastic` or `montecarlo`. `montecarlo` is `cell` if that engine supports
+/// the part, otherwise `embree`.
+enum class Engine { automatic, exact, stochastic, montecarlo, cell, embree };
+
+/// Returns the engine with this name.
+/// \throw InputError that lists all engines if the name is unknown
+Engine engine_from_name(std::string_view name);
+std::string_view engine_name(Engine engine);
+
+/// Returns true if a request for this engine may trace all light as beams instead of random rays.
+constexpr bool may_be_exact(Engine requested) {
+  return requested == Engine::exact || requested == Engine::automatic;
+}
+
+/// Properties of a model and of a question that determine which engines can be used. Each engine can trace a model that
+/// has none of the properties.
+struct EngineFacts {
+  bool has_balls = false;  ///< true: the model consists of balls; false: it is a part with an entrance face
+  bool has_curved_entrance = false;
+  bool has_unequal_backs = false;             ///< the medium behind the elements is not the same for all of them
+  bool has_unequal_cells = false;             ///< MonteCarlo::cell_serves() is false for the part
+  bool has_form = false;                      ///< retro facets deviate from planes
+  bool has_texture = false;                   ///< retro facets scatter
+  bool texture_keeps_specular_light = false;  ///< enough light remains in the specular direction to trace it as a beam
+  bool texture_has_phases = false;            ///< see surface_models::has_phases()
+  bool entrance_scatters = false;
+  bool needs_phases = false;          ///< the question needs the phases of the light, to compute diffraction
+  bool needs_plain_sampling = false;  ///< the question needs Sampling::Kind::plain
+};
+
+/// Returns those facts that follow from the optical properties.
+EngineFacts facts_of(const Optics& optics);
+
+/// Property of a model or of a question because of which an engine cannot be used.
+enum class Obstacle {
+  balls,
+  curved_entrance,
+  unequal_backs,
+  plain_sampling,
+  unequal_cells,
+  form_and_texture,  ///< facets have both a form and a texture, and phases are needed
+  texture,
+  form,
+  scattering_entrance,
+  texture_without_phases  ///< the texture does not determine the phases of the light, and phases are needed
+};
+
+/// Returns why an engine cannot trace a model, or nothing if it can. If there are several reasons, the first in the
+/// order of Obstacle is returned. The engines `automatic` and `montecarlo` select the tracer of balls themselves.
+std::optional<Obstacle> why_not(Engine engine, const EngineFacts& facts);
+
+/// Returns an obstacle as the subject of a sentence, such as "rough facets".
+std::string_view subject_of(Obstacle obstacle);
+/// Returns a clause for messages, such as "rough facets are traced by rays".
+/// \param tracer noun phrase, such as "rays"
+std::string traced_by(Obstacle obstacle, std::string_view tracer);
+
+/// Returns true if a model can be traced with the engine `exact` and the requested engine allows this.
+bool is_exact(Engine requested, const EngineFacts& facts);
+/// Returns the engine that traces rays if a request does not use beams: `cell`, or `embree` if it is requested or if
+/// the engine `cell` cannot trace the model.
+Engine ray_engine(Engine requested, const EngineFacts& facts);
+
+}  // namespace retrace::raytrace

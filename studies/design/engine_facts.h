@@ -1,0 +1,20 @@
+#pragma once
+
+// Determines for a design which engines can trace it.
+
+#include "core/error.h"
+#include "raytrace/engines/engine.h"
+#include "studies/design/design.h"
+
+namespace retrace::studies {
+
+using raytrace::Engine;
+
+/// Returns the facts about a design on which the choice of the engine depends, except EngineFacts::has_unequal_cells.
+/// \param optics optical properties of the design; null: facts that depend on them are not set
+raytrace::EngineFacts engine_facts(const Design& design, const raytrace::Optics* optics);
+
+/// Returns the position of the key of a design that causes an obstacle.
+InputLocation position_of(const Design& design, raytrace::Obstacle obstacle);
+
+}  // namespace retrace::studies
