@@ -231,14 +231,15 @@ std::optional<Extrapolation> read_extrapolation(const Document& file) {
 
 /// Describes a table that may contain any keys, because other functions read its keys.
 constexpr schema::Table left_to_others(std::string_view name) {
-  return {.name = name, .meaning = "How it is made.", .presence = schema::Presence::optional, .is_open = true};
+  return {.name = name, .meaning = "Manufacture of the part.", .presence = schema::Presence::optional, .is_open = true};
 }
-constexpr schema::Row kTitle[] = {{"title", schema::Text{}, schema::kNone, "One line."}};
+constexpr schema::Row kTitle[] = {{"title", schema::Text{}, schema::kNone, "Title, one line."}};
 constexpr schema::Row kRegionRows[] = {kStrategyRow, kRegionRadiusRow, kRegionSizeRow};
-constexpr schema::Table kMade[] = {left_to_others("tool"),
-                                   {.name = "path", .meaning = "How it moves.", .rows = kRegionRows, .is_open = true},
-                                   left_to_others("machine"),
-                                   left_to_others("inspect")};
+constexpr schema::Table kMade[] = {
+    left_to_others("tool"),
+    {.name = "path", .meaning = "Path of the tool.", .rows = kRegionRows, .is_open = true},
+    left_to_others("machine"),
+    left_to_others("inspect")};
 
 /// Returns the format of files of turned parts, with only those keys that the functions of this source file read.
 const schema::Format& front_format() {
@@ -247,8 +248,10 @@ const schema::Format& front_format() {
     all.insert(all.end(), std::begin(kMade), std::end(kMade));
     return all;
   }();
-  static const schema::Format format = {
-      "turned_part", kTurnedPartId, "Freeform surface, turned", {"", "Its surface and region.", kTitle, tables}};
+  static const schema::Format format = {"turned_part",
+                                        kTurnedPartId,
+                                        "Freeform surface, turned",
+                                        {"", "Surface and region of a turned part.", kTitle, tables}};
   return format;
 }
 

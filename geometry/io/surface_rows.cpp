@@ -36,20 +36,25 @@ constexpr Condition kOfFormula[] = {is("kind", only(kSags, "formula"))};
 constexpr Condition kWithRadius[] = {beside("radius_mm")};
 
 constexpr Row kSagRows[] = {
-    {"kind", Word{kSags}, kRequired, "What gives the height."},
-    {"radius_mm", Number{kCoefficient}, kRequired, "Not 0; negative: the middle is the highest place.", Access(),
+    {"kind", Word{kSags}, kRequired, "Kind of function that gives the height."},
+    {"radius_mm", Number{kCoefficient}, kRequired,
+     "Radius of curvature at the vertex, not 0. If it is negative, the centre is the highest point.", Access(),
      kOfConics},
-    {"radius_mm", Number{kCoefficient}, kNone, "Likewise, of a conic below the polynomial.", kOfPolynomials},
-    {"conic", Number{kCoefficient}, 0.0, "0 is a sphere, -1 a paraboloid.", kWithRadius},
+    {"radius_mm", Number{kCoefficient}, kNone,
+     "Radius of curvature, not 0, of a conic to which the polynomial is added. If it is negative, the centre is the "
+     "highest point of the conic.",
+     kOfPolynomials},
+    {"conic", Number{kCoefficient}, 0.0, "Conic constant: 0 is a sphere, -1 a paraboloid.", kWithRadius},
     {"even", NumberRows{2, kCoefficient, 1, 200, "terms"}, kRequired,
-     "Rows `[power, coefficient]` of r^4, r^6, ... r^20, in mm.", kOfAsphere},
-    {"terms", kTerms, kRequired, "Rows `[i, j, c]` of c (x / s)^i (y / s)^j, of a degree of at most 16.", Access(),
-     kOfPolynomial},
-    {"terms", kTerms, kRequired, "Rows `[n, m, c]` of orthonormal terms, of sin for m < 0.", kOfZernike},
-    {"scale_mm", kPositiveMm, 1.0, "The s of the terms.", kOfPolynomial},
-    {"aperture_radius_mm", kPositiveMm, kRequired, "Of the terms' disc.", kOfZernike},
-    {"formula", Text{"a formula"}, kRequired, "Of `x`, `y`, `r`, `theta` and, for lenslets, their place `cx`, `cy`.",
-     kOfFormula}};
+     "Terms of the even polynomial, as rows `[power, coefficient]` of r^4, r^6, ... r^20, in mm.", kOfAsphere},
+    {"terms", kTerms, kRequired, "Terms c (x / s)^i (y / s)^j of a degree of at most 16, as rows `[i, j, c]`.",
+     Access(), kOfPolynomial},
+    {"terms", kTerms, kRequired, "Orthonormal Zernike terms, as rows `[n, m, c]`; m < 0 are the sine terms.",
+     kOfZernike},
+    {"scale_mm", kPositiveMm, 1.0, "Length s in the terms.", kOfPolynomial},
+    {"aperture_radius_mm", kPositiveMm, kRequired, "Radius of the disc on which the terms are defined.", kOfZernike},
+    {"formula", Text{"a formula"}, kRequired,
+     "Height as a formula of `x`, `y`, `r`, `theta` and, for lenslets, of their position `cx`, `cy`.", kOfFormula}};
 
 constexpr Condition kCircleOnly[] = {is("kind", only(kCurves, "circle"))};
 constexpr Condition kRectangleOnly[] = {is("kind", only(kCurves, "rectangle"))};
@@ -70,26 +75,32 @@ constexpr Row kBoundaryRows[] = {
     {"samples", kSamples, 180.0, "Number of samples of the curve.", kSampledOnly}};
 
 constexpr Row kExtrapolationRows[] = {{"order", Whole{{.low = 1.0, .high = jets::kMostOrder}}, 2.0,
-                                       "n: C^n along radial lines; smooth all round with a `degree` of n + 1."}};
+                                       "Order n: the surface is C^n along radial lines. It is smooth in all directions "
+                                       "if the `degree` of the boundary is n + 1."}};
 
 constexpr Condition kGridOnly[] = {without("positions_mm")};
 constexpr Condition kCirclesOnly[] = {is("boundary", only(kBoundaries, "circle"))};
 constexpr Condition kIntersectionsOnly[] = {is("boundary", only(kBoundaries, "intersection"))};
 constexpr Row kPlacedRows[] = {
-    {"positions_mm", NumberRows{2, kPlace, 1, kMostLenslets, "places"}, kNone, "Rows `[x, y]`."},
-    {"hexagonal_pitch_mm", kPositiveMm, kNone, "Of a hexagonal grid."},
-    {"square_pitch_mm", kPositiveMm, kNone, "Of a square grid."},
-    {"within_mm", kPositiveMm, kRequired, "Radius within which the grid has places.", kGridOnly},
-    {"height_mm", Number{kPlace}, 0.0, "Of the origin of a lenslet above the base, along the normal."},
-    {"tilted", Flag{}, true, "Whether lenslets are tilted to the base's normal."},
-    {"boundary", Word{kBoundaries}, kRequired, "A circle, or where lenslet and base meet."},
-    {"boundary_radius_mm", kPositiveMm, kRequired, "Of the circle.", kCirclesOnly},
-    {"search_mm", kPositiveMm, kRequired, "How far the intersection is searched.", kIntersectionsOnly},
-    {"inner_share", kShare, kRequired, "Of the boundary's radius, where the blend leaves the lenslet."},
-    {"outer_share", kShare, kRequired, "The same where it reaches the base; above `inner_share`."},
-    {"blend_order", Whole{{.low = 1.0, .high = kMostBlendOrder}}, 2.0, "d: C^d at both ends."},
-    {"degree", kSplineDegree, 3.0, "Of the boundary's spline."},
-    {"samples", kSamples, 60.0, "Of the intersection.", kIntersectionsOnly}};
+    {"positions_mm", NumberRows{2, kPlace, 1, kMostLenslets, "places"}, kNone,
+     "Positions of the lenslets, as rows `[x, y]`."},
+    {"hexagonal_pitch_mm", kPositiveMm, kNone, "Pitch of a hexagonal grid of lenslets."},
+    {"square_pitch_mm", kPositiveMm, kNone, "Pitch of a square grid of lenslets."},
+    {"within_mm", kPositiveMm, kRequired, "Radius within which the grid has lenslets.", kGridOnly},
+    {"height_mm", Number{kPlace}, 0.0, "Height of a lenslet's origin above the base, along the normal."},
+    {"tilted", Flag{}, true, "Whether lenslets are tilted so that their axis is the normal of the base."},
+    {"boundary", Word{kBoundaries}, kRequired,
+     "Boundary of a lenslet: a circle, or the intersection of lenslet and base."},
+    {"boundary_radius_mm", kPositiveMm, kRequired, "Radius of the circle.", kCirclesOnly},
+    {"search_mm", kPositiveMm, kRequired, "Radius within which the intersection is searched.", kIntersectionsOnly},
+    {"inner_share", kShare, kRequired,
+     "Radius at which the blend leaves the lenslet, as a fraction of the boundary's radius."},
+    {"outer_share", kShare, kRequired,
+     "Radius at which the blend reaches the base, as a fraction of the boundary's radius. It is above `inner_share`."},
+    {"blend_order", Whole{{.low = 1.0, .high = kMostBlendOrder}}, 2.0,
+     "Order d of the blend, which is C^d at both ends."},
+    {"degree", kSplineDegree, 3.0, "Degree of the boundary's spline."},
+    {"samples", kSamples, 60.0, "Number of samples of the intersection.", kIntersectionsOnly}};
 constexpr std::string_view kPlaceKeys[] = {"positions_mm", "hexagonal_pitch_mm", "square_pitch_mm"};
 constexpr Rule kPlaceRules[] = {
     OneOf{kPlaceKeys, "must have one of positions_mm, hexagonal_pitch_mm and square_pitch_mm"}};
@@ -101,18 +112,18 @@ constexpr auto kLensletRows =
 (std::make_index_sequence<std::size(kSagRows)>{}, std::make_index_sequence<std::size(kPlacedRows)>{});
 
 constexpr Condition kBeyondBoundary[] = {beside("boundary", "needs a [boundary] beyond which to extrapolate")};
-constexpr Table kTables[] = {{.name = "base", .meaning = "The sag.", .rows = kSagRows},
+constexpr Table kTables[] = {{.name = "base", .meaning = "Sag of the surface.", .rows = kSagRows},
                              {.name = "boundary",
-                              .meaning = "Within which the surface is the sag.",
+                              .meaning = "Curve within which the surface is the sag.",
                               .rows = kBoundaryRows,
                               .presence = Presence::optional},
                              {.name = "extrapolation",
-                              .meaning = "How the surface goes on beyond it.",
+                              .meaning = "Continuation of the surface outside of the boundary.",
                               .rows = kExtrapolationRows,
                               .presence = Presence::optional,
                               .when = kBeyondBoundary},
                              {.name = "lenslets",
-                              .meaning = "Lenslets on the base, each a sag in its own frame.",
+                              .meaning = "Lenslets on the base, each with a sag in its own frame.",
                               .rows = kLensletRows,
                               .rules = kPlaceRules,
                               .presence = Presence::optional}};

@@ -30,12 +30,13 @@ inline constexpr schema::Words kStrategies = {"spiral", "raster"};
 inline constexpr schema::Condition kSpiralOnly[] = {schema::is("strategy", schema::only(kStrategies, "spiral"))};
 inline constexpr schema::Condition kRasterOnly[] = {schema::is("strategy", schema::only(kStrategies, "raster"))};
 inline constexpr schema::Row kStrategyRow = {"strategy", schema::Word{kStrategies}, "spiral",
-                                             "How the tool goes over the part."};
+                                             "Pattern of the tool path over the part."};
 inline constexpr NumberRange kRegionSize = {.low = 0.0, .low_included = false, .high = 1e4};
 inline constexpr schema::Row kRegionRadiusRow = {"radius_mm", schema::Number{kRegionSize}, schema::kRequired,
-                                                 "From the part's rim to the centre.", kSpiralOnly};
+                                                 "Radius of the part, from the rim to the centre.", kSpiralOnly};
 inline constexpr schema::Row kRegionSizeRow = {"size_mm", schema::Numbers{2, kRegionSize}, schema::kRequired,
-                                               "`[across the lines (X), along them (Y)]`.", kRasterOnly};
+                                               "Size of the part: `[across the lines (X), along the lines (Y)]`.",
+                                               kRasterOnly};
 
 /// Data of a turned part that ray tracing needs: its surface and the region of the surface.
 struct TurnedFront {

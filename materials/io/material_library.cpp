@@ -22,33 +22,36 @@ constexpr NumberRange kAtLeastZero{.low = 0.0};
 constexpr NumberRange kAboveZero{.low = 0.0, .low_included = false};
 
 constexpr Row kMaterialRows[] = {
-    {"name", Text{}, kRequired, "What designs call it."},
-    {"description", Text{}, kRequired, "For people."},
-    {"formula", Word{kFormulas}, kRequired, "Of the refractive index over the vacuum wavelength in um."},
-    {"coefficients", Terms{1}, kRequired, "The index.", kIsConstant},
-    {"coefficients", Terms{2}, kRequired, "Of the formula's terms, as the head of the shipped file tells.", Access(),
-     kIsCurve},
-    {"relative_to_vacuum", Flag{}, false, "Whether indices are relative to vacuum; otherwise to air."},
-    {"valid_nm", Numbers{2, {}}, kRequired, "Wavelengths from which and to which the formula holds."},
-    {"temperature_c", Number{}, 20.0, "That the coefficients are for."},
+    {"name", Text{}, kRequired, "Name of the material in designs."},
+    {"description", Text{}, kRequired, "Description of the material."},
+    {"formula", Word{kFormulas}, kRequired,
+     "Formula of the refractive index as a function of the vacuum wavelength in um."},
+    {"coefficients", Terms{1}, kRequired, "Refractive index.", kIsConstant},
+    {"coefficients", Terms{2}, kRequired,
+     "Coefficients of the formula's terms, as described at the head of the shipped file.", Access(), kIsCurve},
+    {"relative_to_vacuum", Flag{}, false,
+     "Whether indices are relative to vacuum; otherwise they are relative to air."},
+    {"valid_nm", Numbers{2, {}}, kRequired, "First and last wavelength for which the formula is valid."},
+    {"temperature_c", Number{}, 20.0, "Temperature for which the coefficients are valid."},
     {"thermo_optic", Numbers{6, {}}, kNone,
-     "Of the index against vacuum over temperature, as the head of the shipped file tells: D0, D1, D2, E0, E1, w_TK."},
-    {"thermo_optic_valid_c", Numbers{2, {}}, kNone, "Temperatures from which and to which they hold, if that is known.",
-     kWithThermoOptic},
-    {"thermo_optic_source", Text{}, kRequired, "Where they come from.", kWithThermoOptic},
+     "Coefficients of the temperature dependence of the index against vacuum, as described at the head of the shipped "
+     "file: D0, D1, D2, E0, E1, w_TK."},
+    {"thermo_optic_valid_c", Numbers{2, {}}, kNone,
+     "Lowest and highest temperature for which the thermo-optic coefficients are valid, if known.", kWithThermoOptic},
+    {"thermo_optic_source", Text{}, kRequired, "Source of the thermo-optic coefficients.", kWithThermoOptic},
     {"absorption_per_mm", Number{kAtLeastZero}, 0.0,
-     "Napierian, for power. A list of two or more `[wavelength_nm, absorption_per_mm]`, ascending and linear between, "
-     "tells it by wavelength."},
+     "Napierian absorption coefficient, for power. A list of two or more `[wavelength_nm, absorption_per_mm]`, "
+     "ascending and with linear interpolation, gives it as a function of wavelength."},
     {"absorption_per_mm", Pairs{kAboveZero, kAtLeastZero, "[wavelength_nm, absorption_per_mm]", 2}, kNone,
-     "By wavelength."},
-    {"source", Text{}, kRequired, "Where its values come from."}};
+     "Absorption coefficient as a function of wavelength."},
+    {"source", Text{}, kRequired, "Source of the values."}};
 constexpr Row kMetalRows[] = {
-    {"name", Text{}, kRequired, "What designs call it."},
-    {"description", Text{}, kRequired, "For people."},
+    {"name", Text{}, kRequired, "Name of the metal in designs."},
+    {"description", Text{}, kRequired, "Description of the metal."},
     {"plasma_ev", Terms{1}, kRequired, "Photon energy at the plasma frequency, in eV."},
     {"terms", Terms{3}, kRequired, "Strength, damping in eV and resonance in eV of each Lorentz-Drude term."},
-    {"valid_nm", Numbers{2, {}}, kRequired, "Wavelengths from which and to which the model holds."},
-    {"source", Text{}, kRequired, "Where its values come from."}};
+    {"valid_nm", Numbers{2, {}}, kRequired, "First and last wavelength for which the model is valid."},
+    {"source", Text{}, kRequired, "Source of the values."}};
 constexpr Table kTables[] = {
     {.name = "material", .meaning = "A material.", .rows = kMaterialRows, .presence = Presence::list},
     {.name = "metal", .meaning = "A metal.", .rows = kMetalRows, .presence = Presence::list}};

@@ -139,39 +139,42 @@ constexpr Condition kOfChisels[] = {is_not("strategy", only(kStrategyWords, "dmc
 constexpr Condition kOfVTools[] = {is("strategy", only(kStrategyWords, "dmc"))};
 
 constexpr Row kJobRows[] = {
-    {"title", Text{}, kNone, "For people.", access<&Job::title>},
+    {"title", Text{}, kNone, "Title of the job, for readers.", access<&Job::title>},
     {"design", Text{}, kNone,
-     "The file that the job was made from, from the job's folder. As-machined parts take their plate from it.",
+     "Design file from which the job was made, relative to the folder of the job. As-machined parts take their plate "
+     "from it.",
      access<&Job::design>},
-    {"notes", Texts{}, kNone, "For people.", access<&Job::notes>},
+    {"notes", Texts{}, kNone, "Notes on the job, for readers.", access<&Job::notes>},
     {"machine", Text{}, kRequired,
-     "`\"ideal\"`, `\"paper\"`, `\"thesis\"`, `\"ideal-dmc\"`, or a [machine file](machine_file.md) (a name with an "
-     "ending), taken from the folder of the job.",
+     "Machine: `\"ideal\"`, `\"paper\"`, `\"thesis\"`, `\"ideal-dmc\"`, or a [machine file](machine_file.md) (a name "
+     "with an extension), relative to the folder of the job.",
      access<&Job::machine>},
-    {"strategy", Word{kStrategyWords}, kRequired, "`\"dmc\"` of cube corners, on a machine whose head tilts.",
-     access<&Job::strategy>}};
+    {"strategy", Word{kStrategyWords}, kRequired,
+     "Cutting strategy. `\"dmc\"` is for cube corners, on a machine whose head tilts.", access<&Job::strategy>}};
 constexpr Row kWorkpieceRows[] = {
     {"kind", Word{kWorkpieceWords}, "mould",
-     "`\"mould\"`: the material on the far side of the part's back, in the part's frame; `\"direct\"`: the optic "
-     "itself, turned by 180 degrees about y, so that the array is mirrored in x; prisms only.",
+     "Kind of workpiece. `\"mould\"`: the material on the far side of the part's back, in the frame of the part. "
+     "`\"direct\"`: the optic itself, rotated by 180 degrees about y, so that the array is mirrored in x; prisms only.",
      access<&Workpiece::kind>},
     {"shrinkage_percent", Number{{.low = 0.0, .high = 10.0}}, 0.0,
-     "All sizes of the blank are those of the part times 1 + this / 100.", access<&Workpiece::shrinkage_percent>}};
+     "Shrinkage of the moulded part. All sizes of the blank are those of the part times 1 + this value / 100.",
+     access<&Workpiece::shrinkage_percent>}};
 constexpr Row kElementRows[] = {
-    {"kind", Word{only(geometry::kElementKinds, "rtp")}, kRequired, "Prisms.", access_by<get_prism, set_prism>,
-     kOfChisels},
-    {"kind", Word{geometry::kCubeKinds}, kRequired, "Cube corners.", access_by<get_cube, set_cube>, kOfVTools},
+    {"kind", Word{only(geometry::kElementKinds, "rtp")}, kRequired, "Kind of the elements: prisms.",
+     access_by<get_prism, set_prism>, kOfChisels},
+    {"kind", Word{geometry::kCubeKinds}, kRequired, "Kind of the elements: cube corners.",
+     access_by<get_cube, set_cube>, kOfVTools},
     with(kSizeKeys.base_mm, access_in<&Job::element, &RtpElement::base_mm>, kOfPrisms),
     with(kSizeKeys.width_mm, access_in<&Job::element, &RtpElement::width_mm>, kOfPrisms),
     with(geometry::kApexAngleKey, access_in<&Job::element, &RtpElement::apex_angle_deg>, kOfPrisms),
     with(kSizeKeys.aperture_mm, access_by<get_aperture, set_aperture>, kOfCubes),
     {"dihedral_error_arcmin", kThreeErrors, kNone,
-     "Intended errors of the three dihedral angles; positive if larger than 90 degrees, as in a "
-     "[design](design_file.md).",
+     "Intended errors of the three dihedral angles, positive if the angle is larger than 90 degrees. The key has the "
+     "same meaning in a [design](design_file.md).",
      access_by<get_errors<&AngleErrors::dihedral_error_arcmin>, set_errors<&AngleErrors::dihedral_error_arcmin>>,
      kOfCubes},
     {"facet_tilt_arcmin", kThreeErrors, kNone,
-     "Additional intended tilts of the three facets, as in a [design](design_file.md).",
+     "Additional intended tilts of the three facets. The key has the same meaning in a [design](design_file.md).",
      access_by<get_errors<&AngleErrors::facet_tilt_arcmin>, set_errors<&AngleErrors::facet_tilt_arcmin>>, kOfCubes}};
 constexpr Row kZoneRows[] = {
     {"aperture_mm", kSize, kNone,
@@ -186,7 +189,7 @@ constexpr Row kZoneRows[] = {
     {"rotation_deg", Number{{.low = -360.0, .high = 360.0}}, 0.0,
      "Rotation of each element about its axis, counter-clockwise seen from the light.", access<&CutZone::rotation_deg>},
     {"apexes_mm", NumberRows{2, {.low = 0.0, .high = 1e4}, 1, kMostZoneElements, "places"}, kRequired,
-     "`[[x, y], ...]`: positions of the apexes of its elements in plan, from the lower left corner of the part.",
+     "`[[x, y], ...]`: positions of the apexes of the zone's elements in plan, from the lower left corner of the part.",
      access_by<get_apexes, set_apexes>}};
 constexpr Row kArrayRows[] = {
     {"arrangement", Word{geometry::kPrismArrangements}, kRequired, geometry::kArrangementMeaning,
@@ -209,46 +212,51 @@ constexpr Row kArrayRows[] = {
      "corners has the elements of one y that lie completely within the margins.",
      access<&ArrayLayout::pattern>, kOfArrays}};
 constexpr Row kChipRows[] = {
-    {"position_um", Number{}, kRequired, "Of its middle, from the edge's middle towards +X of the machine.",
+    {"position_um", Number{}, kRequired,
+     "Position of the chip's centre, from the centre of the edge towards +X of the machine.",
      access<&EdgeChip::position_um>},
-    {"width_um", Number{{.low = 0.01, .high = 100.0}}, kRequired, "Along the edge.", access<&EdgeChip::width_um>},
-    {"depth_um", Number{}, kRequired, "Above 0, to half the width.", access<&EdgeChip::depth_um>}};
+    {"width_um", Number{{.low = 0.01, .high = 100.0}}, kRequired, "Width along the edge.", access<&EdgeChip::width_um>},
+    {"depth_um", Number{}, kRequired, "Depth of the chip, above 0 and at most half the width.",
+     access<&EdgeChip::depth_um>}};
 constexpr Row kToolRows[] = {
-    {"width_mm", Number{{.low = 0.1, .high = 2.0}}, kRequired, "Of a chisel's edge, at most the element's width.",
-     access<&Tool::width_mm>, kOfChisels},
+    {"width_mm", Number{{.low = 0.1, .high = 2.0}}, kRequired,
+     "Length of a chisel's edge, at most the width of the element.", access<&Tool::width_mm>, kOfChisels},
     {"width_mm", Number{{.low = 0.01, .high = 10.0}}, kRequired,
-     "Across the ends of the V's edges, at least what reaches from the apex to the blank's face.",
+     "Distance between the ends of the V's two edges. The edges must reach from the apex to the blank's face.",
      access<&Tool::width_mm>, kOfVTools},
     {"wedge_deg", kWedge, 50.0,
-     "Of a chisel; with the clearance at most the apex angle less 12.5 degrees, so that chips can leave.",
+     "Wedge angle of a chisel. Together with the clearance angle, it is at most the apex angle less 12.5 degrees, so "
+     "that chips can leave.",
      access<&Tool::wedge_deg>, kOfChisels},
     {"wedge_deg", kWedge, kDmcWedgeDeg,
-     "Behind either edge (65, with clearance 3 a rake of 22), neither so wide that a flank meets the next facet nor so "
-     "narrow that a fin stays on dihedral edges.",
+     "Wedge angle behind each edge of the V (65 with a clearance of 3 gives a rake of 22). It must be so small that no "
+     "flank meets the next facet, and so large that no fin remains on dihedral edges.",
      access<&Tool::wedge_deg>, kOfVTools},
-    {"clearance_deg", Number{{.low = 2.0, .high = 15.0}}, 3.0, "Between clearance face and plunged facet, as mounted.",
-     access<&Tool::clearance_deg>},
+    {"clearance_deg", Number{{.low = 2.0, .high = 15.0}}, 3.0,
+     "Angle between the clearance face and the plunged facet, with the tool as mounted.", access<&Tool::clearance_deg>},
     {"edge_radius_um", Number{{.low = 0.0, .high = 50.0}}, 0.0,
-     "Of a chisel's edge; of a V's nose, at most a tenth of the aperture.", access<&Tool::edge_radius_um>},
+     "Radius of a chisel's edge, or of a V's nose. The radius of a V's nose is at most a tenth of the aperture.",
+     access<&Tool::edge_radius_um>},
     {"nose_angle_deg", Number{{.low = 10.0, .high = 120.0}}, 50.0,
-     "Between the V's edges, below 90, the angle between the dihedral edges of a facet.", access<&Tool::nose_angle_deg>,
-     kOfVTools},
+     "Angle between the two edges of the V. It is below 90, the angle between the dihedral edges of a facet.",
+     access<&Tool::nose_angle_deg>, kOfVTools},
     {"side_clearance_deg", Number{{.low = 0.0, .low_included = false, .high = 20.0}}, 2.0,
-     "Of a chisel's side walls, so little that the diamond is still there where it leaves the element.",
+     "Clearance angle of a chisel's side walls. It must be so small that the diamond does not end in a point within "
+     "the element.",
      access<&Tool::side_clearance_deg>, kOfChisels},
     {"edge_life_mm", Number{{.low = 0.0, .low_included = false, .high = 1e9}}, kNone,
-     "The length of cut that an edge is good for: the way of its tip below the blank's face, along plunges and "
-     "ploughs; "
-     "of a V down and up dihedral edges.",
+     "Life of an edge: length of the path of its tip below the blank's face, along plunges and ploughs. For a V, it is "
+     "the path down and up dihedral edges.",
      access_given<&Tool::edge_life_mm>},
     {"next_edge", Word{kNextEdgeWords}, "stop",
-     "Where the next edge goes on. `\"stop\"`: at a stop, and at every stop the edge is judged, and changed or touched "
-     "off again, for a life of its own; `\"program\"`: in the next program, and stops leave the edge as it is.",
+     "Point at which the next edge takes over. `\"stop\"`: at a stop; at every stop the edge is inspected, and is "
+     "replaced or touched off again, and a new edge life begins. `\"program\"`: in the next program; stops do not "
+     "change the edge.",
      access_where<&Tool::next_edge, has_edge_life>}};
 constexpr Table kToolTables[] = {
     {.name = "edge_chips",
-     .meaning = "Pieces that are broken out of a chisel's edge, at most 100, clear of each other. The diamond cuts as "
-                "if whole; the as-machined part has their scratches.",
+     .meaning = "Notches in a chisel's edge where diamond has broken off, at most 100, which must not overlap. The "
+                "cuts are planned for an undamaged edge; the as-machined part has the scratches of the chips.",
      .rows = kChipRows,
      .child = children<&Tool::edge_chips>,
      .presence = Presence::list,
@@ -264,29 +272,28 @@ constexpr Child kBase = {
 
 const Table kJobTables[] = {
     {.name = "workpiece",
-     .meaning = "What is cut.",
+     .meaning = "Workpiece that is cut.",
      .rows = kWorkpieceRows,
      .child = child<&Job::workpiece>,
      .presence = Presence::implied},
-    {.name = "element", .meaning = "What one element is.", .rows = kElementRows, .child = kItself},
+    {.name = "element", .meaning = "Kind and dimensions of one element.", .rows = kElementRows, .child = kItself},
     {.name = "array",
-     .meaning = "How elements are laid out, at most 2,000,000 of them.",
+     .meaning = "Arrangement of the elements, at most 2,000,000 of them.",
      .rows = kArrayRows,
      .child = child<&Job::array>},
     {.name = "zone",
-     .meaning =
-         "Cube corners of one kind at the given positions, cut instead of the array. With zones, only the lengths of "
-         "`[array]` count.",
+     .meaning = "Cube corners of one kind at the given positions, cut instead of the array. With zones, only the "
+                "lengths of `[array]` are used.",
      .rows = kZoneRows,
      .child = children<&Job::zones>,
      .presence = Presence::list,
      .when = kOfVTools},
     {.name = "base",
-     .meaning = "What the elements stand on, in place of z = 0.",
+     .meaning = "Surface on which the elements are placed, instead of the plane z = 0.",
      .rows = geometry::substrate_rows().first(geometry::substrate_rows().size() - 1),
      .child = kBase,
      .presence = Presence::optional},
-    {.name = "tool", .meaning = "The diamond.", .rows = kToolRows, .tables = kToolTables, .child = child<&Job::tool>},
+    {.name = "tool", .meaning = "Diamond tool.", .rows = kToolRows, .tables = kToolTables, .child = child<&Job::tool>},
     process_table("process", child<&Job::process>)};
 // Checks that involve several keys.
 
@@ -478,32 +485,38 @@ constexpr Words kToolKeys = {"tool.width_mm", "tool.wedge_deg", "tool.clearance_
 constexpr Words kSubstrateKeys = {"base.kind"};
 constexpr Words kStopKeys = {"process.stop_before_finishing", "strategy"};
 constexpr Rule kJobRules[] = {
-    Check{kMachineKeys, "It has a name.", check_by<check_machine>},
-    Check{kWorkpieceKeys, "Cube corners are cut as moulds.", check_by<check_workpiece>},
-    Check{kChipKeys, "Chips lie on the edge, at most 100 of them, clear of each other.", check_by<check_chips>},
-    Check{kArrayOnSubstrateKeys, "On a `[base]` stand moulds of arrays without margins and pattern, not `single`.",
+    Check{kMachineKeys, "The name of the machine must not be empty.", check_by<check_machine>},
+    Check{kWorkpieceKeys, "Cube corners can be cut only as moulds.", check_by<check_workpiece>},
+    Check{kChipKeys, "At most 100 chips are allowed. They must lie within the edge and must not overlap.",
+          check_by<check_chips>},
+    Check{kArrayOnSubstrateKeys,
+          "A `[base]` is allowed only for moulds of arrays without margins and pattern, and not for the arrangement "
+          "`single`.",
           check_by<check_array_on_substrate>},
     Check{kZoneKeys,
-          "Zones have no margins, no pattern and no substrate. Their elements, at most 2,000,000 in all, lie within "
-          "the array's lengths and do not overlap.",
+          "Zones have no margins, no pattern and no base. Their elements, at most 2,000,000 in all, must lie within "
+          "the array's lengths and must not overlap.",
           check_by<check_zones>},
-    Check{kArrayKeys, "There is room for one element between the margins, and for at most 2,000,000.",
+    Check{kArrayKeys, "At least one element must fit between the margins, and at most 2,000,000 elements are allowed.",
           check_by<check_room>},
-    Check{kSquareKeys, "In a checker base and width are equal.", check_by<check_square>},
-    Check{kPatternKeys, "The pattern has a mark for each cell, and leaves one to cut.", check_by<check_pattern>},
+    Check{kSquareKeys, "In the arrangement `checker`, `base_mm` and `width_mm` must be equal.", check_by<check_square>},
+    Check{kPatternKeys, "The pattern must have a mark for each cell, and at least one element must be cut.",
+          check_by<check_pattern>},
     Check{kToolKeys,
-          "The tool fits the element: a chisel's edge is no wider and its wedge leaves room for chips; a V reaches the "
-          "apex and every place of the facets.",
+          "The tool must fit the element. A chisel's edge must not be wider than the element, and its wedge must leave "
+          "room for chips. A V must reach the apex and every point of the facets.",
           check_by<check_tool>},
-    Check{kStopKeys, "What stops before finishing is finished: by `two-step` or `dmc`.", check_by<check_stops>},
-    Check{kSubstrateKeys, "The base carries the elements, and the tool comes out of their cuts.",
+    Check{kStopKeys, "`stop_before_finishing` needs a strategy with finishing cuts: `two-step` or `dmc`.",
+          check_by<check_stops>},
+    Check{kSubstrateKeys,
+          "The base must carry at least one whole element, and the tool must be able to leave the cuts.",
           check_by<check_substrate>}};
 
-const Format kJobFormat = {
-    "job",
-    "retrace.job/1",
-    "Fabrication job",
-    {"", "What is cut, with which tool, on which machine and how.", kJobRows, kJobTables, kJobRules}};
+const Format kJobFormat = {"job",
+                           "retrace.job/1",
+                           "Fabrication job",
+                           {"", "Fabrication job: the workpiece, the elements, the tool, the machine and the process.",
+                            kJobRows, kJobTables, kJobRules}};
 
 }  // namespace
 

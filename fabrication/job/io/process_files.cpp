@@ -38,55 +38,58 @@ bool stops_before_finishing(const Process& process) {
 }
 
 constexpr schema::Row kRows[] = {
-    {"name", schema::Text{}, kRequired, "What the process is called.", access<&Process::name>},
-    {"source", schema::Text{}, kRequired, "Where its values come from.", access<&Process::source>},
-    {"clearance_mm", Number{kShortLength}, kRequired, "Distance of the tool above the blank's face, normal to it.",
-     access<&Process::clearance_mm>},
-    {"roughing_depth_um", Number{kDepth}, kRequired, "Depth of cut of roughing, and of bidirectional layers.",
+    {"name", schema::Text{}, kRequired, "Name of the process.", access<&Process::name>},
+    {"source", schema::Text{}, kRequired, "Source of the values.", access<&Process::source>},
+    {"clearance_mm", Number{kShortLength}, kRequired,
+     "Distance of the tool above the blank's face, normal to the face.", access<&Process::clearance_mm>},
+    {"roughing_depth_um", Number{kDepth}, kRequired, "Depth of cut in roughing and in bidirectional layers.",
      access<&Process::roughing_depth_um>},
-    {"finishing_depth_um", Number{kDepth}, kRequired, "Depth of cut of finishing.",
+    {"finishing_depth_um", Number{kDepth}, kRequired, "Depth of cut in finishing.",
      access<&Process::finishing_depth_um>},
     {"finishing_cuts", schema::Whole{kCuts}, 2.0,
-     "Finishing cuts on each facet, of the strategies `two-step` and `dmc`.", access<&Process::finishing_cuts>},
+     "Number of finishing cuts on each facet, for the strategies `two-step` and `dmc`.",
+     access<&Process::finishing_cuts>},
     {"plough_length_mm", Number{kShortLength}, kRequired, "Length of a plough along facet 2, from the root.",
      access<&Process::plough_length_mm>},
-    {"dwell_s", Number{kDwell}, 0.1, "Time that the tool rests at every root.", access<&Process::dwell_s>},
+    {"dwell_s", Number{kDwell}, 0.1, "Dwell time of the tool at every root.", access<&Process::dwell_s>},
     {"roughing_feed_mm_per_min", Number{kFeed}, kRequired,
-     "Feed of plunging and ploughing in roughing; less would be written as `F0.000`.",
+     "Feed of plunging and ploughing in roughing. A smaller feed would be written as `F0.000`.",
      access<&Process::roughing_feed_mm_per_min>},
     {"finishing_feed_mm_per_min", Number{kFeed}, kRequired, "Feed of finishing.",
      access<&Process::finishing_feed_mm_per_min>},
-    {"retract_feed_mm_per_min", Number{kFeed}, kRequired, "Feed of retracts and of moves to the element's next cut.",
-     access<&Process::retract_feed_mm_per_min>},
+    {"retract_feed_mm_per_min", Number{kFeed}, kRequired,
+     "Feed of retracts and of moves to the next cut of the element.", access<&Process::retract_feed_mm_per_min>},
     {"shortest_plough", schema::Flag{}, false, "Whether ploughs end as soon as the chip is free.",
      access<&Process::shortest_plough>},
-    {"plough_lift_um", Number{kMicrometres}, 0.0, "By how much the tool leaves the facet once the chip is free.",
-     access<&Process::plough_lift_um>},
+    {"plough_lift_um", Number{kMicrometres}, 0.0,
+     "Distance by which the tool is lifted off the facet when the chip is free.", access<&Process::plough_lift_um>},
     {"slow_retract_um", Number{kMicrometres}, 0.0,
-     "How far bidirectional cuts go straight up at cutting feed before the retract.",
+     "Length of the first part of the retract of a bidirectional cut. This part goes straight up at the cutting feed.",
      access<&Process::slow_retract_um>},
     {"rotary_clearance_mm", Number{kShortLength}, 5.0,
-     "Distance above all that the turning blank can reach, before a rotary move.",
+     "Distance of the tool above everything that the rotating blank can reach, before a rotary move.",
      access<&Process::rotary_clearance_mm>},
     {"least_chip_um", Number{kDepth}, kNone,
-     "What a cut takes at least somewhere along its length, or its edge rubs; at most half of either depth.",
+     "Minimum chip thickness, which a cut must reach somewhere along its length so that its edge does not rub. It is "
+     "at most half of either depth of cut.",
      access_given<&Process::least_chip_um>},
     {"stop_every_min", Number{kMinutes}, kNone,
-     "The program stops before it has run longer since it began or stopped: for inspection, and to touch off again.",
+     "Maximum run time of a program from its beginning, or from a stop, to the next stop. Stops are for inspection and "
+     "for touching off again.",
      access_given<&Process::stop_every_min>},
     {"stop_before_finishing", schema::Flag{}, false,
-     "Whether every element is inspected, at a stop, between roughing and finishing; elements that stand alike "
-     "together.",
+     "Whether every element is inspected, at a stop, between roughing and finishing. Elements of equal orientation are "
+     "inspected together.",
      access_where<&Process::stop_before_finishing, stops_before_finishing>},
     {"mist", schema::Flag{}, true, "Whether mist is on while the tool cuts.", access<&Process::mist>},
     {"plough_sa_nm", Number{kRoughness}, 468.0,
-     "Areal roughness Sa that ploughing leaves, as measured by the thesis and the journal paper.",
+     "Areal roughness Sa after ploughing, as measured by the thesis and the journal paper.",
      access<&Process::plough_sa_nm>},
     {"roughing_plunge_sa_nm", Number{kRoughness}, 115.0,
-     "Areal roughness Sa that plunging leaves in roughing, likewise measured.",
+     "Areal roughness Sa after plunging in roughing, as measured by the thesis and the journal paper.",
      access<&Process::roughing_plunge_sa_nm>},
     {"finishing_plunge_sa_nm", Number{kRoughness}, 48.9,
-     "Areal roughness Sa that plunging leaves in finishing, likewise measured.",
+     "Areal roughness Sa after plunging in finishing, as measured by the thesis and the journal paper.",
      access<&Process::finishing_plunge_sa_nm>}};
 
 /// Returns an error message if a plough is shorter than the chip is thick, because the chip then does not separate.
@@ -109,16 +112,17 @@ std::string rubbing_depth(const Process& p) {
 constexpr std::string_view kPloughKeys[] = {"plough_length_mm"};
 constexpr std::string_view kLeastChipKeys[] = {"least_chip_um"};
 constexpr schema::Rule kRules[] = {
-    schema::Check{kLeastChipKeys, "The least chip is at most half of either depth of cut.",
+    schema::Check{kLeastChipKeys, "`least_chip_um` is at most half of `roughing_depth_um` and of `finishing_depth_um`.",
                   schema::check_by<rubbing_depth>},
-    schema::Check{kPloughKeys, "A plough is at least as long as the depth of roughing, unless shortest_plough is true.",
+    schema::Check{kPloughKeys,
+                  "A plough is at least as long as the depth of cut in roughing, unless `shortest_plough` is true.",
                   schema::check_by<hanging_chip>}};
 
 constexpr schema::Format kFormat = {
     "process",
     "retrace.process/1",
     "Process of a fabrication job",
-    {"", "How elements are cut: depths, feeds, and the roughness that is left.", kRows, {}, kRules}};
+    {"", "Cutting process of the elements: depths, feeds, and the resulting roughness.", kRows, {}, kRules}};
 
 }  // namespace
 

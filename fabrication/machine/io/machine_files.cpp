@@ -148,17 +148,17 @@ constexpr std::string_view kSourcedShape = "{ value = ..., measured = \"source\"
 
 template <class Type>
 constexpr std::array<Row, 3> sourced(Kind kind, Access value) {
-  return {{{"value", kind, kRequired, "The value.", value},
-           {"measured", Text{}, kNone, "By whom the value was measured.",
+  return {{{"value", kind, kRequired, "Value.", value},
+           {"measured", Text{}, kNone, "Source of a measured value.",
             access_by<get_source<Type, Basis::measured>, set_source<Type, Basis::measured>>},
-           {"assumed", Text{}, kNone, "Why the value is assumed.",
+           {"assumed", Text{}, kNone, "Reason for an assumed value.",
             access_by<get_source<Type, Basis::assumed>, set_source<Type, Basis::assumed>>}}};
 }
 
 template <class Type, class... More>
 constexpr std::array<Rule, 2 + sizeof...(More)> source_rules(More... more) {
   return {{more..., OneOf{kSourceKeys, "must say either measured = \"source\" or assumed = \"why\""},
-           Check{{}, "The source is named.", check_by<nameless_source<Type>>}}};
+           Check{{}, "The source must not be empty.", check_by<nameless_source<Type>>}}};
 }
 
 template <auto complaint>
@@ -179,7 +179,7 @@ constexpr ValueTable kPositiveValue = {kPositiveRows, kPositiveRules};
 constexpr NumberRange kJerkRange{.low = 0.0, .low_included = false, .high = 1e12};
 constexpr auto kJerkRows = sourced<double>(Number{kJerkRange}, access<&Sourced<double>::value>);
 constexpr ValueTable kJerk = {kJerkRows, kPositiveRules};
-constexpr std::string_view kJerkMeaning = "The jerk: how fast the acceleration grows, and falls again.";
+constexpr std::string_view kJerkMeaning = "Maximum jerk, the rate at which the acceleration increases and decreases.";
 
 constexpr NumberRange kSettlingRange{.low = 0.0, .high = 10.0};
 constexpr auto kSettlingRows = sourced<double>(Number{kSettlingRange}, access<&Sourced<double>::value>);
@@ -192,11 +192,11 @@ constexpr auto kHeightRows = sourced<double>(Number{kLength}, access<&Sourced<do
 constexpr ValueTable kHeight = {kHeightRows, kPositiveRules};
 
 constexpr auto kSignRows = sourced<double>(Number{}, access<&Sourced<double>::value>);
-constexpr auto kSignRules = source_rules<double>(value_check<no_sign>("It is 1 or -1."));
+constexpr auto kSignRules = source_rules<double>(value_check<no_sign>("It must be 1 or -1."));
 constexpr ValueTable kSign = {kSignRows, kSignRules};
 
 constexpr auto kDirectionRows = sourced<Vec3>(Numbers{3, kComponent}, access_by<get_point, set_direction>);
-constexpr auto kDirectionRules = source_rules<Vec3>(value_check<no_direction>("It has a length above 0."));
+constexpr auto kDirectionRules = source_rules<Vec3>(value_check<no_direction>("Its length must be above 0."));
 constexpr ValueTable kDirection = {kDirectionRows, kDirectionRules};
 
 constexpr auto kPointRows = sourced<Vec3>(Numbers{3, kLength}, access_by<get_point, set_point>);
@@ -205,17 +205,19 @@ constexpr ValueTable kPoint = {kPointRows, kPointRules};
 
 constexpr auto kLimitsMmRows = sourced<Interval>(Numbers{2, kLength}, access_by<get_interval, set_interval>);
 constexpr auto kLimitsDegRows = sourced<Interval>(Numbers{2, kDegrees}, access_by<get_interval, set_interval>);
-constexpr auto kLimitsRules = source_rules<Interval>(value_check<falling>("The first is less than the second."));
+constexpr auto kLimitsRules =
+    source_rules<Interval>(value_check<falling>("The first number must be less than the second."));
 constexpr ValueTable kLimitsMm = {kLimitsMmRows, kLimitsRules};
 constexpr ValueTable kLimitsDeg = {kLimitsDegRows, kLimitsRules};
 
 constexpr auto kBoxRows = sourced<Points>(Numbers{6, kLength}, access_by<get_no_box, set_box>);
-constexpr auto kBoxRules = source_rules<Points>(value_check<falling_box>("Each coordinate rises."));
+constexpr auto kBoxRules =
+    source_rules<Points>(value_check<falling_box>("Each minimum must be less than its maximum."));
 constexpr ValueTable kBox = {kBoxRows, kBoxRules};
 
 constexpr auto kHullRows =
     sourced<Points>(NumberRows{3, kLength, 4, 1000, "points"}, access_by<get_points, set_points>);
-constexpr auto kHullRules = source_rules<Points>(value_check<flat_hull>("They do not lie in one plane."));
+constexpr auto kHullRules = source_rules<Points>(value_check<flat_hull>("The points must not lie in one plane."));
 constexpr ValueTable kHull = {kHullRows, kHullRules};
 
 constexpr Table value(std::string_view name, const ValueTable& type, Child child, std::string_view meaning,
@@ -244,36 +246,42 @@ constexpr Child kJerkOf = child_if<jerk, [](const auto& axis) { return std::isfi
 
 constexpr Table kLinearTables[] = {
     value("direction", kDirection, child<&LinearAxis::direction>,
-          "Where positive words move the tool, as seen from the workpiece; it is scaled to length 1."),
-    value("limits_mm", kLimitsMm, child<&LinearAxis::limits_mm>, "The least and the greatest word."),
-    value("max_feed_mm_per_min", kPositiveValue, child<&LinearAxis::max_feed_mm_per_min>, "The greatest feed."),
-    value("rapid_mm_per_min", kPositiveValue, child<&LinearAxis::rapid_mm_per_min>, "The speed of rapid moves."),
-    value("acceleration_mm_per_s2", kPositiveValue, child<&LinearAxis::acceleration_mm_per_s2>, "The acceleration."),
+          "Direction in which increasing positions move the tool relative to the workpiece. The vector is scaled to "
+          "length 1."),
+    value("limits_mm", kLimitsMm, child<&LinearAxis::limits_mm>, "Minimum and maximum position."),
+    value("max_feed_mm_per_min", kPositiveValue, child<&LinearAxis::max_feed_mm_per_min>, "Maximum feed."),
+    value("rapid_mm_per_min", kPositiveValue, child<&LinearAxis::rapid_mm_per_min>, "Speed of rapid moves."),
+    value("acceleration_mm_per_s2", kPositiveValue, child<&LinearAxis::acceleration_mm_per_s2>,
+          "Acceleration of the axis."),
     value("jerk_mm_per_s3", kJerk, kJerkOf<&LinearAxis::jerk_mm_per_s3>, kJerkMeaning, "no limit")};
 
 constexpr Table kRotaryTables[] = {
     value("direction", kDirection, child<&RotaryAxis::direction>,
-          "The direction of the axis, which is scaled to length 1."),
+          "Direction of the axis. The vector is scaled to length 1."),
     value("point_mm", kPoint, child<&RotaryAxis::point_mm>,
-          "A point on the axis; of B from the tool reference point, where that is at B = 0.", "the origin"),
+          "Point on the axis. For B, it is measured from the tool reference point, with the head at B = 0.",
+          "the origin"),
     value("sign", kSign, child<&RotaryAxis::sign>,
-          "Positive words turn the workpiece, of B the tool, by the right hand; with -1 by the left.", "1"),
-    value("limits_deg", kLimitsDeg, child<&RotaryAxis::limits_deg>, "The least and the greatest word."),
-    value("speed_deg_per_s", kPositiveValue, child<&RotaryAxis::speed_deg_per_s>, "The speed of rapid moves."),
-    value("acceleration_deg_per_s2", kPositiveValue, child<&RotaryAxis::acceleration_deg_per_s2>, "The acceleration."),
+          "Sense of rotation. Positive positions rotate the workpiece (B: the tool) by the right-hand rule, or with -1 "
+          "by the left-hand rule.",
+          "1"),
+    value("limits_deg", kLimitsDeg, child<&RotaryAxis::limits_deg>, "Minimum and maximum position."),
+    value("speed_deg_per_s", kPositiveValue, child<&RotaryAxis::speed_deg_per_s>, "Speed of rapid moves."),
+    value("acceleration_deg_per_s2", kPositiveValue, child<&RotaryAxis::acceleration_deg_per_s2>,
+          "Acceleration of the axis."),
     value("jerk_deg_per_s3", kJerk, kJerkOf<&RotaryAxis::jerk_deg_per_s3>, kJerkMeaning, "no limit")};
 
 constexpr std::string_view kCarrierWords[] = {"workpiece", "cradle", "tool"};
-constexpr Row kBodyRows[] = {
-    {"name", Text{}, kRequired, "What the body is called.", access<&MachineBody::name>},
-    {"moves_with", Word{kCarrierWords}, kRequired,
-     "Workpiece: what A and C turn, such as table and clamps; cradle: what C does not turn; tool: what holds the "
-     "diamond, relative to the tool reference point.",
-     access<&MachineBody::carrier>}};
+constexpr Row kBodyRows[] = {{"name", Text{}, kRequired, "Name of the body.", access<&MachineBody::name>},
+                             {"moves_with", Word{kCarrierWords}, kRequired,
+                              "Part of the machine with which the body moves. `\"workpiece\"`: parts that A and C "
+                              "rotate, such as table and clamps. `\"cradle\"`: parts that C does not rotate. "
+                              "`\"tool\"`: parts that hold the diamond, relative to the tool reference point.",
+                              access<&MachineBody::carrier>}};
 constexpr Table kBodyTables[] = {value("box_mm", kBox, child_only_read<&MachineBody::points_mm>,
-                                       "The box [x_min, y_min, z_min, x_max, y_max, z_max].", "none"),
+                                       "Box [x_min, y_min, z_min, x_max, y_max, z_max].", "none"),
                                  value("points_mm", kHull, child<&MachineBody::points_mm>,
-                                       "Points [[x, y, z], ...]: the body is their convex hull.", "none")};
+                                       "Points [[x, y, z], ...]. The body is their convex hull.", "none")};
 constexpr std::string_view kBodyShapes[] = {"box_mm", "points_mm"};
 constexpr Rule kBodyRules[] = {OneOf{kBodyShapes, "must have either box_mm or points_mm"}};
 
@@ -303,13 +311,13 @@ constexpr auto kMountTurnRows = sourced<Vec3>(Numbers{3, kMountDegrees}, access_
 constexpr ValueTable kMountTurn = {kMountTurnRows, kPointRules};
 constexpr Table kMountTables[] = {
     value("offset_mm", kMountOffset, child<&ToolMount::offset_mm>,
-          "Displacement of the tool reference point from the position that programs assume, along X, Y and Z; of a "
-          "head at B = 0.",
+          "Displacement of the tool reference point from the position that programs assume, along X, Y and Z. For a "
+          "tilting head, it is given at B = 0.",
           "0"),
     value("turn_deg", kMountTurn, child<&ToolMount::turn_deg>,
           "Orientation of the mounted tool: a rotation vector by the right-hand rule. The tool is touched off after "
           "mounting, so the rotation does not move its reference point. A rotation about X changes the clearance, one "
-          "about Y tilts the edge, and one about Z turns the edge away from X.",
+          "about Y tilts the edge, and one about Z rotates the edge away from X.",
           "0")};
 
 bool is_mounted_askew(const Machine& m) {
@@ -339,33 +347,36 @@ std::string unknown_modulo_axes(const Control& control) {
 
 constexpr Row kControlRows[] = {
     {"increment_system", Word{kIncrementSystemWords}, "E",
-     "Of a Fanuc: words have 3, 4, 5 or 6 decimals, and at most nine digits.", access<&Control::increment_system>},
-    {"has_rotation", Flag{}, false, "Of a Fanuc: it can turn coordinates, which `G69` cancels.",
+     "Increment system of a Fanuc control: words have 3, 4, 5 or 6 decimals, and at most nine digits.",
+     access<&Control::increment_system>},
+    {"has_rotation", Flag{}, false, "Whether a Fanuc control can rotate coordinates. `G69` cancels the rotation.",
      access<&Control::has_rotation>},
-    {"has_mirror", Flag{}, false, "Of a Fanuc: it can mirror coordinates, which `G50.1` cancels.",
+    {"has_mirror", Flag{}, false, "Whether a Fanuc control can mirror coordinates. `G50.1` cancels the mirroring.",
      access<&Control::has_mirror>},
     {"modulo_axes", Text{}, "C",
-     "Of a Sinumerik: letters of the rotary axes that turn without end and are counted within a turn (MD30310).",
+     "Letters of the rotary axes of a Sinumerik that rotate without limits and whose positions are counted within one "
+     "turn (MD30310).",
      access<&Control::modulo_axes>},
-    {"coordinate_system", Whole{{.low = 1.0, .high = 127.0}}, 1.0, "Of a Power PMAC: the number of that of X to C.",
+    {"coordinate_system", Whole{{.low = 1.0, .high = 127.0}}, 1.0,
+     "Number of the coordinate system of a Power PMAC that contains the axes X to C.",
      access<&Control::coordinate_system>},
-    {"mist_on", Text{}, kNone, "Of a Power PMAC or an Aerotech control: the line of a program that switches mist on.",
+    {"mist_on", Text{}, kNone, "Program line that switches mist on, for a Power PMAC or an Aerotech control.",
      access<&Control::mist_on>},
-    {"mist_off", Text{}, kNone, "Of a Power PMAC or an Aerotech control: the line that switches it off.",
+    {"mist_off", Text{}, kNone, "Program line that switches mist off, for a Power PMAC or an Aerotech control.",
      access<&Control::mist_off>},
-    {"optional_stop", Text{}, kNone, "Of a Power PMAC or an Aerotech control: the line at which the operator may stop.",
+    {"optional_stop", Text{}, kNone,
+     "Program line at which the operator may stop, for a Power PMAC or an Aerotech control.",
      access<&Control::optional_stop>},
     {"stop", Text{}, kNone,
-     "Of a Power PMAC or an Aerotech control: the line at which a program waits until the operator lets it go on.",
+     "Program line at which a program waits until the operator continues it, for a Power PMAC or an Aerotech control.",
      access<&Control::stop>},
     {"has_unchecked_lines", Flag{}, false,
-     "Of a Power PMAC or an Aerotech control: whether the lines for mist and stops may be any text, even text that "
+     "Whether the lines for mist and stops, for a Power PMAC or an Aerotech control, may be any text, even text that "
      "moves axes or waits. The header of each program names such lines.",
      access<&Control::has_unchecked_lines>},
     {"rapids_are_straight", Flag{}, false,
-     "Whether the axes of a rapid move arrive together (Fanuc 1401#1, 840D `RTLIOF`), on a straight line; otherwise "
-     "all "
-     "of the box between its ends must be clear.",
+     "Whether all axes of a rapid move arrive together (Fanuc 1401#1, 840D `RTLIOF`), so that the move is a straight "
+     "line. Otherwise the whole box between its ends must be clear.",
      access<&Control::rapids_are_straight>}};
 constexpr std::string_view kMistOnKeys[] = {"mist_on"};
 constexpr std::string_view kMistOffKeys[] = {"mist_off"};
@@ -385,7 +396,7 @@ constexpr Rule kControlRules[] = {
           check_by<unfit_text<&Control::optional_stop>>},
     Check{kStopKeys, "`stop` follows the rule for `mist_on` or is `M0` or `M1`, and differs from the other lines.",
           check_by<unfit_text<&Control::stop>>},
-    Check{kModuloKeys, "`modulo_axes` holds letters of rotary axes.", check_by<unknown_modulo_axes>}};
+    Check{kModuloKeys, "`modulo_axes` may contain only letters of rotary axes.", check_by<unknown_modulo_axes>}};
 
 bool has_safe_z(const Machine& m) {
   return m.safe_z_mm.value <= m.z.limits_mm.value.high;
@@ -397,38 +408,38 @@ bool warms_up(const Machine& m) {
   return m.warm_up_s.value > 0.0;
 }
 
-constexpr Row kRows[] = {{"name", Text{}, kRequired, "What the machine is called.", access<&Machine::name>},
-                         {"title", Text{}, kNone, "What it is, for people.", access<&Machine::title>}};
+constexpr Row kRows[] = {{"name", Text{}, kRequired, "Name of the machine.", access<&Machine::name>},
+                         {"title", Text{}, kNone, "Description of the machine, for readers.", access<&Machine::title>}};
 constexpr Table kTables[] = {
     value("safe_z_mm", kHeight, child_if<&Machine::safe_z_mm, has_safe_z>,
-          "Where the first move of a program brings Z, alone: clear of all that may stand on the table, wherever the "
-          "other axes are.",
+          "Position to which the first move of a program brings Z, before all other axes move. There the tool is clear "
+          "of everything on the table at all positions of the other axes.",
           "the upper limit of Z"),
     value("settling_s", kSettling, child_if<&Machine::settling_s, settles>,
-          "How long the control waits after every move until the axes stand still at their exact stop.", "0"),
+          "Time that the control waits after every move until the axes stand still at their exact stop.", "0"),
     value("warm_up_s", kWarmUp, child_if<&Machine::warm_up_s, warms_up>,
-          "How long X and Y move to and fro, at the height of the first move, before the first cut of a program and "
-          "behind a stop: what the machine takes to be as warm as it stays.",
+          "Time that X and Y move to and fro, at the height of the first move, before the first cut of a program and "
+          "after a stop. It is the time in which the machine reaches its steady temperature.",
           "0"),
-    linear("x", "The linear axis X.", child<&Machine::x>),
-    linear("y", "The linear axis Y.", child<&Machine::y>),
-    linear("z", "The linear axis Z.", child<&Machine::z>),
-    rotary("a", "The axis A about which the table tilts.", kTilting<Tilt::table>, Presence::optional),
-    rotary("b", "The axis B about which the head tilts.", kTilting<Tilt::head>, Presence::optional),
-    rotary("c", "The axis C of the table.", child<&Machine::c>, Presence::always),
+    linear("x", "Linear axis X.", child<&Machine::x>),
+    linear("y", "Linear axis Y.", child<&Machine::y>),
+    linear("z", "Linear axis Z.", child<&Machine::z>),
+    rotary("a", "Rotary axis A, about which the table tilts.", kTilting<Tilt::table>, Presence::optional),
+    rotary("b", "Rotary axis B, about which the head tilts.", kTilting<Tilt::head>, Presence::optional),
+    rotary("c", "Rotary axis C of the table.", child<&Machine::c>, Presence::always),
     {.name = "mount",
-     .meaning = "How the tool stands, where it stands otherwise than it should.",
+     .meaning = "Deviation of the mounted tool from its nominal position and orientation.",
      .tables = kMountTables,
      .child = child_if<&Machine::mount, is_mounted_askew>,
      .presence = Presence::optional},
     {.name = "control",
-     .meaning = "What programs must know of the control; each dialect takes what concerns it.",
+     .meaning = "Properties of the control on which programs depend. Each dialect uses only some of them.",
      .rows = kControlRows,
      .rules = kControlRules,
      .child = child<&Machine::control>,
      .presence = Presence::optional},
     {.name = "body",
-     .meaning = "A convex body that might collide.",
+     .meaning = "Convex body that might collide.",
      .rows = kBodyRows,
      .tables = kBodyTables,
      .rules = kBodyRules,
@@ -437,16 +448,16 @@ constexpr Table kTables[] = {
 constexpr std::string_view kTiltingKeys[] = {"a", "b"};
 constexpr std::string_view kZKeys[] = {"z"};
 constexpr std::string_view kCKeys[] = {"c"};
-constexpr Rule kRules[] = {
-    OneOf{kTiltingKeys, "must have either [a], if the table tilts, or [b], if the head does"},
-    Check{kZKeys, "X, Y and Z are right-handed and near to square to each other.", check_by<skew_linear_axes>},
-    Check{kCKeys, "C lies across A or B.", check_by<aligned_rotary_axes>}};
+constexpr Rule kRules[] = {OneOf{kTiltingKeys, "must have either [a], if the table tilts, or [b], if the head does"},
+                           Check{kZKeys, "X, Y and Z must be right-handed and nearly perpendicular to each other.",
+                                 check_by<skew_linear_axes>},
+                           Check{kCKeys, "C must not be nearly parallel to A or B.", check_by<aligned_rotary_axes>}};
 
 constexpr schema::Format kFormat = {
     "machine",
     "retrace.machine/1",
     "Machine with five axes",
-    {"", "The axes of a machine, in the frame of the workpiece at A = C = 0, and the bodies that might collide.", kRows,
+    {"", "Axes of a machine, in the frame of the workpiece at A = C = 0, and bodies that might collide.", kRows,
      kTables, kRules}};
 
 }  // namespace

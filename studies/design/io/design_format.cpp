@@ -24,8 +24,9 @@ constexpr Condition kScratchesOnly[] = {without("part.mesh", kOfAMesh), without(
 
 const Table kSurfaceTables[] = {
     {.name = "scratches",
-     .meaning = "Grooves of V section that run up a facet of prisms from root to rim, at most 200. Those of a facet "
-                "keep clear of each other; none on a `[base]`. They turn with the elements of a checker.",
+     .meaning = "Scratches: grooves of V-shaped section that run up a facet of prisms from root to rim, at most 200. "
+                "Scratches of one facet must not overlap, and none are allowed on a `[base]`. In a `checker` array, "
+                "they are rotated with the elements.",
      .rows = scratch_rows(),
      .presence = Presence::list,
      .layout = Layout::in_line,
@@ -34,8 +35,8 @@ const Table kSurfaceTables[] = {
 
 const Table kFormTables[] = {
     {.name = "terms",
-     .meaning = "A polynomial over every facet, at most 45 terms; places are counted from its middle in units of its "
-                "radius, the distance to the farthest corner. Nothing is taken off.",
+     .meaning = "Terms of a polynomial over every facet, at most 45. Coordinates are measured from the centroid of the "
+                "facet in units of its radius, the distance to the farthest corner. No plane is subtracted.",
      .rows = form_term_rows(),
      .presence = Presence::list,
      .layout = Layout::in_line,
@@ -47,14 +48,14 @@ constexpr std::string_view kLayerShape =
     "a list of tables with material or refractive_index, and thickness_nm, the layer on the body first";
 const Table kCoatingTables[] = {
     {.name = "facets",
-     .meaning = "Layers on the retro facets, the one on the body first, at most 200, one of them opaque.",
+     .meaning = "Layers on the retro facets, from the body outwards, at most 200, at most one of them opaque.",
      .rows = layer_rows(),
      .rules = kLayerRules,
      .presence = Presence::list,
      .layout = Layout::in_line,
      .shape = kLayerShape},
     {.name = "entrance",
-     .meaning = "The same on the entrance face, none of them opaque.",
+     .meaning = "Layers on the entrance face, from the body outwards, at most 200, none of them opaque.",
      .rows = layer_rows(),
      .rules = kLayerRules,
      .presence = Presence::list,
@@ -80,81 +81,88 @@ constexpr Rule kWetBackRules[] = {
     OneOf{kWhichAreWet, "must have one of share, rectangle_mm, disc_mm and half_plane, which say where it is wet"}};
 const Table kEntranceFaceTables[] = {
     {.name = "layers",
-     .meaning = "Layers that are thick against the coherence of light, such as hard coats, the one nearest to the body "
-                "first, at most 20. They lie on those of `coating.entrance`, under water.",
+     .meaning = "Layers that are much thicker than the coherence length of the light, such as hard coats, from the "
+                "body outwards, at most 20. They lie on the layers of `coating.entrance`, under the water.",
      .rows = thick_layer_rows(),
      .presence = Presence::list,
      .layout = Layout::in_line,
      .shape = "a list of tables with refractive_index, thickness_um and absorption_per_mm"}};
 
-constexpr Row kRootRows[] = {{"title", Text{}, kNone, "Names curves in plots."}};
+constexpr Row kRootRows[] = {{"title", Text{}, kNone, "Title of the design, which names its curves in plots."}};
 const Table kTables[] = {
     {.name = "element",
-     .meaning = "What one element is.",
+     .meaning = "Kind and dimensions of one element.",
      .rows = element_rows(),
      .presence = Presence::implied,
      .when = kWithElements},
     {.name = "array",
-     .meaning = "How elements are laid out over the part.",
+     .meaning = "Arrangement of the elements over the part.",
      .rows = array_rows(),
      .presence = Presence::implied,
      .when = kWithElements},
     {.name = "base",
-     .meaning = "What the elements of a finite array stand on, in place of z = 0.",
+     .meaning = "Surface on which the elements of a finite array are placed, instead of the plane z = 0.",
      .rows = geometry::substrate_rows(),
      .presence = Presence::optional,
      .when = kWithPlanes},
     {.name = "zone",
-     .meaning = "A region of a finite part whose elements are not those of the others. Zones cover the part.",
+     .meaning = "Region of a finite part, or set of its elements, that differs from the other zones. The zones cover "
+                "the part.",
      .rows = zone_rows(),
      .rules = kZoneRules,
      .presence = Presence::list,
      .when = kWithZones},
     {.name = "part",
-     .meaning = "A mesh or a plate in place of elements, or planes of single facets.",
+     .meaning = "Mesh or plate that replaces the elements, or planes of individual facets.",
      .rows = part_rows(),
      .presence = Presence::optional,
      .when = kPartTable},
     {.name = "front",
-     .meaning = "A curved face through which light enters, in place of the plane z = thickness_mm.",
+     .meaning = "Curved surface through which light enters, instead of the plane z = thickness_mm.",
      .rows = entrance_rows(),
      .presence = Presence::optional,
      .when = kEntranceTable},
-    {.name = "body", .meaning = "What the part is made of.", .rows = body_rows(), .presence = Presence::implied},
+    {.name = "body",
+     .meaning = "Plate and material of the part, and the medium behind it.",
+     .rows = body_rows(),
+     .presence = Presence::implied},
     {.name = "wet_back",
-     .meaning = "Another medium behind some elements of a finite array, such as water that has entered in places.",
+     .meaning = "Another medium behind some elements of a finite array, for example where water has entered.",
      .rows = wet_back_rows(),
      .rules = kWetBackRules,
      .presence = Presence::optional,
      .when = kWithPlanes},
     {.name = "coating",
-     .meaning = "Thin layers on its faces.",
+     .meaning = "Thin layers on the faces of the part.",
      .tables = kCoatingTables,
      .presence = Presence::optional},
     {.name = "entrance",
-     .meaning =
-         "What the entrance face is like where it is not clean: layers, water, dust, scratches, haze, roughness.",
+     .meaning = "Condition of an entrance face that is not clean or not smooth: layers, water, dust, scratches, haze, "
+                "roughness.",
      .rows = entrance_face_rows(),
      .tables = kEntranceFaceTables,
      .presence = Presence::optional,
      .when = kEntranceTable},
-    {.name = "light", .meaning = "The light that falls on it.", .rows = light_rows(), .presence = Presence::implied},
-    {.name = "detector", .meaning = "What counts as returned.", .rows = detector_rows(), .presence = Presence::implied},
+    {.name = "light", .meaning = "Light that falls on the part.", .rows = light_rows(), .presence = Presence::implied},
+    {.name = "detector",
+     .meaning = "Cone of directions in which light counts as returned.",
+     .rows = detector_rows(),
+     .presence = Presence::implied},
     {.name = "surface",
-     .meaning = "What the retro facets and edges are like.",
+     .meaning = "Errors of angle, texture and edges of the retro facets.",
      .rows = surface_rows(),
      .tables = kSurfaceTables,
      .presence = Presence::implied,
      .when = kSurfaceTable},
     {.name = "form",
-     .meaning = "By what the retro facets of elements depart from planes, all alike: sink of moulded parts, a "
+     .meaning = "Deviation of the retro facets of elements from planes, equal for all facets: sink of moulded parts, a "
                 "polynomial, a measured map.",
      .rows = form_rows(),
      .tables = kFormTables,
      .presence = Presence::optional,
      .when = kWithPlanes},
     {.name = "idealisation",
-     .meaning = "Idealisations, to be checked against theory.",
+     .meaning = "Idealisations, for comparisons with theory.",
      .rows = idealisation_rows(),
      .presence = Presence::implied}};
 
@@ -162,7 +170,7 @@ const Format kFormat = {"design",
                         "retrace.design/1",
                         "Design of a retroreflector array",
                         {.name = "",
-                         .meaning = "A part and the light on it.",
+                         .meaning = "Part, and the light that falls on it.",
                          .rows = kRootRows,
                          .tables = kTables,
                          .rules = design_rules()},

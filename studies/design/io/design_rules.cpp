@@ -389,51 +389,69 @@ constexpr schema::Words kEntranceKeys = {"front.turned", "front.mesh", "array.ex
 
 using schema::check_by;
 constexpr schema::Rule kRules[] = {
-    schema::Check{kSquareKeys, "Elements of a checker are square: base = width.", check_by<of_array<check_square>>},
-    schema::Check{kRoomKeys, "A finite array has room for one element between its margins, and for at most 1e8.",
-                  check_by<of_array<check_room>>},
-    schema::Check{kArrayOnSubstrateKeys, "A `[base]` is for finite arrays without margins, not `single`.",
-                  check_by<of_array<check_array_on_substrate>>},
-    schema::Check{kDihedralKeys, "Prisms have one error of angle, cube corners one for all dihedral edges or three.",
-                  check_by<of_part<check_dihedral_errors>>},
-    schema::Check{kTiltKeys,
-                  "A list of tilts has one for each facet: two for prisms, three for cube corners; 0 is none.",
-                  check_by<of_part<check_facet_tilts>>},
-    schema::Check{kRandomKeys, "Random tilts are for finite parts.", check_by<of_part<check_random_tilts>>},
-    schema::Check{kEdges, "Edges leave some of a facet: at most a quarter of the base, or a tenth of the aperture.",
-                  check_by<of_part<check_widths>>},
-    schema::Check{kChordKeys, "The number of chords is even.", check_by<of_part<check_chords>>},
-    schema::Check{kEdges, "Roots, and rims, have a radius or a chamfer, not both.", check_by<of_part<check_one_shape>>},
+    schema::Check{kSquareKeys, "Elements of the arrangement `checker` are square: `base_mm` equals `width_mm`.",
+                  check_by<of_array<check_square>>},
     schema::Check{
-        kRimKeys,
-        "The gap across roof edges, in a checker both gaps, is 0 or as wide as rounded or chamfered rims reach.",
-        check_by<of_part<check_land>>},
-    schema::Check{kScratchKeys, "At most 200 scratches, within the facet and clear of each other; none on a `[base]`.",
+        kRoomKeys,
+        "At least one element of a finite array must fit between its margins, and at most 1e8 elements are allowed.",
+        check_by<of_array<check_room>>},
+    schema::Check{kArrayOnSubstrateKeys,
+                  "A `[base]` is allowed only for finite arrays without margins, and not for the arrangement `single`.",
+                  check_by<of_array<check_array_on_substrate>>},
+    schema::Check{kDihedralKeys,
+                  "Prisms have one error of angle. Cube corners have one error for all dihedral edges, or three.",
+                  check_by<of_part<check_dihedral_errors>>},
+    schema::Check{
+        kTiltKeys,
+        "A list of tilts has one number for each facet: two for prisms, three for cube corners. 0 means no tilts.",
+        check_by<of_part<check_facet_tilts>>},
+    schema::Check{kRandomKeys, "Random tilts are allowed only for finite parts.",
+                  check_by<of_part<check_random_tilts>>},
+    schema::Check{kEdges,
+                  "Radii and chamfers of edges are at most a quarter of the base, or a tenth of the aperture, so that "
+                  "a part of each facet remains.",
+                  check_by<of_part<check_widths>>},
+    schema::Check{kChordKeys, "The number of chords must be even.", check_by<of_part<check_chords>>},
+    schema::Check{kEdges, "Roots have either a radius or a chamfer, not both. The same rule applies to rims.",
+                  check_by<of_part<check_one_shape>>},
+    schema::Check{kRimKeys,
+                  "The gap across roof edges, and in the arrangement `checker` both gaps, must be 0 or at least as "
+                  "wide as rounded or chamfered rims reach.",
+                  check_by<of_part<check_land>>},
+    schema::Check{kScratchKeys,
+                  "At most 200 scratches are allowed. They must lie within the facet and must not overlap. None are "
+                  "allowed on a `[base]`.",
                   check_by<of_part<check_scratches>>},
     schema::Check{kAngleKeys,
-                  "Apex angles of prisms with `dihedral_error_arcmin` and `facet_tilt_arcmin` are 60 to 120 degrees; "
-                  "facets of canted cubes, with these and six deviations of random tilts, at most 88 degrees steep.",
+                  "Apex angles of prisms, with `dihedral_error_arcmin` and `facet_tilt_arcmin`, must be 60 to 120 "
+                  "degrees. Facets of canted cube corners, with these errors and six standard deviations of random "
+                  "tilts, must be at most 88 degrees steep.",
                   check_by<of_part<check_angles>>},
-    schema::Check{kMaskKeys, "No mask on a `[base]`.", check_by<of_part<check_mask>>},
-    schema::Check{
-        kFacetsKeys,
-        "Tables of planes (`[part]` `facets`) are for finite arrays with neither `[base]` nor errors of angle.",
-        check_by<of_part<check_facet_planes>>},
+    schema::Check{kMaskKeys, "A mask is not allowed on a `[base]`.", check_by<of_part<check_mask>>},
+    schema::Check{kFacetsKeys,
+                  "Tables of planes (`[part]` `facets`) are allowed only for finite arrays without `[base]` and "
+                  "without errors of angle.",
+                  check_by<of_part<check_facet_planes>>},
     schema::Check{kSubstrateKeys,
-                  "A `[base]` bends less tightly than an element is wide and leaves facets at most 88 degrees steep; "
-                  "rounded or chamfered rims need elements that stand parallel, or a plane base and no gaps.",
+                  "The radius of curvature of a `[base]` must be at least the width of an element, and its facets must "
+                  "be at most 88 degrees steep. Rounded or chamfered rims need `elements` = `\"parallel\"`, or a plane "
+                  "base and no gaps.",
                   check_by<of_part<check_substrate_of_part>>},
-    schema::Check{kThicknessKeys, "The plate of an array covers rims that errors of angle or cant lift.",
+    schema::Check{kThicknessKeys,
+                  "The plate of an array must be thick enough to cover rims that errors of angle or a cant raise.",
                   check_by<of_part<check_thickness>>},
-    schema::Check{kBowlKeys, "Bowls behind balls reach no further than where those of neighbours meet.",
+    schema::Check{kBowlKeys,
+                  "Bowls behind balls extend at most to the angle at which the bowls of neighbouring balls meet.",
                   check_by<check_bowl>},
-    schema::Check{kHeightKeys,
-                  "A height of roughness above 0 needs its correlation length, one of waviness its period.",
-                  check_by<check_lengths>},
+    schema::Check{
+        kHeightKeys,
+        "A height of roughness above 0 needs its correlation length. A height of waviness above 0 needs its period.",
+        check_by<check_lengths>},
     schema::Check{kModelKeys,
-                  "Heights are 0 but for `\"harvey_shack\"`, which has both, and `\"microfacet\"`, which has waviness.",
+                  "Heights of roughness and waviness must be 0, except for `\"harvey_shack\"`, which uses both, and "
+                  "for `\"microfacet\"`, which uses the waviness.",
                   check_by<check_heights>},
-    schema::Check{kMaterialKeys, "A material has a name.", check_by<check_material>},
+    schema::Check{kMaterialKeys, "The name of the material must not be empty.", check_by<check_material>},
     schema::Precedence{schema::beside("body.refractive_index"), kIndexKeys, "on the refractive index",
                        "`body.refractive_index` takes precedence over the index of the material."},
     schema::Precedence{schema::is("idealisation.facets", kMirrorWord), kFacetCoatingKeys, "on the facets",
@@ -443,35 +461,36 @@ constexpr schema::Rule kRules[] = {
                        .effect = "on the absorption",
                        .meaning = "`body.absorption_per_mm` takes precedence over the absorption of the material.",
                        .is_refinement = true},
-    schema::Check{kAbsorptionKeys, "Wavelengths of a curve ascend.", check_by<check_absorption>},
-    schema::Check{kSpectrumKeys, "A list of lines has each wavelength once.", check_by<check_lines>},
+    schema::Check{kAbsorptionKeys, "The wavelengths of an absorption curve must ascend.", check_by<check_absorption>},
+    schema::Check{kSpectrumKeys, "A list of lines must have each wavelength only once.", check_by<check_lines>},
     schema::Check{kStokesKeys, "The degree of polarisation is at most 1: q^2 + u^2 + v^2 <= i^2.",
                   check_by<check_stokes>},
     schema::Check{kWetBackKeys,
-                  "A `[wet_back]` is for finite arrays without a `[base]`, not `single`; its rectangle has two lengths "
-                  "above 0, its disc a radius.",
+                  "A `[wet_back]` is allowed only for finite arrays without a `[base]`, and not for the arrangement "
+                  "`single`. The two lengths of its rectangle and the radius of its disc must be above 0.",
                   check_by<check_wet_back>},
     schema::Check{kLayerKeys,
-                  "At most 200 layers on a face. Layers without thickness are opaque: one on the facets, none on the "
-                  "entrance face.",
+                  "A face may have at most 200 layers. Layers without thickness are opaque: at most one is allowed on "
+                  "the facets, and none on the entrance face.",
                   check_by<check_layers>},
     schema::Check{kCoatingKeys,
-                  "Layers are for faces that are real and not coated otherwise; those behind balls make a mirror.",
+                  "Layers are allowed only on faces that are not idealised and have no other coating. Layers behind "
+                  "balls must form a mirror.",
                   check_by<check_coating>},
     schema::Check{kEntranceFaceKeys,
-                  "What covers or blurs an entrance face says what it is like; drops, dust and scratches cover at most "
-                  "all of it; haze is within its lobe; a rough face has no thick layers and no film. None of them on a "
-                  "lossless face, and on a `[front]` layers and film alone.",
+                  "A coverage of drops, dust or scratches above 0, and a haze above 0, need the keys that describe "
+                  "them. Drops, dust and scratches together cover at most the whole face, and the haze is at most the "
+                  "fraction of its lobe beyond 2.5 degrees. A rough face must not have thick layers or a film. A "
+                  "lossless face allows none of these keys; a `[front]` allows only layers and the film.",
                   check_by<check_entrance_face>},
     schema::Check{kMirrorKeys, "A bowl behind balls (`mirror_offset_mm` > 0) needs a mirror: aluminium or ideal.",
                   check_by<check_ball_mirror>},
-    schema::Check{kFormKeys, "Terms of a form are at most 45, each of degree 8 at most.", check_by<check_form>},
-    schema::Check{
-        kZoneKeys,
-        "Zones cover a finite part without margins, each place once, with at most 1000 regions and 1e5 elements, "
-        "in arrays that are neither `single` nor `pins`.",
-        check_by<check_zones>},
-    schema::Check{kEntranceKeys, "A `[front]` has one file and a finite part.", check_by<check_entrance>}};
+    schema::Check{kFormKeys, "A form has at most 45 terms, each of a degree of at most 8.", check_by<check_form>},
+    schema::Check{kZoneKeys,
+                  "Zones must cover every point of a finite part without margins exactly once. They have at most 1000 "
+                  "regions and 1e5 elements, and their arrangement is neither `single` nor `pins`.",
+                  check_by<check_zones>},
+    schema::Check{kEntranceKeys, "A `[front]` needs one file and a finite part.", check_by<check_entrance>}};
 
 }  // namespace
 

@@ -32,23 +32,27 @@ constexpr Condition kCantOnly[] = {kElementOfNoBall, is(kKind, geometry::kCubeKi
 constexpr Condition kBallOnly[] = {is(kKind, kBall)};
 
 constexpr Row kElementRows[] = {
-    {"kind", Word{geometry::kElementKinds}, kRequired, "What the elements are."},
+    {"kind", Word{geometry::kElementKinds}, kRequired,
+     "Kind of the elements: prisms, hexagonal or triangular cube corners, or balls."},
     where(kSizeKeys.base_mm, kPrismOnly),
     where(kSizeKeys.width_mm, kPrismOnly),
     where(geometry::kApexAngleKey, kPrismOnly),
     where(kSizeKeys.aperture_mm, kCubeOnly),
     // Facets would become vertical at a cant of 35.26 degrees.
     {"cant_deg", Number{{.low = 0.0, .high = 30.0}}, 0.0,
-     "Angle between the cube's axis, from the apex into the part, and +z.", kCantOnly, kZeroIsNone},
-    {"cant_azimuth_deg", Number{kAzimuth}, 0.0, "Azimuth towards which the axis leans, from +x towards +y.", kCantOnly,
+     "Angle between +z and the axis of the cube corner, which runs from the apex into the part.", kCantOnly,
      kZeroIsNone},
-    {"diameter_mm", kSize, kRequired, "Diameter of a ball.", kBallOnly},
-    {"mirror_offset_mm", kGap, Computed{"0: the ball's own back is coated"},
-     "From the ball to a mirror that is a bowl about the same centre; it needs a mirror, of aluminium or ideal.",
+    {"cant_azimuth_deg", Number{kAzimuth}, 0.0, "Azimuth of the direction in which the axis leans, from +x towards +y.",
+     kCantOnly, kZeroIsNone},
+    {"diameter_mm", kSize, kRequired, "Diameter of the balls.", kBallOnly},
+    {"mirror_offset_mm", kGap, Computed{"0: the back of the ball itself is coated"},
+     "Distance from the ball to a mirror behind it, which is a bowl with the same centre. It needs a mirror, of "
+     "aluminium or ideal.",
      kBallOnly},
     {"mirror_half_angle_deg", Number{{.low = 0.0, .low_included = false, .high = 90.0}},
-     Computed{"90, or as far as the bowls of neighbours leave room"},
-     "How far the mirror reaches from -z, seen from the ball's centre; at most to where the bowls of neighbours meet.",
+     Computed{"90, or the angle at which the bowls of neighbouring balls meet if that is smaller"},
+     "Angle from -z, seen from the centre of the ball, up to which the mirror extends. It is at most the angle at "
+     "which the bowls of neighbouring balls meet.",
      kBallOnly}};
 
 constexpr Condition kOfPrisms[] = {is(kKind, kRtp)};
@@ -74,32 +78,35 @@ constexpr Condition kBallGapOnly[] = {is(kKind, kBall), is_not(kArrangement, kSi
 
 constexpr Row kArrayRows[] = {
     {"arrangement", Word{geometry::kPrismArrangements}, "aligned",
-     "Arrangement of the elements; `\"checker\"` needs base = width.", kOfPrisms},
+     "Arrangement of the elements. `\"checker\"` needs equal `base_mm` and `width_mm`.", kOfPrisms},
     {"arrangement", Word{geometry::kHexagonalArrangements}, "honeycomb",
-     "Arrangement of the elements; `\"pins\"` is a honeycomb of the ends of pins, see [base].", kOfHexagons},
+     "Arrangement of the elements. `\"pins\"` is a honeycomb of the ends of pins; see [base].", kOfHexagons},
     {"arrangement", Word{geometry::kTriangularArrangements}, "triangular", geometry::kArrangementMeaning, kOfTriangles},
-    {"arrangement", Word{kBallArrangements}, "packed", "Arrangement of the balls; `\"packed\"` is an infinite layer.",
+    {"arrangement", Word{kBallArrangements}, "packed", "Arrangement of the balls. `\"packed\"` is an infinite layer.",
      kOfBalls},
-    {"extent", Word{kFinite}, "finite", "A single element is finite.", kOfSingle},
-    {"extent", Word{kInfinite}, "infinite", "A layer of balls is endless.", kOfPacked},
-    {"extent", Word{kExtents}, "finite", "`\"infinite\"`: one periodic cell.", kOfOthers},
+    {"extent", Word{kFinite}, "finite", "Extent of the array. A single element is finite.", kOfSingle},
+    {"extent", Word{kInfinite}, "infinite", "Extent of the array. A layer of balls is infinite.", kOfPacked},
+    {"extent", Word{kExtents}, "finite", "Extent of the array. `\"infinite\"` is one periodic cell.", kOfOthers},
     where(kSizeKeys.x_length_mm, kFiniteOnly),
     where(kSizeKeys.y_length_mm, kFiniteOnly),
     where(kSizeKeys.x_offset_mm, kFiniteOnly, kZeroIsNone),
     where(kSizeKeys.y_offset_mm, kFiniteOnly, kZeroIsNone),
-    {"partial_elements", Word{kPartialElements}, "cut", "What becomes of elements across the border.", kNoBallArray},
+    {"partial_elements", Word{kPartialElements}, "cut",
+     "Treatment of elements that cross the border: `\"cut\"` cuts them at the border, `\"omit\"` leaves them out.",
+     kNoBallArray},
     where(kSizeKeys.x_gap_mm, kGapOnly, kZeroIsNone),
     where(kSizeKeys.y_gap_mm, kGapOnly, kZeroIsNone),
     where(geometry::kOverlapKey, kOffsetOnly),
     where(geometry::kShiftedRowsKey, kOffsetOnly),
     {"mask", File{"a picture"}, kNone,
-     "A picture with one pixel for each element, whose dark pixels are elements; row 0 is the row of largest y. The "
-     "others, and partial elements, are left out: there is flat back. Not together with `angle_error_sigma_arcmin` "
-     "(but for `retrace job`) or `[part]` `facets`.",
+     "Picture with one pixel for each element; row 0 is the row of largest y. Only dark pixels are elements; all other "
+     "cells, and partial elements, become flat back. Not together with `angle_error_sigma_arcmin` (except for `retrace "
+     "job`) or `[part]` `facets`.",
      kMaskOnly},
     {"mask_threshold", Number{{.low = 0.0, .low_included = false, .high = 1.0}}, 0.7,
-     "Pixels with grey < threshold * 255 are elements (0.7: 178 and below).", kThresholdOnly},
-    {"gap_mm", kGap, 0.0, "Between neighbouring balls.", kBallGapOnly}};
+     "Threshold for dark pixels: pixels with grey < threshold * 255 are elements (0.7: 178 and below).",
+     kThresholdOnly},
+    {"gap_mm", kGap, 0.0, "Gap between neighbouring balls.", kBallGapOnly}};
 
 constexpr std::string_view kScaleMeaning =
     "Factor from the unit of the STL file to mm: 1 for mm, 1000 for metres, 25.4 for inches, 0.001 for micrometres.";
@@ -111,33 +118,34 @@ constexpr Condition kFacetsOnly[] = {without("plate_mm", kBesidePlate),
 
 constexpr Row kPartRows[] = {
     {"mesh", File{"an STL file"}, kNone,
-     "An STL file, binary or ASCII, in the part frame, in place of elements; at most 10 million triangles.", kMeshOnly},
+     "Mesh of the part, binary or ASCII, in the part frame, in place of elements. It has at most 10 million triangles.",
+     kMeshOnly},
     {"scale", kSize, 1.0, kScaleMeaning, kWithMesh},
     {"allow_open", Flag{}, false,
-     "Whether to trace a mesh with defects. Openings are closed by flat pieces, and bodies that intersect are united. "
+     "Whether to trace a mesh with defects. Openings are closed by flat patches, and bodies that intersect are united. "
      "A mesh that touches itself along edges is traced unchanged. A warning reports each defect; results apply to the "
      "repaired mesh.",
      kWithMesh},
     {"plate_mm", Numbers{2, kSaneSize, "lengths, along x and y"}, kNone,
-     "Lengths along x and y of a plate whose flat back on z = 0 is its one retro facet, in place of elements."},
+     "Lengths along x and y of a plate, in place of elements. Its flat back on z = 0 is its only retro facet."},
     {"facets", File{"a table of planes"}, kNone,
-     "Of finite parts: a table of the planes in which their facets lie, in place of the nominal ones.", kFacetsOnly}};
+     "Table of the planes of the facets of a finite part, in place of the nominal planes.", kFacetsOnly}};
 
 constexpr Condition kTurnedOnly[] = {without("mesh", "not allowed beside mesh: a part has one front")};
 constexpr Condition kSideOnly[] = {beside("mesh")};
 
 constexpr Row kEntranceRows[] = {
     {"turned", File{"a turned part"}, kNone,
-     "The file of a turned part (turning_file.md): its exact surface, material below.", kTurnedOnly},
-    {"mesh", File{"an STL file"}, kNone, "An STL file, binary or ASCII, whose triangles are the front."},
+     "File of a turned part (turning_file.md). Its exact surface is used, with the material below it.", kTurnedOnly},
+    {"mesh", File{"an STL file"}, kNone, "Mesh, binary or ASCII, whose triangles are the entrance surface."},
     {"scale", kSize, 1.0, kScaleMeaning, kSideOnly},
     {"mesh_side", Word{kSides}, "top",
-     "`\"top\"`: the front are its triangles that look towards +z; `\"bottom\"`: those that look towards -z, turned "
-     "over, which is what `machined.stl` of `retrace turn` needs: it is the counterpart, moulded in the turned "
-     "surface.",
+     "Side of the mesh that is the entrance surface. `\"top\"`: the triangles that face +z. `\"bottom\"`: the "
+     "triangles that face -z, turned over; this is needed for `machined.stl` of `retrace turn`, which is the "
+     "counterpart that is moulded in the turned surface.",
      kSideOnly},
-    {"centre_mm", Numbers{2, kPlace, "places, x and y"}, Computed{"the part's middle"},
-     "`[x, y]`: where in the part's plane the file's origin lies."}};
+    {"centre_mm", Numbers{2, kPlace, "places, x and y"}, Computed{"the centre of the part"},
+     "`[x, y]`: position of the file's origin in the plane of the part."}};
 
 constexpr NumberRange kLines{.low = 1.0, .high = 1e6};
 constexpr Condition kBesideLines[] = {without("mask", "only allowed beside rows or columns"),
@@ -148,27 +156,33 @@ constexpr Condition kBesideLines[] = {without("mask", "only allowed beside rows 
 constexpr Condition kBesideMask[] = {beside("mask")};
 constexpr Row kZoneRows[] = {
     {"share", Number{{.low = 0.0, .low_included = false, .high = 1.0}}, kNone,
-     "Of the part's area, as a stripe over its whole height; stripes stand side by side along x, in their order, and "
-     "their shares add to 1, to 1e-6."},
+     "Fraction of the part's area. The zone is a stripe over the whole height of the part. Stripes are placed side by "
+     "side along x, in the order of the file, and their fractions add up to 1, to 1e-6."},
     {"rectangles_mm", NumberRows{4, kPlace, 1, 1000, "rectangles"}, kNone,
-     "`[[x_from, y_from, x_to, y_to], ...]`: rectangles of the part's plan, each with an array of its own."},
+     "`[[x_from, y_from, x_to, y_to], ...]`: rectangles in the plan of the part, each with an array of its own."},
     {"polygon_mm", NumberRows{2, kPlace, 3, 100, "points"}, kNone,
-     "`[[x, y], ...]`: the corners of a convex polygon of the part's plan."},
+     "`[[x, y], ...]`: corners of a convex polygon in the plan of the part."},
     {"rows", NumberOrNumbers{kLines, true}, kNone,
-     "Elements of the array all over the part: those of these rows along x, counted from 1, that of least y."},
-    {"columns", NumberOrNumbers{kLines, true}, kNone, "Likewise those of these columns along y, counted from least x."},
-    {"every", Whole{kLines}, kNone, "Rows, or columns, are counted from 1 again after so many.", kBesideLines},
+     "Numbers of rows along x whose elements belong to the zone, over the whole part. Rows are counted from 1 at the "
+     "smallest y."},
+    {"columns", NumberOrNumbers{kLines, true}, kNone,
+     "Numbers of columns along y whose elements belong to the zone, over the whole part. Columns are counted from 1 at "
+     "the smallest x."},
+    {"every", Whole{kLines}, kNone, "Number of rows, or columns, after which the count starts again at 1.",
+     kBesideLines},
     {"mask", File{"a picture"}, kNone,
-     "A picture that covers the part, row 0 at largest y: the elements whose centroids its dark pixels hold."},
+     "Picture that covers the part; row 0 is at the largest y. Elements whose centroid is on a dark pixel belong to "
+     "the zone."},
     {"mask_threshold", Number{{.low = 0.0, .low_included = false, .high = 1.0}}, 0.7,
-     "Pixels with grey < threshold * 255 are dark.", kBesideMask},
-    {"rest", Flag{}, kNone, "true: all elements that are of no other zone."},
+     "Threshold for dark pixels: pixels with grey < threshold * 255 are dark.", kBesideMask},
+    {"rest", Flag{}, kNone, "true: the zone has all elements that belong to no other zone."},
     {"rotation_deg", Number{kAzimuth}, 0.0,
-     "By which its elements are turned in the plane, from +x towards +y, about the middle of the region's box; of "
-     "rows, columns, masks and the rest each about its own centroid, to the same outline."},
+     "Rotation of the elements in the plane, from +x towards +y, about the centre of the region's bounding box. "
+     "Elements of rows, columns, masks and the rest are each rotated about their own centroid and must keep their "
+     "outline."},
     {"set", Texts{}, kNone,
-     "`[\"KEY=VALUE\", ...]`: what is other than the design says, as with `--set`: keys of `[element]`, of `[array]` "
-     "but for extent, lengths, margins and mask, and angles and edges of `[surface]`."}};
+     "`[\"KEY=VALUE\", ...]`: values that differ from the design, written as for `--set`. Allowed are keys of "
+     "`[element]`, keys of `[array]` except extent, lengths, margins and mask, and angles and edges of `[surface]`."}};
 
 }  // namespace
 

@@ -31,23 +31,26 @@ constexpr Condition kOfTriangular[] = {is("distribution", kTriangular)};
 
 constexpr Row kParameterRows[] = {
     {"key", TextOrTexts{"a key of a design such as \"element.base_mm\", or a list of keys"}, kRequired,
-     "What it sets: a key of a design, of `[analysis]` or of `[machining]`; a list of keys gives all of them one "
-     "value. "
-     "`\"design\"`: the values are design files."},
-    {"name", Text{}, Computed{"the first key"}, "Of the column in results."},
-    {"values", Anything{}, kNone, "Numbers, words or lists.", kNoDistribution},
+     "Keys that the parameter sets: a key of a design, of `[analysis]` or of `[machining]`, or a list of keys that all "
+     "get one value. `\"design\"`: the values are design files."},
+    {"name", Text{}, Computed{"the first key"}, "Name of the column in results."},
+    {"values", Anything{}, kNone, "Values of the parameter: numbers, words or lists.", kNoDistribution},
     {"from", Number{}, kNone,
-     "First value, or lower end of an interval for samples; of `\"uniform\"` and `\"triangular\"` parts; where "
-     "`\"normal\"` ones are cut off.",
+     "First value, or lower end of an interval for samples. It is the lower end of `\"uniform\"` and `\"triangular\"` "
+     "distributions, and `\"normal\"` distributions are cut off there.",
      kNoValues},
-    {"to", Number{}, kNone, "Last value, the upper end likewise.", kNoValues},
-    {"step", Number{kAboveZero}, kNone, "Values are from + i step, the end included.", kSteps},
-    {"count", Whole{{.low = 2.0, .high = 100'000.0}}, kNone, "So many values, ends included.", kCounts},
-    {"scale", Word{kScales}, "linear", "`\"log\"`: values in equal ratios.", kSteps},
-    {"distribution", Word{kDistributions}, kNone, "How manufacture spreads it, for samples and `retrace tolerance`."},
-    {"mean", Number{}, kRequired, "Of the distribution.", kOfNormal},
-    {"sigma", Number{kAboveZero}, kRequired, "Standard deviation.", kOfNormal},
-    {"mode", Number{}, kRequired, "Its most frequent value, from `from` to `to`.", kOfTriangular}};
+    {"to", Number{}, kNone,
+     "Last value, or upper end of an interval for samples. It is the upper end of `\"uniform\"` and `\"triangular\"` "
+     "distributions, and `\"normal\"` distributions are cut off there.",
+     kNoValues},
+    {"step", Number{kAboveZero}, kNone, "Step between values, which are from + i step, including the end.", kSteps},
+    {"count", Whole{{.low = 2.0, .high = 100'000.0}}, kNone, "Number of values, including both ends.", kCounts},
+    {"scale", Word{kScales}, "linear", "Spacing of the values. `\"log\"`: equal ratios.", kSteps},
+    {"distribution", Word{kDistributions}, kNone,
+     "Distribution of the parameter in manufacture, for samples and `retrace tolerance`."},
+    {"mean", Number{}, kRequired, "Mean of the distribution.", kOfNormal},
+    {"sigma", Number{kAboveZero}, kRequired, "Standard deviation of the distribution.", kOfNormal},
+    {"mode", Number{}, kRequired, "Most frequent value of the distribution, from `from` to `to`.", kOfTriangular}};
 
 // Keys that describe the quantities that are computed for every design, with their words and conditions.
 
@@ -88,45 +91,56 @@ constexpr Condition kOfFarField[] = {is("kind", kFarField)};
 constexpr Condition kOfCone[] = {is("kind", kInCone)};
 constexpr Condition kOfPhotometry[] = {is("kind", kPhotometry)};
 constexpr Computed kOfAnalysis{"that of [analysis]"};
-constexpr Computed kOfCommand{"as `retrace photometry`"};
+constexpr Computed kOfCommand{"as for `retrace photometry`"};
 constexpr Kind kMiddlesOfParts = ByName{Number{}, kMiddles, "a number, a list or {from, to, count}"};
 constexpr std::string_view kAngles =
-    "A number, a list, or `{from = 0, to = 60, count = 8}`: the middles of so many equal parts.";
+    "Angles of the directions: a number, a list, or `{from = 0, to = 60, count = 8}`, which means the centres of "
+    "`count` equal intervals.";
 
 constexpr Row kQuantityRows[] = {
-    {"kind", Word{kKinds}, kRequired, "What it is."},
-    {"name", Text{}, Computed{"the kind"}, "Of its column, where the kind would be no unique name."},
+    {"kind", Word{kKinds}, kRequired, "Kind of quantity."},
+    {"name", Text{}, Computed{"the kind"},
+     "Name of the column, for quantities whose kind alone would not be a unique name."},
     {"incidence_deg", NumberOrNumbers{kIncidence}, kOfAnalysis, kAngles, kOfShares},
     {"incidence_deg", kMiddlesOfParts, kNone, kAngles, kOfShares},
     {"azimuth_deg", NumberOrNumbers{{}}, kOfAnalysis, kAngles, kOfShares},
     {"azimuth_deg", kMiddlesOfParts, kNone, kAngles, kOfShares},
     {"over_directions", Word{kReductions}, "mean",
-     "`\"least\"`: the worst direction; `\"each\"`: one quantity a direction, called `NAME.1`, `NAME.2`, ...",
+     "Combination of the directions. `\"least\"`: the minimum over all directions; `\"each\"`: one quantity for each "
+     "direction, named `NAME.1`, `NAME.2`, ...",
      kOfShares},
-    {"weighting", Word{kWeightings}, "uniform", "`\"solid_angle\"`: directions count by \\|sin incidence\\|.",
-     kOfShares},
-    {"account", Word{raytrace::kAccountNames}, kRequired, "Of the ledger.", kOfLedger},
-    {"from_deg", Number{kHalfAngle}, kRequired, "Half-angle round the direction to the source.", kOfFarField},
-    {"to_deg", Number{kHalfAngle}, kRequired, "Half-angle up to which light counts.", kOfFarField},
-    {"acceptance_half_angle_deg", Number{kHalfAngle}, Computed{"the design's narrowest"}, "In air.", kOfCone},
+    {"weighting", Word{kWeightings}, "uniform",
+     "Weighting of the directions. `\"solid_angle\"`: by \\|sin incidence\\|.", kOfShares},
+    {"account", Word{raytrace::kAccountNames}, kRequired, "Account of the ledger.", kOfLedger},
+    {"from_deg", Number{kHalfAngle}, kRequired,
+     "Half-angle, around the direction to the source, from which light counts.", kOfFarField},
+    {"to_deg", Number{kHalfAngle}, kRequired,
+     "Half-angle, around the direction to the source, up to which light counts.", kOfFarField},
+    {"acceptance_half_angle_deg", Number{kHalfAngle}, Computed{"the smallest half-angle of the design"},
+     "Half-angle of the acceptance cone, in air.", kOfCone},
     {"standard", Text{"r150, j594, bicycle or the name of a limits file"}, kRequired,
-     "A shipped standard, or a limits file from the folder of the study.", kOfPhotometry},
-    {"class", Text{}, kOfCommand, "Of the standard.", kOfPhotometry},
-    {"colour", Text{}, kOfCommand, "Of the standard.", kOfPhotometry},
-    {"area_cm2", Number{{.low = 0.0, .low_included = false, .high = 1e6}}, kRequired, "Of the part.", kOfPhotometry},
-    {"figure", Word{kFigures}, "margin",
-     "`\"margin\"`: value over limit less 1, so that at least 0 passes; `\"r_a\"`: in cd/(lx m2).", kOfPhotometry},
-    {"points", Word{kPoints}, "worst",
-     "`\"worst\"`: the least of all test points; `\"each\"`: one quantity a point, called `NAME.1`, `NAME.2`, ...; "
-     "`\"each_reading\"`: one for each place where a point is measured, V beside it and turns of the part, called "
-     "`NAME.1.1`, `NAME.1.2`, ...; or the number of a point, from 1, as `retrace photometry` lists them.",
+     "Shipped standard, or a limits file relative to the folder of the study.", kOfPhotometry},
+    {"class", Text{}, kOfCommand, "Class of the standard.", kOfPhotometry},
+    {"colour", Text{}, kOfCommand, "Colour of the standard.", kOfPhotometry},
+    {"area_cm2", Number{{.low = 0.0, .low_included = false, .high = 1e6}}, kRequired, "Area of the part.",
      kOfPhotometry},
-    {"points", Whole{{.low = 1.0, .high = 10'000.0}}, kNone, "The number of a point.", kOfPhotometry},
-    {"rotation_deg", NumberOrNumbers{{}}, kOfCommand, "Of the part about its axis.", kOfPhotometry},
+    {"figure", Word{kFigures}, "margin",
+     "Result for each test point. `\"margin\"`: value divided by limit, minus 1, so that at least 0 passes; `\"r_a\"`: "
+     "in cd/(lx m2).",
+     kOfPhotometry},
+    {"points", Word{kPoints}, "worst",
+     "Test points. `\"worst\"`: the minimum of all test points; `\"each\"`: one quantity for each point, named "
+     "`NAME.1`, `NAME.2`, ...; `\"each_reading\"`: one quantity for each reading of a point, which is measured at each "
+     "angle V next to the mirror image of the lamp and at each rotation of the part, named `NAME.1.1`, `NAME.1.2`, "
+     "...; or the number of a point, from 1, as `retrace photometry` lists them.",
+     kOfPhotometry},
+    {"points", Whole{{.low = 1.0, .high = 10'000.0}}, kNone, "Number of a point.", kOfPhotometry},
+    {"rotation_deg", NumberOrNumbers{{}}, kOfCommand, "Rotations of the part about its axis.", kOfPhotometry},
     {"window_deg", Number{{.low = 0.05, .high = 10.0}}, kOfCommand, "Half-width of the far field.", kOfPhotometry},
-    {"light", Word{kLights}, "a", "`\"design\"`: what the design says.", kOfPhotometry},
-    {"far_field", Word{kFarFields}, "diffracted", "`\"geometric\"` is quicker.", kOfPhotometry},
-    {"dye", Text{}, kOfCommand, "Of a coloured lens.", kOfPhotometry}};
+    {"light", Word{kLights}, "a", "Light source. `\"design\"`: the light of the design.", kOfPhotometry},
+    {"far_field", Word{kFarFields}, "diffracted", "Method for the far field. `\"geometric\"` is faster.",
+     kOfPhotometry},
+    {"dye", Text{}, kOfCommand, "Dye of a coloured lens.", kOfPhotometry}};
 
 // Keys of the tables [analysis] and [machining], with their words and conditions.
 
@@ -136,16 +150,17 @@ constexpr Words kCutoffEngineWords = {"auto", "exact", "montecarlo", "cell", "em
 constexpr Condition kOfRays[] = {is("engine", kRayEngineWords)};
 constexpr Condition kOfCutoff[] = {is("engine", kCutoffEngineWords)};
 constexpr Row kAnalysisRows[] = {
-    {"incidence_deg", Number{kIncidence}, 0.0, "For quantities that do not give their own."},
-    {"azimuth_deg", Number{{.low = -360.0, .high = 360.0}}, 0.0, "For quantities that do not give their own."},
+    {"incidence_deg", Number{kIncidence}, 0.0, "Angle of incidence, for quantities that do not give their own."},
+    {"azimuth_deg", Number{{.low = -360.0, .high = 360.0}}, 0.0,
+     "Azimuth of the source, for quantities that do not give their own."},
     {"rotation_deg", Number{{.low = -360.0, .high = 360.0}}, 0.0,
      "Rotation of the part about its normal, counter-clockwise as seen from the light, for all optical quantities."},
-    {"engine", Word{kEngines}, "auto", "As `retrace rre --engine`."},
+    {"engine", Word{kEngines}, "auto", "Engine, as for `retrace rre --engine`."},
     {"target_error", Number{{.low = 0.0, .low_included = false, .high = 1.0, .high_included = false}}, Computed{"1e-4"},
-     "As for `retrace rre --target-error`. Needs a quantity of RRE."},
+     "Target error, as for `retrace rre --target-error`. It needs a quantity of RRE."},
     {"samples", Whole{{.low = 1.0, .high = 0x1p36}}, kNone, "Number of rays, as for `retrace rre --samples`.", kOfRays},
     {"cutoff", Number{{.low = 0.0, .high = 1.0, .high_included = false}}, kNone,
-     "As for `retrace rre --cutoff`. Photometry by rays has no cut-off.", kOfCutoff}};
+     "Cut-off power, as for `retrace rre --cutoff`. Photometry by rays has no cut-off.", kOfCutoff}};
 
 constexpr Words kStrategies = {"two-step", "unidirectional"};
 constexpr Words kUnidirectional = {"unidirectional"};
@@ -179,26 +194,30 @@ void set_surface(MachiningProcess& process, const Value& value) {
 using Process = MachiningProcess;
 constexpr Row kMachiningRows[] = {
     {"tool_width_mm", Number{kSane}, Computed{"the element's width"},
-     "An element wider than the tool takes several passes.", access_by<tool_width, set_tool_width>},
-    {"clearance_um", Number{kSaneOrNone}, 200.0, "Normal to the face of the workpiece.",
+     "Width of the tool. An element wider than the tool needs several passes.", access_by<tool_width, set_tool_width>},
+    {"clearance_um", Number{kSaneOrNone}, 200.0, "Clearance of the tool, normal to the face of the workpiece.",
      access<&Process::clearance_um>},
-    {"roughing_depth_um", Number{kSane}, 15.0, "Of a cut.", access<&Process::roughing_depth_um>},
-    {"finishing_depth_um", Number{kSaneOrNone}, 5.0, "Of a cut.", access<&Process::finishing_depth_um>},
-    {"finishing_cuts", Whole{{.low = 0.0, .high = 1000.0}}, 2.0, "Of each facet.", access<&Process::finishing_cuts>,
-     kFinishing},
-    {"plough_length_um", Number{kSaneOrNone}, 100.0, "Of every roughing cut.", access<&Process::plough_length_um>},
-    {"roughing_feed_mm_per_min", Number{kSane}, 50.0, "Of roughing cuts.", access<&Process::roughing_feed_mm_per_min>},
-    {"finishing_feed_mm_per_min", Number{kSane}, 20.0, "Of finishing cuts.",
+    {"roughing_depth_um", Number{kSane}, 15.0, "Depth of a roughing cut.", access<&Process::roughing_depth_um>},
+    {"finishing_depth_um", Number{kSaneOrNone}, 5.0, "Depth of a finishing cut.", access<&Process::finishing_depth_um>},
+    {"finishing_cuts", Whole{{.low = 0.0, .high = 1000.0}}, 2.0, "Number of finishing cuts of each facet.",
+     access<&Process::finishing_cuts>, kFinishing},
+    {"plough_length_um", Number{kSaneOrNone}, 100.0, "Length of the plough of every roughing cut.",
+     access<&Process::plough_length_um>},
+    {"roughing_feed_mm_per_min", Number{kSane}, 50.0, "Feed of roughing cuts.",
+     access<&Process::roughing_feed_mm_per_min>},
+    {"finishing_feed_mm_per_min", Number{kSane}, 20.0, "Feed of finishing cuts.",
      access<&Process::finishing_feed_mm_per_min>},
-    {"traverse_feed_mm_per_min", Number{kSane}, 200.0, "Between cuts.", access<&Process::traverse_feed_mm_per_min>},
-    {"dwell_s", Number{{.low = 0.0, .high = 3600.0}}, 0.1, "At every root.", access<&Process::dwell_s>},
-    {"strategy", Word{kStrategies}, "two-step", "`\"unidirectional\"` finishes no facet.",
+    {"traverse_feed_mm_per_min", Number{kSane}, 200.0, "Feed between cuts.",
+     access<&Process::traverse_feed_mm_per_min>},
+    {"dwell_s", Number{{.low = 0.0, .high = 3600.0}}, 0.1, "Dwell time at every root.", access<&Process::dwell_s>},
+    {"strategy", Word{kStrategies}, "two-step", "Cutting strategy. `\"unidirectional\"` has no finishing cuts.",
      access_by<strategy, set_strategy>},
-    {"edge_radius_um", Number{{.low = 0.0, .high = 1000.0}}, 0.0, "Of the tool's cutting edge.",
+    {"edge_radius_um", Number{{.low = 0.0, .high = 1000.0}}, 0.0, "Radius of the tool's cutting edge.",
      access<&Process::edge_radius_um>},
     {"surface", Word{kSurfaces}, "as_designed",
-     "`\"as_cut\"`: facets have the roughness and waviness that the strategy was published to leave, roots the radius "
-     "of the edge, whatever the design says; `--set` and parameters of the study count more.",
+     "Surface of the facets. `\"as_cut\"`: facets have the published roughness and waviness of the strategy, and roots "
+     "have the radius of the edge, instead of the values of the design. `--set` and parameters of the study take "
+     "precedence.",
      access_by<surface, set_surface>}};
 
 // Keys of the sweep, the tolerance study and the optimization, with their words and conditions.
@@ -209,28 +228,29 @@ constexpr Condition kOfSampled[] = {
     is("combine", kSampled, "only allowed for combine = \"sobol\", \"latin_hypercube\" and \"monte_carlo\"")};
 constexpr Row kSweepRows[] = {
     {"combine", Word{kCombinations}, "grid",
-     "`\"grid\"`: every value with every other, the last parameter fastest; `\"zipped\"`: the first values of all, the "
-     "second, ...; `\"sobol\"`: Owen-scrambled Sobol points, best with a power of two; `\"latin_hypercube\"`; "
-     "`\"monte_carlo\"`: each point drawn by itself."},
-    {"samples", Whole{{.low = 1.0, .high = 1'000'000.0}}, kRequired, "Points.", kOfSampled}};
+     "Combination of the values of the parameters. `\"grid\"`: every value with every other, the last parameter "
+     "fastest; `\"zipped\"`: the first values of all parameters, then the second values, ...; `\"sobol\"`: "
+     "Owen-scrambled Sobol points, best with a power of two; `\"latin_hypercube\"`; `\"monte_carlo\"`: independent "
+     "random points."},
+    {"samples", Whole{{.low = 1.0, .high = 1'000'000.0}}, kRequired, "Number of points.", kOfSampled}};
 
 constexpr Words kSense = {"most", "least"};
 constexpr std::string_view kQuantityOrWeights = "a quantity or a table of weights";
 constexpr std::string_view kObjective =
-    "A quantity, or a table of weights such as `{rre = 1, machining_time_h = -0.001}`.";
+    "Objective: a quantity, or a table of weights such as `{rre = 1, machining_time_h = -0.001}`.";
 constexpr Row kOptimiseRows[] = {
     {"maximize", Text{kQuantityOrWeights}, kNone, kObjective},
     {"maximize", ByName{Number{}, {}, kQuantityOrWeights}, kNone, kObjective},
     {"minimize", Text{kQuantityOrWeights}, kNone, kObjective},
     {"minimize", ByName{Number{}, {}, kQuantityOrWeights}, kNone, kObjective},
     {"front", ByName{Word{kSense}, {}, "a table such as {rre = \"most\", machining_time_h = \"least\"}"},
-     Computed{"the objective's quantities"}, "Axes of the Pareto front."},
+     Computed{"the quantities of the objective"}, "Axes of the Pareto front."},
     {"scan", Whole{{.low = 3.0, .high = 100'000.0}}, 65.0,
-     "Designs of the first look for every combination of discrete values: a line from end to end for one continuous "
-     "parameter, corners and Sobol points for more."},
-    {"bands_of", Texts{}, kNone, "Keys of the design, or of parameters, whose tolerance bands are asked for."},
+     "Number of designs in the first scan, for each combination of discrete values: a line from end to end for one "
+     "continuous parameter, corners and Sobol points for more."},
+    {"bands_of", Texts{}, kNone, "Keys of the design, or of parameters, for which tolerance bands are computed."},
     {"band_loss_percent", Number{{.low = 0.0, .low_included = false, .high = 100.0}}, 1.0,
-     "Loss of the objective's first quantity that ends a band."}};
+     "Loss of the objective's first quantity at which a band ends."}};
 constexpr Words kObjectives = {"maximize", "minimize"};
 constexpr Rule kOptimiseRules[] = {
     OneOf{kObjectives, "either maximize or minimize is required: a quantity or a table of weights"}};
@@ -238,95 +258,110 @@ constexpr Rule kOptimiseRules[] = {
 constexpr Words kIndices = {"none", "sobol"};
 constexpr Row kToleranceRows[] = {
     {"samples", Whole{{.low = 2.0, .high = 1'000'000.0}}, 256.0,
-     "Rows. A row is two parts, and as many more points as there are parameters; without indices one part."},
-    {"sampling", Word{kSampled}, "sobol", "How they are drawn."},
-    {"indices", Word{kIndices}, "sobol", "Sobol indices: which parameter causes the spread."},
-    {"confidence_percent", Number{{.low = 50.0, .high = 99.99}}, 95.0, "Of all intervals."},
-    {"least_yield_percent", Number{kPercent}, kNone, "A yield below it makes the answer no (exit code 1)."}};
+     "Number of rows. A row consists of two parts and one more point for each parameter; without indices, it is one "
+     "part."},
+    {"sampling", Word{kSampled}, "sobol", "Method by which the rows are sampled."},
+    {"indices", Word{kIndices}, "sobol", "Sobol indices, which show the parameters that cause the spread."},
+    {"confidence_percent", Number{{.low = 50.0, .high = 99.99}}, 95.0, "Confidence level of all intervals."},
+    {"least_yield_percent", Number{kPercent}, kNone,
+     "Minimum yield. A yield below it makes the answer no (exit code 1)."}};
 
 constexpr Words kOver = {"cell", "part"};
-constexpr Row kConstraintRows[] = {{"quantity", Text{"a quantity of the study"}, kRequired, "What is limited."},
-                                   {"min", Number{}, kNone, "Its least value."},
-                                   {"max", Number{}, kNone, "Its largest value."},
-                                   {"over", Word{kOver}, "cell",
-                                    "Of `retrace compose`: `\"cell\"`, cells that break it are none of the family; "
-                                    "`\"part\"`, it is on the mean over the part."}};
+constexpr Row kConstraintRows[] = {
+    {"quantity", Text{"a quantity of the study"}, kRequired, "Quantity that is limited."},
+    {"min", Number{}, kNone, "Minimum of the quantity."},
+    {"max", Number{}, kNone, "Maximum of the quantity."},
+    {"over", Word{kOver}, "cell",
+     "Scope of the constraint in `retrace compose`. `\"cell\"`: cells that violate it do not belong to the family; "
+     "`\"part\"`: it limits the mean over the part."}};
 
 constexpr Row kComposeRows[] = {
     {"maximize", TextOrTexts{"a quantity of the study, or a list of them"}, kRequired,
-     "The quantities of which the least is to be as large as it can be; `\"margin\"` stands for `margin.1`, "
-     "`margin.1.1`, ... as well. Each is a mean over the area: no least of several points, turns or directions."},
-    {"least", Number{}, Computed{"0 where all of them are margins"},
-     "What the least must reach; a part below it makes the answer no (exit code 1)."},
-    {"most_zones", Whole{{.low = 1.0, .high = 100.0}}, kNone, "So many kinds of cells at most."},
-    {"least_share", Number{{.low = 0.0, .high = 1.0}}, 0.0, "Of the area, of a zone that is there."},
-    {"most_share", Number{{.low = 0.0, .low_included = false, .high = 1.0}}, 1.0, "Of the area, of each zone."},
+     "Goals: the quantities whose minimum is maximised. `\"margin\"` also means `margin.1`, `margin.1.1`, ... Each "
+     "goal must be a mean over the area, and not the minimum of several points, rotations or directions."},
+    {"least", Number{}, Computed{"0 if all goals are margins"},
+     "Value that the minimum of all goals must reach. A part below it makes the answer no (exit code 1)."},
+    {"most_zones", Whole{{.low = 1.0, .high = 100.0}}, kNone, "Maximum number of kinds of cells."},
+    {"least_share", Number{{.low = 0.0, .high = 1.0}}, 0.0, "Minimum fraction of the area for each zone that is used."},
+    {"most_share", Number{{.low = 0.0, .low_included = false, .high = 1.0}}, 1.0,
+     "Maximum fraction of the area for each zone."},
     {"price", ByName{Number{}, {}, "a table of prices such as {machining_time_h = 0.01}"}, kNone,
-     "What one more of the mean of a quantity over the part takes from the least."},
+     "Price of a quantity. The merit of a part is the minimum of all goals, minus this price for each unit of the "
+     "quantity's mean over the part."},
     {"front", ByName{Word{kSense}, {}, "a table of one quantity, such as {machining_time_h = \"least\"}"}, kNone,
-     "The mean over the part that the least is told against, and which way it is better."},
+     "Quantity whose mean over the part is one axis of the Pareto front, and its better direction. The minimum of all "
+     "goals is the other axis."},
     {"scan", Whole{{.low = 3.0, .high = 100'000.0}}, 65.0,
-     "Cells of the first look for every combination of discrete values, as in [optimize]."},
-    {"rounds", Whole{{.low = 0.0, .high = 100.0}}, 4.0, "Searches by prices, at most."},
-    {"starts", Whole{{.low = 1.0, .high = 100.0}}, 3.0, "Cells that each search goes out from."},
-    {"looks", Whole{{.low = 1.0, .high = 10'000.0}}, 20.0, "Cells that it looks at from each."},
+     "Number of cells in the first scan, for each combination of discrete values. The cells are chosen like the "
+     "designs of `scan` in [optimize]."},
+    {"rounds", Whole{{.low = 0.0, .high = 100.0}}, 4.0, "Maximum number of searches by dual prices."},
+    {"starts", Whole{{.low = 1.0, .high = 100.0}}, 3.0, "Number of cells from which each search starts."},
+    {"looks", Whole{{.low = 1.0, .high = 10'000.0}}, 20.0,
+     "Maximum number of cells that are evaluated from each start."},
     {"cell_sigma_arcmin", Number{{.low = 0.0, .high = 60.0}}, kNone,
-     "Standard deviation of every angle between facets from cell to cell, which averages out over a zone."},
+     "Standard deviation of the errors of every angle between facets from cell to cell. These errors average out over "
+     "a zone."},
     {"zone_sigma_arcmin", Number{{.low = 0.0, .high = 60.0}}, kNone,
-     "The same from zone to zone, which does not. With either of the two, what errors of angle do to the part is told; "
-     "0 is allowed."},
-    {"parts", Whole{{.low = 16.0, .high = 16'384.0}}, 1024.0, "Parts with errors that are drawn, for the yield."},
+     "Standard deviation of the errors of every angle between facets from zone to zone, which do not average out. With "
+     "either of the two keys, the effects of errors of angle on the part are reported; 0 is allowed."},
+    {"parts", Whole{{.low = 16.0, .high = 16'384.0}}, 1024.0, "Number of random parts with errors, for the yield."},
     {"worst_share", Number{{.low = 0.0, .low_included = false, .high = 1.0}}, kNone,
-     "A part is told, too, that is best for so many of the drawn parts, the worst: 0.05 for one in twenty."}};
+     "Fraction of the random parts that counts as the worst, such as 0.05 for one in twenty. A part that is best for "
+     "these worst parts is reported, too."}};
 
 constexpr Row kRootRows[] = {
-    {"title", Text{}, kNone, "Names the study in results."},
-    {"design", File{"a design file"}, kNone, "The design that is varied, from the folder of the study."}};
+    {"title", Text{}, kNone, "Title of the study in results."},
+    {"design", File{"a design file"}, kNone, "Design that is varied, relative to the folder of the study."}};
 const Table kTables[] = {
     {.name = "parameter",
-     .meaning = "What varies.",
+     .meaning = "Parameter that is varied.",
      .rows = kParameterRows,
      .presence = Presence::list,
      .shape = "one or more tables [[parameter]]"},
     {.name = "quantity",
-     .meaning = "What is asked of every design.",
+     .meaning = "Quantity that is computed for every design.",
      .rows = kQuantityRows,
      .presence = Presence::list,
      .shape = "one or more tables [[quantity]]"},
     {.name = "analysis",
-     .meaning = "How quantities are computed.",
+     .meaning = "Settings for the computation of quantities.",
      .rows = kAnalysisRows,
      .presence = Presence::implied},
     {.name = "machining",
-     .meaning = "How prisms are cut; the defaults are those of published samples in acrylic.",
+     .meaning = "Cutting process of prisms. The defaults are those of published samples in acrylic.",
      .rows = kMachiningRows,
      .presence = Presence::implied},
-    {.name = "sweep", .meaning = "How values make points.", .rows = kSweepRows, .presence = Presence::implied},
+    {.name = "sweep",
+     .meaning = "Combination of the values of parameters to points.",
+     .rows = kSweepRows,
+     .presence = Presence::implied},
     {.name = "optimize",
-     .meaning = "What is best.",
+     .meaning = "Objective and settings of an optimization.",
      .rows = kOptimiseRows,
      .rules = kOptimiseRules,
      .presence = Presence::optional},
     {.name = "compose",
-     .meaning = "Of which cells a part is best composed.",
+     .meaning = "Goals and settings for the best composition of a part from cells.",
      .rows = kComposeRows,
      .presence = Presence::optional},
     {.name = "constraint",
-     .meaning = "What a good part holds.",
+     .meaning = "Constraint that a good part satisfies.",
      .rows = kConstraintRows,
      .presence = Presence::list,
      .shape = "one or more tables [[constraint]]"},
     {.name = "tolerance",
-     .meaning = "How many parts are made with errors of manufacture.",
+     .meaning = "Settings for random parts with errors of manufacture.",
      .rows = kToleranceRows,
      .presence = Presence::implied}};
 
-const Format kFormat = {
-    "study",
-    "retrace.study/1",
-    "Study of a design",
-    {.name = "", .meaning = "What varies, and what is asked.", .rows = kRootRows, .tables = kTables},
-    true};
+const Format kFormat = {"study",
+                        "retrace.study/1",
+                        "Study of a design",
+                        {.name = "",
+                         .meaning = "Parameters that are varied, and quantities that are computed.",
+                         .rows = kRootRows,
+                         .tables = kTables},
+                        true};
 
 }  // namespace
 
