@@ -79,10 +79,8 @@ void VisibleFacets::consider(const Search& search, const SurfacePatch& patch, co
   make_convex(piece);
   if (piece.size() < 3 || area(piece) <= scene_.least_area) return;
   const PlanBox piece_box = plan_box_of(piece);
-  std::optional<Vec2> middle_mm = facet.middle_mm;
-  if (middle_mm) *middle_mm += shift.head<2>();
-  candidates_.push_back(
-      {plane, facet.role, cell, Distance(search.frame, plane), std::move(piece), piece_box, false, middle_mm});
+  candidates_.push_back({plane, facet.role, cell, Distance(search.frame, plane), std::move(piece), piece_box});
+  if (facet.middle_mm) candidates_.back().middle_mm.emplace(*facet.middle_mm + shift.head<2>());
 }
 
 /// Returns true if all of a candidate's polygon is nearer than the plane of the other candidate.
