@@ -21,7 +21,7 @@ Series distribution(const std::vector<double>& ascending) {
   const std::size_t points = std::min(kMostPoints, ascending.size());
   for (std::size_t k = 0; k < points; ++k) {
     const double share = points > 1 ? static_cast<double>(k) / static_cast<double>(points - 1) : 0.5;
-    series.add(studies::percentile(ascending, share), kPercent * share);
+    series.add(compute::percentile(ascending, share), kPercent * share);
   }
   return series;
 }
