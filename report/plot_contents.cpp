@@ -135,7 +135,7 @@ LinePlot forces_plot(const ForcesOfCut& cut) {
 
 PathPlot tool_path_plot(const ElementPath& path) {
   PathPlot plot;
-  plot.title = fmt::format("{}: tool path through one element, {}", path.job,
+  plot.title = fmt::format("{}: tool path, {}", path.job,
                            path.is_roughing  ? "roughing"
                            : path.is_layered ? "layers"
                                              : "finishing");
