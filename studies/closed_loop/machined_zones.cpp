@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "core/number_format.h"
 #include "core/schema/document.h"
+#include "core/schema/writer.h"
 #include "geometry/elements/element_cells.h"
 #include "geometry/part/zones.h"
 #include "studies/closed_loop/part_planes.h"
@@ -70,8 +71,8 @@ struct ZoneTilts {
   }
 };
 
-std::string change_of(const char* key, const std::array<double, 3>& arcmin) {
-  return fmt::format("surface.{}=[{}, {}, {}]", key, shortest(arcmin[0]), shortest(arcmin[1]), shortest(arcmin[2]));
+ZoneChange change_of(const std::string& key, const std::array<double, 3>& arcmin) {
+  return {key, schema::override_text(key, std::vector(arcmin.begin(), arcmin.end()))};
 }
 
 /// Returns the cube corner of a zone with its size in the part. The cube corner in the mould is larger, because of
@@ -158,16 +159,16 @@ ZonedPart machined_zones(const fabrication::Job& job, const std::filesystem::pat
   for (std::size_t z = 0; z < angles.size(); ++z) {
     // Remove changes of [surface] and of partial_elements from the zone. Programs do not cut edge radii and random
     // errors, angle errors are set below, and an as-machined part has no partial elements.
-    std::erase_if(part.changes[z], [](const std::string& change) {
-      return change.find("surface.") != std::string::npos || change.find("partial_elements") != std::string::npos;
+    std::erase_if(part.changes[z], [](const ZoneChange& change) {
+      return change.key.starts_with("surface.") || change.key == "array.partial_elements";
     });
     geometry::AngleErrors errors = angles[z].asked.value_or(part.spec.zones[z].elements.angle_errors);
     const ZoneTilts& missed = angles[z].missed;
     for (std::size_t f = 0; missed.count > 0 && f < 3; ++f) errors.facet_tilt_arcmin[f] += missed.sum[f] / missed.count;
     cut += static_cast<std::size_t>(missed.count);
     spread_arcmin = std::max(spread_arcmin, missed.most - missed.least);
-    part.changes[z].push_back(change_of("dihedral_error_arcmin", errors.dihedral_error_arcmin));
-    part.changes[z].push_back(change_of("facet_tilt_arcmin", errors.facet_tilt_arcmin));
+    part.changes[z].push_back(change_of("surface.dihedral_error_arcmin", errors.dihedral_error_arcmin));
+    part.changes[z].push_back(change_of("surface.facet_tilt_arcmin", errors.facet_tilt_arcmin));
   }
   for (ElementsOfZone& of_zone : part.elements)
     if (of_zone.mask) of_zone.mask->name = std::filesystem::absolute(of_zone.mask->file).string();

@@ -165,12 +165,18 @@ struct ElementsOfZone {
   bool rest = false;              ///< true: all elements that no other zone has
 };
 
+/// Change of a key of the design in a zone.
+struct ZoneChange {
+  std::string key;   ///< such as "element.aperture_mm"
+  std::string text;  ///< KEY=VALUE, as in the file
+};
+
 /// Plate with zones of different elements. The zones are either regions of the plate or sets of elements of one array.
 struct ZonedPart {
-  geometry::PartSpec base;                        ///< elements of the design, before the changes of a zone are applied
-  std::vector<std::vector<std::string>> changes;  ///< changes of each zone, as KEY=VALUE
-  std::vector<ElementsOfZone> elements;           ///< elements of each zone; empty if the zones are regions
-  geometry::ZonedSpec spec;  ///< zones in detail; part_of_design() adds the cells that masks select
+  geometry::PartSpec base;                       ///< elements of the design, before the changes of a zone are applied
+  std::vector<std::vector<ZoneChange>> changes;  ///< changes of each zone
+  std::vector<ElementsOfZone> elements;          ///< elements of each zone; empty if the zones are regions
+  geometry::ZonedSpec spec;                      ///< zones in detail; part_of_design() adds the cells that masks select
 
   bool has_masks() const {
     return std::ranges::any_of(elements, [](const ElementsOfZone& of_zone) { return of_zone.mask.has_value(); });

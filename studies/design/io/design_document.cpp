@@ -166,7 +166,9 @@ void set_zones(Document& document, const ZonedPart& part) {
     else
       set_regions(zone, part.spec.zones[k].regions);
     zone.set("rotation_deg", part.spec.zones[k].rotation_deg);
-    if (!part.changes[k].empty()) zone.set("set", part.changes[k]);
+    std::vector<std::string> changes;
+    for (const ZoneChange& change : part.changes[k]) changes.push_back(change.text);
+    if (!changes.empty()) zone.set("set", std::move(changes));
   }
 }
 

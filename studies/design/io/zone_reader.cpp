@@ -59,23 +59,21 @@ std::string stripped(std::string text, const char* of) {
   return text.erase(0, text.find_first_not_of(of));
 }
 
-/// Returns the key of a change KEY=VALUE. Returns an empty text if `change` contains no equals sign.
-std::string key_of(const std::string& change) {
-  const std::size_t equals = change.find('=');
-  return equals == std::string::npos ? std::string() : stripped(change.substr(0, equals), " \t");
-}
-
 /// Returns true if a change gives elements another kind than that of the design.
-bool changes_kind(const std::string& change, const Document& document) {
-  return key_of(change) == "element.kind" &&
-         stripped(change.substr(change.find('=') + 1), " \t\"'") != document.text("element.kind");
+bool changes_kind(const ZoneChange& change, const Document& document) {
+  return change.key == "element.kind" &&
+         stripped(change.text.substr(change.text.find('=') + 1), " \t\"'") != document.text("element.kind");
 }
 
-void check_changes(const Document& document, std::size_t zone) {
+/// Returns the changes of a zone.
+/// \throw InputError if a change does not have the form KEY=VALUE, or if a zone must not set its key
+std::vector<ZoneChange> changes_of(const Document& document, std::size_t zone) {
   const std::string key = entry_of(zone) + ".set";
-  if (!document.has(key)) return;
+  std::vector<ZoneChange> changes;
+  if (!document.has(key)) return changes;
   for (const std::string& change : document.texts(key)) {
-    const std::string name = key_of(change);
+    const std::size_t equals = change.find('=');
+    const std::string name = equals == std::string::npos ? std::string() : stripped(change.substr(0, equals), " \t");
     if (name.empty()) document.fail(key, fmt::format("must be texts KEY=VALUE, got {}", in_quotes(change)));
     if (!may_set_in_zone(name))
       document.fail(
@@ -83,7 +81,9 @@ void check_changes(const Document& document, std::size_t zone) {
           fmt::format("must set keys of [element], of [array] but for extent, lengths, margins and mask, or angles and "
                       "edges of [surface], got {}",
                       in_quotes(change)));
+    changes.push_back({name, change});
   }
+  return changes;
 }
 
 /// Returns a design file that contains only the size and the thickness of the part. A zone with another kind of element
@@ -95,15 +95,16 @@ std::string text_without_elements(const Document& document) {
 }
 
 /// Returns the document of a zone: the design of the whole part with the elements of this zone everywhere.
-Document document_of_zone(const Document& document, std::size_t zone) {
+Document document_of_zone(const Document& document, std::size_t zone, const std::vector<ZoneChange>& changes) {
   const std::string key = entry_of(zone) + ".set";
-  const auto changes = document.has(key) ? document.texts(key) : std::vector<std::string>();
   const bool is_of_another_kind =
-      std::ranges::any_of(changes, [&](const std::string& change) { return changes_kind(change, document); });
+      std::ranges::any_of(changes, [&](const ZoneChange& change) { return changes_kind(change, document); });
+  std::vector<std::string> overrides;
+  for (const ZoneChange& change : changes) overrides.push_back(change.text);
   try {
     Document changed = is_of_another_kind ? schema::read_document(design_format(), text_without_elements(document),
-                                                                  document.source(), kMostSetBytes, changes)
-                                          : schema::with(design_format(), document, changes);
+                                                                  document.source(), kMostSetBytes, overrides)
+                                          : schema::with(design_format(), document, overrides);
     for (std::size_t k = changed.count(kZone); k-- > 0;) changed.drop(entry_of(k));
     if (changed.has(kZone)) changed.drop(kZone);
     schema::check(changed, design_format().root, "", &changed);
@@ -287,16 +288,14 @@ ZonedPart read_zones(const Document& document) {
   part.spec.is_by_cell = read_elements(document, part);
   if (!part.spec.is_by_cell) read_regions(document, part.spec);
   for (std::size_t k = 0; k < part.spec.zones.size(); ++k) {
-    check_changes(document, k);
-    const Document changed = document_of_zone(document, k);
+    part.changes.push_back(changes_of(document, k));
+    const Document changed = document_of_zone(document, k, part.changes[k]);
     const std::string arrangement = changed.text("array.arrangement");
     if (arrangement == "single" || arrangement == "pins" || !has_elements(changed))
       document.fail(entry_of(k), "must have an array of prisms or cube corners, neither \"single\" nor \"pins\"");
     part.spec.zones[k].elements = read_part(changed);
     part.spec.zones[k].rotation_deg = document.number(entry_of(k) + ".rotation_deg");
     check_room(document, k, part.spec.zones[k], part.spec.size_mm);
-    const std::string set = entry_of(k) + ".set";
-    part.changes.push_back(document.has(set) ? document.texts(set) : std::vector<std::string>());
   }
   if (const double elements = geometry::element_estimate(part.spec); elements > kMostElements)
     document.fail(kZone, fmt::format("a part of zones may have at most {:.0f} elements, it would have some {:.0f}",
