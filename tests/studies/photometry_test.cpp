@@ -17,6 +17,7 @@
 #include "studies/photometry/io/photometry_files.h"
 #include "studies/photometry/io/standard_reader.h"
 #include "studies/photometry/standards.h"
+#include "studies/rre/rre.h"
 #include "tests/studies/photometric_requests.h"
 #include "tests/support/closed_forms.h"
 #include "tests/support/designs.h"

@@ -75,7 +75,7 @@ class ProgramDraft {
   TimeShares& plan_time_;
   Program program_;
   Words at_{};
-  bool just_turned_ = true;  ///< true if no visit has been added since the last move of Z alone
+  bool just_turned_ = true;  ///< true if no visit was added since the tool was at a safe height
   double seconds_ = 0.0;
   EdgeAccount edge_;
   double cut_mm_ = 0.0;
