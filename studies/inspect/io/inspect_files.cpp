@@ -247,7 +247,7 @@ std::string zones_text(const Inspection& i) {
   for (std::size_t k = 0; k < i.zones->zones.size(); ++k) {
     const ZoneReport& zone = i.zones->zones[k];
     std::string changes;
-    for (const std::string& change : i.design.zoned()->changes[k]) changes += "; " + change;
+    for (const ZoneChange& change : i.design.zoned()->changes[k]) changes += "; " + change.text;
     const double turn_deg = i.design.zoned()->spec.zones[k].rotation_deg;
     std::string wander;
     if (zone.wander_mm) wander = fmt::format(", light wanders {} mm", fixed(*zone.wander_mm, 4));
