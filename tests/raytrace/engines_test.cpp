@@ -84,7 +84,7 @@ TEST(Engines, PhasesAreFollowedThroughFormsOrTexturesButNotBoth) {
 }
 
 TEST(Engines, FactsFollowFromTheOptics) {
-  const EngineFacts smooth = facts_of({});
+  const EngineFacts smooth = facts_of(Optics());
   EXPECT_FALSE(smooth.has_texture || smooth.has_form || smooth.has_unequal_backs || smooth.entrance_scatters);
   Optics optics;
   optics.facet_scatter = surface_models::HarveyShack(surface_models::Roughness{5.0, 2.0});

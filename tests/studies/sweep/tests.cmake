@@ -1,5 +1,5 @@
 retrace_test(studies_tests
-  SOURCES ${CMAKE_CURRENT_LIST_DIR}/cells_test.cpp ${CMAKE_CURRENT_LIST_DIR}/machining_test.cpp
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/cells_test.cpp ${CMAKE_CURRENT_LIST_DIR}/distribution_test.cpp ${CMAKE_CURRENT_LIST_DIR}/machining_test.cpp
           ${CMAKE_CURRENT_LIST_DIR}/study_format_test.cpp ${CMAKE_CURRENT_LIST_DIR}/study_reader_test.cpp
           ${CMAKE_CURRENT_LIST_DIR}/optimise_test.cpp ${CMAKE_CURRENT_LIST_DIR}/sweep_test.cpp
   LIBRARIES retrace::optimise retrace::sweep retrace::quantity retrace::store SQLiteCpp)
