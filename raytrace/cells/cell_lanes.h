@@ -87,7 +87,7 @@ constexpr Label label_of(Hit hit, std::size_t index = 0) {
 inline constexpr Label kKept = 0;
 inline constexpr Label kRemoved = 1;
 
-/// Faces that rays have met: a label per ray, and the normal of the facet if the label is that of Hit::facet.
+/// Faces that rays have met: one label per ray, and the normal of the facet for rays whose label is Hit::facet.
 struct Met {
   Label* labels = nullptr;
   std::array<double*, 3> normal{};

@@ -40,7 +40,7 @@ class RayStreams {
   /// Hands over the rays that would be outside of the inner region after moving along their direction by the height
   /// difference `height_mm`. The other rays are moved to the front of the arrays, and their number is returned.
   std::size_t keep_inner(const lanes::Rays& rays, std::size_t count, double height_mm, bool inside, bool scattered);
-  /// Hands over the rays with a label.
+  /// Moves the rays that have the given label to handed_over().
   void hand_over(const lanes::Rays& rays, std::size_t count, const lanes::Label* labels, lanes::Label label,
                  bool inside, bool scattered);
   const std::vector<CellRay>& handed_over() const { return handed_over_; }
