@@ -277,13 +277,13 @@ TEST(Optimise, WhatIsWrongIsSaidWithItsLine) {
     return "";
   };
   EXPECT_EQ(message(""), "examples/studies/study.toml: optimize");
-  EXPECT_EQ(message("[optimize]\nmaximize = \"ff\"\n"), "examples/studies/study.toml:14: optimize.maximize");
-  EXPECT_EQ(message("[optimize]\nscan = 5\n"), "examples/studies/study.toml:13: optimize");
-  EXPECT_EQ(message("[optimize]\nmaximize = \"f\"\nscan = 2\n"), "examples/studies/study.toml:15: optimize.scan");
+  EXPECT_EQ(message("[optimize]\nmaximize = \"ff\"\n"), "examples/studies/study.toml:16: optimize.maximize");
+  EXPECT_EQ(message("[optimize]\nscan = 5\n"), "examples/studies/study.toml:15: optimize");
+  EXPECT_EQ(message("[optimize]\nmaximize = \"f\"\nscan = 2\n"), "examples/studies/study.toml:17: optimize.scan");
   EXPECT_EQ(message("[optimize]\nmaximize = \"f\"\n[[constraint]]\nquantity = \"f\"\n"),
-            "examples/studies/study.toml:15: constraint[1].max");
+            "examples/studies/study.toml:17: constraint[1].max");
   EXPECT_EQ(message("[optimize]\nmaximize = \"f\"\n[[constraint]]\nquantity = \"f\"\nmin = 2\nmax = 1\n"),
-            "examples/studies/study.toml:18: constraint[1].max");
+            "examples/studies/study.toml:20: constraint[1].max");
 }
 
 }  // namespace
