@@ -86,7 +86,7 @@ ExitCode run(const ReportOptions& options, const CommonOptions& common) {
   files.prepare();
   if (!common.out.empty() && file != fs::path(common.out)) make_output_folder(common.out);
   return files.write(report_json(page, folder, file, html.size(), warnings),
-                     fmt::format("{}: {} documents, {} sections, {} KiB\n", printable(page.title),
+                     fmt::format("{}: documents: {}, sections: {}, {} KiB\n", printable(page.title),
                                  folder.documents.size(), page.sections.size(), html.size() / 1024),
                      warnings);
 }
