@@ -44,7 +44,8 @@ class PointsBar : public studies::SweepObserver {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// Returns `code` unless every point failed. In that case, writes a message and returns ExitCode::answer_is_no.
+/// Returns `code` if at least one point succeeded or there are no points. If every point failed, writes a message and
+/// returns ExitCode::answer_is_no.
 ExitCode exit_code_of(const std::vector<compute::StoredPoint>& points, ExitCode code) {
   const auto failed = [](const compute::StoredPoint& point) { return point.failed; };
   if (points.empty() || !std::all_of(points.begin(), points.end(), failed)) return code;

@@ -39,7 +39,7 @@ ExitCode run_on_ranks(const CommonOptions& common, std::size_t at_a_time,
   compute::MpiSession session;
   const ExitCode code = session.rank() == 0 ? lead(&session) : serve(common, at_a_time, help, session);
   if (session.end()) return code;
-  // Some ranks have ended, and finalizing MPI could wait for them forever. Therefore, MPI is not finalized.
+  // Some ranks may have been lost, and MPI_Finalize could wait for them forever. The process therefore ends without it.
   std::fflush(nullptr);
   ::_exit(static_cast<int>(code));
 }

@@ -37,14 +37,14 @@ std::vector<SharedOption> options_of(std::span<const CommandRequest> of_command)
   return options;
 }
 
-/// Returns true if help shows the initial value of the field as its default, instead of a special text. If such a field
-/// is the only one of its option, the command-line parser adds the default to help as "=VALUE".
+/// Returns true if the help text shows the initial value of the field as its default, and not a special text. If the
+/// option sets only this field, the command-line parser adds the default to the help text as "=VALUE".
 bool has_plain_default(const Row& row) {
   return row.spelling.otherwise.empty() && row.spelling.usual.empty();
 }
 
-/// Returns the description of a field for help. The description includes the unit, unless the name of the option ends
-/// with the unit.
+/// Returns the description of a field for the help text. It includes the unit, unless the name of the option ends with
+/// the unit.
 std::string meaning_of(const FieldOfCommand& field) {
   const std::string_view unit = schema::unit_of(field.row->name);
   std::string suffix(field.row->name.substr(field.row->name.rfind('_') + 1));
@@ -55,14 +55,14 @@ std::string meaning_of(const FieldOfCommand& field) {
   return text;
 }
 
-/// Returns the name by which help refers to a request, such as "camera". Returns an empty text if the command has only
-/// one request.
+/// Returns the name of a request in help texts, such as "camera". Returns an empty text if the command has only one
+/// request.
 std::string mode_text(const CommandRequest& of) {
   return of.mode.empty() ? of.label : of.mode.substr(2);
 }
 
-/// Returns the help text of an option. If the command has several requests, the names of the requests that have the
-/// option precede each description, such as "camera, road: DESCRIPTION".
+/// Returns the help text of an option. If the command has several requests, each description begins with the names of
+/// the requests to which it applies, such as "camera, road: DESCRIPTION".
 std::string help_of(const SharedOption& option) {
   struct Part {
     std::string text;
@@ -90,7 +90,7 @@ Words words_of_list(std::span<const std::string_view> words) {
   return {words.begin(), words.end()};
 }
 
-/// Returns traits that contain the possible values of a field. Shell completion uses them.
+/// Returns the traits of an option with the possible values of its field. Shell completion uses these values.
 Traits traits_of(const schema::Kind& kind) {
   return std::visit(Overloaded{[](const schema::Word& word) { return one_of(words_of_list(word.words)); },
                                [](const schema::File&) { return files(""); },
@@ -110,9 +110,9 @@ Condition condition_of(const requests::Request& request, const schema::Condition
   return {Condition::Kind::value, option, words_of_list(condition.words)};
 }
 
-/// Returns the requirements for giving an option. If options such as "--camera" select the request, one of the requests
-/// that have the option must be selected. If all fields of the option have the same conditions, these are also
-/// required.
+/// Returns the conditions under which an option is allowed. If options such as "--camera" select the request, one of
+/// the requests that have this option must be selected. If all fields of the option have the same conditions, these
+/// conditions must also hold.
 std::vector<Need> needs_of(const SharedOption& option) {
   std::vector<Need> needs;
   Words modes;
@@ -132,7 +132,8 @@ std::vector<Need> needs_of(const SharedOption& option) {
   return needs;
 }
 
-/// Returns the placeholder for the value of an option in help. Joins different placeholders of its fields: "N|CxR".
+/// Returns the placeholder for the value of an option in the help text. If the fields of the option have different
+/// placeholders, these are joined, such as "N|CxR".
 std::string placeholder(const SharedOption& option) {
   Words values;
   for (const FieldOfCommand& field : option.fields)

@@ -1,7 +1,7 @@
 #pragma once
 
-// Arguments that several commands share: design, job and part files, machines and dialects, and the options --resume
-// and --overwrite for a store that already exists.
+// Arguments of several commands: design, job and part files, machines and dialects, and the options --resume and
+// --overwrite for a store that already exists.
 
 #include <span>
 #include <string>
@@ -19,9 +19,9 @@ Argument design_argument(std::string& design);
 Argument job_argument(std::string& job, const std::string& help = "job file");
 /// Returns the argument PART, the file of a turned or planed part.
 Argument part_argument(std::string& part);
-/// Returns the option --dialect, the dialect of NC programs.
+/// Returns the option --dialect, which selects the dialect of NC programs.
 Argument dialect_argument(std::string& dialect);
-/// Returns the traits of a machine, which is given by the name of a shipped machine or by a file.
+/// Returns the traits of an argument whose value is the name of a shipped machine or a machine file.
 Traits machine_traits();
 /// Options of commands that save their points in a store (an SQLite file).
 struct StudyOptions {
@@ -33,7 +33,7 @@ struct StudyOptions {
 /// Returns the argument STUDY and the options --resume and --overwrite.
 std::vector<Argument> study_arguments(StudyOptions& options);
 
-/// Returns the action if the store exists already: resume it, overwrite it, or refuse to run.
+/// Returns the action to take if the store already exists: resume it, overwrite it, or refuse to run.
 compute::IfExists if_exists_of(const StudyOptions& options);
 
 }  // namespace retrace::app

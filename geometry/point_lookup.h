@@ -1,6 +1,6 @@
 #pragma once
 
-// Lookup of values that are stored at points in space. Coordinates are compared with a tolerance.
+// Stores values at points in space, and finds them by coordinates with a tolerance.
 
 #include <array>
 #include <cmath>

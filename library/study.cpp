@@ -57,7 +57,7 @@ class Share : public studies::SweepObserver {
   double reported_ = 0.0;
 };
 
-/// Owns a sweep. The results of the sweep refer to it.
+/// Owns a sweep. Results of the sweep refer to it, so this object must exist as long as they are used.
 struct Swept {
   explicit Swept(studies::Sweep of) : sweep(std::move(of)) {}
   studies::Sweep sweep;

@@ -44,7 +44,7 @@ constexpr std::size_t kMostMarkers = 45;  ///< maximum number of points of a ser
                                           ///< drawn as lines only
 constexpr int kMostXTicks = 9;
 constexpr int kMostYTicks = 7;
-/// Minimum half length of an error bar. The marker or the line would hide a shorter error bar.
+/// Minimum half length of an error bar that is drawn. A shorter error bar would be hidden by the marker or the line.
 constexpr double kShortestErrorBar = 1.5;
 
 /// Appearance of a series, which depends on its index in the plot.
@@ -267,7 +267,7 @@ void draw_legend(Canvas& canvas, const Layout& layout) {
   }
 }
 
-/// Returns the radius of markers, which is smaller for dense points so that markers do not overlap.
+/// Returns the radius of markers. The radius is smaller if points are close together, so that markers do not overlap.
 double marker_radius(const Series& series, const Layout& layout) {
   double closest = kPlotWidth;
   for (std::size_t i = 1; series.has_line && i < series.x.size(); ++i) {

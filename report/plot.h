@@ -1,6 +1,6 @@
 #pragma once
 
-// Line plots: curves with error bars over one pair of axes, such as RRE over incidence.
+// Line plots: curves with error bars in one coordinate system, such as RRE over incidence.
 
 #include <optional>
 #include <string>
@@ -15,8 +15,8 @@ namespace retrace::report {
 struct Series {
   std::string label;  ///< text in the legend; if empty, the curve is not in the legend
   std::vector<double> x;
-  std::vector<double> y;        ///< as many as x
-  std::vector<double> y_error;  ///< standard errors, as many as `x`, or none
+  std::vector<double> y;        ///< as many values as `x`
+  std::vector<double> y_error;  ///< standard errors of `y`: as many values as `x`, or empty
   bool has_line = true;         ///< false: the points have markers and no line between them
 
   void add(double at, double value) {

@@ -16,7 +16,8 @@
 namespace retrace::report {
 namespace {
 
-/// Parameters that vary between the points. One of them becomes the axis, and the others distinguish the curves.
+/// Distinct values of each parameter of the points. One parameter with several values becomes the x axis, and the
+/// others distinguish the curves.
 struct Variation {
   std::set<std::string_view> designs;
   std::set<double> incidences;
@@ -94,8 +95,8 @@ LinePlot rre_plot(const std::vector<EfficiencyPoint>& points) {
 
 namespace {
 
-/// Returns the label of measured facets. Each process has a series of its own. Single facets are grouped by their
-/// table.
+/// Returns the label of the series to which measured facets belong. Each process has its own series. All single facets
+/// from the same file are in one series.
 std::string label_of(const MeasuredFacets& facets) {
   if (!facets.is_process) return fmt::format("single facets: {}", std::filesystem::path(facets.table).stem().string());
   return fmt::format("{}: waviness Sa {} nm, {} facets", facets.name, fixed(facets.waviness_sa_nm, 1), facets.facets);

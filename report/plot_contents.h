@@ -34,7 +34,7 @@ LinePlot rre_plot(const std::vector<EfficiencyPoint>& points);
 struct MeasuredFacets {
   bool is_process = false;  ///< true: a process; false: a single facet
   std::string name;         ///< name of the process
-  std::string table;        ///< name of the file
+  std::string table;        ///< name of the file with the measured values
   std::size_t facets = 0;   ///< number of facets
   double waviness_sa_nm = 0.0;
 };
@@ -43,7 +43,7 @@ struct MeasuredFacets {
 struct RoughnessValue {
   double roughness_sa_nm = 0.0;
   double correlation_length_um = 0.0;
-  std::optional<MeasuredFacets> measured;  ///< none: the value belongs to the curve of its correlation length
+  std::optional<MeasuredFacets> measured;  ///< empty: the value belongs to the curve of its correlation length
   double rre = 0.0;
   double std_error = 0.0;
 };
@@ -59,8 +59,8 @@ struct ForcesOfCut {
   double width_mm = 0.0;
 };
 
-/// Returns a plot of the forces on the tool over time. It has one series for each axis of the machine, X, Y and Z in
-/// this order. The series have no points yet.
+/// Returns a plot of the forces on the tool over time. It has one series for each axis of the machine, in the order X,
+/// Y, Z. The series are empty; the caller adds the points.
 LinePlot forces_plot(const ForcesOfCut& cut);
 
 /// Tool path through one element.
@@ -73,8 +73,8 @@ struct ElementPath {
   bool is_cube_corner = false;  ///< true: the section is the plane of a facet; false: it is across the root of a prism
 };
 
-/// Returns a plot of a tool path. Its kinds of moves are plunge, plough, retract and translate, in this order. They
-/// have no moves yet, and the plot has no material.
+/// Returns a plot of a tool path with the kinds of moves plunge, plough, retract and translate, in this order. The plot
+/// has no moves and no material; the caller adds them.
 PathPlot tool_path_plot(const ElementPath& path);
 
 /// Regions of the entrance face that return light from one direction.
@@ -83,10 +83,10 @@ struct FootprintValues {
   double incidence_deg = 0.0;
   std::optional<double> azimuth_deg;  ///< none if the azimuth of all footprints is 0
   double active_share = 0.0;          ///< fraction of the area of the entrance face that returns light
-  double rre_shown = 0.0;             ///< RRE of the regions
+  double rre_shown = 0.0;             ///< RRE that the paths through these regions contribute
 };
 
-/// Returns a panel with the texts of a footprint. It has no outline and no regions yet.
+/// Returns a panel with the texts of a footprint. The panel has no outline and no regions; the caller adds them.
 MapPanel footprint_panel(const FootprintValues& footprint);
 
 }  // namespace retrace::report

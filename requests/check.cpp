@@ -125,8 +125,8 @@ class KindCheck {
   const Value& value_;
 };
 
-/// Returns a value in the form that the kind of a field requires. One number is also a list of numbers, and an empty
-/// list of numbers is also an empty list of rows or texts.
+/// Converts a value to the type that the kind of a field requires. A single number is converted to a list with one
+/// number, and an empty list of numbers to an empty list of rows or texts.
 Value as_kind(const schema::Kind& kind, const Value& value) {
   const double* const number = std::get_if<double>(&value);
   if (number != nullptr && std::holds_alternative<schema::NumberOrNumbers>(kind)) return std::vector{*number};
@@ -152,7 +152,7 @@ class Conditions {
   bool holds(const schema::Condition& condition) const {
     using Is = schema::Condition::Is;
     const Row* const other = row_of(request_, condition.key);
-    // The condition refers to an option that is not a field of the request. The command line checks this condition.
+    // A condition can refer to an option that is not a field of the request. The command line checks such a condition.
     if (other == nullptr) return true;
     if (condition.is == Is::given) return is_given(*other);
     if (condition.is == Is::absent) return !is_given(*other);

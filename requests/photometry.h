@@ -12,35 +12,37 @@ namespace retrace {
 /// Settings of a photometric test, as in `retrace photometry`. The standard defines the rotations and the diameters of
 /// source and receiver if the request gives no values for them.
 struct PhotometryRequest {
-  /// Standard: r150, j594, bicycle, d4956, iso20471, stvzvo, or a limits file. Required.
+  /// Standard of the test: r150, j594, bicycle, d4956, iso20471, stvzvo, or a file with limits. Required.
   std::string standard = {};
-  /// Class of the part, such as IA. Default: required if the standard has several.
+  /// Class of the part in the standard, such as IA. Default: required if the standard has several classes.
   std::optional<std::string> part_class = {};
-  /// Colour of the part: white, amber, red, yellow and so on. Default: required if the standard has several.
+  /// Colour of the part: white, amber, red, yellow and so on. Default: required if the standard has several colours.
   std::optional<std::string> colour = {};
-  /// Area of the whole part, of which the design may be a section; > 0 and <= 1e+06. Required.
+  /// Area of the whole part in cm2; the design can describe a section of the part; > 0 and <= 1e+06. Required.
   double area_cm2 = 0.0;
   /// Rotations of the part about its normal, in degrees; the smallest reading over all rotations is used. Default: the
   /// standard's.
   std::optional<std::vector<double>> rotation_deg = {};
-  /// Dye of the part: none, red, amber (illustrative) or a file. Default: by the colour, unless the design's absorption
-  /// is spectral.
+  /// Dye of the part: none, red or amber (illustrative values), or a file with the absorption of a dye. Default: red or
+  /// amber if this is the colour, unless the design has a spectral absorption; otherwise none.
   std::optional<std::string> dye = {};
-  /// Diameter of the source, in arc minutes; >= 0 and <= 300. Default: the standard's.
+  /// Angular diameter of the source, in arc minutes; >= 0 and <= 300. Default: the standard's.
   std::optional<double> source_arcmin = {};
-  /// Diameter of the receiver, in arc minutes; >= 0 and <= 300. Default: the standard's.
+  /// Angular diameter of the receiver, in arc minutes; >= 0 and <= 300. Default: the standard's.
   std::optional<double> receiver_arcmin = {};
-  /// Half angle of the far field that is computed, in degrees; >= 0.05 and <= 10.
+  /// Half angle of the computed far field, in degrees; >= 0.05 and <= 10.
   double window_deg = 2.0;
-  /// Light: the CIE illuminant a or d65 as seen by the eye, or design for the light that the design file describes.
+  /// Light: CIE illuminant a or d65, weighted by the luminous efficiency of the eye, or design for the light in the
+  /// design file.
   std::string light = "a";
-  /// Method of tracing: beams (exact), rays (montecarlo or embree), or auto: beams if possible.
+  /// Tracing method: exact (beams), montecarlo or embree (rays), or auto (beams if possible).
   std::string engine = "auto";
   /// Minimum power of a beam that is followed exactly, as a fraction of the light on one element (weaker beams are
   /// resampled with auto and truncated with exact); > 0 and < 1. Default: 1e-5; finite parts with resampling: see
   /// docs/commands.md.
   std::optional<double> cutoff = {};
-  /// Number of Monte Carlo rays for each direction; a whole number >= 1 and <= 68719476736. Default: 1048576.
+  /// Number of Monte Carlo rays for each direction of the incident light; a whole number >= 1 and <= 68719476736.
+  /// Default: 1048576.
   std::optional<std::uint64_t> samples = {};
   /// Seed of the random numbers; a whole number >= 0 and <= 4294967295.
   std::uint32_t seed = 1;
@@ -48,9 +50,9 @@ struct PhotometryRequest {
   bool diffraction = true;
   /// Integrate the power inside and outside of the far field's window, as a check.
   bool window_power = false;
-  /// Search for a change of the design that passes if a point fails.
+  /// Search for a changed design that passes, if a test point fails.
   bool advice = true;
-  /// Compute maps and curves, and make the drawings "far_field" and "r_a".
+  /// Compute the maps and curves for the drawings "far_field" and "r_a".
   bool pictures = false;
 };
 

@@ -12,7 +12,7 @@
 
 namespace retrace::requests {
 
-/// Alternative conditions on other fields of the request. A field has an effect only if at least one of them holds.
+/// Alternative conditions on other fields of the request. The need is met if at least one of them holds.
 using Need = std::span<const schema::Condition>;
 
 /// Notation of a value on the command line.
@@ -51,7 +51,7 @@ struct Row {
   std::string_view meaning;  ///< description for help and documentation, without a full stop at the end
   schema::Access access;
   Spelling spelling = {};
-  std::span<const Need> needs = {};  ///< conditions, all of which must hold if the field is not at its default
+  std::span<const Need> needs = {};  ///< needs, each of which must be met if the value of the field is not its default
   bool is_required = false;
 
   Field field() const { return {spelling.qualified.empty() ? name : spelling.qualified}; }
@@ -96,7 +96,7 @@ std::string option_of_field(std::string_view field);
 /// \param value value other than std::monostate; see reset() for removing a value
 /// \throw InputError if the value is not allowed; the error names the field
 void set(const Row& row, void* object, const schema::Value& value);
-/// Assigns its default to a field.
+/// Sets a field to its default.
 /// \param object object of the type of `request`
 void reset(const Request& request, const Row& row, void* object);
 /// Parses a value in the notation of the command line, checks it and assigns it to a field.

@@ -28,7 +28,8 @@
 namespace retrace::app {
 namespace {
 
-/// Returns the design of the cells of the zone with index `zone`, or an empty text if there is no such zone.
+/// Returns the text of the design file for the cells of zone `zone`, counted from 0. Returns an empty text if there is
+/// no such zone.
 std::string zone_design(const studies::Study& study, const std::vector<studies::Zone>& zones, std::size_t zone) {
   return zone < zones.size() ? studies::zone_design_text(study, zones, zone) : "";
 }
@@ -37,7 +38,7 @@ struct ComposeOptions : StudyOptions {
   std::string design;
   std::string layout = "stripes";
   bool for_worst = false;
-  std::string job;  ///< fabrication job file of the whole part that is to be written; if empty, no job is written
+  std::string job;  ///< output file for the fabrication job of the whole part; not written if empty
   MakingOptions making;
   std::optional<double> x_length_mm;
   std::optional<double> y_length_mm;
@@ -69,11 +70,12 @@ std::vector<Argument> compose_arguments(ComposeOptions& options) {
   return all;
 }
 
-/// Checks the options of the fabrication job before the search, because a search may take long.
+/// Checks the options of the fabrication job. The check is made before the search, because a search can take a long
+/// time.
 /// \throw InputError
 void check_job_of(const ComposeOptions& options, const JobRequest& request) {
   if (options.job.empty()) return;
-  if (request.tool_width_mm == 0.0) throw InputError({"", 0, "--tool-width-mm"}, "is required with --job");
+  if (request.tool_width_mm == 0.0) throw InputError(Field{"tool_width_mm"}, "is required with --job");
   studies::check_making(request);
   studies::check_cuts_zones(request);
 }
@@ -88,15 +90,16 @@ studies::ZonedDesignRequest zoned_design_of(const ComposeOptions& options) {
   return request;
 }
 
-/// Output files that describe the whole part with its zones.
+/// Contents of the output files that describe the whole part with its zones.
 struct WholePart {
   std::string design;                   ///< text of the design file; empty if not requested
-  std::optional<studies::MadeJob> job;  ///< fabrication job; no value if not requested
+  std::optional<studies::MadeJob> job;  ///< fabrication job; no value if it is not requested
   bool is_complete = true;              ///< false if a requested file cannot be made
 };
 
 /// Returns the design and the fabrication job of the whole part, if they are requested.
-/// \param warnings receives the reason if the design or the job cannot be made; all other results are still written
+/// \param warnings receives the reason if the design or the job cannot be made. All other results are written in any
+/// case
 WholePart whole_part_of(const ComposeOptions& options, const JobRequest& making, const studies::Study& study,
                         const std::vector<studies::Zone>& zones, const studies::ZonedDesignRequest& zoned,
                         Warnings& warnings) {

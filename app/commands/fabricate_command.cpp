@@ -28,7 +28,7 @@ std::vector<Argument> arguments(FabricateOptions& options) {
   std::vector<Argument> all = {job_argument(options.job, "job file, as retrace job writes it")};
   const std::array<CommandRequest, 1> of_command = {{{requests::description<FabricationRequest>()}}};
   for (Argument& argument : field_arguments(of_command, options.fields)) {
-    if (option_names(argument).front() == "--phase")
+    if (option_names(argument).front() == requests::option_of_field("phase"))
       argument.traits.words = one_of({"all", "roughing", "finishing"}).words;
     all.push_back(std::move(argument));
   }
@@ -41,8 +41,8 @@ bool has_stage(const studies::FabricationResult& result, bool roughing) {
   return false;
 }
 
-/// Returns the drawings for the set-up sheet. Each is a separate SVG document, because the element ids of different
-/// drawings may be equal.
+/// Returns the drawings for the set-up sheet. Each drawing is a separate SVG document, because different drawings can
+/// contain equal XML ids.
 std::vector<report::PageFigure> drawings_of(const studies::FabricationResult& result) {
   std::vector<report::PageFigure> figures;
   const auto add = [&](const std::string& caption, const std::string& svg) {
@@ -59,8 +59,8 @@ std::vector<report::PageFigure> drawings_of(const studies::FabricationResult& re
 ExitCode run(const FabricateOptions& options, const CommonOptions& common) {
   const studies::FabricationResult result =
       studies::fabricate(options.job, request_of<FabricationRequest>(options.fields, common));
-  // The sheet can also contain how machining errors change the returned light. These changes are traced only if the
-  // sheet is written to a file or to JSON.
+  // The sheet can also show how machining errors change the returned light. This requires ray tracing, which is done
+  // only if the sheet is written to a file or to JSON.
   const studies::SetupSheet sheet = studies::setup_sheet(result, !common.out.empty() || !common.json.empty());
 
   std::vector<std::string> inputs = {options.job};

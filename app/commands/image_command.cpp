@@ -60,13 +60,13 @@ std::vector<Argument> arguments(ImageOptions& options) {
   return all;
 }
 
-/// Checks that pictures can be written, before any of them is computed. Call this function after cheaper checks,
-/// because loading the library that writes pictures takes half a second.
+/// Checks that pictures can be written. Must be called before a picture is computed, but after cheaper checks: loading
+/// the library that writes pictures takes half a second.
 void check_can_draw(const CommonOptions& common) {
   if (!common.out.empty()) picture_files();
 }
 
-/// Returns advice for a shorter run with --detector: options to change, with their current values.
+/// Returns advice on how to shorten a run with --detector: the options to change, with their current values.
 Words what_shortens(const DetectorRequest& request) {
   const bool may_be_exact = request.engine == "exact" || request.engine == "auto";
   Words advice;
@@ -77,7 +77,7 @@ Words what_shortens(const DetectorRequest& request) {
   return advice;
 }
 
-/// Returns advice for a shorter run with --camera: options to change, with their current values.
+/// Returns advice on how to shorten a run with --camera: the options to change, with their current values.
 Words what_shortens(const CameraRequest& request) {
   return {request.passes ? fmt::format("give fewer --passes (now {})", *request.passes)
                          : fmt::format("give a larger --noise (now {})", shortest(request.noise)),
@@ -109,7 +109,7 @@ std::string camera_png(const raytrace::CameraImage& image) {
   return report::png_file(image.columns, image.rows, report::tone_mapped_pixels(image.luminance));
 }
 
-/// Writes a preview of the unfinished camera picture to the output folder, at most one time in each period of length
+/// Writes previews of the unfinished camera picture to the output folder. The time between two previews is at least
 /// kPreview.
 class Preview {
  public:

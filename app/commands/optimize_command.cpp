@@ -21,7 +21,7 @@ namespace retrace::app {
 namespace {
 
 struct OptimizeOptions : StudyOptions {
-  std::string job;  ///< fabrication job file of the chosen design that is to be written; if empty, no job is written
+  std::string job;  ///< output file for the fabrication job of the chosen design; not written if empty
   MakingOptions making;
 };
 
@@ -32,15 +32,14 @@ std::vector<Argument> arguments(OptimizeOptions& options) {
   return all;
 }
 
-/// Returns the fabrication job of the chosen design. The tool width comes from --tool-width-mm, or else from the key
-/// machining.tool_width_mm of the study.
+/// Returns the fabrication job of the chosen design. The tool width is the value of --tool-width-mm. If the option is
+/// not given, it is the value of the key machining.tool_width_mm of the study.
 studies::MadeJob job_of(JobRequest request, const studies::Study& study, const studies::Variant& best) {
   const studies::Candidate candidate = studies::make_candidate(study, best.values);
   if (request.tool_width_mm == 0.0) {
     const std::optional<double> width_mm = candidate.machining().tool_width_mm;
     if (!width_mm)
-      throw InputError({"", 0, "--tool-width-mm"},
-                       "is required with --job where the study has no machining.tool_width_mm");
+      throw InputError(Field{"tool_width_mm"}, "is required with --job where the study has no machining.tool_width_mm");
     request.tool_width_mm = *width_mm;
   }
   return studies::make_job(candidate.design(), request);
@@ -54,11 +53,13 @@ std::vector<std::string> inputs_of(const OptimizeOptions& options, const JobRequ
   return files;
 }
 
-/// Checks the options of the fabrication job before the search, because a search may take long.
+/// Checks the options of the fabrication job. The check is made before the search, because a search can take a long
+/// time.
 /// \throw InputError
 void check_making_of(const OptimizeOptions& options, JobRequest request, const studies::Study& study) {
   if (options.job.empty()) return;
-  // Without --tool-width-mm, the study determines the tool width of each design. The checks need any positive width.
+  // Without --tool-width-mm, the study determines the tool width of each design. These checks only need a positive
+  // width.
   if (request.tool_width_mm == 0.0) request.tool_width_mm = 1.0;
   studies::check_making(request);
   studies::check_element(studies::make_candidate(study, some_values(study)).design(), request);

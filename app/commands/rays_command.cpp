@@ -30,14 +30,7 @@ std::vector<Argument> arguments(RaysOptions& options) {
   return all;
 }
 
-/// Returns true if a field of the request is given on the command line.
-bool is_given(const RaysOptions& options, const std::string& option) {
-  return options.fields.values.at(option).has_value();
-}
-
 ExitCode run(const RaysOptions& options, const CommonOptions& common) {
-  if (!is_given(options, "--source") && !is_given(options, "--emitter"))
-    throw InputError("rays: one of --source and --emitter is required; see retrace rays --help");
   studies::Design design = studies::read_design(options.design, common.overrides);
   auto request = request_of<RaysRequest>(options.fields, common);
   request.out = common.out;

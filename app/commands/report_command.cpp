@@ -33,16 +33,16 @@ std::vector<Argument> arguments(ReportOptions& options) {
 
 constexpr const char* kPageName = "report.html";
 
-/// Returns the output file: the file that --out names, or report.html in the folder that --out names. Without --out, it
-/// is report.html in the result folder.
+/// Returns the output file. If --out is an HTML file, it is this file. If --out is a folder, it is report.html in this
+/// folder. Without --out, it is report.html in the result folder.
 fs::path page_file(const ReportOptions& options, const CommonOptions& common) {
   if (common.out.empty()) return fs::path(options.folder) / kPageName;
   const fs::path out = common.out;
   return out.extension() == ".html" || out.extension() == ".htm" ? out : out / kPageName;
 }
 
-/// Checks that the output file in the result folder is not a symbolic link. A result folder from an untrusted source
-/// could otherwise make the command overwrite any file of the user.
+/// Checks that the output file in the result folder is not a symbolic link. With a link in a result folder from an
+/// untrusted source, the command could otherwise overwrite any file of the user.
 /// \throw OutputError if `file` is a symbolic link
 void check_is_no_link(const fs::path& file) {
   std::error_code ignored;

@@ -36,7 +36,7 @@ struct VerifyOptions {
   FieldTexts fields;
   std::string as_machined;  ///< output file for the design of the machined part; not written if empty
   std::string map;          ///< output file for the error map (PNG); not written if empty
-  std::string servo;        ///< input file with a table of strokes; no table if empty
+  std::string servo;        ///< input file with the strokes of the fast tool servo; empty if not given
 };
 
 std::vector<Argument> arguments(VerifyOptions& options) {
@@ -62,7 +62,8 @@ VerificationRequest request_of_command(const VerifyOptions& options, const Commo
   return request;
 }
 
-/// Runs a study and measures its time.
+/// Runs a study and measures its duration.
+/// \param elapsed_s receives the duration in seconds
 template <class Study>
 auto timed(const CommonOptions& common, double& elapsed_s, const Study& study) {
   std::optional<decltype(study())> run;
@@ -72,7 +73,7 @@ auto timed(const CommonOptions& common, double& elapsed_s, const Study& study) {
   return *std::move(run);
 }
 
-/// Kinds of files against which programs can be verified. A file without the key `schema` is a planed part if it has a
+/// Kinds of files that define what NC programs must cut. A file without the key `schema` is a planed part if it has a
 /// table `mill` or `lathe`, and a job otherwise.
 enum class Kind { job, planed_part, turned_part };
 constexpr std::string_view kSchemas[] = {"retrace.job/1", "retrace.planed_part/1", "retrace.turned_part/1"};
@@ -89,15 +90,16 @@ Kind kind_of(const std::string& file) {
 
 /// Refuses options that do not apply to files of kind `kind`.
 void refuse_others(const VerifyOptions& options, const VerificationRequest& request, Kind kind) {
-  const auto refuse = [&](const char* option, const char* whom) {
+  const auto refuse = [&](const std::string& option, const char* whom) {
     throw InputError({"", 0, option}, fmt::format("is for {}; {} is none", whom, options.job));
   };
   if (kind != Kind::turned_part && !options.servo.empty()) refuse("--servo", "turned parts");
   if (kind == Kind::job) return;
-  const std::pair<const char*, bool> of_jobs[] = {{"--standing", !request.standing.empty()},
-                                                  {"--tolerance-nm", request.tolerance_nm.has_value()},
-                                                  {"--map", !options.map.empty()},
-                                                  {"--as-machined", !options.as_machined.empty()}};
+  const std::pair<std::string, bool> of_jobs[] = {
+      {requests::option_of_field("standing"), !request.standing.empty()},
+      {requests::option_of_field("tolerance_nm"), request.tolerance_nm.has_value()},
+      {"--map", !options.map.empty()},
+      {"--as-machined", !options.as_machined.empty()}};
   for (const auto& [option, is_given] : of_jobs)
     if (is_given) refuse(option, "jobs");
 }
@@ -131,7 +133,8 @@ std::vector<std::string> inputs_of(const VerifyOptions& options) {
   return files;
 }
 
-/// Returns the file of the table of facet planes for an as-machined design: part_facets.csv for part.toml.
+/// Returns the path of the table of facet planes that belongs to an as-machined design, such as part_facets.csv for
+/// part.toml. Returns an empty path if `design` is empty.
 fs::path facets_file_of(const fs::path& design) {
   return design.empty() ? fs::path() : design.parent_path() / (design.stem().string() + "_facets.csv");
 }

@@ -11,7 +11,8 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 /// An unknown counts as observable if the norm of its components in the unobservable combinations is below this value.
 constexpr double kLeastShare = 1e-3;
-/// Minimum component of a combination that its text mentions, relative to the largest component.
+/// Absolute value below which a component of a reduced combination is set to 0. The pivot component of each combination
+/// is 1.
 constexpr double kLeastShareInWords = 0.02;
 
 /// Returns orthonormal columns that span the column space of a matrix.

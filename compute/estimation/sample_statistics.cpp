@@ -11,14 +11,14 @@
 namespace retrace::compute {
 namespace {
 
-/// Stream of random numbers that is used only in this file.
+/// Identifier of the random-number stream for resampling. No other file uses it.
 constexpr std::uint32_t kResample = 0x53776510U;
 constexpr std::size_t kResamples = 1000;
 /// Maximum number of groups of rows for resampling. If there are more rows, neighbouring rows form groups.
 constexpr std::size_t kMostGroups = 500;
 
-/// Sums over rows (SaltelliRow) from which the indices are computed. The values of quantities are taken relative to
-/// their overall mean, which avoids cancellation.
+/// Sums over rows (SaltelliRow) from which the indices are computed. The overall mean is subtracted from all values a
+/// and b, which avoids cancellation.
 struct Sums {
   double rows = 0.0;
   double values = 0.0;   ///< sum of all values a and b

@@ -8,33 +8,34 @@
 
 namespace retrace::compute {
 
-/// IntervalEstimate with a confidence interval.
+/// Estimated value with its confidence interval from `low` to `high`.
 struct IntervalEstimate {
   double value = 0.0, low = 0.0, high = 0.0;
 };
 
 /// Fractions of a quantity's variance that one parameter causes.
 struct SobolIndex {
-  IntervalEstimate first_order;  ///< effect of the parameter alone
+  IntervalEstimate first_order;  ///< effect of the parameter without interactions
   IntervalEstimate total;        ///< effect including interactions with all other parameters
 };
 
-/// Values of a quantity at the points of one row in the design of Saltelli et al. (2010). The points are two
-/// independent points A and B, and further points that are equal to A except for one coordinate, which is that of B.
+/// Values of a quantity at one row of sample points in the sampling scheme of Saltelli et al. (2010). The row consists
+/// of two independent points A and B and, for each parameter, of a mixed point. The mixed point is equal to A, except
+/// that this parameter is taken from B.
 struct SaltelliRow {
   double a = 0.0, b = 0.0;
-  std::vector<double> mixed;  ///< for each parameter: value at the point A with only this parameter taken from B
+  std::vector<double> mixed;  ///< for each parameter: value at its mixed point
 };
 
-/// Returns the Sobol indices of the parameters. Formulas: Saltelli et al. (2010) for first-order indices, Jansen (1999)
-/// for total indices. The intervals are computed by resampling the rows (Efron's percentile bootstrap). The result is
-/// empty if there are fewer than two rows, or if the quantity does not vary.
+/// Returns the Sobol indices of the parameters. First-order indices follow Saltelli et al. (2010), and total indices
+/// Jansen (1999). The confidence intervals are computed by resampling the rows (Efron's percentile bootstrap). The
+/// result is empty if there are fewer than two rows, or if the quantity does not vary.
 /// \param confidence probability that an interval contains the true value, in 0..1
 /// \param seed seed of the resampling
 /// \pre `mixed` has the same number of entries in all rows
 std::vector<SobolIndex> sobol_indices(const std::vector<SaltelliRow>& rows, double confidence, std::uint32_t seed);
 
-/// Returns the fraction of good parts, with the interval of Clopper and Pearson (1934).
+/// Returns the fraction of good parts with its Clopper-Pearson confidence interval (1934).
 /// \param good number of good parts
 /// \param parts number of all parts
 /// \pre good <= parts, parts > 0
@@ -51,8 +52,8 @@ struct Spread {
 /// \pre values is not empty
 Spread spread_of(const std::vector<double>& values, double confidence);
 
-/// Returns the value below which a fraction of the values lies, with linear interpolation (type 7 of Hyndman and Fan
-/// 1996).
+/// Returns the value below which the fraction `share` of all values is located, with linear interpolation (type 7 of
+/// Hyndman and Fan 1996).
 /// \pre values is ascending and not empty, 0 <= share <= 1
 double percentile(const std::vector<double>& ascending, double share);
 

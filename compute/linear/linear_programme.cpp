@@ -16,7 +16,7 @@ struct ProblemDeleter {
 };
 using Problem = std::unique_ptr<glp_prob, ProblemDeleter>;
 
-/// Returns the type of the bounds in GLPK.
+/// Returns the GLPK constant for the type of the bounds.
 int type_of(const Bounds& bounds) {
   const bool has_least = std::isfinite(bounds.least);
   const bool has_most = std::isfinite(bounds.most);
@@ -25,7 +25,7 @@ int type_of(const Bounds& bounds) {
   return has_most ? GLP_UP : GLP_FR;
 }
 
-/// Returns the number of a row or column in GLPK, which counts from 1.
+/// Returns the number of a row or column in GLPK. GLPK counts rows and columns from 1.
 int number_of(std::size_t index) {
   return static_cast<int>(index) + 1;
 }
@@ -73,10 +73,10 @@ class Silence {
 
 constexpr int kCancelled = 0;
 
-/// Solves the problem with the dual simplex method, in time slices between which `cancel` is checked. The primal method
-/// is used if the dual method finds no optimum or its basis is almost singular. The primal method determines why there
-/// is no optimum.
-/// \return status of GLPK
+/// Solves the problem with the dual simplex method, in time slices between which `cancel` is checked. If the dual
+/// method finds no optimum, or if its basis is almost singular, the primal method is used. The primal method determines
+/// why there is no optimum.
+/// \return status of the solution in GLPK, or kCancelled
 int run_simplex(glp_prob* problem, const Cancellation* cancel) {
   constexpr int kSliceMs = 200;
   glp_smcp settings;
@@ -107,8 +107,9 @@ void take_values(glp_prob* problem, const LinearProgramme& programme, LinearOpti
     optimum.prices.push_back(glp_get_row_dual(problem, number_of(k)));
 }
 
-/// Returns the Farkas multipliers of an infeasible programme. They are the prices of an elastic programme, in which
-/// rows may be violated and the sum of the violations is minimal. Empty if the programme is feasible.
+/// Returns the Farkas multipliers of an infeasible programme. They are the dual prices of an elastic programme, which
+/// allows violations of rows and minimizes the sum of the violations. The result is empty if the programme is feasible
+/// or the elastic programme cannot be solved.
 std::vector<double> certificate(const LinearProgramme& programme, const Cancellation* cancel) {
   LinearProgramme elastic;
   for (const LinearProgramme::Column& column : programme.columns()) elastic.add_column(column.bounds, 0.0);

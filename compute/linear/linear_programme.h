@@ -1,7 +1,7 @@
 #pragma once
 
-// Solves linear programmes with bounds, and returns their optimum and dual prices. Only this file uses the library
-// GLPK.
+// Solves linear programmes with bounds, and returns their optimum and dual prices. Only linear_programme.cpp uses the
+// library GLPK.
 
 #include <cstddef>
 #include <limits>
@@ -18,8 +18,9 @@ struct Bounds {
   double most = std::numeric_limits<double>::infinity();
 };
 
-/// Linear programme. Columns are the unknown values, rows are weighted sums of them. Both have bounds. The sum of
-/// objective times value over the columns is maximized.
+/// Linear programme. Columns are the unknowns, and rows are weighted sums of the unknowns. Columns and rows have
+/// bounds. The objective function is the sum, over all columns, of Column::objective times the unknown. It is
+/// maximized.
 class LinearProgramme {
  public:
   /// Index of a column, and the weight of its value in a row.
@@ -53,7 +54,7 @@ class LinearProgramme {
 /// Result of a linear programme.
 struct LinearOptimum {
   enum class Kind {
-    optimal,     ///< no feasible values are better
+    optimal,     ///< the values are feasible and the objective is maximal
     infeasible,  ///< no values satisfy all rows and bounds
     unbounded,
     interrupted
@@ -62,16 +63,16 @@ struct LinearOptimum {
   double objective = 0.0;
   std::vector<double> values;  ///< values of the columns
   /// Dual prices of the rows: increase of the objective per unit of the active bound, or 0 if no bound is active. If
-  /// the programme is infeasible, these are Farkas multipliers whose absolute values add up to 1. The sum of all rows
-  /// times their multipliers is then a row that no values within the bounds of the columns satisfy.
+  /// the programme is infeasible, these are Farkas multipliers whose absolute values add up to 1. The sum of all rows,
+  /// each times its multiplier, is then a constraint that no values within the bounds of the columns satisfy.
   std::vector<double> prices;
-  /// Reduced costs of the columns: objective minus the prices of the rows times the weights.
+  /// Reduced costs of the columns: Column::objective minus the sum, over all rows, of price times weight of the column.
   std::vector<double> reduced_costs;
 };
 
 /// Solves a linear programme with a relative accuracy of about 1e-12. The result is deterministic.
-/// \param cancel checked several times per second
-/// \throw BudgetError if the numbers do not allow a reliable result
+/// \param cancel cancellation, which is checked several times per second; may be null
+/// \throw BudgetError if the coefficients differ too much in size for a reliable result
 LinearOptimum solve(const LinearProgramme& programme, const Cancellation* cancel = nullptr);
 
 }  // namespace retrace::compute

@@ -5,8 +5,8 @@
 namespace retrace::compute {
 
 std::unique_ptr<MpiMailbox> open_mpi_mailbox(std::chrono::milliseconds sign_of_life) {
-  // The module is loaded with global symbols. OpenMPI loads components that use symbols of its libraries but are not
-  // linked to these libraries.
+  // The module is loaded with global symbols, because OpenMPI loads components that use symbols of its libraries
+  // without being linked to these libraries.
   static constexpr Module module{.name = "retrace_mpi",
                                  .function = "retrace_mpi_mailbox",
                                  .lack = "ranks of mpirun or srun cannot work together",

@@ -1,7 +1,7 @@
 #pragma once
 
-// Messages between the ranks (processes) of an MPI job. MPI itself is used only in a module, mpi_module.cpp. Internal
-// to studies/sweep.
+// Messages between the ranks (processes) of an MPI job. Only the module mpi_module.cpp uses MPI itself. Only files of
+// compute/ranks include this header.
 
 #include <chrono>
 #include <memory>
@@ -18,8 +18,9 @@ struct Letter {
 };
 
 /// Sends and receives messages between the ranks of a job. A separate thread makes all MPI calls. It also sends signs
-/// of life: short messages that show that the process is alive. No function of this class waits for MPI without a
-/// limit, even if another rank dies or MPI does not end. Only one thread may read messages; any thread may post them.
+/// of life: short messages that show that the process is alive. No function of this class waits for MPI without a time
+/// limit, even if another rank dies or MPI cannot be finalized. Parameters named `patience` are maximum waiting times.
+/// Only one thread may read messages; any thread may post them.
 class MpiMailbox {
  public:
   /// Destroys the mailbox. MPI is finalized only if close() was called.
@@ -29,33 +30,35 @@ class MpiMailbox {
   /// \return true if MPI has started
   virtual bool wait_for_start(std::chrono::milliseconds patience) = 0;
 
-  /// Returns the number of this rank.
-  /// \pre MPI has started, for this and all following functions
+  /// Returns the rank of this process.
+  /// \pre MPI has started. This precondition also applies to all following functions
   virtual int rank() const = 0;
   virtual int size() const = 0;
 
   /// Sends a message without waiting for its transfer.
   /// \param tag must be > 0
   virtual void post(int to, int tag, std::string bytes) = 0;
-  /// Returns the next message, or nothing if none arrives in time.
+  /// Returns the next message, or nothing if none arrives within `patience`.
   virtual std::optional<Letter> take(std::chrono::microseconds patience) = 0;
   /// Returns the time since the last message or sign of life of a rank.
   virtual std::chrono::duration<double> silence(int rank) const = 0;
   /// Restarts the measurement of the silence of all ranks. Must be called after this process itself was suspended.
   virtual void forgive_silence() = 0;
-  /// Stops sending to a rank that was given up. Other functions do not wait for its pending messages.
+  /// Stops sending messages to a rank that was given up. Other functions do not wait for messages to this rank.
   virtual void forget(int rank) = 0;
 
   /// Waits until all posted messages have been sent.
-  /// \return true if they have been sent in time
+  /// \return true if they have been sent within `patience`
   virtual bool flush(std::chrono::milliseconds patience) = 0;
   /// Finalizes MPI together with all other ranks.
-  /// \return true if this succeeded in time; otherwise, MPI is not finalized and the process must end with _exit()
+  /// \return true if this succeeded within `patience`; otherwise, MPI is not finalized and the process must end with
+  /// _exit()
   virtual bool close(std::chrono::milliseconds patience) = 0;
 };
 
 /// Starts MPI.
-/// \param sign_of_life interval of signs of life: rank 0 sends them to all ranks, the other ranks send them to rank 0
+/// \param sign_of_life time between two signs of life. Rank 0 sends them to all other ranks, and these send them to
+/// rank 0
 /// \throw OutputError if the module that contains MPI cannot be loaded
 std::unique_ptr<MpiMailbox> open_mpi_mailbox(std::chrono::milliseconds sign_of_life);
 

@@ -1,4 +1,4 @@
-// Module that is loaded if mpirun or srun launched the program. Only this file uses MPI.
+// Loadable module for MPI. The program loads it only if mpirun or srun launched the program. Only this file uses MPI.
 
 #include <mpi.h>
 
@@ -51,14 +51,14 @@ struct MailboxState {
   int size = 1;
   std::deque<Letter> posted;  ///< messages that wait to be sent; `rank` is the receiver
   std::deque<Letter> arrived;
-  bool sending = false;  ///< true: messages are being sent
+  bool sending = false;  ///< true while messages are being sent
   std::set<int> forgotten;
   std::vector<Clock::time_point> heard;
 
   // Members that only the thread with MPI calls uses. They are lists because MPI stores addresses of their elements.
   std::list<Transfer> outgoing;
   std::list<Transfer> incoming;
-  std::list<Transfer> given_up;  ///< transfers that MPI may still write to as long as the process lives
+  std::list<Transfer> given_up;  ///< transfers of forgotten ranks; MPI may access their memory until the process ends
   Clock::time_point told_last;
 
   void run();
@@ -113,7 +113,7 @@ bool MailboxState::send_posted() {
 }
 
 /// Receives messages that have arrived. Receiving a long message may need several calls.
-/// \return true if any data had arrived
+/// \return true if at least one message has been received completely
 bool MailboxState::receive() {
   for (;;) {
     int is_there = 0;
@@ -127,7 +127,7 @@ bool MailboxState::receive() {
     MPI_Irecv(transfer.bytes.data(), bytes, MPI_BYTE, transfer.rank, transfer.tag, MPI_COMM_WORLD, &transfer.request);
   }
   bool any = false;
-  // Ranks with a message that is not complete; later messages of these ranks wait, to keep the order.
+  // Ranks whose next message is not complete. Later messages of these ranks wait, so that the order is kept.
   std::set<int> unfinished;
   for (auto transfer = incoming.begin(); transfer != incoming.end();) {
     if (unfinished.contains(transfer->rank) || !is_done(*transfer)) {
@@ -202,7 +202,7 @@ class Mailbox final : public MpiMailbox {
  public:
   explicit Mailbox(std::chrono::milliseconds sign_of_life) : state_(std::make_shared<MailboxState>()) {
     state_->sign_of_life = sign_of_life;
-    // The thread is detached. It could not be joined if MPI blocked it forever.
+    // The thread is detached, because it could not be joined if MPI blocked it forever.
     std::thread([state = state_] { state->run(); }).detach();
   }
 
@@ -265,7 +265,7 @@ class Mailbox final : public MpiMailbox {
   }
 
  private:
-  std::shared_ptr<MailboxState> state_;  ///< shared with the thread, which may exist longer than this object
+  std::shared_ptr<MailboxState> state_;  ///< shared with the thread, which can exist longer than this object
 };
 
 }  // namespace

@@ -26,8 +26,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Time without messages after which a rank (process of the job) is given up. The environment variable below overrides
-/// it.
+/// Time without messages, in seconds, after which a rank (process of the job) is given up. The environment variable
+/// kSilenceVariable overrides it.
 constexpr double kSilenceS = 15.0;
 constexpr const char* kSilenceVariable = "RETRACE_MPI_SILENCE_S";
 /// Maximum time for the start of a job; large jobs start slowly.
@@ -43,10 +43,10 @@ constexpr std::chrono::milliseconds kLook{20};
 constexpr std::chrono::seconds kQuick{1};
 
 enum Tag : int {
-  ask = 1,  ///< to rank 0: number of tasks that the sender wants
-  result,   ///< to rank 0: number of a finished task and its result
+  ask = 1,  ///< to rank 0: number of tasks that the sender requests
+  result,   ///< to rank 0: index of a finished task, followed by its result
   leaving,  ///< to rank 0: the sender leaves; contains the reason
-  deal,     ///< from rank 0: numbers of tasks to compute
+  deal,     ///< from rank 0: indices of the tasks to compute
   go        ///< from rank 0: there are no more tasks; contains whether all ranks can finalize MPI together
 };
 constexpr std::string_view kAllAreThere = "all";
@@ -76,7 +76,7 @@ struct MpiSession::State {
   std::set<int> there;      ///< rank 0: other ranks that have not been given up
   std::set<int> at_work;    ///< rank 0: ranks in `there` that have not announced that they are leaving
   bool lost_ranks = false;  ///< true: ranks were lost, so that MPI cannot be finalized
-  bool may_go = false;      ///< other ranks: true after rank 0 has sent the message `go`
+  bool may_go = false;      ///< other ranks: true if this rank may end, because rank 0 has sent `go` or is silent
   bool has_ended = false;
   bool ended_well = true;
   Warnings remarks;
@@ -107,7 +107,7 @@ struct MpiSession::State {
   void end_other();
 };
 
-/// Sends all ranks the message `go`, with which they may end. Ranks that do not answer within kPatience are given up.
+/// Sends all ranks the message `go`, which allows them to end. Ranks that do not answer within kPatience are given up.
 void MpiSession::State::end_rank_0() {
   for (const int rank : there) mailbox->post(rank, Tag::go, lost_ranks ? "" : std::string(kAllAreThere));
   const auto deadline = Clock::now() + kPatience;
@@ -183,8 +183,8 @@ std::vector<std::uint64_t> tasks_of(const std::string& bytes) {
   return tasks;
 }
 
-/// Assignment of a ledger's tasks to ranks. The thread that deals out tasks and the threads that compute may use it
-/// concurrently.
+/// Assignment of a ledger's tasks to ranks. The thread that deals out tasks and the threads that compute tasks can call
+/// its functions concurrently.
 class Dealer {
  public:
   explicit Dealer(TaskLedger& ledger) : ledger_(ledger) {}
@@ -237,8 +237,8 @@ class Dealer {
   std::map<std::uint64_t, int> dealt_;
 };
 
-/// Computes the tasks of rank 0 itself. It uses a second thread in addition to the thread that deals out tasks. Errors
-/// are stored for the dealing thread.
+/// Computes tasks on rank 0, in a second thread in addition to the thread that deals out tasks. Errors are stored until
+/// the dealing thread calls rethrow().
 class OwnShare {
  public:
   OwnShare(const ComputeTask& compute, Dealer& dealer, std::size_t slots, const Cancellation* cancel)
@@ -277,7 +277,7 @@ class OwnShare {
   std::thread thread_;  ///< last member, because the thread uses the other members
 };
 
-/// Ranks that wait for tasks, and the number of tasks that each wants.
+/// Ranks that wait for tasks, and the number of tasks that each of them has requested.
 using Waiting = std::map<int, std::size_t>;
 
 }  // namespace
@@ -352,8 +352,8 @@ void MpiSession::serve(const ComputeTask& compute, std::size_t slots, const Canc
     }
     const std::vector<std::uint64_t> tasks = tasks_of(letter->bytes);
     // If tasks are quick, the next batch is requested before this batch is computed, which hides the latency of
-    // messages. If tasks are slow, the next batch is requested only when this rank is idle. Until then, rank 0 can
-    // deal these tasks to other idle ranks.
+    // messages. If tasks are slow, the next batch is requested only when this rank is idle. Until then, rank 0 can deal
+    // the remaining tasks to other idle ranks.
     if (is_quick) ask();
     const auto start = Clock::now();
     for_each_in_parallel(tasks.size(), [&](std::size_t k) {

@@ -9,7 +9,7 @@
 namespace retrace::compute {
 namespace {
 
-/// Streams of random numbers that are used only in this file.
+/// Identifiers of random-number streams. No other file uses them.
 constexpr std::uint32_t kScramble = 0x53776501U;
 constexpr std::uint32_t kShuffle = 0x53776502U;
 constexpr std::uint32_t kJitter = 0x53776503U;
@@ -24,7 +24,7 @@ std::uint32_t reversed(std::uint32_t v) {
 }
 
 /// Applies a nested uniform scramble: each bit is flipped depending on a hash of the bits above it. The constants are
-/// those of Burley, J. Comp. Graphics Techniques 9, 2020.
+/// from Burley, J. Comp. Graphics Techniques 9, 2020.
 std::uint32_t scrambled(std::uint32_t digits, std::uint32_t key) {
   std::uint32_t v = reversed(digits);
   v ^= v * 0x3d20adeaU;
@@ -35,8 +35,8 @@ std::uint32_t scrambled(std::uint32_t digits, std::uint32_t key) {
   return reversed(v);
 }
 
-/// Returns the centre of one of 2^32 equal intervals of the unit interval. It is never 0 or 1, where quantiles may be
-/// infinite.
+/// Divides the unit interval into 2^32 equal intervals and returns the centre of interval number `word`. The centre is
+/// never 0 or 1, where quantile functions can be infinite.
 double middle(std::uint32_t word) {
   return (static_cast<double>(word) + 0.5) * 0x1p-32;
 }
@@ -70,7 +70,7 @@ std::vector<double> UnitSamples::at(std::uint64_t point) const {
 std::vector<double> UnitSamples::sobol(std::uint64_t point) const {
   std::vector<double> coordinates(dimensions_);
   boost::random::sobol engine(dimensions_);
-  // The Sobol engine omits the first point of the sequence, the origin.
+  // The Sobol engine of Boost omits the first point of the sequence, the origin.
   if (point > 0) engine.discard((point - 1) * dimensions_);
   for (std::size_t axis = 0; axis < dimensions_; ++axis) {
     const auto digits = point > 0 ? static_cast<std::uint32_t>(engine() >> 32) : 0U;

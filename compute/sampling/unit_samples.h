@@ -13,7 +13,7 @@ namespace retrace::compute {
 class UnitSamples {
  public:
   enum class Kind {
-    sobol,            ///< Owen-scrambled by hashes (Laine and Karras 2011); best if `count` is a power of two
+    sobol,  ///< Sobol points with hash-based Owen scrambling (Laine, Karras 2011); `count` should be a power of two
     latin_hypercube,  ///< one point in each of `count` equal intervals of every axis (McKay et al. 1979)
     monte_carlo       ///< independent random points
   };

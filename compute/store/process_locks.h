@@ -1,6 +1,7 @@
 #pragma once
 
-// Determines by file locks which of several processes that share a store are still alive.
+// Determines which of the processes that share a store are still alive. Each process holds a file lock for this
+// purpose.
 
 #include <cstdint>
 #include <filesystem>

@@ -22,15 +22,16 @@ namespace retrace::compute {
 namespace fs = std::filesystem;
 namespace {
 
-/// Number of the file format, stored as user_version. It is increased when older programs would misinterpret the file.
+/// Number of the file format, stored as user_version. It is increased when the format changes in a way that older
+/// programs would misinterpret.
 constexpr int kFormat = 1;
-/// Identifier "rtrc" that distinguishes these files from other SQLite files.
+/// SQLite application id ("rtrc"), which distinguishes these files from other SQLite files.
 constexpr int kApplication = 0x72747263;
 constexpr int kWaitMs = 60'000;
-/// Number of columns of a point that are neither parameters nor quantities.
+/// Number of columns of the table `points` that are neither parameters nor quantities.
 constexpr int kFixedColumns = 5;
 constexpr const char* kAllPoints = "SELECT * FROM points ORDER BY point";
-/// Maximum number of characters of a reason that a message quotes.
+/// Maximum number of characters of an SQLite message or other reason that is quoted in an error message.
 constexpr std::size_t kMaxReasonLength = 160;
 
 std::string quoted(const std::string& name) {
@@ -177,8 +178,8 @@ void ResultStore::Database::open() {
   else if (!is_checked)
     check();  // another process has created the store in the meantime
   transaction.commit();
-  // With `synchronous = NORMAL`, a commit is only written to the write-ahead log, without waiting for the disk. It
-  // survives the death of the process. A power failure may lose the last points, but never damages the file.
+  // With `synchronous = NORMAL`, a commit is only written to the write-ahead log, without waiting for the disk. The
+  // commit survives the death of the process. A power failure can lose the last points, but never damages the file.
   if (!file.empty()) switch_to_log();
 }
 
@@ -296,8 +297,8 @@ ResultStore::ResultStore(const fs::path& file, const StoreLayout& layout, IfExis
   } catch (const SQLite::Exception& error) {
     database_->fail(error);
   }
-  // Each process has an owner number, its byte in the lock file. Claims with the number of this process are those of a
-  // dead process that had the same number.
+  // Each process has an owner number: the index of its byte in the lock file. Existing claims with the owner number of
+  // this process were made by a dead process that had the same number. They are deleted.
   if (!file.empty())
     database_->guarded(
         [&] { database_->sqlite->exec(fmt::format("DELETE FROM claims WHERE owner = {}", database_->owner())); });
@@ -372,7 +373,8 @@ std::size_t ResultStore::claimed_by_others() {
       }
     }
     if (dead.empty()) return claimed;
-    // Another process may get the owner number of a dead process. It cannot claim points before this transaction ends.
+    // A new process can get the owner number of a dead process, so is_alive() is checked again. The new process cannot
+    // claim points before this transaction ends.
     SQLite::Transaction transaction(*database_->sqlite, SQLite::TransactionBehavior::IMMEDIATE);
     for (const std::int64_t owner : dead)
       if (!database_->locks->is_alive(owner))
@@ -431,7 +433,7 @@ bool is_duration(const SQLite::Column& value) {
 bool is_output(const SQLite::Column& value) {
   return is_nothing(value) || is_number(value);
 }
-/// Returns true if the value is a valid standard error: >= 0 or missing. It may be missing because SQLite stores NaN as
+/// Returns true if the value is a valid standard error: >= 0 or missing. It can be missing because SQLite stores NaN as
 /// NULL.
 bool is_std_error(const SQLite::Column& value) {
   return is_nothing(value) || (value.isFloat() && value.getDouble() >= 0.0);

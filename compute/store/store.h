@@ -23,18 +23,19 @@ struct StoredOutput {
   double std_error = 0.0;
 };
 
-/// Finished point of a study. It was computed, or it failed for a reason that would occur again in a repetition.
+/// Finished point of a study. Its computation has either succeeded, or failed for a reason that would occur again in a
+/// repetition.
 struct StoredPoint {
   std::uint64_t point = 0;
   bool failed = false;
   std::string reason;                 ///< error message if the computation failed; otherwise empty
   std::vector<StoredValue> inputs;    ///< in the order of StoreLayout::inputs
-  std::vector<StoredOutput> outputs;  ///< in the order of StoreLayout::outputs; empty if it failed
+  std::vector<StoredOutput> outputs;  ///< in the order of StoreLayout::outputs; empty if the computation failed
   double elapsed_s = 0.0;
   std::string version;  ///< version of the program that computed the point
 };
 
-/// Description of the contents of a store. It is compared with an existing file, so that a store of another study is
+/// Description of the contents of a store. An existing file is compared with it, and the store of another study is
 /// refused.
 struct StoreLayout {
   std::string kind;    ///< kind of the store, such as "retrace.sweep/1"
@@ -52,12 +53,13 @@ enum class IfExists { refuse, resume, overwrite };
 
 /// Finished points in one SQLite file. Every point is committed separately, so that a killed process loses no finished
 /// points. Several processes on one machine may use one file. A process claims points before it computes them, so that
-/// no other process computes them. Claims of dead processes are void. Several threads may use an object.
+/// no other process computes them. Claims of dead processes are void. Several threads may use the same object.
 class ResultStore {
  public:
-  /// \param file empty: the store is in memory and only this process can access it
-  /// \throw InputError if the file exists although it must not, is not a store, is damaged, belongs to another study or
-  /// has a newer version. Nothing is written then.
+  /// \param file SQLite file. If it is empty, the store is in memory, and only this process can access it
+  /// \throw InputError if the file exists and `if_exists` is `refuse`, or if another process uses the file that is to
+  /// be overwritten. Also thrown if the file is not a store, is damaged, belongs to another study or has a newer
+  /// format. In all these cases, nothing is written
   /// \throw OutputError if the file cannot be written
   ResultStore(const std::filesystem::path& file, const StoreLayout& layout, IfExists if_exists);
   ~ResultStore();

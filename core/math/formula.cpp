@@ -17,9 +17,9 @@ namespace {
 
 using Step = Formula::Step;
 
-/// Records the operations of a formula while muParser evaluates the formula. For muParser, each value is the index of a
-/// node. The grammar is thus that of muParser, and derivatives, which muParser does not support, can be computed from
-/// the nodes.
+/// Records the operations of a formula while muParser evaluates the formula. The values with which muParser computes
+/// are indices of nodes. The grammar is therefore that of muParser. Derivatives, which muParser does not support, are
+/// computed from the nodes.
 struct Recorder {
   std::vector<Formula::Node> nodes;
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Functions that create conditions, and rows with conditions. A condition states when a key or table of a format has an
+// Functions that create conditions and rows with conditions. A condition states when a key or table of a format has an
 // effect. The parameter `refusal` is the message for a key that is given although its condition does not hold. If
 // `refusal` is empty, the message is made from the condition.
 
@@ -12,7 +12,7 @@ namespace retrace::schema {
 
 using Words = std::string_view[];
 
-/// Returns one word of a list, or the words from `first` to `last`.
+/// Returns the part of a list of words from `first` to `last`. If `last` is not given, the part contains only `first`.
 /// \pre the list contains these words; otherwise the code does not compile
 constexpr std::span<const std::string_view> only(std::span<const std::string_view> words, std::string_view first,
                                                  std::string_view last = {}) {

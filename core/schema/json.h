@@ -1,6 +1,6 @@
 #pragma once
 
-// Converts documents to JSON in the form that result files contain, and converts JSON to TOML text.
+// Converts documents to JSON, in the form in which result files contain them, and JSON to TOML text.
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -9,10 +9,10 @@
 
 namespace retrace::schema {
 
-/// Returns a value as JSON: null if it is not given.
+/// Converts a value to JSON. A value that is not given becomes null.
 nlohmann::ordered_json to_json(const Value& value);
 
-/// Returns the keys that are given in a document as JSON, in the order of the format.
+/// Converts a document to JSON, with the keys in the order of the format. Keys that are not given are omitted.
 nlohmann::ordered_json to_json(const Document& document);
 
 /// Returns a TOML text with the keys and tables of `json` that belong to the format. Other keys and tables are omitted.

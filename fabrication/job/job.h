@@ -27,7 +27,7 @@ enum class Strategy {
   unidirectional,  ///< plunge along facet 1, plough along facet 2
   bidirectional,   ///< plunges along both facets, layer by layer
   two_step,        ///< unidirectional roughing, bidirectional finishing
-  /// Diamond micro chiseling of cube corners: V-shaped tool moves down one dihedral edge and up another.
+  /// Diamond micro chiseling of cube corners: a V-shaped tool moves down one dihedral edge and up another one.
   dmc
 };
 
@@ -38,7 +38,7 @@ inline constexpr std::string_view kNextEdgeWords[] = {"stop", "program"};
 
 struct Workpiece {
   WorkpieceKind kind = WorkpieceKind::mould;
-  double shrinkage_percent = 0.0;  ///< excess of the mould's size over the size of the part, 0..10
+  double shrinkage_percent = 0.0;  ///< excess of the mould's size over the size of the part, in percent; 0..10
 };
 
 /// Chip (notch) in the cutting edge. If the last cut of a facet is made with this edge, a ridge remains on the facet at
@@ -46,7 +46,7 @@ struct Workpiece {
 struct EdgeChip {
   double position_um =
       0.0;                ///< position of the chip's center along the edge, from the edge's center towards machine +X
-  double width_um = 0.0;  ///< width along the edge; > 0
+  double width_um = 0.0;  ///< width of the chip along the edge; > 0
   double depth_um = 0.0;  ///< depth normal to the clearance face; > 0, at most half the width
 };
 
@@ -56,9 +56,10 @@ enum class NextEdge {
   program  ///< a new program begins, and the edge is not replaced at stops
 };
 
-/// Diamond tool. For prisms, it is a chisel with a straight edge (single-point inverted cutting, thesis 2.1). For cube
-/// corners, it is a V-shaped tool with two edges that meet in the tip (diamond micro chiseling, thesis 1.4.2). The
-/// clearance face faces the facet that is cut. The clearance angle is set by the mounting of the tool.
+/// Diamond tool. For prisms, it is a chisel with a straight edge (single-point inverted cutting, Milliken 2017, section
+/// 2.1). For cube corners, it is a V-shaped tool with two edges that meet in the tip (diamond micro chiseling, Milliken
+/// 2017, section 1.4.2). The clearance face faces the facet that is cut. The clearance angle is set by the mounting of
+/// the tool.
 struct Tool {
   double width_mm = 0.0;    ///< chisel: length of the edge, 0.1..2; V-shaped: distance between ends of edges, 0.01..10
   double wedge_deg = 50.0;  ///< angle between clearance face and rake face; 65 by default for a V-shaped tool
@@ -73,17 +74,19 @@ struct Tool {
   NextEdge next_edge = NextEdge::stop;  ///< used only if edge_life_mm is given
 };
 
-/// Wedge angle of a V-shaped tool with rake 22 and clearance 3 degrees (thesis 1.4.2). The three angles add up to 90.
+/// Wedge angle, in degrees, of a V-shaped tool with a rake angle of 22 and a clearance angle of 3 degrees (Milliken
+/// 2017, section 1.4.2). The three angles add up to 90.
 inline constexpr double kDmcWedgeDeg = 65.0;
 
 /// Minimum feed. Programs contain feeds with three decimals, so that a smaller feed would be rounded to F0.000.
 inline constexpr double kLeastFeedMmPerMin = 5e-4;
 
-/// Cutting process: depths of cut, feeds, and optional recommendations of the thesis, which are off by default.
+/// Cutting process: depths of cut, feeds, and optional recommendations of Milliken 2017 (the thesis), which are off by
+/// default.
 struct Process {
   std::string name;
   std::string source;                      ///< source of the values
-  double clearance_mm = 0.2;               ///< distance of the tool from the blank's face, along the face's normal
+  double clearance_mm = 0.2;               ///< clearance of the tool above the blank's face, along the face's normal
   double roughing_depth_um = 15.0;         ///< depth of cut (DOC) of roughing and of bidirectional layers
   double finishing_depth_um = 5.0;         ///< DOC of finishing cuts
   int finishing_cuts = 2;                  ///< number of finishing cuts per facet; strategies two-step and dmc only

@@ -45,7 +45,7 @@ class Orientations {
 };
 
 /// Outline of the opening of an element's cut in a plane above the root or apex, in the frame of the element. Its
-/// points are height * grows[k] + stays[k]. Along the root, the opening of a prism has a constant length.
+/// points are height * grows[k] + stays[k]. The length of a prism's opening along the root is constant.
 struct Opening {
   std::vector<Vec2> grows;  ///< part of the outline that is proportional to the height, per mm
   std::vector<Vec2> stays;  ///< constant part of the outline, in mm
@@ -132,7 +132,7 @@ double stock_mm(const Job& job, const std::vector<CutElement>& elements, double 
       for (std::size_t k = 0; k < opening.grows.size(); ++k) {
         const Vec2 at = (opening.depth_mm + stock + clearance_mm) * opening.grows[k] + opening.stays[k];
         const Vec3 p = cut.foot_mm + cut.turn * Vec3(at.x(), at.y(), 0.0);
-        // Compute the height of the face above this point along the element's axis.
+        // Height of the blank's face above this point, along the axis of the element.
         const BlankFace::Place under = face.under(p);
         const double rise = std::max(under.normal.dot(cut.turn.col(2)), 0.05);
         highest = std::max(highest, (clearance_mm - under.height_mm) / rise - clearance_mm);

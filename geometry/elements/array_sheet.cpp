@@ -12,7 +12,7 @@
 namespace retrace::geometry {
 namespace {
 
-/// A length counts as a whole number of elements if its relative deviation from that number is at most this value.
+/// Maximum relative deviation of a length from a whole number of elements that still counts as whole.
 constexpr double kWhole = 1e-9;
 // kEndlessPeriods is the number of periods of an infinite array's sheet on each side of the origin. kEndlessReaches is
 // the margin by which the block of cube corners on a substrate extends beyond the sheet, in multiples of the sheet's

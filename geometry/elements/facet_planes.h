@@ -21,12 +21,13 @@ struct ElementPlanes {
   /// Prism: facets towards -x and +x (rotated element: -y and +y). Cube corner: facet k is between the dihedral edges
   /// at 120 k and 120 (k + 1) degrees. An empty list means that the element is missing; only `flares` are then used.
   std::vector<HeightPlane> planes = std::vector<HeightPlane>(2);
-  /// Cuts in the flat land that replaces a missing hexagonal cube corner. The machined cavities of its neighbours are
-  /// triangular and extend into the corners of the hexagon. Cut k removes the corner at 120 k degrees, up to the line
-  /// between the two adjacent corners.
+  /// Cuts in the flat land that replaces a missing hexagonal cube corner. The machined cavities of the neighbouring
+  /// elements are triangular and extend into the corners of this land. Cut k removes the corner at 120 k degrees, up to
+  /// the line between the two adjacent corners.
   std::array<std::optional<HeightPlane>, 3> flares;
-  /// Cube corner: planes that a chisel with a straight edge leaves at the apex, in front of facet k. The surface is the
-  /// maximum of the facets and of the minimum of these planes. Either all three planes are given or none.
+  /// Cube corner: planes that a chisel with a straight edge leaves at the apex, in front of facet k. The height of the
+  /// surface is the maximum of two heights: that of the highest facet plane, and that of the lowest of these three
+  /// planes. Either all three planes are given or none.
   std::array<std::optional<HeightPlane>, 3> caps;
 };
 
@@ -35,7 +36,7 @@ struct ElementPlanes {
 /// of these two elements is missing, a facet of the cavity extends across this corner into its land
 /// (docs/theory/micro_chiseling.md).
 /// \param elements all elements that exist, at least one
-/// \param radius_mm radius of their apertures
+/// \param radius_mm radius of the apertures of the elements
 void add_flares(std::vector<ElementPlanes>& elements, double radius_mm);
 
 /// Returns the parameter `spacing_mm` of FacetPlanes for cube corners.
@@ -46,8 +47,8 @@ class FacetPlanes {
  public:
   /// \param spacing_mm minimum distance between the centres of two elements along x or y; > 0
   FacetPlanes(std::vector<ElementPlanes> elements, double spacing_mm);
-  /// Returns the element whose centre is at this position, within a hundredth of the spacing. Returns null if there is
-  /// none.
+  /// Returns the element whose centre is at this position, with a tolerance of a hundredth of the spacing. Returns null
+  /// if there is no such element.
   const ElementPlanes* at(const Vec2& centre_mm) const;
   std::size_t size() const { return elements_.size(); }
   /// Returns the number of elements. Land with flares is not counted.
@@ -69,7 +70,7 @@ Vec2 place_of(const PartSpec& spec, const Cell& cell);
 
 /// Returns the element at the position of `cell`, with individual facet planes. Each facet ends where its plane
 /// intersects the planes of the other facets.
-/// \param centre_mm the cell's place_of() in the coordinates of the cell
+/// \param centre_mm reference position of the cell, as returned by place_of(), in the coordinates of the cell
 Cell cell_with_planes(const Cell& cell, const ElementPlanes& element, const Vec2& centre_mm);
 
 /// Returns land on z = 0 that replaces a missing hexagonal cube corner, without the corners that the flares cut off.

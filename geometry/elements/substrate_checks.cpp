@@ -1,4 +1,4 @@
-// Checks whether a substrate can carry its elements.
+// Checks whether a substrate is suitable for the elements of a part.
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
@@ -28,8 +28,8 @@ void visit_grid(const Vec2& half_mm, const Visit& visit) {
       visit(Vec2(half_mm.cwiseProduct(Vec2(2.0 * i / kGridSteps - 1.0, 2.0 * j / kGridSteps - 1.0))));
 }
 
-/// Limits the number of elements on spheres and formulas. On such substrates, all elements differ, and each needs some
-/// kilobytes.
+/// Limits the number of elements on spheres and formulas. On such substrates, all elements differ, and each element
+/// needs some kilobytes of memory.
 void check_count(const PartSpec& spec) {
   constexpr double kMostUnlike = 2e6;
   const bool repeats = std::holds_alternative<PlaneSubstrate>(spec.substrate->shape) ||
@@ -42,7 +42,8 @@ void check_count(const PartSpec& spec) {
                     kMostUnlike, count));
 }
 
-/// Returns the normals, towards the light, of the facets of an element and of its rotated neighbour.
+/// Returns the facet normals, towards the light, of an element and of its rotated neighbour, if the array has rotated
+/// elements.
 std::vector<Vec3> facet_normals(const PartSpec& spec) {
   std::vector<Vec3> normals;
   for (const CellFacet& facet : element_cell(spec.element, spec.angle_errors).facets) {

@@ -12,7 +12,7 @@
 namespace retrace::geometry {
 namespace {
 
-/// An element counts as inside if it crosses the border by at most this fraction of its size.
+/// Maximum fraction of its size by which an element may cross the border and still count as inside.
 constexpr double kWholeShare = 1e-9;
 
 /// Iterates over the elements of a sheet.
@@ -74,7 +74,7 @@ class Walk {
 
   const ArraySheet sheet_;
   const SheetPiece piece_;
-  /// for each y and x of an element in a period, the index of its cell in the lattice
+  /// Index, in the lattice, of the cell of each element in a period. The keys are y and x of the element.
   std::map<double, std::map<double, std::size_t>> rows_;
   std::int32_t row_ = 0;  ///< row number among the rows with complete elements
   std::int32_t column_ = 0;

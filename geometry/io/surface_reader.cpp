@@ -36,15 +36,15 @@ std::vector<double> even_terms(const Document& file, const std::string& key) {
   return terms;
 }
 
-/// Term with two whole numbers and a coefficient.
+/// Term of a polynomial: two exponents (or two indices of a Zernike term) and a coefficient.
 struct Term {
   int i = 0;
   int j = 0;
   double coefficient = 0.0;
 };
 
-/// Reads terms.
-/// \param is_signed true if the second number may be negative, down to minus the first number
+/// Reads the terms of a polynomial.
+/// \param is_signed true if the second number can be negative, down to minus the first number
 std::vector<Term> terms_of(const Document& file, const std::string& key, bool is_signed) {
   const auto whole = [&](double value, int low, int high) {
     if (value != std::floor(value) || value < low || value > high)
@@ -84,7 +84,7 @@ XyPolynomial zernike(const Document& file, const std::string& table) {
 }
 
 /// Reads a formula.
-/// \param variables names of the variables in their order
+/// \param variables names of the variables, in the order in which Formula::evaluate() takes their values
 Formula formula_of(const Document& file, const std::string& key, const std::vector<std::string>& variables) {
   return parse_formula(file.text(key), variables, file.where(key));
 }
@@ -132,7 +132,8 @@ Boundary read_boundary(const Document& file) {
       middle, [&](double theta) { return r.evaluate(&theta); }, options, file.where("boundary.formula"));
 }
 
-/// Returns the centres of a hexagonal or square grid within a circle about the origin.
+/// Returns the points of a hexagonal or square grid that are inside a circle about the origin.
+/// \param within radius of the circle
 std::vector<Vec2> grid(double pitch, double within, bool hexagonal) {
   const double row_pitch = hexagonal ? pitch * std::sqrt(0.75) : pitch;
   std::vector<Vec2> places;
@@ -201,7 +202,7 @@ void set_boundaries(Lenslet& lenslet, const FreeformSurface& base, const Vec2& c
   check_nested(lenslet.inner, lenslet.outer, request.where);
 }
 
-/// Reads the positions of the lenslets, their common sag and their boundaries. The formula of the sag may depend on the
+/// Reads the positions of the lenslets, their common sag and their boundaries. The formula of the sag can depend on the
 /// position.
 std::vector<Lenslet> read_lenslets(const Document& file, const FreeformSurface& base) {
   if (!file.has("lenslets")) return {};
@@ -229,11 +230,11 @@ std::optional<Extrapolation> read_extrapolation(const Document& file) {
   return Extrapolation{read_boundary(file), static_cast<int>(file.number("extrapolation.order"))};
 }
 
-/// Describes a table that may contain any keys, because other functions read its keys.
+/// Describes a table whose keys are not checked here, because other functions read them.
 constexpr schema::Table left_to_others(std::string_view name) {
   return {.name = name, .meaning = "Manufacture of the part.", .presence = schema::Presence::optional, .is_open = true};
 }
-constexpr schema::Row kTitle[] = {{"title", schema::Text{}, schema::kNone, "Title, one line."}};
+constexpr schema::Row kTitle[] = {{"title", schema::Text{}, schema::kNone, "Title of the part, in one line."}};
 constexpr schema::Row kRegionRows[] = {kStrategyRow, kRegionRadiusRow, kRegionSizeRow};
 constexpr schema::Table kMade[] = {
     left_to_others("tool"),

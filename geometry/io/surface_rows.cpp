@@ -36,47 +36,57 @@ constexpr Condition kOfFormula[] = {is("kind", only(kSags, "formula"))};
 constexpr Condition kWithRadius[] = {beside("radius_mm")};
 
 constexpr Row kSagRows[] = {
-    {"kind", Word{kSags}, kRequired, "Kind of function that gives the height."},
+    {"kind", Word{kSags}, kRequired, "Kind of the function that defines the height (sag)."},
     {"radius_mm", Number{kCoefficient}, kRequired,
-     "Radius of curvature at the vertex, not 0. If it is negative, the centre is the highest point.", Access(),
+     "Radius of curvature at the vertex, not 0. If it is negative, the vertex is the highest point.", Access(),
      kOfConics},
     {"radius_mm", Number{kCoefficient}, kNone,
-     "Radius of curvature, not 0, of a conic to which the polynomial is added. If it is negative, the centre is the "
+     "Radius of curvature, not 0, of a conic to which the polynomial is added. If it is negative, the vertex is the "
      "highest point of the conic.",
      kOfPolynomials},
     {"conic", Number{kCoefficient}, 0.0, "Conic constant: 0 is a sphere, -1 a paraboloid.", kWithRadius},
     {"even", NumberRows{2, kCoefficient, 1, 200, "terms"}, kRequired,
-     "Terms of the even polynomial, as rows `[power, coefficient]` of r^4, r^6, ... r^20, in mm.", kOfAsphere},
-    {"terms", kTerms, kRequired, "Terms c (x / s)^i (y / s)^j of a degree of at most 16, as rows `[i, j, c]`.",
+     "Even polynomial terms that are added to the conic, as rows `[power, coefficient]`. Allowed powers of r are 4, 6, "
+     "... 20. The height and r are in mm.",
+     kOfAsphere},
+    {"terms", kTerms, kRequired,
+     "Terms c (x / s)^i (y / s)^j of the polynomial, as rows `[i, j, c]`, with i + j <= 16 and c in mm. The length s "
+     "is `scale_mm`.",
      Access(), kOfPolynomial},
-    {"terms", kTerms, kRequired, "Orthonormal Zernike terms, as rows `[n, m, c]`; m < 0 are the sine terms.",
+    {"terms", kTerms, kRequired,
+     "Orthonormal Zernike terms, as rows `[n, m, c]`: radial order n, azimuthal order m, and coefficient c in mm. "
+     "Terms with m < 0 are the sine terms.",
      kOfZernike},
-    {"scale_mm", kPositiveMm, 1.0, "Length s in the terms.", kOfPolynomial},
+    {"scale_mm", kPositiveMm, 1.0, "Length s by which x and y are divided in `terms`.", kOfPolynomial},
     {"aperture_radius_mm", kPositiveMm, kRequired, "Radius of the disc on which the terms are defined.", kOfZernike},
     {"formula", Text{"a formula"}, kRequired,
-     "Height as a formula of `x`, `y`, `r`, `theta` and, for lenslets, of their position `cx`, `cy`.", kOfFormula}};
+     "Height in mm, as a formula of `x`, `y`, `r`, `theta` and, for lenslets, of the position `cx`, `cy` of the "
+     "lenslet.",
+     kOfFormula}};
 
 constexpr Condition kCircleOnly[] = {is("kind", only(kCurves, "circle"))};
 constexpr Condition kRectangleOnly[] = {is("kind", only(kCurves, "rectangle"))};
 constexpr Condition kPointsOnly[] = {is("kind", only(kCurves, "points"))};
 constexpr Condition kSampledOnly[] = {is("kind", kSampled)};
 constexpr Row kBoundaryRows[] = {
-    {"kind", Word{kCurves}, kRequired, "Kind of curve."},
+    {"kind", Word{kCurves}, kRequired, "Kind of the boundary curve."},
     {"radius_mm", kPositiveMm, kRequired, "Radius of the circle.", kCircleOnly},
     {"size_mm", Numbers{2, kSize}, kRequired, "`[width, height]` of the rectangle.", kRectangleOnly},
     {"corner_mm", kPositiveMm, kRequired, "Radius of the rounded corners.", kRectangleOnly},
     {"points_mm", NumberRows{2, kPlace, 1, 4000, "points"}, kRequired,
-     "Points of the curve; in order along the curve unless `scattered` is true.", Access(), kPointsOnly},
-    {"scattered", Flag{}, false, "True if the points are in no particular order.", kPointsOnly},
-    {"formula", Text{"a formula"}, kRequired, "Radius as a function of `theta`.", kOfFormula},
+     "Points of the curve. Unless `scattered` is true, they must be in order along the curve.", Access(), kPointsOnly},
+    {"scattered", Flag{}, false, "Whether the points are in no particular order.", kPointsOnly},
+    {"formula", Text{"a formula"}, kRequired, "Radius of the curve, in mm, as a formula of the azimuth `theta`.",
+     kOfFormula},
     {"centre_mm", Numbers{2, kPlace}, Computed{"0, 0; for points the centroid of the enclosed area"},
-     "Point from which radii are measured."},
-    {"degree", kSplineDegree, 3.0, "Degree of the periodic spline, which is C^(degree - 1) in azimuth."},
-    {"samples", kSamples, 180.0, "Number of samples of the curve.", kSampledOnly}};
+     "Point from which the radii of the curve are measured."},
+    {"degree", kSplineDegree, 3.0,
+     "Degree of the periodic spline that represents the curve. The curve is C^(degree - 1) in azimuth."},
+    {"samples", kSamples, 180.0, "Number of points at which the curve is sampled for the spline.", kSampledOnly}};
 
 constexpr Row kExtrapolationRows[] = {{"order", Whole{{.low = 1.0, .high = jets::kMostOrder}}, 2.0,
-                                       "Order n: the surface is C^n along radial lines. It is smooth in all directions "
-                                       "if the `degree` of the boundary is n + 1."}};
+                                       "Order n: the surface is C^n along radial lines. It is C^n in all directions if "
+                                       "the `degree` of the boundary is n + 1."}};
 
 constexpr Condition kGridOnly[] = {without("positions_mm")};
 constexpr Condition kCirclesOnly[] = {is("boundary", only(kBoundaries, "circle"))};
@@ -86,21 +96,26 @@ constexpr Row kPlacedRows[] = {
      "Positions of the lenslets, as rows `[x, y]`."},
     {"hexagonal_pitch_mm", kPositiveMm, kNone, "Pitch of a hexagonal grid of lenslets."},
     {"square_pitch_mm", kPositiveMm, kNone, "Pitch of a square grid of lenslets."},
-    {"within_mm", kPositiveMm, kRequired, "Radius within which the grid has lenslets.", kGridOnly},
-    {"height_mm", Number{kPlace}, 0.0, "Height of a lenslet's origin above the base, along the normal."},
-    {"tilted", Flag{}, true, "Whether lenslets are tilted so that their axis is the normal of the base."},
+    {"within_mm", kPositiveMm, kRequired,
+     "Radius of the circle about the origin inside of which the grid has lenslets.", kGridOnly},
+    {"height_mm", Number{kPlace}, 0.0, "Height of a lenslet's origin above the base, along the normal of the base."},
+    {"tilted", Flag{}, true, "Whether each lenslet is tilted so that its axis is the normal of the base."},
     {"boundary", Word{kBoundaries}, kRequired,
-     "Boundary of a lenslet: a circle, or the intersection of lenslet and base."},
+     "Boundary of a lenslet: a circle, or the intersection of the lenslet with the base."},
     {"boundary_radius_mm", kPositiveMm, kRequired, "Radius of the circle.", kCirclesOnly},
-    {"search_mm", kPositiveMm, kRequired, "Radius within which the intersection is searched.", kIntersectionsOnly},
+    {"search_mm", kPositiveMm, kRequired,
+     "Maximum distance from the lenslet's position at which the intersection is searched.", kIntersectionsOnly},
     {"inner_share", kShare, kRequired,
-     "Radius at which the blend leaves the lenslet, as a fraction of the boundary's radius."},
+     "Radius at which the blend (transition from the lenslet to the base) begins, as a fraction of the boundary's "
+     "radius."},
     {"outer_share", kShare, kRequired,
-     "Radius at which the blend reaches the base, as a fraction of the boundary's radius. It is above `inner_share`."},
+     "Radius at which the blend ends and the base begins, as a fraction of the boundary's radius. It must be greater "
+     "than `inner_share`."},
     {"blend_order", Whole{{.low = 1.0, .high = kMostBlendOrder}}, 2.0,
      "Order d of the blend, which is C^d at both ends."},
-    {"degree", kSplineDegree, 3.0, "Degree of the boundary's spline."},
-    {"samples", kSamples, 60.0, "Number of samples of the intersection.", kIntersectionsOnly}};
+    {"degree", kSplineDegree, 3.0, "Degree of the periodic spline that represents the boundary."},
+    {"samples", kSamples, 60.0, "Number of points at which the intersection is sampled for the spline.",
+     kIntersectionsOnly}};
 constexpr std::string_view kPlaceKeys[] = {"positions_mm", "hexagonal_pitch_mm", "square_pitch_mm"};
 constexpr Rule kPlaceRules[] = {
     OneOf{kPlaceKeys, "must have one of positions_mm, hexagonal_pitch_mm and square_pitch_mm"}};
@@ -114,7 +129,7 @@ constexpr auto kLensletRows =
 constexpr Condition kBeyondBoundary[] = {beside("boundary", "needs a [boundary] beyond which to extrapolate")};
 constexpr Table kTables[] = {{.name = "base", .meaning = "Sag of the surface.", .rows = kSagRows},
                              {.name = "boundary",
-                              .meaning = "Curve within which the surface is the sag.",
+                              .meaning = "Closed curve inside of which the surface is the sag of `[base]`.",
                               .rows = kBoundaryRows,
                               .presence = Presence::optional},
                              {.name = "extrapolation",

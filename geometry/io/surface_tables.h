@@ -1,6 +1,6 @@
 #pragma once
 
-// Tables of a file that describe a freeform surface and the region of the surface that is machined.
+// Tables of a file that describe a freeform surface, and keys that define its machined region.
 
 #include <cstddef>
 #include <span>
@@ -22,10 +22,10 @@ std::span<const schema::Table> surface_tables();
 /// Reads the surface that these tables describe.
 /// \throw InputError with file, line and key
 FreeformSurface read_surface(const schema::Document& file);
-/// Returns the location of the table that error messages about the whole surface refer to.
+/// Returns the location, in the file, that error messages about the whole surface name.
 InputLocation surface_place(const schema::Document& file);
 
-/// Keys of [path] that define the region of the surface that is machined.
+/// Keys of the table [path] that define the machined region of the surface.
 inline constexpr schema::Words kStrategies = {"spiral", "raster"};
 inline constexpr schema::Condition kSpiralOnly[] = {schema::is("strategy", schema::only(kStrategies, "spiral"))};
 inline constexpr schema::Condition kRasterOnly[] = {schema::is("strategy", schema::only(kStrategies, "raster"))};
@@ -33,12 +33,12 @@ inline constexpr schema::Row kStrategyRow = {"strategy", schema::Word{kStrategie
                                              "Pattern of the tool path over the part."};
 inline constexpr NumberRange kRegionSize = {.low = 0.0, .low_included = false, .high = 1e4};
 inline constexpr schema::Row kRegionRadiusRow = {"radius_mm", schema::Number{kRegionSize}, schema::kRequired,
-                                                 "Radius of the part, from the rim to the centre.", kSpiralOnly};
-inline constexpr schema::Row kRegionSizeRow = {"size_mm", schema::Numbers{2, kRegionSize}, schema::kRequired,
-                                               "Size of the part: `[across the lines (X), along the lines (Y)]`.",
-                                               kRasterOnly};
+                                                 "Radius of the part, which is round.", kSpiralOnly};
+inline constexpr schema::Row kRegionSizeRow = {
+    "size_mm", schema::Numbers{2, kRegionSize}, schema::kRequired,
+    "Size of the part: `[size across the lines of the raster (X), size along these lines (Y)]`.", kRasterOnly};
 
-/// Data of a turned part that ray tracing needs: its surface and the region of the surface.
+/// Data of a turned part that ray tracing needs: the surface and its machined region.
 struct TurnedFront {
   FreeformSurface surface;
   bool is_round = true;
@@ -46,8 +46,8 @@ struct TurnedFront {
   Vec2 size_mm = Vec2::Zero();  ///< size of a rectangular region
 };
 
-/// Reads the surface and the region from the file of a turned part. Keys about the tool, its path and the required
-/// accuracy are ignored. The surface must be finite and must not be vertical within the region.
+/// Reads the surface and the machined region from the file of a turned part. Keys about the tool, its path and the
+/// required accuracy are ignored. The surface must be finite and must not be vertical within the region.
 /// \throw InputError with file, line and key
 TurnedFront parse_turned_front(std::string_view text, const std::string& source_name);
 

@@ -18,12 +18,12 @@
 namespace retrace::geometry {
 namespace {
 
-/// Maximum number of elements for which the surface is a single patch. Larger arrays use shared blocks of at most this
-/// number.
+/// Maximum number of elements of an array whose surface is a single patch. The surface of a larger array consists of
+/// patches with at most this number of elements, which are placed several times.
 constexpr double kElementsPerPatch = 2048.0;
 constexpr double kAllInOnePatch = 1e18;
 
-/// Sets the region in which no element is cut or omitted.
+/// Sets Part::lattice_region_mm, the region in which no element is cut or omitted.
 void find_lattice_region(Part& part, const ArraySheet& sheet, const Vec2& origin_mm) {
   Rectangle region = moved(sheet.block_mm, origin_mm);
   if (part.spec.array.partial_elements == PartialElements::omit)

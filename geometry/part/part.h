@@ -28,7 +28,7 @@ struct ZoneElements {
   std::int64_t full = 0;
   std::int64_t partial = 0;  ///< elements that a border of the zone cuts
   double area_mm2 = 0.0;     ///< area in plan
-  std::size_t cells = 0;     ///< number of consecutive cells in the patch; cells are stored zone by zone
+  std::size_t cells = 0;     ///< number of cells of the zone in the patch; the cells are stored zone by zone
 };
 
 /// Region of the plate in which the elements form a periodic lattice.
@@ -53,7 +53,7 @@ struct Part {
   std::vector<SurfacePatch> patches;
   std::vector<Placement> placements;
   Polygon outline;  ///< outline of a finite part, counter-clockwise; empty for an infinite part
-  /// period of an infinite part; its surface covers [-periods_beyond, 1 + periods_beyond] periods in x and y
+  /// Period of an infinite part. The surface covers [-periods_beyond, 1 + periods_beyond] periods in x and y.
   std::optional<Vec2> period_mm;
   int periods_beyond = 0;  ///< number of additional periods of an infinite part on each side
   /// Region of a finite array of equal elements in which the surface equals the surface of the infinite lattice. A
@@ -63,7 +63,7 @@ struct Part {
   std::int64_t elements_full = 0;  ///< number of complete elements; for an infinite part, per period
   std::int64_t elements_partial = 0;
   std::vector<ZoneElements> zones;  ///< set only if the part has zones
-  /// regions that together cover the plate; set only if the part has zones
+  /// Regions that together cover the plate. They are set only if the part has zones.
   std::vector<LatticeRegion> lattice_regions;
   double entrance_area_mm2 = 0.0;     ///< area of the entrance face; for an infinite part, of one period
   double retro_facet_area_mm2 = 0.0;  ///< area of the retro facets; for an infinite part, in one period
@@ -97,8 +97,8 @@ double facet_area(const SurfacePatch& patch, const PatchFacet& facet);
 struct InnerWalls {
   double area_mm2 = 0.0;
   double highest_mm = 0.0;  ///< largest difference in height between neighbouring elements
-  /// Area of the walls projected along the substrate's mean normal. The walls block this cross section for light from
-  /// that direction.
+  /// Area of the walls, projected along the parameter `towards` of inner_walls(). The walls block this cross section
+  /// for light from this direction.
   double projected_mm2 = 0.0;
 };
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// Sets fields of requests by name, and returns a description of all requests. Programs can generate forms, bindings or
-// documentation for all fields from this description.
+// Sets fields of requests by name. Also returns a description of all requests, from which programs can generate forms,
+// bindings or documentation.
 
 #include <string>
 #include <string_view>

@@ -93,7 +93,7 @@ void add_default(Json& json, const Default& otherwise) {
              otherwise);
 }
 
-/// Removes the escapes that Markdown tables need.
+/// Removes the backslashes that escape "|" in Markdown tables.
 std::string plain(std::string_view sentence) {
   std::string text(sentence);
   for (std::size_t at = 0; (at = text.find("\\|", at)) != std::string::npos;) text.erase(at, 1);
@@ -109,7 +109,8 @@ Json row_json(const Row& row, const std::string& around) {
   return json;
 }
 
-/// \param path path of an entry if the table belongs to a list, such as "coating.facets[]"
+/// Appends a table and its inner tables to `groups`.
+/// \param path path of the table; the path of a list ends with "[]", such as "coating.facets[]"
 void add_groups(const Table& table, const std::string& path, Json& groups) {
   Json rows = Json::array();
   for (const Row& row : table.rows) rows.push_back(row_json(row, path));

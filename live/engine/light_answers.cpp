@@ -1,4 +1,4 @@
-// Answers requests about light: single directions and curves of RRE (retroreflective efficiency).
+// Answers requests that trace light: one direction of incidence, or a curve of the RRE (retroreflective efficiency).
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -17,7 +17,7 @@ using studies::RrePoint;
 
 constexpr double kMovingError = 1e-4;
 
-/// Result for one wavelength, or the mean over all wavelengths. There is one point per acceptance cone.
+/// Result for one wavelength, or the mean over all wavelengths. `points` has one element per acceptance cone.
 struct Found {
   std::vector<RrePoint> points;
   RrePoint at_middle;  ///< result for the widest cone, at the wavelength of the footprint and the far field
@@ -41,15 +41,15 @@ std::size_t middle_of(const studies::OpticalModel& model) {
   return middle;
 }
 
-/// Settings for tracing one direction.
+/// Settings for tracing one direction of incidence.
 struct Way {
-  /// maximum truncated power (exact engine) or standard error of RRE (resampled beams)
+  /// Maximum truncated power (exact engine), or target standard error of the RRE (resampled beams).
   double target_error = kMovingError;
   bool is_exact = false;  ///< true if resampled beams must not be used
   studies::BeamQuestion question = {};
 };
 
-/// Traces one direction at one wavelength of a design.
+/// Traces a design for one direction of incidence and one wavelength.
 class Tracing {
  public:
   Tracing(const OpenedDesign& opened, const RrePoint& at, std::size_t wavelength)
@@ -61,7 +61,8 @@ class Tracing {
     sampling_.seed = static_cast<std::uint32_t>(wavelength + 1);
   }
 
-  /// Runs the exact engine or resampled beams, whichever is faster. Returns nothing if the time limit is reached.
+  /// Traces with the exact engine or with resampled beams, whichever is faster. Returns nothing if the time limit is
+  /// reached.
   /// \param limit null if there is no limit
   std::optional<Found> trace(const Way& way, const TimeLimit* limit) {
     studies::BeamCollector collector(way.question, part(), cones().size(), illumination_);
@@ -106,8 +107,8 @@ class Tracing {
   raytrace::Sampling sampling_;
 };
 
-/// Traces a direction at all wavelengths. The footprint and the far field are computed only at the wavelength
-/// middle_of(). Returns nothing if the time limit is reached.
+/// Traces one direction of incidence at all wavelengths. The footprint and the far field are computed only at the
+/// wavelength with the index middle_of(). Returns nothing if the time limit is reached.
 std::optional<Found> traced(const OpenedDesign& opened, const studies::SceneLight& light, const Way& way,
                             const TimeLimit* limit) {
   const studies::OpticalModel& model = opened.require_model();
@@ -161,7 +162,8 @@ Json footprint_json(const studies::Footprint& footprint) {
 }
 
 /// Returns the spots of the far field, the power outside these spots, and the total power.
-/// \param point result for the same direction; in contrast to the spots, its ledger includes weak beams
+/// \param point result for the same direction of incidence; its ledger also includes weak beams, which `far_field`
+/// omits
 Json far_field_json(const studies::FarField& far_field, const RrePoint& point) {
   using raytrace::Account;
   Json spots = Json::array();
@@ -232,7 +234,7 @@ Json rre_json(const OpenedDesign& opened, const Json& request, const TimeLimit& 
   Json points = Json::array();
   for (const std::vector<double>& direction : directions) {
     if (direction.size() != 2) throw InputError({"", 0, "directions"}, "must be pairs [incidence_deg, azimuth_deg]");
-    // The first direction is always finished, so that every request makes progress.
+    // The first direction has no time limit. Every request therefore returns at least one point.
     const std::optional<Found> found =
         traced(opened, checked(direction[0], direction[1]), way, points.empty() ? nullptr : &limit);
     if (!found) break;

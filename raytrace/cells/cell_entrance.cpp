@@ -8,7 +8,7 @@ namespace {
 
 using lanes::Hit, lanes::label_of;
 
-// Maximum distance of a position from its column that is caused by rounding, relative to the period.
+// Maximum distance between a ray and its column that rounding errors cause, divided by the period.
 constexpr double kSlack = 1e-12;
 
 }  // namespace
@@ -23,8 +23,8 @@ CellEntrance::CellEntrance(const LightSetup& setup, const PathPolicy& policy, co
       left_(numbers == lanes::kRayNumbers ? numbers : lanes::kNumbersOfEndless),
       queued_{falling_, falling_} {
   if (setup.optics.entrance.scatters()) soiled_.emplace(setup.optics);
-  // The pieces are enlarged slightly, so that rounding leaves no gap between them. A ray just outside of its column
-  // crosses into the next column in its next step.
+  // The pieces are slightly enlarged to avoid gaps between them due to rounding. A ray just outside of its column
+  // crosses into the neighbouring column in its next step.
   const double slack_mm = kSlack * array.period_mm().maxCoeff();
   for (const CellArray::Piece& piece : array.pieces()) {
     piece_starts_.push_back(static_cast<std::uint32_t>(pieces_.size()));
@@ -72,14 +72,14 @@ void CellEntrance::fall(bool scattered, RayStreams& streams, CellRun& run) {
     streams.grow(stream, more);
     left -= more;
   }
-  // The pieces fill the period, so that every ray should be in one of them. Rays that are in no piece are counted as
-  // lost.
+  // The pieces together cover the period. Every ray should therefore be in one of them. A ray outside of all pieces is
+  // counted as lost.
   run.tally.misses += left;
   run.tally.other[Account::lost] += static_cast<double>(left);
 }
 
 void CellEntrance::meet(const CellStep& step) {
-  // Rays that reach a side before the entrance face are handed over.
+  // Rays that would reach a side of the part before the entrance face are added to RayStreams::handed_over().
   const lanes::Reach outline{height_mm_, step.run.outline_mm.lower, step.run.outline_mm.upper};
   if (array_.inner() && lanes::mark_beyond(step.rays(), step.size(), outline, label_of(Hit::end), label_of(Hit::limit),
                                            step.batch.hits.labels()) > 0)
@@ -115,10 +115,11 @@ void CellEntrance::meet_bare(const CellStep& step) {
   fall(scattered, step.streams, run);
 }
 
-// The following functions process rays one by one. They are used for faces with layers and for faces that scatter. The
-// computations take so long that SIMD would save little time.
+// The following functions process rays one by one. They are used for entrance faces with layers and for entrance faces
+// that scatter. The computations take so long that SIMD would save little time.
 
-/// Returns ray k after its path to the face, and adds the power that the material absorbs to the ledger.
+/// Returns ray k at the entrance face. The power that the material absorbs on the path to the face is added to the
+/// ledger.
 Ray CellEntrance::risen(const CellStep& step, const lanes::Rays& rays, std::size_t k) const {
   ++step.run.tally.segments;
   Ray ray = step.batch.ray(rays, k);
@@ -223,7 +224,7 @@ void CellEntrance::queue(const lanes::Rays& from, std::size_t k, const Vec3& pos
   to.resize(to.size() + 1);
 }
 
-/// Moves the queued rays down to the surface, as many at a time as the memory allows.
+/// Moves the queued rays down to the top of the back surface, in groups that fit into the reserved memory.
 void CellEntrance::fall_queued(RayStreams& streams, CellRun& run) {
   const std::size_t most = labels_.size() - lanes::kPadding;
   falling_.reserve(most);

@@ -1,6 +1,6 @@
 #pragma once
 
-// What happens to rays of the cell engine at the entrance face, and their path between this face and the surface.
+// Processes the rays of the cell engine at the entrance face, and moves them between this face and the back surface.
 
 #include <array>
 #include <cstddef>
@@ -13,22 +13,24 @@
 
 namespace retrace::raytrace {
 
-/// The plane entrance face above an array, with the memory for rays that it sends down to the surface.
+/// The plane entrance face of an array. An object also stores the rays that travel from the face down to the back
+/// surface.
 class CellEntrance {
  public:
   /// \param numbers number of values per ray, see lanes::Rays
   CellEntrance(const LightSetup& setup, const PathPolicy& policy, const CellArray& array, std::size_t numbers);
 
-  /// Reserves memory for rays that start at the face.
+  /// Reserves memory for `count` rays that start at the face.
   void reserve(std::size_t count);
-  /// Rays just below the face. The caller of enter() and fall() sets their values.
+  /// Returns the rays just below the face. Before enter(), the caller must set their positions. Before fall(), the
+  /// caller must set all their values.
   RayStore& rays() { return falling_; }
   /// Sends incident light into the part at the positions of rays().
   void enter(RayStreams& streams, CellRun& run);
-  /// Moves rays() down to the top of the surface.
+  /// Moves rays() down to the top of the back surface.
   void fall(bool scattered, RayStreams& streams, CellRun& run);
-  /// Moves the rays of a batch that rise from the top of the surface up to the face. Rays that are reflected there are
-  /// moved back down.
+  /// Processes the rays of a batch that have reached the top of the back surface from below. The rays are moved up to
+  /// the entrance face. Rays that this face reflects are moved back down.
   void meet(const CellStep& step);
 
  private:
@@ -44,12 +46,12 @@ class CellEntrance {
   const LightSetup& setup_;
   const PathPolicy& policy_;
   const CellArray& array_;
-  double height_mm_;                         ///< height of the face above the top of the surface
+  double height_mm_;                         ///< height of the entrance face above the top of the back surface
   std::vector<lanes::LinearForm> pieces_;    ///< edges of CellArray::pieces() as linear forms
-  std::vector<std::uint32_t> piece_starts_;  ///< index of the first edge of each piece, and the number of edges
+  std::vector<std::uint32_t> piece_starts_;  ///< first index in `pieces_` of each piece, then the size of `pieces_`
   RayStore falling_;
-  std::vector<lanes::Label> labels_;      ///< pieces below the rays of `falling_`
-  RayStore left_;                         ///< rays that leave through the face, if they are scored or observed
+  std::vector<lanes::Label> labels_;      ///< index of the piece below each ray of `falling_`
+  RayStore left_;                         ///< rays that leave through the face; used only with a score or an observer
   std::array<RayStore, 2> queued_;        ///< rays just below a contaminated face: [0] unscattered, [1] scattered
   std::optional<SoiledEntrance> soiled_;  ///< set if the face scatters
   SoiledReturn from_soiled_;

@@ -14,7 +14,8 @@ struct Branches {
   StreamKey transmitted;
 };
 
-/// Returns the streams of rays from a facet. A ray that leaves the convex surface cannot meet it again.
+/// Returns the streams for the rays that a facet reflects and transmits. A ray that leaves the part through the convex
+/// surface of a column cannot meet this surface again.
 Branches branches_at_facet(const StreamKey& stream) {
   const StreamKey above{stream.column, Place::inside, stream.scattered};
   const StreamKey below{stream.column, Place::below_after_leaving, stream.scattered};
@@ -69,7 +70,7 @@ void meet_texture(const CellStep& step) {
   }
 }
 
-/// Processes rays at facets with layers, whose amplitudes are complex numbers.
+/// Processes rays at facets with layers. The amplitude coefficients of such facets are complex numbers.
 void meet_layers(const CellStep& step) {
   const Optics& optics = step.setup.optics;
   const bool inside = step.stream().inside();
@@ -106,8 +107,9 @@ void meet_layers(const CellStep& step) {
   step.streams.grow(to.transmitted, more.transmitted);
 }
 
-/// Traces both branches of the rays that have met interfaces of transparent media. The transmitted rays have been
-/// written behind the last ray of their stream, but not been added to it.
+/// Computes the branches of the rays with the given label, which have met interfaces between transparent media. The
+/// reflected rays are added to their stream. The transmitted rays are written behind the last ray of their stream. The
+/// caller must add them to the stream.
 /// \return the number of transmitted rays
 std::size_t meet_interfaces(const CellStep& step, lanes::Label label, const Branches& to) {
   const lanes::Rays reflected = step.streams.end_of(to.reflected, step.size());

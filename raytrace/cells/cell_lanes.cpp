@@ -2,14 +2,14 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raytrace/cells/cell_lanes.cpp"
-#include <hwy/foreach_target.h>  // compiles this file once for every instruction set
-// Must be included after foreach_target.h.
+#include <hwy/foreach_target.h>  // compiles this file one time for each instruction set
+// The following header must be included after foreach_target.h.
 #include "raytrace/cells/ray_lanes_inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace retrace::raytrace::lanes::HWY_NAMESPACE {
 
-/// Reduces the light of rays by the absorption on a path and returns the absorbed power.
+/// Reduces the power of rays by the absorption on a path of the length `way`. Returns the absorbed power.
 HWY_INLINE V absorbed(const Rays& rays, std::size_t k, std::size_t count, V way, double absorption_per_mm) {
   const S before = load_light(rays, k);
   const S after = scaled(before, hn::Exp(D(), hn::Mul(way, splat(-absorption_per_mm))));
@@ -17,8 +17,8 @@ HWY_INLINE V absorbed(const Rays& rays, std::size_t k, std::size_t count, V way,
   return hn::IfThenElseZero(present(k, count), hn::Sub(before.i, after.i));
 }
 
-/// Length of a path along a ray, as the fraction `over` / `under`. Lengths are compared without division. The division
-/// is done only for the shortest one.
+/// Length of a path along a ray, stored as the quotient `over` / `under`. Lengths are compared without division. Only
+/// the shortest length is computed by division.
 struct Way {
   V over;   ///< numerator, not negative
   V under;  ///< denominator, not negative; 0 for faces that are never met
@@ -51,7 +51,8 @@ HWY_INLINE Nearest nothing() {
   return {{splat(1.0), hn::Zero(D())}, splat(label_of(Hit::end)), splat(geometry::Vec3(0.0, 0.0, 1.0))};
 }
 
-/// Returns the path along rays to a plane that they approach from its inner side. Its length is never negative.
+/// Returns the path lengths along rays to a plane. The rays start on the inner side of the plane. A length is never
+/// negative. It is infinite if the ray does not approach the plane.
 HWY_INLINE Way way_to(const Plane& plane, const V3& p, const V3& d) {
   const V3 n = splat(plane.normal);
   const V zero = hn::Zero(D());
@@ -238,7 +239,7 @@ std::size_t mark_beyond(const Rays& rays, std::size_t count, const Reach& reach,
   return found;
 }
 
-/// Wraps the coordinate into [0, period).
+/// Wraps the coordinates `at` into [0, period) and stores them in `to`.
 /// \param stands_at array to which the removed multiple of the period is added; may be null
 HWY_INLINE void store_folded(V at, double period, double* to, double* stands_at, std::size_t k) {
   const V periods = hn::Floor(hn::Mul(at, splat(1.0 / period)));

@@ -12,16 +12,17 @@
 #include "geometry/vec.h"
 #include "raytrace/light/stokes.h"
 
-/// SIMD loops over many rays. Highway selects the instruction set when the program runs. Sums and rounding may differ
-/// between instruction sets, but not with the number of threads. Arrays are read and written up to kPadding values
-/// beyond the last ray.
+/// SIMD loops over many rays. Highway selects the instruction set when the program runs. Rounding errors may differ
+/// between instruction sets. They do not depend on the number of threads. The loops read and write up to kPadding
+/// values beyond the last ray of an array.
 namespace retrace::raytrace::lanes {
 
 inline constexpr std::size_t kPadding = 16;
 
-/// Arrays of rays: position (mm), direction, Stokes parameters (see Light) and the first axis of the Stokes parameters,
-/// which may have any length. For finite parts, there is also the origin of the period to which the position is
-/// relative. If rays have owners (see CellWalker), the last array contains the numbers of the owners.
+/// Indices of the arrays that store rays: position in mm (kX to kZ), unit direction (kDx to kDz), Stokes parameters (kI
+/// to kV, see Light) and their first axis (kAx to kAz), which may have any length. In finite parts, the position is
+/// relative to the origin of a period. The coordinates of this origin in mm are kOx and kOy. If rays belong to numbered
+/// paths (CellRay::owner), kOwner is the number of the path.
 enum RayNumber : std::size_t {
   kX,
   kY,
@@ -62,28 +63,29 @@ struct LinearForm {
   double x = 0.0, y = 0.0, c = 0.0;
 };
 
-/// Label of a ray, by which the loops select rays. Labels are as wide as doubles, so that a mask from a comparison of
-/// labels can be applied to the values of rays.
+/// Label of a ray, such as the face that it meets. The loops select rays by their labels. A label is as wide as a
+/// double. A SIMD mask from a comparison of labels can therefore be applied to the values of rays.
 using Label = std::int64_t;
 
 /// Kinds of faces that rays meet.
 enum class Hit : Label {
   facet,     ///< a facet of the column
-  end,       ///< inside: the top of the surface; outside: the plane below all facets, where a ray has met nothing
+  end,       ///< inside: top of the back surface; outside: plane below all facets, where a ray has met nothing
   border,    ///< a border of the column
-  crossing,  ///< an interval of a border, at which the ray continues in the neighbouring column
-  wall,      ///< an interval of a border, at which the ray meets the wall between surfaces of different height
-  limit      ///< the limit of the region in which the cell engine traces rays
+  crossing,  ///< an interval of a border where rays continue in the neighbouring column
+  wall,      ///< an interval of a border where rays meet the wall between surfaces of different height
+  limit      ///< the boundary of the region in which the cell engine traces rays
 };
 inline constexpr Label kLabelStep = 8;  ///< difference between the labels of consecutive faces of one kind
 
 /// Returns the label of rays that meet a face of this kind.
-/// \param index number of the border, or of the interval among all intervals of the column's borders
+/// \param index Hit::border: index of the border; Hit::crossing and Hit::wall: index of the interval among all
+/// intervals of the column's borders
 constexpr Label label_of(Hit hit, std::size_t index = 0) {
   return static_cast<Label>(hit) + kLabelStep * static_cast<Label>(index);
 }
 
-/// Labels that mark rays for removal.
+/// Labels of rays that are kept and of rays that are removed.
 inline constexpr Label kKept = 0;
 inline constexpr Label kRemoved = 1;
 
@@ -93,43 +95,46 @@ struct Met {
   std::array<double*, 3> normal{};
 };
 
-/// Moves each ray above the surface of a column to the nearest of the column's facets, its top and its borders.
+/// Moves rays that are inside the part, above the surface of a column. Each ray moves to its nearest face: a facet or a
+/// border of the column, or the plane z = `top_mm`.
 /// \return the power that the material absorbs on the path
 double advance_inside(const Rays& rays, std::size_t count, std::span<const Plane> facets, double top_mm,
                       std::span<const Plane> borders, double absorption_per_mm, const Met& met);
 
-/// Moves each ray below the surface of a column to the nearest of the column's facets, its borders and the plane z =
-/// -depth_mm.
-/// \param facets facets of the column; empty for rays that have just left these facets, because a ray cannot meet a
-///        convex surface again after leaving it
+/// Moves rays that are below the surface of a column. Each ray moves to its nearest face: a facet or a border of the
+/// column, or the plane z = -depth_mm.
+/// \param facets facets of the column; empty for rays that have left the part through these facets, because a ray
+///        cannot meet the convex surface of the column again
 void advance_outside(const Rays& rays, std::size_t count, std::span<const Plane> facets, double depth_mm,
                      std::span<const Plane> borders, const Met& met);
 
-/// A border of a column behind which the surface may have a different height.
+/// Border of a column. The surface of the neighbouring column may have a different height at the border.
 struct Border {
+  /// The neighbouring column along one interval of the border.
   struct Stretch {
     bool is_level = true;
     geometry::Vec2 shift = geometry::Vec2::Zero();
-    std::span<const LinearForm> heights;  ///< the height of the surface behind the border is their maximum
+    std::span<const LinearForm> heights;  ///< their maximum is the height of the neighbouring surface
   };
   std::size_t index = 0;           ///< index of the border among the borders of the column
   std::size_t first_interval = 0;  ///< index of its first interval among all intervals of the column's borders
   LinearForm along;
-  std::vector<double> limits;  ///< ends of all intervals along the border except the last, ascending
+  std::vector<double> limits;  ///< ends of all intervals except the last, as values of `along`, ascending
   std::vector<Stretch> stretches;
-  bool inside = true;  ///< true if rays continue above the surface, false if below
+  bool inside = true;  ///< true for rays inside the part, false for rays below the surface
 };
 
-/// Determines what rays meet at a border. Their labels change from Hit::border to Hit::crossing or Hit::wall.
+/// Determines whether rays at a border continue in the neighbouring column or meet a wall. The labels of these rays
+/// change from Hit::border to Hit::crossing or Hit::wall.
 void refine(const Rays& rays, std::size_t count, const Border& border, Label* labels);
 
 /// Copies the rays with the label `wanted` and returns their number.
 /// \param to may be equal to `from`
 std::size_t select(const Label* labels, Label wanted, std::size_t count, const Rays& from, const Rays& to);
 
-/// Sets the label of each ray to the index of the first polygon that contains the ray, which means that all of its
-/// linear forms are at least 0 at the position of the ray. If there is no such polygon, the label becomes the number of
-/// polygons.
+/// Sets the label of each ray to the index of the first polygon that contains the ray in x and y. A polygon contains a
+/// ray if all linear forms of the polygon are >= 0 at the position of the ray. If no polygon contains the ray, the
+/// label is set to the number of polygons.
 /// \param first_form index of the first form of each polygon, followed by the total number of forms
 void mark_polygon(const Rays& rays, std::size_t count, std::span<const LinearForm> forms,
                   std::span<const std::uint32_t> first_form, Label* labels);
@@ -138,28 +143,29 @@ void mark_polygon(const Rays& rays, std::size_t count, std::span<const LinearFor
 /// of rays below the limit.
 std::size_t mark_weak(const Rays& rays, double limit, std::size_t count, Label* labels);
 
-/// Converts positions to the coordinates of another period.
+/// Converts positions to the coordinates of another column or period. `shift` is added to the positions and subtracted
+/// from the origins of their periods.
 void shift(const Rays& rays, std::size_t count, const geometry::Vec2& shift);
 
-/// Parameters of mark_beyond(). That function extrapolates rays to a height and tests whether they are then outside of
-/// a rectangle on the part. If so, their label becomes `beyond`. Only rays with the label `tested` are tested. The
-/// function returns the number of marked rays.
-/// \pre rays.have_periods()
+/// Parameters of mark_beyond(): a height difference, and a rectangle in x and y on the part.
 struct Reach {
-  double height_mm = 0.0;  ///< height difference by which rays are extrapolated along their direction; 0 for none
+  double height_mm = 0.0;  ///< height difference by which rays are extrapolated along their directions
   geometry::Vec2 lower = geometry::Vec2::Zero();
   geometry::Vec2 upper = geometry::Vec2::Zero();
 };
+/// Marks rays that are outside of the rectangle after they are extrapolated by the height difference. Only rays with
+/// the label `tested` are tested. The label of a marked ray becomes `beyond`.  Returns the number of marked rays.
+/// \pre rays.have_periods()
 std::size_t mark_beyond(const Rays& rays, std::size_t count, const Reach& reach, Label tested, Label beyond,
                         Label* labels);
 
-/// Rays that have met faces of one kind, and the parameters by which branches are chosen. Both branches are traced if
-/// each has at least `split_power`. Otherwise, one branch is chosen in proportion to its power and receives the power
-/// of both. The choices are stratified over the sequence of rays. They are unbiased if `start` is a uniform random
-/// number in [0, 1).
+/// Rays that have met faces of one kind, and the parameters for the choice of their branches (reflected and transmitted
+/// light). Both branches are traced if each has at least `split_power`. Otherwise, one branch is chosen with a
+/// probability proportional to its power, and it receives the power of both branches. The choices are stratified over
+/// the sequence of rays. They are unbiased if `start` is a uniform random number in [0, 1).
 struct Meeting {
   Met met;
-  Label label = 0;             ///< label of the selected rays
+  Label label = 0;             ///< label of the rays that have met the faces
   double towards_light = 1.0;  ///< factor by which normals are multiplied so that they face the light
   double split_power = 0.0;
   double start = 0.0;
@@ -170,16 +176,17 @@ struct Branches {
   std::size_t transmitted = 0;
 };
 
-/// Appends the branches of rays at faces to `reflected` and `transmitted`.
+/// Computes the branches of rays at interfaces between transparent media. Appends them to `reflected` and
+/// `transmitted`.
 /// \param index_ratio refractive index before the face divided by the index after the face
 Branches meet_faces(const Rays& rays, std::size_t count, const Meeting& meeting, double index_ratio,
                     const Rays& reflected, const Rays& transmitted);
 
-/// Reflects rays at perfect mirrors. Returns the number of rays that meet them.
+/// Reflects rays at perfect mirrors and appends them to `reflected`. Returns the number of reflected rays.
 std::size_t meet_mirrors(const Rays& rays, std::size_t count, const Meeting& meeting, const Rays& reflected);
 
-/// The entrance face, at a given height above the rays that rise to it. The Stokes parameters of light that leaves are
-/// added to the sums of the narrowest cone that contains the light. Their first axis is source_axis().
+/// Parameters of meet_entrance(): the entrance face, at `height_mm` above the rays that rise to it, and the acceptance
+/// cones (LightSetup::cone_chord2).
 struct Entrance {
   double height_mm = 0.0;
   double index = 1.0;
@@ -194,9 +201,11 @@ struct Arrivals {
   std::size_t left = 0;
   double absorbed = 0.0;  ///< power that the material absorbs on the path to the entrance face
 };
-/// Processes rays that rise to the entrance face.
+/// Moves rays that rise to the entrance face up to this face, and computes their branches there. The Stokes parameters
+/// of light that leaves are added to the element of `returned` for the narrowest cone that contains the light. Their
+/// first axis is source_axis().
 /// \param reflected receives the rays that the face reflects
-/// \param returned sums for each cone, and for light outside of all cones
+/// \param returned sums for each cone; the last element is the sum for light outside of all cones
 /// \param left receives the rays that leave through the entrance face; may be null
 Arrivals meet_entrance(const Rays& rays, std::size_t count, const Meeting& meeting, const Entrance& entrance,
                        const Rays& reflected, std::span<Stokes> returned, const Rays* left);

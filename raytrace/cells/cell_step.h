@@ -1,6 +1,6 @@
 #pragma once
 
-// Data of a run of the cell engine: its results, its random choices, and what a step reads and writes.
+// Data of a run of the cell engine: its results, its random choices, and the inputs and outputs of a step.
 
 #include <cstddef>
 #include <cstdint>
@@ -12,7 +12,8 @@
 
 namespace retrace::raytrace {
 
-/// Receives the light that leaves the part in the cell engine, with the owner of each ray.
+/// Receives the light that leaves the part in the cell engine. `owner` is the number of the path to which a ray belongs
+/// (CellRay::owner).
 class CellObserver {
  public:
   virtual ~CellObserver() = default;
@@ -22,8 +23,8 @@ class CellObserver {
   virtual void is_transmitted(std::uint32_t owner, double power) = 0;
 };
 
-/// Results and random choices of a run. Each choice uses the number of earlier choices and the number of the first
-/// point as counters of the random generator.
+/// Results and random choices of a run. The counters of the random generator are the replicate, the number of the first
+/// point and the number of earlier choices.
 struct CellRun {
   Tally& tally;
   CellObserver* observer = nullptr;  ///< may be null
@@ -37,7 +38,7 @@ struct CellRun {
   surface_models::RandomStream random_stream() { return {key, replicate, first, choices++}; }
 };
 
-/// A step of the rays of one stream.
+/// One step of the rays of a stream to their next faces.
 struct CellStep {
   const LightSetup& setup;
   const PathPolicy& policy;
@@ -49,11 +50,11 @@ struct CellStep {
   const StreamKey& stream() const { return batch.stream; }
   lanes::Rays rays() const { return batch.rays.rays(); }
   std::size_t size() const { return batch.rays.size(); }
-  /// Returns the parameters for the choice of branches of the rays with a label. Makes a random choice.
+  /// Returns the parameters for the choice of the branches of the rays with this label. Draws one random number.
   lanes::Meeting meeting(lanes::Label label) const {
     return {batch.hits.met(), label, stream().inside() ? -1.0 : 1.0, policy.split_power, run.random()};
   }
-  /// Ends the rays with a label and adds their power to an account of the ledger.
+  /// Ends the rays with this label and adds their power to an account of the ledger.
   void book(lanes::Label label, Account account) const {
     const lanes::Share share = lanes::sum_of(batch.hits.labels(), label, rays(), size());
     run.tally.other[account] += share.power;

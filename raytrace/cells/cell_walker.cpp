@@ -22,7 +22,7 @@ std::optional<geometry::Rectangle> inner_of(const CellArray& array, const Vec2& 
   return geometry::Rectangle{inner.lower - centre_mm, inner.upper - centre_mm};
 }
 
-/// Moves the rays that leave through an exit into the next column.
+/// Moves the rays that cross a border into the stream of the neighbouring column.
 void cross(const ColumnFaces::Exit& exit, const CellStep& step) {
   const Place place = step.stream().inside() ? Place::inside : Place::below;
   const StreamKey to{exit.column, place, step.stream().scattered};
@@ -31,7 +31,7 @@ void cross(const ColumnFaces::Exit& exit, const CellStep& step) {
   step.streams.come_in(to, more, exit.shift_mm);
 }
 
-/// Ends the rays that have met nothing below the surface.
+/// Ends the rays that have left the part through its back and meet no further face.
 void leave_through_back(const CellStep& step) {
   step.book(label_of(Hit::end), Account::transmitted);
   if (step.run.observer == nullptr) return;
@@ -72,8 +72,8 @@ void CellWalker::trace(const geometry::Rectangle& entrance_mm, std::uint64_t key
   advance_all(run);
 }
 
-void CellWalker::follow(const std::vector<Start>& starts, const geometry::Rectangle& entrance_mm, RandomKey key,
-                        std::uint32_t replicate, std::uint32_t first, Tally& tally, Observer& observer) {
+void CellWalker::follow(const std::vector<CellRay>& starts, const geometry::Rectangle& entrance_mm, RandomKey key,
+                        std::uint32_t replicate, std::uint32_t first, Tally& tally, CellObserver& observer) {
   CellRun run{tally, &observer, entrance_mm, key, replicate, first};
   begin(starts.size());
   const lanes::Rays rays = entrance_.rays().rays();
@@ -100,8 +100,8 @@ void CellWalker::begin(std::size_t count) {
   entrance_.rays().resize(count);
 }
 
-/// Moves all rays until none is left. A step moves each ray at most one time, so that a path cannot meet more
-/// interfaces than there are steps.
+/// Moves all rays until no ray remains. A step moves each ray at most one time. The number of interfaces on a path is
+/// therefore not greater than the number of steps, to which the limit `max_events` is applied.
 void CellWalker::advance_all(CellRun& run) {
   std::uint64_t steps = 0;
   while (const std::optional<StreamKey> stream = streams_.take_fullest(batch_.rays)) {

@@ -29,7 +29,7 @@ ColumnFaces::ColumnFaces(const CellArray& array) {
       columns_[k].sides[inside ? 1 : 0] = side_of_column(array.columns()[k], inside);
 }
 
-/// Determines the neighbours behind the borders of a column.
+/// Returns the borders and the neighbours of a column for rays inside the part, or for rays below its surface.
 ColumnFaces::Side ColumnFaces::side_of_column(const CellArray::Column& column, bool inside) const {
   Side side;
   std::vector<Exit> behind_intervals;

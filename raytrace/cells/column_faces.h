@@ -17,21 +17,21 @@ namespace retrace::raytrace {
 /// Facets and borders of the columns of an array.
 class ColumnFaces {
  public:
-  /// A neighbouring column behind a border, or behind an interval of a border.
+  /// Neighbouring column on the other side of a border, or of an interval of a border.
   struct Exit {
     lanes::Label crossing = 0;         ///< label of rays that continue in the neighbouring column
     std::optional<lanes::Label> wall;  ///< label of rays that meet the wall; set if the surfaces may differ in height
     std::uint32_t column = 0;          ///< the neighbouring column
     Vec2 shift_mm = Vec2::Zero();      ///< added to the coordinates of this column to get those of the neighbour
-    Vec3 wall_normal = Vec3::Zero();   ///< normal of the wall, which points out of the part
+    Vec3 wall_normal = Vec3::Zero();   ///< unit normal of the wall; points out of the part
   };
 
   explicit ColumnFaces(const CellArray& array);
 
-  /// Moves the rays of a batch to the next face and stores the faces.
+  /// Moves the rays of a batch to their next faces and stores these faces in RayBatch::hits.
   /// \return the power that the material absorbs on the path
   double advance(const LightSetup& setup, RayBatch& batch) const;
-  /// Returns the neighbouring columns of a stream.
+  /// Returns the neighbouring columns that the rays of a stream can reach.
   const std::vector<Exit>& exits(const StreamKey& key) const { return side_of(key).exits; }
   geometry::FacetRole role(std::uint32_t column) const { return columns_[column].role; }
   /// Returns the index of the facet of a column whose normal is nearest to `normal`.
@@ -54,7 +54,7 @@ class ColumnFaces {
     std::vector<lanes::LinearForm> heights;
     std::vector<std::optional<FacetFrame>> frames;
     geometry::FacetRole role = geometry::FacetRole::retro_facet;
-    std::array<Side, 2> sides;  ///< below the surface, and inside the part
+    std::array<Side, 2> sides;  ///< [0] for rays below the surface, [1] for rays inside the part
   };
 
   Side side_of_column(const CellArray::Column& column, bool inside) const;

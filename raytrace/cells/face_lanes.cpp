@@ -2,14 +2,15 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raytrace/cells/face_lanes.cpp"
-#include <hwy/foreach_target.h>  // compiles this file once for every instruction set
-// Must be included after foreach_target.h.
+#include <hwy/foreach_target.h>  // compiles this file one time for each instruction set
+// The following header must be included after foreach_target.h.
 #include "raytrace/cells/ray_lanes_inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace retrace::raytrace::lanes::HWY_NAMESPACE {
 
-/// Rotates the axis of Stokes parameters in the same way as Light::turn_to_axis(), but for axes of any length.
+/// Rotates the first axis of Stokes parameters from `axis` to `to`, as Light::turn_to_axis() does, but for axes of any
+/// length.
 /// \param over 1 / (|axis|^2 |to|^2)
 HWY_INLINE S turned(const S& light, const V3& direction, const V3& axis, const V3& to, V over) {
   const V c = dot(to, axis);
@@ -20,8 +21,8 @@ HWY_INLINE S turned(const S& light, const V3& direction, const V3& axis, const V
           light.v};
 }
 
-/// Reflected and transmitted light and directions at interfaces of transparent media. The formulas are those of
-/// materials::fresnel().
+/// Reflected and transmitted light at interfaces between transparent media, and its directions. The formulas are those
+/// of materials::fresnel().
 struct Interface {
   S reflected, transmitted;
   V3 mirrored, refracted;
@@ -35,8 +36,8 @@ HWY_INLINE V3 axis_at(const V3& d, const V3& axis, const V3& against) {
   return chosen(hn::Lt(dot(across, across), splat(1e-16)), axis, across);
 }
 
-/// Coefficients of a face: the fractions of the power of s and p light that are reflected, the real and imaginary parts
-/// of r_s conj(r_p), and t_s t_p (`passed`).
+/// Coefficients of a face: the reflectances for s and p light, the real and the imaginary part of r_s conj(r_p), and
+/// t_s t_p (`passed`).
 struct Shares {
   V power_s, power_p;
   V re, im;
@@ -44,18 +45,18 @@ struct Shares {
 };
 
 /// Computes the coefficients of a face.
-/// \param ci cosine of incidence
-/// \param root cosine of refraction, or its imaginary part for total reflection
+/// \param ci cosine of the angle of incidence
+/// \param root cosine of the angle of refraction; for total reflection, the imaginary part of this cosine
 /// \param a_s index ratio times `ci`
 /// \param b_p index ratio times `root`
 /// \param over 1 / ((a_s + root) (ci + b_p)), or 1 / |(a_s + i root) (ci + i b_p)|^2 for total reflection
 HWY_INLINE Shares shares(double index_ratio, V ci, V root, V a_s, V b_p, V over, M total, M grazes) {
   const V one = splat(1.0);
-  // Partial reflection has real amplitudes. For total reflection, r_s = (a - i b) / (a + i b), and r_s conj(r_p) is a
-  // phase.
+  // For partial reflection, the amplitudes are real. For total reflection, r_s = (a_s - i root) / (a_s + i root), and
+  // r_s conj(r_p) has the magnitude 1.
   const V r_s = hn::Mul(over, hn::Mul(hn::Sub(a_s, root), hn::Add(ci, b_p)));
   const V r_p = hn::Mul(over, hn::Mul(hn::Sub(ci, b_p), hn::Add(a_s, root)));
-  // (a_s - i root)^2 (ci + i b_p)^2 / norm
+  // For total reflection, r_s conj(r_p) = (a_s - i root)^2 (ci + i b_p)^2 * over.
   const V re_s = hn::MulSub(a_s, a_s, hn::Mul(root, root));
   const V im_s = hn::Mul(splat(-2.0), hn::Mul(a_s, root));
   const V re_p = hn::MulSub(ci, ci, hn::Mul(b_p, b_p));
@@ -70,7 +71,7 @@ HWY_INLINE Shares shares(double index_ratio, V ci, V root, V a_s, V b_p, V over,
 }
 
 /// Returns the reflected and the transmitted light at an interface.
-/// \param against normal that faces the light
+/// \param against unit normal that faces the light
 HWY_INLINE Interface met(const S& light, const V3& d, const V3& axis, const V3& against, double index_ratio) {
   const D tag;
   const V zero = hn::Zero(tag);
@@ -133,7 +134,7 @@ HWY_INLINE Chosen choose(const Meeting& meeting, std::size_t k, M here, S& refle
   // No random choice is needed if, for every ray, both branches continue or no light is transmitted.
   if (hn::AllTrue(D(), hn::Or(hn::Or(both, hn::Not(here)), hn::Le(t, hn::Zero(D())))))
     return {here, hn::And(here, both)};
-  // The chosen branch receives the power of both.
+  // The chosen branch receives the power of both branches.
   const V factor = hn::IfThenElse(both, splat(1.0), hn::Div(power, hn::IfThenElse(takes_reflected, r, t)));
   reflected = scaled(reflected, factor);
   transmitted = scaled(transmitted, factor);
@@ -179,7 +180,7 @@ std::size_t meet_mirrors(const Rays& rays, std::size_t count, const Meeting& mee
     const V3 axis = load3(rays, kAx, k);
     const V3 against = normal_of(meeting, k);
     const V3 to = axis_at(d, axis, against);
-    // r_s = -1, r_p = 1
+    // A perfect mirror has r_s = -1 and r_p = 1.
     const V axes2 = hn::Mul(dot(axis, axis), dot(to, to));
     const S in = turned(load_light(rays, k), d, axis, to, hn::Div(splat(1.0), axes2));
     append_ray(load3(rays, kX, k), renormalised(along(d, hn::Mul(splat(-2.0), dot(against, d)), against)),
@@ -224,7 +225,7 @@ Arrivals meet_entrance(const Rays& rays, std::size_t count, const Meeting& meeti
     } else {
       take = choose(meeting, k, here, face.reflected, face.transmitted);
     }
-    // This is source_axis(): the component of +x perpendicular to the direction.
+    // The following vector is source_axis(out): the component of +x perpendicular to the direction.
     const V3 out = face.refracted;
     const V3 x{hn::NegMulAdd(out.x, out.x, splat(1.0)), hn::Neg(hn::Mul(out.x, out.y)), hn::Neg(hn::Mul(out.x, out.z))};
     const V axes2 = hn::Mul(dot(face.axis, face.axis), dot(x, x));

@@ -14,11 +14,12 @@
 
 namespace retrace::raytrace {
 
-/// Location of rays relative to the surface of a column. The surface is convex. Light that leaves it can therefore
-/// meet only the surfaces of other columns.
+/// Location of rays relative to the surface of a column: inside the part, below the surface, or below the surface after
+/// leaving the part through it. The surface is convex. Rays that have left through it can therefore meet only the
+/// surfaces of other columns.
 enum class Place : std::uint8_t { inside, below, below_after_leaving };
 
-/// A stream contains the rays on one side of the surface of one column.
+/// Identifies a stream. A stream contains the rays of one column with the same `place` and the same `scattered`.
 struct StreamKey {
   std::uint32_t column = 0;
   Place place = Place::inside;
@@ -27,13 +28,13 @@ struct StreamKey {
   bool inside() const { return place == Place::inside; }
 };
 
-/// Returns a vector of a ray.
-/// \param first array of the x component; the arrays of y and z follow
+/// Returns a vector of ray k, such as its direction.
+/// \param first index of the array of the x component; the arrays of the y and z components follow
 inline Vec3 vector_of(const lanes::Rays& rays, std::size_t first, std::size_t k) {
   return {rays[first][k], rays[first + 1][k], rays[first + 2][k]};
 }
 
-/// Returns the position of a ray on the part.
+/// Returns the position of ray k, relative to the centre of the entrance face instead of the origin of a period.
 /// \pre rays.have_periods()
 inline Vec3 place_of(const lanes::Rays& rays, std::size_t k) {
   return vector_of(rays, lanes::kX, k) + Vec3(rays[lanes::kOx][k], rays[lanes::kOy][k], 0.0);
@@ -63,7 +64,7 @@ inline void set_ray(const lanes::Rays& rays, std::size_t k, const Ray& ray) {
   put(lanes::kAx, three(ray.light.s_axis));
 }
 
-/// Copies ray k of `from` to ray `at` of `to` and replaces its direction and light.
+/// Copies ray k of `from` to ray `at` of `to`. The direction and the light of the copy are those of `ray`.
 inline void copy_ray(const lanes::Rays& from, std::size_t k, const lanes::Rays& to, std::size_t at, const Ray& ray) {
   for (std::size_t n = 0; n < from.numbers; ++n) to[n][at] = from[n][k];
   set_ray(to, at, ray);

@@ -1,5 +1,5 @@
-// SIMD types for vectors, Stokes parameters and rays. It has a special include guard, because foreach_target.h compiles
-// it once for every instruction set.
+// SIMD types for vectors, Stokes parameters and rays. The include guard of this file is special, because
+// foreach_target.h includes the file again for each instruction set.
 #if defined(RETRACE_RAY_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef RETRACE_RAY_LANES_INL_H
 #undef RETRACE_RAY_LANES_INL_H
@@ -135,9 +135,9 @@ HWY_INLINE void append3(const V3& v, M mask, const Rays& to, std::size_t first, 
   append(v.z, mask, to[first + 2] + found);
 }
 
-/// Appends the selected rays.
-/// \param from arrays with the values that have no parameter of their own (period, owner), at index k
-/// \param to passed by value, so that the compiler need not reload the pointers after each store
+/// Appends the rays selected by `mask` behind the first `found` rays of `to`.
+/// \param from arrays from which the remaining values (origin of the period, owner) are copied, at index k
+/// \param to passed by value; the compiler then need not reload the pointers after each store
 HWY_INLINE void append_ray(const V3& place, const V3& direction, const S& light, const V3& axis, M mask,
                            const Rays& from, std::size_t k, const Rays to, std::size_t found) {
   append3(place, mask, to, kX, found);

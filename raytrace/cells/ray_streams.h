@@ -1,6 +1,7 @@
 #pragma once
 
-// Queues of the rays that the cell engine traces, and the list of rays that leave the region in which it traces them.
+// Queues of the rays that the cell engine traces, and the list of rays that leave the region in which it can trace
+// rays.
 
 #include <cstddef>
 #include <cstdint>
@@ -12,7 +13,7 @@
 
 namespace retrace::raytrace {
 
-/// A ray that the cell engine receives from, or hands over to, another part of the program.
+/// A ray that the cell engine receives from its caller or returns to it.
 struct CellRay {
   Vec3 position = Vec3::Zero();  ///< relative to the centre of the entrance face
   Ray ray;
@@ -27,20 +28,22 @@ class RayStreams {
   /// \param inner_mm finite parts: inner region, relative to the centre of the entrance face
   RayStreams(std::size_t column_count, std::size_t numbers, const std::optional<geometry::Rectangle>& inner_mm);
 
-  /// Returns the arrays behind the last ray of a stream, with memory for `most` rays.
+  /// Returns the arrays of a stream, starting behind its last ray, with memory for `most` further rays.
   lanes::Rays end_of(const StreamKey& key, std::size_t most);
-  /// Adds rays to a stream. Their values have already been written behind its last ray.
+  /// Adds `more` rays to a stream. Their values must have been written behind the last ray of the stream, see end_of().
   void grow(const StreamKey& key, std::size_t more);
-  /// Adds rays that come from another column in the same way.
+  /// Adds `more` rays that come from another column, in the same way as grow(). Rays outside of the inner region are
+  /// handed over instead.
   /// \param shift_mm added to the positions of the rays to get the coordinates of the column
   void come_in(const StreamKey& key, std::size_t more, const Vec2& shift_mm);
-  /// Replaces `rays` by the rays of the stream with the most rays. Returns nothing if all streams are empty.
+  /// Moves the rays of the fullest stream to `rays` and returns the key of the stream. The sizes of streams are
+  /// compared by their bit widths. Returns nothing if all streams are empty.
   std::optional<StreamKey> take_fullest(RayStore& rays);
 
   /// Hands over the rays that would be outside of the inner region after moving along their direction by the height
-  /// difference `height_mm`. The other rays are moved to the front of the arrays, and their number is returned.
+  /// difference `height_mm`. Moves the other rays to the front of the arrays and returns their number.
   std::size_t keep_inner(const lanes::Rays& rays, std::size_t count, double height_mm, bool inside, bool scattered);
-  /// Moves the rays that have the given label to handed_over().
+  /// Appends the rays that have the given label to handed_over().
   void hand_over(const lanes::Rays& rays, std::size_t count, const lanes::Label* labels, lanes::Label label,
                  bool inside, bool scattered);
   const std::vector<CellRay>& handed_over() const { return handed_over_; }
@@ -48,7 +51,7 @@ class RayStreams {
 
  private:
   static constexpr std::size_t kPlaces = 3;
-  static constexpr std::size_t kStreamsOfColumn = 2 * kPlaces;  ///< separate streams for scattered light
+  static constexpr std::size_t kStreamsOfColumn = 2 * kPlaces;  ///< scattered light has separate streams
 
   static std::size_t index_of(const StreamKey& key) {
     return kStreamsOfColumn * key.column + (key.scattered ? kPlaces : 0) + static_cast<std::size_t>(key.place);
@@ -57,7 +60,7 @@ class RayStreams {
 
   std::optional<geometry::Rectangle> inner_mm_;
   std::vector<RayStore> streams_;
-  std::vector<std::vector<std::size_t>> waiting_;  ///< streams, indexed by the bit width of their number of rays
+  std::vector<std::vector<std::size_t>> waiting_;  ///< indices of streams, by the bit width of their size
   std::vector<lanes::Label> labels_;
   std::vector<CellRay> handed_over_;
 };

@@ -16,18 +16,19 @@ constexpr double kNsPerLook = 30.0;
 /// Time in ns per unit of work when stochastic beams (resampled beams) are traced. These beams are fewer and wider than
 /// exact beams.
 constexpr double kNsPerStochasticLook = 15.0;
-/// Expected work of stochastic beams until they reach the default target error, used before their first round. It is
-/// greater for prisms, because light that enters a prism obliquely travels far, and little of it returns.
+/// Expected work of stochastic beams until they reach the default target error, used before their first round. The work
+/// is greater for prisms. Light that enters a prism obliquely travels far, and only a small fraction of it returns.
 constexpr double kLooksForCubes = 300'000.0;
 constexpr double kLooksForPrisms = 1'000'000.0;
-/// Number of facets of a cell above which stochastic beams need more work. With rounded edges, a cell with 24 facets
-/// needs 300 times the work.
+/// Number of facets per cell above which stochastic beams need more work. Above this number, the work is proportional
+/// to the number of facets to the power of kGrowthWithFacets. A cell with rounded edges and 24 facets needs 300 times
+/// the work of a cell with sharp edges.
 constexpr double kFewFacets = 4.0;
 constexpr double kGrowthWithFacets = 3.0;
-/// Exact beams may always use this fraction of the predicted time of stochastic beams and rays. It is a hedge against a
+/// Fraction of the predicted time of stochastic beams or rays that exact beams are always granted, as a hedge against a
 /// poor prediction of the time of exact beams.
 constexpr double kHedge = 0.2;
-/// Work after which the methods are compared for the first time. It takes about one millisecond.
+/// Work after which the methods are compared for the first time. This work takes about one millisecond.
 constexpr double kFirstLook = 30'000.0;
 constexpr double kNever = std::numeric_limits<double>::infinity();
 

@@ -2,7 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <array>
+#include <algorithm>
+#include <iterator>
 #include <utility>
 #include <variant>
 
@@ -10,28 +11,16 @@
 #include "core/message_text.h"
 
 namespace retrace::raytrace {
-namespace {
-
-constexpr std::array<std::pair<std::string_view, Engine>, 6> kEngines = {{{"auto", Engine::automatic},
-                                                                          {"exact", Engine::exact},
-                                                                          {"stochastic", Engine::stochastic},
-                                                                          {"montecarlo", Engine::montecarlo},
-                                                                          {"cell", Engine::cell},
-                                                                          {"embree", Engine::embree}}};
-
-}  // namespace
 
 Engine engine_from_name(std::string_view name) {
-  for (const auto& [known, engine] : kEngines)
-    if (known == name) return engine;
+  const auto* const found = std::ranges::find(kEngineNames, name);
+  if (found != std::end(kEngineNames)) return static_cast<Engine>(found - std::begin(kEngineNames));
   throw InputError(Field{"engine"},
                    fmt::format("must be auto, exact, stochastic, montecarlo, cell or embree, got {}", printable(name)));
 }
 
 std::string_view engine_name(Engine engine) {
-  for (const auto& [name, known] : kEngines)
-    if (known == engine) return name;
-  return "";
+  return kEngineNames[static_cast<std::size_t>(engine)];
 }
 
 EngineFacts facts_of(const Optics& optics) {

@@ -11,22 +11,24 @@
 namespace retrace::raytrace {
 
 /// Tracing method of a request. `automatic` selects for each direction and wavelength the method that is expected to
-/// reach the target error first: `exact`, `stochastic` or `montecarlo`. `montecarlo` is `cell` if that engine supports
-/// the part, otherwise `embree`.
+/// reach the target error first: `exact`, `stochastic` or `montecarlo`. `montecarlo` uses `cell` if this engine can
+/// trace the model, and otherwise `embree`.
 enum class Engine { automatic, exact, stochastic, montecarlo, cell, embree };
 
+/// Names of the engines, in the order of the enumerators.
+inline constexpr std::string_view kEngineNames[] = {"auto", "exact", "stochastic", "montecarlo", "cell", "embree"};
 /// Returns the engine with this name.
 /// \throw InputError that lists all engines if the name is unknown
 Engine engine_from_name(std::string_view name);
 std::string_view engine_name(Engine engine);
 
-/// Returns true if a request for this engine may trace all light as beams instead of random rays.
+/// Returns true if a request for this engine permits the engine `exact`.
 constexpr bool may_be_exact(Engine requested) {
   return requested == Engine::exact || requested == Engine::automatic;
 }
 
-/// Properties of a model and of a question that determine which engines can be used. Each engine can trace a model that
-/// has none of the properties.
+/// Properties of a model and of the requested result that determine which engines can be used. Every engine can be used
+/// if all properties are false.
 struct EngineFacts {
   bool has_balls = false;  ///< true: the model consists of balls; false: it is a part with an entrance face
   bool has_curved_entrance = false;
@@ -37,14 +39,14 @@ struct EngineFacts {
   bool texture_keeps_specular_light = false;  ///< enough light remains in the specular direction to trace it as a beam
   bool texture_has_phases = false;            ///< see surface_models::has_phases()
   bool entrance_scatters = false;
-  bool needs_phases = false;          ///< the question needs the phases of the light, to compute diffraction
-  bool needs_plain_sampling = false;  ///< the question needs Sampling::Kind::plain
+  bool needs_phases = false;          ///< the requested result needs the phases of the light, to compute diffraction
+  bool needs_plain_sampling = false;  ///< the request uses Sampling::Kind::plain
 };
 
-/// Returns those facts that follow from the optical properties.
+/// Returns the facts that follow from optical properties. The other facts are false.
 EngineFacts facts_of(const Optics& optics);
 
-/// Property of a model or of a question because of which an engine cannot be used.
+/// Reason why an engine cannot be used: a property of the model or of the requested result.
 enum class Obstacle {
   balls,
   curved_entrance,
@@ -58,8 +60,9 @@ enum class Obstacle {
   texture_without_phases  ///< the texture does not determine the phases of the light, and phases are needed
 };
 
-/// Returns why an engine cannot trace a model, or nothing if it can. If there are several reasons, the first in the
-/// order of Obstacle is returned. The engines `automatic` and `montecarlo` select the tracer of balls themselves.
+/// Returns the reason why an engine cannot trace a model, or nothing if the engine can trace it. If there are several
+/// reasons, the first in the order of Obstacle is returned. Requests for `automatic` or `montecarlo` can trace balls:
+/// both then use BallTracer.
 std::optional<Obstacle> why_not(Engine engine, const EngineFacts& facts);
 
 /// Returns an obstacle as the subject of a sentence, such as "rough facets".
@@ -68,10 +71,10 @@ std::string_view subject_of(Obstacle obstacle);
 /// \param tracer noun phrase, such as "rays"
 std::string traced_by(Obstacle obstacle, std::string_view tracer);
 
-/// Returns true if a model can be traced with the engine `exact` and the requested engine allows this.
+/// Returns true if the engine `exact` can trace a model and the request permits this engine, see may_be_exact().
 bool is_exact(Engine requested, const EngineFacts& facts);
-/// Returns the engine that traces rays if a request does not use beams: `cell`, or `embree` if it is requested or if
-/// the engine `cell` cannot trace the model.
+/// Returns the engine for a request that is traced with rays instead of beams. This is `embree` if it is requested or
+/// if `cell` cannot trace the model, and otherwise `cell`.
 Engine ray_engine(Engine requested, const EngineFacts& facts);
 
 }  // namespace retrace::raytrace

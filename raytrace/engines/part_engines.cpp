@@ -10,11 +10,11 @@
 namespace retrace::raytrace {
 namespace {
 
-// Expected times of the tracers, as measured by benchmarks/engine_choice.cpp. Methods are chosen from counted work and
-// these times, and not from clocks, so that the choice is the same on every machine.
+// Expected times of the tracers, as measured by benchmarks/engine_choice.cpp. The choice of a method depends on counted
+// work and these times, and not on clocks. It is therefore the same on every machine.
 
-/// Time of one ray segment, and additional time for each facet of an element. For the engine `cell`, segments take
-/// longer in finite arrays (kCellOfFinite), because Embree traces the rays near the borders.
+/// Time of one ray segment, and additional time for each facet of a cell. For the engine `cell`, segments take longer
+/// in finite arrays (kCellOfFinite), because Embree traces the rays near the borders.
 struct SegmentCost {
   double ns = 0.0;
   double ns_per_facet = 0.0;
@@ -94,9 +94,9 @@ std::unique_ptr<ScatteredLight> PartEngines::scattered_light(const Light& light)
                                                 settings_.cones_deg);
 }
 
-EngineResult PartEngines::by_rays(const Light& light, Progress* progress) {
+EngineResult PartEngines::by_rays(const Light& light, Progress& progress) {
   return {settings_.rays, ray_tracer().trace(light.optics, light.illumination, settings_.cones_deg, light.sampling,
-                                             settings_.paths, cancel_, nullptr, progress)};
+                                             settings_.paths, cancel_, nullptr, &progress)};
 }
 
 EngineResult PartEngines::by_stochastic_beams(const Light& light, Progress& progress) {

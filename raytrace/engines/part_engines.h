@@ -32,13 +32,13 @@ class PartEngines {
   struct Settings {
     Engine rays = Engine::embree;  ///< result of ray_engine()
     BeamTracer::Elements elements = BeamTracer::Elements::equal_at_once;
-    bool has_texture = false;  ///< retro facets scatter
+    bool has_texture = false;  ///< true if retro facets scatter
     /// Policy of exact beams. by_fastest() traces no stochastic beams if a cut-off is given.
     BeamPolicy beams = {};
     PathPolicy paths = {};
     std::vector<double> cones_deg = {};
   };
-  /// Light of one direction at one wavelength.
+  /// Incident light from one direction at one wavelength, with the parameters of its sampling.
   struct Light {
     const Optics& optics;
     Illumination illumination;
@@ -51,12 +51,12 @@ class PartEngines {
               const Cancellation* cancel);
 
   /// Sets the number of calls of by_fastest() that will follow. The construction time of the beam tracer is divided
-  /// evenly among them. Only the first call has an effect.
+  /// evenly among these calls. Only the first call of expect() has an effect.
   void expect(std::size_t count);
   const Settings& settings() const { return settings_; }
   const BeamTracer& beam_tracer();
 
-  EngineResult by_rays(const Light& light, Progress* progress);
+  EngineResult by_rays(const Light& light, Progress& progress);
   EngineResult by_stochastic_beams(const Light& light, Progress& progress);
   /// Traces with the method (exact beams, stochastic beams or rays) that is expected to reach the goal first. The
   /// method is selected before every round. A method continues where it stopped if another method turns out to be
@@ -80,7 +80,7 @@ class PartEngines {
   std::optional<double> tracer_ns_;
   std::once_flag beam_tracer_is_made_;
   std::optional<BeamTracer> beam_tracer_;
-  std::optional<BackSurface> scattering_;  ///< for the light that rough facets scatter out of beams
+  std::optional<BackSurface> scattering_;  ///< back surface for rays of scattered light; set if `has_texture`
   std::once_flag ray_tracer_is_made_;
   std::optional<MonteCarlo> ray_tracer_;
 };

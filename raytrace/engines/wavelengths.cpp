@@ -9,7 +9,7 @@
 namespace retrace::raytrace {
 
 std::uint32_t seed_at(std::uint32_t seed, std::size_t wavelength) {
-  constexpr std::uint32_t kGolden = 0x9e3779b9U;  // odd, so that all wavelengths have different seeds
+  constexpr std::uint32_t kGolden = 0x9e3779b9U;  // odd; all wavelengths therefore have different seeds
   return seed + kGolden * static_cast<std::uint32_t>(wavelength);
 }
 

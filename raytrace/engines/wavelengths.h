@@ -1,23 +1,25 @@
 #pragma once
 
-// Traces light at all wavelengths of a spectrum, with a random sequence of its own for each wavelength.
+// Traces light at all wavelengths of a spectrum, with independent random numbers for each wavelength.
 
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 
 #include "core/task_progress.h"
-#include "raytrace/paths/monte_carlo.h"
+#include "raytrace/sampling/replicates.h"
 
 namespace retrace::raytrace {
 
-/// Returns the seed for one wavelength of a spectrum. Wavelengths have different seeds, so that their estimates are
-/// independent. The first wavelength has the seed `seed`.
+/// Returns the random seed for one wavelength of a spectrum. Different wavelengths have different seeds, so that their
+/// estimates are independent. The seed of the first wavelength is `seed`.
 std::uint32_t seed_at(std::uint32_t seed, std::size_t wavelength);
 
-/// Returns the sampling parameters for one wavelength of a spectrum. Rays are distributed in proportion to the weights
-/// w of the wavelengths. An estimate then has the variance v / (w N) and contributes w^2 v / (w N). The sum is v / N,
-/// as if all N rays had one wavelength. A target error t becomes t / sqrt(w) in the same way.
+/// Returns the sampling parameters for one wavelength of a spectrum. The N rays of a request are distributed over the
+/// wavelengths in proportion to the weights w of the wavelengths. If one ray has the variance v, the estimate at one
+/// wavelength has the variance v / (w N). It contributes w^2 v / (w N) = w v / N to the variance of the mean. The sum
+/// over all wavelengths is v / N, as for N rays at a single wavelength. The target error t becomes t / sqrt(w)
+/// accordingly.
 /// \param all sampling parameters for the mean over the spectrum
 Sampling sampling_at(Sampling all, double weight, std::size_t wavelength);
 

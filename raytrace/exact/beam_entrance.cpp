@@ -12,11 +12,11 @@
 namespace retrace::raytrace {
 namespace {
 
-// Number of facets of an element above which the incident light is divided into several fragments. Each fragment then
-// meets about this number of facets.
+// Number of facets of an element above which the light on the element is divided into several fragments. Each fragment
+// then meets about this number of facets.
 constexpr double kFacetsOfPiece = 30.0;
 
-/// An interval of the entrance face along one axis, and the displacements to its copies.
+/// An interval of the entrance face along one axis, and the displacements to its copies, in mm.
 struct Span {
   double from = 0.0;
   double to = 0.0;
@@ -46,7 +46,7 @@ std::vector<Span> spans(double lower, double upper, double period, int steps) {
   return all;
 }
 
-/// Returns the part of a polygon whose projection along z is inside a convex outline.
+/// Returns the portion of a polygon whose projection along z is inside a convex outline.
 Corners within(Corners corners, const geometry::Polygon& outline) {
   for (std::size_t k = 0; k < outline.size() && !corners.empty(); ++k) {
     const Vec2 along = (outline[(k + 1) % outline.size()] - outline[k]).normalized();
@@ -56,12 +56,12 @@ Corners within(Corners corners, const geometry::Polygon& outline) {
   return corners;
 }
 
-/// Returns the part of a polygon between two values of the coordinate along an axis.
+/// Returns the portion of a polygon between two values of the coordinate along an axis.
 Corners between(const Corners& corners, const Vec3& axis, double from, double to) {
   return cut(cut(corners, {axis, from}), {-axis, -to});
 }
 
-/// Returns the bounding box of a beam in x and y.
+/// Returns the bounding box of a beam's cross-section in x and y.
 PlanBox plan_of(const Beam& beam) {
   PlanBox box;
   for (const Vec3& p : beam.corners) box.include(p.head<2>());
@@ -69,7 +69,7 @@ PlanBox plan_of(const Beam& beam) {
 }
 
 /// Returns the number of parts, along either axis, into which the light on an element is divided. The work of finding
-/// hidden facets grows as the square of the number of facets, and elements with rounded edges have dozens.
+/// hidden facets grows as the square of the number of facets, and elements with rounded edges have dozens of facets.
 double parts_of_element(const geometry::Part& part) {
   double facets = 0.0;
   for (const geometry::SurfacePatch& patch : part.patches)
@@ -77,8 +77,9 @@ double parts_of_element(const geometry::Part& part) {
   return std::max(1.0, std::ceil(std::sqrt(facets / kFacetsOfPiece)));
 }
 
-/// Returns the maximum size in x and y of fragments of the incident beam. A fragment covers at most one element, so
-/// that it meets few facets.
+/// Returns the maximum size in x and y of fragments of the incident beam. A fragment covers at most one element. It
+/// therefore meets few facets.
+/// \param parts number of fragments per element along either axis
 Vec2 step_of_entrance(const geometry::Part& part, double parts) {
   Vec2 step = Vec2::Constant(part.size_mm);
   if (const auto* rtp = std::get_if<geometry::RtpElement>(&part.spec.element))
@@ -94,7 +95,7 @@ class Division {
 
   const Beam& whole() const { return whole_; }
   /// Queues a fragment.
-  /// \param places positions of its copies; empty for the positions of the whole beam
+  /// \param places displacements to its copies (Beam::places); empty for the displacements of the whole beam
   /// \param region parts with zones: index in EqualPlaces::regions()
   void add(Corners corners, BeamPlaces places = {}, std::uint32_t region = 0) {
     if (corners.empty()) return;
@@ -107,7 +108,7 @@ class Division {
     entered_ += piece.share * (piece.place_count() / whole_.place_count());
     queue_.push(std::move(piece));
   }
-  /// Returns the part of Beam::share that has entered.
+  /// Returns the part of the whole beam's Beam::share that the queued fragments and their copies contain.
   double entered() const { return entered_; }
 
  private:
@@ -150,7 +151,7 @@ void divide_by_period(const Vec2& period, const Vec2& most_step, Division& into)
   }
 }
 
-/// Divides the part of a beam above one region of a part with zones.
+/// Divides the portion of a beam that is above one region of a part with zones (areas with different arrays).
 void divide_region(const RepeatRegion& region, std::uint32_t number, const Vec2& most_step, Division& into) {
   const auto add = [&](const geometry::Polygon& tile, BeamPlaces places) {
     into.add(within(within(into.whole().corners, tile), region.outline_mm()), std::move(places), number);
@@ -161,7 +162,13 @@ void divide_region(const RepeatRegion& region, std::uint32_t number, const Vec2&
   }
 }
 
-Beam incident_beam(const BeamScene& scene, const geometry::Polygon& entrance) {
+/// Returns the outline of the entrance face, or the central period of an infinite part.
+geometry::Polygon entrance_outline(const geometry::Part& part) {
+  if (part.period_mm) return geometry::to_polygon({Vec2::Zero(), *part.period_mm});
+  return part.outline;
+}
+
+Beam incident_beam(const BeamScene& scene) {
   const LightSetup& setup = scene.setup;
   Beam whole;
   whole.direction = setup.entry.direction;
@@ -174,7 +181,7 @@ Beam incident_beam(const BeamScene& scene, const geometry::Polygon& entrance) {
   whole.entry.constant_mm = scene.centre_mm;
   whole.entry.slope.leftCols<2>().setIdentity();
   whole.entry = whole.entry.continued(whole.start, whole.direction);
-  for (const auto& p : entrance)
+  for (const auto& p : entrance_outline(scene.part))
     whole.corners.push_back({p.x() - scene.centre_mm.x(), p.y() - scene.centre_mm.y(), setup.thickness_mm});
   return whole;
 }
@@ -190,7 +197,8 @@ void keep_half(const EqualPlaces& equal, Beam& whole, BeamQueue& queue) {
   whole.places = queue.shared({Vec2::Zero(), *by});
 }
 
-/// Divides a beam as the symmetry of the part requires and returns the part of Beam::share that has entered.
+/// Divides the incident beam into fragments according to the symmetry of the part. Returns the part of Beam::share that
+/// these fragments contain.
 double divide(const BeamScene& scene, const Beam& whole, const Vec2& most_step, BeamQueue& queue) {
   if (scene.equal == nullptr || scene.setup.infinite() || scene.equal->regions().empty()) {
     Division into(scene, whole, queue);
@@ -211,8 +219,8 @@ double divide(const BeamScene& scene, const Beam& whole, const Vec2& most_step, 
 
 }  // namespace
 
-void enter_beams(const BeamScene& scene, const geometry::Polygon& entrance, BeamRecord& record, BeamQueue& queue) {
-  Beam whole = incident_beam(scene, entrance);
+void enter_beams(const BeamScene& scene, BeamRecord& record, BeamQueue& queue) {
+  Beam whole = incident_beam(scene);
   const double parts = parts_of_element(scene.part);
   if (scene.setup.infinite()) {
     if (scene.equal != nullptr) keep_half(*scene.equal, whole, queue);

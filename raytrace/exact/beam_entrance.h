@@ -8,9 +8,8 @@
 
 namespace retrace::raytrace {
 
-/// Queues the beams that enter through the entrance face. Light that is lost by rounding is recorded. Beams at
-/// identical positions of an array become one beam if the scene has a symmetry.
-/// \param entrance outline of the entrance face
-void enter_beams(const BeamScene& scene, const geometry::Polygon& entrance, BeamRecord& record, BeamQueue& queue);
+/// Queues the beams that enter through the entrance face. Light that is lost by rounding is added to `record`. If
+/// BeamScene::equal is set, beams at equivalent positions of the array become one beam.
+void enter_beams(const BeamScene& scene, BeamRecord& record, BeamQueue& queue);
 
 }  // namespace retrace::raytrace

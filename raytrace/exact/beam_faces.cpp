@@ -24,8 +24,8 @@ double power_at_start(const BeamStep& step, const Fragment& fragment) {
          from.light.power();
 }
 
-/// Returns the fragment as a beam that meets a plane. The power that the material absorbs up to the plane is added to
-/// the ledger.
+/// Returns the fragment as a beam that has arrived at a plane. The power that the material absorbs up to the plane is
+/// added to the ledger.
 Beam arrived(const BeamStep& step, const Fragment& fragment, const Plane& plane) {
   const double absorption_per_mm = step.scene.setup.optics.absorption_per_mm;
   Beam beam = step.beam;
@@ -40,10 +40,11 @@ Beam arrived(const BeamStep& step, const Fragment& fragment, const Plane& plane)
 }
 
 /// Queues a beam that starts at an interface.
-/// \param ahead normal of the plane, which points to the side into which the beam travels
+/// \param ahead unit normal of the plane on the side into which the beam travels
 void send(const BeamStep& step, Beam&& beam, const Plane& plane, const Vec3& ahead, const Vec3& direction,
           const CoherentLight& light, bool inside) {
-  // The field is continuous on the plane. The wave vectors before and after therefore differ only along the normal.
+  // The field is continuous on the plane. The wave vectors before and after the interface therefore differ only along
+  // the normal.
   beam.phase_mm +=
       (step.scene.index_at(beam.inside) * beam.direction - step.scene.index_at(inside) * direction).dot(plane.normal) *
       plane.offset_mm;
@@ -57,7 +58,7 @@ void send(const BeamStep& step, Beam&& beam, const Plane& plane, const Vec3& ahe
   step.queue.push(std::move(beam));
 }
 
-/// Records that the beam meets a facet with a texture or a form, if the phases of the facet are needed later.
+/// Adds a facet with a texture or a form to Beam::hits if the phase shifts of the facet are needed later.
 /// \param beam beam that arrives at the facet
 void keep_phases(const BeamScene& scene, Beam& beam, const Candidate& facet, const materials::FresnelCoefficients& f,
                  double cos_incidence, Lobe lobe) {
@@ -70,8 +71,8 @@ void keep_phases(const BeamScene& scene, Beam& beam, const Candidate& facet, con
   if (has_texture) hit.phase = phase_texture(optics, beam.inside, cos_incidence, lobe);
   if (has_form) {
     hit.frame = FacetFrame(hit.plane.normal, hit.plane.offset_mm, *facet.middle_mm);
-    // The path difference per height is the normal component of the wave vector before the facet minus that after the
-    // facet, in units of the vacuum wave number.
+    // The path difference per height is the normal component of the wave vector before the facet minus the normal
+    // component after the facet, in units of the wave number in vacuum.
     const double before = scene.index_at(beam.inside) * cos_incidence;
     const double behind = lobe == Lobe::reflection ? -before : scene.index_at(!beam.inside) * f.cos_refracted;
     hit.path_per_height = (beam.inside ? 1.0 : -1.0) * (before - behind);
@@ -131,8 +132,8 @@ void meet_hull(const BeamStep& step, const Fragment& fragment, const Plane& plan
   send(step, std::move(beam), plane, against, mirrored(direction, against), reflected, true);
 }
 
-/// Splits a fragment at the entrance face and the sides. Each face receives the part of the fragment for which it is
-/// the nearest face.
+/// Splits a fragment between the entrance face and the sides. Each face receives the portion of the fragment that
+/// reaches this face before the other faces.
 void leave_hull(const BeamStep& step, const Fragment& fragment) {
   struct Exit {
     Plane plane;
@@ -164,7 +165,8 @@ void leave_hull(const BeamStep& step, const Fragment& fragment) {
       own = clipped(own, {slope.x(), slope.y(), exits[j].distance.constant - exits[k].distance.constant}, merge_mm);
     }
     if (exits[k].role == FacetRole::side && setup.optics.border_walls_differ()) {
-      // Below z = 0, a side plane belongs to border walls. In the coordinates across the beam, z = up . p + start.
+      // The portion of a side plane below z = 0 is a border wall. On this plane, z = up . p + start, where p contains
+      // the coordinates across the beam.
       const Frame& frame = step.frame;
       const Distance& distance = exits[k].distance;
       const Vec2 up = Vec2(frame.u.z(), frame.v.z()) + frame.w.z() * distance.slope;
@@ -180,11 +182,10 @@ void leave_hull(const BeamStep& step, const Fragment& fragment) {
   step.record.book_rest(step.beam, fragment.share - used);
 }
 
-/// Queues a fragment that has reached the limited horizon of its step.
+/// Queues a fragment that has reached the limited horizon of its step without meeting a face. After kMaxLevelSteps such
+/// steps, its power is added to `truncated` instead.
 void stop_at_horizon(const BeamStep& step, const Fragment& fragment) {
-  double nearest = kInfinity;
-  for (const Vec3& p : step.beam.corners) nearest = std::min(nearest, step.frame.w.dot(p));
-  const Plane there{step.frame.w, nearest + step.horizon.t};
+  const Plane there = plane_at(step.horizon, step.beam);
   Beam beam = arrived(step, fragment, there);
   beam.start = there;
   beam.depth = step.beam.depth;

@@ -1,6 +1,6 @@
 #pragma once
 
-// What happens to fragments of a beam at the faces of the part.
+// Processes the fragments of a beam at the faces of the part.
 
 #include "raytrace/exact/beam_queue.h"
 #include "raytrace/exact/beam_record.h"
@@ -19,7 +19,7 @@ struct BeamStep {
   BeamQueue& queue;  ///< receives the beams after the step
 };
 
-/// Fragment of a beam.
+/// Fragment of the cross-section of a beam.
 struct Fragment {
   const FlatPolygon& polygon;
   double share = 0.0;  ///< its part of Beam::share
@@ -28,7 +28,7 @@ struct Fragment {
 /// Processes a fragment that meets a facet.
 void meet_facet(const BeamStep& step, const Fragment& fragment, const Candidate& facet);
 
-/// Processes a fragment that no facet within the horizon blocks.
+/// Processes a fragment that meets no facet within the horizon.
 void pass_facets(const BeamStep& step, const Fragment& fragment);
 
 }  // namespace retrace::raytrace

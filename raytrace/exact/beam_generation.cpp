@@ -162,7 +162,7 @@ bool follow_survivors(BeamWalk& walk, const geometry::Part& part, const BeamGene
       return true;
     }
     if (after_each) after_each();
-    walk.take_waiting(beams);
+    walk.take_waiting().swap(beams);
     parts.emplace(part, beams);
   }
 }

@@ -2,13 +2,15 @@
 
 #include <fmt/format.h>
 
+#include "raytrace/exact/beam_scene.h"
+
 namespace retrace::raytrace {
 namespace {
 
 // Maximum number of beams below the cut-off that are kept for a later pass with a lower cut-off. They take about 150
 // MB. Their memory is also limited to three quarters of beam_memory_bytes().
 constexpr std::size_t kMostDeferred = 200'000;
-// Work of moving one position of a beam between lists, in units of BeamWalk::work().
+// Work of storing one displacement in a list Beam::places, in units of BeamWalk::work().
 constexpr std::uint64_t kWorkOfPlace = 1;
 
 /// Returns the memory in bytes of a queued beam, without its list of positions.
@@ -35,12 +37,11 @@ Beam BeamQueue::pop() {
   return beam;
 }
 
-void BeamQueue::take_pending(WaitingBeams& into) {
-  memory_->remove(pending_.bytes);
-  Waiting taken;  // a new queue replaces the old one, because clear() of an empty boost deque adds to a null pointer
-  pending_.swap(taken);
-  WaitingBeams().swap(into);
-  taken.beams.swap(into);
+BeamQueue::Waiting BeamQueue::taken(Waiting& list) {
+  memory_->remove(list.bytes);
+  Waiting taken;  // a new list replaces the old one, because clear() of an empty boost deque adds to a null pointer
+  list.swap(taken);
+  return taken;
 }
 
 void BeamQueue::defer(Beam&& beam, bool may_discard) {
@@ -55,23 +56,13 @@ bool BeamQueue::is_full() const {
   return deferred_.beams.size() > kMostDeferred || deferred_.bytes > beam_memory_bytes() / 4 * 3;
 }
 
-WaitingBeams BeamQueue::take_deferred() {
-  memory_->remove(deferred_.bytes);
-  Waiting taken;
-  deferred_.swap(taken);
-  return std::move(taken.beams);
-}
-
 void BeamQueue::resume_deferred() {
   pending_.swap(deferred_);
   deferred_.power = 0.0;
 }
 
 void BeamQueue::discard_pending() {
-  for (const Beam& beam : pending_.beams) deferred_.power += beam.total_power();
-  memory_->remove(pending_.bytes);
-  Waiting none;
-  pending_.swap(none);
+  for (const Beam& beam : take_pending()) deferred_.power += beam.total_power();
 }
 
 std::shared_ptr<const BeamPlaces> BeamQueue::shared(BeamPlaces places) {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/memory_budget.h"
-#include "raytrace/exact/beam_scene.h"
+#include "raytrace/exact/beam.h"
 
 namespace retrace::raytrace {
 
@@ -23,11 +23,10 @@ class BeamQueue {
   std::size_t pending_count() const { return pending_.beams.size(); }
   double pending_power() const { return pending_.power; }
   /// Removes and returns all pending beams.
-  /// \param into receives the beams
-  void take_pending(WaitingBeams& into);
+  WaitingBeams take_pending() { return taken(pending_).beams; }
 
-  /// Keeps a beam below the cut-off.
-  /// \param may_discard if true, the beam is discarded if is_full()
+  /// Adds a beam below the cut-off to the deferred beams.
+  /// \param may_discard true: the beam is discarded if is_full(); deferred_power() then still includes its power
   void defer(Beam&& beam, bool may_discard);
   /// Returns true if the list of deferred beams is full. Further beams may then be discarded, and a lower cut-off
   /// requires a new run.
@@ -36,21 +35,21 @@ class BeamQueue {
   /// Returns the power of all deferred beams, including those that have been discarded.
   double deferred_power() const { return deferred_.power; }
   /// Removes and returns all deferred beams.
-  WaitingBeams take_deferred();
+  WaitingBeams take_deferred() { return taken(deferred_).beams; }
   /// Makes all deferred beams pending.
   /// \pre no beam is pending
   void resume_deferred();
   /// Discards the pending beams. Their power is added to that of the deferred beams.
   void discard_pending();
 
-  /// Returns the power of all beams.
+  /// Returns the power of all pending and deferred beams, including the discarded beams.
   double open_power() const { return pending_.power + deferred_.power; }
-  /// Returns a shared list of the positions, or null for a single position. The list counts as memory of this run until
-  /// the last beam that uses it is destroyed.
+  /// Returns a shared list of displacements (Beam::places), or null for a single displacement. The list counts as
+  /// memory of this run until the last beam that uses it is destroyed.
   std::shared_ptr<const BeamPlaces> shared(BeamPlaces places);
-  /// Returns the work of making lists of positions, in units of BeamWalk::work().
+  /// Returns the work of making the lists Beam::places, in units of BeamWalk::work().
   std::uint64_t work() const { return work_; }
-  /// Checks the memory of the beams.
+  /// Checks that the beams fit into the memory.
   /// \throw BudgetError if the beams of this run exceed the memory budget
   /// \throw SharedMemoryShort if all parallel traces together exceed their limit, see BeamMemory::require_shared()
   void require_memory() const;
@@ -68,6 +67,9 @@ class BeamQueue {
       std::swap(bytes, other.bytes);
     }
   };
+  /// Empties a list and returns its previous content.
+  Waiting taken(Waiting& list);
+
   Waiting pending_;
   Waiting deferred_;
   std::shared_ptr<BeamMemory> memory_ = std::make_shared<BeamMemory>();

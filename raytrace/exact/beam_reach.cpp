@@ -10,12 +10,12 @@ namespace {
 
 // Maximum length, in element sizes, of one step of a nearly horizontal beam.
 constexpr double kReachInElements = 4.0;
-// Maximum step length of a beam that represents several positions. It is shorter than kReachInElements, because fewer
-// positions then reach a border within the step.
+// Maximum step length, in element sizes, of a beam that represents several copies. It is shorter than kReachInElements,
+// so that fewer copies reach a border within the step.
 constexpr double kReachOfShared = 2.0;
-// Limit of the distance, in element sizes, that a slowly descending beam travels until all of its corners are in the
-// layer of elements. If the distance is longer, a step is measured from the point where the lowest corner enters the
-// layer. A horizontal beam above the layer never enters it and meets no facet.
+// Maximum distance, in element sizes, to the point where the highest corner of a descending beam enters the layer of
+// elements. Up to this distance, a step is measured from this point. Otherwise, it is measured from the point where the
+// lowest corner enters the layer. A horizontal beam above the layer never enters it and meets no facet.
 constexpr double kFarInElements = 64.0;
 
 /// Returns the minimum and maximum distance from a beam's corners to the sides and, if it rises, to the entrance face.
@@ -62,10 +62,16 @@ Horizon horizon_of(const BeamScene& scene, const Beam& beam) {
   const double reach = first + (is_shared ? kReachOfShared : kReachInElements) * size_mm;
   if (last <= reach) return {last, false};
   if (setup.infinite()) return {reach, true};
-  // A beam may leave a finite part through its outer faces. If this happens within reach, the horizon must include the
-  // last exit, because the candidates contain only facets and not the outer faces.
+  // A beam may leave a finite part through its outer faces. If this happens within `reach`, the horizon must include
+  // the exit of the last corner, because the candidates contain only facets and not the outer faces.
   const auto [first_exit, last_exit] = distances_to_hull(setup, beam);
   return reach < first_exit ? Horizon{reach, true} : Horizon{std::min(last, last_exit), false};
+}
+
+Plane plane_at(const Horizon& horizon, const Beam& beam) {
+  double nearest = kInfinity;
+  for (const Vec3& p : beam.corners) nearest = std::min(nearest, beam.direction.dot(p));
+  return {beam.direction, nearest + horizon.t};
 }
 
 PlanBox sweep_in_layer(const BeamScene& scene, const Beam& beam, const Horizon& horizon) {

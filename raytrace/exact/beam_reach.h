@@ -32,6 +32,9 @@ struct Horizon {
 /// limited for nearly horizontal beams.
 Horizon horizon_of(const BeamScene& scene, const Beam& beam);
 
+/// Returns the plane across a beam at its horizon, with the normal along the beam.
+Plane plane_at(const Horizon& horizon, const Beam& beam);
+
 /// Returns the bounding box in x and y of the beam's path through the layer of elements. The top of this layer is the
 /// plane z = LightSetup::top_mm.
 /// \param horizon maximum distance along the beam at which facets are searched

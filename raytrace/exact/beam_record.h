@@ -10,8 +10,8 @@
 
 namespace retrace::raytrace {
 
-/// Records where the power of beams ends. All powers are those of a single beam. They are multiplied by the number of
-/// beams that the beam represents.
+/// Adds the power of beams to the accounts of the ledger. The power that is passed with a beam is that of a single
+/// copy. It is multiplied by the number of copies that the beam represents (Beam::place_count()).
 class BeamRecord {
  public:
   BeamRecord(const BeamScene& scene, BeamObserver observer);
@@ -24,9 +24,9 @@ class BeamRecord {
 
   /// Adds power of a beam to the ledger.
   void book(const Beam& beam, Account account, double power) { tally_.other[account] += beam.place_count() * power; }
-  /// Adds power that is not traced further to the ledger.
+  /// Adds power to `truncated`. The power must include all copies of the beams.
   void book_truncated(double power) { tally_.other[Account::truncated] += power; }
-  /// Adds light that is lost by rounding to `truncated`. The value may be negative, because fragments may overlap.
+  /// Adds the power that is lost by rounding to `truncated`. This power is negative if fragments overlap.
   /// \param share part of beam.share that is lost
   void book_rest(const Beam& beam, double share) {
     book(beam, Account::truncated, share / beam.share * power_of(beam));

@@ -1,6 +1,6 @@
 #pragma once
 
-// What all parts of a run of the exact engine read: the part, its light, and the tolerances of polygons.
+// Data that all components of the exact engine read in a run: the part, its light, and the tolerances of polygons.
 
 #include "raytrace/exact/beam.h"
 #include "raytrace/exact/beam_tracer.h"
@@ -9,7 +9,8 @@
 
 namespace retrace::raytrace {
 
-/// Minimum absolute cosine of incidence. Planes that are closer to parallel to a beam are treated as invisible.
+/// Minimum absolute cosine of the angle of incidence. A plane at which the cosine is smaller is nearly parallel to the
+/// beam and is ignored.
 inline constexpr double kGrazing = 1e-12;
 
 /// Part, light and tolerances of a run. All references must outlive the run.
@@ -19,20 +20,20 @@ struct BeamScene {
   const CellIndex& cells;
   const LightSetup& setup;
   const BeamPolicy& policy;
-  /// Symmetry of the array. If it is given, identical beams are traced as one beam. Null if it is not used.
+  /// Symmetry of the array, with which identical beams are traced as one beam. Null if the symmetry is not used.
   const EqualPlaces* equal = nullptr;
   /// Fragments of a cross-section with a smaller area (mm^2) are caused by rounding. Their power is added to
   /// `truncated`, and they are not traced.
   double least_area = 1e-15 * part.size_mm * part.size_mm;
   /// Two fragments are joined if their union differs from a convex polygon by less than this area (mm^2).
   double join_area = 1e-13 * part.size_mm * part.size_mm;
-  double merge_mm = 1e-11 * part.size_mm;  ///< corners of a cross-section with a smaller distance are merged
+  double merge_mm = 1e-11 * part.size_mm;  ///< corners of a cross-section are merged if their distance is smaller
 
   /// Returns the refractive index of the medium inside the part or behind its back.
   double index_at(bool inside) const { return inside ? setup.optics.index : setup.optics.back_index; }
 };
 
-/// Returns the transmittance for the light of a beam: its fraction of the entrance area times its transmission.
+/// Returns the fraction of the entrance area that belongs to a beam, multiplied by the transmittance of the material.
 inline double transmission_of(const Beam& beam) {
   return beam.share * beam.transmission;
 }

@@ -37,14 +37,13 @@ const geometry::Part& within_memory(const geometry::Part& part) {
 
 }  // namespace
 
-geometry::Polygon entrance_outline(const geometry::Part& part) {
-  if (part.period_mm) return geometry::to_polygon({Vec2::Zero(), *part.period_mm});
-  return part.outline;
-}
-
 BeamTracer::BeamTracer(const geometry::Part& part, Elements elements)
     : part_(within_memory(part)), centre_mm_(EntranceSampler(part).centre_mm()), cells_(part, centre_mm_) {
   if (elements == Elements::equal_at_once) equal_ = EqualPlaces::of(part, centre_mm_);
+}
+
+BeamScene BeamTracer::scene(const LightSetup& setup, const BeamPolicy& policy) const {
+  return {part_, centre_mm_, cells_, setup, policy, equal_ ? &*equal_ : nullptr};
 }
 
 BeamResult BeamTracer::trace(const Optics& optics, const Illumination& illumination,
@@ -100,14 +99,15 @@ BeamResult BeamTracer::trace_with_weak(const Optics& optics, const Illumination&
                                        const Cancellation* cancel, const BeamObserver& observer) const {
   const WeakBeams& weak = *policy.weak;
   const LightSetup setup(part_, centre_mm_, optics, illumination, cones_deg);
-  BeamWalk strong(part_, centre_mm_, cells_, setup, policy, observer, equal_places());
+  const BeamScene scene = this->scene(setup, policy);
+  BeamWalk strong(scene, observer);
   std::vector<BeamWalk> replicates;
   for (std::uint32_t k = 0; k < weak.replicates; ++k) {
-    replicates.emplace_back(part_, centre_mm_, cells_, setup, policy, observer, equal_places());
+    replicates.emplace_back(scene, observer);
     replicates.back().serve_replicate(k);
   }
   strong.pause_at_kept(kMostWaiting);
-  strong.enter(entrance_outline(part_), *policy.cutoff, BeamWalk::Approach::kept);
+  strong.enter(*policy.cutoff, BeamWalk::Approach::kept);
   const double most_power = weak.thinning * *policy.cutoff;
   double power = 0.0;
   bool is_done = false;
@@ -142,10 +142,8 @@ BeamTrace::BeamTrace(const BeamTracer& tracer, const Optics& optics, const Illum
 BeamTrace::~BeamTrace() = default;
 
 void BeamTrace::start() {
-  walk_ = std::make_unique<BeamWalk>(tracer_.part_, tracer_.centre_mm_, tracer_.cells_, setup_, policy_, observer_,
-                                     tracer_.equal_places());
-  walk_->enter(entrance_outline(tracer_.part_), cutoff_,
-               policy_.cutoff ? BeamWalk::Approach::fixed : BeamWalk::Approach::falling);
+  walk_ = std::make_unique<BeamWalk>(tracer_.scene(setup_, policy_), observer_);
+  walk_->enter(cutoff_, policy_.cutoff ? BeamWalk::Approach::fixed : BeamWalk::Approach::falling);
 }
 
 bool BeamTrace::advance(std::uint64_t most_work, const Cancellation* cancel) {

@@ -19,19 +19,22 @@
 
 namespace retrace::raytrace {
 
+struct BeamScene;
 class BeamWalk;
 
 /// Default of BeamPolicy::truncated_goal: maximum power that is not traced. It is much smaller than other errors.
 inline constexpr double kFinestGoal = 1e-10;
+
+/// Ratio of the maximum power of a survivor of resampling to the cut-off. It is large, because each strong beam is
+/// traced only one time, but survivors are traced in every replicate.
+inline constexpr double kThinning = 32.0;
 
 /// Parameters of the resampling of beams below the cut-off (BeamGeneration). The mean over the replicates has no bias,
 /// and the standard error is estimated from the spread of the replicates.
 struct WeakBeams {
   std::uint32_t seed = 1;
   std::uint32_t replicates = 16;  ///< >= 2
-  /// Maximum power of a survivor as a multiple of the cut-off. It is large, because each strong beam is traced only one
-  /// time, but survivors are traced in every replicate.
-  double thinning = 32.0;
+  double thinning = kThinning;    ///< maximum power of a survivor as a multiple of the cut-off
 };
 
 /// Criteria that end the tracing of beams.
@@ -150,7 +153,8 @@ class BeamTracer {
   BeamResult trace_with_weak(const Optics& optics, const Illumination& illumination,
                              const std::vector<double>& cones_deg, const BeamPolicy& policy, const Cancellation* cancel,
                              const BeamObserver& observer) const;
-  const EqualPlaces* equal_places() const { return equal_ ? &*equal_ : nullptr; }
+  /// \pre `setup` and `policy` outlive the scene
+  BeamScene scene(const LightSetup& setup, const BeamPolicy& policy) const;
 
   friend class BeamTrace;
   friend class StochasticBeams;

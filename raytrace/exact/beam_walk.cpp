@@ -15,27 +15,25 @@ namespace {
 
 constexpr double kLastCutoff = 1e-25;
 // Factors by which the cut-off decreases between passes. A pass traces all beams above the present cut-off. kGentleFall
-// is used for coarse goals, because a single pass after a decrease by kFall may trace much more than is needed.
+// is used for coarse goals, because a pass after a decrease by the factor kFall may trace many more beams than the goal
+// requires.
 constexpr double kFall = 0.1;
 constexpr double kGentleFall = 0.3;
-// Measured constant work per beam. The unit is a test of a bounding box.
+// Work per beam, except for the search for facets, as measured. The unit is one test of a bounding box
+// (BeamWalk::work()).
 constexpr std::uint64_t kWorkOfBeam = 50;
-// Number of positions of a beam whose comparison with the borders counts as one unit of BeamWalk::work().
+// Number of copies of a beam that are compared with the borders in one unit of BeamWalk::work().
 constexpr std::size_t kPlacesPerWork = 16;
 // Assumed exponent until two passes have been measured: the work is proportional to (truncated power)^-kUsualSlope.
 constexpr double kUsualSlope = 0.5;
 
 }  // namespace
 
-BeamWalk::BeamWalk(const geometry::Part& part, const Vec2& centre_mm, const CellIndex& cells, const LightSetup& setup,
-                   const BeamPolicy& policy, BeamObserver observer, const EqualPlaces* equal)
-    : scene_{part, centre_mm, cells, setup, policy, equal}, record_(scene_, std::move(observer)), facets_(scene_) {}
-
-void BeamWalk::enter(const geometry::Polygon& entrance, double cutoff, Approach approach) {
+void BeamWalk::enter(double cutoff, Approach approach) {
   cutoff_ = cutoff;
   approach_ = approach;
   record_.enter();
-  enter_beams(scene_, entrance, record_, queue_);
+  enter_beams(scene_, record_, queue_);
   pass_ = {0.0, queue_.pending_power()};
   // With a coarse goal, the first cut-off is relative to the mean power of the beams that enter.
   if (approach_ == Approach::falling && scene_.policy.truncated_goal > kFinestGoal)
@@ -51,8 +49,8 @@ BeamWalk::End BeamWalk::run(std::uint64_t most_work, const Cancellation* cancel)
       queue_.require_memory();
       Beam beam = queue_.pop();
       if (strength_of(beam) < cutoff_) {
-        // Approach::kept keeps all beams. Otherwise, beams that exceed the limit are discarded, and the trace has to
-        // start again with a lower cut-off.
+        // Approach::kept keeps all beams. The other approaches discard beams while the queue is full. A lower cut-off
+        // then requires a new trace.
         queue_.defer(std::move(beam), approach_ != Approach::kept);
         if (queue_.deferred().size() >= most_kept_) return End::paused;
         continue;
@@ -75,10 +73,10 @@ BeamWalk::End BeamWalk::run(std::uint64_t most_work, const Cancellation* cancel)
 }
 
 /// Returns true if the trace may stop. With a falling cut-off, this is the case if the power of the beams not yet
-/// traced (the open power) is at most the goal. Until `spare_work` has been done, the finest goal is used instead. The
-/// function may be called at any time, because the open power never increases. For the finest goals, the sum of the
-/// power of pending beams is too inaccurate, and the trace stops when the queue is empty and the power below the
-/// cut-off is at most the goal. With the other approaches, the trace stops when the queue is empty.
+/// traced (the open power) is at most the goal. Until BeamPolicy::spare_work has been done, the finest goal is used
+/// instead. The function can be called at any time, because the open power never increases. For the finest goals, the
+/// sum of the power of pending beams is too inaccurate, and the trace stops when the queue is empty and the power below
+/// the cut-off is at most the goal. With the other approaches, the trace stops when the queue is empty.
 bool BeamWalk::may_stop() const {
   const BeamPolicy& policy = scene_.policy;
   if (approach_ != Approach::falling) return !queue_.has_pending();
@@ -130,9 +128,9 @@ void BeamWalk::step(const Beam& beam, const Cancellation* cancel) {
   advance(beam, cancel);
 }
 
-void BeamWalk::take_waiting(WaitingBeams& into) {
+WaitingBeams BeamWalk::take_waiting() {
   queue_.require_memory();
-  queue_.take_pending(into);
+  return queue_.take_pending();
 }
 
 Beam BeamWalk::at_place(const Beam& beam, std::size_t place) const {
@@ -141,9 +139,9 @@ Beam BeamWalk::at_place(const Beam& beam, std::size_t place) const {
 }
 
 /// Splits the copies of a beam into groups that meet the same facets in the next step. The beam keeps its own group,
-/// and the other groups are queued as new beams. The horizon (the length of the next step) is the same for all groups.
-/// Along an axis in which the positions of two groups differ, no border of the part is within the horizon. Along the
-/// other axis, both groups have the same distance from the border.
+/// and the other groups are queued as new beams. The horizon (the length of the next step) is the same for all copies
+/// of a group. The reason is that along each axis, either all copies of a group have the same position, or no border is
+/// within the horizon of any copy.
 void BeamWalk::keep_equal_places(Beam& beam) {
   if (scene_.setup.infinite()) return;
   work_ += beam.places->size() / kPlacesPerWork;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "raytrace/exact/beam_queue.h"
@@ -13,24 +14,20 @@
 
 namespace retrace::raytrace {
 
-/// Returns the outline of the entrance face, or the central period of an infinite part.
-geometry::Polygon entrance_outline(const geometry::Part& part);
-
-/// Traces beams through a part until the remaining power is small enough. It is used for one BeamTracer::trace().
+/// Traces beams through a part until the remaining power is small enough. An object is used for one trace.
 class BeamWalk {
  public:
-  /// \param equal symmetry of the array; if given, identical beams are traced as one beam; null if not used
-  BeamWalk(const geometry::Part& part, const Vec2& centre_mm, const CellIndex& cells, const LightSetup& setup,
-           const BeamPolicy& policy, BeamObserver observer, const EqualPlaces* equal = nullptr);
+  BeamWalk(const BeamScene& scene, BeamObserver observer)
+      : scene_(scene), record_(scene, std::move(observer)), facets_(scene) {}
 
   enum class Approach { falling, fixed, kept };
   /// Starts the trace.
   /// \param cutoff minimum power of traced beams. Approach::fixed does not change it. Approach::falling lowers it until
   ///        the truncated power is small enough. Approach::kept keeps weaker beams until lower_cutoff_to() is called.
-  void enter(const geometry::Polygon& entrance, double cutoff, Approach approach);
+  void enter(double cutoff, Approach approach);
   enum class End { done, paused, cancelled, cutoff_too_high };
-  /// Traces beams above the cut-off until the goal is reached, the total work is `most_work`, or too many beams are
-  /// kept.
+  /// Traces beams above the cut-off until the goal is reached, the total work is `most_work`, or the number of kept
+  /// beams reaches the limit of pause_at_kept().
   End run(std::uint64_t most_work, const Cancellation* cancel);
 
   /// Returns the beams below the cut-off, in the order in which they were found.
@@ -44,8 +41,8 @@ class BeamWalk {
   void lower_cutoff_to(double cutoff);
   /// Traces a single beam to the next faces. The resulting beams are queued, see take_waiting().
   void step(const Beam& beam, const Cancellation* cancel);
-  /// Replaces `into` with the beams queued by step().
-  void take_waiting(WaitingBeams& into);
+  /// Removes and returns the beams queued by step().
+  WaitingBeams take_waiting();
   /// See BeamRecord::serve_replicate().
   void serve_replicate(std::uint32_t replicate) { record_.serve_replicate(replicate); }
   /// See BeamRecord::collect().
@@ -55,7 +52,8 @@ class BeamWalk {
   const Tally& tally() const { return record_.tally(); }
   /// Returns the power that is compared with the cut-off (see BeamPolicy::cutoff).
   double strength_of(const Beam& beam) const { return scene_.setup.infinite() ? beam.power : beam.total_power(); }
-  /// Returns one of the beams that a beam represents, as a beam for a single position.
+  /// Returns one of the copies that a beam represents. The returned beam represents only itself.
+  /// \param place index in Beam::places
   Beam at_place(const Beam& beam, std::size_t place) const;
 
   BeamResult result() const;

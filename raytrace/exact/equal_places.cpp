@@ -18,8 +18,8 @@ using geometry::Part, geometry::PatchCell, geometry::PatchFacet, geometry::Place
 constexpr double kSameCorner = 1e-9;
 // Minimum number of periods along at least one axis. In smaller arrays, each element is traced separately.
 constexpr double kFewestPeriods = 2.0;
-// Rows or columns may differ and repeat only after several periods of the array. This is the maximum number of periods
-// for which such a repetition is searched.
+// Maximum number of array periods after which rows or columns may repeat. If rows or columns differ, they may repeat
+// only after several periods. Longer repetitions are not searched.
 constexpr int kMostInTurn = 12;
 
 Vec2 origin_of(const PatchCell& cell) {
@@ -74,8 +74,8 @@ double plan_area(const SurfacePatch& patch, const PatchCell& cell) {
   return area_mm2;
 }
 
-/// Returns the region with the smallest multiple of the given periods under which its cells repeat. A multiple is
-/// needed if rows or columns differ. If no multiple is found, the returned region does not repeat.
+/// Returns a region with the smallest multiples of the given periods for which the cells repeat. Multiples are needed
+/// if rows or columns differ. If no multiples are found, the returned region does not repeat.
 RepeatRegion repeating(const geometry::Polygon& outline, const std::array<Vec2, 2>& periods_mm,
                        const std::vector<PlacedCell>& cells, double near_mm) {
   for (int all = 1; all <= kMostInTurn; ++all)
@@ -126,7 +126,7 @@ void EqualPlaces::find_shapes(const Part& part) {
     const SurfacePatch* patch;
     const PatchCell* cell;
   };
-  std::map<std::uint32_t, std::vector<First>> firsts;  // by the number of facets
+  std::map<std::uint32_t, std::vector<First>> firsts;  // first cell of each shape, by the number of facets
   for (const SurfacePatch& patch : part.patches) {
     std::vector<Shape>& shapes = shapes_.emplace_back();
     for (const PatchCell& cell : patch.cells) {
@@ -197,8 +197,8 @@ void EqualPlaces::find_regions(const Part& part, const Vec2& centre_mm) {
     regions_.push_back(repeating(geometry::moved(region.outline, -centre_mm), region.periods_mm, cells, near_mm_));
 }
 
-/// Searches a shift by half a period, along one or both axes, that maps an infinite part to itself. Honeycombs, brick
-/// rows and checkered arrays have such a shift.
+/// Searches for a shift by half a period, along one or both axes, that maps an infinite part to itself. Honeycombs,
+/// brick rows and checkered arrays have such a shift.
 void EqualPlaces::find_shift_within_period(const Part& part) {
   const SurfacePatch& patch = part.patches.front();
   geometry::PointLookup<std::uint64_t> cells(near_mm_);

@@ -106,7 +106,7 @@ std::vector<ValuedPolygon> Overlay::pieces() const {
 
 namespace {
 
-/// Joins polygons until no two of them can be joined.
+/// Joins adjacent polygons of nearly equal value until no further pair has a convex union.
 class Fusion {
  public:
   Fusion(double size_mm, double value_tolerance)
@@ -187,8 +187,9 @@ class Fusion {
     std::size_t first, last, start, end;
   };
 
-  /// Returns all consecutive common edges of two polygons that include the edge at the corners `ka` and `kb`. Indices
-  /// are arguments of corner(). The number of corners is added to them, so that they are never negative.
+  /// Returns the chain of common edges of two polygons that includes edge `ka` of `a` and edge `kb` of `b`. The
+  /// returned indices are arguments of corner(). They include the number of corners as an offset, so that they are
+  /// never negative.
   CommonEdges common_edges(const FlatPolygon& a, std::size_t ka, const FlatPolygon& b, std::size_t kb) const {
     CommonEdges c{ka + a.size(), ka + a.size() + 1, kb + b.size() + 1, kb + b.size()};
     const auto meet = [&](std::size_t on_a, std::size_t on_b) {
@@ -205,7 +206,7 @@ class Fusion {
     return c;
   }
 
-  /// Returns the union of two polygons with a common edge, or nothing if it is not convex.
+  /// Returns the union of two polygons with a common edge, or nothing if the union is not convex.
   std::optional<FlatPolygon> joined(const FlatPolygon& a, std::size_t ka, const FlatPolygon& b, std::size_t kb) const {
     const CommonEdges c = common_edges(a, ka, b, kb);
     const Turn at_first = turn(corner(a, c.first - 1), corner(a, c.first), corner(b, c.start + 1));

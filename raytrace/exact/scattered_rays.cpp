@@ -11,10 +11,11 @@
 namespace retrace::raytrace {
 namespace {
 
-// Distance of a ray's start from its facet, as a fraction of the element depth. It keeps the ray from meeting the
-// facet from which it starts.
+// Distance of a ray's start from its facet, as a fraction of the element depth. It prevents the ray from meeting the
+// facet from which the ray starts.
 constexpr double kClearance = 1e-9;
-// Maximum number of rays per round. It separates the random numbers of different rounds.
+// Maximum number of rays per round. The number of the first ray of a round is a multiple of this number, so that
+// different rounds use different random numbers.
 constexpr std::uint32_t kRaysOfRound = 1U << 26;
 // Maximum fraction of an ordinary ray's power that may fall into the widest cone if additional rays to the source are
 // used. An ordinary ray starts in a random direction of the scattering lobe. Above this fraction, ordinary rays sample
@@ -23,7 +24,7 @@ constexpr double kNarrow = 0.1;
 // Power of a ray to the source, as a fraction of an ordinary ray's power, below which Russian roulette is applied.
 constexpr double kLeastShare = 0.05;
 
-/// Returns the solid angle of the widest cone in air.
+/// Returns the solid angle of the widest cone in air, in sr.
 double solid_angle(const PathSetup& setup) {
   return std::numbers::pi * setup.cone_chord2.back();
 }
@@ -37,8 +38,8 @@ double narrowing(const PathSetup& setup, const Vec3& out) {
 
 }  // namespace
 
-/// A path from a point of a facet, inside the part, into the widest cone about the source. Before the light leaves
-/// through the entrance face, it is only reflected.
+/// A path from a point of a facet through the part into the widest cone about the direction to the source. On this
+/// path, the light is only reflected until it leaves through the entrance face.
 class WayToSource {
  public:
   /// \param turn matrix of all reflections on the path, from PathWalker::mirrors_to_entrance()

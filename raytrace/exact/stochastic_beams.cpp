@@ -30,7 +30,7 @@ constexpr double kGentlestFall = 0.5;
 constexpr double kMargin = 0.8;
 // Maximum number of beams that are kept for the replicates. They take about 100 MB.
 constexpr std::size_t kMostKept = 200'000;
-// Maximum power of a ray of scattered light: in the first round, and the limit at which the rounds end.
+// Maximum power of a ray of scattered light: the value in the first round, and the value at which the rounds end.
 constexpr double kFirstRayPower = 1e-3;
 constexpr double kLastRayPower = 1e-10;
 // Fraction of the target error that is allowed for each of two errors, if facets scatter light: the error of the beams,
@@ -57,12 +57,11 @@ StochasticBeams::StochasticBeams(const BeamTracer& tracer, const ScatteredLight*
       cones_deg_(cones_deg),
       sampling_(sampling),
       cancel_(cancel),
-      strong_(std::make_unique<BeamWalk>(tracer.part_, tracer.centre_mm_, tracer.cells_, setup_, policy_,
-                                         std::move(observer), tracer.equal_places())),
+      strong_(std::make_unique<BeamWalk>(tracer.scene(setup_, policy_), std::move(observer))),
       threshold_(kFirstThreshold),
       ray_power_(std::min(kFirstRayPower, kReplicates * sampling.target_error)) {
   if (scattered_ != nullptr) strong_->collect(strong_sites_);
-  strong_->enter(entrance_outline(tracer.part_), threshold_, BeamWalk::Approach::kept);
+  strong_->enter(threshold_, BeamWalk::Approach::kept);
 }
 
 StochasticBeams::~StochasticBeams() = default;
@@ -157,7 +156,9 @@ double StochasticBeams::expected_work() const {
 /// Traces one replicate. Returns nothing if it was cancelled.
 std::optional<StochasticBeams::Replicate> StochasticBeams::replicate(std::uint32_t number,
                                                                      const BeamGeneration& first) const {
-  BeamWalk walk(tracer_.part_, tracer_.centre_mm_, tracer_.cells_, setup_, policy_, BeamObserver{});
+  BeamScene scene = tracer_.scene(setup_, policy_);
+  scene.equal = nullptr;
+  BeamWalk walk(scene, BeamObserver{});
   std::vector<ScatterSite> sites;
   std::unique_ptr<ScatteredReplicate> rays;
   if (scattered_ != nullptr) {

@@ -17,8 +17,8 @@ namespace retrace::raytrace {
 
 class BeamGeneration;
 
-/// Trace of one direction of incidence with a BeamTracer. It is repeated in rounds with lower thresholds until the
-/// standard error of the RRE (retroreflective efficiency) is below the target.
+/// A trace of one direction of incidence with a BeamTracer. It consists of rounds with decreasing thresholds. The
+/// rounds end when the standard error of the RRE (retroreflective efficiency) is below the target.
 ///
 /// Beams with more power than the threshold w are traced exactly, as BeamTrace does. Each generation of weaker beams
 /// with the total power P is resampled: n = ceil(P / (kThinning w)) beams survive, each with the power P / n. They are
@@ -36,14 +36,12 @@ class BeamGeneration;
 class StochasticBeams {
  public:
   static constexpr std::uint32_t kReplicates = 16;
-  /// Ratio of the maximum power of a survivor to the threshold. It is large, because each strong beam is traced only
-  /// one time, but survivors are traced in every replicate.
-  static constexpr double kThinning = 32.0;
 
   /// \param sampling provides the seed and the target error
   /// \param scattered tracer of the scattered light for the same part and illumination; null if facets are smooth
-  /// \param observer receives each returned beam that is traced exactly, one time
-  /// \pre why_not() allows the engine `stochastic`; `tracer`, `scattered` and `cancel` outlive this object
+  /// \param observer is called one time for each returned beam that is traced exactly
+  /// \pre the engine `stochastic` can trace the model, see why_not(); `tracer`, `scattered` and `cancel` outlive this
+  /// object
   StochasticBeams(const BeamTracer& tracer, const ScatteredLight* scattered, const Optics& optics,
                   const Illumination& illumination, const std::vector<double>& cones_deg, const Sampling& sampling,
                   const Cancellation* cancel = nullptr, BeamObserver observer = {});
@@ -62,7 +60,6 @@ class StochasticBeams {
   /// that of BeamTrace::work(), a test of a facet's bounding box.
   double work() const { return static_cast<double>(work_); }
   double expected_work() const;
-  double threshold() const { return threshold_; }
 
  private:
   struct Replicate;

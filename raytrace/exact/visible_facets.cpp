@@ -11,11 +11,10 @@ namespace {
 
 using geometry::FacetRole, geometry::PatchCell, geometry::PatchFacet, geometry::SurfacePatch;
 
-// Measured work of clipping two polygons. The unit is a test of a bounding box.
+// Measured work of clipping two polygons. The unit is one test of a bounding box (BeamWalk::work()).
 constexpr std::uint64_t kWorkOfCut = 30;
 
-template <class Points>
-PlanBox plan_box_of(const Points& points) {
+PlanBox plan_box_of(const FlatPolygon& points) {
   PlanBox box;
   for (const Vec2& p : points) box.include(p);
   return box;
@@ -36,10 +35,9 @@ void VisibleFacets::find(const Beam& beam, const Frame& frame, const FlatPolygon
   candidates_.clear();
   if (horizon.t <= 0.0) return;
   const PlanBox plan = sweep_in_layer(scene_, beam, horizon);
-  double nearest = kInfinity;
-  for (const Vec3& p : beam.corners) nearest = std::min(nearest, beam.direction.dot(p));
   // Candidates are cut at the horizon, because facets beyond it may be hidden by other facets that were not searched.
-  const Plane far{-beam.direction, -(nearest + horizon.t)};
+  const Plane there = plane_at(horizon, beam);
+  const Plane far{-there.normal, -there.offset_mm};
   const Search search{beam, frame, whole, plan_box_of(whole), horizon.limited ? &far : nullptr};
   scene_.cells.visit(plan.lower, plan.upper,
                      [&](const SurfacePatch& patch, const PatchCell& cell, const Vec2& offset, double height_mm) {
@@ -83,7 +81,7 @@ void VisibleFacets::consider(const Search& search, const SurfacePatch& patch, co
   if (facet.middle_mm) candidates_.back().middle_mm.emplace(*facet.middle_mm + shift.head<2>());
 }
 
-/// Returns true if all of a candidate's polygon is nearer than the plane of the other candidate.
+/// Returns true if, along the beam, the whole polygon of `own` is nearer than the plane of `other`.
 bool VisibleFacets::is_nearer(const Candidate& own, const Candidate& other) const {
   const auto is_before = [&](const Vec2& p) { return own.distance.at(p) < other.distance.at(p) - scene_.merge_mm; };
   return std::all_of(own.piece.begin(), own.piece.end(), is_before);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Search for the facets that a beam meets, and removal of the hidden parts.
+// Searches for the facets that a beam meets, and removes their hidden parts.
 
 #include <cstdint>
 #include <optional>
@@ -28,7 +28,7 @@ class VisibleFacets {
  public:
   explicit VisibleFacets(const BeamScene& scene) : scene_(scene) {}
 
-  /// Searches the facets that may block a beam up to its horizon.
+  /// Searches for the facets that may block a beam up to its horizon.
   /// \param whole cross-section of the beam
   void find(const Beam& beam, const Frame& frame, const FlatPolygon& whole, const Horizon& horizon);
   std::size_t size() const { return candidates_.size(); }

@@ -114,8 +114,8 @@ bool holds(const FacetsByPlace& part, const std::vector<StandingFacet>& facets, 
                      [&](const StandingFacet& f) { return part.has(mirror_image(f, axis, about_mm)); });
 }
 
-/// Returns true if an infinite part is symmetric about a plane normal to `axis`. Candidate planes map the first facet
-/// of the central period to another facet that is at most one period away.
+/// Returns true if an infinite part is symmetric about a plane normal to `axis`. The tested planes map the first facet
+/// of the central period to a facet that is at most one period away.
 bool endless_is_mirrored(const Part& part, Eigen::Index axis) {
   const FacetsByPlace all(part);
   const std::vector<StandingFacet> central = central_facets(part);

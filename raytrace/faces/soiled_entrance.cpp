@@ -23,9 +23,9 @@ void turn(Ray& ray, const Vec3& direction) {
   ray.scattered = true;
 }
 
-/// Changes the direction of a ray by adding `by` to its direction cosines along the face. Nothing is changed if the sum
-/// is outside of the unit disc. Scattering is then reciprocal: the density from one direction to another is the same in
-/// reverse.
+/// Changes the direction of a ray by adding `by` to its direction cosines along the face. The ray is unchanged if the
+/// sum is outside of the unit disc. This rule makes the scattering reciprocal: the densities for a pair of directions
+/// and for the reversed pair are equal.
 void shift(Ray& ray, const Vec2& by) {
   const Vec2 along = ray.direction.head<2>() + by;
   const double left = 1.0 - along.squaredNorm();
@@ -39,8 +39,8 @@ Vec2 uniform_in_disc(RandomStream& random) {
   return {radius * std::cos(angle), radius * std::sin(angle)};
 }
 
-/// Scatters a ray according to Lambert's law, so that the direction cosines are uniform over the unit disc. The
-/// scattered light is unpolarized.
+/// Scatters a ray according to Lambert's law. The direction cosines along the face are uniformly distributed over the
+/// unit disc. The scattered light is unpolarized.
 void scatter_evenly(Ray& ray, bool up, RandomStream& random) {
   const Vec2 along = uniform_in_disc(random);
   const double z = std::sqrt(std::max(1e-300, 1.0 - along.squaredNorm()));
@@ -52,13 +52,13 @@ void scatter_evenly(Ray& ray, bool up, RandomStream& random) {
 /// A spherical cap over the unit disc.
 struct Cap {
   double radius = 1.0;    ///< radius of the sphere
-  double centre_z = 0.0;  ///< <= 0
+  double centre_z = 0.0;  ///< z of the centre of the sphere, <= 0
 
   explicit Cap(double contact_angle_rad)
       : radius(1.0 / std::sin(contact_angle_rad)), centre_z(-radius * std::cos(contact_angle_rad)) {}
 
   Vec3 normal_at(const Vec3& p) const { return Vec3(p.x(), p.y(), p.z() - centre_z).normalized(); }
-  /// Returns the distance along a line from inside the sphere to the sphere.
+  /// Returns the distance from a point inside the sphere to the sphere along a direction.
   double way_out(const Vec3& from, const Vec3& direction) const {
     const Vec3 at(from.x(), from.y(), from.z() - centre_z);
     const double b = at.dot(direction);
@@ -135,8 +135,8 @@ void SoiledEntrance::send(const Ray& ray, Event& event) const {
   pass_haze(ray, event, [&](const Ray& passed) { event.result.rays.push_back(passed); });
 }
 
-/// Traces a ray through the haze in front of the face, in either direction.
-/// \param on is called for each ray after the haze
+/// Traces a ray through the haze in front of the face, from or towards the face.
+/// \param on is called for each ray that leaves the haze
 template <class On>
 void SoiledEntrance::pass_haze(const Ray& ray, Event& event, const On& on) const {
   const Haze& haze = optics_.entrance.haze;
@@ -153,7 +153,7 @@ void SoiledEntrance::pass_haze(const Ray& ray, Event& event, const On& on) const
 }
 
 /// Returns the branches of the clean face by Fresnel's formulas.
-/// \param ray travels upwards inside the part, or downwards outside
+/// \param ray ray that travels upwards inside the part, or downwards outside of it
 SoiledEntrance::Branches SoiledEntrance::at_face(const Ray& ray, Event& event) const {
   const Vec3 against = ray.inside ? Vec3(-Vec3::UnitZ()) : Vec3(Vec3::UnitZ());
   const double cos_incidence = -against.dot(ray.direction);
@@ -227,7 +227,7 @@ void SoiledEntrance::meet_drop(Ray ray, Event& event) const {
   const Cap cap(drops.contact_angle_rad);
   const Vec2 base = uniform_in_disc(event.random);
   Vec3 at(base.x(), base.y(), 0.0);
-  // Chooses a branch at a plane with these coefficients. Returns true for the transmitted branch.
+  // Continues the ray with a random branch at a plane with these coefficients. Returns true for the transmitted branch.
   const auto passes = [&](const materials::FresnelCoefficients& f, const Vec3& against, double ratio) {
     const double cos_incidence = -against.dot(ray.direction);
     ray.light.turn_to(ray.direction, against);

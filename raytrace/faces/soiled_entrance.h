@@ -12,7 +12,7 @@ namespace retrace::raytrace {
 struct SoiledReturn {
   std::vector<Ray> rays;   ///< rays in the body, or rays in the air that travel away from the face
   double absorbed = 0.0;   ///< power that layers and dust absorb
-  double truncated = 0.0;  ///< power that is not traced, or error of the roughness model, which may be negative
+  double truncated = 0.0;  ///< untraced power plus the error of the roughness model; may be negative
 
   void clear() { *this = {std::move(rays), 0.0, 0.0}, rays.clear(); }
 };
@@ -47,15 +47,15 @@ class SoiledEntrance {
   Ray one_of(Branches branches, Event& event) const;
 
   Optics optics_;
-  Optics as_facet_;  ///< optics in which the rough face is a facet, see entrance_as_facet()
+  Optics as_facet_;  ///< result of entrance_as_facet()
 };
 
-/// Returns the optics of a part whose facets are the rough entrance face, with air behind them. The functions of
-/// textured_facet.h require facets.
+/// Returns optics in which the facets have the properties of the rough entrance face, with air behind them. The
+/// functions of textured_facet.h can then process this face.
 Optics entrance_as_facet(const Optics& optics);
 
-/// Records light that a scattering face reflects from outside.
-/// \param ray ray in the air
+/// Adds light that a scattering entrance face reflects from outside to the tally.
+/// \param ray reflected ray, in the air
 void book_front(const LightSetup& setup, const Ray& ray, Tally& tally);
 
 }  // namespace retrace::raytrace

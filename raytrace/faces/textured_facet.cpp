@@ -8,7 +8,8 @@ namespace {
 
 using surface_models::Lobe;
 
-/// A ray in the frame of a facet: x is horizontal in the facet plane, and z is the normal on the side of the ray.
+/// A ray in the frame of a facet. x is horizontal in the plane of the facet. z is the normal of the facet on the side
+/// of the ray.
 struct LocalEvent {
   Eigen::Matrix3d world_from_local;
   surface_models::ScatterEvent event;
@@ -29,7 +30,7 @@ surface_models::ScatterEvent event_of(const Optics& optics, bool inside, const V
 LocalEvent event_at(const Optics& optics, const Vec3& normal, const Ray& ray) {
   LocalEvent local;
   const Vec3 z = ray.inside ? Vec3(-normal) : normal;
-  // Chamfered roots have a vertical normal. Their x axis is parallel to the roof edge of the prism.
+  // The facets of chamfered roots have a vertical normal. Their x axis is parallel to the roof edge of the prism.
   const Vec3 level = normal.cross(Vec3::UnitZ());
   const Vec3 x = level.norm() > 1e-9 ? level.normalized() : normal.cross(Vec3::UnitX()).normalized();
   local.world_from_local << x, z.cross(x), z;

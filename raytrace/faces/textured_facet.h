@@ -16,11 +16,11 @@ namespace retrace::raytrace {
 struct Ray {
   Vec3 direction = Vec3::UnitZ();
   Light light;
-  bool inside = true;      ///< true if it is in the material of the part
-  bool scattered = false;  ///< true if there was a non-specular event on its path
+  bool inside = true;      ///< true if the ray is in the material of the part
+  bool scattered = false;  ///< true if there was a non-specular event on the path of the ray
 };
 
-/// Branches of light at an interface that are traced.
+/// Branch or branches of light that are traced further at an interface.
 enum class Branch { reflected, transmitted, both };
 
 /// Chooses the branches at an interface. If both branches have at least the power `split_power`, both are traced.
@@ -49,8 +49,8 @@ struct TexturedReturn {
   double truncated = 0.0;
   double absorbed = 0.0;  ///< power that the layers on the facet absorb
 
-  /// Reflects directions that are on the wrong side of the facet's plane. The form of a facet causes such directions
-  /// for light at grazing incidence.
+  /// Mirrors directions that point to the wrong side of the facet's plane at this plane. The form of a facet causes
+  /// such directions for light at grazing incidence.
   /// \param plane_normal unit normal of the plane, which points out of the part
   void keep_sides(const Vec3& plane_normal);
 };

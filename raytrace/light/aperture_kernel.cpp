@@ -26,8 +26,8 @@ std::size_t points_along(double length_rad, double detail_rad) {
 }
 
 /// Returns the number of uniform steps on a ring. The mean of a wave over the ring is a Bessel function of order 0. The
-/// error of the uniform steps is a Bessel function whose order is the number of steps. It decreases rapidly if this
-/// number exceeds the argument x by some x^(1/3).
+/// error of the uniform steps is a Bessel function whose order is the number of steps. This error decreases rapidly if
+/// the number of steps exceeds the argument x by several times x^(1/3).
 std::size_t points_round(double radius_rad, double detail_rad) {
   const double x = 2.0 * pi * radius_rad / detail_rad;
   return static_cast<std::size_t>(std::clamp(std::ceil(x + 4.0 * std::cbrt(x)), kFewest, 4.0 * kMost));

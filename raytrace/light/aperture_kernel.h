@@ -30,7 +30,8 @@ class ApertureKernel {
 
   /// Returns the density per steradian at an angular separation. Its integral is 1.
   double per_sr(double separation_rad) const;
-  /// Returns the Fourier transform of the density in the plane of angles. It is 1 at 0.
+  /// Returns the Fourier transform of the density in the plane of angles. It is 1 at the frequency 0.
+  /// \param rad_per_rad angular frequency: phase per angle
   double transform(double rad_per_rad) const;
   /// Returns the angular separation above which the density is 0.
   double reach_rad() const { return larger_rad_ + smaller_rad_; }
@@ -49,11 +50,12 @@ class ApertureKernel {
   double smaller_rad_ = 0.0;  ///< radius of the smaller disc
 };
 
-/// Nodes and weights of the Gauss-Legendre rule on [0, 1]. \pre count > 0
+/// Nodes and weights of the Gauss-Legendre rule on [0, 1].
 struct GaussRule {
   std::vector<double> nodes;
   std::vector<double> weights;
 };
+/// \pre count > 0
 GaussRule gauss_legendre(std::size_t count);
 
 }  // namespace retrace::raytrace

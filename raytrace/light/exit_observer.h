@@ -10,11 +10,12 @@ namespace retrace::raytrace {
 /// Light that leaves the part and does not meet it again.
 struct Departure {
   Account account = Account::returned_elsewhere;  ///< `retroreflected` means inside the widest cone
-  /// Point on the face, relative to its centre in x and y. In an infinite part, it may be in any period.
+  /// Point where the light leaves, relative to the centre of the entrance face in x and y. In an infinite part, the
+  /// point may be in any period.
   const Vec3& position;
   const Vec3& direction;         ///< unit vector in air
-  const Light& light;            ///< in units of the light at the start of the path
-  Vec2 shift_mm = Vec2::Zero();  ///< infinite parts: vector from `position` to the true position of the path
+  const Light& light;            ///< its power is a fraction of the power at the start of the path
+  Vec2 shift_mm = Vec2::Zero();  ///< infinite parts: vector from `position` to the real position of the path
 
   bool is_through_entrance() const { return account != Account::side_exit && account != Account::transmitted; }
 };

@@ -1,7 +1,7 @@
 #pragma once
 
-// Data that all tracers use: the bounding planes of the part, the light that enters it, the acceptance cones, and the
-// sums of power.
+// Data that all tracers use: the bounding planes of the part, the light that enters the part, the acceptance cones, and
+// the sums of power.
 
 #include <cstdint>
 #include <vector>
@@ -33,7 +33,7 @@ struct LightSetup {
   std::vector<Side> sides;  ///< empty for an infinite part
   Vec3 to_source = Vec3::UnitZ();
   Light incident;                         ///< incident light, which travels along -to_source
-  const DirectionScore* score = nullptr;  ///< function of the exit direction whose values are summed; may be null
+  const DirectionScore* score = nullptr;  ///< function that is summed over the light that leaves; may be null
   std::vector<double> cone_chord2;        ///< per cone: squared distance between unit vectors to its edge and its axis
 
   bool infinite() const { return sides.empty(); }

@@ -1,7 +1,7 @@
 #pragma once
 
-// Converts between directions and angles from the direction to the source. The two angles, to the right and upwards,
-// are the coordinates of far fields and angular maps.
+// Converts between directions and pairs of angles from the direction to the source. The two angles, to the right and
+// upwards, are the coordinates of far fields and angular maps.
 
 #include <Eigen/Geometry>
 #include <cmath>

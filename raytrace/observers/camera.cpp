@@ -27,9 +27,9 @@ namespace {
 
 using std::numbers::pi;
 
-// Philox streams of random numbers, in this order: scrambles of the points of a pixel, choices along a path, and
-// wavelengths with points of the pupil. The last two are choices of paths that are traced together, and points that a
-// PixelGuide selects.
+// Numbers of the Philox random streams for, in this order: the scrambles of the points of a pixel, the choices along a
+// path that is traced separately, the wavelengths and points of the pupil, the choices along paths that the cell engine
+// traces together, and the points that a PixelGuide selects.
 constexpr std::uint32_t kCameraScrambleStream = 11;
 constexpr std::uint32_t kCameraChoiceStream = 12;
 constexpr std::uint32_t kLensStream = 13;
@@ -45,7 +45,7 @@ constexpr std::uint32_t kFirstPass = 0xffffffff;
 constexpr std::size_t kTilePixels = 100;
 constexpr std::size_t kMostTiles = 8;
 
-/// A path of the camera, which begins where a ray from the pupil meets the part.
+/// A path of the camera. It begins where a ray from the pupil meets the part.
 struct Look {
   Contact contact;
   double luminance = 0.0;                              ///< luminance along the path, cd/m^2
@@ -53,8 +53,9 @@ struct Look {
   bool shows_part() const { return contact.what == Contact::What::face || contact.what == Contact::What::side; }
 };
 
-/// Adds the luminance that paths receive where they leave the part.
-class Sight : public ExitObserver, public CellWalker::Observer {
+/// Adds the luminance of the lamp and the surroundings to each path, in the direction in which the path leaves the
+/// part.
+class Sight : public ExitObserver, public CellObserver {
  public:
   /// \param film true if the part is a film; the lamp is then evaluated at the start of the path
   Sight(const Luminaire& luminaire, const Surroundings& surroundings, bool film, std::vector<Look>& looks)
@@ -164,7 +165,7 @@ struct CameraTracer::Hidden {
     if (engine == CameraEngine::fastest) cells = CellArray::make(p);
     double sum = 0.0;
     for (const WeighedOptics& at : light) {
-      // The direction of incidence has no effect, because each path starts with a direction of its own.
+      // The direction of incidence has no effect, because each path starts in its own direction.
       setups.emplace_back(p, surface, centre_mm, at.optics, Illumination{}, std::vector<double>{90.0}, policy);
       sum += at.weight;
       cumulative.push_back(sum);
@@ -317,12 +318,12 @@ struct CameraTracer::Hidden::Block {
 
   void begin() {
     looks.clear();
-    for (std::vector<CellWalker::Start>& of_wavelength : starts) of_wavelength.clear();
+    for (std::vector<CellRay>& of_wavelength : starts) of_wavelength.clear();
     tally = Tally(1);
   }
 
-  /// Traces the light of one path separately.
-  void resume(const CellWalker::Start& start, std::size_t wavelength, RandomKey key, std::uint32_t replicate,
+  /// Traces the light of one path with the PathWalker.
+  void resume(const CellRay& start, std::size_t wavelength, RandomKey key, std::uint32_t replicate,
               std::uint32_t sample, std::uint32_t& choices) {
     const auto behind = [&] { return tally.other[Account::transmitted] + tally.other[Account::side_exit]; };
     const double before = behind();
@@ -336,7 +337,7 @@ struct CameraTracer::Hidden::Block {
   Sight sight;
   std::vector<PathWalker> walkers;  ///< indexed by wavelength
   std::vector<CellWalker> cell_walkers;
-  std::vector<std::vector<CellWalker::Start>> starts;  ///< indexed by wavelength: paths that are traced together
+  std::vector<std::vector<CellRay>> starts;  ///< indexed by wavelength: paths that are traced together
 };
 
 /// Adds a path to a block. The path is traced immediately, or queued for the cell engine.
@@ -369,7 +370,7 @@ void CameraTracer::Hidden::look(const WorldRay& ray, std::size_t wavelength, std
         block.sight.leaves(number, contact.local, mirrored(direction, normal), front.power());
     }
   }
-  const CellWalker::Start on{contact.local, start, number};
+  const CellRay on{contact.local, start, number};
   if (cells && contact.what == Contact::What::face) {
     block.starts[wavelength].push_back(on);
     return;
@@ -434,7 +435,8 @@ void CameraTracer::Hidden::look_from(std::uint32_t pixel, std::uint32_t pass, Bl
   }
 }
 
-/// Traces the queued paths of a block with the cell engine. Paths that it cannot complete are traced separately.
+/// Traces the queued paths of a block with the cell engine. Paths that this engine cannot complete are continued with
+/// the PathWalker.
 void CameraTracer::Hidden::follow_together(std::uint32_t pass, std::uint32_t block_number, Block& block,
                                            const Cancellation* cancel) const {
   const RandomKey key{seed, kCameraCellStream};
@@ -445,7 +447,7 @@ void CameraTracer::Hidden::follow_together(std::uint32_t pass, std::uint32_t blo
     const auto sample = static_cast<std::uint32_t>(block_number * setups.size() + w);
     walker.follow(block.starts[w], entrance_mm, key, pass, sample, block.tally, block.sight);
     std::uint32_t choices = walker.choices();
-    for (const CellWalker::HandedOver& ray : walker.handed_over()) block.resume(ray, w, key, pass, sample, choices);
+    for (const CellRay& ray : walker.handed_over()) block.resume(ray, w, key, pass, sample, choices);
   }
 }
 

@@ -42,8 +42,9 @@ struct Surroundings {
   double behind = 0.0;  ///< luminance for paths that leave through other faces or miss the part
 };
 
-/// A thin sheet of an infinite part, bent around a body. Light is traced in the tangential plane at the point where it
-/// enters. This approximation has a relative error of the order of the element size divided by the radius.
+/// A thin sheet of an infinite part, bent around a body. Light is traced as in a plane part that is tangent to the film
+/// at the point where the light enters. This approximation has a relative error of the order of the element size
+/// divided by the radius.
 struct Film {
   double width_mm = 0.0;            ///< size along x, around the cylinder
   double height_mm = 0.0;           ///< size along y, the axis of the cylinder
@@ -111,16 +112,16 @@ inline constexpr PathPolicy kCameraPolicy{.split_power = 1e-4};
 /// that meet borders. `embree` traces all paths one by one.
 enum class CameraEngine { fastest, embree };
 
-/// Traces light backwards from the pupil through the part. It uses the same walkers (PathWalker, CellWalker) as for
-/// light that starts at a source. By reciprocity, a path transmits the same fraction of light in both directions
-/// (docs/theory/images.md).
+/// Traces light backwards from the pupil through the part. It uses the same walkers (PathWalker, CellWalker) as the
+/// tracers of light that starts at a source. By reciprocity, a path transmits the same fraction of light in both
+/// directions (docs/theory/images.md).
 class CameraTracer {
  public:
   /// Number of points per pixel and pass. The points are evenly distributed.
   static constexpr std::uint32_t kPointsPerPass = 4;
 
   /// \pre the scene has a film if and only if the part is infinite; light is unpolarized; `part` outlives the tracer;
-  /// why_not() allows the engine `cell` if `engine` is `fastest`
+  /// if `engine` is `fastest`, Optics::has_one_back() is true for all `light`
   CameraTracer(const geometry::Part& part, const std::vector<WeighedOptics>& light, const CameraScene& scene,
                const PathPolicy& policy, std::uint32_t seed, CameraEngine engine = CameraEngine::fastest);
   ~CameraTracer();

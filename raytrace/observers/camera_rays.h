@@ -19,7 +19,8 @@ struct WorldRay {
 };
 
 /// Point where a camera ray meets the part. `world` is in the camera frame. `local` is in the frame in which light is
-/// traced. For a film, this frame touches the film at the point.
+/// traced. For a film, the entrance face in this frame is tangent to the film at the point. `outside` means that the
+/// ray comes close to the part but does not meet the entrance face or a side. `dark` is the back of a film.
 struct Contact {
   enum class What { nothing, face, side, outside, dark };
   What what = What::nothing;
@@ -92,7 +93,8 @@ class Luminaire {
     if (chord > 1.01 * (lamp_rad + pupil_rad)) return 0.0;
     const ApertureKernel kernel({Angle::from_rad(2.0 * lamp_rad), Angle::from_rad(2.0 * pupil_rad)});
     // The result is the illuminance at this point, times the probability density of this direction per steradian. The
-    // density is that of the angle between the directions to random points of the lamp's disc and of the pupil's disc.
+    // density is that of the difference between the directions to a random point of the lamp's disc and to a random
+    // point of the pupil's disc.
     return intensity_ / (distance * distance) * kernel.per_sr(2.0 * std::asin(0.5 * chord));
   }
 

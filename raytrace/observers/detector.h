@@ -1,7 +1,7 @@
 #pragma once
 
-// Detector maps of the returned light: the points of the entrance face where it leaves and where it entered, and its
-// directions.
+// Detector maps of the returned light: the points of the entrance face where the light leaves and where it entered, and
+// the directions of the light.
 
 #include <cstdint>
 #include <vector>

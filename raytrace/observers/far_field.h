@@ -39,8 +39,8 @@ struct FarFieldPolicy {
   /// outlive the collector. The form deflects diffracted light, and also the rays of cells that are too large to be
   /// diffracted.
   const surface_models::FacetForm* form = nullptr;
-  /// Request for cancellation, which is checked between polygons. If it is set, all results are invalid. It must
-  /// outlive the far field.
+  /// Request for cancellation, which is checked between polygons. After a cancellation, all results are invalid. The
+  /// object must outlive the far field. It may be null.
   const Cancellation* cancel = nullptr;
 };
 
@@ -73,13 +73,15 @@ class FarField {
   /// Returns the intensity per steradian in a direction.
   /// \param kernel averages over the discs of source and receiver
   FarFieldIntensity intensity(const Vec3& direction, const ApertureKernel& kernel) const;
-  /// Returns the diffracted part only, per steradian, for a point source and a point receiver. It consists of the mean
-  /// field and of the interference fringes of scattered light.
+  /// Returns the intensity of only the diffracted light, per steradian, for a point source and a point receiver. This
+  /// light consists of the mean field and of the interference fringes of scattered light.
   double diffracted_per_sr(const Vec3& direction) const;
   std::vector<double> diffracted_per_sr(const std::vector<Vec3>& directions) const;
-  /// Returns the lobes of scattered light only, per steradian, for a point source and a point receiver.
+  /// Returns the intensity of only the lobes of scattered light, per steradian, for a point source and a point
+  /// receiver.
   double scattered_per_sr(const Vec3& direction) const;
-  /// Returns the lobes of scattered light, per steradian, averaged over the discs of source and receiver.
+  /// Returns the intensity of only the lobes of scattered light, per steradian, averaged over the discs of source and
+  /// receiver.
   double scattered_per_sr(const Vec3& direction, const ApertureKernel& kernel) const;
 
   /// Returns the power in each bin of a grid; the last element is the power outside of the grid. Undiffracted light is
@@ -101,7 +103,8 @@ class FarField {
   double scattered_power() const { return scattered_.power(); }
   /// Returns the power of the lobes of scattered light within a cone about the direction to the source.
   double scattered_within(const ReturnFrame& frame, double half_angle_rad) const;
-  /// Returns the power that beams outside of the window and the weakest beams scatter. Its direction is not computed.
+  /// Returns the scattered power of the weakest beams and of beams outside of the window. The directions of this light
+  /// are not computed.
   double unplaced_power() const { return unplaced_power_; }
   /// Returns the power that is not diffracted because there are more polygons than `most_polygons`.
   double beyond_budget_power() const { return beyond_budget_power_; }
@@ -121,9 +124,9 @@ class FarField {
   double wavelength_mm_ = 0.0;
   Eigen::Matrix2cd coherency_ = 0.5 * Eigen::Matrix2cd::Identity();
   std::vector<CoherentGroup> groups_;
-  /// The groups of `groups_` as if all facets were plane. They are stored only if facets have a form, which deflects
-  /// light by at most `bend_`. Far from the direction to the source, their field is nearly that of `groups_`, and they
-  /// have fewer polygons.
+  /// The groups of `groups_` as if all facets were plane. They are stored only if facets have a form. The form changes
+  /// the direction cosines of light by at most `bend_`. Far from the direction to the source, the field of
+  /// `plane_groups_` is nearly that of `groups_`, and `plane_groups_` have fewer polygons.
   std::vector<CoherentGroup> plane_groups_;
   ApertureField field_;        ///< field of groups_
   ApertureField plane_field_;  ///< field of plane_groups_
@@ -163,7 +166,7 @@ class FarFieldCollector {
     std::vector<FieldHit> hits;
     std::optional<std::uint32_t> replicate;
   };
-  /// Key of a wave: its direction, its field, and the points where it met facets that deflect or scatter it.
+  /// Key of a wave: its direction, its field, and the points where it met facets with a form or a texture.
   using WaveKey = std::vector<std::int64_t>;
   /// Key of a coherent sum of fields: a cell, a wave that met several cells, or a resampled beam.
   struct Place {
@@ -201,8 +204,8 @@ class FarFieldCollector {
   /// Beams in the window. A beam that several cells have in common is stored one time.
   std::vector<Piece> pieces_;
   std::map<Place, PiecesOfCell> cells_;
-  std::uint64_t alone_ = 0;  ///< number of waves and beams with a Place of their own
-  /// Place::beam for each pair of CellTrail::met and a wave.
+  std::uint64_t alone_ = 0;  ///< number of values of Place that belong to a single wave or beam
+  /// Values of Place::beam, by CellTrail::met and the key of a wave.
   std::map<std::pair<std::uint64_t, WaveKey>, std::uint64_t> mixed_;
   geometry::PointLookup<std::size_t> directions_;  ///< indices into FarField::rays()
 };

@@ -28,7 +28,8 @@ constexpr double kOneCorner = 1e-12;
 // Minimum relative power in the formula for the subdivision. Weaker polygons are subdivided as if they had this power.
 constexpr double kLeastShare = 1e-4;
 
-/// Phase that forms add to the light of a polygon, as a function of the point where it leaves the entrance face.
+/// Phase that the forms of facets add to the light of a polygon, as a function of the point where the light leaves the
+/// entrance face.
 struct FormPhase {
   const std::vector<FieldHit>& hits;
   const FacetForm& form;
@@ -48,12 +49,12 @@ struct FormPhase {
   }
 };
 
-/// Linear function that is the best approximation of the phase over a polygon, and measures of its error along two
+/// Linear function that best approximates the phase over a polygon, and measures of the approximation error along two
 /// axes.
 struct LinearPhase {
   struct Axis {
     Vec2 direction = Vec2::UnitX();
-    double bend = 0.0;  ///< square of the curvature of the phase along this axis, except for a factor
+    double bend = 0.0;  ///< square of the phase error due to curvature along this axis, except for a constant factor
   };
 
   double at_origin_rad = 0.0;
@@ -118,9 +119,9 @@ struct LinearPhase {
     }
   }
 
-  /// Returns the number of equal strips, perpendicular to an axis, into which a polygon must be divided. The error that
-  /// the curvature along this axis causes then decreases to `left`. The error is proportional to the square of the
-  /// width of a strip.
+  /// Returns the number of strips of equal width, perpendicular to an axis, into which a polygon must be divided. If
+  /// the polygon is divided along both axes, its phase error decreases to `left`. The error due to the curvature along
+  /// an axis is proportional to the square of the width of a strip.
   std::size_t strips(std::size_t axis, double left) const {
     const double all = across[0].bend + across[1].bend;
     const double share = all > 0.0 ? across[axis].bend / all : 0.5;

@@ -46,8 +46,8 @@ EntranceAngles entrance_angles(const PhotometricGeometry& geometry);
 
 PhotometricDirections directions_of(const PhotometricGeometry& geometry);
 /// Returns the inverse of directions_of(). The observation half-plane starts at the line to the source and contains the
-/// observer. At alpha = 0, the directions do not determine it. It is then chosen to contain the datum mark, so that
-/// epsilon is 0 if possible.
+/// observer. At alpha = 0, the directions do not determine the half-plane. It is then chosen to contain the datum mark,
+/// so that epsilon is 0 if possible.
 PhotometricGeometry geometry_of(const PhotometricDirections& directions);
 
 SourceAngles source_angles(const geometry::Vec3& to_source);

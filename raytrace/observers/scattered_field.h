@@ -1,7 +1,7 @@
 #pragma once
 
-// Far field of the light that textures of facets scatter. It includes the interference of paths that meet the same
-// points of a texture.
+// Far field of the light that textures of facets scatter. It includes the interference of light on different paths that
+// meet the same points of a texture.
 
 #include <Eigen/Core>
 #include <complex>
@@ -19,9 +19,10 @@ namespace retrace::raytrace {
 /// the phase of the light that meets it. The phases at two points of the entrance face are correlated if their light
 /// has met the same points of facets (docs/theory/photometry.md).
 ///
-/// Correlations of nearby points of the entrance face cause lobes. Their angular width is the wavelength divided by the
-/// correlation length. Correlations of distant points, for example of a path and its reverse, cause interference
-/// fringes about the direction to the source. Their angular width is the wavelength divided by the cell size.
+/// Correlations of nearby points of the entrance face cause lobes. The angular width of a lobe is the wavelength
+/// divided by the correlation length. Correlations of distant points, for example of a path and its reverse, cause
+/// interference fringes about the direction to the source. The angular width of a fringe is the wavelength divided by
+/// the cell size.
 class ScatteredField {
  public:
   ScatteredField() = default;

@@ -99,7 +99,7 @@ MonteCarlo::TraceTask MonteCarlo::by_cells(const LightSetup& setup, const PathSe
     if (paths == nullptr) return tally;
     PathWalker border(*paths, tally);
     std::uint32_t choices = walker.choices();
-    for (const CellWalker::HandedOver& ray : walker.handed_over())
+    for (const CellRay& ray : walker.handed_over())
       border.resume(ray.position, ray.ray, key, task.replicate, task.first, choices);
     return tally;
   };

@@ -21,8 +21,8 @@ namespace retrace::raytrace {
 
 struct PathSetup;
 
-/// Estimates the distribution of light with Owen-scrambled Sobol points on the entrance face. The result depends only
-/// on the seed and the parameters, and not on the number of threads.
+/// Estimates the RRE and the ledger with light that enters at Owen-scrambled Sobol points of the entrance face. The
+/// result depends only on the seed and the parameters, and not on the number of threads.
 class MonteCarlo {
  public:
   /// Method of finding the facets that rays meet.
@@ -31,7 +31,7 @@ class MonteCarlo {
     cell     ///< many rays in the same cell together, cell by cell; requires cell_serves()
   };
   /// Returns true if Engine::cell can be used: for infinite parts, and for finite arrays of identical elements with an
-  /// inner region. Rays at the borders of such arrays are traced with Embree.
+  /// inner region. Rays near the borders of a finite array are traced with Embree.
   static bool cell_serves(const geometry::Part& part);
 
   /// \param part must outlive the tracer
@@ -82,7 +82,8 @@ class MonteCarlo {
   /// \param paths data for tracing the rays that leave the inner region of a finite part; null for an infinite part
   TraceTask by_cells(const LightSetup& setup, const PathSetup* paths, const PathPolicy& policy, std::uint32_t seed,
                      const Cancellation* cancel) const;
-  /// Adds the rays with the numbers `from` to `until` - 1 of every replicate to its tally.
+  /// Traces the rays with the numbers `from` to `until` - 1 of every replicate, and adds the results to the tally of
+  /// the replicate.
   /// \param trace_task returns the tally of one task, or nothing if cancelled
   /// \return false if cancelled; the tallies are then invalid
   bool trace_range(const TraceTask& trace_task, std::uint32_t from, std::uint32_t until,

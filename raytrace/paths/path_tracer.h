@@ -1,7 +1,7 @@
 #pragma once
 
 // Traces a single light path through any part: finds the next face, splits the light by refraction and reflection, and
-// records where power ends.
+// adds the power to the accounts of the ledger.
 
 #include <cstdint>
 #include <optional>
@@ -61,8 +61,8 @@ class PathWalker {
 
   /// Traces light of power 1 that comes from any direction: from above, from a side, from below, or from a point inside
   /// the part. The acceptance cones are centred on the direction opposite to `ray`, instead of the direction to the
-  /// source. Light that the first face reflects from outside is a branch like others. It is added to `front_specular`
-  /// at the entrance face, to `side_exit` at sides, and to `transmitted` at the back.
+  /// source. Light that the first face reflects from outside is a branch of the path. Its power is added to
+  /// `front_specular` at the entrance face, to `side_exit` at sides, and to `transmitted` at the back.
   /// \return false if the light does not meet the part; it is then not added to any account
   bool launch(const Vec3& position, const Ray& ray, RandomKey key, std::uint32_t replicate, std::uint32_t sample);
 
@@ -70,12 +70,12 @@ class PathWalker {
   struct State : Ray {
     Vec3 position = Vec3::Zero();
     FacetRef source;           ///< facet that the path has just left
-    FacetRef entrance_source;  ///< facet just left, on a curved entrance face
-    bool above = false;        ///< in the air above a curved entrance face
-    bool entered = false;      ///< has passed a curved entrance face
+    FacetRef entrance_source;  ///< facet of a curved entrance face that the path has just left
+    bool above = false;        ///< true if the path is in the air above a curved entrance face
+    bool entered = false;      ///< true if the path has passed a curved entrance face
     geometry::FacetRole left_through = geometry::FacetRole::retro_facet;  ///< last face through which light left
     std::uint32_t events = 0;
-    Vec2 shift_mm = Vec2::Zero();  ///< infinite part: vector from `position` (in the central period) to the real one
+    Vec2 shift_mm = Vec2::Zero();  ///< infinite part: real position minus `position` (in the central period)
   };
   enum class End { facet, entrance, side, escape, miss, trapped };
   struct Step {

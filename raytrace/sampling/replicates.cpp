@@ -18,7 +18,7 @@ constexpr std::uint32_t kReplicates = Sampling::kReplicates;
 // Number of rays of a replicate per task. It is small enough for load balancing and large enough to make the overhead
 // negligible.
 constexpr std::uint32_t kRaysPerTask = 2048;
-// Number of rays of a replicate that are traced before the tallies of the tasks are added. It limits the memory of the
+// Number of rays of a replicate after which the tallies of the tasks are added up. This number limits the memory of the
 // tallies.
 constexpr std::uint32_t kRaysPerSlice = 64 * kRaysPerTask;
 // Maximum number of rays per replicate. It is less than 2^32, the length of the Sobol sequence, so that counters do not
@@ -83,8 +83,8 @@ Rounds::Rounds(const Sampling& sampling, std::vector<double> cones_deg, std::siz
           (sampling.rays.value_or(sampling.max_rays) + kReplicates - 1) / kReplicates, kMostRaysPerReplicate))),
       replicates_(kReplicates, Tally(cones_deg_.size(), score_size)) {}
 
-/// Returns the number of rays per replicate after the next round. It is doubled in each round, because the points of a
-/// Sobol sequence are best distributed if their number is a power of 2.
+/// Returns the number of rays per replicate after the next round. The number is doubled in each round, because the
+/// points of a Sobol sequence are best distributed if their number is a power of 2.
 std::uint32_t Rounds::next_end() const {
   if (done_ == 0) return std::min(goal_, kFirstRound);
   return done_ > goal_ / 2 ? goal_ : 2 * done_;

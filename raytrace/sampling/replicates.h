@@ -27,7 +27,7 @@ struct Sampling {
   enum class Kind { stratified, plain };
   Kind kind = Kind::stratified;
   std::uint32_t seed = 1;
-  std::optional<std::uint64_t> rays;  ///< number of rays, rounded up to whole replicates; not set: as many as needed
+  std::optional<std::uint64_t> rays;  ///< number of rays, rounded up to a multiple of kReplicates; not set: as needed
   double target_error = 1e-4;         ///< target standard error of the RRE, > 0
   std::uint64_t max_rays = 1U << 26;  ///< maximum number of rays if `rays` is not set
 };
@@ -46,13 +46,13 @@ using ReplicateTask =
 
 /// Traces the rays with the numbers `from` to `until` - 1 of every replicate, with all available threads. Adds the
 /// results to the tallies. The sums do not depend on the number of threads. The memory is proportional to the number of
-/// rays, so that callers should request few rays at a time.
+/// rays. Callers should therefore request few rays at a time.
 /// \return false if cancelled; the tallies are then invalid
 bool trace_replicates(std::uint32_t from, std::uint32_t until, std::vector<Tally>& replicates,
                       const ReplicateTask& trace);
 
-/// Function that adds the rays with the numbers `from` to `until` - 1 of every replicate. It returns false if
-/// cancelled.
+/// Function that traces the rays with the numbers `from` to `until` - 1 of every replicate and adds the results to the
+/// tallies. It returns false if cancelled.
 using TraceRange = std::function<bool(std::uint32_t from, std::uint32_t until, std::vector<Tally>& replicates)>;
 
 /// Doubles the number of rays from round to round, until the target error or the requested number of rays is reached.

@@ -46,7 +46,7 @@ PageSection photometry_section(const ResultDocument& document, const ResultFolde
   for (std::size_t c = 0; c < table.columns.size(); ++c)
     if (table.columns[c] == "verdict") {
       for (auto& row : table.rows) row[c].rating = rating_of(row[c].text);
-      // Sorts the rows: failed points first, then undetermined points.
+      // Failed points come first, then undetermined points, then all other points.
       const auto rank = [&](const auto& row) {
         return row[c].rating == Rating::bad ? 0 : row[c].rating == Rating::open ? 1 : 2;
       };
@@ -81,11 +81,12 @@ PageSection roughness_section(const ResultDocument& document, const ResultFolder
 
 namespace {
 
-/// Returns the tool path through one element. Kinds without moves are omitted.
+/// Returns the plot of a tool path through one element. The plot contains only the kinds of moves that occur in the
+/// path.
 /// \param document document of the job
 /// \param path JSON object with `name` and `moves`
 PathPlot tool_path(const Json& document, const Json& path) {
-  // Words of the document for the kinds of moves of tool_path_plot().
+  // Names of the kinds of moves in the document, in the order in which tool_path_plot() returns these kinds.
   constexpr std::array kMotions = {"plunge", "plough", "retract", "translate"};
   PathPlot plot = tool_path_plot({.job = std::filesystem::path(text(document, "job")).filename().string(),
                                   .machine = text(document, "machine"),
@@ -170,8 +171,8 @@ PageSection forces_section(const ResultDocument& document, const ResultFolder&) 
 
 namespace {
 
-/// Returns a plot of the first quantity over the last numeric parameter of a sweep. It has one curve for each
-/// combination of the other parameters.
+/// Returns a plot of the first quantity of a sweep over the last numeric parameter. The plot has one curve for each
+/// combination of values of the other parameters.
 LinePlot sweep_plot(const Json& json) {
   const std::vector<std::string> parameters = words(list(json, "parameters"));
   const std::vector<std::string> quantities = words(list(json, "quantities"));

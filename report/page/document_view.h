@@ -14,13 +14,13 @@ namespace retrace::report::document {
 
 using Json = nlohmann::ordered_json;
 
-/// Maximum number of rows of a table in the page. The limit keeps the page small. The result files contain all rows.
+/// Maximum number of rows of a table on the page. The limit keeps the page small. The result files contain all rows.
 inline constexpr std::size_t kMostRows = 400;
 
 const Json& member(const Json& json, const char* key);  ///< returns a member; null if absent
 double number(const Json& json, const char* key);       ///< returns a number; NaN if absent
 double number_or_0(const Json& json, const char* key);  ///< returns a number; 0 if absent
-/// Returns a number of objects. Returns 0 if the number is absent or negative.
+/// Returns a number that counts objects. Returns 0 if the number is absent or negative.
 std::size_t count_in(const Json& json, const char* key);
 std::string text(const Json& json, const char* key);
 bool flag(const Json& json, const char* key);
@@ -33,9 +33,10 @@ std::string measured(double value, const char* unit);
 std::string percent(double share);
 
 PageCell cell_of(const Json& value);
-/// Returns a key as the title of a column, such as "incidence (deg)" for "incidence_deg".
+/// Converts a key to the title of a column, for example "incidence_deg" to "incidence (deg)".
 std::string column_name(const std::string& key);
-/// Returns a table with one row for each object of a list. Its columns are those of `keys` that occur in the objects.
+/// Returns a table with one row for each object of a list. It has a column for each key of `keys` that occurs in at
+/// least one object.
 PageTable table_of(const Json& rows, const std::vector<std::string>& keys, const std::string& caption,
                    const std::string& csv_name);
 /// Returns a table with one row for each member of a JSON object. Members that are objects or lists are omitted.
@@ -48,7 +49,7 @@ Series& series_of(LinePlot& plot, const std::string& label);
 /// Returns the rating of a verdict: good for "pass", bad for "fail", and open for all others.
 Rating rating_of(const std::string& verdict);
 std::string name_of_design(const Json& design);
-/// Returns the keys that occur in the first objects of a list, in the order in which they first occur.
+/// Returns the keys that occur in the first 20 objects of a list, in the order in which the keys first occur.
 std::vector<std::string> keys_of(const Json& rows);
 /// Returns the texts in a list.
 std::vector<std::string> words(const Json& values);

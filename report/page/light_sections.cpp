@@ -83,7 +83,7 @@ PageSection rre_section(const ResultDocument& document, const ResultFolder& fold
 namespace {
 
 constexpr std::size_t kMostPanels = 6;
-constexpr std::size_t kMostRegions = 1500;  // per panel
+constexpr std::size_t kMostRegions = 1500;  // maximum number of regions that are drawn in a panel
 constexpr std::size_t kMostSpots = 600;
 
 /// Returns the outer ring of a GeoJSON polygon.
@@ -109,8 +109,8 @@ std::string name_if_several(const DesignNames& names, const ResultDocument& docu
   return names.are_several() ? names.of(document, design) : std::string();
 }
 
-/// Returns the SVG of a scale bar below a rectangle. Its length is 1, 2 or 5 times a power of ten and at most a quarter
-/// of the width.
+/// Returns the SVG of a scale bar below a rectangle. The length of the bar is 1, 2 or 5 times a power of ten, in mm,
+/// and at most a quarter of the width of the rectangle.
 std::string scale_bar(const Rectangle& face) {
   const double about = 0.25 * face.size().x();
   const double decade = std::pow(10.0, std::floor(std::log10(about)));
@@ -125,7 +125,8 @@ std::string scale_bar(const Rectangle& face) {
       4.0 * unit, length);
 }
 
-/// Returns at most kMostPanels entries of a list, evenly selected after sorting by the magnitude of the incidence.
+/// Returns at most kMostPanels entries of a list. The entries are sorted by the magnitude of the angle of incidence and
+/// then selected at equal intervals.
 std::vector<const Json*> spread(const Json& entries) {
   std::vector<const Json*> all;
   for (const Json& entry : entries) all.push_back(&entry);
@@ -166,9 +167,9 @@ Rectangle face_of(const Json& json, double number_of_design, const Json* design)
   return box.empty() ? Rectangle{{0.0, 0.0}, {1.0, 1.0}} : box;
 }
 
-/// Returns the active regions of the entrance face for one direction of the light.
+/// Returns a panel with the active regions of the entrance face for one direction of the light.
 /// \param json footprint document
-/// \param region entry of the list `regions`, which gives the design and the direction
+/// \param region entry of the list `regions`; it contains the design and the direction
 /// \param design name of the design; empty if the folder has only one design
 MapPanel panel_of(const Json& json, const Json& region, const Rectangle& face, const std::string& design) {
   const Json& regions = list(json, "regions");
@@ -187,8 +188,8 @@ MapPanel panel_of(const Json& json, const Json& region, const Rectangle& face, c
   return panel;
 }
 
-/// Draws a panel. Regions with a higher value, which is an efficiency in percent, are darker. If there are more than
-/// kMostRegions regions, the other ones are omitted.
+/// Draws a panel. The value of a region is its efficiency in percent, and regions with a higher value are darker. Only
+/// the first kMostRegions regions are drawn.
 PageFigure figure_of(const MapPanel& panel) {
   std::string shapes;
   for (const MapRegion& region : panel.regions | std::views::take(kMostRegions)) {

@@ -79,7 +79,7 @@ bool is_numeric(const PageTable& table, std::size_t column) {
   return true;
 }
 
-/// Returns the class of a rating in the style sheet of the page.
+/// Returns the name of the CSS class for a rating.
 std::string_view class_of(Rating rating) {
   switch (rating) {
     case Rating::none: return "";

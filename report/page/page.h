@@ -16,7 +16,7 @@
 
 namespace retrace::report {
 
-/// Rating of a value, which determines its colour.
+/// Rating of a value. The rating determines the colour in which the value is shown.
 enum class Rating { none, good, bad, open };
 
 /// Cell of a table: the text that is shown, and the full value for the CSV file if it differs.
@@ -45,7 +45,7 @@ struct PageTable {
 struct PageFigure {
   std::string caption;
   std::string svg;               ///< drawing as markup; empty if the figure is a picture
-  std::string media_type;        ///< of the picture, such as "image/png"
+  std::string media_type;        ///< media type of the picture, such as "image/png"
   std::string bytes;             ///< content of the picture file
   std::string alternative_text;  ///< description of the figure for screen readers
 };
@@ -61,9 +61,9 @@ struct PageSection {
   std::string title;
   std::vector<std::string> paragraphs;
   std::vector<PageFact> facts;
-  std::vector<std::string> steps;  ///< steps in order, which the reader can tick off
-  std::vector<LinePlot> charts;    ///< plots that the reader can zoom, and whose values the reader can read off
-  std::vector<PathPlot> paths;  ///< tool paths that the reader can zoom, and whose kinds of moves the reader can hide
+  std::vector<std::string> steps;  ///< steps in order; the reader can tick them off
+  std::vector<LinePlot> charts;    ///< plots with zoom, whose values can be read off
+  std::vector<PathPlot> paths;     ///< plots of tool paths with zoom, in which each kind of move can be hidden
   std::vector<PageFigure> figures;
   std::vector<PageTable> tables;
   std::vector<std::pair<std::string, std::string>> details;  ///< collapsed texts: title and content
@@ -100,7 +100,7 @@ struct Page {
 /// \throw InputError if a file is missing
 PageAssets assets_for(const Page& page);
 
-/// Returns the page as one HTML file, which needs no other file and no network. All texts are escaped.
+/// Returns the page as a single HTML file that needs no other file and no network. All texts are escaped.
 std::string page_html(const Page& page, const PageAssets& assets);
 
 /// Returns a number with six significant digits.

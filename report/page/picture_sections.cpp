@@ -36,7 +36,7 @@ PageSection camera_section(const Json& json) {
   return section;
 }
 
-/// Returns the cell with the value of a reflector for one lamp.
+/// Returns the table cell with a value of a reflector for one lamp.
 PageCell of_lamp(const Json& reflector, const char* key, std::size_t lamp) {
   const Json& values = list(reflector, key);
   return lamp < values.size() && values[lamp].is_number() ? PageCell(values[lamp].get<double>()) : PageCell();

@@ -22,8 +22,8 @@ using namespace document;
 
 using MakeSection = PageSection (*)(const ResultDocument&, const ResultFolder&);
 
-/// Returns the functions that make sections, in the order of the page. The order follows the work on a part: from its
-/// light to its fabrication and verification.
+/// Returns the functions that make sections, in the order of the sections on the page. Optical results come first.
+/// Fabrication and verification follow.
 const std::vector<std::pair<std::string, MakeSection>>& makers() {
   static const std::vector<std::pair<std::string, MakeSection>> all = {{"inspect", inspect_section},
                                                                        {"rre", rre_section},
@@ -40,7 +40,7 @@ const std::vector<std::pair<std::string, MakeSection>>& makers() {
   return all;
 }
 
-/// Returns the names of the picture files that belong to a document and that the page includes, without extension.
+/// Returns the names (without extension) of the pictures that the page shows for a document of the given kind.
 std::vector<std::string> pictures_of(const std::string& kind) {
   if (kind == "photometry") return {"far_field", "r_a"};
   if (kind == "fabrication") return {"roughing", "finishing", "arrangement"};

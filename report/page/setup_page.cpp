@@ -46,8 +46,8 @@ std::string tilt_word(const FabricationResult& result) {
   return std::string(1, result.machine.tilt_letter());
 }
 
-/// Returns a text about a quantity that the operator sets, such as the height of the tool. It contains the maximum
-/// geometric errors that are caused if this quantity is wrong by one unit.
+/// Returns a text about a quantity that the operator sets, such as the height of the tool. The text states the maximum
+/// geometric errors of the part if this quantity is wrong by one unit.
 /// \param key key of the quantity, such as "tool_z_um"
 std::string cost(const SetupSheet& sheet, std::string_view key) {
   for (const Sensitivity& row : sheet.sensitivities.rows)
@@ -304,7 +304,8 @@ std::string effect_text(const studies::FacetEffect& effect) {
 }
 
 /// Returns the change relative to `of`, in percent.
-/// \param least magnitude of the relative change below which the result is "< ..."
+/// \param least minimum magnitude of the relative change; for smaller changes, the result is "<" followed by this
+/// magnitude in percent
 std::string change_text(double change, double of, double least) {
   if (!(of > 0.0)) return "-";
   const double share = change / of;

@@ -100,8 +100,8 @@ struct DrawnElements {
   std::int64_t places = 0;  ///< sum of the positions of the elements in the order of cutting, for their mean
 };
 
-/// Returns the element `first`, or a group of adjacent prisms that begins with it if there are more than
-/// kMostElementsDrawn elements.
+/// Returns the outline of the element `first`. If there are more than kMostElementsDrawn elements, returns the outline
+/// of a group of adjacent prisms that begins with `first`.
 /// \param places position of each element in the order of cutting
 /// \param in_plan function that converts coordinates of the workpiece to coordinates of the drawing
 template <class InPlan>

@@ -49,22 +49,22 @@ LinePlot rre_plot(const studies::RreResult& result);
 inline constexpr std::size_t kMostFootprintPanels = 24;
 
 /// Returns a plot of the active regions of the entrance face (regions that return light). It has one panel for each
-/// direction, and the colour is the efficiency in percent.
+/// direction of light. The colour shows the efficiency in percent.
 /// \pre a footprint was requested
 MapPlot footprint_plot(const studies::RreResult& result);
 
 /// Returns a plot of RRE over the Sa of the roughness, see roughness_plot() in report/plot_contents.h.
 LinePlot roughness_plot(const studies::RoughnessResult& result);
 
-/// Returns a plot of R_A around the direction to the source, with the test points. It has one panel for each map of the
-/// result.
+/// Returns a plot of R_A over the directions around the direction to the source. It shows the test points and has one
+/// panel for each map of the result.
 PolarPlot far_field_plot(const studies::PhotometryResult& result);
 
 /// Returns a plot of R_A over the observation angle, with one curve for each entrance angle.
 LinePlot observation_plot(const studies::PhotometryResult& result);
 
-/// Returns a plot of the distribution of the study's first quantity: the fraction of parts whose value is below the
-/// value on the axis. The nominal value and the limits are marked.
+/// Returns a plot of the cumulative distribution of the study's first quantity: the fraction of parts whose value is
+/// below the value on the x axis. The nominal value and the limits are marked.
 LinePlot tolerance_plot(const studies::Study& study, const studies::ToleranceRequest& request,
                         const studies::ToleranceResult& result);
 
@@ -80,30 +80,31 @@ SurfacePlot metrology_plot(const studies::MetrologyResult& result);
 // Plots and pictures of a detector and a camera.
 
 /// Returns the metadata of a picture file.
-/// \param kind kind of the picture's document
+/// \param kind kind of the document that belongs to the picture
 std::vector<std::pair<std::string, std::string>> picture_texts(const char* kind, const studies::Design& design);
-/// Returns a plot of the light that leaves the entrance face, by the position at which it leaves and by the position at
-/// which it entered.
+/// Returns a plot with two maps of the light that leaves the entrance face. One map shows where the light leaves the
+/// face, and the other shows where the same light entered it.
 ImagePlot irradiance_plot(const studies::DetectorResult& result);
-/// Returns a plot of the light over directions around the direction to the source, with logarithmic colours.
+/// Returns a plot of the light over the directions around the direction to the source, with logarithmic colours.
 ImagePlot angular_plot(const studies::DetectorResult& result);
 /// Returns a picture with the channels `leaving` and `entering`, and with their standard errors if there are any.
 FloatPicture irradiance_picture(const studies::DetectorResult& result);
 FloatPicture angular_picture(const studies::DetectorResult& result);
 /// Returns a picture with the channels Y (cd/m^2), `std_error` and `coverage`.
 FloatPicture luminance_picture(const studies::CameraResult& result);
-/// Returns the tone-mapped picture as the eye might see it, three bytes per pixel.
+/// Returns the luminance, tone-mapped to approximate its visual appearance, with three bytes per pixel (red, green,
+/// blue).
 std::vector<unsigned char> tone_mapped_pixels(const std::vector<double>& luminance);
 /// Returns a plot of the luminance with logarithmic colours.
 ImagePlot false_colour_plot(const studies::CameraResult& result);
 
-/// Returns a PNG file with the views of the driver next to each other. All views have the same exposure. Distances and
-/// luminances are written below them.
+/// Returns a PNG file with the driver's views of the road next to each other. All views have the same exposure.
+/// Distances and luminances are written below them.
 /// \throw OutputError if the picture cannot be drawn
 std::string road_png(const studies::RoadResult& result, double scale = 1.5);
 
-/// Returns a picture with all views next to each other: the channel Y contains the luminance, and the channel
-/// `reflected` contains the part of it that comes from the reflectors.
+/// Returns a picture with all views next to each other. The channel Y contains the luminance. The channel `reflected`
+/// contains the part of this luminance that comes from the reflectors.
 FloatPicture road_picture(const studies::RoadResult& result);
 
 /// Returns a plot of the tool path through one element, for roughing or finishing.
@@ -113,24 +114,27 @@ PathPlot tool_path_plot(const studies::FabricationResult& result, bool roughing)
 /// elements of a row are drawn as one.
 MapPlot arrangement_plot(const studies::FabricationResult& result);
 
-/// Returns a plan of the array, coloured by the height of the material that the programs leave above the facets.
+/// Returns a plan of the array, coloured by the height of the material that remains above the facets after the
+/// programs.
 SurfacePlot error_map_plot(const studies::ErrorMap& map);
 
 /// Returns a plot of the forces on the tool over time, with one curve for each axis of the machine.
 LinePlot forces_plot(const studies::ForcesResult& result);
 
-/// Returns a plot of the acceleration of Z over two revolutions around its largest jump.
+/// Returns a plot of the acceleration of the Z axis or of the servo, over two revolutions around the largest jump of
+/// the acceleration.
 LinePlot turning_acceleration_plot(const studies::TurningResult& result);
-/// Returns a plot of the deviation from the design across a few cuts.
+/// Returns a plot of the deviation of the machined surface from the design, along a line across a few cuts.
 LinePlot turning_profile_plot(const studies::TurningResult& result);
-/// Returns maps of the height of the surface, and of the magnitude of the deviation after the programs.
+/// Returns two maps: the height of the designed surface, and the magnitude of the deviation of the machined surface
+/// from it.
 ImagePlot turning_maps(const studies::TurningResult& result);
 
-/// Returns a plot of the depth over the distance from the centre. It shows the design and the surface after the
-/// programs. For a lathe, this surface consists of the straight chords that the programs cut.
+/// Returns a plot of the depth over the distance from the centre. It shows the design and the machined surface. For a
+/// lathe, the machined surface consists of the straight chords that the programs cut.
 LinePlot planing_profile_plot(const studies::PlaningResult& result);
 /// Returns a plot of the end points of cuts. For a mill, it shows the strokes, coloured by the set of programs that
-/// contains them. For a lathe, it shows the ends of the chords.
+/// contains them. For a lathe, it shows the end points of the chords.
 LinePlot planing_zones_plot(const studies::PlaningResult& result);
 /// Returns a plot of the material that remains above the design over the distance from the centre.
 /// \pre the part is cut on a mill

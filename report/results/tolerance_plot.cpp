@@ -14,8 +14,8 @@ Series line_at(const std::string& label, double value) {
   return {label, {value, value}, {0.0, kPercent}, {}};
 }
 
-/// Returns the distribution of the values. If there are more values than the plot can show as separate points, evenly
-/// spaced percentiles are used.
+/// Returns the cumulative distribution of the values. If there are more values than the plot can show as separate
+/// points, evenly spaced percentiles are used.
 Series distribution(const std::vector<double>& ascending) {
   Series series{"parts", {}, {}, {}};
   const std::size_t points = std::min(kMostPoints, ascending.size());

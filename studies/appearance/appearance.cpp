@@ -25,8 +25,8 @@ namespace {
 
 using geometry::Vec2, geometry::Vec3;
 
-// Number of spectral intervals for the random geometries at which the table is compared with the photometer. These
-// geometries are computed for the eye's response only.
+// Number of spectral intervals of the photometer with which the table is compared at random geometries. This comparison
+// uses only the eye's response.
 constexpr std::size_t kPartsOfProbes = 4;
 // Azimuth of the test light by which back_of() distinguishes prisms from cube corners. At this azimuth, prisms and cube
 // corners return light into clearly different directions.
@@ -34,7 +34,7 @@ constexpr double kAsideDeg = 30.0;
 constexpr RandomKey kProbeKey{.seed = 0x6d61746cU, .stream = 2};
 
 /// Checks that the exact engine supports the design.
-/// \throw InputError if it does not
+/// \throw InputError if the engine does not support it
 void check_engine(const Design& design, PhotometrySettings request) {
   request.engine = Engine::automatic;
   const Photometer photometer(design, request, kParts);
@@ -44,10 +44,10 @@ void check_engine(const Design& design, PhotometrySettings request) {
                          text_of(photometer.why_undiffracted()));
 }
 
-/// Returns the value of ReflectionTable::back: for each axis, 1 if light reverses its direction component along the
-/// axis, and -1 if light keeps this component. Cube corners reverse both components, prisms only one. The case that
-/// applies to more than half of the returned light is chosen. If there is no such case, both components count as
-/// reversed. Returns nothing if the computation was cancelled.
+/// Returns the value of ReflectionTable::back. For each axis, it is 1 if light reverses its direction component along
+/// this axis, and -1 if light keeps this component. Cube corners reverse both components, prisms reverse only one. The
+/// value that applies to more than half of the returned light is chosen. If neither value does, both components count
+/// as reversed. Returns nothing if the computation was cancelled.
 std::optional<Vec2> back_of(const Design& design, const MaterialRequest& request, const Cancellation* cancel) {
   const Vec3 to_source = geometry::direction_at(Angle::from_deg(request.entrance_deg), Angle::from_deg(kAsideDeg));
   const Photometer eye = photometer_of(design, photometry_of(request, -Vec2::Ones()), kEye, kParts);

@@ -57,8 +57,8 @@ ColourPhotometer::ColourPhotometer(const Design& design, const PhotometrySetting
     instruments_[response] = std::make_unique<Instrument>(photometer_of(design, photometry, response, kParts));
   const materials::SpectralCurve lamp = lamp_power(photometry.light);
   const materials::Tristimulus sent = materials::tristimulus(lamp, materials::shipped_colour_matching());
-  // Readings of a photometer are divided by its response to the incident light. The matrix therefore multiplies the
-  // readings by this response, `sent`.
+  // Readings of a photometer are relative to its response to the incident light, which is `sent`. The matrix therefore
+  // multiplies the readings by `sent`.
   rgb_of_shares_ = rgb_from_xyz(sent) * Eigen::Vector3d(sent[0], sent[1], sent[2]).asDiagonal() / sent[1];
 }
 

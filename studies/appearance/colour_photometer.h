@@ -1,6 +1,7 @@
 #pragma once
 
-// Photometers whose readings are combined to the red, green and blue of a reflection table.
+// Photometers for the colour matching functions x, y and z. Their readings are combined to the red, green and blue of a
+// reflection table.
 
 #include <array>
 #include <cstddef>
@@ -19,7 +20,7 @@ namespace retrace::studies {
 /// Number of spectral intervals into which each colour matching function is divided. Each interval is represented by
 /// two wavelengths.
 inline constexpr std::size_t kParts = 2;
-/// Response of the eye.
+/// Index of the response of the eye, which is y.
 inline constexpr auto kEye = static_cast<std::size_t>(PhotometricResponse::y_bar);
 
 raytrace::PhotometricApertures apertures_of(const MaterialRequest& request);
@@ -34,10 +35,10 @@ PhotometrySettings photometry_of(const MaterialRequest& request, const geometry:
 Photometer photometer_of(const Design& design, const PhotometrySettings& request, std::size_t response,
                          std::size_t parts);
 
-/// Far fields of one direction of light.
+/// Far fields for one direction of light.
 struct ColourFields {
-  std::array<std::vector<Photometer::WeighedField>, 3> of_response;  ///< for the responses x, y and z
-  /// All fields of `of_response`, and the weights with which they contribute to red, green and blue.
+  std::array<std::vector<Photometer::WeighedField>, 3> of_response;  ///< far fields for the responses x, y and z
+  /// All fields of `of_response`, with their weights in red, green and blue.
   std::vector<raytrace::BandedField> weighed;
 };
 

@@ -8,13 +8,13 @@
 namespace retrace::studies {
 namespace {
 
-// Maximum extents, in entrance angle and azimuth, of the first cells of the table.
+// Maximum extents, in entrance angle and azimuth, of the cells of the table before refinement.
 constexpr double kFirstEntranceDeg = 20.0;
 constexpr double kFirstAzimuthDeg = 30.0;
-// Maximum number of times that a first cell is halved.
+// Maximum number of times that a first cell is halved along each of its sides.
 constexpr int kMostHalvings = 8;
-// Number of lattice steps along each side of a first cell. After all halvings, the directions of a cell are still
-// lattice points.
+// Number of lattice steps along each side of a first cell. With this number, the directions of a cell are lattice
+// points even after all halvings.
 constexpr int kFirstSize = 3 << kMostHalvings;
 
 }  // namespace

@@ -1,6 +1,6 @@
 #pragma once
 
-// Lattice of the directions of light of a reflection table, and the cells whose directions are on it.
+// Lattice of directions of light, and cells of a reflection table whose directions are points of this lattice.
 
 #include <array>
 #include <utility>
@@ -18,7 +18,7 @@ using LatticePlace = std::pair<int, int>;
 /// Cell of the reflection table while the table is being made.
 struct PlannedCell {
   std::array<int, 2> corner{};  ///< position of the lower corner on the lattice: entrance angle, azimuth
-  std::array<int, 2> size{};    ///< lattice steps along its sides: multiples of 3
+  std::array<int, 2> size{};    ///< number of lattice steps along each side; multiples of 3
   double error = 0.0;           ///< relative error of values that are interpolated inside the cell
 
   bool is_least() const { return size[0] <= 3 && size[1] <= 3; }
@@ -35,14 +35,15 @@ class LightLattice {
   /// Returns the cells from which refinement starts.
   std::vector<PlannedCell> first_cells() const;
   /// Returns the lattice positions of a cell's 4 x 4 directions, ordered by azimuth and then by entrance angle. At
-  /// normal incidence, all azimuths are the same direction. If the azimuths cover a full circle, the last azimuth is
-  /// the same as the first.
+  /// normal incidence, all azimuths have the same lattice position. If the azimuths cover a full circle, the last
+  /// azimuth has the same lattice position as the first.
   std::vector<LatticePlace> places_of(const PlannedCell& cell) const;
   Angle entrance_at(double place) const { return Angle::from_rad(place * entrance_step_.rad()); }
   Angle azimuth_at(double place) const { return Angle::from_rad(first_azimuth_.rad() + place * azimuth_step_.rad()); }
-  /// Returns the direction to the source at a position within a cell, as fractions of its sides.
+  /// Returns the direction to the source at a position within a cell. The position is given as fractions of the cell's
+  /// sides.
   geometry::Vec3 to_source(const PlannedCell& cell, double entrance_share, double azimuth_share) const;
-  /// Returns the smallest extent of the cells in entrance angle.
+  /// Returns the minimum extent in entrance angle over all given cells.
   double least_extent_deg(const std::vector<PlannedCell>& cells) const;
 
  private:

@@ -9,7 +9,7 @@
 namespace retrace::studies {
 namespace {
 
-// Fraction of random views at which the error must be below the requested error.
+// Fraction of random views whose error must be below the requested error.
 constexpr double kJudgedShare = 0.95;
 
 }  // namespace

@@ -14,24 +14,25 @@ namespace retrace::studies {
 /// Number of random views at which a grid or the finished table is compared with the photometer.
 inline constexpr std::uint32_t kProbes = 200;
 
-/// Returns the relative error of the interpolated value `told`, compared with `truth`. If `truth` is below the fraction
-/// AppearanceError::kFloor of the maximum `most`, the error is relative to this fraction of `most`.
+/// Returns the relative error of the interpolated value `told` compared with the true value `truth`. If `truth` is
+/// below AppearanceError::kFloor times the maximum `most`, the error is relative to this product.
 double error_of(double told, double truth, double most);
 
 double quantile(std::vector<double> errors, double share);
 
-/// Returns the quantile that must be below the requested error.
+/// Returns the 95 % quantile of the errors. This quantile must be below the requested error.
 double judged_error(const std::vector<double>& errors);
 
 /// Returns the deviation of a random view from the central direction of the table.
-/// \param x and \param y random numbers
+/// \param x random number for the first component
+/// \param y random number for the second component
 geometry::Vec2 random_deviation(const ReflectionTable& table, std::uint32_t x, std::uint32_t y);
 
-/// Returns the directions to source and observer, or nothing if the deviation is too large for a unit vector.
+/// Returns the directions to source and observer. Returns nothing if the deviation is too large for a unit vector.
 std::optional<raytrace::PhotometricDirections> view_at(const ReflectionTable& table, const geometry::Vec3& to_source,
                                                        const geometry::Vec2& deviation);
 
-/// Returns the maximum of R_A over the grid points of the table, for the eye's response and one direction of light.
+/// Returns the maximum of R_A over the view grid of the table, for the eye's response and one direction of light.
 double greatest_r_a(const ReflectionTable& table, const geometry::Vec3& to_source);
 
 }  // namespace retrace::studies

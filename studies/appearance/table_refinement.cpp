@@ -36,7 +36,7 @@ class DirectionList {
                 ReflectionTable& table)
       : photometer_(photometer), lattice_(lattice), most_(most), table_(table) {}
 
-  /// Returns the lattice positions of the directions that the cells need and that are not yet known.
+  /// Returns the lattice positions of those directions of the cells that have not been computed yet.
   std::vector<LatticePlace> missing(const std::vector<PlannedCell>& cells) const {
     std::vector<LatticePlace> places;
     for (const PlannedCell& cell : cells)
@@ -46,8 +46,8 @@ class DirectionList {
     return places;
   }
 
-  /// Computes the missing directions of cells. The first call must be that for the first cells. Returns false if the
-  /// computation was cancelled.
+  /// Computes those directions of the cells that have not been computed yet. The first call must pass the cells from
+  /// which refinement starts. Returns false if the computation was cancelled.
   bool add(const std::vector<PlannedCell>& cells, Progress* progress, const Cancellation* cancel) {
     const std::vector<LatticePlace> places = missing(cells);
     for (std::size_t first = 0; first < places.size(); first += kBatch) {
@@ -59,8 +59,8 @@ class DirectionList {
     return true;
   }
 
-  /// Returns a cell of the table.
-  /// \pre the directions of the cell are known
+  /// Converts a planned cell to a cell of the table.
+  /// \pre the directions of the cell have been computed
   ReflectionTable::Cell cell_of(const PlannedCell& planned) const {
     ReflectionTable::Cell cell;
     cell.entrance = {lattice_.entrance_at(planned.corner[0]),
@@ -123,7 +123,7 @@ std::array<double, 2> bends_of(const ReflectionTable& table, const ReflectionTab
 }
 
 /// Returns the smaller cells into which a cell is divided. The cell is halved along each side along which the third
-/// differences of the values are large.
+/// differences of the values are large (see kLeastBend).
 std::vector<PlannedCell> halves_of(const PlannedCell& cell, const std::array<double, 2>& bends) {
   const double most = std::max(bends[0], bends[1]);
   std::vector<PlannedCell> parts = {cell};
@@ -140,8 +140,8 @@ std::vector<PlannedCell> halves_of(const PlannedCell& cell, const std::array<dou
   return parts;
 }
 
-/// Returns the priority with which a cell is halved: its error times its projected solid angle of light directions, up
-/// to a constant factor. Returns 0 if the error is small enough.
+/// Returns the priority with which a cell is halved. It is proportional to the error of the cell times its projected
+/// solid angle of light directions. Returns 0 if the error is small enough or the cell cannot be halved further.
 double urgency(const LightLattice& lattice, const PlannedCell& cell, double requested_error) {
   if (cell.error <= requested_error || cell.is_least()) return 0.0;
   const double from = std::sin(lattice.entrance_at(cell.corner[0]).rad());

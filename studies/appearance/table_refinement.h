@@ -12,9 +12,10 @@
 
 namespace retrace::studies {
 
-/// Computes the directions and the cells of a table. Cells are halved until interpolation is accurate, or the table has
-/// the maximum number of directions. Returns false if the computation was cancelled.
-/// \param table table with its grid of view directions and no directions of light
+/// Computes the directions and the cells of a table. Cells are halved until their interpolation errors are at most the
+/// requested error, or until the table has the maximum number of directions. Returns false if the computation was
+/// cancelled.
+/// \param table table with its grid of view directions, to which the directions of light are added
 /// \param cells receives the cells
 bool refine_cells(const MaterialRequest& request, const ColourPhotometer& photometer, const LightLattice& lattice,
                   ReflectionTable& table, std::vector<PlannedCell>& cells, Progress* progress,

@@ -16,9 +16,9 @@ namespace {
 using geometry::Vec2, geometry::Vec3;
 
 // Initial resolution of a grid of view directions: number of grid steps across the radius of the aperture kernel. The
-// kernel averages over the discs of source and receiver. Its radius is taken along the plane of incidence at the
+// kernel averages R_A over the discs of source and receiver. Its radius is measured in the plane of incidence at the
 // maximum entrance angle, where the kernel is narrowest. The error of cubic interpolation grows with the fourth power
-// of the step (docs/theory/appearance.md).
+// of the grid step (docs/theory/appearance.md).
 constexpr double kStepsPerReach = 4.0;
 // Maximum initial number of grid points along a side.
 constexpr std::size_t kMostColumns = 161;
@@ -55,7 +55,7 @@ TestViews random_views(const ReflectionTable& table, const Vec3& to_source, cons
   return views;
 }
 
-/// Returns the error of values that are interpolated in a grid.
+/// Returns the error of values that are interpolated between the points of a grid.
 double interpolation_error(const ReflectionTable& table, const std::vector<Rgb>& grid, const TestViews& views) {
   double most = 0.0;
   for (const Rgb& value : grid) most = std::max(most, luminous(value));

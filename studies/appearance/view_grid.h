@@ -1,6 +1,6 @@
 #pragma once
 
-// Grids of R_A over the directions of view, for single directions of light.
+// Grids of R_A over the view directions, for single directions of light.
 
 #include <vector>
 
@@ -18,9 +18,9 @@ std::size_t first_columns(const MaterialRequest& request, const ReflectionTable&
 std::vector<Rgb> grid_of(const ReflectionTable& table, const geometry::Vec3& to_source, const ColourFields& fields,
                          const raytrace::ApertureKernel& kernel, const Cancellation* cancel);
 
-/// Increases the number of grid points until interpolation between view directions is accurate. The test uses one
-/// direction of light, in the middle of the range of entrance angles and azimuths. Returns false if the computation was
-/// cancelled.
+/// Increases the number of grid points until interpolation between view directions is accurate enough. It is tested
+/// with one direction of light at the centre of the ranges of entrance angle and azimuth. Returns false if the
+/// computation was cancelled.
 /// \param error requested relative error of the table
 bool refine_grid(const ColourPhotometer& photometer, double error, ReflectionTable& table, const Cancellation* cancel);
 

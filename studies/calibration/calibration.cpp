@@ -33,7 +33,8 @@ constexpr double kMostOutliers = 0.1;
 /// and of tools that are set under a microscope.
 constexpr double kUntoldArcsec = 50.0;
 constexpr double kUntoldUm = 2.0;
-/// Leverage above which a measurement determines an unknown on its own, so that no other measurement can check it.
+/// Leverage above which a measurement is the only one that determines some unknown, so that no other measurement can
+/// check it.
 constexpr double kUnchecked = 1.0 - 1e-9;
 
 void check(const MeasuredParts& measured, const std::vector<CutPart>& parts) {
@@ -114,7 +115,7 @@ compute::LeastSquaresEstimate fit(const std::vector<CutPart>& parts, const Measu
 }
 
 /// Returns the index of the measurement with the largest deviation from the fit, and this deviation in standard
-/// deviations.
+/// uncertainties.
 std::pair<std::size_t, double> worst(const compute::LeastSquaresEstimate& estimate, std::size_t measurements) {
   std::pair<std::size_t, double> found{0, 0.0};
   for (Index k = 0; k < static_cast<Index>(measurements); ++k) {
@@ -144,8 +145,8 @@ double most_by_chance(std::size_t measurements) {
                   line > 0 ? "those of lines " : "", places));
 }
 
-/// Returns true if two measurements have the same quantity and are of similar facets, so that they have the same sign
-/// convention. Facets are similar if they have the same number in elements of the same orientation.
+/// Returns true if two measurements have the same sign convention. This is the case if they are of the same quantity
+/// and of similar facets. Facets are similar if they have the same number in elements of the same orientation.
 bool is_alike(const MeasuredParts& measured, const Measurement& a, const Measurement& b) {
   const auto is_rotated = [&](const Measurement& m) {
     return measured.plan_of(m.part).plan.elements[m.at.element].rotated;

@@ -41,17 +41,17 @@ struct MeasuredParts {
 /// Estimate of a quantity of the set-up.
 struct CalibratedQuantity {
   const fabrication::SetupQuantity* quantity = nullptr;
-  bool is_told = false;  ///< true if the measurements determine the quantity
-  /// Estimated difference of the real machine from the machine file of the job, in um or arcsec. The measurements do
-  /// not determine it if is_told is false.
+  bool is_told = false;  ///< true if the measurements determine the value of the quantity
+  /// Estimated difference of the real machine from the machine file of the job, in um or arcsec. If is_told is false,
+  /// the measurements do not determine this difference.
   double value = 0.0;
-  /// Standard uncertainty. If is_told is false, it is that of the observable part of the quantity only.
+  /// Standard uncertainty of `value`. If is_told is false, it covers only the observable part of the quantity.
   double uncertainty = 0.0;
 };
 
 struct Calibration {
   MeasuredParts parts;           ///< measurements without outliers
-  fabrication::Machine machine;  ///< calibrated machine
+  fabrication::Machine machine;  ///< calibrated machine: the machine of the job with the estimated values
   std::vector<CalibratedQuantity> quantities;
   Eigen::MatrixXd covariance;       ///< covariance matrix, in the order of the quantities
   std::vector<std::string> untold;  ///< unobservable combinations, as text
@@ -62,8 +62,8 @@ struct Calibration {
   Warnings warnings;
 };
 
-/// Maximum uncertainty, in um or arcsec, of a combination that counts as observable. A set-up with a dial gauge is more
-/// accurate than this.
+/// Maximum uncertainty, in um or arcsec, of a combination that counts as observable. Errors of a set-up with a dial
+/// gauge are smaller than this value.
 inline constexpr double kSetUpByEye = 100.0;
 
 /// Returns the unobservable combinations of an estimate as text, such as "-0.707 c_lean_x_arcsec + a_lean_y_arcsec".

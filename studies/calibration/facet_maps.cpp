@@ -25,16 +25,17 @@ namespace {
 using namespace fabrication;
 using geometry::Vec2, geometry::Vec3;
 
-/// Number of points that registration uses for the coarse search and for the refinement.
+/// Numbers of points that registration uses for the coarse search and for the refinement.
 constexpr std::size_t kCoarsePoints = 300;
 constexpr std::size_t kFinePoints = 4000;
-/// Number of positions that the coarse search tries across an element, along each axis, and the rotations that it
-/// tries.
+/// Number of positions that the coarse search tries across an element along each axis, and rotations that it tries at
+/// each position.
 constexpr int kPlaces = 12;
 constexpr double kTurnsDeg[] = {-2.0, -1.0, 0.0, 1.0, 2.0};
 /// Number of the best poses of the coarse search that are refined.
 constexpr std::size_t kFollowed = 4;
-/// Maximum number of refinement steps with all points, and then with only the points away from edges.
+/// Maximum number of refinement steps with all points, and also of the following steps with only the points away from
+/// edges.
 constexpr int kMostMoves = 20;
 constexpr double kRoughMove = 1e-6;  ///< length of the last step with all points, in mm or rad
 /// Length of the last step with points away from edges, in mm or rad. Smaller changes have no effect, because
@@ -44,11 +45,11 @@ constexpr double kLastMove = 1e-9;
 constexpr double kMostOff = 0.02;
 /// Minimum number of points that determine the plane of a facet or of the blank's face.
 constexpr std::size_t kLeastPoints = 30;
-/// Distance from edges within which points are ignored: a fraction of the facet's length, and a number of pixels. The
-/// larger one applies.
+/// Distance from edges within which points are ignored, as a fraction of the facet's length and as a number of pixels.
+/// The larger of the two distances applies.
 constexpr double kMargin = 0.05;
 constexpr double kMarginPixels = 2.0;
-/// Deviation from the plane above which points are left out, in median deviations.
+/// Deviation from the plane above which points are excluded from a fit, in multiples of the median deviation.
 constexpr double kFarOff = 6.0;
 
 /// Region of the design's surface: a facet of an element, or the blank's face.
@@ -135,8 +136,8 @@ std::vector<Vec3> points_of(const surface_models::HeightMap& map) {
   return points;
 }
 
-/// Returns at most `most` of the points. The choice is random, because points at regular steps might all be in one row.
-/// It is the same in every run.
+/// Returns at most `most` of the points. The choice is random, because points at regular steps might all be in one row
+/// of the map. The choice is the same in every run.
 std::vector<Vec3> thinned(const std::vector<Vec3>& points, std::size_t most) {
   if (points.size() <= most) return points;
   std::vector<Vec3> some;
@@ -289,8 +290,8 @@ double left_of(const RegionFit& fit, const Vec3& p) {
   return p.z() - fit.value.dot(Vec3(1.0, p.x() - fit.middle_mm.x(), p.y() - fit.middle_mm.y()));
 }
 
-/// Fits a plane together with waves that would otherwise tilt it.
-/// \param points two coordinates and the height of each point; points that are too far from the plane are left out
+/// Fits a plane together with waves, because the waves would otherwise tilt the plane.
+/// \param points two coordinates and the height of each point; points that are too far from the plane are excluded
 /// \param waves angular wave vectors of the waves, in rad/mm
 std::optional<RegionFit> fitted(const std::vector<Vec3>& points, const std::vector<Vec2>& waves = {}) {
   constexpr int kRounds = 8;
@@ -342,8 +343,8 @@ std::optional<RegionFit> fitted(const std::vector<Vec3>& points, const std::vect
   return fit;
 }
 
-/// Fits the plane of a facet without its marks and waves.
-/// \param points distances up the facet and along it, and the height
+/// Fits the plane of a facet. Points in marks are excluded, and waves are fitted together with the plane.
+/// \param points for each point: distance up the facet, distance along the facet, and height
 /// \param rest receives the marks and waves
 std::optional<RegionFit> fitted_facet(const std::vector<Vec3>& points, const EdgeView& view, const Vec2& pitch_mm,
                                       FacetRest& rest) {
@@ -372,7 +373,7 @@ std::optional<RegionFit> fitted_facet(const std::vector<Vec3>& points, const Edg
   return waves.empty() ? fit : fitted(unmarked, waves);
 }
 
-/// Returns the distance between neighbouring points of a map along a direction of the part.
+/// Returns the distance between neighbouring points of a height map along a direction of the part.
 double pitch_mm(const FacetMap& map, const RigidMotion& part_from_map, const Vec3& along) {
   const Vec3 seen = part_from_map.rotation.transpose() * along;
   return 1e-3 * std::min(map.heights.x_pixel_um / std::max(std::abs(seen.x()), 1e-6),
@@ -437,7 +438,7 @@ RegisteredMap registered(const FacetMap& map, const FabricationResult& plan) {
     if (view == views.end()) continue;
     const DesignFacet& facet = common(grooves[region.element]).facets[region.facet];
     const auto pitch = [&](Eigen::Index axis) {
-      // Direction along the edge (axis 0) or along its motion (axis 1).
+      // direction along the edge (axis 0) or along the motion of the edge (axis 1)
       return pitch_mm(map, result.part_from_map,
                       view->second.of_up[axis] * facet.up_slope + view->second.of_along[axis] * facet.along);
     };

@@ -17,18 +17,18 @@ using MapAxis = surface_models::Axis;
 using surface_models::HeightMap, surface_models::Scratch, surface_models::SpectralPeak;
 
 constexpr double kUmPerMm = 1e3;
-/// Maximum distance, in um, of the neighbouring lines with which a line of a facet is compared.
+/// Maximum distance, in um, between a line of a facet and the neighbouring lines with which it is compared.
 constexpr double kBesideUm = 30.0;
-/// Minimum number of periods on a facet. Longer waves belong to the form of the facet.
+/// Minimum number of periods of a wave on a facet. Longer waves count as form of the facet.
 constexpr double kLeastPeriods = 3.0;
 /// Tolerances within which waves of two facets count as the same wave: relative difference of their frequencies, and
 /// difference of their numbers of periods on a facet.
 constexpr double kSameFrequency = 0.02;
 constexpr double kSamePeriods = 0.5;
-/// Minimum fraction of the facets with a mark at a position, for which the mark counts as caused by the tool's edge.
-/// Only facets whose measured area contains the position are counted.
+/// Minimum fraction of facets that must have a mark at the same position, so that the mark is attributed to the tool's
+/// edge. Only facets whose measured area contains the position are counted.
 constexpr double kShareOfEdge = 0.5;
-/// Minimum distance, in um, of detectable marks from the end of the measured area of a facet.
+/// Minimum distance, in um, of detectable marks from the ends of the measured area of a facet.
 constexpr double kUnseenUm = kBesideUm;
 
 /// Averages the heights of points in the cells of a grid. Cells without points have no height.
@@ -52,7 +52,7 @@ HeightMap laid_out(std::span<const Vec3> left, const Vec2& low_mm, const Vec2& h
   return map;
 }
 
-/// Averages the heights of points in the cells of a grid, without the points inside of marks.
+/// Averages the heights of points in the cells of a grid. Points inside of marks are ignored.
 HeightMap laid_out(const FacetRest& rest, std::span<const Vec3> left) {
   std::vector<Vec3> unmarked;
   for (const Vec3& p : left)
@@ -64,7 +64,7 @@ Eigen::Index across(MapAxis along) {
   return along == MapAxis::y ? 0 : 1;
 }
 
-/// Wave or mark of a facet. It is used to collect the waves and marks that facets have in common.
+/// Wave or mark of a facet, used to collect the waves and marks that several facets have in common.
 template <class Thing>
 struct Found {
   const FacetRest* rest = nullptr;
@@ -154,8 +154,8 @@ FacetRest marks_of(const FacetPlace& at, std::span<const Vec3> left, const Vec2&
     rest.low_mm = rest.low_mm.cwiseMin(p.head<2>());
     rest.high_mm = rest.high_mm.cwiseMax(p.head<2>());
   }
-  // Search the marks one by one, beginning with the deepest one, and exclude the marks found before. Otherwise, lines
-  // next to a wide mark would be detected as marks too.
+  // Search the marks one by one, beginning with the deepest one, and exclude the marks that are already found.
+  // Otherwise, lines next to a wide mark would be detected as further marks.
   constexpr std::size_t kMostMarks = 16;
   while (rest.marks.size() < kMostMarks) {
     const HeightMap map = laid_out(rest, left);
@@ -211,7 +211,7 @@ std::vector<FacetMark> common_marks(const std::vector<FacetRest>& rests) {
     }
   std::vector<FacetMark> marks;
   for (const auto& group : groups) marks.push_back(gathered(group, rests));
-  // Remove false marks, which are found next to a chip mark on facets whose map shows only a part of the chip mark.
+  // Remove false marks. They are found next to the mark of a chip on facets whose map shows only a part of this mark.
   const std::vector<FacetMark> all = marks;
   std::erase_if(marks, [&](const FacetMark& mark) {
     return std::ranges::any_of(all, [&](const FacetMark& chip) {

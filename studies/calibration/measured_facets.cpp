@@ -21,7 +21,7 @@ constexpr double kMmPerUm = 1e-3;
 /// Minimum sine of the angle between two facets. Below it, a small tilt of a facet does not change the angle.
 constexpr double kParallel = 1e-6;
 
-/// Returns the angle of the groove between two planes, measured outside of the material.
+/// Returns the angle of the groove between two facets with the given normals, measured outside of the material.
 double included_rad(const Vec3& a, const Vec3& b) {
   return std::numbers::pi - std::atan2(a.cross(b).norm(), a.dot(b));
 }

@@ -21,9 +21,9 @@ namespace retrace::studies {
 
 inline constexpr double kArcsecPerRad = 180.0 * 3600.0 / std::numbers::pi;
 
-/// Measured quantity of a facet, as the deviation from the design. Distances are positive if material is left. The root
-/// is the line at the bottom of a groove, where its two facets meet. For a cube corner, the horizontal line of a facet
-/// replaces the root.
+/// Measured quantity of a facet, as the deviation from the design. Distances are positive if excess material remains.
+/// The root is the line at the bottom of a groove, where its two facets meet. For a cube corner, the horizontal line of
+/// a facet replaces the root.
 enum class FacetQuantity {
   distance,  ///< distance of the facet's center along its outward normal, nm
   up,        ///< tilt, positive if the facet rises away from the root, arcsec
@@ -99,7 +99,7 @@ class CutPart {
   double predicted(const Measurement& measurement, const fabrication::Machine& real, const PartPose& pose) const;
 
  private:
-  /// Facet as a machine cuts it.
+  /// Facet as cut by a machine.
   struct MadeFacet {
     const fabrication::Groove* groove = nullptr;
     std::size_t facet = 0;

@@ -19,11 +19,11 @@ namespace {
 using namespace fabrication;
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-/// Apex angles of the test prisms. While a prism is cut, axis A is at half of its apex angle. A chisel with a wedge
-/// angle of 50 degrees and a clearance of 3 degrees can cut all of them.
+/// Apex angles of the test prisms. While a prism is cut, axis A is at half of the prism's apex angle. A chisel with a
+/// wedge angle of 50 degrees and a clearance angle of 3 degrees can cut all of them.
 constexpr double kApexAnglesDeg[] = {90.0, 70.0, 105.0};
-/// Distance between neighbouring prisms. It is the lever arm for angular errors, and is within the travel of a
-/// microscope's stage.
+/// Distance between neighbouring prisms. It is the lever arm for the measurement of angular errors, and is within the
+/// travel of a microscope's stage.
 constexpr double kPitchMm = 10.0;
 /// Maximum ratio of the uncertainty with the chosen measurements to that with all possible measurements.
 constexpr double kEnough = 3.0;
@@ -38,7 +38,8 @@ double uncertainty_of(FacetQuantity what) {
   }
 }
 
-/// Returns a design of four prisms with the base of the given design.
+/// Returns a design of four test prisms with a square outline. The size of the square is the base or the width of the
+/// given design's prisms, whichever is smaller, and at most `most_mm`.
 Design test_design(const Design& design, double apex_angle_deg, double most_mm) {
   const auto* const array = std::get_if<ElementArray>(&design.shape);
   const auto* const prism = array ? std::get_if<geometry::RtpElement>(&array->part.element) : nullptr;
@@ -110,8 +111,8 @@ class Chooser {
            });
   }
 
-  /// Takes the measurement that reduces the uncertainties of the observable quantities most. Each uncertainty is
-  /// divided by the uncertainty of the quantity with all possible measurements.
+  /// Takes the measurement that most reduces the uncertainties of the observable quantities. Each uncertainty is
+  /// divided by the uncertainty that the quantity has with all possible measurements.
   Index take() {
     Index best = 0;
     double most = -1.0;

@@ -34,7 +34,7 @@ constexpr int kMostTimeSteps = 60;
 /// convex in these unknowns.
 constexpr double kFirstRampsS[] = {0.0, 3e-3, 1e-2, 3e-2, 0.1};
 constexpr double kFirstFactors[] = {0.5, 1.0, 2.0};
-/// Deviation, in standard deviations, above which a row causes a warning.
+/// Deviation, in standard deviations, above which a row of the table causes a warning.
 constexpr double kManyDeviations = 4.0;
 /// Ramps below this time count as 0.
 constexpr double kLeastRampS = 1e-6;
@@ -91,7 +91,8 @@ Machine with_times(Machine machine, const Unknowns& unknowns) {
   return machine;
 }
 
-/// Least-squares problem of the rows: residuals and derivatives, each divided by the standard uncertainty of its row.
+/// Least-squares problem of the table's rows: residuals and derivatives, each divided by the standard uncertainty of
+/// its row.
 class Fit {
  public:
   Fit(const TimedPrograms& programs, const Machine& nominal) : programs_(programs), nominal_(nominal) {}
@@ -119,7 +120,8 @@ class Fit {
     return result;
   }
 
-  /// Returns the derivatives. The columns of unknowns that are at their lower bound and would fall below it are 0.
+  /// Returns the derivatives. The column of an unknown is 0 if the unknown is at its lower bound and would fall below
+  /// it.
   Eigen::MatrixXd free_derivatives(const Unknowns& unknowns, const VectorXd& left) const {
     Eigen::MatrixXd result = derivatives(unknowns);
     for (Index k = 0; k < kUnknowns; ++k)

@@ -27,8 +27,8 @@ constexpr double kArcminPerRad = 180.0 * 60.0 / std::numbers::pi;
 constexpr double kUmPerMm = 1e3;
 
 // Fractions of the published Sa that are roughness and waviness. Five facets that were finished by plunging have a mean
-// Sa of 48.9 nm. Below an 80 um cut-off, their roughness has a mean Sa of 19.7 nm; above it, their waviness has 29.9 nm
-// (Milliken 2017, Table 3.4). Other motions are assumed to have the same fractions.
+// Sa of 48.9 nm. After separation at a cut-off wavelength of 80 um, their roughness has a mean Sa of 19.7 nm, and their
+// waviness has 29.9 nm (Milliken 2017, Table 3.4). Other motions are assumed to have the same fractions.
 constexpr double kRoughnessShare = 19.7 / 48.9;
 constexpr double kWavinessShare = 29.9 / 48.9;
 // Temporal frequency of feed marks. They have 42.4 periods per mm at a feed of 10 mm/min (Milliken, 3.3.5).
@@ -90,7 +90,7 @@ std::vector<geometry::Scratch> scratches_of(const Job& job) {
   return scratches;
 }
 
-/// Returns the tilts of an element's facets. A positive tilt opens the element.
+/// Returns the tilts of an element's facets, in arcmin. A positive tilt opens the element.
 std::vector<double> tilts_of(const ElementResult& element) {
   std::vector<double> tilt(element.figures.facets.size());
   // A facet that rises above the design up its slope leans into the groove and closes it.
@@ -99,7 +99,7 @@ std::vector<double> tilts_of(const ElementResult& element) {
   return tilt;
 }
 
-/// Differences between the machined elements and the equal elements that a design can describe.
+/// Differences between the machined elements and a design in which all elements are equal.
 struct Unlikeness {
   double along_arcmin = 0.0;   ///< maximum rotation of a facet that raises one end of its root
   double spread_arcmin = 0.0;  ///< maximum deviation of a tilt from the mean
@@ -150,7 +150,7 @@ geometry::FacetPlanes facet_planes_of(const VerificationRun& run) {
   return part_planes(run.job, planes);
 }
 
-/// Adds warnings about the differences between elements that a design with equal elements cannot represent.
+/// Adds warnings about differences between the elements. A design with equal elements cannot represent them.
 /// \param where end of the warning, such as "on a base"
 void warn_of(const Unlikeness& unlike, AsMachined& part, const char* where) {
   if (unlike.along_arcmin > kShownArcmin)
@@ -177,8 +177,8 @@ bool has_flares(const VerificationRun& run) {
   return run.result.border_overcut_mm3 > 0.0 && run.job.array.arrangement != geometry::Arrangement::single;
 }
 
-/// Checks the as-machined part of a job on a base. The design describes such a part by equal elements, without a table
-/// of planes. Adds warnings about the differences between the elements.
+/// Checks the as-machined part of a job on a base. The design describes such a part by equal elements and not by a
+/// table of planes. Adds warnings about the differences between the elements.
 /// \throw InputError if an element is not cut
 void check_on_substrate(const VerificationRun& run, const Unlikeness& unlike, AsMachined& part) {
   if (unlike.missing > 0)
@@ -235,8 +235,7 @@ AsMachined as_machined(const VerificationRun& run) {
   for (double& tilt : part.facet_tilt_arcmin) tilt /= static_cast<double>(cut);
   const Unlikeness unlike = unlikeness_of(run, part.facet_tilt_arcmin);
   const bool is_direct = run.job.workpiece.kind == WorkpieceKind::direct;
-  // Facet 1 faces -x in a moulded part. A part that is cut directly is rotated about y, so that its facets are
-  // exchanged.
+  // Facet 1 faces -x in a moulded part. A part that is cut directly is rotated about y, which exchanges its facets.
   if (is_direct) std::swap(part.facet_tilt_arcmin[0], part.facet_tilt_arcmin[1]);
   if (is_direct)
     warn_of(unlike, part, "of a part that is cut directly");

@@ -75,8 +75,8 @@ ZoneChange change_of(const std::string& key, const std::array<double, 3>& arcmin
   return {key, schema::override_text(key, std::vector(arcmin.begin(), arcmin.end()))};
 }
 
-/// Returns the cube corner of a zone with its size in the part. The cube corner in the mould is larger, because of
-/// shrinkage.
+/// Returns the cube corner of a zone with its size in the part. Because of shrinkage, the cube corner in the mould is
+/// larger.
 geometry::Element part_element(const fabrication::Job& job, std::size_t zone) {
   fabrication::Job part = job;
   part.workpiece.shrinkage_percent = 0.0;
@@ -107,7 +107,7 @@ void check_zone(const fabrication::Job& job, std::size_t zone, const DesignEleme
 /// Facet angles of a zone of the design.
 struct CutAngles {
   std::optional<geometry::AngleErrors> asked;  ///< angle errors that the job specifies
-  ZoneTilts missed;                            ///< deviations of the machined elements from these angles
+  ZoneTilts missed;                            ///< deviations of the machined elements from the specified angles
 };
 
 /// Collects the facet angles for each zone of the design.

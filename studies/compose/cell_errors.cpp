@@ -29,7 +29,7 @@ std::vector<double> own_errors(const Study& study, const PointValues& values) {
   return {errors.begin(), is_prism ? errors.begin() + 1 : errors.end()};
 }
 
-/// Returns the study with the given angle errors for its cells. They replace the angle errors that the cells specify.
+/// Returns the study with the given angle errors for its cells, instead of the angle errors that the cells specify.
 Study with_errors(const Study& study, const std::vector<double>& errors_arcmin) {
   Study changed = study;
   for (Parameter& parameter : changed.parameters) std::erase(parameter.keys, kErrorKey);

@@ -18,7 +18,8 @@ namespace {
 constexpr const char* kStoreKind = "retrace.composition/1";
 /// Minimum gain of a cell that counts as an improvement, relative to the absolute value of the merit.
 constexpr double kHelps = 1e-3;
-/// Initial step of a search for cells that gain at the dual prices, as a fraction of each parameter's interval.
+/// Initial step of a search for cells with a positive gain at the dual prices, as a fraction of each parameter's
+/// interval.
 constexpr double kFirstStep = 0.1;
 
 /// Returns the request of a search for the best part with only one kind of cell.
@@ -169,7 +170,7 @@ class Composer {
     }
   }
 
-  /// Returns the request of a search for the cell that adds most to the merit of a mixture at its dual prices.
+  /// Returns the request of a search for the cell with the highest gain at the dual prices of a mixture.
   OptimiseRequest pricing_request(const Mixture& mixture) const {
     std::map<std::string, double> weights;
     for (std::size_t k = 0; k < request_.goals.size(); ++k)
@@ -355,7 +356,7 @@ std::vector<Zone> zones_for_worst(const Composition& composition) {
 compute::StoreLayout compose_layout(const Study& study) {
   compute::StoreLayout layout = optimise_layout(study);
   layout.kind = kStoreKind;
-  // Constraints and objectives of the mixture do not change the values of cells, so that they are not part of the
+  // Constraints and objectives of the mixture do not change the values of cells. They are therefore not part of the
   // store's identity.
   std::erase_if(layout.parts, [](const auto& part) {
     return part.first == "constraint" || part.first == "optimize" || part.first == "sweep" || part.first == "tolerance";

@@ -49,7 +49,7 @@ struct ComposeRequest {
 struct FamilyCell {
   std::uint64_t point = 0;  ///< number of the point in the store
   PointValues values;
-  MixedCell mixed;  ///< goals in the order of the request; means in the order of `of_part`, then that of the front
+  MixedCell mixed;  ///< goals in the order of the request; means in the order of `of_part`, then the mean for the front
 };
 
 struct Zone {

@@ -24,8 +24,8 @@ struct CellSet {
   double least_share = 0.0;
 };
 
-/// Returns the linear programme of a set of cells. Columns are the fractions of the cells and the minimum goal. Rows
-/// are the goals, the means and the whole area.
+/// Returns the linear programme of a set of cells. Its variables (columns) are the fractions of the cells and the
+/// minimum goal. It has a constraint (row) for each goal, for each mean, and for the sum of the fractions.
 compute::LinearProgramme programme_of(const std::vector<MixedCell>& cells, const CellSet& set,
                                       const MixtureRules& rules) {
   compute::LinearProgramme programme;
@@ -60,7 +60,7 @@ double weighted_sum(const std::vector<double>& weights, const std::vector<double
   return std::inner_product(weights.begin(), weights.end(), values.begin(), 0.0);
 }
 
-/// Sets the values of a mixture from the fractions of its cells.
+/// Computes the goals, means and merit of a mixture from the fractions of its cells.
 void add_up(const std::vector<MixedCell>& cells, const CellSet& set, const std::vector<double>& shares,
             Mixture& mixture) {
   mixture.goals.assign(cells.front().goals.size(), 0.0);
@@ -96,8 +96,8 @@ Mixture mixture_of(const std::vector<MixedCell>& cells, const CellSet& set, cons
   return mixture;
 }
 
-/// Upper bound of the merit of mixtures, which follows from dual prices. A mixture has at most the maximum merit of its
-/// cells, if the merits of the cells are evaluated at these prices.
+/// Upper bound of the merit of mixtures, which follows from dual prices: no mixture has a higher merit than the best of
+/// its cells, if the merits of the cells are evaluated at these prices.
 class PriceBound {
  public:
   PriceBound(const std::vector<MixedCell>& cells, const MixtureRules& rules, const MixturePrices& prices) {
@@ -121,7 +121,7 @@ class PriceBound {
     const auto end = std::ranges::partition_point(order_, [&](std::size_t cell) { return merits_[cell] > merit; });
     return static_cast<std::size_t>(end - order_.begin());
   }
-  /// Returns true if a mixture of the set may have a merit above a value.
+  /// Returns true if the upper bound of the set is above a value, so that a mixture of the set can have a higher merit.
   bool lets_pass(const std::vector<std::size_t>& set, double merit) const {
     return std::ranges::any_of(set, [&](std::size_t cell) { return merits_[cell] > merit; });
   }
@@ -179,8 +179,8 @@ class SetSearch {
     return best_.is_there() ? best_.merit + as_good(best_.merit) : -std::numeric_limits<double>::infinity();
   }
 
-  /// Searches for a good first mixture, which shortens the search. It is the relaxed mixture, from which the cells with
-  /// the smallest fractions are removed one by one.
+  /// Searches for a good first mixture, because it shortens the search. The search begins with the relaxed mixture and
+  /// removes the cells with the smallest fractions one by one.
   void begin_with(const Mixture& relaxed) {
     std::vector<ZoneShare> zones = relaxed.zones;
     while (zones.size() > 1) {
@@ -195,7 +195,7 @@ class SetSearch {
     }
   }
 
-  /// Replaces single cells by others as long as the mixture becomes better.
+  /// Replaces single cells of the best mixture by other cells as long as the mixture becomes better.
   void improve() {
     for (double before = -std::numeric_limits<double>::infinity(); best_.is_there() && best_.merit > before;) {
       before = best_.merit;
@@ -284,15 +284,15 @@ class SetSearch {
     grow(set, mixture);
   }
 
-  /// Returns true if a set may be better than the best mixture according to all stored bounds. Sets that can still be
-  /// extended are always accepted.
+  /// Returns false if one of the stored bounds shows that a set is not better than the best mixture. Always returns
+  /// true for sets that can still be extended.
   bool may_beat(const std::vector<std::size_t>& set) const {
     if (set.size() < most_zones_) return true;
     return std::ranges::all_of(bounds_, [&](const PriceBound& bound) { return bound.lets_pass(set, to_beat()); });
   }
 
-  /// Returns a list of cells. Every extension of this set that is better than the best mixture contains at least one
-  /// cell of the list. Each stored bound gives such a list; the shortest list is returned.
+  /// Returns a list of cells. Every extension of `set` that is better than the best mixture contains at least one cell
+  /// of the list. Each stored bound yields such a list; the shortest list is returned.
   std::vector<std::size_t> candidates(const std::vector<std::size_t>& set, const Mixture& mixture) const {
     const PriceBound* fewest = nullptr;
     std::size_t least = cells_.size() + 1;

@@ -1,7 +1,7 @@
 #pragma once
 
 // Computes the best fractions of the area for given cells. The coefficients of a part are area-weighted means of its
-// cells' coefficients, so that the problem is a linear programme. This file does not depend on optics.
+// cells' coefficients. The problem is therefore a linear programme. This file does not depend on optics.
 
 #include <cstddef>
 #include <limits>

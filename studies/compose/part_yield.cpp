@@ -38,8 +38,8 @@ std::size_t worst_goal(const std::vector<std::vector<double>>& zones, const std:
   return worst;
 }
 
-/// Returns the linear programme of best_shares(). Its columns are the fractions of the area, the value below which a
-/// part is among the worst, and the shortfall of each part below this value.
+/// Returns the linear programme of best_shares(). Its variables (columns) are the fractions of the area, the value
+/// below which a part is among the worst, and the shortfall of each part below this value.
 compute::LinearProgramme yield_programme(const DrawnParts& parts, double worst_share, const compute::Bounds& bounds,
                                          const std::set<PartGoal>& rows) {
   compute::LinearProgramme programme;

@@ -18,9 +18,9 @@ namespace retrace::studies {
 /// Goals of the cells in random parts, indexed by part, zone and goal.
 using DrawnParts = std::vector<std::vector<std::vector<double>>>;
 
-/// Returns random parts. Each zone has random angle errors, Gaussian and independent, which are the same for all its
-/// cells.
-/// \param responses response of each zone, which includes the errors from cell to cell
+/// Returns random parts. Each zone has random angle errors, Gaussian and independent. All cells of a zone have the same
+/// errors.
+/// \param responses response of each zone; it includes the effect of errors from cell to cell
 DrawnParts drawn_parts(const std::vector<ErrorResponse>& responses, double sigma_arcmin, std::size_t parts,
                        std::uint32_t seed);
 
@@ -42,7 +42,7 @@ std::optional<std::vector<double>> best_shares(const DrawnParts& parts, double w
 using CellShares = std::vector<std::pair<std::size_t, double>>;
 
 /// Searches for the set of at most `most_zones` cells, and their fractions of the area, for which the mean minimum goal
-/// of the worst parts is largest. All sets of cells are tried, so that there must be few cells.
+/// of the worst parts is largest. The number of cells must be small, because all sets are tried.
 /// \param parts random parts with one zone for each cell
 /// \return nothing if the computation was cancelled or no set is allowed
 std::optional<CellShares> best_set(const DrawnParts& parts, double worst_share, std::size_t most_zones,

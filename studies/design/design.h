@@ -30,7 +30,7 @@ namespace retrace::studies {
 
 /// Optical idealisations that a design may request, for comparison with theory.
 struct Idealisation {
-  bool mirror_facets = false;  ///< retro facets reflect all light at every angle
+  bool mirror_facets = false;  ///< true: retro facets reflect all light at every angle
   /// True if the entrance face transmits all light. Light from inside beyond the critical angle is then lost.
   bool lossless_entrance = false;
 };
@@ -69,7 +69,7 @@ struct HeightMapTexture {
   HeightMapAxis level_axis = HeightMapAxis::x;
   int form_degree = 1;  ///< degree of the polynomial that is removed from the map, 1..8
 };
-/// Surface texture of the retro facets. The order is that of the words of `surface.model`.
+/// Surface texture of the retro facets. The alternatives have the same order as the words of `surface.model`.
 using FacetTexture = std::variant<SmoothTexture, HarveyShackTexture, AbgTexture, MicrofacetTexture, HeightMapTexture>;
 
 /// Term of a polynomial over a facet: height_um x^level y^down. x is the horizontal coordinate and y the coordinate
@@ -88,7 +88,8 @@ struct FormMap {
 };
 /// Deviation of the retro facets from planes, the same for all facets. It is the sum of the three members.
 struct FormOfFacets {
-  double sink_um = 0.0;  ///< sag of a paraboloid into the body, from the farthest corner of the facet to its centre
+  /// Sag of a paraboloid into the body, from the farthest corner of the facet to the facet's centre.
+  double sink_um = 0.0;
   std::vector<FormTerm> terms;
   std::optional<FormMap> map;
 
@@ -126,7 +127,7 @@ struct ArrayMask {
   double threshold = 0.7;      ///< pixels with grey < threshold * 255 are dark and have elements
 };
 
-/// File with planes of individual facets, which replace the planes of the element.
+/// File with planes of individual facets. They replace the nominal planes of the facets.
 struct FacetPlanesFile {
   std::string name;  ///< name of the file, as given
   /// Path of the file, from the working directory; part_of() checks the file when it reads it.
@@ -146,7 +147,8 @@ struct ElementArray {
 struct PartMesh {
   std::string name;            ///< name of the STL file, as given
   std::filesystem::path file;  ///< path of the file, from the working directory; part_of_design() reads the file
-  bool allow_open = false;     ///< true: a mesh that is not closed is traced; its openings are closed by flat pieces
+  /// True if a mesh that is not closed is traced. Its openings are then closed by flat patches.
+  bool allow_open = false;
   std::optional<double> thickness_mm;  ///< thickness that the mesh must have; not checked if empty
 };
 
@@ -186,15 +188,15 @@ struct ZonedPart {
 /// Shape that a design describes.
 using Shape = std::variant<ElementArray, PartMesh, Plate, ZonedPart, raytrace::BallLayer>;
 
-/// File with a curved entrance face, which replaces the plane one.
+/// File with a curved entrance face. It replaces the plane entrance face.
 struct EntranceFile {
   std::string name;            ///< name of the file, as given
   std::filesystem::path file;  ///< path of the file, from the working directory; entrance_of_design() reads the file
   bool is_mesh = false;        ///< true: an STL file; false: the file of a turned part
-  /// True if the mesh is the counterpart of the part, which is above the entrance face. The downward triangles of the
-  /// mesh are then the entrance face.
+  /// True if the mesh is a counterpart that is located above the entrance face. The entrance face then consists of the
+  /// triangles of the mesh that face downward.
   bool mesh_bottom = false;
-  /// Position in the part frame of the origin of the file's frame. Default: the centre of the part.
+  /// Position of the origin of the file's frame (x and y), in the part frame. Default: the centre of the part.
   std::optional<std::array<double, 2>> centre_mm;
 };
 
@@ -259,7 +261,8 @@ struct EntranceState {
   double film_coverage = 0.0;
   double water_index = 1.333;
   double drop_coverage = 0.0;
-  /// Set if `drop_coverage` is above 0. The other optional members are set if their coverage or `haze` is above 0.
+  /// Set if `drop_coverage` is above 0. Other optional members, except the azimuth, are set if their coverage or `haze`
+  /// is above 0.
   std::optional<double> drop_contact_angle_deg;
   double dust_coverage = 0.0;
   std::optional<double> dust_albedo;
@@ -272,7 +275,7 @@ struct EntranceState {
   double roughness_sq_nm = 0.0;
   double correlation_length_um = 0.0;
 
-  /// Returns true if the face scatters light, unlike a clean plane.
+  /// Returns true if the face scatters light. A clean plane face does not.
   bool scatters() const {
     return drop_coverage > 0.0 || dust_coverage > 0.0 || scratch_coverage > 0.0 || haze > 0.0 || roughness_sq_nm > 0.0;
   }
@@ -310,7 +313,7 @@ struct Detector {
   std::vector<double> acceptance_half_angle_deg = {0.5};
 };
 
-/// Contents of a design file, checked and with defaults filled in.
+/// Contents of a design file. They have been checked, and defaults are filled in.
 struct Design {
   std::string source;  ///< file name as given, "-" for standard input
   std::string title;   ///< empty if no title was given
@@ -329,7 +332,8 @@ struct Design {
   std::vector<std::filesystem::path> files() const;
   /// Returns a warning for each key of the design file that has no effect because of another key.
   Warnings warnings() const;
-  /// Returns the position at which a key was given, or at which it is missing.
+  /// Returns the position at which a key was given. For a missing key, returns the position that messages report for
+  /// it.
   InputLocation where(std::string_view key) const;
   /// Returns the position of the key that determines the texture of the facets.
   InputLocation where_texture() const;
@@ -353,7 +357,7 @@ struct Design {
   /// \pre elements()
   const geometry::PartSpec& part() const { return std::get<ElementArray>(shape).part; }
   geometry::PartSpec& part() { return std::get<ElementArray>(shape).part; }
-  /// Returns true if the design has an infinite array. Returns false for balls, although a layer with a pitch is
+  /// Returns true if the design has an infinite array. Returns false for balls, even though a layer with a pitch is
   /// infinite.
   bool is_endless() const { return elements() != nullptr && part().array.extent == geometry::Extent::infinite; }
   /// Returns the thickness of the plate as given in the design, or 0 if it is not given.

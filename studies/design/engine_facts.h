@@ -1,6 +1,6 @@
 #pragma once
 
-// Determines for a design which engines can trace it.
+// Facts about a design that determine which engines can trace it.
 
 #include "core/error.h"
 #include "raytrace/engines/engine.h"
@@ -14,7 +14,7 @@ using raytrace::Engine;
 /// \param optics optical properties of the design; null: facts that depend on them are not set
 raytrace::EngineFacts engine_facts(const Design& design, const raytrace::Optics* optics);
 
-/// Returns the position of the key of a design that causes an obstacle.
+/// Returns the position of the key in the design file that causes an obstacle.
 InputLocation position_of(const Design& design, raytrace::Obstacle obstacle);
 
 }  // namespace retrace::studies

@@ -21,7 +21,7 @@ using geometry::Polygon, geometry::Vec2, surface_models::FacetForm, surface_mode
 
 constexpr double kMmPerUm = 1e-3;
 constexpr double kMissingShareToTell = 0.05;
-/// Maximum slope of a form. The model neglects terms of second order in the slope, so that its relative error is at
+/// Maximum slope of a form. The model neglects terms of second order in the slope. Its relative error is therefore at
 /// most this value.
 constexpr double kSteepest = 0.03;
 /// Minimum fraction of a facet's extent that a map must cover. The polynomial is extrapolated to the remainder.

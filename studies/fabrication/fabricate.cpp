@@ -85,7 +85,7 @@ std::vector<SectionMove> section_moves(const FabricationResult& result, bool rou
       if (visit == nullptr || !wanted.contains(program.subroutines[visit->subroutine].title)) continue;
       const bool rotated = result.plan.elements[static_cast<std::size_t>(visit->element)].rotated;
       if (!element && !rotated) element = visit->element;
-      // Passes next to each other along the root are equal in the section, so that one of them is enough.
+      // Passes that are side by side along the root have the same section. Therefore, only the first of them is kept.
       if (element == visit->element && seen.insert(visit->subroutine).second) first_only.items.push_back(item);
     }
     if (!element) continue;

@@ -73,7 +73,7 @@ bool is_inside(const geometry::Part& part, const Vec3& p) {
   return true;
 }
 
-/// Returns true if a point is on the side of the sheet where the body of the part is.
+/// Returns true if a point is on that side of the sheet on which the body of the part is located.
 bool is_behind(const raytrace::Film& film, double thickness_mm, const Vec3& p) {
   if (!film.radius_mm) return p.z() <= thickness_mm;
   const double from_axis = std::hypot(p.x(), p.z() - thickness_mm + *film.radius_mm);

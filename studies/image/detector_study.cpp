@@ -19,9 +19,10 @@ using geometry::Rectangle, geometry::Vec2, geometry::Vec3;
 
 constexpr std::size_t kMostPixels = 8192;
 constexpr std::size_t kMostAnglePixels = 2049;
-// Fraction of the power that beams may leave untraced. It is too small to be visible in a picture.
+// Maximum fraction of the power that remains untraced if light is traced as beams. It is too small to be visible in a
+// picture.
 constexpr double kTruncatedGoal = 1e-5;
-// Maximum number of beams for which the engine `auto` traces exactly. Tracing this number takes some seconds.
+// Maximum number of beams up to which the engine `auto` uses exact tracing. Tracing this number takes some seconds.
 constexpr std::uint64_t kBeamsOfAutomatic = 1'000'000;
 
 raytrace::Illumination illumination_of(const Design& design, const DetectorRequest& request) {

@@ -31,11 +31,11 @@ struct DetectorResult {
   bool complete = true;
 };
 
-/// Study of a checked request, ready to run.
+/// Study of a detector. The constructor checks the request and prepares the model; run() computes the maps.
 class DetectorStudy {
  public:
-  /// \throw InputError for numbers out of range, an unknown material, and for light or facets that the engine cannot
-  /// trace
+  /// \throw InputError if a number is out of range, if a material is unknown, or if the engine cannot trace the light
+  /// or the facets
   DetectorStudy(Design design, DetectorRequest request);
 
   /// Computes the maps.

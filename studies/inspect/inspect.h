@@ -82,9 +82,10 @@ struct Inspection {
   std::optional<FormReport> form;    ///< form of the facets; empty for plane facets
   CoatingReports coating;
   std::optional<EntranceStateReport> entrance_state;  ///< state of a face that is not clean
-  double dead_zone_share = 0.0;      ///< fraction of an element's plan that rounded and chamfered edges occupy
-  std::optional<BallFigures> balls;  ///< for kind = "ball"; then only this, the light, counts and areas are valid
-  std::string boundary;              ///< result of the boundary check
+  double dead_zone_share = 0.0;  ///< fraction of an element's plan that rounded and chamfered edges occupy
+  /// Figures for kind = "ball". If they are set, only this member, the light, the counts and the areas are valid.
+  std::optional<BallFigures> balls;
+  std::string boundary;  ///< result of the boundary check
   Warnings warnings;
 };
 

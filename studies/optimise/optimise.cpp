@@ -161,7 +161,8 @@ class Search {
     return best ? std::optional(rounded(*best)) : std::nullopt;
   }
 
-  /// Returns the neighbours of the best design. Each differs from it by one step of one parameter.
+  /// Returns the neighbours of the best design. Each neighbour differs from the best design by one step of one
+  /// parameter.
   std::vector<Rejected> neighbours(const Variant& best) {
     std::vector<Rejected> found;
     for (std::size_t k = 0; k < study_.parameters.size(); ++k)
@@ -185,7 +186,7 @@ class Search {
 
  private:
   /// Searches along a line of designs, by bisection, for the points at which the constraints begin or cease to be
-  /// satisfied. The last feasible design before such a point may be the best.
+  /// satisfied. The best design may be the last feasible design before such a point.
   void look_at_edges(const std::vector<Variant>& line) {
     if (continuous_.size() != 1) return;
     for (std::size_t k = 0; k + 1 < line.size(); ++k)
@@ -246,7 +247,7 @@ class Search {
   const std::vector<std::size_t>& continuous_;
 };
 
-/// Returns why a design was not chosen.
+/// Returns a text that explains why a design was not chosen.
 std::string why_not(const Variant& variant, const Variant& best, const OptimiseRequest& request,
                     const Evaluator& evaluator) {
   if (variant.failed) return variant.reason;

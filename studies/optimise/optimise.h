@@ -78,8 +78,8 @@ struct Exclusion {
 
 struct Optimum {
   std::optional<Variant> best;  ///< none if no design is feasible
-  std::string none_because;     ///< why no design is feasible; empty if there is a best design
-  /// Designs that each constraint excludes, in the order of the constraints. Empty if there is a best design.
+  std::string none_because;     ///< text that explains why no design is feasible; empty if there is a best design
+  /// Effect of each constraint, in the order of the constraints. Empty if there is a best design.
   std::vector<Exclusion> exclusions;
   std::vector<Variant> front;  ///< feasible designs that no other design dominates
   std::vector<Rejected> rejected;

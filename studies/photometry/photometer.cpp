@@ -18,8 +18,8 @@ namespace {
 
 using geometry::Vec2, geometry::Vec3, raytrace::PhotometricGeometry;
 
-// Maximum power for which diffraction may be omitted because the budget of polygons is exhausted, as a fraction of the
-// direction's power.
+// Maximum power whose diffraction may be omitted because the budget of polygons is exhausted, as a fraction of the
+// incident power. If more power is affected, the reading counts as lacking diffraction.
 constexpr double kMostBeyondBudget = 1e-4;
 
 Angle deg(double value) {
@@ -38,7 +38,8 @@ materials::SpectralCurve absorption_per_mm(const Design& design) {
   return curve;
 }
 
-/// Returns the length of the path of light into a design and back out, which determines the absorption by a dye.
+/// Returns the path length, inside a design, of light that enters, is reflected at the elements and leaves. It
+/// determines the absorption by a dye.
 double way_through_mm(const Design& design) {
   if (design.balls()) return 2.0 * design.balls()->diameter_mm;
   const geometry::Part part = part_of_design(design, nullptr);

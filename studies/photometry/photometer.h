@@ -31,14 +31,14 @@ struct PhotometerSetting {
 };
 
 raytrace::PhotometricGeometry geometry_of(const PhotometerSetting& setting, double observation_deg);
-/// Returns the setting for one direction of light and one of observation.
+/// Returns the setting for one direction of light and one direction of observation.
 /// \param directions directions in the part frame
 PhotometerSetting setting_of(const raytrace::PhotometricDirections& directions);
 /// Returns the frame of directions around the direction back to the source, in the part frame.
 raytrace::ReturnFrame frame_of(const PhotometerSetting& setting);
 
-/// Spectral response of the receiver: one of the three colour matching functions. y_bar is V(lambda).
-enum class PhotometricResponse { x_bar, y_bar, z_bar };  ///< functions of the CIE 1931 observer; y_bar is V
+/// Spectral response of the receiver: a colour matching function of the CIE 1931 observer. y_bar is V(lambda).
+enum class PhotometricResponse { x_bar, y_bar, z_bar };
 
 struct PhotometerReading {
   std::vector<double> r_a;  ///< R_A for each observation angle, in cd/(lx m^2)
@@ -76,14 +76,15 @@ class Photometer {
   std::optional<std::vector<WeighedField>> far_fields(const geometry::Vec3& to_source,
                                                       const raytrace::BeamTracer& tracer,
                                                       const Cancellation* cancel) const;
-  /// Returns a beam tracer that several threads may use at the same time. The tracer refers to this photometer, which
-  /// must exist as long as the tracer.
+  /// Returns a beam tracer that several threads may use at the same time. The tracer refers to this photometer, so the
+  /// photometer must exist as long as the tracer.
   raytrace::BeamTracer make_tracer() const;
   const raytrace::ApertureKernel& kernel() const { return kernel_; }
 
-  /// Returns for x and y whether the part and the polarisation of the light are mirror-symmetric along this axis.
+  /// Returns two values, for the axes x and y. A value is true if the part and the polarisation of the light do not
+  /// change when this axis is reversed.
   std::array<bool, 2> mirrors() const;
-  /// Returns groups of settings that can share one traced far field.
+  /// Groups the settings. All settings of a group can be measured from one traced far field.
   std::vector<LitAlike> settings_lit_alike(const std::vector<PhotometerSetting>& settings) const;
 
   const Warnings& warnings() const { return model_.warnings; }
@@ -101,15 +102,16 @@ class Photometer {
   /// Returns the smallest cell width, in mm, for which diffraction is not significant.
   double least_undiffracted_mm() const;
   /// Returns a photometer that measures, with diffraction, only the mean field of a part with rough facets: the field
-  /// averaged over the random heights, without scattered light. This photometer measures the part by rays, without
-  /// diffraction. The mean field is nowhere brighter than the light that the part really returns, so that its readings
-  /// are lower bounds (docs/theory/photometry.md). Returns nothing for other parts, and if the request selects another
-  /// engine or no diffraction.
+  /// averaged over the random heights, without scattered light. The current photometer measures the part by rays,
+  /// without diffraction. The mean field is nowhere brighter than the light that the part really returns. Readings of
+  /// the returned photometer are therefore lower bounds (docs/theory/photometry.md). Returns nothing for parts without
+  /// rough facets and for parts whose mean field cannot be traced exactly. Also returns nothing if the request selects
+  /// another engine or no diffraction.
   std::optional<Photometer> mean_field() const;
   /// Makes later measurements use Monte Carlo.
   void leave_exact() { tracing_ = Tracing::rays; }
   bool is_exact() const { return tracing_ != Tracing::rays; }
-  /// Accuracy of later measurements, and the time that they may take.
+  /// Trade-off between accuracy and duration of later measurements.
   enum class Effort {
     full,
     /// Fewer resampled beams represent the weak beams. Such values may guide a search, but must not be shown to the
@@ -151,10 +153,10 @@ class Photometer {
     double std_error = 0.0;
     double truncated = 0.0;
     std::optional<PhotometricDirection::Split> split;
-    double beyond_budget = 0.0;  ///< power that lacks diffraction because the budget of polygons is exhausted
+    double beyond_budget = 0.0;  ///< power whose diffraction is omitted because the budget of polygons is exhausted
     bool complete = false;
   };
-  /// Way in which light is traced.
+  /// Method by which light is traced.
   enum class Tracing {
     beams,       ///< all light as beams; the light that rough facets scatter is described by random phases
     mean_field,  ///< beams without the light that rough facets scatter; readings are lower bounds
@@ -221,7 +223,7 @@ class Photometer {
   PhotometrySettings request_;
   OpticalModel model_;
   std::optional<Lamp> lamp_;  ///< empty if the spectrum of the design is used
-  /// Weights of the wavelengths by flux, without absorption in the dye, which the tracer applies.
+  /// Weights of the wavelengths by flux. They do not include the absorption in the dye, because the tracer applies it.
   std::vector<double> weights_;
   raytrace::ApertureKernel kernel_;
   raytrace::EngineFacts facts_;

@@ -18,8 +18,8 @@ namespace {
 using raytrace::ReturnFrame;
 
 // Default cut-off power of beams, as a fraction of the power that falls on one element. Light below it, which is
-// truncated or does not interfere, changes readings by up to 5e-4. The choice of wavelengths changes them by up to
-// 1e-3.
+// truncated or does not interfere, changes readings by up to 5e-4 of their value. The choice of wavelengths changes
+// them by up to 1e-3.
 constexpr double kCutoff = 1e-5;
 // Default cut-off power for finite parts whose weak beams are resampled. It is higher than kCutoff, because tracing
 // many elements takes much time.
@@ -28,8 +28,8 @@ constexpr double kCutoffOfFinite = 5e-5;
 // to parts with very many elements.
 constexpr double kCutoffOfAll = 5e-7;
 constexpr std::uint32_t kReplicates = 16;
-// Number of replicates for a photometer that only guides a search. Such readings have errors of about 1e-3 unless
-// almost no light returns, and take two thirds of the usual time.
+// Number of replicates for a photometer that only guides a search. Such readings have relative errors of about 1e-3
+// unless almost no light returns, and take two thirds of the usual time.
 constexpr std::uint32_t kReplicatesOfGuide = 4;
 // Ratio of the cut-off power of a photometer that only guides a search to the usual one.
 constexpr double kCutoffOfGuide = 3.0;

@@ -106,10 +106,10 @@ Plan plan_of(const PhotometrySettings& request, bool mirrors) {
   return plan;
 }
 
-/// Readings for each setting. Empty for settings that were not measured.
+/// Readings of all settings. An entry is empty if the setting was not measured.
 using Readings = std::vector<std::optional<PhotometerReading>>;
 
-/// Returns all readings of each test point, in the order of the points. Empty for points that were not measured.
+/// Returns all readings of each test point, in the order of the points. A list is empty if its point was not measured.
 std::vector<std::vector<PhotometricPoint>> readings_of_points(const PhotometrySettings& request, const Plan& plan,
                                                               const Readings& readings) {
   std::vector<std::vector<PhotometricPoint>> of_points;

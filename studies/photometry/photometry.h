@@ -76,7 +76,8 @@ inline bool every_point_holds(Verdict verdict) {
 /// Test point with its reading.
 struct PhotometricPoint {
   TestPoint asked;
-  /// Angle V of the measurement, which differs from V of the test point if the face mirrors the lamp there.
+  /// Angle V of the measurement. It differs from V of the test point if the entrance face reflects the lamp back to the
+  /// lamp there.
   double v_deg = 0.0;
   double rotation_deg = 0.0;  ///< rotation at which the reading is minimal
   double r_i_mcd_per_lx = 0.0;
@@ -84,7 +85,7 @@ struct PhotometricPoint {
   double r_l = 0.0;                   ///< cd/(lx m^2)
   double std_error_mcd_per_lx = 0.0;  ///< standard error of ray tracing or of resampled beams
   double limit_mcd_per_lx = 0.0;
-  /// True: the reading lacks significant diffraction, so that it cannot be compared with the limit.
+  /// True: the reading lacks significant diffraction and can therefore not be compared with the limit.
   bool lacks_diffraction = false;
   bool is_lower_bound = false;  ///< true: the value is a lower bound
 
@@ -103,7 +104,8 @@ struct PhotometricDirection {
   double std_error = 0.0;  ///< standard error of the RRE
   double truncated = 0.0;  ///< maximum power that the RRE may lack because weak beams were truncated
   /// Power that leaves the entrance face in directions inside and outside of the window (cone with the half-angle
-  /// window_deg), at one wavelength. Not computed by Monte Carlo, and not for large cells, which would take too long.
+  /// window_deg), at one wavelength. It is not computed by Monte Carlo. It is also not computed for large cells,
+  /// because this would take too long.
   struct Split {
     double wavelength_nm = 0.0;
     double window = 0.0;
@@ -205,7 +207,7 @@ struct PhotometryResult {
   std::vector<PhotometricDirection> directions;
   Verdict verdict = Verdict::fail;
   OpenReason reason;                        ///< reason why points are undetermined; empty if all are determined
-  std::optional<PhotometricColour> colour;  ///< colour, which has its own verdict
+  std::optional<PhotometricColour> colour;  ///< colour with its own verdict
   /// Proposed change of a failing design: one with which the design passes, or else the best one that was tried.
   std::optional<PhotometricChange> change;
   std::vector<FarFieldMap> maps;

@@ -17,7 +17,7 @@ namespace {
 
 using geometry::PartSpec, geometry::RtpElement, raytrace::Account;
 
-/// Rounding error of RRE from the exact engine. The error by truncated light is not included.
+/// Rounding error of RRE from the exact engine. It does not include the error due to truncated light.
 constexpr double kRounding = 1e-12;
 constexpr double kArcminPerDeg = 60.0;
 
@@ -59,7 +59,7 @@ double value_of(const TracedDirection& at, RreParameter parameter) {
 struct Traced {
   std::vector<double> rre;  ///< indexed by acceptance cone
   double truncated = 0.0;
-  /// Uncertainty by which `rre` and `truncated` vary between traces at neighbouring values of a parameter.
+  /// Amount by which `rre` and `truncated` vary irregularly between traces at neighbouring values of a parameter.
   double noise = 0.0;
 
   Sample rre_sample(std::size_t cone) const { return {rre[cone], noise}; }
@@ -124,8 +124,8 @@ bool keep_elements(const Design& design, double size_mm, DifferenceRange& range)
   return false;
 }
 
-/// Returns the policy of the point, with a maximum number of beams in proportion to the beams that the point has
-/// needed. Without it, traces near normal incidence might need a million times as many beams, dozens of times.
+/// Returns the policy of the point, with a limit on the number of beams in proportion to the number that the point has
+/// needed. Without this limit, dozens of traces near normal incidence might each need a million times as many beams.
 raytrace::BeamPolicy policy_nearby(const TracedDirection& at) {
   constexpr std::uint64_t kLeast = 200'000;
   constexpr std::uint64_t kTimes = 20;

@@ -132,7 +132,7 @@ class RreStudy {
   /// Computes the points of one design.
   /// \throw BudgetError in the same cases as run()
   RreResult run_design(std::size_t design, const Cancellation* cancel) const;
-  /// Returns the result that run() would return for given points of all designs. Only RRE is contained, not the other
+  /// Returns the result that run() would return for given points of all designs. It contains only RRE and no other
   /// requested results.
   RreResult result_of(std::vector<RrePoint> points) const;
 

@@ -13,7 +13,8 @@
 namespace retrace::studies {
 namespace {
 
-/// Amount of work that beams may do even if their error is already below the requested error. It takes about 3 ms.
+/// Work, in units of BeamTrace::work(), for which beams are traced even if their error is already below the requested
+/// error. It takes about 3 ms.
 constexpr std::uint64_t kSpareWork = 100'000;
 
 raytrace::Sampling sampling_of(const RreSettings& request) {
@@ -69,7 +70,7 @@ std::size_t unit_count(const std::vector<Direction>& directions) {
 
 }  // namespace
 
-/// Traces all directions of one design at all its wavelengths.
+/// Traces the directions of one design at all its wavelengths.
 class DesignTracing {
  public:
   DesignTracing(const Design& design, const OpticalModel& model, const RreSettings& request,
@@ -82,7 +83,8 @@ class DesignTracing {
         engines_(model.part, model.entrance ? &*model.entrance : nullptr, engine_settings(design, facts, request),
                  cancel) {}
 
-  /// Returns true if each thread traces another direction. Otherwise all threads trace the same direction.
+  /// Returns true if each thread traces a different direction. Otherwise, all threads trace the same direction
+  /// together.
   bool takes_several() const { return follows_beams_; }
 
   /// Sets the number of combinations of direction and wavelength that will be traced.
@@ -97,7 +99,7 @@ class DesignTracing {
     const raytrace::PartEngines::Light traced{light.optics, illumination_of(direction.at, design_),
                                               raytrace::sampling_at(sampling_of(request_), light.weight, wavelength)};
     if (design_.balls()) return trace_balls(direction, wavelength, traced, progress);
-    if (!follows_beams_) return keep(direction, wavelength, engines_.by_rays(traced, &progress));
+    if (!follows_beams_) return keep(direction, wavelength, engines_.by_rays(traced, progress));
     if (must_be_exact(request_)) return trace_beams(direction, wavelength, traced, progress);
     if (request_.engine == Engine::stochastic)
       return keep(direction, wavelength, engines_.by_stochastic_beams(traced, progress));

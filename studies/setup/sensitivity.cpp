@@ -143,7 +143,8 @@ void tell_walls(const Machine& machine, const PlacedCut& ending, double half_wid
 }
 
 /// Returns the effects of one set-up quantity.
-/// \param ways_up upward cuts of a V-shaped tool, which machine the other part of their facets
+/// \param ways_up last upward cuts of a V-shaped tool; they machine that part of a facet which the cuts in `cuts` do
+/// not reach
 Sensitivity row_of(const Machine& machine, double half_width_mm, const SetupQuantity& quantity,
                    const CutsOfFacets& cuts, const CutsOfFacets& ways_up, const std::vector<CutElement>& elements,
                    const std::vector<FacetKind>& kinds) {

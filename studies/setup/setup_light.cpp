@@ -21,8 +21,8 @@ using geometry::Vec3;
 
 /// Number of traced elements along each axis of the array.
 constexpr double kElementsAcross = 2.0;
-/// Displacement of a facet, in mm, above which its change of the light is computed. Smaller displacements are treated
-/// as no change.
+/// Displacement of a facet, in mm, above which the resulting change of the light is computed. Smaller displacements are
+/// treated as no change.
 constexpr double kStillMm = 1e-12;
 
 /// Minimum power of traced beams, as a fraction of the power on the part (for R_A: on an element). The results are then

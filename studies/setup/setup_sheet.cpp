@@ -126,8 +126,8 @@ std::vector<int> optional_stops_of(const Plan& plan) {
   return stops;
 }
 
-/// Tracks the thickness of the material that remains on the facets of one element. It represents all elements that are
-/// cut in the same way.
+/// Tracks the thickness of the material that remains on the facets of one element. This element represents all elements
+/// that are cut in the same way.
 class Standing {
  public:
   Standing(const FabricationResult& result, std::size_t zone)

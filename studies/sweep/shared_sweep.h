@@ -13,7 +13,7 @@ std::optional<std::string> compute_shared(const Sweep& sweep, std::uint64_t numb
 
 /// Computes the points that are not in the store, like run_sweep(). `share` distributes them as tasks among processes.
 /// \throw OutputError in the same cases as run_sweep()
-/// \throw Error of `share`
+/// \throw Error if `share` throws it
 bool share_sweep(const Sweep& sweep, compute::ResultStore& store, SweepObserver* observer, const ShareTasks& share);
 
 }  // namespace retrace::studies

@@ -18,7 +18,7 @@
 
 namespace retrace::studies {
 
-/// Combination of the values of several parameters into points.
+/// Method by which the values of several parameters are combined into points.
 enum class Combine {
   grid,    ///< all combinations of values; the last parameter varies fastest
   zipped,  ///< first values of all parameters together, then second values, and so on
@@ -88,7 +88,8 @@ class SweepObserver {
   virtual void at_share(double share) { static_cast<void>(share); }
 };
 
-/// Counts finished points and reports them to an observer, which may be null. Several threads may use an object.
+/// Counts finished points and reports them to an observer, which may be null. Several threads may use one object at the
+/// same time.
 class SweepCount {
  public:
   SweepCount(const Sweep& sweep, const compute::ResultStore& store, SweepObserver* observer);
@@ -109,8 +110,8 @@ class SweepCount {
 /// Returns the numbers of the points of a sweep that are not in the store, in ascending order.
 std::vector<std::uint64_t> unfinished(const Sweep& sweep, const compute::ResultStore& store);
 
-/// Computes the points that are not in the store, several at a time. Other processes may work on the same sweep. For
-/// points that they have claimed, the function waits.
+/// Computes the points that are not in the store, several at a time. Other processes may compute points of the same
+/// sweep; the function waits for the points that they have claimed.
 /// \return true if all points are finished, false if the computation was cancelled
 /// \throw OutputError if the store cannot be written
 bool run_sweep(const Sweep& sweep, compute::ResultStore& store, SweepObserver* observer, const Cancellation* cancel);
@@ -124,7 +125,8 @@ struct SweepResult {
   Warnings warnings;
 };
 
-/// Returns the finished points of a store, with warnings about failed points and other versions.
+/// Returns the finished points of a store, with warnings about failed points and points of other versions of the
+/// program.
 SweepResult collect(const Sweep& sweep, const compute::ResultStore& store, bool complete);
 
 }  // namespace retrace::studies

@@ -42,7 +42,7 @@ Sweep tolerance_sweep(Study study, const ToleranceRequest& request) {
 
 namespace {
 
-/// Finished points of the plan (TolerancePlan), indexed by row and place in the row. Null for points that are not
+/// Finished points of the plan (TolerancePlan), indexed by row and position in the row. Null for points that are not
 /// finished.
 class Finished {
  public:

@@ -97,7 +97,8 @@ class DexelFacet {
     return -p.z() / normal_.z();
   }
 
-  /// Adds an interval to others and returns the length of its part that was not covered before.
+  /// Adds the interval from `low` to `high` to the disjoint intervals `parts`. Returns the length of the interval that
+  /// they did not cover before.
   static double take(std::vector<std::pair<double, double>>& parts, double low, double high) {
     double length = high - low;
     if (length <= 0.0) return 0.0;
@@ -125,7 +126,7 @@ class DexelFacet {
   std::vector<std::vector<std::pair<double, double>>> taken_;
 };
 
-/// Returns the maximum ratio of chip thickness to depth of cut, by the formulas of the theory.
+/// Returns the maximum ratio of chip thickness to depth of cut, by the formulas of docs/theory/verification.md.
 double most_share(const Job& job) {
   if (job.strategy == Strategy::dmc) {
     const Vec3 spine = v_tool_edges(job.tool).spine;
@@ -248,14 +249,14 @@ TEST_P(ChipFaults, EveryLineWhoseLossOrChangeThickensAChipIsFound) {
       EXPECT_FALSE(v.passes()) << what << " takes " << excess_um << " um too much\n" << listed(v);
       told += has_kind(v, "chip_too_thick") ? 1 : 0;
     } catch (const InputError&) {
-      continue;  // the job is refused
+      continue;  // the changed program is refused
     }
   }
   EXPECT_GT(thick, 50);
   EXPECT_GT(told, thick * 4 / 5) << "the others cut beside the element";
 }
 
-/// Returns the program in which the visits of one subroutine (its calls at elements) are removed or moved along Z.
+/// Returns the text of a program in which the calls of one subroutine are removed, or displaced along Z by `by_nm`.
 std::string changed_stage(const Plan& plan, std::size_t subroutine, std::optional<Nanometres> by_nm) {
   Program program = plan.programs.front();
   const auto is_of_it = [&](const Item& item) {
@@ -280,14 +281,15 @@ TEST_P(ChipFaults, AStageThatIsGoneOrStandsTooHighIsFound) {
         for (const std::optional<Nanometres> by_nm : {std::optional<Nanometres>(), {Nanometres{60'000}}}) {
           const std::string text = changed_stage(plan, k, by_nm);
           if (!verified(job, m, text).passes()) continue;
-          // The first layer may be so thin that a program without it is correct: the next layer removes its material.
+          // The first layer can be so thin that a program without it is correct. The next layer then removes its
+          // material.
           const std::string& title = plan.subroutines[k].title;
           EXPECT_TRUE(title.starts_with("layer-1") && true_excess_um(job, m, text) < 0.0) << title << " of " << cuts;
         }
     }
 }
 
-/// On a substrate, the strip that a tilted edge leaves may be as wide as the depth of cut, and chips may be thicker by
+/// On a substrate, the strip that a tilted edge leaves can be as wide as the depth of cut, and chips can be thicker by
 /// the same amount. The verifier therefore finds missing finishing cuts by counting them.
 TEST(FinishingFaults, AFinishingCutThatIsMissingIsFoundWhereTheEdgeIsTilted) {
   Job job = square_job(2, geometry::Arrangement::aligned);

@@ -32,11 +32,12 @@ Machine machine(const std::string& name) {
   return parse_machine(read_file(std::string(RETRACE_SOURCE_DIR) + "/data/machines/" + name + ".toml"), name);
 }
 
-/// A job with its programs, and the cuts that form its facets.
+/// A job with its programs, and the final cut of each facet.
 struct Made {
   Job job;
-  Machine taken_for;                                                 ///< machine for which the programs are planned
-  std::map<std::pair<std::size_t, std::size_t>, FacetEdgeCut> last;  ///< final cuts, by element and facet
+  Machine taken_for;  ///< machine for which the programs are planned
+  std::map<std::pair<std::size_t, std::size_t>, FacetEdgeCut>
+      last;  ///< final cut of each facet; the key is the element and the facet
   std::vector<NcProgram> programs;
 };
 
@@ -53,7 +54,7 @@ Verification cut_on(const Made& made, const Machine& real) {
   return verify_programs(made.job, real, made.programs, {}, {});
 }
 
-/// Effect of an error on a facet, as the derivatives predict it: the change of the height at the mean point of the
+/// Effect of an error on a facet, as predicted by the derivatives: the change of the height at the mean point of the
 /// facet, and the changes of the slopes.
 struct Effect {
   double height_nm = 0.0;

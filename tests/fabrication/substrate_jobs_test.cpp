@@ -30,8 +30,8 @@
 #include "tests/fabrication/swept_volume_sink.h"
 #include "tests/support/refusals.h"
 
-// Tests of jobs with elements on inclined, curved and freeform substrates. The positions of elements are compared with
-// the part that light is traced in. Programs are read back and simulated.
+// Tests of jobs with elements on inclined, curved and freeform substrates. The positions of the elements are compared
+// with those of the part for ray tracing. Programs are read back and simulated.
 
 namespace retrace::fabrication::test::substrate_jobs_test {
 namespace {
@@ -74,7 +74,7 @@ std::vector<Named> jobs() {
   return all;
 }
 
-/// The positions and the facet planes of the elements of a job equal those of the part that light is traced in.
+/// The positions and the facet planes of the elements of a job equal those of the part for ray tracing.
 TEST(OnSubstrate, ElementsStandWhereThePartHasThem) {
   for (const Named& named : jobs()) {
     SCOPED_TRACE(named.what);
@@ -143,7 +143,7 @@ TEST(OnSubstrate, AllStrategiesCutPrismsAlongACylinder) {
     }
 }
 
-/// Jobs with rarely used keys pass verification on substrates as on a plane.
+/// Jobs with rarely used keys pass the verification on substrates, as they do on a plane.
 TEST(OnSubstrate, VariantsVerifyAsOnAPlane) {
   const std::vector<std::pair<std::string, std::function<void(Job&)>>> variants = {
       {"shrinkage", [](Job& job) { job.workpiece.shrinkage_percent = 2.0; }},
@@ -234,8 +234,8 @@ TEST(OnSubstrate, MeasuredAxesAreAllowedFor) {
   }
 }
 
-/// On a machine with axis B in its head, errors of the axes are compensated on a substrate as on a flat blank. The
-/// remaining errors only rotate the tool slightly in the plane of the facets.
+/// On a machine with a tilting head (axis B), axis errors are compensated on a substrate as well as on a flat blank.
+/// The remaining errors only rotate the tool slightly in the plane of the facets.
 TEST(OnSubstrate, MeasuredAxesOfAHeadAreAllowedFor) {
   Machine m = machine("ideal-dmc");
   m.name = "crooked";
@@ -308,8 +308,8 @@ TEST(OnSubstrate, APlaneGivenAsAFormulaMovesAsTheFlatArray) {
   }
 }
 
-/// Position of the tool at the end of a feed move: the reference point in the workpiece frame, and the words of the
-/// rotary axes.
+/// Position of the tool at the end of a feed move: the tool reference point in the workpiece frame, and the positions
+/// of the rotary axes.
 struct Cut {
   Vec3 reference_mm;
   RotaryUnits a = 0;
@@ -366,8 +366,9 @@ TEST(OnSubstrate, AnInclineAcrossTheRoofsTurnsA) {
   EXPECT_EQ(plan.stock_mm, 0.0);
 }
 
-/// If upright prisms stand on an inclined plane, the blank extends above their rims by h = s (b / 2 + h), with the
-/// slope s and the base b. The term s h is due to the cut, which becomes wider towards the face of the blank.
+/// If prisms with vertical axes are placed on an inclined plane, the blank extends above their rims by h = s (b / 2 +
+/// h), with the slope s and the base b. The term s h is due to the cut, which becomes wider towards the face of the
+/// blank.
 TEST(OnSubstrate, TheBlankStandsOverTheRimsOfParallelElements) {
   const Job job = prisms_on(plane_substrate(10.0, 0.0, ElementAxes::parallel));
   const double slope = std::tan(Angle::from_deg(10.0).rad());
@@ -376,8 +377,8 @@ TEST(OnSubstrate, TheBlankStandsOverTheRimsOfParallelElements) {
   EXPECT_EQ(stock_mm(bulging, cut_elements(bulging)), 0.0);
 }
 
-/// If a neighbour is lower by d, its cut reaches below the rim of the higher prism. The depth of this cut is d /
-/// sqrt(2), normal to the facet of the higher prism.
+/// If a neighbour is lower by d, its cut removes material below the rim of the higher prism. The depth of this cut,
+/// normal to the facet of the higher prism, is d / sqrt(2).
 TEST(OnSubstrate, RimsAreCutAsDeepAsNeighboursStandLower) {
   const auto overcut_um = [](const Job& job) { return verified(job, text_of(job)).rim_overcut_um_max; };
   const double d_mm = 0.451 * std::tan(Angle::from_deg(8.0).rad());
@@ -410,8 +411,8 @@ double lowest_cut_mm(const std::vector<Groove>& grooves, double x_mm, double y_m
   return lowest_mm;
 }
 
-/// A dexel simulation of the moves of all programs leaves a surface. This surface is the lowest of the cavities of all
-/// elements. The cut of an element enters a neighbour only where the facets of the element do.
+/// The surface from a dexel simulation of all programs is, at every point, the lowest of the cavities of all elements.
+/// The cut of an element therefore enters a neighbour only where the cavity of the element does.
 TEST(OnSubstrate, WhatIsLeftIsTheLowestOfAllCavities) {
   for (const Named& named : jobs()) {
     SCOPED_TRACE(named.what);

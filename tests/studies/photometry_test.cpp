@@ -387,8 +387,8 @@ TEST(Photometry, FindsTheAngleErrorThatPasses) {
   EXPECT_EQ(again.verdict, Verdict::pass);
 }
 
-/// Cancels the run during the search for a change of the design. The stages before the search, readings and colour, end
-/// at a share of 1.3 / 2.3 = 0.57 of the progress.
+/// Cancels the run during the search for a change of the design. The earlier stages, readings and colour, end at the
+/// fraction 1.3 / 2.3 = 0.57 of the progress.
 struct InterruptDuringTheSearch : Progress {
   Cancellation cancellation;
   void at(double share) override {

@@ -265,8 +265,8 @@ RreResult rre(const Design& design, Engine engine, double incidence_deg, std::op
   return RreStudy({design}, request).run();
 }
 
-// There are whole prisms on both sides of the border. Light along the normal goes from one facet to the other facet of
-// the same prism.
+// Whole prisms are on both sides of the border between the zones. Light along the normal goes from one facet to the
+// other facet of the same prism.
 TEST(ZonedDesign, PrismsTurnedInAZoneReturnWhatTheyDoAlone) {
   const std::string lengths = "x_length_mm = 8; y_length_mm = 4";
   const Design plain = parse_design(design_of(kRtp, lengths), "d.toml");
@@ -301,8 +301,8 @@ TEST(ZonedDesign, TheSumOfZonesIsThePartAsFarAsTheyAreWide) {
 }
 
 // If all columns have equal elements, the part equals the array. In the other designs, every second column is rotated
-// by 180 degrees. If such a part has an odd number of columns and is rotated by 180 degrees about its center, the
-// rotated columns become the others, and the other columns become the rotated ones.
+// by 180 degrees. If such a part has an odd number of columns, a rotation of the part by 180 degrees about its center
+// has the same effect as an exchange of rotated and unrotated columns.
 TEST(ZonedDesign, ColumnsInTurnAreTheArrayAndTurnWithIt) {
   const std::string lengths = "x_length_mm = 20; y_length_mm = 20";
   const std::string canted = "; cant_deg = 8; cant_azimuth_deg = 40";
@@ -322,8 +322,8 @@ TEST(ZonedDesign, ColumnsInTurnAreTheArrayAndTurnWithIt) {
   EXPECT_NEAR(rest_turned.rre, odd_turned.rre, 4.0 * std::hypot(rest_turned.std_error, odd_turned.std_error));
 }
 
-// In triangular arrays, light passes through neighbouring cells. Some of it meets two zones, and this fraction is
-// larger for narrow zones.
+// In triangular arrays, light passes from cell to cell. A fraction of the light passes through cells of two zones. This
+// fraction is larger for narrow zones.
 TEST(ZonedDesign, TellHowMuchLightMeetsTwoOfThem) {
   const auto share = [](const std::string& zones) {
     return inspect(read(zones, kTriangular), materials::MaterialLibrary::shipped()).zones->crossings[1].share;

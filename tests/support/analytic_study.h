@@ -17,8 +17,8 @@ namespace retrace::test {
 /// Folder of the example studies.
 inline const std::string kStudies = std::string(RETRACE_SOURCE_DIR) + "/examples/studies/";
 
-/// A quantity that is a function of the thickness of the plate and the index behind the facets. It replaces a traced
-/// quantity.
+/// A quantity that is a function of the thickness of the plate (x) and the refractive index behind the facets (y). It
+/// replaces a traced quantity.
 class Analytic : public studies::Quantity {
  public:
   using Function = std::function<double(double x, double y)>;
@@ -31,15 +31,17 @@ class Analytic : public studies::Quantity {
   Function f_;
 };
 
-/// Quantities by their names.
+/// Names of quantities, and the functions that define them.
 using Functions = std::vector<std::pair<std::string, Analytic::Function>>;
 
-/// The parameters x, the thickness, from 0.5 to 3, and y, the index behind the facets, from 1 to 3.
+/// TOML text of the parameters: x, the thickness, from 0.5 to 3 mm, and y, the refractive index behind the facets, from
+/// 1 to 3.
 constexpr const char* kIntervals =
     "[[parameter]]\nkey = \"body.thickness_mm\"\nname = \"x\"\nfrom = 0.5\nto = 3\n"
     "[[parameter]]\nkey = \"body.back_index\"\nname = \"y\"\nfrom = 1\nto = 3\n";
 
-/// \param keys tables of the study other than parameters and quantities
+/// Returns a study with analytic quantities.
+/// \param keys TOML text of the tables of the study, without parameters and quantities
 inline studies::Study analytic_study(const std::string& keys, const Functions& functions,
                                      const std::string& parameters = kIntervals) {
   std::string text = "design = \"../rtp_brick_1mm.toml\"\n" + parameters;

@@ -5,8 +5,8 @@
 
 namespace retrace::testing {
 
-/// Returns the frame for directions of returned light. Its normal is the direction to the source, and its first axis is
-/// source_axis().
+/// Returns the frame for directions of returned light. The normal of the frame is the direction to the source. Its
+/// first axis is source_axis().
 inline raytrace::ReturnFrame frame_at(const raytrace::Illumination& light) {
   raytrace::ReturnFrame frame;
   frame.to_source = raytrace::direction_to_source(light);

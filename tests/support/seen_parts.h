@@ -1,7 +1,7 @@
 #pragma once
 
-// A part with four prisms, whose facets the verifier computes for a machine with hidden errors. Also simulates
-// measurements of this part.
+// A part with four prisms. The verifier computes its facets for a machine whose errors the tested functions do not
+// know. Also simulates measurements of this part.
 
 #include <Eigen/Geometry>
 #include <Eigen/QR>
@@ -32,7 +32,8 @@ inline std::vector<fabrication::PrismGroove> prism_grooves(const fabrication::Jo
   return grooves;
 }
 
-/// Cut surface of a part: the facet planes that the verifier computes, and the face, as heights over the plane.
+/// Machined surface of a part, as a height z(x, y) in the workpiece frame: the facet planes that the verifier computes,
+/// and the face of the blank at z = 0.
 class CutSurface {
  public:
   explicit CutSurface(const fabrication::Machine& real, const studies::FabricationResult& made = four_prisms())
@@ -66,8 +67,8 @@ class CutSurface {
     return 0.0;
   }
 
-  /// Returns the maximum deviations of facets. A common rotation or displacement of the whole part is removed first,
-  /// because it cannot be observed.
+  /// Returns the maximum deviations of the facets from the design. A common rotation or displacement of the whole part
+  /// is removed first, because it cannot be observed.
   studies::FacetOutlook off() const {
     constexpr double kTiltNm = 250.0;  // converts a rotation to the deviation over half a facet
     const auto facets = static_cast<Eigen::Index>(planes_.size());
@@ -123,9 +124,9 @@ class CutSurface {
   std::vector<std::pair<geometry::Vec3, geometry::Vec3>> planes_;
 };
 
-/// Position of a point under the edge that cut its facet: along the edge from its centre, and up the facet. While a
-/// facet is cut, it is vertical with its outward normal along -Y. The direction of the edge, +X, is therefore the cross
-/// product of z and this normal.
+/// Position of a point of a facet relative to the edge that cut it: along the edge from the centre of the edge, and up
+/// the facet from the root. While a facet is cut, it is vertical with its outward normal along -Y. The direction of the
+/// edge, +X, is therefore the cross product of z and this normal.
 struct UnderEdge {
   double along_mm = 0.0;
   double up_mm = 0.0;
@@ -162,7 +163,7 @@ class PatternedSurface {
   Pattern pattern_;
 };
 
-/// Returns the measured value of a quantity of a facet on a part with an unknown pose.
+/// Returns the value of a quantity of a facet that is measured on a part in a given pose.
 /// \param figures values that the verifier computes for the facet, in the workpiece frame
 inline double measured_of(const fabrication::Groove& groove, const fabrication::FacetFigures& figures,
                           std::size_t facet, studies::FacetQuantity what, const fabrication::RigidMotion& pose) {
@@ -180,7 +181,8 @@ inline double measured_of(const fabrication::Groove& groove, const fabrication::
   }
 }
 
-/// Returns the measurement of the whole part by an instrument with a noise of 5 nm. 220 points per row are 6 um apart.
+/// Simulates a height map of the whole part in a random pose, with a noise of 5 nm (standard deviation). With 220
+/// points per row, the points are 6 um apart.
 template <class Surface>
 studies::FacetMap seen(const Surface& surface, std::mt19937& bits, std::size_t points = 220) {
   std::normal_distribution<double> normal;
@@ -195,8 +197,8 @@ studies::FacetMap seen(const Surface& surface, std::mt19937& bits, std::size_t p
     for (std::size_t column = 0; column < points; ++column) {
       const double x = pixel_mm * (static_cast<double>(column) - 0.5 * static_cast<double>(points - 1));
       const double y = pixel_mm * (static_cast<double>(row) - 0.5 * static_cast<double>(points - 1));
-      // Iterate for the height at which the line of sight meets the part. The tilt of the part is so small that each
-      // step reduces the error to less than a hundredth.
+      // Iterate for the height at which the line of sight intersects the part. The tilt of the part is so small that
+      // each step reduces the error to less than a hundredth of its value.
       constexpr int kSteps = 8;
       double z = -shift.z();
       for (int step = 0; step < kSteps; ++step) {

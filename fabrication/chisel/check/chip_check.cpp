@@ -15,8 +15,8 @@ namespace {
 using geometry::Vec2;
 using geometry::Vec3;
 
-/// Minimum cosine of the angle between a cross-section and the normal of the plane that the edge sweeps. If this angle
-/// is larger than 30 degrees, chip thicknesses cannot be measured in the cross-section.
+/// Minimum cosine of the angle between a cross-section and the normal of the plane that the edge sweeps. Chip
+/// thicknesses cannot be measured in cross-sections for which this angle is larger than 30 degrees.
 constexpr double kLeastInPlane = 0.87;
 
 double standing_mm(std::span<const ConvexPiece> pieces, const Vec2& foot, const Vec2& direction, double to_mm) {
@@ -25,8 +25,9 @@ double standing_mm(std::span<const ConvexPiece> pieces, const Vec2& foot, const 
   return sum;
 }
 
-/// Returns the point of a section that the edge of a chisel reaches.
-/// \param tip position of the edge's center at the deeper end of the move
+/// Returns the point of a cross-section that a chisel's cutting edge reaches at the deeper end of a move, in
+/// coordinates of the section.
+/// \param tip position of the center of the cutting edge at the deeper end of the move, in the workpiece frame
 Vec2 deepest_place(const SectionPlane& plane, const PrismGroove&, const ToolWedge& wedge, const RigidMotion& back,
                    const Vec3& tip) {
   const Vec3 edge = back.direction(wedge.edge);
@@ -36,10 +37,9 @@ Vec2 deepest_place(const SectionPlane& plane, const PrismGroove&, const ToolWedg
   return plane.point(tip + by_mm * edge);
 }
 
-/// Returns the point of a section that belongs to the tip of a V-shaped tool. The tip is moved into the section
-/// parallel to the dihedral edge that crosses the section. If the element has angle errors, this edge is not
-/// perpendicular to the section.
-/// \param tip position of the tip at the deeper end of the move
+/// Projects the tip of a V-shaped tool onto a cross-section, parallel to the dihedral edge that crosses the section. If
+/// the element has angle errors, this dihedral edge is not perpendicular to the section.
+/// \param tip position of the tip at the deeper end of the move, in the workpiece frame
 Vec2 deepest_place(const SectionPlane& plane, const CubeCavity& cavity, const ToolWedge&, const RigidMotion&,
                    const Vec3& tip) {
   const auto across = [&](const Vec3& edge) { return std::abs(plane.normal.dot(edge)); };
@@ -68,7 +68,7 @@ ChipCheck::ChipCheck(const Workpiece3d& workpiece, std::size_t element, Standing
 /// remove parts of these layers. Near the rim, the layers extend beyond the blank. The lines keep clear of both
 /// regions.
 void ChipCheck::add_lines() {
-  constexpr double kClearOfRoot = 6.0;  // allowances
+  constexpr double kClearOfRoot = 6.0;  // in finishing allowances
   const double least_mm = kClearOfRoot * (allowance_mm_ + workpiece_.prediction(element_).root_mm);
   const std::vector<StandingSection>& sections = material_.sections();
   for (std::size_t s = 0; s < sections.size(); ++s) {
@@ -158,7 +158,7 @@ void ChipCheck::check_chips(const SweptVolume& sweep, const std::optional<FacetC
 
 void ChipCheck::check_rubbing(const SweptVolume& sweep, const FacetCut& cut, double thickest_mm) {
   const auto& least_um = workpiece_.job->process.least_chip_um;
-  // On a substrate, the first cut of a facet may be arbitrarily thin.
+  // On a substrate, the first cut of a facet is allowed to be arbitrarily thin.
   const bool may_be_thin = workpiece_.job->substrate && !is_begun_[cut.facet];
   is_begun_[cut.facet] = true;
   constexpr double kRoundingUm = 2e-3;
@@ -187,8 +187,8 @@ void ChipCheck::find(const char* kind, const SweptVolume& sweep, std::string mes
 ChipFigures ChipCheck::finish() {
   const Process& process = workpiece_.job->process;
   for (const FacetLine& line : lines_) {
-    // If material of the finishing layers remains on this line, the facet is not finished yet. The remaining material
-    // is reported by other findings.
+    // If material of the finishing layers remains on this line, the facet is not finished yet. Other checks report the
+    // remaining material.
     if (line.finishing_cuts == 0 || line.finishing_cuts >= process.finishing_cuts) continue;
     if (standing_mm(material_.sections()[line.section].pieces, line.foot_mm, line.direction, allowance_mm_) >
         workpiece_.tolerance_mm)

@@ -18,24 +18,24 @@ namespace retrace::fabrication {
 
 /// Findings and chip thicknesses of one element.
 struct ChipFigures {
-  std::vector<Finding> findings;        ///< findings with an empty `program`
-  std::vector<std::uint32_t> programs;  ///< for each finding: SweptVolume::program of its cut
+  std::vector<Finding> findings;        ///< findings; their member `program` is empty
+  std::vector<std::uint32_t> programs;  ///< for each finding: SweptVolume::program of the cut
   double thickest_mm = 0.0;             ///< maximum chip thickness
   double thickest_share = 0.0;          ///< maximum of chip thickness divided by its limit
 };
 
-/// Checks the cuts of one element in their order. Adds a finding for a chip that is thicker than its limit. Also adds a
-/// finding if fewer finishing cuts than required remove the last layers of a facet. The checks depend only on the
-/// removed material, and not on the names of the cuts in the program.
+/// Checks the cuts of one element in the order of cutting. Adds a finding for a chip that is thicker than its limit.
+/// Also adds a finding if fewer finishing cuts than required remove the last layers of a facet. The checks depend only
+/// on the removed material, and not on the names of the cuts in the program.
 class ChipCheck {
  public:
-  /// \param material material before the first cut; each cut removes a part of it
+  /// \param material material before the first cut. Each call of cut() removes a part of it
   /// \pre all arguments outlive this object
   ChipCheck(const Workpiece3d& workpiece, std::size_t element, StandingMaterial& material, const ToolWedge& wedge,
             std::span<const RigidMotion> poses);
 
   void cut(const SweptVolume& sweep);
-  /// Returns the result. To be called after the last cut.
+  /// Returns the result. Must be called after the last cut.
   ChipFigures finish();
 
  private:
@@ -52,8 +52,8 @@ class ChipCheck {
   void add_lines();
   void check_chips(const SweptVolume& sweep, const std::optional<FacetCut>& cut, const RigidMotion& back,
                    std::span<const std::vector<ConvexPiece>> removed);
-  /// Adds a finding if the edge rubs, which means that the maximum chip thickness of a plunge is less than the minimum
-  /// that the process allows.
+  /// Adds a finding if the cutting edge rubs: the maximum chip thickness of a plunge is less than the minimum chip
+  /// thickness of the process.
   void check_rubbing(const SweptVolume& sweep, const FacetCut& cut, double thickest_mm);
   void count_finishing(const SweptVolume& sweep, const FacetCut& cut,
                        std::span<const std::vector<ConvexPiece>> removed);

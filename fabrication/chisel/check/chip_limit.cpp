@@ -37,7 +37,7 @@ BesideEdge beside_edges(const CubeCavity& cavity, std::size_t facet, const Vec3&
     constexpr double kLeast = 1e-3;
     const double thickness = slope / std::max(kLeast, sine - slope * cosine);
     most.thickness = std::max(most.thickness, thickness);
-    // The division by across.norm() converts a distance normal to `edge` into a distance along the other edge.
+    // The division by across.norm() converts a distance normal to `edge` into a distance along the other dihedral edge.
     most.reach = std::max(most.reach, (1.0 + thickness * cosine) / (sine * across.norm()));
   }
   return most;
@@ -85,8 +85,9 @@ void ChipLimit::limit_chisel(const Workpiece3d& workpiece, std::size_t element, 
     share_ = std::max(0.0, std::tan(half - rake.rad())) / std::sin(half);
   } else if (cut->is_by_clearance) {
     kind_ = Kind::plunge;
-    // The limit has two kinks. They are the distances at which the surface that the last cut left on the other facet
-    // crosses the layer that this plunge removes, and at which it crosses the rake face.
+    // The limit has kinks at two distances from the tip. At the first distance, the surface that the last cut left on
+    // the other facet crosses the top of the layer that this plunge removes. At the second distance, this surface
+    // crosses the rake face.
     bends_mm_ = {depth_mm * (1.0 + cosine) / sine, depth_mm / std::max(1e-9, sine - rake_slope_ * cosine)};
   } else {
     kind_ = Kind::plough;
@@ -105,8 +106,8 @@ double ChipLimit::at(double from_tip_mm, double beside_mm) const {
   return 0.0;
 }
 
-/// Returns the maximum chip thickness of a plunge. The chip consists of the layer that the last cut left on this facet
-/// and of the material on the other facet that is below the rake face.
+/// Returns the maximum chip thickness of a plunge. The chip consists of two parts: the layer that the last cut left on
+/// this facet, and the material on the other facet that is below the rake face.
 double ChipLimit::plunge_at(double from_tip_mm) const {
   const double depth_mm = depth_mm_ + slack_mm_;
   const double sine = std::sin(apex_.rad());

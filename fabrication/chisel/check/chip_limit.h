@@ -21,11 +21,12 @@ class ChipLimit {
             const ToolWedge& wedge, const RigidMotion& back);
 
   /// Returns the maximum chip thickness on one measuring line of a cross-section, in mm.
-  /// \param from_tip_mm distance, along the path of the tool, from the deepest position of the tip to the line. For a
-  ///        V-shaped tool, the distance is measured in the cross-section
-  /// \param beside_mm distance from the deepest position of the tip to the cross-section that contains the line
+  /// \param from_tip_mm distance, along the path of the tool, from the deepest position of the tip to the measuring
+  ///        line. For a V-shaped tool, the distance is measured in the cross-section
+  /// \param beside_mm distance from the nearer end of the tip's path to the cross-section that contains the measuring
+  /// line
   double at(double from_tip_mm, double beside_mm) const;
-  /// Distances from the tip, in mm, at which the limit has a kink or a jump.
+  /// Returns the distances from the tip, in mm, at which the limit has a kink or a jump.
   const std::array<double, 2>& bends_mm() const { return bends_mm_; }
   double depth_mm() const { return depth_mm_; }
 
@@ -34,7 +35,7 @@ class ChipLimit {
 
   void limit_chisel(const Workpiece3d& workpiece, std::size_t element, const PrismGroove& groove,
                     const std::optional<FacetCut>& cut);
-  /// \param spine direction of the line in which the tool's clearance face and its other flank meet
+  /// \param spine direction of the tool's spine, in which its clearance face and its other flank intersect
   void limit_v_tool(const CubeCavity& cavity, const FacetCut& cut, const geometry::Vec3& spine);
   double plunge_at(double from_tip_mm) const;
 

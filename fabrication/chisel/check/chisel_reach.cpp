@@ -29,8 +29,9 @@ double edge_mm_of(const geometry::Element& element) {
   return std::numbers::sqrt3 * geometry::element_depth_mm(element);
 }
 
-/// Returns a machine without rotary axes for the simulation. Its linear axes are the coordinate axes. The class Cutter
-/// rotates the workpiece instead, so that the machine frame is the frame of the facet that is cut.
+/// Returns a machine without rotary axes for the simulation. Its linear axes are parallel to the coordinate axes.
+/// Instead of rotary axes, the class Cutter rotates the workpiece: the machine frame is the frame of the facet that is
+/// cut.
 Machine still_machine() {
   Machine machine;
   machine.x.direction.value = Vec3::UnitX();
@@ -70,12 +71,12 @@ class Cutter {
   double core_mm() const { return surface_over(cavity_.root_mm, Vec3::UnitZ()); }
 
  private:
-  /// Adds plunges down the facet with a horizontal edge. Each plunge ends where an end of the edge meets a dihedral
-  /// edge.
+  /// Adds plunges down facet `k`, with a horizontal cutting edge. Each plunge ends where an end of the cutting edge
+  /// reaches a dihedral edge.
   void plunge(std::size_t k) {
     constexpr int kPasses = 1201;  // odd, so that one pass is at the center
     const DesignFacet& facet = cavity_.facets[k];
-    // In the frame of the tool, the facet is the plane y = 0. Its normal is -y, and its upward direction is z.
+    // In the frame of the tool, the facet is the plane y = 0. Its outward normal is -y, and its upward direction is z.
     RigidMotion pose;
     pose.rotation.row(0) = facet.along.transpose();
     pose.rotation.row(1) = -facet.normal.transpose();
@@ -152,7 +153,7 @@ void check_chisel_reach(const geometry::Element& element, const Tool& tool, cons
     throw InputError(wedge, fmt::format("with clearance_deg must be > {}, or fins remain along dihedral edges, got {}",
                                         fixed_apart(least_deg, rake_deg, 3), shortest(rake_deg)));
   const double rake = Angle::from_deg(rake_deg).rad();
-  // Height of the core above the apex, per mm of the tool's width.
+  // Height of the uncut core above the apex, per mm of the tool's width.
   const double rise =
       0.5 * std::sin(rake) * std::numbers::sqrt3 / (std::numbers::sqrt2 * std::sin(rake) - std::cos(rake));
   const double most_mm = geometry::element_depth_mm(element) / rise;

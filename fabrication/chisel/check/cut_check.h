@@ -1,6 +1,6 @@
 #pragma once
 
-// Base class for the checks of cuts. Each derived class checks the cuts of one machining process in the elements.
+// Base class for the checks of cuts. Each derived class checks the cuts of one machining process.
 
 #include <fmt/format.h>
 
@@ -42,7 +42,8 @@ class CutCheck {
   /// Checks a cutting move in the material of an element.
   virtual void move(const CutMove& cut) = 0;
   virtual void dwell(double seconds) = 0;
-  /// Ends the present cut. It is called when the tool leaves the material, a rotary axis moves, or the program ends.
+  /// Ends the current cut. This function is called when the tool leaves the material, a rotary axis moves, or the
+  /// program ends.
   virtual void close() = 0;
   /// Ends the checks after the last program.
   virtual void finish() {}
@@ -85,8 +86,9 @@ inline std::string rubbing_text(double takes_um, double least_um) {
                      fixed(takes_um, 4), shortest(least_um));
 }
 
-/// Maximum component of the direction of a cut towards the facet at the clearance face. The direction is a unit vector.
-/// The limit allows for rounded end points of the move.
+/// Maximum component of a cut's direction along the outward normal of the clearance face. Both are unit vectors. A
+/// larger component means that the clearance face is pushed into the material. The limit allows for rounded end points
+/// of the move.
 inline constexpr double kMostSlip = 1e-3;
 
 }  // namespace retrace::fabrication

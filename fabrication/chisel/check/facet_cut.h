@@ -23,8 +23,8 @@ struct FacetCut {
 std::optional<FacetCut> facet_cut(const DesignElement& element, const ToolWedge& wedge, const SweptVolume& sweep,
                                   const RigidMotion& back);
 
-/// Returns the normal of the plane that the edge sweeps, in the machine frame. Returns zero if the edge moves along
-/// itself and sweeps no plane.
+/// Returns the normal of the plane that the edge sweeps, in the machine frame. Returns the zero vector if the edge
+/// moves along itself and sweeps no plane.
 geometry::Vec3 swept_normal(const ToolWedge& wedge, const SweptVolume& sweep);
 
 /// Returns the thickness that finishing removes from every facet, or 0 if the strategy has no finishing cuts.

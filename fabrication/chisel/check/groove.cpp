@@ -33,8 +33,8 @@ void stand(DesignElement& design, const CutElement& element, double stock_mm) {
   }
 }
 
-/// Returns the distance of a point from the axis of an element, or nothing if the point is outside of the aperture. The
-/// distance from a prism is 0, because the apertures of prisms do not overlap.
+/// Returns the distance of a point from the axis of an element, or nothing if the point is outside of the aperture. For
+/// prisms, the distance is always 0, because their apertures do not overlap.
 /// \param from_root position relative to the root, perpendicular to the axis
 std::optional<double> distance_mm(const PrismGroove& groove, const Vec3& from_root) {
   const double along = groove.root_direction.dot(from_root);
@@ -95,7 +95,7 @@ PrismGroove groove_of(const CutElement& element, const geometry::RtpElement& siz
   groove.root_direction = element.turn * (element.rotated ? Vec3(0, 1, 0) : Vec3(1, 0, 0));
   groove.facets.resize(2);
   for (std::size_t f = 0; f < 2; ++f) {
-    // The first facet is on the positive side of the root, and its normal points to the negative side.
+    // The first facet is on the positive side of the root, seen along `across`. Its normal points to the negative side.
     const double side = f == 0 ? 1.0 : -1.0;
     DesignFacet& facet = groove.facets[f];
     facet.normal = -side * std::cos(half_apex) * across + std::sin(half_apex) * Vec3::UnitZ();
@@ -186,7 +186,8 @@ std::optional<std::size_t> GrooveMap::at(const Vec3& p) const {
 
 std::optional<std::size_t> GrooveMap::deepest(double x_mm, double y_mm) const {
   if (grooves_.empty() || std::holds_alternative<PrismGroove>(grooves_.front())) return at(x_mm, y_mm);
-  // Cavities of hexagonal elements extend up to twice their radius, which is two cells.
+  // The cavity of a hexagonal element extends from its apex by up to twice the radius of the aperture, which is two
+  // cells.
   constexpr int kCells = 2;
   std::optional<std::size_t> best;
   double lowest_mm = 0.0;

@@ -1,7 +1,7 @@
 #pragma once
 
 // Geometry of the designed elements of a job: grooves of prisms and cavities of cube corners, in the workpiece frame.
-// Also finds the element that contains a given point.
+// Also finds the element at a given point.
 
 #include <array>
 #include <cstddef>
@@ -31,11 +31,12 @@ struct DesignFacet {
   double height_mm(const geometry::Vec3& p) const { return normal.dot(p) - offset_mm; }
 };
 
-/// An element as designed, in the frame of the blank: the properties that prism grooves and cube cavities share.
+/// An element as designed, in the workpiece frame: the properties that grooves of prisms and cavities of cube corners
+/// have in common.
 struct DesignElement {
   geometry::Vec3 axis = geometry::Vec3::UnitZ();  ///< unit vector out of the blank
-  /// Position of the blank's face along the axis: the face is the plane axis . p = face_mm. On a curved blank, it is
-  /// the plane above which the blank has no material within the opening of the element. On a flat blank, it is z_w = 0.
+  /// Position of the blank's face along the axis: the face is the plane axis . p = face_mm. On a curved blank, it is a
+  /// plane above which the blank has no material within the opening of the element. On a flat blank, it is z_w = 0.
   double face_mm = 0.0;
   double depth_mm = 0.0;  ///< depth of the root or apex below the rims
   double stock_mm = 0.0;  ///< height of the face above the rims
@@ -43,7 +44,7 @@ struct DesignElement {
   geometry::Vec3 root_mm = geometry::Vec3::Zero();  ///< center of the root line, or the apex
   std::vector<DesignFacet> facets;                  ///< two facets of a prism, or three facets of a cube corner
   /// Length of a facet from the root to the rim. Cube corner: length of a dihedral edge from the apex to the plane of
-  /// the rims, without errors of angle.
+  /// the rims, without angle errors.
   double facet_length_mm = 0.0;
   std::size_t zone = 0;  ///< index of the zone in the job; 0 without zones
 
@@ -85,7 +86,7 @@ struct CubeCavity : DesignElement {
   double height_mm(const geometry::Vec2& place) const;
 };
 
-/// An element as designed, in the frame of the blank.
+/// An element as designed, in the workpiece frame.
 using Groove = std::variant<PrismGroove, CubeCavity>;
 
 /// Returns the properties that both kinds of elements have.

@@ -12,7 +12,7 @@ namespace {
 
 using geometry::Vec3;
 
-/// Minimum downward component of the direction of a plunge.
+/// Minimum downward component of the direction of a plunge, which is a unit vector.
 constexpr double kMostlyDown = 0.9;
 /// Returns true if a move is a retract. The plunged facet is vertical, and a plough moves along the other facet. A
 /// retract moves up, at an angle to the vertical of at most two thirds of the apex angle.
@@ -26,7 +26,7 @@ bool retracts(const DesignElement& groove, const Vec3& travel) {
 void PlungeCheck::move(const CutMove& cut) {
   const Vec3 travel = cut.sweep.to_mm - cut.sweep.from_mm;
   if (retracts(workpiece_.design(cut.element), travel)) return close();
-  // Only a retract may move the tool towards the facet next to its clearance face.
+  // Only a retract may move the tool towards the facet that its clearance face faces.
   if (travel.dot(plunged_normal(*workpiece_.machine)) < -kMostSlip * travel.norm()) find_clearance_face(cut);
   if (travel.z() < -kMostlyDown * travel.norm()) return plunge(cut);
   plough(cut);

@@ -12,7 +12,7 @@ namespace {
 
 using geometry::Vec3;
 
-/// Maximum overcut, in mm, of rims that are considered to meet. It allows for rounding errors.
+/// Maximum overcut, in mm, at which neighbouring rims are considered to coincide. It allows for rounding errors.
 constexpr double kMeetMm = 1e-9;
 
 /// Returns points along the rims of an element.
@@ -26,8 +26,8 @@ std::vector<Vec3> rim_of(const PrismGroove& groove) {
 }
 std::vector<Vec3> rim_of(const CubeCavity& cavity) {
   std::vector<Vec3> rim;
-  // The radius of the circle about a hexagon is sqrt(2/3) times the edge length of the cube. For a triangular element,
-  // the edge length is limited by the length of the cavity's edges.
+  // The circumscribed circle of a hexagonal element has a radius of sqrt(2/3) times the edge length of the cube. For a
+  // triangular element, the edge length is limited by the length of the cavity's edges.
   const double edge_mm = std::min(cavity.facet_length_mm, cavity.radius_mm * std::sqrt(1.5));
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec3 low = edge_mm * cavity.edges[k];
@@ -39,7 +39,8 @@ std::vector<Vec3> rim_of(const CubeCavity& cavity) {
   return rim;
 }
 
-/// Returns the depth of a point inside the volume that the cut of an element removes. It is negative outside.
+/// Returns the depth of a point below the surface of the volume that the cut of an element removes. It is negative
+/// outside of this volume.
 double depth_in(const Groove& groove, const Vec3& p) {
   const auto* const prism = std::get_if<PrismGroove>(&groove);
   if (prism != nullptr && std::abs(prism->along_mm(p)) > prism->half_width_mm) return -1.0;

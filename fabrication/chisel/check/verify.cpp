@@ -62,8 +62,8 @@ void refuse_other_machine(const Job& job, const Machine& machine, const std::vec
   }
 }
 
-/// Returns the error of the angle between the two facets of a prism, in arc minutes. A facet with a positive slope is
-/// inclined into the groove, which reduces this angle.
+/// Returns the error of the apex angle of a prism, in arc minutes. It is positive if the angle is too large. A facet
+/// with a positive slope is inclined into the groove, which reduces this angle.
 double apex_error_arcmin(const PrismGroove&, const ElementFigures& figures) {
   double error_arcmin = 0.0;
   for (const FacetFigures& facet : figures.facets) error_arcmin -= std::atan(facet.slope_up) * kArcminPerRad;
@@ -163,8 +163,9 @@ class Judge {
   Verification& result_;
 };
 
-/// Returns the volume, below the blank's face, of one element of a zone. For a hexagonal element, it is the volume
-/// inside of the hexagon. It does not include the corners of the triangular cavity, which are outside of the hexagon.
+/// Returns the designed volume of one element of a zone, below the plane of its rims. For a hexagonal element, it is
+/// the volume inside of the hexagon. It does not include the corners of the triangular cavity, which are outside of the
+/// hexagon.
 double design_volume_mm3(const Job& job, std::size_t zone) {
   const geometry::Cell cell = geometry::element_cell(blank_element(job, zone), angle_errors_of(job, zone));
   double volume_mm3 = 0.0;
@@ -331,7 +332,8 @@ MeasuredElements measured(const Workpiece3d& workpiece, const ProgramCheck& chec
   return all;
 }
 
-/// Adds the maximum chip thicknesses to the result, and the findings about the chips of all programs that are checked.
+/// Adds the maximum chip thicknesses to the result. Also adds the findings about chips, except for those of the first
+/// `standing` programs.
 void add_chips(const std::vector<ChipFigures>& chips, const std::vector<NcProgram>& programs, std::size_t standing,
                FindingList& findings, Verification& result) {
   for (const ChipFigures& figures : chips) {
@@ -379,7 +381,7 @@ Increments increments_in(const Machine& machine, const std::vector<NcProgram>& p
 
 std::string_view Verification::verdict() const {
   if (passes()) return "pass";
-  // Kinds of findings that report remaining material only.
+  // Kinds of findings that only report remaining material.
   constexpr std::array<std::string_view, 4> kUnfinished = {"excess", "element_missing", "root_residual",
                                                            "layer_unfinished"};
   const bool is_unfinished = std::all_of(findings.begin(), findings.end(), [&](const Finding& finding) {

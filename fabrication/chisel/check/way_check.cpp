@@ -16,8 +16,8 @@ using geometry::Vec3;
 /// Fraction of the process's clearances that rapid moves and rotary moves must keep.
 constexpr double kClearanceShare = 0.9;
 
-/// Returns the height of the diamond that is used for collisions. It is more than the depth of the grooves. The machine
-/// file describes the holder above it.
+/// Returns the height of the diamond in collision checks, in mm. It is greater than the depth of the grooves. The
+/// machine file describes the holder above it.
 double diamond_mm(const Workpiece3d& workpiece) {
   constexpr double kDepths = 2.0;
   return workpiece.grooves.empty() ? 1.0 : kDepths * workpiece.design(0).depth_mm;
@@ -90,7 +90,7 @@ void WayCheck::turn_from_anywhere(const NcMotion& motion) {
         motion.from.z_mm, safe_mm);
 }
 
-/// Returns sampled positions of a rotary move. If two axes move, each may move at its own speed. All combinations of
+/// Returns sampled positions of a rotary move. If two axes move, each can move at its own speed. All combinations of
 /// their angles are then sampled, unless the rapid moves of the machine are straight.
 std::vector<AxisPositions> WayCheck::places_of_turn(const NcMotion& motion) const {
   const AxisPositions& from = motion.from;
@@ -126,7 +126,7 @@ bool WayCheck::is_box_move(const NcMotion& motion) const {
   return motion.move == NcMove::rapid && !machine_.control.rapids_are_straight;
 }
 
-/// Returns the edge vectors of the region that a move may pass through. The region of a straight move is a line.
+/// Returns the edge vectors of the region that a move can pass through. The region of a straight move is a line.
 /// Otherwise, the region is a box with one edge per axis.
 std::vector<Vec3> WayCheck::edges_of_way(const NcMotion& motion) const {
   const Vec3 from = machine_point(machine_, motion.from);
@@ -150,7 +150,7 @@ std::vector<Vec3> WayCheck::places_of_way(const NcMotion& motion) const {
 }
 
 /// Returns the minimum height of the tip above the blank during a move. Over a flat blank, it occurs at a corner of the
-/// region that the move may pass through.
+/// region that the move can pass through.
 double WayCheck::lowest_over_blank_mm(const NcMotion& motion, const RigidMotion& back) const {
   double lowest_mm = std::numeric_limits<double>::infinity();
   for (const Vec3& corner : places_of_way(motion)) lowest_mm = std::min(lowest_mm, face_.height_mm(back.point(corner)));

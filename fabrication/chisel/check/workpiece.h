@@ -17,8 +17,8 @@ struct Workpiece3d {
   const Job* job = nullptr;
   const Machine* machine = nullptr;
   std::vector<Groove> grooves;
-  std::vector<Prediction> predictions;  ///< one for each combination of element shape and orientation
-  std::vector<std::size_t> groups;      ///< index in `predictions` for each element
+  std::vector<Prediction> predictions;  ///< one for each combination of `rotated` and `orientation` of an element
+  std::vector<std::size_t> groups;      ///< for each element: index in `predictions`
   std::vector<CutElement> elements;
   double tolerance_mm = 1e-5;
 

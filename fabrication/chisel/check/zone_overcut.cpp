@@ -16,8 +16,8 @@ namespace {
 
 using geometry::Vec2;
 
-/// Number of divisions of each side of a sampled triangle. The triangle is one half of the corner in which a triangular
-/// cavity extends beyond its hexagon.
+/// Number of divisions of each side of a sampled triangle. The triangle is one half of a corner of a triangular cavity,
+/// outside of the hexagon of the element.
 constexpr int kDivisions = 32;
 constexpr double kDeg = std::numbers::pi / 180.0;
 
@@ -104,7 +104,7 @@ class Overcutter {
         if (m + n + 1 < kDivisions) take(i, a + (m + 2.0 / 3.0) * u + (n + 2.0 / 3.0) * v, area_mm2);
       }
     // The maximum depth is on a side of the triangle. The corners of the grid, which include points on the sides, are
-    // therefore evaluated in addition. Their area is set to 0, so that they do not change the total area and volume.
+    // therefore also evaluated. Their area is set to 0, so that they do not change the total area and volume.
     for (int m = 0; m <= kDivisions; ++m)
       for (int n = 0; m + n <= kDivisions; ++n) take(i, a + m * u + n * v, 0.0);
   }

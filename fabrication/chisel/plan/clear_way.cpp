@@ -42,8 +42,8 @@ double ClearWay::least_height_mm(const Place& at, const CuttingPose& pose) const
   return least;
 }
 
-/// Returns true if the whole box between the two ends of a rapid move is clear. The axes may arrive one after the
-/// other, so that the tool may pass through any point of this box.
+/// Returns true if the whole box between the two ends of a rapid move is clear. The axes can arrive at different times,
+/// so the tool can pass through any point of this box.
 bool ClearWay::is_clear_along(const Place& from, const Place& to, const CuttingPose& pose) const {
   const Vec3 by = millimetres(Place(to - from));
   Eigen::Vector3i steps;

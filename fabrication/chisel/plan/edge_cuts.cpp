@@ -13,8 +13,9 @@ namespace {
 
 using geometry::Vec3;
 
-/// Returns the intersection of the edge circle's tangents in the two facets, relative to the tool reference point. The
-/// tool reference point is the intersection of the circle's vertical and horizontal tangents
+/// Returns the intersection of the planes of the two facets, relative to the tool reference point, while the tool is at
+/// the root. In the section of the tool, both planes are tangents of the edge circle (the rounded edge). The tool
+/// reference point is the intersection of the vertical and the horizontal tangent of this circle
 /// (docs/theory/verification.md).
 Vec3 tip_of(const Job& job, const Section& section) {
   if (!cuts_prisms(job)) return Vec3::Zero();

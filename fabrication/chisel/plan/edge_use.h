@@ -15,9 +15,9 @@
 
 namespace retrace::fabrication {
 
-/// Returns the length of cut of a visit, which is one call of a subroutine at an element. It is the path length of the
-/// tip below the blank's face, along plunges and ploughs. For a V-shaped tool, it is the path down and up the dihedral
-/// edges.
+/// Returns the length of cut of a visit, which is one call of a subroutine at an element. It is the length of the tip's
+/// path below the blank's face, along plunges and ploughs. For a V-shaped tool, it is the length of the path down and
+/// up the dihedral edges.
 /// \param stock_mm height of the blank's face above the rims
 double length_of_cut_mm(const Job& job, const Machine& machine, const CutElement& element, const CuttingPose& pose,
                         const Visit& visit, const Subroutine& routine, double stock_mm);
@@ -44,13 +44,13 @@ class EdgeAccount {
   void cut(double mm) { used_.cut_mm += mm; }
   const EdgeUse& used() const { return used_; }
 
-  /// Returns the reason for which a stop is required before a visit, or nothing if no stop is required.
+  /// Returns the reason why a stop is required before a visit, or nothing if no stop is required.
   std::optional<StopReason> stop_before(const EdgeUse& visit) const;
   /// Returns true if the visit needs a new edge and therefore a new program.
   bool needs_program(const EdgeUse& visit) const;
   /// Checks that a new edge and a stop before the visit are sufficient to make the visit within the limits.
   /// \param fresh_s run time from this stop to the visit
-  /// \throw InputError naming the key if the visit exceeds the tool life or the maximum run time
+  /// \throw InputError that names the key, if the visit exceeds the tool life or the maximum run time
   void check(const EdgeUse& visit, double fresh_s, std::int32_t element) const;
 
  private:

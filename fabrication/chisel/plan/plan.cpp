@@ -17,7 +17,8 @@
 namespace retrace::fabrication {
 namespace {
 
-/// Returns true if `name` is the name of a stage, or the name of its group ("roughing" or "finishing").
+/// Returns true if `name` is the name of this stage, or of the group to which the stage belongs ("roughing" or
+/// "finishing").
 bool is_named(const Stage& stage, std::string_view name) {
   return stage.name == name || (name == "roughing" && stage.roughs) ||
          (name == "finishing" && stage.name.starts_with(name));
@@ -38,7 +39,7 @@ bool is_named(const Stage& stage, std::string_view name) {
 }
 
 /// Removes all stages from `plan` except the requested ones.
-/// \return the stages of the job before the requested ones
+/// \return the stages of the job before the first requested stage
 /// \throw InputError for a phase that the job does not have
 std::vector<Stage> choose_stages(Plan& plan, const PlanOptions& options) {
   if (!options.before.empty()) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// A program while it is made: its moves and calls, the axis positions after them, and its run time.
+// Builds a program from moves and calls of subroutines. Tracks the axis positions and the run time.
 
 #include <cstdint>
 #include <set>
@@ -18,11 +18,11 @@ namespace retrace::fabrication {
 /// Z positions of the tool while it does not cut.
 struct SafeHeights {
   Nanometres safe_nm = 0;   ///< minimum height for moves of the rotary axes
-  Nanometres first_nm = 0;  ///< height of the first move after a standstill; not below `safe_nm`
+  Nanometres first_nm = 0;  ///< height of the first move of a program, and of the first move after a stop; >= safe_nm
 };
 
-/// Adds moves, calls and stops to a program. Keeps the axis positions, and adds up the run time and the use of the
-/// edge.
+/// Program under construction, to which moves, calls and stops are added. Tracks the axis positions, and adds up the
+/// run time and the use of the cutting edge.
 class ProgramDraft {
  public:
   /// Starts a program. The axis positions are not known, so Z moves up first.
@@ -33,19 +33,21 @@ class ProgramDraft {
   void add(Item item) { program_.items.push_back(std::move(item)); }
   /// Moves up to the safe height if the tool is below it.
   void raise();
-  /// Moves up to the safe height and moves the rotary axes, if they are at other positions.
+  /// Moves the tilting axis to `a` and C to `c`, after a move up to the safe height. Does nothing if both axes are at
+  /// these positions.
   void turn(RotaryUnits a, RotaryUnits c);
-  /// Moves one of the linear axes.
+  /// Moves one linear axis to a position.
   void traverse(Axis axis, double to_mm);
-  /// Adds the rapid moves to a visit and the call of its subroutine.
+  /// Adds a visit: the rapid moves to its start, and the call of its subroutine.
   /// \param end end point of the subroutine's moves, relative to its start
   /// \param routine run time of the subroutine
   void visit(const Visit& visit, const Place& end, const TimeShares& routine, Stage& stage);
-  /// Adds a length of cut to the use of the edge.
+  /// Adds a length of cut to the use of the cutting edge.
   void cut(double mm);
   /// Moves the tool up to the height of the first move, and the rotary axes to 0.
   void park();
-  /// Adds a stop for the operator, and a comment after it. The program then starts to move as at its beginning.
+  /// Adds a stop for the operator, and a comment after it. The program then continues like a new program: the axis
+  /// positions are not known, so Z moves up first.
   /// \pre the axes are parked
   void stop(StopReason reason, std::string comment);
 
@@ -61,7 +63,7 @@ class ProgramDraft {
 
   /// Returns the program.
   /// \param all subroutines of the plan, in the order of Visit::subroutine
-  /// \param only_used true: the program contains only the subroutines that it calls
+  /// \param only_used true: the program contains only the subroutines that it calls; false: it contains all subroutines
   Program take(const std::vector<Subroutine>& all, bool only_used);
 
  private:
@@ -75,7 +77,7 @@ class ProgramDraft {
   TimeShares& plan_time_;
   Program program_;
   Words at_{};
-  bool just_turned_ = true;  ///< true if no visit was added since the tool was at a safe height
+  bool just_turned_ = true;  ///< true if no visit was added since the last move up to a safe height
   double seconds_ = 0.0;
   EdgeAccount edge_;
   double cut_mm_ = 0.0;

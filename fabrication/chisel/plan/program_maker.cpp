@@ -25,7 +25,7 @@ using geometry::Vec3;
 
 constexpr double kSecondsPerHour = 3600.0;
 
-/// Returns the machining time of a subroutine, divided by kind of motion.
+/// Returns the machining time of a subroutine, separately for each kind of motion.
 TimeShares routine_time(const Machine& machine, const Subroutine& subroutine) {
   TimeShares time;
   for (const Step& step : subroutine.steps) {
@@ -43,7 +43,7 @@ TimeShares routine_time(const Machine& machine, const Subroutine& subroutine) {
 }
 
 /// Checks that an axis stays within its limits.
-/// \param element element that is visited; -1: none, at the safe height
+/// \param element index of the element at which the axis moves; -1 for moves at the safe height
 void check_axis(const Job& job, const Machine& machine, char axis, Nanometres low_nm, Nanometres high_nm,
                 const Interval& limits, std::int32_t element) {
   const double low_mm = millimetres(low_nm);
@@ -72,13 +72,14 @@ void warm_up(const Machine& machine, ProgramDraft& program) {
   program.traverse(kY, 0.0);
 }
 
-/// Computes the parallel passes of visits. Their order alternates from visit to visit.
+/// Computes the parallel passes of the tool at each visited element. Their order is reversed from one visit to the
+/// next.
 class VisitPasses {
  public:
   VisitPasses(const Job& job, const Machine& machine, const std::vector<double>& offsets_mm)
       : job_(job), machine_(machine), offsets_mm_(offsets_mm) {}
 
-  /// Skips some visits of elements. An odd number of skipped visits reverses the order of the passes.
+  /// Skips visits. An odd number of skipped visits reverses the order of the passes.
   void skip(std::ptrdiff_t visits) { forth_ = forth_ != (visits % 2 != 0); }
 
   /// Returns the passes of the next visit.
@@ -155,7 +156,7 @@ class StageOrders {
   std::map<ElementGroup, std::vector<std::int32_t>> orders_;
 };
 
-/// Distributes the visits of all stages to programs. Starts a new program when the present one is too long.
+/// Distributes the visits of all stages among programs. Starts a new program when the current program is too long.
 class ProgramMaker {
  public:
   ProgramMaker(const Job& job, const Machine& machine, const PlanOptions& options, const ProcessFacts& facts,
@@ -205,7 +206,7 @@ class ProgramMaker {
   /// State since the start of the program or the last stop.
   struct SinceStop {
     bool is_cold = true;       ///< true if the machine has not been warmed up
-    bool is_fresh = true;      ///< true if nothing was cut
+    bool is_fresh = true;      ///< true if nothing has been cut
     bool has_roughed = false;  ///< true if the last visit was a roughing visit
   };
 
@@ -267,7 +268,7 @@ class ProgramMaker {
     return use;
   }
 
-  /// Returns true if the present program has no room for another visit.
+  /// Returns true if the current program has no room for another visit.
   bool is_full(const Stage& stage) const {
     // Numbers of subroutines have at most four digits.
     constexpr std::size_t kMostSubroutines = 9000;
@@ -333,8 +334,8 @@ class ProgramMaker {
   const ProcessFacts& facts_;
   const std::vector<RoutineStart>& starts_;
   Plan& plan_;
-  /// True if elements are on a substrate or in zones. Each zone, and each tilt of elements on a substrate, has separate
-  /// poses and subroutines, so that a program contains only the subroutines that it calls.
+  /// True if elements are on a substrate or in zones. Each zone, and each tilt of elements on a substrate, then has
+  /// separate poses and subroutines. There can be many subroutines, so each program contains only those that it calls.
   bool has_kinds_;
   ClearWay way_;
   StageOrders orders_;
@@ -342,7 +343,7 @@ class ProgramMaker {
   RoughingProgress roughing_;
   std::vector<TimeShares> routine_times_;
   SafeHeights heights_;
-  std::optional<ProgramDraft> program_;  ///< present program
+  std::optional<ProgramDraft> program_;  ///< current program
   SinceStop since_stop_;
   std::int64_t visits_ = 0;
 };

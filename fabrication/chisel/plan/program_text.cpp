@@ -16,8 +16,8 @@ namespace {
 
 using geometry::Vec3;
 
-/// Returns the common name of all programs, without their numbers. A program that restarts at an element has a
-/// separate name.
+/// Returns the common name of all programs, without their numbers. The name of a program that restarts at an element
+/// also contains this element.
 std::string base_name(const PlanOptions& options) {
   std::string name = options.phase == "all" ? "program" : options.phase;
   if (name.ends_with('+')) name.replace(name.size() - 1, 1, "_and_after");

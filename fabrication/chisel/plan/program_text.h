@@ -22,7 +22,7 @@ std::vector<std::string> program_header(const Job& job, const Machine& machine, 
 /// Returns the comment or message for the operator at the start of a stage.
 Item stage_text(const Stage& stage, const CuttingPose& pose);
 
-/// Names all programs of a plan. If there are several programs, they are numbered in their names and headers.
+/// Sets the names of all programs of a plan. If there are several programs, their names and headers contain numbers.
 void name_programs(const PlanOptions& options, std::vector<Program>& programs);
 
 }  // namespace retrace::fabrication

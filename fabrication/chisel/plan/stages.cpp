@@ -69,8 +69,8 @@ class StageMaker {
     }
   }
 
-  /// Adds the stages of micro chiseling. In each layer, the first facet of all elements is cut, then the second and the
-  /// third one. The chip of a layer separates with the cut of the third facet.
+  /// Adds the stages of diamond micro chiseling. In each layer, the first facet of all elements is cut, then the second
+  /// and the third one. The chip of a layer separates with the cut of the third facet.
   void chisel() {
     if (!job_.zones.empty())
       add_poses_by_turn();

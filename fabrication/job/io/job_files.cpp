@@ -47,8 +47,8 @@ constexpr std::size_t kMostZoneElements = 2'000'000;
 constexpr double kFitToleranceMm = 1e-6;
 constexpr std::size_t kMostChips = 100;
 /// Minimum angle, in degrees, between the rake face and the facet that is not being cut. The chip leaves between them.
-/// The value is an assumption. A wedge angle of 50 degrees and a clearance angle of 15 degrees leave 25 degrees of a
-/// right angle. The value is half of this angle.
+/// The value is an assumption: a wedge angle of 50 and a clearance angle of 15 degrees leave 25 degrees of a right
+/// angle, and half of this remainder is required.
 constexpr double kChipRoomDeg = 12.5;
 
 // Conversions between members of Job and values in files.
@@ -86,7 +86,7 @@ void set_tiled(ArrayLayout& array, const Value& value) {
   array.arrangement = std::get<double>(value) == 0.0 ? Arrangement::single : tiled;
 }
 
-// Conversions of angle errors. Files contain them only if they are not 0.
+// Conversions of angle errors. Files contain angle errors only if they are not 0.
 
 using Three = std::array<double, 3>;
 
@@ -139,25 +139,30 @@ constexpr Condition kOfChisels[] = {is_not("strategy", only(kStrategyWords, "dmc
 constexpr Condition kOfVTools[] = {is("strategy", only(kStrategyWords, "dmc"))};
 
 constexpr Row kJobRows[] = {
-    {"title", Text{}, kNone, "Title of the job, for readers.", access<&Job::title>},
+    {"title", Text{}, kNone, "Title of the job. It appears in the header of programs and on the set-up sheet.",
+     access<&Job::title>},
     {"design", Text{}, kNone,
-     "Design file from which the job was made, relative to the folder of the job. As-machined parts take their plate "
-     "from it.",
+     "Design file from which the job was made, relative to the folder of the job file. `retrace verify --as-machined` "
+     "takes the thickness and the material of the plate from this design.",
      access<&Job::design>},
-    {"notes", Texts{}, kNone, "Notes on the job, for readers.", access<&Job::notes>},
+    {"notes", Texts{}, kNone,
+     "Notes for the reader of the job, for example about omitted elements. They have no effect.", access<&Job::notes>},
     {"machine", Text{}, kRequired,
-     "Machine: `\"ideal\"`, `\"paper\"`, `\"thesis\"`, `\"ideal-dmc\"`, or a [machine file](machine_file.md) (a name "
-     "with an extension), relative to the folder of the job.",
+     "Name of a shipped machine (`\"ideal\"`, `\"paper\"`, `\"thesis\"` or `\"ideal-dmc\"`), or a [machine "
+     "file](machine_file.md), relative to the folder of the job file. A name with an extension is a file.",
      access<&Job::machine>},
     {"strategy", Word{kStrategyWords}, kRequired,
-     "Cutting strategy. `\"dmc\"` is for cube corners, on a machine whose head tilts.", access<&Job::strategy>}};
+     "Cutting strategy. `\"dmc\"` (diamond micro chiseling) is for cube corners, on a machine with a tilting head. The "
+     "other strategies are for prisms.",
+     access<&Job::strategy>}};
 constexpr Row kWorkpieceRows[] = {
     {"kind", Word{kWorkpieceWords}, "mould",
-     "Kind of workpiece. `\"mould\"`: the material on the far side of the part's back, in the frame of the part. "
-     "`\"direct\"`: the optic itself, rotated by 180 degrees about y, so that the array is mirrored in x; prisms only.",
+     "Kind of workpiece. `\"mould\"`: the mould of the part's back, in the frame of the part. `\"direct\"`: the "
+     "optical part itself (prisms only). It is rotated by 180 degrees about y, so that the array is mirrored in x.",
      access<&Workpiece::kind>},
     {"shrinkage_percent", Number{{.low = 0.0, .high = 10.0}}, 0.0,
-     "Shrinkage of the moulded part. All sizes of the blank are those of the part times 1 + this value / 100.",
+     "Shrinkage of the moulded part. All sizes on the blank are the sizes of the part, multiplied by 1 + "
+     "shrinkage_percent / 100.",
      access<&Workpiece::shrinkage_percent>}};
 constexpr Row kElementRows[] = {
     {"kind", Word{only(geometry::kElementKinds, "rtp")}, kRequired, "Kind of the elements: prisms.",
@@ -169,8 +174,8 @@ constexpr Row kElementRows[] = {
     with(geometry::kApexAngleKey, access_in<&Job::element, &RtpElement::apex_angle_deg>, kOfPrisms),
     with(kSizeKeys.aperture_mm, access_by<get_aperture, set_aperture>, kOfCubes),
     {"dihedral_error_arcmin", kThreeErrors, kNone,
-     "Intended errors of the three dihedral angles, positive if the angle is larger than 90 degrees. The key has the "
-     "same meaning in a [design](design_file.md).",
+     "Intended errors of the three dihedral angles. An error is positive if the angle is larger than 90 degrees. The "
+     "key has the same meaning in a [design](design_file.md).",
      access_by<get_errors<&AngleErrors::dihedral_error_arcmin>, set_errors<&AngleErrors::dihedral_error_arcmin>>,
      kOfCubes},
     {"facet_tilt_arcmin", kThreeErrors, kNone,
@@ -187,9 +192,11 @@ constexpr Row kZoneRows[] = {
      "Tilts of the facets in this zone. If this key is missing, the values of `[element]` are used.",
      access_by<get_own_errors<&CutZone::facet_tilt_arcmin>, set_own_errors<&CutZone::facet_tilt_arcmin>>},
     {"rotation_deg", Number{{.low = -360.0, .high = 360.0}}, 0.0,
-     "Rotation of each element about its axis, counter-clockwise seen from the light.", access<&CutZone::rotation_deg>},
+     "Rotation of each element about its axis, counter-clockwise as seen from the light.",
+     access<&CutZone::rotation_deg>},
     {"apexes_mm", NumberRows{2, {.low = 0.0, .high = 1e4}, 1, kMostZoneElements, "places"}, kRequired,
-     "`[[x, y], ...]`: positions of the apexes of the zone's elements in plan, from the lower left corner of the part.",
+     "`[[x, y], ...]`: positions of the apexes of the zone's elements, in x and y of the part. The origin is the "
+     "corner of the part with the smallest x and y.",
      access_by<get_apexes, set_apexes>}};
 constexpr Row kArrayRows[] = {
     {"arrangement", Word{geometry::kPrismArrangements}, kRequired, geometry::kArrangementMeaning,
@@ -207,62 +214,71 @@ constexpr Row kArrayRows[] = {
     with(kSizeKeys.x_offset_mm, access<&ArrayLayout::x_offset_mm>),
     with(kSizeKeys.y_offset_mm, access<&ArrayLayout::y_offset_mm>),
     {"pattern", Texts{}, kNone,
-     "Elements that are cut: one text per row, beginning with the row of largest y; `#` marks an element that is cut, "
-     "`-` one that is not. The last element of a shifted row is beyond the border and is never cut. A row of cube "
-     "corners has the elements of one y that lie completely within the margins.",
+     "Elements that are cut: one text for each row, beginning with the row of largest y. Each character is an element: "
+     "`#` if it is cut, `-` if it is not cut. The last element of a shifted row of prisms extends beyond the border "
+     "and is never cut. A row of cube corners contains the elements with equal y that are completely inside the "
+     "margins.",
      access<&ArrayLayout::pattern>, kOfArrays}};
 constexpr Row kChipRows[] = {
     {"position_um", Number{}, kRequired,
-     "Position of the chip's centre, from the centre of the edge towards +X of the machine.",
+     "Position of the chip's centre along the edge, measured from the centre of the edge towards +X of the machine.",
      access<&EdgeChip::position_um>},
-    {"width_um", Number{{.low = 0.01, .high = 100.0}}, kRequired, "Width along the edge.", access<&EdgeChip::width_um>},
-    {"depth_um", Number{}, kRequired, "Depth of the chip, above 0 and at most half the width.",
+    {"width_um", Number{{.low = 0.01, .high = 100.0}}, kRequired, "Width of the chip along the edge.",
+     access<&EdgeChip::width_um>},
+    {"depth_um", Number{}, kRequired,
+     "Depth of the chip, normal to the clearance face. It is above 0 and at most half of the width.",
      access<&EdgeChip::depth_um>}};
 constexpr Row kToolRows[] = {
     {"width_mm", Number{{.low = 0.1, .high = 2.0}}, kRequired,
-     "Length of a chisel's edge, at most the width of the element.", access<&Tool::width_mm>, kOfChisels},
+     "Length of the chisel's cutting edge, at most the width of the element.", access<&Tool::width_mm>, kOfChisels},
     {"width_mm", Number{{.low = 0.01, .high = 10.0}}, kRequired,
-     "Distance between the ends of the V's two edges. The edges must reach from the apex to the blank's face.",
+     "Distance between the outer ends of the two cutting edges of the V-shaped tool. The cutting edges must reach from "
+     "the apex to the face of the blank.",
      access<&Tool::width_mm>, kOfVTools},
     {"wedge_deg", kWedge, 50.0,
-     "Wedge angle of a chisel. Together with the clearance angle, it is at most the apex angle less 12.5 degrees, so "
-     "that chips can leave.",
+     "Wedge angle of the chisel, between its clearance face and its rake face. The sum of the wedge angle and the "
+     "clearance angle is at most the apex angle of the element minus 12.5 degrees, which leaves room for chips.",
      access<&Tool::wedge_deg>, kOfChisels},
     {"wedge_deg", kWedge, kDmcWedgeDeg,
-     "Wedge angle behind each edge of the V (65 with a clearance of 3 gives a rake of 22). It must be so small that no "
-     "flank meets the next facet, and so large that no fin remains on dihedral edges.",
+     "Wedge angle behind each cutting edge of the V-shaped tool. A wedge angle of 65 and a clearance angle of 3 give a "
+     "rake angle of 22. The wedge angle must be small enough that no flank touches a neighbouring facet, and large "
+     "enough that no fin (thin ridge) remains along the dihedral edges.",
      access<&Tool::wedge_deg>, kOfVTools},
     {"clearance_deg", Number{{.low = 2.0, .high = 15.0}}, 3.0,
-     "Angle between the clearance face and the plunged facet, with the tool as mounted.", access<&Tool::clearance_deg>},
+     "Clearance angle of the mounted tool: angle between its clearance face and the facet that is cut.",
+     access<&Tool::clearance_deg>},
     {"edge_radius_um", Number{{.low = 0.0, .high = 50.0}}, 0.0,
-     "Radius of a chisel's edge, or of a V's nose. The radius of a V's nose is at most a tenth of the aperture.",
+     "Radius of the chisel's cutting edge, or nose radius of the V-shaped tool. The nose radius is at most a tenth of "
+     "the aperture.",
      access<&Tool::edge_radius_um>},
     {"nose_angle_deg", Number{{.low = 10.0, .high = 120.0}}, 50.0,
-     "Angle between the two edges of the V. It is below 90, the angle between the dihedral edges of a facet.",
+     "Angle between the two cutting edges of the V-shaped tool. It is less than 90 degrees, the angle between the two "
+     "dihedral edges of a facet.",
      access<&Tool::nose_angle_deg>, kOfVTools},
     {"side_clearance_deg", Number{{.low = 0.0, .low_included = false, .high = 20.0}}, 2.0,
-     "Clearance angle of a chisel's side walls. It must be so small that the diamond does not end in a point within "
-     "the element.",
+     "Clearance angle of the chisel's side walls, by which the diamond narrows towards its shank. It must be small "
+     "enough that the diamond does not end in a point within the depth of the element.",
      access<&Tool::side_clearance_deg>, kOfChisels},
     {"edge_life_mm", Number{{.low = 0.0, .low_included = false, .high = 1e9}}, kNone,
-     "Life of an edge: length of the path of its tip below the blank's face, along plunges and ploughs. For a V, it is "
-     "the path down and up dihedral edges.",
+     "Tool life of a cutting edge: maximum length of the tip's path below the face of the blank, along plunges and "
+     "ploughs. For a V-shaped tool, the path goes down and up the dihedral edges.",
      access_given<&Tool::edge_life_mm>},
     {"next_edge", Word{kNextEdgeWords}, "stop",
-     "Point at which the next edge takes over. `\"stop\"`: at a stop; at every stop the edge is inspected, and is "
-     "replaced or touched off again, and a new edge life begins. `\"program\"`: in the next program; stops do not "
-     "change the edge.",
+     "Action when the cutting edge has reached its tool life. `\"stop\"`: the program stops. At every stop, the edge "
+     "is inspected, and it is replaced or touched off again. The length of cut is then counted from 0. `\"program\"`: "
+     "a new program begins with a new edge. The edge is not changed at stops.",
      access_where<&Tool::next_edge, has_edge_life>}};
 constexpr Table kToolTables[] = {
     {.name = "edge_chips",
-     .meaning = "Notches in a chisel's edge where diamond has broken off, at most 100, which must not overlap. The "
-                "cuts are planned for an undamaged edge; the as-machined part has the scratches of the chips.",
+     .meaning = "Edge chip: notch in the chisel's cutting edge where diamond has broken off. At most 100 chips are "
+                "allowed, and they must not overlap. The cuts are planned for an undamaged edge. The as-machined part "
+                "shows the chips as scratches.",
      .rows = kChipRows,
      .child = children<&Tool::edge_chips>,
      .presence = Presence::list,
      .when = kOfChisels}};
 
-/// Access for tables whose keys are members of the job itself.
+/// Access for a table whose values are members of the job itself.
 constexpr Child kItself = {[](const void*) -> std::size_t { return 1; },
                            [](const void* job, std::size_t) { return job; }, [](void* job) { return job; }};
 constexpr Child kBase = {
@@ -278,12 +294,12 @@ const Table kJobTables[] = {
      .presence = Presence::implied},
     {.name = "element", .meaning = "Kind and dimensions of one element.", .rows = kElementRows, .child = kItself},
     {.name = "array",
-     .meaning = "Arrangement of the elements, at most 2,000,000 of them.",
+     .meaning = "Arrangement of the elements. At most 2,000,000 elements are allowed.",
      .rows = kArrayRows,
      .child = child<&Job::array>},
     {.name = "zone",
-     .meaning = "Cube corners of one kind at the given positions, cut instead of the array. With zones, only the "
-                "lengths of `[array]` are used.",
+     .meaning = "Zone: equal cube corners at given positions. If there are zones, they are cut instead of the array, "
+                "and only the lengths of `[array]` are used.",
      .rows = kZoneRows,
      .child = children<&Job::zones>,
      .presence = Presence::list,
@@ -487,29 +503,30 @@ constexpr Words kStopKeys = {"process.stop_before_finishing", "strategy"};
 constexpr Rule kJobRules[] = {
     Check{kMachineKeys, "The name of the machine must not be empty.", check_by<check_machine>},
     Check{kWorkpieceKeys, "Cube corners can be cut only as moulds.", check_by<check_workpiece>},
-    Check{kChipKeys, "At most 100 chips are allowed. They must lie within the edge and must not overlap.",
+    Check{kChipKeys, "At most 100 chips are allowed. They must be within the edge and must not overlap.",
           check_by<check_chips>},
     Check{kArrayOnSubstrateKeys,
-          "A `[base]` is allowed only for moulds of arrays without margins and pattern, and not for the arrangement "
-          "`single`.",
+          "A `[base]` is allowed only for moulds, and only for arrays without margins and pattern. It is not allowed "
+          "for the arrangement `single`.",
           check_by<check_array_on_substrate>},
     Check{kZoneKeys,
-          "Zones have no margins, no pattern and no base. Their elements, at most 2,000,000 in all, must lie within "
-          "the array's lengths and must not overlap.",
+          "With zones, margins, a pattern, a base and the arrangement `single` are not allowed. The elements of all "
+          "zones, at most 2,000,000 in total, must be within the lengths of the array and must not overlap.",
           check_by<check_zones>},
     Check{kArrayKeys, "At least one element must fit between the margins, and at most 2,000,000 elements are allowed.",
           check_by<check_room>},
     Check{kSquareKeys, "In the arrangement `checker`, `base_mm` and `width_mm` must be equal.", check_by<check_square>},
     Check{kPatternKeys, "The pattern must have a mark for each cell, and at least one element must be cut.",
           check_by<check_pattern>},
-    Check{kToolKeys,
-          "The tool must fit the element. A chisel's edge must not be wider than the element, and its wedge must leave "
-          "room for chips. A V must reach the apex and every point of the facets.",
-          check_by<check_tool>},
+    Check{
+        kToolKeys,
+        "The tool must fit the element. The cutting edge of a chisel must not be longer than the width of the element, "
+        "and its wedge must leave room for chips. A V-shaped tool must reach the apex and every point of the facets.",
+        check_by<check_tool>},
     Check{kStopKeys, "`stop_before_finishing` needs a strategy with finishing cuts: `two-step` or `dmc`.",
           check_by<check_stops>},
     Check{kSubstrateKeys,
-          "The base must carry at least one whole element, and the tool must be able to leave the cuts.",
+          "At least one whole element must fit on the base, and the tool must be able to move out of the cuts.",
           check_by<check_substrate>}};
 
 const Format kJobFormat = {"job",

@@ -41,8 +41,10 @@ constexpr schema::Row kRows[] = {
     {"name", schema::Text{}, kRequired, "Name of the process.", access<&Process::name>},
     {"source", schema::Text{}, kRequired, "Source of the values.", access<&Process::source>},
     {"clearance_mm", Number{kShortLength}, kRequired,
-     "Distance of the tool above the blank's face, normal to the face.", access<&Process::clearance_mm>},
-    {"roughing_depth_um", Number{kDepth}, kRequired, "Depth of cut in roughing and in bidirectional layers.",
+     "Clearance of the tool above the face of the blank between cuts, measured along the normal of the face.",
+     access<&Process::clearance_mm>},
+    {"roughing_depth_um", Number{kDepth}, kRequired,
+     "Depth of cut in roughing, and in the layers of the strategy `bidirectional`.",
      access<&Process::roughing_depth_um>},
     {"finishing_depth_um", Number{kDepth}, kRequired, "Depth of cut in finishing.",
      access<&Process::finishing_depth_um>},
@@ -51,45 +53,50 @@ constexpr schema::Row kRows[] = {
      access<&Process::finishing_cuts>},
     {"plough_length_mm", Number{kShortLength}, kRequired, "Length of a plough along facet 2, from the root.",
      access<&Process::plough_length_mm>},
-    {"dwell_s", Number{kDwell}, 0.1, "Dwell time of the tool at every root.", access<&Process::dwell_s>},
+    {"dwell_s", Number{kDwell}, 0.1, "Dwell time of the tool at the root, in every cut.", access<&Process::dwell_s>},
     {"roughing_feed_mm_per_min", Number{kFeed}, kRequired,
-     "Feed of plunging and ploughing in roughing. A smaller feed would be written as `F0.000`.",
+     "Feed of plunging and ploughing in roughing. Programs contain feeds with three decimals, so a feed below the "
+     "minimum would be written as `F0.000`.",
      access<&Process::roughing_feed_mm_per_min>},
     {"finishing_feed_mm_per_min", Number{kFeed}, kRequired, "Feed of finishing.",
      access<&Process::finishing_feed_mm_per_min>},
     {"retract_feed_mm_per_min", Number{kFeed}, kRequired,
-     "Feed of retracts and of moves to the next cut of the element.", access<&Process::retract_feed_mm_per_min>},
-    {"shortest_plough", schema::Flag{}, false, "Whether ploughs end as soon as the chip is free.",
+     "Feed of retracts, and of moves to the next cut of the same element.", access<&Process::retract_feed_mm_per_min>},
+    {"shortest_plough", schema::Flag{}, false, "Whether a plough ends as soon as its chip has separated.",
      access<&Process::shortest_plough>},
     {"plough_lift_um", Number{kMicrometres}, 0.0,
-     "Distance by which the tool is lifted off the facet when the chip is free.", access<&Process::plough_lift_um>},
+     "Distance by which the tool is lifted off the facet after the chip has separated.",
+     access<&Process::plough_lift_um>},
     {"slow_retract_um", Number{kMicrometres}, 0.0,
      "Length of the first part of the retract of a bidirectional cut. This part goes straight up at the cutting feed.",
      access<&Process::slow_retract_um>},
     {"rotary_clearance_mm", Number{kShortLength}, 5.0,
-     "Distance of the tool above everything that the rotating blank can reach, before a rotary move.",
+     "Minimum height of the tool, during a rotary move, above all points that the rotating blank can reach.",
      access<&Process::rotary_clearance_mm>},
     {"least_chip_um", Number{kDepth}, kNone,
-     "Minimum chip thickness, which a cut must reach somewhere along its length so that its edge does not rub. It is "
-     "at most half of either depth of cut.",
+     "Minimum chip thickness. If the chip of a cut is thinner along its whole length, the edge rubs instead of "
+     "cutting. The value is at most half of the depth of cut, both in roughing and in finishing.",
      access_given<&Process::least_chip_um>},
     {"stop_every_min", Number{kMinutes}, kNone,
-     "Maximum run time of a program from its beginning, or from a stop, to the next stop. Stops are for inspection and "
-     "for touching off again.",
+     "Maximum run time of a program from its beginning, or from a stop, to the next stop. At a stop, the operator "
+     "inspects the part and the edge, and touches off again.",
      access_given<&Process::stop_every_min>},
     {"stop_before_finishing", schema::Flag{}, false,
-     "Whether every element is inspected, at a stop, between roughing and finishing. Elements of equal orientation are "
-     "inspected together.",
+     "Whether the program stops between roughing and finishing, so that the operator can inspect every element. "
+     "Elements of equal orientation are inspected at the same stop.",
      access_where<&Process::stop_before_finishing, stops_before_finishing>},
     {"mist", schema::Flag{}, true, "Whether mist is on while the tool cuts.", access<&Process::mist>},
     {"plough_sa_nm", Number{kRoughness}, 468.0,
-     "Areal roughness Sa after ploughing, as measured by the thesis and the journal paper.",
+     "Areal roughness Sa of facets after ploughing. The default was measured by Milliken (2017) and Hamilton et al. "
+     "(2017).",
      access<&Process::plough_sa_nm>},
     {"roughing_plunge_sa_nm", Number{kRoughness}, 115.0,
-     "Areal roughness Sa after plunging in roughing, as measured by the thesis and the journal paper.",
+     "Areal roughness Sa of facets after plunging in roughing. The default was measured by Milliken (2017) and "
+     "Hamilton et al. (2017).",
      access<&Process::roughing_plunge_sa_nm>},
     {"finishing_plunge_sa_nm", Number{kRoughness}, 48.9,
-     "Areal roughness Sa after plunging in finishing, as measured by the thesis and the journal paper.",
+     "Areal roughness Sa of facets after plunging in finishing. The default was measured by Milliken (2017) and "
+     "Hamilton et al. (2017).",
      access<&Process::finishing_plunge_sa_nm>}};
 
 /// Returns an error message if a plough is shorter than the chip is thick, because the chip then does not separate.
@@ -101,7 +108,7 @@ std::string hanging_chip(const Process& p) {
 
 /// Returns an error message if the minimum chip thickness is more than half of a depth of cut. If the first cut of a
 /// facet would be too thin, the planner gives the first and the second cut the same thickness. Both are then at least
-/// half a depth of cut thick, which must be enough.
+/// half a depth of cut thick, which must be sufficient.
 std::string rubbing_depth(const Process& p) {
   const double most_um = 0.5 * std::min(p.roughing_depth_um, p.finishing_depth_um);
   if (!p.least_chip_um || *p.least_chip_um <= most_um) return {};

@@ -30,8 +30,8 @@ constexpr NumberRange kPositive{.low = 0.0, .low_included = false, .high = 1e6};
 constexpr NumberRange kLength{.low = -1e4, .high = 1e4};
 constexpr NumberRange kComponent{.low = -1e6, .high = 1e6};
 constexpr NumberRange kDegrees{.low = -3600.0, .high = 3600.0};
-/// Minimum determinant of the directions of the axes. If it is smaller, two directions are closer to each other than
-/// about 30 degrees.
+/// Minimum determinant of the directions of the three linear axes, and minimum sine of the angle between the two rotary
+/// axes. A sine of 0.5 is an angle of 30 degrees.
 constexpr double kLeastDeterminant = 0.5;
 
 /// Minimum length of a vector that is accepted as a direction. Shorter vectors are refused.
@@ -179,7 +179,7 @@ constexpr ValueTable kPositiveValue = {kPositiveRows, kPositiveRules};
 constexpr NumberRange kJerkRange{.low = 0.0, .low_included = false, .high = 1e12};
 constexpr auto kJerkRows = sourced<double>(Number{kJerkRange}, access<&Sourced<double>::value>);
 constexpr ValueTable kJerk = {kJerkRows, kPositiveRules};
-constexpr std::string_view kJerkMeaning = "Maximum jerk, the rate at which the acceleration increases and decreases.";
+constexpr std::string_view kJerkMeaning = "Maximum jerk: maximum rate of change of the acceleration.";
 
 constexpr NumberRange kSettlingRange{.low = 0.0, .high = 10.0};
 constexpr auto kSettlingRows = sourced<double>(Number{kSettlingRange}, access<&Sourced<double>::value>);
@@ -257,13 +257,13 @@ constexpr Table kLinearTables[] = {
 
 constexpr Table kRotaryTables[] = {
     value("direction", kDirection, child<&RotaryAxis::direction>,
-          "Direction of the axis. The vector is scaled to length 1."),
+          "Direction of the axis of rotation. The vector is scaled to length 1."),
     value("point_mm", kPoint, child<&RotaryAxis::point_mm>,
-          "Point on the axis. For B, it is measured from the tool reference point, with the head at B = 0.",
+          "Point on the axis of rotation. For B, its coordinates are relative to the tool reference point at B = 0.",
           "the origin"),
     value("sign", kSign, child<&RotaryAxis::sign>,
-          "Sense of rotation. Positive positions rotate the workpiece (B: the tool) by the right-hand rule, or with -1 "
-          "by the left-hand rule.",
+          "Sense of rotation. 1: increasing positions rotate the workpiece (B: the tool) by the right-hand rule about "
+          "`direction`. -1: by the left-hand rule.",
           "1"),
     value("limits_deg", kLimitsDeg, child<&RotaryAxis::limits_deg>, "Minimum and maximum position."),
     value("speed_deg_per_s", kPositiveValue, child<&RotaryAxis::speed_deg_per_s>, "Speed of rapid moves."),
@@ -272,12 +272,13 @@ constexpr Table kRotaryTables[] = {
     value("jerk_deg_per_s3", kJerk, kJerkOf<&RotaryAxis::jerk_deg_per_s3>, kJerkMeaning, "no limit")};
 
 constexpr std::string_view kCarrierWords[] = {"workpiece", "cradle", "tool"};
-constexpr Row kBodyRows[] = {{"name", Text{}, kRequired, "Name of the body.", access<&MachineBody::name>},
-                             {"moves_with", Word{kCarrierWords}, kRequired,
-                              "Part of the machine with which the body moves. `\"workpiece\"`: parts that A and C "
-                              "rotate, such as table and clamps. `\"cradle\"`: parts that C does not rotate. "
-                              "`\"tool\"`: parts that hold the diamond, relative to the tool reference point.",
-                              access<&MachineBody::carrier>}};
+constexpr Row kBodyRows[] = {
+    {"name", Text{}, kRequired, "Name of the body.", access<&MachineBody::name>},
+    {"moves_with", Word{kCarrierWords}, kRequired,
+     "Part of the machine with which the body moves. `\"workpiece\"`: A and C rotate the body, for example the table "
+     "or a clamp. `\"cradle\"`: A rotates the body, but C does not; on a machine with a tilting head, the body does "
+     "not move. `\"tool\"`: the body holds the diamond, and its points are relative to the tool reference point.",
+     access<&MachineBody::carrier>}};
 constexpr Table kBodyTables[] = {value("box_mm", kBox, child_only_read<&MachineBody::points_mm>,
                                        "Box [x_min, y_min, z_min, x_max, y_max, z_max].", "none"),
                                  value("points_mm", kHull, child<&MachineBody::points_mm>,
@@ -311,8 +312,8 @@ constexpr auto kMountTurnRows = sourced<Vec3>(Numbers{3, kMountDegrees}, access_
 constexpr ValueTable kMountTurn = {kMountTurnRows, kPointRules};
 constexpr Table kMountTables[] = {
     value("offset_mm", kMountOffset, child<&ToolMount::offset_mm>,
-          "Displacement of the tool reference point from the position that programs assume, along X, Y and Z. For a "
-          "tilting head, it is given at B = 0.",
+          "Displacement, along X, Y and Z, of the tool reference point from its nominal position. For a tilting head, "
+          "it is the displacement at B = 0.",
           "0"),
     value("turn_deg", kMountTurn, child<&ToolMount::turn_deg>,
           "Orientation of the mounted tool: a rotation vector by the right-hand rule. The tool is touched off after "
@@ -347,15 +348,19 @@ std::string unknown_modulo_axes(const Control& control) {
 
 constexpr Row kControlRows[] = {
     {"increment_system", Word{kIncrementSystemWords}, "E",
-     "Increment system of a Fanuc control: words have 3, 4, 5 or 6 decimals, and at most nine digits.",
+     "Increment system of a Fanuc control. With B, C, D and E, words have 3, 4, 5 and 6 decimals, respectively. All "
+     "words have at "
+     "most nine digits.",
      access<&Control::increment_system>},
-    {"has_rotation", Flag{}, false, "Whether a Fanuc control can rotate coordinates. `G69` cancels the rotation.",
+    {"has_rotation", Flag{}, false,
+     "Whether a Fanuc control can rotate coordinates. If it can, programs cancel the rotation with `G69`.",
      access<&Control::has_rotation>},
-    {"has_mirror", Flag{}, false, "Whether a Fanuc control can mirror coordinates. `G50.1` cancels the mirroring.",
+    {"has_mirror", Flag{}, false,
+     "Whether a Fanuc control can mirror coordinates. If it can, programs cancel the mirroring with `G50.1`.",
      access<&Control::has_mirror>},
     {"modulo_axes", Text{}, "C",
-     "Letters of the rotary axes of a Sinumerik that rotate without limits and whose positions are counted within one "
-     "turn (MD30310).",
+     "Letters of the modulo axes of a Sinumerik (MD30310). A modulo axis is a rotary axis that rotates without limits "
+     "and whose position is counted within one rotation.",
      access<&Control::modulo_axes>},
     {"coordinate_system", Whole{{.low = 1.0, .high = 127.0}}, 1.0,
      "Number of the coordinate system of a Power PMAC that contains the axes X to C.",
@@ -365,18 +370,19 @@ constexpr Row kControlRows[] = {
     {"mist_off", Text{}, kNone, "Program line that switches mist off, for a Power PMAC or an Aerotech control.",
      access<&Control::mist_off>},
     {"optional_stop", Text{}, kNone,
-     "Program line at which the operator may stop, for a Power PMAC or an Aerotech control.",
+     "Program line of an optional stop, which the operator can switch on and off, for a Power PMAC or an Aerotech "
+     "control.",
      access<&Control::optional_stop>},
     {"stop", Text{}, kNone,
      "Program line at which a program waits until the operator continues it, for a Power PMAC or an Aerotech control.",
      access<&Control::stop>},
     {"has_unchecked_lines", Flag{}, false,
-     "Whether the lines for mist and stops, for a Power PMAC or an Aerotech control, may be any text, even text that "
-     "moves axes or waits. The header of each program names such lines.",
+     "Whether the lines for mist and stops, for a Power PMAC or an Aerotech control, are accepted without a check. "
+     "They can then be any text, even text that moves axes or waits. The header of each program names such lines.",
      access<&Control::has_unchecked_lines>},
     {"rapids_are_straight", Flag{}, false,
-     "Whether all axes of a rapid move arrive together (Fanuc 1401#1, 840D `RTLIOF`), so that the move is a straight "
-     "line. Otherwise the whole box between its ends must be clear.",
+     "Whether all axes of a rapid move arrive at the same time (Fanuc 1401#1, 840D `RTLIOF`). The path is then a "
+     "straight line. Otherwise, the tool must not collide anywhere in the box between the two ends of the move.",
      access<&Control::rapids_are_straight>}};
 constexpr std::string_view kMistOnKeys[] = {"mist_on"};
 constexpr std::string_view kMistOffKeys[] = {"mist_off"};
@@ -412,20 +418,22 @@ constexpr Row kRows[] = {{"name", Text{}, kRequired, "Name of the machine.", acc
                          {"title", Text{}, kNone, "Description of the machine, for readers.", access<&Machine::title>}};
 constexpr Table kTables[] = {
     value("safe_z_mm", kHeight, child_if<&Machine::safe_z_mm, has_safe_z>,
-          "Position to which the first move of a program brings Z, before all other axes move. There the tool is clear "
-          "of everything on the table at all positions of the other axes.",
+          "Z position of the first move of a program, before any other axis moves. At this Z position, the tool is "
+          "clear of everything on the table, at all positions of the other axes.",
           "the upper limit of Z"),
     value("settling_s", kSettling, child_if<&Machine::settling_s, settles>,
-          "Time that the control waits after every move until the axes stand still at their exact stop.", "0"),
+          "Time that the control waits after every move until the axes are at rest (exact stop).", "0"),
     value("warm_up_s", kWarmUp, child_if<&Machine::warm_up_s, warms_up>,
-          "Time that X and Y move to and fro, at the height of the first move, before the first cut of a program and "
-          "after a stop. It is the time in which the machine reaches its steady temperature.",
+          "Warm-up time. X and Y move back and forth for this time, at the height of the first move, before the first "
+          "cut of a program and after a stop. It is the time in which the machine reaches a steady temperature.",
           "0"),
     linear("x", "Linear axis X.", child<&Machine::x>),
     linear("y", "Linear axis Y.", child<&Machine::y>),
     linear("z", "Linear axis Z.", child<&Machine::z>),
-    rotary("a", "Rotary axis A, about which the table tilts.", kTilting<Tilt::table>, Presence::optional),
-    rotary("b", "Rotary axis B, about which the head tilts.", kTilting<Tilt::head>, Presence::optional),
+    rotary("a", "Rotary axis A, about which the table tilts. Either A or B is required.", kTilting<Tilt::table>,
+           Presence::optional),
+    rotary("b", "Rotary axis B, about which the head tilts. Either A or B is required.", kTilting<Tilt::head>,
+           Presence::optional),
     rotary("c", "Rotary axis C of the table.", child<&Machine::c>, Presence::always),
     {.name = "mount",
      .meaning = "Deviation of the mounted tool from its nominal position and orientation.",
@@ -439,7 +447,7 @@ constexpr Table kTables[] = {
      .child = child<&Machine::control>,
      .presence = Presence::optional},
     {.name = "body",
-     .meaning = "Convex body that might collide.",
+     .meaning = "Convex body of the machine, for collision checks.",
      .rows = kBodyRows,
      .tables = kBodyTables,
      .rules = kBodyRules,
@@ -457,8 +465,8 @@ constexpr schema::Format kFormat = {
     "machine",
     "retrace.machine/1",
     "Machine with five axes",
-    {"", "Axes of a machine, in the frame of the workpiece at A = C = 0, and bodies that might collide.", kRows,
-     kTables, kRules}};
+    {"", "Axes of a machine, in the workpiece frame at A = C = 0, and bodies for collision checks.", kRows, kTables,
+     kRules}};
 
 }  // namespace
 

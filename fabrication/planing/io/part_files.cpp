@@ -34,57 +34,61 @@ constexpr Condition kTurnedOnly[] = {is("element.kind", only(kLenses, "round_zon
 constexpr Condition kWithStart[] = {beside("spindle_start")};
 constexpr Condition kWithStop[] = {beside("spindle_stop")};
 
-constexpr Row kRows[] = {{"title", Text{}, kNone, "Title of the part, which names plots."}};
+constexpr Row kRows[] = {{"title", Text{}, kNone, "Title of the part. It is used as the title of plots."}};
 constexpr Row kElementRows[] = {
-    {"kind", Word{kLenses}, kRequired, "Kind of lens: cylindrical, for a mill, or round, for a lathe."},
+    {"kind", Word{kLenses}, kRequired,
+     "Kind of lens. `\"zone_lens\"`: cylindrical, made on a mill. `\"round_zone_lens\"`: round, made on a lathe."},
     {"focal_length_mm", kLength, kRequired, "Distance of the focus from the centre of the stepped face."},
     {"wavelength_mm", kLength, kRequired, "Wavelength in air."},
     {"refractive_index", Number{{.low = 1.01, .high = 5.0}}, kRequired, "Refractive index at this wavelength."},
-    {"width_mm", kLength, kRequired, "Width across the zones. For a round lens, it is the diameter."},
-    {"length_mm", kLength, kRequired, "Length along the zones.", kMilledOnly}};
+    {"width_mm", kLength, kRequired, "Width of the lens across the zones. For a round lens, it is the diameter."},
+    {"length_mm", kLength, kRequired, "Length of the lens along the zones.", kMilledOnly}};
 constexpr Row kToleranceRows[] = {
     {"form_mm", Number{{.low = 1e-4, .high = 10.0}}, kRequired,
-     "Tolerance of the form, at most half the depth of a zone. Mill: tolerance of the depth, 2 to 200 steps of the "
-     "grid. Lathe: maximum distance from the profile that the nose can produce."}};
+     "Form tolerance, at most half of the depth of a zone. Mill: tolerance of the depth, 2 to 200 steps of the grid. "
+     "Lathe: maximum distance of the machined surface from the nearest surface that the round nose can produce without "
+     "cutting below the profile."}};
 constexpr double kLeastMovesMm[] = {13.0, 13.0, 6.0};
 constexpr double kTravelsMm[] = {350.0, 1500.0, 400.0};
 constexpr Row kMillRows[] = {
     {"fast_feed_mm_per_min", kFeed, kRequired, "Feed of all moves."},
-    {"frame_s", Number{{.low = 0.0, .high = 60.0}}, 0.0, "Time that a frame takes in addition to its move."},
+    {"frame_s", Number{{.low = 0.0, .high = 60.0}}, 0.0,
+     "Time that each frame (block) of a program takes in addition to its move."},
     {"grid_mm", Number{{.low = 1e-3, .high = 1.0}}, 0.01, "Step of the grid of the machine's positions."},
     {"least_move_mm", Numbers{3, {.low = 0.0, .high = 1e3}}, kLeastMovesMm,
-     "Minimum lengths of moves in fast feed, `[x, y, z]`: X across the zones, Y along them, Z up."},
+     "Minimum lengths of moves in fast feed, `[x, y, z]`. X is across the zones, Y is along them, and Z is up."},
     {"travel_mm", Numbers{3, {.low = 0.1, .high = 1e4}}, kTravelsMm,
-     "Travel of the machine, `[x, y, z]`: X across the zones, Y along them, Z up. `retrace plane` reports the travel "
-     "that the part needs."},
+     "Travel of the axes, `[x, y, z]`. X is across the zones, Y is along them, and Z is up. `retrace plane` reports "
+     "the travel that the part requires."},
     {"most_hours", Number{{.low = 0.01, .high = 1000.0}}, 8.0, "Maximum run time of one program."},
-    {"run_out_mm", kLength, 20.0, "Distance from the part at which strokes begin and end."},
-    {"clear_mm", kLength, 14.0, "Height of moves above the blank; at least the minimum move of Z."}};
+    {"run_out_mm", kLength, 20.0, "Distance beyond the part at which strokes begin and end."},
+    {"clear_mm", kLength, 14.0,
+     "Height, above the blank, of moves without cutting. It is at least the minimum move of Z."}};
 constexpr std::string_view kSpindleText =
     "Program line that starts (`spindle_start`) or stops (`spindle_stop`) the spindle of a Power PMAC or an Aerotech "
-    "control. It has up to 200 printable ASCII characters without `//`. The two lines must differ and are required for "
-    "`--dialect pmac`, `a3200` and `automation1`.";
+    "control. A line has up to 200 printable ASCII characters and does not contain `//`. The two lines must differ. "
+    "Both are required for `--dialect pmac`, `a3200` and `automation1`.";
 constexpr Row kLatheRows[] = {
     {"feed_mm_per_min", kFeed, kRequired, "Feed of all cuts."},
     {"depth_of_cut_mm", Number{{.low = 0.01, .high = 100.0}}, 1.0, "Maximum depth of cut of a pass."},
-    {"clear_mm", kLength, 2.0, "Height of moves above the blank."},
+    {"clear_mm", kLength, 2.0, "Height, above the blank, of moves without cutting."},
     {"nose_radius_mm", Number{{.low = 0.0, .high = 100.0}}, 0.0,
-     "Nose radius of the tool, which is round on both sides. It must be small enough to reach the bottom of every zone "
-     "next to its wall."},
+     "Radius of the tool's nose, which is round on both sides. The nose must be small enough to reach the bottom of "
+     "every zone next to the wall of the zone."},
     // An S word has up to five digits.
     {"spindle_rpm", Whole{{.low = 1.0, .high = 99999.0}}, kRequired, "Speed of the spindle."},
     {"spindle_direction", Word{kSpindleDirectionWords}, kRequired,
-     "Direction of rotation of the spindle: `M3` and `M4`."},
+     "Direction of rotation of the spindle: `\"clockwise\"` is `M3`, `\"counterclockwise\"` is `M4`."},
     {"spindle_start", Text{}, kNone, kSpindleText, kWithStop},
     {"spindle_stop", Text{}, kNone, kSpindleText, kWithStart},
     {"has_unchecked_lines", Flag{}, false,
-     "Whether `spindle_start` and `spindle_stop` may be any text, even text that moves axes or waits. The header of "
-     "each program names such lines."}};
+     "Whether `spindle_start` and `spindle_stop` are accepted without a check. They can then be any text, even text "
+     "that moves axes or waits. The header of each program names such lines."}};
 constexpr Table kTables[] = {
     {.name = "element", .meaning = "Lens.", .rows = kElementRows},
     {.name = "tolerance", .meaning = "Tolerance of the form.", .rows = kToleranceRows},
-    {.name = "mill", .meaning = "Mill that planes the lens.", .rows = kMillRows, .when = kMilledOnly},
-    {.name = "lathe", .meaning = "Lathe that turns the lens.", .rows = kLatheRows, .when = kTurnedOnly}};
+    {.name = "mill", .meaning = "Mill on which the lens is planed.", .rows = kMillRows, .when = kMilledOnly},
+    {.name = "lathe", .meaning = "Lathe on which the lens is turned.", .rows = kLatheRows, .when = kTurnedOnly}};
 PlaningMill mill_of(const Document& file) {
   const auto number = [&](std::string_view key) { return file.number(path_in("mill", key)); };
   const std::vector<double> least = file.numbers("mill.least_move_mm");
@@ -210,14 +214,16 @@ constexpr Words kZoneKeys = {"element.focal_length_mm", "element.width_mm", "lat
 constexpr Rule kRules[] = {
     Check{kClearKeys, "`clear_mm` must be at least the minimum move of Z.", check_by<check_clearance>},
     Check{kSpindleKeys,
-          "The two lines must differ. Unless `has_unchecked_lines` is true, each line sets an output or a variable, or "
-          "is an M code of the machine's builder (see `docs/nc_dialects.md`).",
+          "`spindle_start` and `spindle_stop` must differ. Unless `has_unchecked_lines` is true, each line sets an "
+          "output or a variable, or is an M code of the machine's builder (see `docs/nc_dialects.md`).",
           check_by<check_spindle_texts>},
     Check{kSizeKeys,
-          "The tolerance is at most half the depth of a zone and, for a mill, 2 to 200 steps of its grid. The width is "
-          "at most 2 million steps.",
+          "The tolerance is at most half of the depth of a zone and, for a mill, 2 to 200 steps of its grid. The width "
+          "is at most 2 million steps. For a lathe, a step is a tenth of the tolerance.",
           check_by<check_sizes>},
-    Check{kZoneKeys, "Zones must be at least four steps wide, and the nose must reach the bottom of each zone.",
+    Check{kZoneKeys,
+          "Zones must be at least four steps of the grid wide (lathe: four tenths of the tolerance). The nose must "
+          "reach the bottom of each zone.",
           check_by<check_zones>}};
 constexpr Format kFormat = {
     "planed_part",

@@ -22,17 +22,22 @@ constexpr Words kServos = {"slow", "fast"};
 
 constexpr Condition kNoLeastSkew[] = {without("find_least_skew")};
 constexpr Row kToolRows[] = {
-    {"nose_radius_mm", Number{{.low = 1e-4, .high = 100.0}}, kRequired, "Radius of the round nose."},
+    {"nose_radius_mm", Number{{.low = 1e-4, .high = 100.0}}, kRequired, "Radius of the tool's round nose."},
     {"clearance_deg", Number{{.low = 0.0, .low_included = false, .high = 60.0}}, kRequired,
      "Clearance angle of the conical flank, relative to the normal of the rake face."},
     {"window_deg", Number{{.low = 1.0, .high = 178.0}}, 120.0,
-     "Angle of the sharp arc of the nose, symmetric about the axis of the tool."},
-    {"rake_deg", Number{{.low = -80.0, .high = 45.0}}, 0.0, "Rake angle. If it is positive, the rake face leans back."},
+     "Included angle of the arc of the nose that is sharp and can cut. The arc is symmetric about the axis of the "
+     "tool."},
+    {"rake_deg", Number{{.low = -80.0, .high = 45.0}}, 0.0,
+     "Rake angle. If it is positive, the rake face is inclined backwards, away from the cutting direction."},
     {"skew_deg", Number{{.low = -80.0, .high = 80.0}}, 0.0,
-     "Rotation of the tool about its shank. For a spiral, it is made by moving along Y; for a raster, by C = -skew.",
+     "Skew: rotation of the tool about its shank, from the cutting direction outwards. No rotary axis of the tool is "
+     "needed. In a spiral, the tool is displaced along Y to obtain the skew; in a raster, the part is rotated to C = "
+     "-skew.",
      kNoLeastSkew},
     {"find_least_skew", Flag{}, false,
-     "Whether to use the skew closest to 0, within +-60, with which the tool clears the surface."}};
+     "Whether the skew is determined by the program: the skew closest to 0, within +-60 degrees, at which the tool "
+     "clears the surface."}};
 
 using geometry::kRasterOnly;
 using geometry::kSpiralOnly;
@@ -41,37 +46,42 @@ constexpr Condition kArcOnly[] = {is("sampling", only(kSamplings, "arc"))};
 constexpr Kind kArcUm = Number{{.low = 0.1, .high = 1e4}};
 constexpr Row kPathRows[] = {
     geometry::kStrategyRow,
-    {"feed_um", Number{{.low = 1e-3, .high = 1e4}}, kNone, "Feed per turn, or distance from line to line."},
+    {"feed_um", Number{{.low = 1e-3, .high = 1e4}}, kNone,
+     "Spiral: feed per rotation of the spindle. Raster: distance between neighbouring lines."},
     {"scallop_nm", Number{{.low = 1e-3, .high = 1e6}}, kNone,
-     "Height of the cusps on a flat surface, from which the feed is computed; in place of `feed_um`."},
-    {"clear_mm", Number{{.low = 0.01, .high = 1e3}}, 1.0, "Height above the part of moves without cutting."},
+     "Height of the cusps on a flat surface. The feed is computed from this height. The key is given instead of "
+     "`feed_um`."},
+    {"clear_mm", Number{{.low = 0.01, .high = 1e3}}, 1.0, "Height, above the part, of moves without cutting."},
     {"approach_mm_per_min", Number{{.low = 0.01, .high = 1e5}}, 5.0,
      "Feed of the downward move to the beginning of a cut."},
     geometry::kRegionRadiusRow,
     {"overrun_mm", Number{{.low = 0.0, .high = 1e3}}, 0.0,
-     "Distance beyond the rim at which a spiral starts. On a surface that falls outwards, the point of contact of the "
-     "nose is inside of its lowest point.",
+     "Distance beyond the rim at which a spiral starts. It is needed on surfaces that fall outwards, because the nose "
+     "then touches the surface at a smaller radius than that of its lowest point.",
      kSpiralOnly},
-    {"spindle_rpm", Number{{.low = 0.01, .high = 1e5}}, kRequired, "Speed of the spindle, in turns per minute.",
+    {"spindle_rpm", Number{{.low = 0.01, .high = 1e5}}, kRequired, "Speed of the spindle, in revolutions per minute.",
      kSpiralOnly},
     {"sampling", Word{kSamplings}, "angle",
-     "Quantity that is equal from point to point. The control joins the points by straight moves of all axes, so a "
-     "curved cut needs short moves: an arc of length s and curvature k leaves an error of s^2 k / 8.",
+     "Spacing of the points of a spiral: equal angles of the spindle, or equal arc lengths. The control connects the "
+     "points by straight moves of all axes. A curved cut therefore needs short moves: an arc of length s and curvature "
+     "k leaves an error of s^2 k / 8.",
      kSpiralOnly},
-    {"points_per_turn", Whole{{.low = 8.0, .high = 100000.0}}, 360.0, "Number of points per turn, at equal angles.",
-     kAngleOnly},
-    {"arc_um", kArcUm, kRequired, "Distance from point to point along the cut.", kArcOnly},
-    {"arc_um", kArcUm, kRequired, "Distance from point to point along the lines.", kRasterOnly},
+    {"points_per_turn", Whole{{.low = 8.0, .high = 100000.0}}, 360.0,
+     "Number of points per rotation of the spindle, at equal angles.", kAngleOnly},
+    {"arc_um", kArcUm, kRequired, "Distance between neighbouring points along the cut.", kArcOnly},
+    {"arc_um", kArcUm, kRequired, "Distance between neighbouring points along the lines.", kRasterOnly},
     {"servo", Word{kServos}, "slow",
-     "Kind of tool servo. `\"fast\"`: Z follows the mean over a turn, and the remainder is the stroke in `servo.csv`.",
+     "Kind of tool servo. `\"slow\"`: the Z axis follows the surface. `\"fast\"`: the Z axis follows the mean height "
+     "over a rotation, and a fast tool servo adds the remainder. `servo.csv` contains this stroke of the servo.",
      kAngleOnly},
     {"servo", Word{only(kServos, "slow")}, "slow",
-     "Kind of tool servo. A fast tool servo follows the angle of the spindle and is therefore not available here.",
+     "Kind of tool servo. A fast tool servo follows the angle of the spindle and is therefore not available for this "
+     "sampling.",
      Access(), kArcOnly},
     {"cubic_error_nm", Number{{.low = 1e-2, .high = 1e4}}, kNone,
-     "Maximum deviation from the spiral for controls that join points by cubics (`pmac`, `a3200`, `automation1`). "
-     "Their programs contain positions, velocities and times of as few points as this deviation permits. The key needs "
-     "`machine.c_acceleration_deg_per_s2`.",
+     "Maximum deviation from the spiral for controls that connect points by cubic curves (dialects `pmac`, `a3200` and "
+     "`automation1`). Their programs contain the positions, velocities and times of as few points as this deviation "
+     "allows. The key needs `machine.c_acceleration_deg_per_s2`.",
      kSpiralOnly},
     geometry::kRegionSizeRow,
     {"cutting_mm_per_min", Number{{.low = 0.1, .high = 1e5}}, kRequired, "Cutting speed along the lines.",
@@ -87,7 +97,8 @@ constexpr Row kLimitRows[] = {
 constexpr Row kMachineRows[] = {
     {"spindle_rpm", kPositive, kNone, "Maximum speed of the spindle."},
     {"c_acceleration_deg_per_s2", kPositive, kNone,
-     "Maximum acceleration of the spindle. If it is given, spirals begin and end at a standstill."},
+     "Maximum acceleration of the spindle. If it is given, the spindle is at rest at the beginning and at the end of a "
+     "spiral."},
     {"blocks_per_s", kPositive, kNone, "Maximum number of blocks that the control executes in a second."}};
 constexpr Table limits(std::string_view name, std::string_view meaning) {
   return {.name = name, .meaning = meaning, .rows = kLimitRows, .presence = Presence::optional};
@@ -99,17 +110,18 @@ constexpr Condition kRoundOnly[] = {
     is("path.strategy", only(geometry::kStrategies, "spiral"), "must not be given for a raster: meshes are round")};
 constexpr Row kInspectRows[] = {
     {"form_tolerance_nm", kPositive, 10.0,
-     "Maximum form error. Larger form errors, and cuts below the surface, fail the inspection."},
+     "Maximum form error. The part fails the inspection if its form error, or the depth of a cut below the surface, "
+     "exceeds this value."},
     {"map_pixels", Whole{{.low = 11.0, .high = 2001.0}}, 101.0,
-     "Number of pixels along each side of the map. Each pixel shows the largest deviation over one feed across the "
+     "Number of pixels along each side of the map. Each pixel shows the largest deviation within one feed across the "
      "cuts."},
     {"mesh_thickness_mm", kPositiveMm, kNone,
-     "Thickness of the part in `machined.stl`, from the highest point of its back to its horizontal entrance face. If "
-     "it is given, this mesh is written: the part that is moulded in the surface that the programs produce.",
+     "Thickness of the part in the mesh `machined.stl`, from the highest point of its back to its horizontal entrance "
+     "face. If the key is given, this mesh is written. It shows the part that is moulded from the machined surface.",
      kRoundOnly},
     {"mesh_rings", Whole{{.low = 2.0, .high = 1000.0}}, 100.0, "Number of circles of the mesh `machined.stl`."}};
 
-constexpr Row kRows[] = {{"title", Text{}, kNone, "Title, one line."}};
+constexpr Row kRows[] = {{"title", Text{}, kNone, "Title of the part, in one line."}};
 constexpr Table kTables[] = {
     {.name = "tool", .meaning = "Diamond tool.", .rows = kToolRows},
     {.name = "path", .meaning = "Path of the tool.", .rows = kPathRows, .rules = kPathRules},

@@ -33,7 +33,7 @@ class Keys {
   void set(std::string_view key, Value value) { document_.set(schema::path_in(table_, key), std::move(value)); }
   void set_word(std::string_view key, std::string_view word) { set(key, text_of(word)); }
   /// Sets a key to one of its allowed words.
-  /// \param index index of the word among the words that the key allows at this point
+  /// \param index index of the word in the list of words that are allowed with the keys set so far
   template <class Enum>
   void set_choice(std::string_view key, Enum index) {
     const schema::Row* const row = document_.row(schema::path_in(table_, key));

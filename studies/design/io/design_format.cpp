@@ -24,9 +24,9 @@ constexpr Condition kScratchesOnly[] = {without("part.mesh", kOfAMesh), without(
 
 const Table kSurfaceTables[] = {
     {.name = "scratches",
-     .meaning = "Scratches: grooves of V-shaped section that run up a facet of prisms from root to rim, at most 200. "
-                "Scratches of one facet must not overlap, and none are allowed on a `[base]`. In a `checker` array, "
-                "they are rotated with the elements.",
+     .meaning = "Scratches on the facets of prisms: V-shaped grooves that run up a facet from the root to the rim. At "
+                "most 200 are allowed, and none on a `[base]`. Scratches on the same facet must not overlap. In a "
+                "`checker` array, scratches are rotated with their elements.",
      .rows = scratch_rows(),
      .presence = Presence::list,
      .layout = Layout::in_line,
@@ -36,7 +36,8 @@ const Table kSurfaceTables[] = {
 const Table kFormTables[] = {
     {.name = "terms",
      .meaning = "Terms of a polynomial over every facet, at most 45. Coordinates are measured from the centroid of the "
-                "facet in units of its radius, the distance to the farthest corner. No plane is subtracted.",
+                "facet. Their unit is the radius of the facet, which is the distance from the centroid to the farthest "
+                "corner. The best-fit plane is not subtracted.",
      .rows = form_term_rows(),
      .presence = Presence::list,
      .layout = Layout::in_line,
@@ -46,22 +47,23 @@ constexpr std::string_view kLayerIndex[] = {"material", "refractive_index"};
 constexpr Rule kLayerRules[] = {OneOf{kLayerIndex, "must have either material or refractive_index"}};
 constexpr std::string_view kLayerShape =
     "a list of tables with material or refractive_index, and thickness_nm, the layer on the body first";
-const Table kCoatingTables[] = {
-    {.name = "facets",
-     .meaning = "Layers on the retro facets, from the body outwards, at most 200, at most one of them opaque.",
-     .rows = layer_rows(),
-     .rules = kLayerRules,
-     .presence = Presence::list,
-     .layout = Layout::in_line,
-     .shape = kLayerShape},
-    {.name = "entrance",
-     .meaning = "Layers on the entrance face, from the body outwards, at most 200, none of them opaque.",
-     .rows = layer_rows(),
-     .rules = kLayerRules,
-     .presence = Presence::list,
-     .layout = Layout::in_line,
-     .shape = kLayerShape,
-     .when = kEntranceTable}};
+const Table kCoatingTables[] = {{.name = "facets",
+                                 .meaning = "Layers on the retro facets, in order from the body outwards. At most 200 "
+                                            "layers are allowed, and at most one may be opaque.",
+                                 .rows = layer_rows(),
+                                 .rules = kLayerRules,
+                                 .presence = Presence::list,
+                                 .layout = Layout::in_line,
+                                 .shape = kLayerShape},
+                                {.name = "entrance",
+                                 .meaning = "Layers on the entrance face, in order from the body outwards. At most 200 "
+                                            "layers are allowed, and none may be opaque.",
+                                 .rows = layer_rows(),
+                                 .rules = kLayerRules,
+                                 .presence = Presence::list,
+                                 .layout = Layout::in_line,
+                                 .shape = kLayerShape,
+                                 .when = kEntranceTable}};
 
 constexpr Condition kWithZones[] = {kNoMesh,
                                     kNoPlate,
@@ -81,14 +83,16 @@ constexpr Rule kWetBackRules[] = {
     OneOf{kWhichAreWet, "must have one of share, rectangle_mm, disc_mm and half_plane, which say where it is wet"}};
 const Table kEntranceFaceTables[] = {
     {.name = "layers",
-     .meaning = "Layers that are much thicker than the coherence length of the light, such as hard coats, from the "
-                "body outwards, at most 20. They lie on the layers of `coating.entrance`, under the water.",
+     .meaning = "Layers that are much thicker than the coherence length of the light, such as hard coats, in order "
+                "from the body outwards. At most 20 are allowed. They are on top of the layers of `coating.entrance`, "
+                "and water is on top of them.",
      .rows = thick_layer_rows(),
      .presence = Presence::list,
      .layout = Layout::in_line,
      .shape = "a list of tables with refractive_index, thickness_um and absorption_per_mm"}};
 
-constexpr Row kRootRows[] = {{"title", Text{}, kNone, "Title of the design, which names its curves in plots."}};
+constexpr Row kRootRows[] = {
+    {"title", Text{}, kNone, "Title of the design. It is used as the name of the design's curves in plots."}};
 const Table kTables[] = {
     {.name = "element",
      .meaning = "Kind and dimensions of one element.",
@@ -106,8 +110,8 @@ const Table kTables[] = {
      .presence = Presence::optional,
      .when = kWithPlanes},
     {.name = "zone",
-     .meaning = "Region of a finite part, or set of its elements, that differs from the other zones. The zones cover "
-                "the part.",
+     .meaning = "Region of a finite part, or set of its elements, with elements that differ from those of other zones. "
+                "The zones cover the whole part.",
      .rows = zone_rows(),
      .rules = kZoneRules,
      .presence = Presence::list,
@@ -123,7 +127,7 @@ const Table kTables[] = {
      .presence = Presence::optional,
      .when = kEntranceTable},
     {.name = "body",
-     .meaning = "Plate and material of the part, and the medium behind it.",
+     .meaning = "Plate and material of the part, and the medium behind its retro facets.",
      .rows = body_rows(),
      .presence = Presence::implied},
     {.name = "wet_back",
@@ -137,8 +141,8 @@ const Table kTables[] = {
      .tables = kCoatingTables,
      .presence = Presence::optional},
     {.name = "entrance",
-     .meaning = "Condition of an entrance face that is not clean or not smooth: layers, water, dust, scratches, haze, "
-                "roughness.",
+     .meaning =
+         "State of an entrance face that is not clean or not smooth: layers, water, dust, scratches, haze, roughness.",
      .rows = entrance_face_rows(),
      .tables = kEntranceFaceTables,
      .presence = Presence::optional,
@@ -149,14 +153,14 @@ const Table kTables[] = {
      .rows = detector_rows(),
      .presence = Presence::implied},
     {.name = "surface",
-     .meaning = "Errors of angle, texture and edges of the retro facets.",
+     .meaning = "Angle errors, texture and edges of the retro facets.",
      .rows = surface_rows(),
      .tables = kSurfaceTables,
      .presence = Presence::implied,
      .when = kSurfaceTable},
     {.name = "form",
      .meaning = "Deviation of the retro facets of elements from planes, equal for all facets: sink of moulded parts, a "
-                "polynomial, a measured map.",
+                "polynomial, or a measured height map.",
      .rows = form_rows(),
      .tables = kFormTables,
      .presence = Presence::optional,

@@ -80,7 +80,8 @@ struct FootprintOf {
     const double radius = cube.aperture_mm / 2.0;
     return {2.0 * radius, std::numbers::sqrt3 * radius, 1.5 * std::numbers::sqrt3 * radius * radius};
   }
-  /// The apex is at the centre of the extent. The vertex on +x is one radius away, and the extent is symmetric.
+  /// The apex must be at the centre of the part, one radius away from the vertex on +x. The part therefore needs two
+  /// radii along x.
   Footprint operator()(const TriangularCube& cube) const {
     const double radius = cube.aperture_mm / 2.0;
     return {2.0 * radius, std::numbers::sqrt3 * radius, 0.75 * std::numbers::sqrt3 * radius * radius};
@@ -177,13 +178,13 @@ void check_one_shape(const Document& document, const PartSpec& part) {
     document.fail("surface.rim_chamfer_um", "must be 0 where rim_radius_um is given");
 }
 
-/// Checks that the gap between elements is wide enough for rounded or chamfered rims on both sides. Rims are the edges
-/// along which elements meet each other or the flat land between them.
+/// Checks that the gap between elements is wide enough for rounded or chamfered rims on both of its sides. Rims are the
+/// edges where an element meets another element or the flat land between elements.
 void check_land(const Document& document, const PartSpec& part) {
   if (!part.edges.rounds_rims() || !is_prism(part)) return;
   const bool is_checker = part.array.arrangement == Arrangement::checker;
   const double reach_mm = geometry::rim_reach_over_land_mm(part);
-  // In a checker array, one of two neighbours is rotated by 90 degrees.
+  // In a checker array, one of two neighbours is rotated by 90 degrees, so that only one of them has a rim at the gap.
   const double needed_mm = is_checker ? reach_mm : 2.0 * reach_mm;
   const auto check = [&](std::string_view gap, double gap_mm) {
     if (gap_mm <= 0.0 || gap_mm >= needed_mm) return;
@@ -234,8 +235,8 @@ std::string_view blamed_error(const Document& document, std::string_view otherwi
   return otherwise;
 }
 
-/// Checks that no facet of a canted cube becomes almost vertical, and that the apex angle of a prism stays within its
-/// range.
+/// Checks that no facet of a canted cube corner becomes almost vertical, and that the apex angle of a prism stays
+/// within its range.
 void check_angles(const Document& document, const PartSpec& part) {
   if (const auto* const rtp = std::get_if<RtpElement>(&part.element)) {
     const auto& [dihedral, tilt] = part.angle_errors;
@@ -284,7 +285,7 @@ void check_substrate_of_part(const Document& document, const PartSpec& part) {
   }
 }
 
-/// Checks that the plate is thick enough to cover all rims, the upper edges of the elements.
+/// Checks that the plate is thick enough to cover the highest points of the elements.
 void check_thickness(const Document& document, const PartSpec& part) {
   const double top_mm = geometry::element_top_mm(part.element, part.angle_errors);
   const double least_mm = top_mm > 0.0 ? top_mm + 1e-6 : 0.0;
@@ -399,70 +400,76 @@ constexpr schema::Rule kRules[] = {
                   "A `[base]` is allowed only for finite arrays without margins, and not for the arrangement `single`.",
                   check_by<of_array<check_array_on_substrate>>},
     schema::Check{kDihedralKeys,
-                  "Prisms have one error of angle. Cube corners have one error for all dihedral edges, or three.",
+                  "`dihedral_error_arcmin` is one number for prisms. For cube corners, it is one number for all "
+                  "dihedral edges, or a list of three numbers.",
                   check_by<of_part<check_dihedral_errors>>},
-    schema::Check{
-        kTiltKeys,
-        "A list of tilts has one number for each facet: two for prisms, three for cube corners. 0 means no tilts.",
-        check_by<of_part<check_facet_tilts>>},
+    schema::Check{kTiltKeys,
+                  "A list of tilts has one number for each facet: two for prisms, three for cube corners. The single "
+                  "number 0 means no tilts.",
+                  check_by<of_part<check_facet_tilts>>},
     schema::Check{kRandomKeys, "Random tilts are allowed only for finite parts.",
                   check_by<of_part<check_random_tilts>>},
     schema::Check{kEdges,
-                  "Radii and chamfers of edges are at most a quarter of the base, or a tenth of the aperture, so that "
-                  "a part of each facet remains.",
+                  "The radii and chamfers of edges are at most a quarter of the base, or a tenth of the aperture. A "
+                  "part of each facet then remains.",
                   check_by<of_part<check_widths>>},
-    schema::Check{kChordKeys, "The number of chords must be even.", check_by<of_part<check_chords>>},
-    schema::Check{kEdges, "Roots have either a radius or a chamfer, not both. The same rule applies to rims.",
+    schema::Check{kChordKeys, "`edge_chords` must be an even number.", check_by<of_part<check_chords>>},
+    schema::Check{kEdges, "Roots may have a radius or a chamfer, but not both. The same rule applies to rims.",
                   check_by<of_part<check_one_shape>>},
-    schema::Check{kRimKeys,
-                  "The gap across roof edges, and in the arrangement `checker` both gaps, must be 0 or at least as "
-                  "wide as rounded or chamfered rims reach.",
-                  check_by<of_part<check_land>>},
+    schema::Check{
+        kRimKeys,
+        "The gap between neighbouring prisms, measured across their roof edges, must be 0 or wide enough for the "
+        "rounded or chamfered rims on both of its sides. In the arrangement `checker`, this applies to both gaps.",
+        check_by<of_part<check_land>>},
     schema::Check{kScratchKeys,
-                  "At most 200 scratches are allowed. They must lie within the facet and must not overlap. None are "
-                  "allowed on a `[base]`.",
+                  "At most 200 scratches are allowed. A scratch must be completely on its facet, and scratches on the "
+                  "same facet must not overlap. None are allowed on a `[base]`.",
                   check_by<of_part<check_scratches>>},
     schema::Check{kAngleKeys,
-                  "Apex angles of prisms, with `dihedral_error_arcmin` and `facet_tilt_arcmin`, must be 60 to 120 "
-                  "degrees. Facets of canted cube corners, with these errors and six standard deviations of random "
-                  "tilts, must be at most 88 degrees steep.",
+                  "The apex angle of prisms, including `dihedral_error_arcmin` and `facet_tilt_arcmin`, must be 60 to "
+                  "120 degrees. The slope of the facets of canted cube corners, including these errors and six "
+                  "standard deviations of the random tilts, must be at most 88 degrees.",
                   check_by<of_part<check_angles>>},
     schema::Check{kMaskKeys, "A mask is not allowed on a `[base]`.", check_by<of_part<check_mask>>},
     schema::Check{kFacetsKeys,
                   "Tables of planes (`[part]` `facets`) are allowed only for finite arrays without `[base]` and "
-                  "without errors of angle.",
+                  "without angle errors in `[surface]`.",
                   check_by<of_part<check_facet_planes>>},
     schema::Check{kSubstrateKeys,
-                  "The radius of curvature of a `[base]` must be at least the width of an element, and its facets must "
-                  "be at most 88 degrees steep. Rounded or chamfered rims need `elements` = `\"parallel\"`, or a plane "
-                  "base and no gaps.",
+                  "The radius of curvature of a `[base]` must be at least the width of an element. The slope of the "
+                  "facets on the base must be at most 88 degrees. Rounded or chamfered rims need `elements` = "
+                  "`\"parallel\"`, or a plane base and no gaps.",
                   check_by<of_part<check_substrate_of_part>>},
-    schema::Check{kThicknessKeys,
-                  "The plate of an array must be thick enough to cover rims that errors of angle or a cant raise.",
-                  check_by<of_part<check_thickness>>},
-    schema::Check{kBowlKeys,
-                  "Bowls behind balls extend at most to the angle at which the bowls of neighbouring balls meet.",
-                  check_by<check_bowl>},
     schema::Check{
-        kHeightKeys,
-        "A height of roughness above 0 needs its correlation length. A height of waviness above 0 needs its period.",
-        check_by<check_lengths>},
+        kThicknessKeys,
+        "The plate of an array must be so thick that it covers rims that are raised by angle errors or a cant.",
+        check_by<of_part<check_thickness>>},
+    schema::Check{kBowlKeys,
+                  "The bowl of a mirror behind a ball extends at most to the angle at which the bowls of neighbouring "
+                  "balls meet.",
+                  check_by<check_bowl>},
+    schema::Check{kHeightKeys,
+                  "If the rms height of the roughness is above 0, its correlation length is required. If the rms "
+                  "height of the waviness is above 0, its period is required.",
+                  check_by<check_lengths>},
     schema::Check{kModelKeys,
-                  "Heights of roughness and waviness must be 0, except for `\"harvey_shack\"`, which uses both, and "
-                  "for `\"microfacet\"`, which uses the waviness.",
+                  "The rms heights of roughness and waviness must be 0, except for `\"harvey_shack\"`, which uses "
+                  "both, and for `\"microfacet\"`, which uses the waviness.",
                   check_by<check_heights>},
     schema::Check{kMaterialKeys, "The name of the material must not be empty.", check_by<check_material>},
     schema::Precedence{schema::beside("body.refractive_index"), kIndexKeys, "on the refractive index",
                        "`body.refractive_index` takes precedence over the index of the material."},
     schema::Precedence{schema::is("idealisation.facets", kMirrorWord), kFacetCoatingKeys, "on the facets",
-                       "`idealisation.facets` = `\"mirror\"` takes precedence over the coating of the body."},
+                       "`idealisation.facets` = `\"mirror\"` takes precedence over `body.facet_coating`."},
     schema::Precedence{.winner = schema::beside("body.absorption_per_mm"),
                        .keys = kIndexKeys,
                        .effect = "on the absorption",
                        .meaning = "`body.absorption_per_mm` takes precedence over the absorption of the material.",
                        .is_refinement = true},
-    schema::Check{kAbsorptionKeys, "The wavelengths of an absorption curve must ascend.", check_by<check_absorption>},
-    schema::Check{kSpectrumKeys, "A list of lines must have each wavelength only once.", check_by<check_lines>},
+    schema::Check{kAbsorptionKeys, "The wavelengths of an absorption curve must be in ascending order.",
+                  check_by<check_absorption>},
+    schema::Check{kSpectrumKeys, "A list of spectral lines must contain each wavelength only once.",
+                  check_by<check_lines>},
     schema::Check{kStokesKeys, "The degree of polarisation is at most 1: q^2 + u^2 + v^2 <= i^2.",
                   check_by<check_stokes>},
     schema::Check{kWetBackKeys,
@@ -470,27 +477,30 @@ constexpr schema::Rule kRules[] = {
                   "`single`. The two lengths of its rectangle and the radius of its disc must be above 0.",
                   check_by<check_wet_back>},
     schema::Check{kLayerKeys,
-                  "A face may have at most 200 layers. Layers without thickness are opaque: at most one is allowed on "
-                  "the facets, and none on the entrance face.",
+                  "A face may have at most 200 layers. Layers without a thickness are opaque. At most one opaque layer "
+                  "is allowed on the facets, and none on the entrance face.",
                   check_by<check_layers>},
     schema::Check{kCoatingKeys,
                   "Layers are allowed only on faces that are not idealised and have no other coating. Layers behind "
                   "balls must form a mirror.",
                   check_by<check_coating>},
     schema::Check{kEntranceFaceKeys,
-                  "A coverage of drops, dust or scratches above 0, and a haze above 0, need the keys that describe "
-                  "them. Drops, dust and scratches together cover at most the whole face, and the haze is at most the "
+                  "If the coverage of drops, dust or scratches, or the haze, is above 0, the keys that describe it are "
+                  "required. Drops, dust and scratches together cover at most the whole face. The haze is at most the "
                   "fraction of its lobe beyond 2.5 degrees. A rough face must not have thick layers or a film. A "
-                  "lossless face allows none of these keys; a `[front]` allows only layers and the film.",
+                  "lossless face allows none of these keys. With a `[front]`, only layers and the film are allowed.",
                   check_by<check_entrance_face>},
-    schema::Check{kMirrorKeys, "A bowl behind balls (`mirror_offset_mm` > 0) needs a mirror: aluminium or ideal.",
-                  check_by<check_ball_mirror>},
-    schema::Check{kFormKeys, "A form has at most 45 terms, each of a degree of at most 8.", check_by<check_form>},
+    schema::Check{
+        kMirrorKeys,
+        "A mirror at a distance behind balls (`mirror_offset_mm` > 0) must be aluminium, an opaque layer or ideal.",
+        check_by<check_ball_mirror>},
+    schema::Check{kFormKeys, "A form has at most 45 terms. The degree of each term is at most 8.",
+                  check_by<check_form>},
     schema::Check{kZoneKeys,
-                  "Zones must cover every point of a finite part without margins exactly once. They have at most 1000 "
-                  "regions and 1e5 elements, and their arrangement is neither `single` nor `pins`.",
+                  "Zones must cover every point of a finite part without margins exactly once. All zones together have "
+                  "at most 1000 regions and 1e5 elements. The arrangement of a zone must not be `single` or `pins`.",
                   check_by<check_zones>},
-    schema::Check{kEntranceKeys, "A `[front]` needs one file and a finite part.", check_by<check_entrance>}};
+    schema::Check{kEntranceKeys, "A `[front]` needs one file, and the part must be finite.", check_by<check_entrance>}};
 
 }  // namespace
 

@@ -38,65 +38,69 @@ constexpr Condition kIndexOfMaterial[] = {
 
 constexpr Row kBodyRows[] = {
     {"thickness_mm", kSize, kRequired,
-     "Thickness of the plate between the entrance face and the nominal rims. With a `[front]`, it is measured from the "
-     "origin of its file to the rims.",
+     "Thickness of the plate between the entrance face and the nominal rims of the elements. With a `[front]`, it is "
+     "the height of the origin of the front's file above the nominal rims.",
      kThicknessOfOthers},
-    {"thickness_mm", kSize, kNone, "Thickness of the plate. If it is given, it must equal the thickness of the mesh.",
-     kThicknessOfMesh},
-    {"material", Text{}, "PMMA", "Name of a material that `retrace list materials` shows."},
+    {"thickness_mm", kSize, kNone,
+     "Thickness of the plate. If this key is given, it must equal the thickness of the mesh.", kThicknessOfMesh},
+    {"material", Text{}, "PMMA", "Name of the material. `retrace list materials` shows the available names."},
     {"catalogue", File{"a glass catalogue"}, kNone,
-     "Catalogue of glasses in the AGF format, as published by makers; `material` is then the name of one of its "
-     "glasses. Or a record of refractiveindex.info (`.yml`), which has one material; `material` is then not needed."},
+     "Glass catalogue in the AGF format, as published by glass makers. `material` is then the name of a glass in the "
+     "catalogue. Alternatively, a record of refractiveindex.info (`.yml`). Such a record has only one material, and "
+     "`material` is not needed."},
     {"refractive_index", Number{{.low = 1.0, .high = 10.0}}, Computed{"that of the material"},
-     "Refractive index relative to air. It takes precedence over the material."},
+     "Refractive index of the body relative to air. It takes precedence over the index of the material."},
     {"temperature_c", Number{{.low = -200.0, .high = 400.0}}, Computed{"the temperature of the material's data"},
-     "Temperature of the part and the surrounding air, whose indices depend on it; lengths are those at this "
-     "temperature. For materials with thermo-optic coefficients; not together with `refractive_index`.",
+     "Temperature of the part and the surrounding air. The refractive indices of both depend on it. All lengths of the "
+     "design apply at this temperature. Only for materials with thermo-optic coefficients, and not together with "
+     "`refractive_index`.",
      kIndexOfMaterial},
     {"absorption_per_mm", Number{kAtLeastZero}, Computed{"that of the material"},
-     "Napierian absorption coefficient, for power; it takes precedence over the material. A list of two or more "
-     "`[wavelength_nm, absorption_per_mm]`, with linear interpolation, gives it as a function of wavelength (coloured "
-     "lenses) and must cover all wavelengths of the light."},
+     "Napierian absorption coefficient of the body, for power. It takes precedence over the absorption of the "
+     "material. A list of two or more `[wavelength_nm, absorption_per_mm]` gives the coefficient as a function of "
+     "wavelength (for coloured lenses), with linear interpolation. The list must cover all wavelengths of the light."},
     {"absorption_per_mm", Pairs{kAboveZero, kAtLeastZero, "[wavelength_nm, absorption_per_mm]", 2}, kNone,
      "Absorption coefficient as a function of wavelength."},
     {"facet_coating", Word{kCoatings}, "none",
      "Coating of the retro facets. `\"aluminium\"`: an opaque film that absorbs all light that it does not reflect. "
-     "`[coating]` allows other layers."},
+     "Other layers are specified in `[coating]`."},
     {"back_index", Number{{.low = 1.0, .high = 3.0}}, 1.0,
-     "Refractive index, relative to air, of the medium behind the facets, such as water (1.333) or glue. The medium at "
-     "the entrance face and at the sides of the part is air."}};
+     "Refractive index, relative to air, of the medium behind the retro facets, such as water (1.333) or glue. The "
+     "medium at the entrance face and at the sides of the part is always air."}};
 
 constexpr Condition kWithShare[] = {beside("share")};
 constexpr NumberRange kPlaceInPart{.low = -1e6, .high = 1e6};
 
 constexpr Row kWetBackRows[] = {
     {"index", Number{{.low = 1.0, .high = 3.0}}, kRequired,
-     "Refractive index, relative to air, of the medium behind these elements, such as water (1.333). The medium behind "
-     "all other elements is that of `body.back_index`."},
+     "Refractive index, relative to air, of the medium behind the selected elements, such as water (1.333). The medium "
+     "behind all other elements is that of `body.back_index`."},
     {"share", Number{{.low = 0.0, .high = 1.0}}, kNone,
      "Probability that an element is selected. The choice depends on a hash of its row, its column and `seed`."},
     {"seed", Whole{{.low = 0.0, .high = 4294967295.0}}, 1.0, "Seed of the random choice of elements.", kWithShare},
     {"rectangle_mm", Numbers{4, kPlaceInPart, "places, x and y of two corners"}, kNone,
-     "`[x, y, x, y]`: rectangle in the part frame, given by its corners of smallest and of largest x and y. Elements "
-     "whose centroid lies in it are selected."},
+     "`[x_min, y_min, x_max, y_max]`: rectangle in the part frame. Elements whose centroid is inside the rectangle are "
+     "selected."},
     {"disc_mm", Numbers{3, kPlaceInPart, "lengths, x and y of the centre and the radius"}, kNone,
-     "`[x, y, radius]`: disc. Elements whose centroid lies in it are selected."},
+     "`[x, y, radius]`: centre and radius of a disc in the part frame. Elements whose centroid is inside the disc are "
+     "selected."},
     {"half_plane", Numbers{3, kPlaceInPart, "numbers, x and y in mm and an azimuth in degrees"}, kNone,
-     "`[x_mm, y_mm, azimuth_deg]`: half-plane whose border passes through x, y and which extends from there towards "
-     "the azimuth. Elements whose centroid lies in it are selected."}};
+     "`[x_mm, y_mm, azimuth_deg]`: half-plane in the part frame. Its border passes through the point (x, y) and is "
+     "perpendicular to the azimuth. The half-plane extends from the border in the direction of the azimuth. Elements "
+     "whose centroid is inside the half-plane are selected."}};
 
 // Allowed refractive indices of a coating layer. The upper limit is high because metals have indices up to about 500 in
 // the far infrared.
 constexpr NumberRange kIndexOfLayer{.low = 0.0, .low_included = false, .high = 1000.0};
 
 constexpr Row kLayerRows[] = {
-    {"material", Text{}, kNone, "Name of a material or a metal that `retrace list materials` shows."},
+    {"material", Text{}, kNone, "Name of a material or a metal; `retrace list materials` shows the available names."},
     {"refractive_index", Number{kIndexOfLayer}, kNone,
-     "Refractive index relative to air, in place of that of a material."},
+     "Refractive index of the layer relative to air, instead of the index of a material."},
     {"extinction_coefficient", Number{{.low = 0.0, .high = 1000.0}}, 0.0,
-     "Extinction coefficient, the imaginary part of the refractive index.", kWithLayerIndex},
+     "Extinction coefficient of the layer, the imaginary part of the refractive index.", kWithLayerIndex},
     {"thickness_nm", Number{{.low = 0.0, .high = 1e6}}, kNone,
-     "Thickness of the layer. Without this key the layer is opaque, and must be a metal or have an extinction "
+     "Thickness of the layer. Without this key, the layer is opaque; it must then be a metal or have an extinction "
      "coefficient above 0."}};
 
 constexpr Condition kNoSpectrum[] = {
@@ -108,24 +112,27 @@ constexpr Row kLightRows[] = {
     {"spectrum",
      WordOrFile{kIlluminants, ".csv", "\"A\", \"D65\", a file that ends in .csv or a list of [wavelength_nm, power]"},
      kNone,
-     "Spectrum of the light, in place of `wavelength_nm`: a CIE illuminant, a file such as `\"lamp.csv\"`, or a list "
-     "of lines `[[wavelength_nm, power], ...]` with each wavelength once."},
+     "Spectrum of the light, instead of `wavelength_nm`: a CIE illuminant, a file such as `\"lamp.csv\"`, or a list of "
+     "spectral lines `[[wavelength_nm, power], ...]`. Each wavelength may occur only once in the list."},
     {"spectrum", Pairs{kAboveZero, kAtLeastZero, "[wavelength_nm, power]"}, kNone, "Spectral lines."},
     {"weighting", Word{kWeightings}, "photopic",
-     "Weighting of power. `\"photopic\"` weights power by the CIE's luminous efficiency, which is 0 outside 380 to 780 "
-     "nm, so that results are fractions of the luminous flux. `\"radiant\"` does not weight it.",
+     "Weighting of power. `\"photopic\"`: power is weighted by the luminous efficiency of the CIE, which is 0 outside "
+     "of 380 to 780 nm. Results are then fractions of the luminous flux. `\"radiant\"`: power is not weighted.",
      kWithSpectrum},
     {"wavelength_nm", Number{kAboveZero}, 587.56,
-     "Wavelength in vacuum. A wavelength outside the range of the material's data gives a warning.", kNoSpectrum},
+     "Wavelength of the light in vacuum. A wavelength outside the range of the material's data causes a warning.",
+     kNoSpectrum},
     {"polarisation", Word{kPolarisations, " or a list of four Stokes parameters"}, "unpolarised",
-     "State of polarisation: a word, or Stokes parameters `[i, q, u, v]` with i > 0 and q^2 + u^2 + v^2 <= i^2."},
+     "Polarisation of the light: a word, or the Stokes parameters `[i, q, u, v]` with i > 0 and q^2 + u^2 + v^2 <= "
+     "i^2."},
     {"polarisation", Numbers{4, {}, "Stokes parameters"}, kNone, "Stokes parameters."},
     {"polarisation_angle_deg", Number{kAzimuth}, 0.0,
-     "Direction of the electric field, from the first axis towards the second.", kLinearOnly}};
+     "Direction of the electric field, measured from the first axis of polarisation towards the second axis.",
+     kLinearOnly}};
 
-constexpr Row kDetectorRows[] = {{"acceptance_half_angle_deg",
-                                  NumberOrNumbers{{.low = 0.0, .low_included = false, .high = 90.0}}, 0.5,
-                                  "Half-angle of the acceptance cone, in air. A list gives RRE for each half-angle."}};
+constexpr Row kDetectorRows[] = {
+    {"acceptance_half_angle_deg", NumberOrNumbers{{.low = 0.0, .low_included = false, .high = 90.0}}, 0.5,
+     "Half-angle of the acceptance cone, in air. For a list, the RRE of each half-angle is computed."}};
 
 constexpr Condition kErrorOfPrism[] = {without("part.mesh", kOfAMesh), without("part.plate_mm", kOfAMesh),
                                        is(kKind, kRtp)};
@@ -140,35 +147,43 @@ constexpr Condition kMicrofacetOnly[] = {is("model", kMicrofacet)};
 
 constexpr Kind kEdgeUm = Number{{.low = 0.0}};
 constexpr Row kSurfaceRows[] = {
-    {"dihedral_error_arcmin", Number{kAngleError}, 0.0, "Error of the apex angle, which is added to `apex_angle_deg`.",
+    {"dihedral_error_arcmin", Number{kAngleError}, 0.0, "Error of the apex angle. It is added to `apex_angle_deg`.",
      kErrorOfPrism, kZeroIsNone},
     {"dihedral_error_arcmin", NumberOrNumbers{kAngleError}, 0.0,
-     "Errors of the dihedral angles: a number for all dihedral edges, or a list of three for the edges at 0, +120 and "
-     "+240 degrees.",
+     "Errors of the dihedral angles: one number for all dihedral edges, or a list of three numbers for the edges at "
+     "the azimuths 0, 120 and 240 degrees.",
      kErrorOfCube, kZeroIsNone},
     {"facet_tilt_arcmin", NumberOrNumbers{kAngleError}, 0.0,
-     "Tilts of the facets: a list with one number for each facet, or 0. Prisms: the facets towards -x, +x; cube "
-     "corners: the facets between the edges at 0 and 120, 120 and 240, 240 and 360 degrees.",
+     "Tilts of the facets; positive tilts open the element. A list with one number for each facet, or 0 for no tilts. "
+     "Prisms: the facets towards -x and +x. Cube corners: the facets between the edges at 0 and 120, 120 and 240, 240 "
+     "and 360 degrees.",
      kErrors, kZeroIsNone},
     {"angle_error_sigma_arcmin", Number{{.low = 0.0, .high = 60.0}}, 0.0,
-     "Standard deviation of additional random tilts, for finite parts. The tilt of every facet of every element is "
-     "Gaussian and independent.",
+     "Standard deviation of random tilts, which are added to all other angle errors. Only for finite parts. The random "
+     "tilts of all facets of all elements are Gaussian and independent.",
      kErrors, kZeroIsNone},
     {"angle_error_seed", Whole{{.low = 0.0, .high = 4294967295.0}}, 1.0, "Seed of the random tilts.", kErrors},
     {"walls", Word{kWalls}, "smooth",
-     "Model of the walls. `\"absorbing\"`: walls of elements and of the border absorb all light."},
+     "Model of the walls between elements and along the border. `\"absorbing\"`: these walls absorb all light."},
     {"model", Word{kModels}, "height_map", "Scatter model of rough facets.", kModelOfMap},
     {"model", Word{kModels}, Computed{"`\"harvey_shack\"` with roughness or waviness, otherwise `\"smooth\"`"},
      "Scatter model of rough facets.", kModelOfOthers},
     {"abg_a", Number{{.low = 0.0, .low_included = false, .high = 1e6}}, kRequired,
-     "Parameter A, per sr, of the model BSDF = A / (B + \\|dbeta\\|^g).", kAbgOnly},
-    {"abg_b", Number{{.low = 1e-12, .high = 1e6}}, kRequired, "Parameter B of the model in `abg_a`.", kAbgOnly},
-    {"abg_g", Number{{.low = 1e-3, .high = 100.0}}, kRequired, "Parameter g of the model in `abg_a`.", kAbgOnly},
+     "Parameter A, per sr, of the scatter model BSDF = A / (B + \\|dbeta\\|^g).", kAbgOnly},
+    {"abg_b", Number{{.low = 1e-12, .high = 1e6}}, kRequired,
+     "Parameter B of the scatter model that is given at `abg_a`.", kAbgOnly},
+    {"abg_g", Number{{.low = 1e-3, .high = 100.0}}, kRequired,
+     "Parameter g of the scatter model that is given at `abg_a`.", kAbgOnly},
     {"height_map", File{"the file of a measured map"}, kRequired,
-     "Measured map of heights, in a format that `retrace metrology` reads, of 8 x 8 to 4,194,304 points.", kMapOnly},
+     "Measured height map, in a format that `retrace metrology` reads. It has at least 8 x 8 and at most 4,194,304 "
+     "points.",
+     kMapOnly},
     {"height_map_level_axis", Word{kAxes}, "x",
-     "Axis of the map that is horizontal on a facet, which is along the roof edge of a prism.", kMapOnly},
-    {"height_map_form", Word{kForms}, "plane", "Form that is removed from the map.", kMapOnly},
+     "Axis of the map that is horizontal on a facet. On a prism, the horizontal direction is parallel to the roof "
+     "edge.",
+     kMapOnly},
+    {"height_map_form", Word{kForms}, "plane",
+     "Form that is subtracted from the map: its best-fit plane or polynomial of the given degree.", kMapOnly},
     {"slope_distribution", Word{kSlopeDistributions}, "beckmann", "Distribution of the slopes of the microfacets.",
      kMicrofacetOnly},
     {"roughness_sq_nm", Number{kHeight}, 0.0, "Rms height of the roughness, for `harvey_shack`."},
@@ -177,60 +192,66 @@ constexpr Row kSurfaceRows[] = {
      "`roughness_sq_nm`."},
     {"correlation_length_down_um", Number{{.low = 0.0, .low_included = false, .high = 1e6}},
      Computed{"`correlation_length_um`"},
-     "Correlation length down the facet, for roughness with a lay, such as feed marks. `correlation_length_um` is then "
-     "the horizontal correlation length, along the roof edge of a prism."},
+     "Correlation length in the direction down the facet, for roughness with a lay, such as feed marks. "
+     "`correlation_length_um` is then the horizontal correlation length, which on a prism is parallel to the roof "
+     "edge."},
     {"waviness_sq_nm", Number{kHeight}, 0.0, "Rms height of the waviness, for `harvey_shack` and `microfacet`."},
     {"waviness_length_um", Number{kLength}, 0.0,
      "Period of the waviness. It is required together with `waviness_sq_nm`."},
     {"root_radius_um", kEdgeUm, 0.0,
-     "Radius of the roots, where facets of one element meet. It is at most a quarter of the base, or a tenth of the "
-     "aperture.",
+     "Radius of the roots, the lines where facets of one element meet. It is at most a quarter of the base, or a tenth "
+     "of the aperture.",
      kErrors, kZeroIsNone},
     {"root_chamfer_um", kEdgeUm, 0.0,
-     "Width of a flat in place of each root, across the root. Not together with a radius.", kErrors, kZeroIsNone},
+     "Width of the flat that replaces each root, measured across the root. Not together with a radius.", kErrors,
+     kZeroIsNone},
     {"rim_radius_um", kEdgeUm, 0.0,
-     "Radius of the rims, where neighbouring elements meet. It is at most a quarter of the base, or a tenth of the "
-     "aperture.",
+     "Radius of the rims, the lines where an element meets its neighbours or flat land. It is at most a quarter of the "
+     "base, or a tenth of the aperture.",
      kErrors, kZeroIsNone},
     {"rim_chamfer_um", kEdgeUm, 0.0,
-     "Width of a flat in place of each rim, across the rim. Not together with a radius.", kErrors, kZeroIsNone},
+     "Width of the flat that replaces each rim, measured across the rim. Not together with a radius.", kErrors,
+     kZeroIsNone},
     {"edge_chords", Whole{{.low = 4.0, .high = 64.0}}, 16.0,
-     "Number of plane strips that approximate an arc from facet to facet.", kErrors}};
+     "Number of plane strips that approximate the rounding of an edge, from one facet to the other.", kErrors}};
 
 constexpr Row kScratchRows[] = {
-    {"facet", Word{kFacets}, kRequired, "Facet with the scratch, named by the side that it faces."},
+    {"facet", Word{kFacets}, kRequired, "Facet with the scratch, named by the direction that the facet faces."},
     {"position_um", Number{}, kRequired,
-     "Position of the scratch's centre along the roof edge, from the centre of the element towards +y."},
+     "Position of the centre of the scratch along the roof edge, measured from the centre of the element towards +y."},
     {"width_um", Number{{.low = 0.01, .high = 100.0}}, kRequired,
-     "Width across the scratch, less than the width of the element."},
+     "Width of the scratch, measured across it; it must be less than the width of the element."},
     {"depth_um", Number{}, kRequired,
-     "Depth normal to the facet and into the part, at most half the width; < 0 is a ridge."}};
+     "Depth of the scratch, measured into the part along the normal of the facet; at most half of the width; a "
+     "negative value is a ridge."}};
 
 constexpr NumberRange kPower{.low = 0.0, .high = 8.0};
 constexpr NumberRange kFormHeight{.low = -100.0, .high = 100.0};
 constexpr Condition kWithFormMap[] = {beside("map")};
 constexpr Row kFormRows[] = {
     {"sink_um", Number{kFormHeight}, 0.0,
-     "Depth by which the centroid of a facet sinks into the body relative to its farthest corner, in the shape of a "
-     "paraboloid; < 0: it bulges. The best-fit plane is subtracted."},
+     "Sag of a facet: distance by which the centroid of the facet is displaced into the body, relative to the corner "
+     "farthest from it. The facet is a paraboloid. A negative value is a bulge. The best-fit plane is subtracted."},
     {"map", File{"the file of a measured map"}, kNone,
-     "Measured heights of a facet, in a format that `retrace metrology` reads, about the centre of the map. A "
-     "polynomial is fitted to them, and its best-fit plane over the facet is subtracted."},
+     "Measured height map of a facet, in a format that `retrace metrology` reads. The centre of the map is placed at "
+     "the centroid of the facet. A polynomial is fitted to the heights. The best-fit plane of the polynomial over the "
+     "facet is subtracted."},
     {"map_level_axis", Word{kAxes}, "x", "Axis of the map that is horizontal on a facet.", kWithFormMap},
     {"map_degree", Whole{{.low = 2.0, .high = 8.0}}, 4.0, "Degree of the polynomial that is fitted to the map.",
      kWithFormMap}};
 constexpr Row kFormTermRows[] = {
-    {"level", Whole{kPower}, kRequired, "Power of the coordinate along the horizontal axis of the facet."},
+    {"level", Whole{kPower}, kRequired, "Power of the horizontal coordinate of the facet."},
     {"down", Whole{kPower}, kRequired, "Power of the coordinate down the facet; the sum of both powers is at most 8."},
     {"height_um", Number{kFormHeight}, kRequired,
-     "Height out of the body where both coordinates equal the radius of the facet."}};
+     "Coefficient: height of the term, positive out of the body, where both coordinates equal the radius of the "
+     "facet."}};
 
 constexpr Row kIdealisationRows[] = {
     {"facets", Word{kFacetModels}, "real",
-     "Model of the retro facets. `\"mirror\"`: they reflect all light at every angle."},
+     "Model of the retro facets. `\"mirror\"`: the facets reflect all light at every angle."},
     {"entrance", Word{kEntranceModels}, "real",
-     "Model of the entrance face. `\"lossless\"`: it refracts and transmits all light; light beyond the critical angle "
-     "ends."}};
+     "Model of the entrance face. `\"lossless\"`: the face refracts and transmits all light. Light that reaches it "
+     "from inside beyond the critical angle is not traced further."}};
 
 }  // namespace
 

@@ -40,18 +40,18 @@ constexpr Row kElementRows[] = {
     where(kSizeKeys.aperture_mm, kCubeOnly),
     // Facets would become vertical at a cant of 35.26 degrees.
     {"cant_deg", Number{{.low = 0.0, .high = 30.0}}, 0.0,
-     "Angle between +z and the axis of the cube corner, which runs from the apex into the part.", kCantOnly,
+     "Angle between +z and the axis of the cube corner. The axis points from the apex into the part.", kCantOnly,
      kZeroIsNone},
-    {"cant_azimuth_deg", Number{kAzimuth}, 0.0, "Azimuth of the direction in which the axis leans, from +x towards +y.",
-     kCantOnly, kZeroIsNone},
+    {"cant_azimuth_deg", Number{kAzimuth}, 0.0,
+     "Azimuth of the direction towards which the axis is tilted, measured from +x towards +y.", kCantOnly, kZeroIsNone},
     {"diameter_mm", kSize, kRequired, "Diameter of the balls.", kBallOnly},
     {"mirror_offset_mm", kGap, Computed{"0: the back of the ball itself is coated"},
-     "Distance from the ball to a mirror behind it, which is a bowl with the same centre. It needs a mirror, of "
-     "aluminium or ideal.",
+     "Distance from the ball to the mirror behind it. The mirror is a spherical bowl with the same centre as the ball. "
+     "A value above 0 needs a mirror: aluminium, an opaque layer, or an ideal mirror.",
      kBallOnly},
     {"mirror_half_angle_deg", Number{{.low = 0.0, .low_included = false, .high = 90.0}},
-     Computed{"90, or the angle at which the bowls of neighbouring balls meet if that is smaller"},
-     "Angle from -z, seen from the centre of the ball, up to which the mirror extends. It is at most the angle at "
+     Computed{"90, or the angle at which the bowls of neighbouring balls meet if this angle is smaller"},
+     "Angle from -z up to which the mirror extends, measured at the centre of the ball. It is at most the angle at "
      "which the bowls of neighbouring balls meet.",
      kBallOnly}};
 
@@ -78,12 +78,15 @@ constexpr Condition kBallGapOnly[] = {is(kKind, kBall), is_not(kArrangement, kSi
 
 constexpr Row kArrayRows[] = {
     {"arrangement", Word{geometry::kPrismArrangements}, "aligned",
-     "Arrangement of the elements. `\"checker\"` needs equal `base_mm` and `width_mm`.", kOfPrisms},
+     "Arrangement of the elements. `\"checker\"`: neighbouring prisms are rotated by 90 degrees to each other; "
+     "`base_mm` must equal `width_mm`.",
+     kOfPrisms},
     {"arrangement", Word{geometry::kHexagonalArrangements}, "honeycomb",
-     "Arrangement of the elements. `\"pins\"` is a honeycomb of the ends of pins; see [base].", kOfHexagons},
+     "Arrangement of the elements. `\"pins\"`: a honeycomb of cells that are the ends of parallel pins; see [base].",
+     kOfHexagons},
     {"arrangement", Word{geometry::kTriangularArrangements}, "triangular", geometry::kArrangementMeaning, kOfTriangles},
-    {"arrangement", Word{kBallArrangements}, "packed", "Arrangement of the balls. `\"packed\"` is an infinite layer.",
-     kOfBalls},
+    {"arrangement", Word{kBallArrangements}, "packed",
+     "Arrangement of the balls. `\"packed\"` is an infinite layer with hexagonal packing.", kOfBalls},
     {"extent", Word{kFinite}, "finite", "Extent of the array. A single element is finite.", kOfSingle},
     {"extent", Word{kInfinite}, "infinite", "Extent of the array. A layer of balls is infinite.", kOfPacked},
     {"extent", Word{kExtents}, "finite", "Extent of the array. `\"infinite\"` is one periodic cell.", kOfOthers},
@@ -92,24 +95,27 @@ constexpr Row kArrayRows[] = {
     where(kSizeKeys.x_offset_mm, kFiniteOnly, kZeroIsNone),
     where(kSizeKeys.y_offset_mm, kFiniteOnly, kZeroIsNone),
     {"partial_elements", Word{kPartialElements}, "cut",
-     "Treatment of elements that cross the border: `\"cut\"` cuts them at the border, `\"omit\"` leaves them out.",
+     "Treatment of elements that cross the border of the part. `\"cut\"`: they are cut at the border. `\"omit\"`: they "
+     "are replaced by flat back.",
      kNoBallArray},
     where(kSizeKeys.x_gap_mm, kGapOnly, kZeroIsNone),
     where(kSizeKeys.y_gap_mm, kGapOnly, kZeroIsNone),
     where(geometry::kOverlapKey, kOffsetOnly),
     where(geometry::kShiftedRowsKey, kOffsetOnly),
     {"mask", File{"a picture"}, kNone,
-     "Picture with one pixel for each element; row 0 is the row of largest y. Only dark pixels are elements; all other "
-     "cells, and partial elements, become flat back. Not together with `angle_error_sigma_arcmin` (except for `retrace "
-     "job`) or `[part]` `facets`.",
+     "Image with one pixel for each element. The first row of pixels belongs to the elements at the largest y. Only "
+     "cells with a dark pixel have an element. All other cells, and all partial elements, are replaced by flat back. "
+     "Not allowed together with `angle_error_sigma_arcmin` (except for `retrace job`) or with `[part]` `facets`.",
      kMaskOnly},
     {"mask_threshold", Number{{.low = 0.0, .low_included = false, .high = 1.0}}, 0.7,
-     "Threshold for dark pixels: pixels with grey < threshold * 255 are elements (0.7: 178 and below).",
+     "Threshold for dark pixels. A pixel is dark if its grey value (0 to 255) is below `mask_threshold` * 255. With "
+     "0.7, values up to 178 are dark.",
      kThresholdOnly},
     {"gap_mm", kGap, 0.0, "Gap between neighbouring balls.", kBallGapOnly}};
 
 constexpr std::string_view kScaleMeaning =
-    "Factor from the unit of the STL file to mm: 1 for mm, 1000 for metres, 25.4 for inches, 0.001 for micrometres.";
+    "Factor that converts the unit of the STL file to mm: 1 for mm, 1000 for metres, 25.4 for inches, 0.001 for "
+    "micrometres.";
 constexpr std::string_view kBesidePlate = "not allowed beside plate_mm";
 constexpr Condition kMeshOnly[] = {without("plate_mm", kBesidePlate)};
 constexpr Condition kWithMesh[] = {without("plate_mm", kBesidePlate), beside("mesh")};
@@ -118,34 +124,39 @@ constexpr Condition kFacetsOnly[] = {without("plate_mm", kBesidePlate),
 
 constexpr Row kPartRows[] = {
     {"mesh", File{"an STL file"}, kNone,
-     "Mesh of the part, binary or ASCII, in the part frame, in place of elements. It has at most 10 million triangles.",
+     "STL mesh of the whole part, binary or ASCII, in the part frame. It replaces the elements. It has at most 10 "
+     "million triangles.",
      kMeshOnly},
     {"scale", kSize, 1.0, kScaleMeaning, kWithMesh},
     {"allow_open", Flag{}, false,
-     "Whether to trace a mesh with defects. Openings are closed by flat patches, and bodies that intersect are united. "
-     "A mesh that touches itself along edges is traced unchanged. A warning reports each defect; results apply to the "
+     "true: a mesh with defects is traced. Openings are closed by flat patches, and bodies that intersect are united. "
+     "A mesh that touches itself along edges is traced unchanged. A warning reports each defect. Results apply to the "
      "repaired mesh.",
      kWithMesh},
     {"plate_mm", Numbers{2, kSaneSize, "lengths, along x and y"}, kNone,
-     "Lengths along x and y of a plate, in place of elements. Its flat back on z = 0 is its only retro facet."},
+     "Lengths along x and y of a plate that replaces the elements. The flat back of the plate, on z = 0, is its only "
+     "retro facet."},
     {"facets", File{"a table of planes"}, kNone,
-     "Table of the planes of the facets of a finite part, in place of the nominal planes.", kFacetsOnly}};
+     "Table with the plane of each facet of a finite part. These planes replace the nominal planes of the facets.",
+     kFacetsOnly}};
 
 constexpr Condition kTurnedOnly[] = {without("mesh", "not allowed beside mesh: a part has one front")};
 constexpr Condition kSideOnly[] = {beside("mesh")};
 
 constexpr Row kEntranceRows[] = {
     {"turned", File{"a turned part"}, kNone,
-     "File of a turned part (turning_file.md). Its exact surface is used, with the material below it.", kTurnedOnly},
-    {"mesh", File{"an STL file"}, kNone, "Mesh, binary or ASCII, whose triangles are the entrance surface."},
+     "File of a turned part (turning_file.md). The entrance surface is its exact surface, not an approximation by "
+     "triangles. The material is below the surface.",
+     kTurnedOnly},
+    {"mesh", File{"an STL file"}, kNone, "STL mesh of the entrance surface, binary or ASCII."},
     {"scale", kSize, 1.0, kScaleMeaning, kSideOnly},
     {"mesh_side", Word{kSides}, "top",
      "Side of the mesh that is the entrance surface. `\"top\"`: the triangles that face +z. `\"bottom\"`: the "
-     "triangles that face -z, turned over; this is needed for `machined.stl` of `retrace turn`, which is the "
-     "counterpart that is moulded in the turned surface.",
+     "triangles that face -z, with reversed orientation. `\"bottom\"` is needed for `machined.stl` of `retrace turn`, "
+     "which is the counterpart that is moulded in the turned surface.",
      kSideOnly},
     {"centre_mm", Numbers{2, kPlace, "places, x and y"}, Computed{"the centre of the part"},
-     "`[x, y]`: position of the file's origin in the plane of the part."}};
+     "`[x, y]`: position of the origin of the file in the part frame."}};
 
 constexpr NumberRange kLines{.low = 1.0, .high = 1e6};
 constexpr Condition kBesideLines[] = {without("mask", "only allowed beside rows or columns"),
@@ -156,33 +167,35 @@ constexpr Condition kBesideLines[] = {without("mask", "only allowed beside rows 
 constexpr Condition kBesideMask[] = {beside("mask")};
 constexpr Row kZoneRows[] = {
     {"share", Number{{.low = 0.0, .low_included = false, .high = 1.0}}, kNone,
-     "Fraction of the part's area. The zone is a stripe over the whole height of the part. Stripes are placed side by "
-     "side along x, in the order of the file, and their fractions add up to 1, to 1e-6."},
+     "Fraction of the part's area. The zone is a stripe over the whole length of the part along y. The stripes are "
+     "placed side by side along x, in the order of the file. Their fractions must add up to 1 within 1e-6."},
     {"rectangles_mm", NumberRows{4, kPlace, 1, 1000, "rectangles"}, kNone,
-     "`[[x_from, y_from, x_to, y_to], ...]`: rectangles in the plan of the part, each with an array of its own."},
+     "`[[x_from, y_from, x_to, y_to], ...]`: rectangles in the plan of the part. Each rectangle has its own array."},
     {"polygon_mm", NumberRows{2, kPlace, 3, 100, "points"}, kNone,
      "`[[x, y], ...]`: corners of a convex polygon in the plan of the part."},
     {"rows", NumberOrNumbers{kLines, true}, kNone,
-     "Numbers of rows along x whose elements belong to the zone, over the whole part. Rows are counted from 1 at the "
-     "smallest y."},
+     "Numbers of the rows (parallel to x) whose elements belong to the zone. Rows extend over the whole part and are "
+     "counted from 1 at the smallest y."},
     {"columns", NumberOrNumbers{kLines, true}, kNone,
-     "Numbers of columns along y whose elements belong to the zone, over the whole part. Columns are counted from 1 at "
-     "the smallest x."},
-    {"every", Whole{kLines}, kNone, "Number of rows, or columns, after which the count starts again at 1.",
+     "Numbers of the columns (parallel to y) whose elements belong to the zone. Columns extend over the whole part and "
+     "are counted from 1 at the smallest x."},
+    {"every", Whole{kLines}, kNone, "Number of rows or columns after which their numbering starts again at 1.",
      kBesideLines},
     {"mask", File{"a picture"}, kNone,
-     "Picture that covers the part; row 0 is at the largest y. Elements whose centroid is on a dark pixel belong to "
-     "the zone."},
+     "Image that covers the whole part. Its first row of pixels is at the largest y. Elements whose centroid is on a "
+     "dark pixel belong to the zone."},
     {"mask_threshold", Number{{.low = 0.0, .low_included = false, .high = 1.0}}, 0.7,
-     "Threshold for dark pixels: pixels with grey < threshold * 255 are dark.", kBesideMask},
-    {"rest", Flag{}, kNone, "true: the zone has all elements that belong to no other zone."},
+     "Threshold for dark pixels. A pixel is dark if its grey value (0 to 255) is below `mask_threshold` * 255.",
+     kBesideMask},
+    {"rest", Flag{}, kNone, "true: the zone consists of all elements that belong to no other zone."},
     {"rotation_deg", Number{kAzimuth}, 0.0,
-     "Rotation of the elements in the plane, from +x towards +y, about the centre of the region's bounding box. "
-     "Elements of rows, columns, masks and the rest are each rotated about their own centroid and must keep their "
-     "outline."},
+     "Rotation about z, from +x towards +y. The array of a region is rotated about the centre of the region's bounding "
+     "box. Elements that are selected by `rows`, `columns`, `mask` or `rest` are rotated individually about their own "
+     "centroids; the rotation must not change their outline."},
     {"set", Texts{}, kNone,
-     "`[\"KEY=VALUE\", ...]`: values that differ from the design, written as for `--set`. Allowed are keys of "
-     "`[element]`, keys of `[array]` except extent, lengths, margins and mask, and angles and edges of `[surface]`."}};
+     "`[\"KEY=VALUE\", ...]`: values of this zone that differ from those of the design, written as for `--set`. "
+     "Allowed are keys of `[element]`, keys of `[array]` except extent, lengths, margins and mask, and the keys of "
+     "`[surface]` for angles and edges."}};
 
 }  // namespace
 

@@ -59,7 +59,7 @@ std::string stripped(std::string text, const char* of) {
   return text.erase(0, text.find_first_not_of(of));
 }
 
-/// Returns true if a change gives elements another kind than that of the design.
+/// Returns true if a change sets a kind of element that differs from that of the design.
 bool changes_kind(const ZoneChange& change, const Document& document) {
   return change.key == "element.kind" &&
          stripped(change.text.substr(change.text.find('=') + 1), " \t\"'") != document.text("element.kind");
@@ -247,7 +247,7 @@ void check_room(const Document& document, std::size_t number, const geometry::Pa
   const std::vector<Polygon> all = {geometry::to_polygon({Vec2::Zero(), part_mm})};
   for (const Polygon& region : zone.regions.empty() ? all : zone.regions) {
     const Vec2 room = geometry::bounding_box(region).size();
-    // A rotated element need not fit into the bounding box.
+    // The bounding box of a region limits only elements that are not rotated.
     const bool is_narrow = geometry::width(region) < element.minCoeff() * (1.0 - kRounding);
     const bool is_turned = zone.rotation_deg != 0.0;
     if (is_narrow || (!is_turned && (room.array() < element.array() * (1.0 - kRounding)).any()))

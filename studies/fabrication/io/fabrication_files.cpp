@@ -102,7 +102,8 @@ const char* word_of(fabrication::Motion motion) {
 /// Returns the path of the tool through one element: for each move, its kind and its start and end point in the
 /// section, in mm.
 Json section_path_json(const FabricationResult& result) {
-  // Maximum number of moves, so that web pages can draw the path. Only jobs with very thin layers have more.
+  // Maximum number of moves. The limit allows web pages to draw the path. Only jobs with very thin layers have more
+  // moves.
   constexpr std::size_t kMostMoves = 2000;
   Json paths = Json::array();
   for (const bool roughing : {true, false}) {

@@ -31,26 +31,29 @@ constexpr Condition kOfTriangular[] = {is("distribution", kTriangular)};
 
 constexpr Row kParameterRows[] = {
     {"key", TextOrTexts{"a key of a design such as \"element.base_mm\", or a list of keys"}, kRequired,
-     "Keys that the parameter sets: a key of a design, of `[analysis]` or of `[machining]`, or a list of keys that all "
-     "get one value. `\"design\"`: the values are design files."},
-    {"name", Text{}, Computed{"the first key"}, "Name of the column in results."},
+     "Keys that the parameter sets: a key of a design, of `[analysis]` or of `[machining]`, or a list of such keys, "
+     "which all get the same value. `\"design\"`: the values of the parameter are design files."},
+    {"name", Text{}, Computed{"the first key"}, "Name of the parameter's column in results."},
     {"values", Anything{}, kNone, "Values of the parameter: numbers, words or lists.", kNoDistribution},
     {"from", Number{}, kNone,
-     "First value, or lower end of an interval for samples. It is the lower end of `\"uniform\"` and `\"triangular\"` "
-     "distributions, and `\"normal\"` distributions are cut off there.",
+     "First value, or lower end of the interval from which samples are drawn. For the distributions `\"uniform\"` and "
+     "`\"triangular\"`, it is the lower end; `\"normal\"` distributions are truncated there.",
      kNoValues},
     {"to", Number{}, kNone,
-     "Last value, or upper end of an interval for samples. It is the upper end of `\"uniform\"` and `\"triangular\"` "
-     "distributions, and `\"normal\"` distributions are cut off there.",
+     "Last value, or upper end of the interval from which samples are drawn. For the distributions `\"uniform\"` and "
+     "`\"triangular\"`, it is the upper end; `\"normal\"` distributions are truncated there.",
      kNoValues},
-    {"step", Number{kAboveZero}, kNone, "Step between values, which are from + i step, including the end.", kSteps},
-    {"count", Whole{{.low = 2.0, .high = 100'000.0}}, kNone, "Number of values, including both ends.", kCounts},
-    {"scale", Word{kScales}, "linear", "Spacing of the values. `\"log\"`: equal ratios.", kSteps},
+    {"step", Number{kAboveZero}, kNone,
+     "Step between the values. The values are `from` + i `step`, up to and including `to`.", kSteps},
+    {"count", Whole{{.low = 2.0, .high = 100'000.0}}, kNone,
+     "Number of values from `from` to `to`, including both ends.", kCounts},
+    {"scale", Word{kScales}, "linear", "Spacing of the values. `\"log\"`: neighbouring values have equal ratios.",
+     kSteps},
     {"distribution", Word{kDistributions}, kNone,
-     "Distribution of the parameter in manufacture, for samples and `retrace tolerance`."},
+     "Distribution of the parameter in manufacture. It is used for samples and by `retrace tolerance`."},
     {"mean", Number{}, kRequired, "Mean of the distribution.", kOfNormal},
     {"sigma", Number{kAboveZero}, kRequired, "Standard deviation of the distribution.", kOfNormal},
-    {"mode", Number{}, kRequired, "Most frequent value of the distribution, from `from` to `to`.", kOfTriangular}};
+    {"mode", Number{}, kRequired, "Most probable value of the distribution, between `from` and `to`.", kOfTriangular}};
 
 // Keys that describe the quantities that are computed for every design, with their words and conditions.
 
@@ -100,45 +103,51 @@ constexpr std::string_view kAngles =
 constexpr Row kQuantityRows[] = {
     {"kind", Word{kKinds}, kRequired, "Kind of quantity."},
     {"name", Text{}, Computed{"the kind"},
-     "Name of the column, for quantities whose kind alone would not be a unique name."},
+     "Name of the quantity's column in results. It is needed if several quantities have the same kind."},
     {"incidence_deg", NumberOrNumbers{kIncidence}, kOfAnalysis, kAngles, kOfShares},
     {"incidence_deg", kMiddlesOfParts, kNone, kAngles, kOfShares},
     {"azimuth_deg", NumberOrNumbers{{}}, kOfAnalysis, kAngles, kOfShares},
     {"azimuth_deg", kMiddlesOfParts, kNone, kAngles, kOfShares},
     {"over_directions", Word{kReductions}, "mean",
-     "Combination of the directions. `\"least\"`: the minimum over all directions; `\"each\"`: one quantity for each "
-     "direction, named `NAME.1`, `NAME.2`, ...",
+     "Method by which the values of several directions are combined. `\"mean\"`: weighted mean. `\"least\"`: minimum "
+     "over all directions. `\"each\"`: one quantity for each direction, named `NAME.1`, `NAME.2`, ...",
      kOfShares},
     {"weighting", Word{kWeightings}, "uniform",
-     "Weighting of the directions. `\"solid_angle\"`: by \\|sin incidence\\|.", kOfShares},
-    {"account", Word{raytrace::kAccountNames}, kRequired, "Account of the ledger.", kOfLedger},
+     "Weights of the directions. `\"uniform\"`: all weights are equal. `\"solid_angle\"`: the weight is \\|sin "
+     "incidence\\|.",
+     kOfShares},
+    {"account", Word{raytrace::kAccountNames}, kRequired, "Account of the ledger whose power is the quantity.",
+     kOfLedger},
     {"from_deg", Number{kHalfAngle}, kRequired,
-     "Half-angle, around the direction to the source, from which light counts.", kOfFarField},
+     "Lower limit of the angle to the direction to the source. Light between both limits counts.", kOfFarField},
     {"to_deg", Number{kHalfAngle}, kRequired,
-     "Half-angle, around the direction to the source, up to which light counts.", kOfFarField},
+     "Upper limit of the angle to the direction to the source. Light between both limits counts.", kOfFarField},
     {"acceptance_half_angle_deg", Number{kHalfAngle}, Computed{"the smallest half-angle of the design"},
      "Half-angle of the acceptance cone, in air.", kOfCone},
     {"standard", Text{"r150, j594, bicycle or the name of a limits file"}, kRequired,
-     "Shipped standard, or a limits file relative to the folder of the study.", kOfPhotometry},
+     "Shipped standard, or a limits file with its path relative to the folder of the study.", kOfPhotometry},
     {"class", Text{}, kOfCommand, "Class of the standard.", kOfPhotometry},
     {"colour", Text{}, kOfCommand, "Colour of the standard.", kOfPhotometry},
-    {"area_cm2", Number{{.low = 0.0, .low_included = false, .high = 1e6}}, kRequired, "Area of the part.",
-     kOfPhotometry},
+    {"area_cm2", Number{{.low = 0.0, .low_included = false, .high = 1e6}}, kRequired,
+     "Area of the part, to which R_I refers.", kOfPhotometry},
     {"figure", Word{kFigures}, "margin",
-     "Result for each test point. `\"margin\"`: value divided by limit, minus 1, so that at least 0 passes; `\"r_a\"`: "
-     "in cd/(lx m2).",
+     "Result for each test point. `\"margin\"`: value divided by limit, minus 1; a point passes if its margin is at "
+     "least 0. `\"r_i_mcd_per_lx\"`: R_I in mcd/lx. `\"r_a\"`: R_A in cd/(lx m2).",
      kOfPhotometry},
     {"points", Word{kPoints}, "worst",
-     "Test points. `\"worst\"`: the minimum of all test points; `\"each\"`: one quantity for each point, named "
-     "`NAME.1`, `NAME.2`, ...; `\"each_reading\"`: one quantity for each reading of a point, which is measured at each "
-     "angle V next to the mirror image of the lamp and at each rotation of the part, named `NAME.1.1`, `NAME.1.2`, "
-     "...; or the number of a point, from 1, as `retrace photometry` lists them.",
+     "Selection of test points. `\"worst\"`: the minimum over all test points. `\"each\"`: one quantity for each "
+     "point, named `NAME.1`, `NAME.2`, ... `\"each_reading\"`: one quantity for each reading, named `NAME.1.1`, "
+     "`NAME.1.2`, ...; a point has one reading for each rotation of the part and for each angle V next to the mirror "
+     "image of the lamp. A number: the point with this number, from 1, in the list of `retrace photometry`.",
      kOfPhotometry},
-    {"points", Whole{{.low = 1.0, .high = 10'000.0}}, kNone, "Number of a point.", kOfPhotometry},
+    {"points", Whole{{.low = 1.0, .high = 10'000.0}}, kNone, "Number of a test point.", kOfPhotometry},
     {"rotation_deg", NumberOrNumbers{{}}, kOfCommand, "Rotations of the part about its axis.", kOfPhotometry},
-    {"window_deg", Number{{.low = 0.05, .high = 10.0}}, kOfCommand, "Half-width of the far field.", kOfPhotometry},
-    {"light", Word{kLights}, "a", "Light source. `\"design\"`: the light of the design.", kOfPhotometry},
-    {"far_field", Word{kFarFields}, "diffracted", "Method for the far field. `\"geometric\"` is faster.",
+    {"window_deg", Number{{.low = 0.05, .high = 10.0}}, kOfCommand, "Half-angle of the computed far field.",
+     kOfPhotometry},
+    {"light", Word{kLights}, "a", "Light of the lamp: CIE A, CIE D65 or, with `\"design\"`, the light of the design.",
+     kOfPhotometry},
+    {"far_field", Word{kFarFields}, "diffracted",
+     "Method for the far field. `\"diffracted\"` includes diffraction. `\"geometric\"` does not, and is faster.",
      kOfPhotometry},
     {"dye", Text{}, kOfCommand, "Dye of a coloured lens.", kOfPhotometry}};
 
@@ -150,14 +159,15 @@ constexpr Words kCutoffEngineWords = {"auto", "exact", "montecarlo", "cell", "em
 constexpr Condition kOfRays[] = {is("engine", kRayEngineWords)};
 constexpr Condition kOfCutoff[] = {is("engine", kCutoffEngineWords)};
 constexpr Row kAnalysisRows[] = {
-    {"incidence_deg", Number{kIncidence}, 0.0, "Angle of incidence, for quantities that do not give their own."},
+    {"incidence_deg", Number{kIncidence}, 0.0, "Angle of incidence for quantities without their own `incidence_deg`."},
     {"azimuth_deg", Number{{.low = -360.0, .high = 360.0}}, 0.0,
-     "Azimuth of the source, for quantities that do not give their own."},
+     "Azimuth of the source for quantities without their own `azimuth_deg`."},
     {"rotation_deg", Number{{.low = -360.0, .high = 360.0}}, 0.0,
-     "Rotation of the part about its normal, counter-clockwise as seen from the light, for all optical quantities."},
+     "Rotation of the part about its normal, counter-clockwise as seen from the light. It applies to all optical "
+     "quantities."},
     {"engine", Word{kEngines}, "auto", "Engine, as for `retrace rre --engine`."},
     {"target_error", Number{{.low = 0.0, .low_included = false, .high = 1.0, .high_included = false}}, Computed{"1e-4"},
-     "Target error, as for `retrace rre --target-error`. It needs a quantity of RRE."},
+     "Target error, as for `retrace rre --target-error`. It is allowed only if the study has a quantity of RRE."},
     {"samples", Whole{{.low = 1.0, .high = 0x1p36}}, kNone, "Number of rays, as for `retrace rre --samples`.", kOfRays},
     {"cutoff", Number{{.low = 0.0, .high = 1.0, .high_included = false}}, kNone,
      "Cut-off power, as for `retrace rre --cutoff`. Photometry by rays has no cut-off.", kOfCutoff}};
@@ -195,19 +205,21 @@ using Process = MachiningProcess;
 constexpr Row kMachiningRows[] = {
     {"tool_width_mm", Number{kSane}, Computed{"the element's width"},
      "Width of the tool. An element wider than the tool needs several passes.", access_by<tool_width, set_tool_width>},
-    {"clearance_um", Number{kSaneOrNone}, 200.0, "Clearance of the tool, normal to the face of the workpiece.",
+    {"clearance_um", Number{kSaneOrNone}, 200.0,
+     "Distance between the tool and the face of the workpiece before each cut, perpendicular to the face.",
      access<&Process::clearance_um>},
-    {"roughing_depth_um", Number{kSane}, 15.0, "Depth of a roughing cut.", access<&Process::roughing_depth_um>},
-    {"finishing_depth_um", Number{kSaneOrNone}, 5.0, "Depth of a finishing cut.", access<&Process::finishing_depth_um>},
+    {"roughing_depth_um", Number{kSane}, 15.0, "Depth of each roughing cut.", access<&Process::roughing_depth_um>},
+    {"finishing_depth_um", Number{kSaneOrNone}, 5.0, "Depth of each finishing cut.",
+     access<&Process::finishing_depth_um>},
     {"finishing_cuts", Whole{{.low = 0.0, .high = 1000.0}}, 2.0, "Number of finishing cuts of each facet.",
      access<&Process::finishing_cuts>, kFinishing},
-    {"plough_length_um", Number{kSaneOrNone}, 100.0, "Length of the plough of every roughing cut.",
+    {"plough_length_um", Number{kSaneOrNone}, 100.0, "Length of the ploughing motion that follows every roughing cut.",
      access<&Process::plough_length_um>},
     {"roughing_feed_mm_per_min", Number{kSane}, 50.0, "Feed of roughing cuts.",
      access<&Process::roughing_feed_mm_per_min>},
     {"finishing_feed_mm_per_min", Number{kSane}, 20.0, "Feed of finishing cuts.",
      access<&Process::finishing_feed_mm_per_min>},
-    {"traverse_feed_mm_per_min", Number{kSane}, 200.0, "Feed between cuts.",
+    {"traverse_feed_mm_per_min", Number{kSane}, 200.0, "Feed of motions between cuts.",
      access<&Process::traverse_feed_mm_per_min>},
     {"dwell_s", Number{{.low = 0.0, .high = 3600.0}}, 0.1, "Dwell time at every root.", access<&Process::dwell_s>},
     {"strategy", Word{kStrategies}, "two-step", "Cutting strategy. `\"unidirectional\"` has no finishing cuts.",
@@ -215,9 +227,9 @@ constexpr Row kMachiningRows[] = {
     {"edge_radius_um", Number{{.low = 0.0, .high = 1000.0}}, 0.0, "Radius of the tool's cutting edge.",
      access<&Process::edge_radius_um>},
     {"surface", Word{kSurfaces}, "as_designed",
-     "Surface of the facets. `\"as_cut\"`: facets have the published roughness and waviness of the strategy, and roots "
-     "have the radius of the edge, instead of the values of the design. `--set` and parameters of the study take "
-     "precedence.",
+     "Surface of the facets. `\"as_designed\"`: the values of the design. `\"as_cut\"`: facets have the published "
+     "roughness and waviness of the strategy, and roots have the radius of the cutting edge. Values from `--set` and "
+     "from parameters of the study take precedence over these values.",
      access_by<surface, set_surface>}};
 
 // Keys of the sweep, the tolerance study and the optimization, with their words and conditions.
@@ -228,29 +240,34 @@ constexpr Condition kOfSampled[] = {
     is("combine", kSampled, "only allowed for combine = \"sobol\", \"latin_hypercube\" and \"monte_carlo\"")};
 constexpr Row kSweepRows[] = {
     {"combine", Word{kCombinations}, "grid",
-     "Combination of the values of the parameters. `\"grid\"`: every value with every other, the last parameter "
-     "fastest; `\"zipped\"`: the first values of all parameters, then the second values, ...; `\"sobol\"`: "
-     "Owen-scrambled Sobol points, best with a power of two; `\"latin_hypercube\"`; `\"monte_carlo\"`: independent "
-     "random points."},
+     "Method by which the values of the parameters are combined into points. `\"grid\"`: all combinations; the last "
+     "parameter varies fastest. `\"zipped\"`: the first values of all parameters, then their second values, and so on. "
+     "`\"sobol\"`: Owen-scrambled Sobol points; their number should be a power of two. `\"latin_hypercube\"`: a Latin "
+     "hypercube. `\"monte_carlo\"`: independent random points."},
     {"samples", Whole{{.low = 1.0, .high = 1'000'000.0}}, kRequired, "Number of points.", kOfSampled}};
 
 constexpr Words kSense = {"most", "least"};
 constexpr std::string_view kQuantityOrWeights = "a quantity or a table of weights";
 constexpr std::string_view kObjective =
-    "Objective: a quantity, or a table of weights such as `{rre = 1, machining_time_h = -0.001}`.";
+    "Objective: a quantity, or a table of weights such as `{rre = 1, machining_time_h = -0.001}`. With a table, the "
+    "objective is the weighted sum.";
 constexpr Row kOptimiseRows[] = {
     {"maximize", Text{kQuantityOrWeights}, kNone, kObjective},
     {"maximize", ByName{Number{}, {}, kQuantityOrWeights}, kNone, kObjective},
     {"minimize", Text{kQuantityOrWeights}, kNone, kObjective},
     {"minimize", ByName{Number{}, {}, kQuantityOrWeights}, kNone, kObjective},
     {"front", ByName{Word{kSense}, {}, "a table such as {rre = \"most\", machining_time_h = \"least\"}"},
-     Computed{"the quantities of the objective"}, "Axes of the Pareto front."},
+     Computed{"the quantities of the objective"},
+     "Axes of the Pareto front: quantities, and whether large values (`\"most\"`) or small values (`\"least\"`) are "
+     "better."},
     {"scan", Whole{{.low = 3.0, .high = 100'000.0}}, 65.0,
-     "Number of designs in the first scan, for each combination of discrete values: a line from end to end for one "
-     "continuous parameter, corners and Sobol points for more."},
-    {"bands_of", Texts{}, kNone, "Keys of the design, or of parameters, for which tolerance bands are computed."},
+     "Number of designs in the first scan, for each combination of discrete values. For one continuous parameter, the "
+     "designs are equally spaced from end to end of its interval. For several continuous parameters, they are the "
+     "corners of the intervals and Sobol points."},
+    {"bands_of", Texts{}, kNone,
+     "Keys of the design, or keys of parameters of the study, for which tolerance bands are computed."},
     {"band_loss_percent", Number{{.low = 0.0, .low_included = false, .high = 100.0}}, 1.0,
-     "Loss of the objective's first quantity at which a band ends."}};
+     "Relative loss of the first quantity of the objective at which a tolerance band ends."}};
 constexpr Words kObjectives = {"maximize", "minimize"};
 constexpr Rule kOptimiseRules[] = {
     OneOf{kObjectives, "either maximize or minimize is required: a quantity or a table of weights"}};
@@ -258,60 +275,68 @@ constexpr Rule kOptimiseRules[] = {
 constexpr Words kIndices = {"none", "sobol"};
 constexpr Row kToleranceRows[] = {
     {"samples", Whole{{.low = 2.0, .high = 1'000'000.0}}, 256.0,
-     "Number of rows. A row consists of two parts and one more point for each parameter; without indices, it is one "
-     "part."},
+     "Number of rows. With Sobol indices, a row consists of two random parts and one more point for each parameter. "
+     "Without indices, a row is one random part."},
     {"sampling", Word{kSampled}, "sobol", "Method by which the rows are sampled."},
-    {"indices", Word{kIndices}, "sobol", "Sobol indices, which show the parameters that cause the spread."},
+    {"indices", Word{kIndices}, "sobol",
+     "Sensitivity indices. `\"sobol\"`: Sobol indices, which show how much each parameter contributes to the spread."},
     {"confidence_percent", Number{{.low = 50.0, .high = 99.99}}, 95.0, "Confidence level of all intervals."},
     {"least_yield_percent", Number{kPercent}, kNone,
-     "Minimum yield. A yield below it makes the answer no (exit code 1)."}};
+     "Minimum yield. If the yield is below it, the command ends with exit code 1."}};
 
 constexpr Words kOver = {"cell", "part"};
 constexpr Row kConstraintRows[] = {
-    {"quantity", Text{"a quantity of the study"}, kRequired, "Quantity that is limited."},
-    {"min", Number{}, kNone, "Minimum of the quantity."},
-    {"max", Number{}, kNone, "Maximum of the quantity."},
+    {"quantity", Text{"a quantity of the study"}, kRequired, "Quantity to which the constraint applies."},
+    {"min", Number{}, kNone, "Minimum allowed value of the quantity."},
+    {"max", Number{}, kNone, "Maximum allowed value of the quantity."},
     {"over", Word{kOver}, "cell",
-     "Scope of the constraint in `retrace compose`. `\"cell\"`: cells that violate it do not belong to the family; "
-     "`\"part\"`: it limits the mean over the part."}};
+     "Scope of the constraint in `retrace compose`. `\"cell\"`: each cell must satisfy the constraint, otherwise it "
+     "does not belong to the family. `\"part\"`: the mean over the part must satisfy it."}};
 
 constexpr Row kComposeRows[] = {
     {"maximize", TextOrTexts{"a quantity of the study, or a list of them"}, kRequired,
-     "Goals: the quantities whose minimum is maximised. `\"margin\"` also means `margin.1`, `margin.1.1`, ... Each "
-     "goal must be a mean over the area, and not the minimum of several points, rotations or directions."},
+     "Goals: the quantities whose minimum is maximised. A name also selects the quantities with this name and numbers: "
+     "`\"margin\"` selects `margin.1`, `margin.1.1`, ... Each goal must be a mean over the area, and not the minimum "
+     "of several points, rotations or directions."},
     {"least", Number{}, Computed{"0 if all goals are margins"},
-     "Value that the minimum of all goals must reach. A part below it makes the answer no (exit code 1)."},
-    {"most_zones", Whole{{.low = 1.0, .high = 100.0}}, kNone, "Maximum number of kinds of cells."},
-    {"least_share", Number{{.low = 0.0, .high = 1.0}}, 0.0, "Minimum fraction of the area for each zone that is used."},
+     "Value that the minimum of all goals must reach. If the best part does not reach it, the command ends with exit "
+     "code 1."},
+    {"most_zones", Whole{{.low = 1.0, .high = 100.0}}, kNone,
+     "Maximum number of zones. Each zone has one kind of cell."},
+    {"least_share", Number{{.low = 0.0, .high = 1.0}}, 0.0, "Minimum fraction of the area for each zone of the part."},
     {"most_share", Number{{.low = 0.0, .low_included = false, .high = 1.0}}, 1.0,
      "Maximum fraction of the area for each zone."},
     {"price", ByName{Number{}, {}, "a table of prices such as {machining_time_h = 0.01}"}, kNone,
-     "Price of a quantity. The merit of a part is the minimum of all goals, minus this price for each unit of the "
+     "Prices of quantities. The merit of a part is the minimum of all goals, minus the price for each unit of the "
      "quantity's mean over the part."},
     {"front", ByName{Word{kSense}, {}, "a table of one quantity, such as {machining_time_h = \"least\"}"}, kNone,
-     "Quantity whose mean over the part is one axis of the Pareto front, and its better direction. The minimum of all "
-     "goals is the other axis."},
+     "Quantity whose mean over the part is one axis of the Pareto front, and whether large values (`\"most\"`) or "
+     "small values (`\"least\"`) are better. The minimum of all goals is the other axis."},
     {"scan", Whole{{.low = 3.0, .high = 100'000.0}}, 65.0,
-     "Number of cells in the first scan, for each combination of discrete values. The cells are chosen like the "
-     "designs of `scan` in [optimize]."},
-    {"rounds", Whole{{.low = 0.0, .high = 100.0}}, 4.0, "Maximum number of searches by dual prices."},
-    {"starts", Whole{{.low = 1.0, .high = 100.0}}, 3.0, "Number of cells from which each search starts."},
+     "Number of cells in the first scan, for each combination of discrete values. The cells are chosen in the same way "
+     "as the designs of `scan` in [optimize]."},
+    {"rounds", Whole{{.low = 0.0, .high = 100.0}}, 4.0,
+     "Maximum number of searches for further cells with dual prices."},
+    {"starts", Whole{{.low = 1.0, .high = 100.0}}, 3.0,
+     "Number of cells from which each search with dual prices starts."},
     {"looks", Whole{{.low = 1.0, .high = 10'000.0}}, 20.0,
      "Maximum number of cells that are evaluated from each start."},
     {"cell_sigma_arcmin", Number{{.low = 0.0, .high = 60.0}}, kNone,
-     "Standard deviation of the errors of every angle between facets from cell to cell. These errors average out over "
+     "Standard deviation, from cell to cell, of the error of each angle between facets. These errors average out over "
      "a zone."},
     {"zone_sigma_arcmin", Number{{.low = 0.0, .high = 60.0}}, kNone,
-     "Standard deviation of the errors of every angle between facets from zone to zone, which do not average out. With "
-     "either of the two keys, the effects of errors of angle on the part are reported; 0 is allowed."},
-    {"parts", Whole{{.low = 16.0, .high = 16'384.0}}, 1024.0, "Number of random parts with errors, for the yield."},
+     "Standard deviation, from zone to zone, of the error of each angle between facets. These errors do not average "
+     "out. If `cell_sigma_arcmin` or `zone_sigma_arcmin` is given, even as 0, the effects of angle errors on the part "
+     "are reported."},
+    {"parts", Whole{{.low = 16.0, .high = 16'384.0}}, 1024.0,
+     "Number of random parts with angle errors from which the yield is computed."},
     {"worst_share", Number{{.low = 0.0, .low_included = false, .high = 1.0}}, kNone,
-     "Fraction of the random parts that counts as the worst, such as 0.05 for one in twenty. A part that is best for "
-     "these worst parts is reported, too."}};
+     "Fraction of the random parts that counts as the worst, such as 0.05 for one in twenty. In addition to the best "
+     "part, a part is reported that is optimized for these worst random parts."}};
 
-constexpr Row kRootRows[] = {
-    {"title", Text{}, kNone, "Title of the study in results."},
-    {"design", File{"a design file"}, kNone, "Design that is varied, relative to the folder of the study."}};
+constexpr Row kRootRows[] = {{"title", Text{}, kNone, "Title of the study in results."},
+                             {"design", File{"a design file"}, kNone,
+                              "Design that is varied. Its path is relative to the folder of the study."}};
 const Table kTables[] = {
     {.name = "parameter",
      .meaning = "Parameter that is varied.",
@@ -328,11 +353,11 @@ const Table kTables[] = {
      .rows = kAnalysisRows,
      .presence = Presence::implied},
     {.name = "machining",
-     .meaning = "Cutting process of prisms. The defaults are those of published samples in acrylic.",
+     .meaning = "Process in which prisms are cut. The defaults are those of published samples in acrylic.",
      .rows = kMachiningRows,
      .presence = Presence::implied},
     {.name = "sweep",
-     .meaning = "Combination of the values of parameters to points.",
+     .meaning = "Method by which the values of parameters are combined into points.",
      .rows = kSweepRows,
      .presence = Presence::implied},
     {.name = "optimize",
@@ -345,7 +370,7 @@ const Table kTables[] = {
      .rows = kComposeRows,
      .presence = Presence::optional},
     {.name = "constraint",
-     .meaning = "Constraint that a good part satisfies.",
+     .meaning = "Constraint that a good design or part must satisfy.",
      .rows = kConstraintRows,
      .presence = Presence::list,
      .shape = "one or more tables [[constraint]]"},

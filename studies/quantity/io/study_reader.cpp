@@ -25,7 +25,7 @@ namespace {
 
 using schema::Document;
 
-/// Names of the tables that determine the points of a study.
+/// Names of the tables of a study file that determine its points.
 constexpr std::array<std::string_view, 8> kParts = {"parameter", "quantity",  "analysis",   "machining",
                                                     "sweep",     "tolerance", "constraint", "optimize"};
 constexpr double kMostValues = 100'000.0;
@@ -57,7 +57,7 @@ bool is_traced(const Study& study, std::string_view kind) {
   return std::ranges::any_of(study.quantities, [kind](const auto& q) { return q->tracing().starts_with(kind); });
 }
 
-/// Refuses a setting of the analysis that no quantity of the study uses, if the study contains it or varies it.
+/// Refuses a setting of [analysis] that the study sets or varies, but that none of its quantities uses.
 void refuse_setting(const Document& document, const Study& study, const std::string& key, const std::string& reason) {
   const Parameter* const varied = parameter_of(study, key);
   if (varied == nullptr && !document.has(key)) return;
@@ -83,7 +83,7 @@ MachiningProcess machining_of(const Document& document) {
   return process;
 }
 
-/// Returns what is wrong with the key of a parameter. Empty if the key is valid.
+/// Returns a message that explains why the key of a parameter is invalid. Empty if the key is valid.
 std::string complaint_about_parameter(const std::string& key) {
   if (key == "design") return {};
   return schema::complaint_about_key(is_setting(key) ? study_format() : design_format(), key);
@@ -189,7 +189,7 @@ Parameter read_parameter(const Document& document, const std::string& at) {
   return parameter;
 }
 
-/// Returns the paths of the tables in a list. The list must have at least one table.
+/// Returns the key paths of all entries in a list of tables. The list must have at least one entry.
 std::vector<std::string> entries_of(const Document& document, const std::string& list) {
   std::vector<std::string> paths;
   for (std::size_t k = 0; k < document.count(list); ++k) paths.push_back(schema::path_of_entry(list, k));

@@ -17,7 +17,7 @@
 namespace retrace::report::same_plots_test {
 namespace {
 
-/// Returns the plot on the page of one document.
+/// Returns the plot that the page shows for one document.
 LinePlot plot_on_page(const std::string& kind, const std::string& text) {
   const ResultDocument document{kind + ".json", kind, text.size(), nlohmann::ordered_json::parse(text)};
   for (const PageSection& section : study_page({"x", {document}, {}}, "").sections)
@@ -25,7 +25,7 @@ LinePlot plot_on_page(const std::string& kind, const std::string& text) {
   return {};
 }
 
-/// Checks that two plots are the same except for the standard errors, which the page does not show.
+/// Checks that two plots are the same. Standard errors are not compared, because the page does not show them.
 void expect_same(const LinePlot& on_page, const LinePlot& drawn) {
   EXPECT_EQ(on_page.title, drawn.title);
   EXPECT_EQ(on_page.x_label, drawn.x_label);

@@ -17,9 +17,9 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// Returns a design with cube corners whose errors of angle cause six spots of returned light.
+/// Returns a design with cube corners whose angle errors cause six spots of returned light.
 /// \param aperture_mm size of the elements: 0.5 causes visible diffraction; with 20, diffraction is negligible compared
-///        with the discs of source and receiver
+/// with the discs of source and receiver
 std::string cubes(const std::string& aperture_mm) {
   return "[element]\nkind = \"hexagonal_icc\"\naperture_mm = " + aperture_mm +
          "\n[array]\narrangement = \"honeycomb\"\nextent = \"infinite\"\n[body]\nthickness_mm = 1\n"
@@ -41,7 +41,7 @@ Arguments export_of(const std::string& file, const std::string& window_deg = "0.
           error,        "--quiet"};
 }
 
-/// A geometry of a goniometer, and the R_A that `retrace photometry` gives for it.
+/// Geometry of a goniometer, and the R_A that `retrace photometry` computes for it.
 struct Reading {
   double observation_deg, v_deg, h_deg, turn_deg;
   double r_a = 0.0;
@@ -137,7 +137,8 @@ std::vector<Triple> read_by_example(const TemporaryFolder& folder, const std::ve
   return told;
 }
 
-/// Results for cubes of 0.5 mm that several tests use. They are made only once, because they take several seconds.
+/// Results for cube corners of 0.5 mm that several tests use. They are computed only once, because this takes several
+/// seconds.
 struct SmallCubes {
   SmallCubes() {
     folder.write("d.toml", cubes("0.5"));
@@ -147,7 +148,7 @@ struct SmallCubes {
 
   TemporaryFolder folder;      ///< contains the design d.toml and the shader m.glsl
   std::vector<Reading> truth;  ///< readings of photometry
-  Json summary;                ///< what the export of the shader writes to standard output
+  Json summary;                ///< JSON that the export of the shader writes to standard output
 };
 const SmallCubes& small_cubes() {
   static const SmallCubes once;
@@ -290,7 +291,7 @@ TEST(Material, EveryFormatKeepsThePower) {
 
   ASSERT_EQ(retrace(folder, export_of("m.json", "0.6", "0.1", "3")).code, 0);
   const Json header = folder.json("m.json");
-  // From the CSV file, the grid that belongs to the nearest tabulated direction of light is summed.
+  // Sum over the grid of the CSV file that belongs to the nearest tabulated direction of light.
   std::size_t nearest = 0;
   const auto distance = [&](std::size_t k) {
     const Json& at = header.at("directions").at(k);

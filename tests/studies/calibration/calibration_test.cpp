@@ -18,9 +18,9 @@
 #include "tests/support/refusals.h"
 #include "tests/support/seen_parts.h"
 
-// Tests of the calibration of machines. A machine has errors in all quantities that a set-up leaves uncertain. The
-// verifier cuts test parts with this machine; it does not use the derivatives of the calibration. From the tilts and
-// distances of the facets, with noise, the calibration must determine the errors.
+// Tests of the calibration of machines. The verifier cuts test parts with a machine that has errors in all quantities
+// that a set-up leaves uncertain. The verifier does not use the derivatives of the calibration. From noisy measurements
+// of the tilts and distances of the facets, the calibration must determine these errors.
 
 namespace retrace::studies::calibration_test {
 namespace {
@@ -104,8 +104,8 @@ TEST(Calibration, SaysWhatFacetsDoNotTell) {
   EXPECT_EQ(told(found), (std::vector<std::string>{"c_lean_y_arcsec", "a_z_um", "tool_turn_z_arcsec"}));
 }
 
-/// For quantities that can be determined, 95 % intervals contain the true values in 90 to 99 % of all cases, over 100
-/// machines.
+/// For quantities that can be determined, the 95 % intervals contain the true values in 90 to 99 % of the cases. The
+/// test uses 100 machines.
 TEST(Calibration, IntervalsHoldWhatIsHidden) {
   constexpr int kMachines = 100;
   std::size_t within = 0;
@@ -216,8 +216,8 @@ TEST(Calibration, RefusesAWrongSignOfAllThatWasMeasuredOfAFacet) {
   }
 }
 
-/// The test tilts a part so that its +X or +Y side rises. The facets then rise in this direction. It must be the
-/// direction that positive_sense() describes.
+/// The test tilts a part so that its +X or +Y side rises. The facets then rise towards this side, and positive_sense()
+/// must name the same direction.
 TEST(Calibration, TiltsAlongTheRootArePositiveWhereTheWordsSay) {
   const FabricationResult& plan = test_cuts().plans.front();
   const CutPart part(plan, {});

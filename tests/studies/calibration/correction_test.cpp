@@ -18,8 +18,9 @@
 #include "tests/support/sample_size.h"
 #include "tests/support/seen_parts.h"
 
-// Parts that the verifier cuts on machines with hidden errors, seen by a profiler with noise, at a place and askew as
-// nobody knows: correction must find the machine, and say how sure it is.
+// Tests of the correction of machines with hidden errors. The verifier cuts a part on such a machine. A profiler with
+// noise measures the part, whose position and orientation are unknown. The correction must find the errors of the
+// machine and their uncertainties.
 
 namespace retrace::studies::correction_test {
 namespace {
@@ -29,15 +30,15 @@ using test::CutSurface, test::four_prisms, test::hidden_errors, test::seen;
 
 const std::uint32_t kMachines = retrace::test::sample_size(40U, 200U);
 
-/// A machine with hidden errors of 1 um and 0.02 degrees, and what is found of it.
+/// Machine with hidden errors of about 1 um and 0.02 degrees, and the errors that the correction finds.
 struct FoundMachine {
   std::vector<double> hidden;
   Machine real;
-  CutSurface first;  ///< of the job's programs
+  CutSurface first;  ///< surface that the programs of the job cut
   Correction found;
 };
 
-/// The same for the same seed, each made once for all tests of this file.
+/// Returns the machine for a seed. Each machine is computed only once for all tests of this file.
 const FoundMachine& found_machine(std::uint32_t seed) {
   static std::map<std::uint32_t, FoundMachine> all;
   if (const auto known = all.find(seed); known != all.end()) return known->second;
@@ -71,8 +72,9 @@ TEST(Correction, IntervalsHoldWhatIsHidden) {
   }
 }
 
-/// Facets and grooves that programs for the corrected machine leave, as the verifier cuts them on the real one. What is
-/// promised is twice the standard uncertainty; an angle of a groove is made of two tilts.
+/// The programs are planned for the corrected machine, and the verifier cuts them on the real machine. The errors of
+/// the facets must be less than the predicted errors (two standard uncertainties) or 5 % of the errors of the first
+/// part, whichever is larger. The error of an apex angle may be two predicted tilts, because two facets contribute.
 TEST(Correction, TheSecondPartIsAsPromised) {
   constexpr double kLeft = 0.05;
   for (std::uint32_t seed = 1; seed <= kMachines; ++seed) {
@@ -91,7 +93,8 @@ TEST(Correction, TheSecondPartIsAsPromised) {
   }
 }
 
-/// 300 points of 90,000 are as many as rows: a fixed step would see one column.
+/// The registration uses 300 of the 90,000 points, which is as many as the map has rows. Points at regular steps would
+/// therefore all be in one column.
 TEST(Correction, MapsOfAnySizeAreRegistered) {
   for (const std::size_t points : {120U, 300U}) {
     std::mt19937 bits(7);

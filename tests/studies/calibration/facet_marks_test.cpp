@@ -14,8 +14,9 @@
 #include "tests/support/prism_jobs.h"
 #include "tests/support/seen_parts.h"
 
-// Parts whose facets have waves, or marks of a chipped edge, seen with noise at a place and askew as nobody knows: what
-// is told of them must be what they have, nothing is told of those that have none, and the machine is found as well.
+// Tests of waves and of marks of a chipped edge on the facets of a part. The part is measured with noise, and its
+// position and orientation are unknown. Existing waves and marks must be found with the right properties, none may be
+// found on other facets, and the errors of the machine must be found as well.
 
 namespace retrace::studies::facet_marks_test {
 namespace {
@@ -35,7 +36,7 @@ struct HiddenMachine {
   Correction corrected(std::mt19937& bits, Pattern pattern) const {
     return correct(four_prisms(), {seen(PatternedSurface(cut, pattern), bits)});
   }
-  /// How many intervals of 95 % of what is told hold what is hidden, and how many there are.
+  /// Returns the number of 95 % intervals that contain the hidden value, and the number of all intervals.
   std::pair<int, int> held(const Correction& found) const {
     std::pair<int, int> counts;
     for (std::size_t k = 0; k < errors.size(); ++k) {
@@ -62,7 +63,8 @@ TEST(FacetMarks, NothingIsToldOfNoise) {
   EXPECT_LE(alarms, kMachines / 20);
 }
 
-/// Along the edge, where all facets have them as the edge has, and up the facet, where each begins as it happens.
+/// Waves along the edge have the same phase on all facets, because they are copies of the edge. Waves up the facet
+/// begin with a different phase on each facet.
 TEST(FacetMarks, WavesAreFound) {
   int held = 0;
   int all = 0;
@@ -84,7 +86,7 @@ TEST(FacetMarks, WavesAreFound) {
     EXPECT_NEAR(wave.amplitude_nm, amplitude_nm, 0.2 * amplitude_nm) << seed;
     EXPECT_GE(wave.facets.size(), 6U) << seed;
     ASSERT_EQ(wave.frequency_hz.has_value(), !is_along) << seed;
-    // Finishing goes at 20 mm/min.
+    // The feed of finishing cuts is 20 mm/min.
     if (!is_along) {
       EXPECT_NEAR(*wave.frequency_hz, 20.0 / 60.0 / (1e-3 * wave.length_um), 1e-9) << seed;
     }
@@ -97,7 +99,7 @@ TEST(FacetMarks, WavesAreFound) {
   EXPECT_GE(held, 0.9 * all);
 }
 
-/// A pit in the edge, of which every facet has the negative.
+/// The edge has a pit, and every facet has a ridge that is the negative of this pit.
 TEST(FacetMarks, ChipsOfTheEdgeAreFound) {
   int held = 0;
   int all = 0;
@@ -118,7 +120,7 @@ TEST(FacetMarks, ChipsOfTheEdgeAreFound) {
     EXPECT_TRUE(mark.is_of_edge) << seed;
     EXPECT_NEAR(mark.place_um, place_um, 10.0) << seed;
     EXPECT_NEAR(mark.height_nm, depth_nm, 0.25 * depth_nm) << seed;
-    // Of a part that lies off, the map may not show the end of a facet.
+    // If the part is displaced, the map may not contain the ends of some facets.
     EXPECT_EQ(mark.facets.size(), mark.shown) << seed;
     EXPECT_GE(mark.shown, 6U) << seed;
     EXPECT_TRUE(found.waves.empty()) << seed;
@@ -129,7 +131,7 @@ TEST(FacetMarks, ChipsOfTheEdgeAreFound) {
   EXPECT_GE(held, 0.9 * all);
 }
 
-/// A scratch of a single facet is none of the edge.
+/// A scratch on a single facet must not be attributed to the edge.
 TEST(FacetMarks, AScratchOfOneFacetIsNotTheEdges) {
   std::mt19937 bits(3);
   const HiddenMachine machine(bits);

@@ -54,8 +54,7 @@ double number(const ParameterValue& value) {
 constexpr const char* kMaximize = "[compose]\nmaximize = \"g\"\n";
 
 TEST(Compose, OfTwoLobesHasTheSharesAndPricesOfTheClosedForm) {
-  // There are two cells and three goals. Only the first and the last goal limit the smallest value that a mixture can
-  // reach.
+  // There are two cells and three goals. Only the first and the last goal limit the minimum goal of a mixture.
   const Study study = analytic_study(kMaximize, kThreePoints,
                                      "[[parameter]]\nkey = \"body.thickness_mm\"\nname = \"x\"\nvalues = [1.1, 2.1]\n");
   const Composition composition = composed(study).composition;

@@ -1,4 +1,5 @@
-// Errors of angle in composed parts: responses, yields and shares for the worst parts against closed forms and grids.
+// Tests of angle errors in composed parts. Responses, yields and fractions for the worst parts are compared with closed
+// forms and with grids.
 
 #include <gtest/gtest.h>
 
@@ -25,7 +26,7 @@ using Numbers = std::vector<double>;
 
 const std::string kFolder = std::string(RETRACE_SOURCE_DIR) + "/examples/studies/";
 
-/// The response of a function whose goals are computed where it asks for them.
+/// Returns the response of a function. The function is evaluated at the errors that the response requires.
 ErrorResponse response_to(std::size_t angles, double step, const std::function<Numbers(const Numbers&)>& goals) {
   std::vector<Numbers> computed;
   for (const Numbers& errors : ErrorResponse::errors_to_compute(angles, step)) computed.push_back(goals(errors));
@@ -41,13 +42,13 @@ TEST(ErrorResponse, IsExactOfTheSecondDegree) {
     for (std::size_t g = 0; g < 2; ++g) EXPECT_NEAR(response.at(e)[g], goals(e)[g], 1e-12);
   EXPECT_NEAR(response.slope(0, 0), 2.0, 1e-12);
   EXPECT_NEAR(response.slope(2, 1), 1.0, 1e-12);
-  // Means of squares are the variance, those of products of two angles nothing.
+  // The mean of the square of an error is its variance. The mean of the product of two different errors is 0.
   EXPECT_NEAR(response.spread(0.4).at({0, 0, 0})[0], 1.0 + 0.16 * (0.5 + 2.0), 1e-12);
   EXPECT_NEAR(response.spread(0.4).at({0, 0, 0})[1], 0.0, 1e-12);
 }
 
 TEST(ErrorResponse, HasTheMeanOfALobe) {
-  // The mean of exp(-e^2 / 2) over a Gaussian of deviation s is 1 / sqrt(1 + s^2).
+  // The mean of exp(-e^2 / 2) over a Gaussian with the standard deviation s is 1 / sqrt(1 + s^2).
   const double sigma = 0.2;
   const ErrorResponse response =
       response_to(1, std::sqrt(3.0) * sigma, [](const Numbers& e) { return Numbers{std::exp(-0.5 * e[0] * e[0])}; });
@@ -71,7 +72,8 @@ TEST(PartYield, OfLinearGoalsIsThatOfTheNormalDistribution) {
   };
   for (const double z : {-1.5, 0.0, 1.0})
     EXPECT_NEAR(above(1.0 + z * sigma), 0.5 * std::erfc(z / std::sqrt(2.0)), 5e-3) << z;
-  // The mean below the 5 % quantile lies density / 0.05 deviations below the middle.
+  // The mean of the worst 5 % is d / 0.05 = 2.0627 standard deviations below the mean of all values. d is the normal
+  // probability density at the 5 % quantile.
   EXPECT_NEAR(mean_of_worst(leasts, 0.05), 1.0 - 2.0627 * sigma, 0.01);
 }
 
@@ -139,7 +141,8 @@ TEST(PartYield, SetsForTheWorstAreNeverWorseThanAGridOfEach) {
   }
 }
 
-/// What a prism's own error of angle makes of a goal that is best at one minute of arc.
+/// A goal as a function of the angle error of a prism. The goals with side = 0.5 and side = -0.5 have the same value at
+/// an error of one arcmin, where their minimum is largest.
 class Peak : public Quantity {
  public:
   explicit Peak(double side) : Quantity(side > 0.0 ? "g.1" : "g.2"), side_(side) {}
@@ -164,8 +167,8 @@ Study study_of_peaks(const std::string& keys) {
 }
 
 TEST(ComposeErrors, AreThoseOfTheClosedForm) {
-  // One cell, at an error of 1, is best. A zone's further error e leaves the least at 2 - |e| / 2 - e^2, less the
-  // variance of the cells.
+  // The best cell has an angle error of 1 arcmin. If its zone has a further error e in arcmin, the minimum goal is
+  // 2 - |e| / 2 - e^2, minus the variance of the errors from cell to cell.
   const Study study = study_of_peaks(
       "least = 1.5\nmost_zones = 1\ncell_sigma_arcmin = 0.3\nzone_sigma_arcmin = 0.4\nparts = 4096\nworst_share = "
       "0.1\n");
@@ -178,7 +181,7 @@ TEST(ComposeErrors, AreThoseOfTheClosedForm) {
   const double most = -0.25 + std::sqrt(0.0625 + 0.5 - 0.09);
   EXPECT_NEAR(static_cast<double>(*effects.yield.good) / 4096.0, std::erf(most / (0.4 * std::sqrt(2.0))), 5e-3);
   EXPECT_NEAR(effects.missed_by, 0.0, 1e-9);
-  // Prices of 1/2 each: what one goal gains the other loses.
+  // The derivatives of the two goals are 0.5 and -0.5. They are weighted by the prices of the goals, which add up to 1.
   const double price = composition.best->mixture.prices.goals[0];
   EXPECT_NEAR(effects.slopes.at(0).at(0), price * 0.5 - (1.0 - price) * 0.5, 1e-9);
   EXPECT_NEAR(effects.for_worst->zones.at(0).share, 1.0, 1e-12);
@@ -189,7 +192,8 @@ TEST(ComposeErrors, AreThoseOfTheClosedForm) {
 }
 
 TEST(ComposeErrors, AreAddedToThoseOfTheDesign) {
-  // A cube corner's three angles, against the same design with them in its file.
+  // Angle errors are added to a cube corner, one for each of its three dihedral edges. The result must be the same as
+  // with a design file that contains the sums.
   const std::string text =
       "design = \"../honeycomb_infinite.toml\"\n[[parameter]]\nkey = \"surface.dihedral_error_arcmin\"\nvalues = [5]\n"
       "[[quantity]]\nkind = \"rre\"\nincidence_deg = [0, 15]\nover_directions = \"each\"\n[compose]\nmaximize = "

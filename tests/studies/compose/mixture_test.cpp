@@ -1,4 +1,4 @@
-// Mixtures are compared with closed forms, duality and brute force.
+// Tests of mixtures: comparison with closed forms, duality and exhaustive search.
 
 #include "studies/compose/mixture.h"
 
@@ -16,7 +16,7 @@ using namespace studies;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// A Gaussian lobe about `middle` at points on a line.
+/// Returns a cell whose goals are the values of a Gaussian lobe about `middle` at points on a line.
 MixedCell lobe(double middle, const std::vector<double>& points) {
   MixedCell cell;
   for (const double p : points) cell.goals.push_back(std::exp(-std::pow(p - middle, 2.0)));
@@ -24,12 +24,14 @@ MixedCell lobe(double middle, const std::vector<double>& points) {
 }
 
 TEST(Mixture, OfTwoLobesHasSharesAndPricesOfTheClosedForm) {
-  // Of three points only the outer ones bind: with f and g the lobes there, the shares x and 1 - x make both alike.
+  // Only the goals at the two outer points limit the minimum. With the fractions x and 1 - x, these two goals are
+  // equal. f and g are the values of the lobes at these points.
   const std::vector<double> points = {-1.1, 0.1, 0.9};
   const std::vector<MixedCell> cells = {lobe(-0.8, points), lobe(0.7, points)};
   const double f0 = cells[0].goals[0], f2 = cells[0].goals[2], g0 = cells[1].goals[0], g2 = cells[1].goals[2];
   const double x = (g2 - g0) / (f0 - f2 + g2 - g0);
-  const double price = (g2 - f2) / (f0 - g0 + g2 - f2);  // of the first: both cells are then worth the same
+  // Price of the first goal. With it, both cells have the same value.
+  const double price = (g2 - f2) / (f0 - g0 + g2 - f2);
   const Mixture mixture = best_mixture(cells, {});
   ASSERT_EQ(mixture.kind, Mixture::Kind::optimal);
   ASSERT_EQ(mixture.zones.size(), 2U);
@@ -54,7 +56,7 @@ TEST(Mixture, PriceIsWhatAskingMoreCosts) {
   }
 }
 
-/// Cells of random coefficients, some of them large.
+/// Returns cells with random coefficients. Some of the coefficients are large.
 std::vector<MixedCell> random_cells(std::size_t count, std::size_t goals, std::uint32_t seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> unit;
@@ -79,7 +81,8 @@ TEST(Mixture, HoldsDuality) {
       prices += price;
     }
     EXPECT_NEAR(prices, 1.0, 1e-9);
-    // Cells that are there gain nothing more, or have the share that one may have; others gain nothing.
+    // Cells in the mixture have a gain of 0, or a positive gain if they have the maximum fraction. Cells that are not
+    // in the mixture have no positive gain.
     std::vector<double> share(cells.size(), 0.0);
     for (const ZoneShare& zone : mixture.zones) shares += share[zone.cell] = zone.share;
     EXPECT_NEAR(shares, 1.0, 1e-9);
@@ -98,7 +101,7 @@ TEST(Mixture, HoldsDuality) {
   }
 }
 
-/// The best of all mixtures of a few cells, each set of them by itself.
+/// Returns the merit of the best mixture of a few cells. The best mixture of every set of cells is computed.
 double best_of_all_sets(const std::vector<MixedCell>& cells, const MixtureRules& rules) {
   MixtureRules of_set = rules;
   of_set.most_zones = cells.size();
@@ -109,7 +112,7 @@ double best_of_all_sets(const std::vector<MixedCell>& cells, const MixtureRules&
     for (std::size_t k = 0; k < cells.size(); ++k)
       if ((set >> k) % 2 == 1) chosen.push_back(cells[k]);
     if (chosen.size() > rules.most_zones || rules.least_share * static_cast<double>(chosen.size()) > 1.0) continue;
-    // What every cell has at least is taken as given; the rest is shared out freely.
+    // Each cell has its minimum fraction. Only the remaining area is divided freely.
     MixedCell given = chosen.front();
     for (std::size_t k = 0; k < given.goals.size(); ++k) {
       given.goals[k] = 0.0;
@@ -188,7 +191,7 @@ TEST(Mixture, OfBoundsThatNoCellHoldsIsInfeasible) {
   const Mixture mixture = best_mixture(cells, {.means = {{.most = -0.1}}});
   EXPECT_EQ(mixture.kind, Mixture::Kind::infeasible);
   EXPECT_GT(std::abs(mixture.prices.means[0]), 0.1);
-  // Ten cells of which each may have a twentieth fill half of the part.
+  // Ten cells with at most a twentieth of the area each cover only half of the part.
   EXPECT_EQ(best_mixture(cells, {.means = {{}}, .most_share = 0.05}).kind, Mixture::Kind::infeasible);
   EXPECT_EQ(best_mixture(cells, {.means = {{}}, .most_share = 0.3, .most_zones = 3}).kind, Mixture::Kind::infeasible);
   EXPECT_EQ(best_mixture(cells, {.means = {{}}, .most_share = 0.3, .most_zones = 4}).kind, Mixture::Kind::optimal);

@@ -244,9 +244,9 @@ TEST(Optimise, TheSmallestPrismThatTheToolCutsIsChosenAndTheSingleOneRejectedByT
   EXPECT_EQ(single.variant.broken, (std::vector<std::size_t>{0}));
   record_message(single.role);
   EXPECT_EQ(number(single.variant.values[0]), 10.0);
-  // The entrance face reflects the fraction R (1 - R) of the light back into the part, which then returns after a
-  // second round trip. This light deviates from the source by 4 n e, and it is the first light that leaves the
-  // acceptance of 0.5 degrees.
+  // The entrance face reflects the fraction R (1 - R) of the light back into the part. This light returns after a
+  // second round trip, with a deviation of 4 n e from the direction to the source. It is the first light that leaves
+  // the acceptance cone of 0.5 degrees.
   ASSERT_EQ(optimum.bands.size(), 1U);
   EXPECT_NEAR(optimum.bands[0].up.value(), 60.0 * 0.5 / (4.0 * 1.4917), 2e-3);
   EXPECT_NEAR(optimum.bands[0].down.value(), 60.0 * 0.5 / (4.0 * 1.4917), 2e-3);

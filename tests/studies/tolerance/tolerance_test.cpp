@@ -22,7 +22,7 @@ namespace {
 
 const std::string kFolder = std::string(RETRACE_SOURCE_DIR) + "/examples/";
 
-/// A function of three numbers that a study varies, in place of something that is traced.
+/// Quantity that is a given function of three varied numbers. It needs no ray tracing.
 class Analytic : public Quantity {
  public:
   using Function = std::function<double(double x, double y, double z)>;
@@ -40,7 +40,7 @@ std::string parameter(const std::string& key, const std::string& distribution) {
   return "[[parameter]]\nkey = \"" + key + "\"\n" + distribution + "\n";
 }
 
-/// x, y and z are azimuth, incidence and thickness.
+/// Returns a study whose quantity is f(x, y, z), where x is the azimuth, y the angle of incidence and z the thickness.
 Study analytic_study(const std::array<std::string, 3>& distributions, const std::string& keys,
                      const Analytic::Function& f) {
   Study study = parse_study("design = \"rtp_brick_1mm.toml\"\n" + parameter("analysis.azimuth_deg", distributions[0]) +
@@ -52,7 +52,7 @@ Study analytic_study(const std::array<std::string, 3>& distributions, const std:
   return study;
 }
 
-/// A tolerance study that was run.
+/// Tolerance study with its store and its result.
 struct StudyRun {
   explicit StudyRun(Study study)
       : request(read_tolerance(study)),
@@ -133,12 +133,14 @@ TEST(Tolerance, IshigamiThroughAStudy) {
   EXPECT_NEAR(f.indices[0].total.value, 0.5576, 0.04);
   EXPECT_NEAR(f.indices[1].total.value, 0.4424, 0.04);
   EXPECT_NEAR(f.indices[2].total.value, 0.2437, 0.04);
-  // Mean a / 2, variance a^2 / 8 + b pi^4 / 5 + b^2 pi^8 / 18 + 1 / 2.
+  // The mean of the Ishigami function is a / 2, with a = 7 and b = 0.1. Its variance is
+  // a^2 / 8 + b pi^4 / 5 + b^2 pi^8 / 18 + 1 / 2.
   EXPECT_NEAR(f.spread->mean, 3.5, 0.05);
   EXPECT_NEAR(f.spread->deviation, std::sqrt(13.8446), 0.06);
 }
 
-/// Good parts of a normal distribution, 1 and 2 deviations from the middle: 84.134 % and 97.725 %.
+/// The limits are 1 and 2 standard deviations from the mean of a normal distribution. 84.134 % and 97.725 % of the
+/// parts satisfy them.
 TEST(Tolerance, YieldsAreThoseOfTheNormalDistribution) {
   for (const std::string sampling : {"monte_carlo", "sobol", "latin_hypercube"}) {
     SCOPED_TRACE(sampling);
@@ -180,8 +182,9 @@ TEST(Tolerance, TheYieldThatIsAskedForDecides) {
   EXPECT_FALSE(is_enough("60"));
 }
 
-/// At normal incidence the RRE of a flat brick array is s + (1 - s) 2 R / (1 + R), s the share of whole elements and R
-/// the reflectance of its face: of the index alone, whatever the thickness of the plate.
+/// At normal incidence, the RRE of a flat brick array is s + (1 - s) 2 R / (1 + R), where s is the fraction of the area
+/// with whole elements and R the reflectance of the entrance face. It depends on the index, but not on the thickness of
+/// the plate.
 TEST(Tolerance, OnlyWhatMattersContributesToRre) {
   StudyRun run(
       parse_study("design = \"rtp_brick_1mm.toml\"\n" +
@@ -201,14 +204,15 @@ TEST(Tolerance, OnlyWhatMattersContributesToRre) {
     return share + (1.0 - share) * 2.0 * r / (1.0 + r);
   };
   EXPECT_NEAR(rre.nominal.value(), closed_form(1.49), 1e-9);
-  // Linear over so small a range: one deviation of the index either way.
+  // In this small range, the RRE is a linear function of the index. Its standard deviation is the change of RRE per
+  // standard deviation of the index.
   const double deviation = 0.5 * (closed_form(1.5) - closed_form(1.48));
   EXPECT_NEAR(rre.spread->deviation, deviation, 0.15 * deviation);
   EXPECT_TRUE(run.result.quantities[1].indices.empty()) << "a count does not vary";
 }
 
 TEST(Tolerance, PartsThatCannotBeMadeAreNoGoodParts) {
-  // Half of the plates have no thickness left.
+  // Half of the plates would have a thickness below 0.
   StudyRun run(
       analytic_study({kNormals[0], kNormals[1], "distribution = \"uniform\"\nfrom = -1\nto = 1"},
                      "[[constraint]]\nquantity = \"f\"\nmin = 0\n[tolerance]\nsamples = 128\nindices = \"none\"\n",
@@ -232,7 +236,7 @@ TEST(Tolerance, IsTheSameEveryTimeAndWhateverWasThereBefore) {
   StudyRun first(study(1));
   first.compute();
   StudyRun second(study(1));
-  // Some points are there already, as after a kill.
+  // Some points are already in the store, as after a run that was killed.
   for (const std::uint64_t point : {0U, 7U, 100U})
     second.store.record(*compute_point(second.sweep.study(), point, second.sweep.values(point), nullptr));
   second.compute();

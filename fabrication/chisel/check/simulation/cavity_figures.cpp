@@ -16,9 +16,9 @@ using geometry::Vec2;
 using geometry::Vec3;
 
 /// Width of the strip along a dihedral edge in which residual material is attributed to the edge and not to a facet. A
-/// measuring line in this strip also meets residual material of the neighbouring facet.
+/// measuring line in this strip also crosses residual material of the neighbouring facet.
 constexpr double kStripMm = kEdgeStripMm;
-/// Minimum distance of measuring lines from the border of a facet, relative to the facet's size.
+/// Minimum distance of measuring lines from the border of a facet, as a fraction of the facet's size.
 constexpr double kWithin = 1e-6;
 /// Angle, in rad, between the tool's leading edge and the measured directions. There is one measured direction on each
 /// side of the edge.

@@ -31,13 +31,13 @@ constexpr int kEvenLines = 12;
 constexpr double kSamePassMm = 3e-6;
 /// Fraction of the facet's width that is used to fit the plane of the facet. The ends of the facet are excluded.
 constexpr double kPlaneShare = 0.8;
-/// Maximum distance of a measured point from the root, in lengths of a facet, for which is_beside() is reliable.
+/// Maximum distance of a measured point from the root, in facet lengths, at which is_beside() is reliable.
 constexpr double kReachShare = 4.0;
 
-/// Positions along the root: those of the stations (cross-sections in which the facets are measured), and those of the
-/// passes of the tool.
+/// Positions, along the root, of the stations and of the passes of the tool. A station is a cross-section in which the
+/// facets are measured.
 struct Stations {
-  std::vector<double> along_mm;         ///< positions of the sections
+  std::vector<double> along_mm;         ///< positions of the stations
   std::vector<double> pass_middles_mm;  ///< center of each pass
 };
 
@@ -113,8 +113,8 @@ class Measurer {
     return high - low;
   }
 
-  /// Returns true if a point is used to fit the plane of a facet. Points near the root, the rim and the ends of the
-  /// tool are excluded.
+  /// Returns true if a point is used to fit the plane of a facet. Points near the root, near the rim and near the two
+  /// ends of the facet are excluded.
   bool is_for_plane(double slant, double along) const {
     return std::abs(along) <= plane_end_mm_ && slant >= std::max(burr_end_mm_, 0.02 * groove_.facet_length_mm) &&
            slant <= 0.98 * groove_.facet_length_mm;
@@ -214,15 +214,15 @@ class Measurer {
     return slants;
   }
 
-  /// Selects the sweeps that can meet the measuring lines of a station.
+  /// Selects the sweeps that can cross the measuring lines of a station.
   void select_sweeps(double along) {
     near_.clear();
     for (const SweptVolume* sweep : by_pose_)
       if (!is_beside(*sweep, along)) near_.push_back(sweep);
   }
 
-  /// Returns whether a sweep misses all measuring lines of a station because the tool, which is as wide as its edge,
-  /// moves past one side of them. The result is reliable for points up to kReachShare facet lengths from the root.
+  /// Returns true if a sweep misses all measuring lines of a station, because the tool passes them on one side. The
+  /// tool is as wide as its edge. The result is reliable for points up to kReachShare facet lengths from the root.
   bool is_beside(const SweptVolume& sweep, double along) const {
     const RigidMotion& pose = poses_[sweep.pose];
     const Vec3 root = pose.direction(groove_.root_direction);
@@ -284,11 +284,11 @@ class Measurer {
     return towards > kParallel ? towards : 0.0;
   }
 
-  /// Returns the height above the other facet up to which a measuring line may meet residual material of that facet.
+  /// Returns the height above the other facet up to which a measuring line can cross residual material of that facet.
   double residue_of_other_mm() const { return strip_mm_ + kLeastStripMm; }
 
   /// Returns true if a line at a distance from the root measures only its own facet. In grooves with an angle below 90
-  /// degrees, lines near the root meet the residual material of the other facet.
+  /// degrees, lines near the root cross the residual material of the other facet.
   bool is_clear_of_other(double slant) const {
     if (slant <= strip_mm_ || approach_of_other() <= 0.0) return true;
     return slant * sine_between() > 2.0 * residue_of_other_mm();

@@ -16,7 +16,7 @@ namespace retrace::fabrication {
 
 /// Largest deviation of a machined facet from the predicted surface.
 struct FacetDeviation {
-  double nm = 0.0;        ///< deviation along the design normal, above the prediction; negative: too much was removed
+  double nm = 0.0;        ///< deviation from the prediction along the design normal; negative if too much was removed
   std::int32_t line = 0;  ///< NC line of the move that produced the surface at this point
 };
 
@@ -52,8 +52,8 @@ ElementFigures element_figures(const PrismGroove& groove, std::span<const SweptV
                                bool is_one_facet_ploughed, double tolerance_mm);
 
 /// Measures the facets of a cube corner. The measuring lines are normal to each facet. They cover the whole facet and
-/// the strips along the dihedral edges. There are additional lines on both sides of the line where the tool's leading
-/// edge is when the tip is in the apex.
+/// the strips along the dihedral edges. Additional lines are placed on both sides of the tool's leading edge, at its
+/// position when the tip is at the apex.
 /// \param nose_angle_deg nose angle of the tool
 /// \param prediction predicted errors and poses of this element
 ElementFigures cavity_figures(const CubeCavity& cavity, std::span<const SweptVolume> sweeps,

@@ -13,7 +13,7 @@ namespace {
 
 using geometry::Vec3;
 
-/// Number of planes that are tangent to the arc, without the flanks at its ends.
+/// Number of tangent planes that approximate the arc of the nose, without the flanks at its ends.
 constexpr int kTangents = 32;
 /// Maximum distance from a dihedral edge up to which cuts are searched, in radii of the nose.
 constexpr double kFurthest = 40.0;
@@ -39,7 +39,7 @@ class Searcher {
     NoseResidue residue;
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3& edge = cavity_.edges[k];
-      // Measure at the center of the dihedral edge of a hexagonal element.
+      // Position of the measurement. For a hexagonal element, it is the center of the dihedral edge.
       const Vec3 place = cavity_.root_mm + 0.25 * cavity_.facet_length_mm * edge;
       for (const std::size_t facet : {k, (k + 2) % 3}) {
         const Vec3& normal = cavity_.facets[facet].normal;

@@ -18,13 +18,14 @@ ToolWedge nosed_wedge(const Tool& tool, const Machine& machine);
 
 /// Maximum residual material that a rounded nose leaves along the dihedral edges of a cube corner.
 struct NoseResidue {
-  double strip_mm = 0.0;  ///< width of the uncut strip of each facet next to an edge
-  /// Height of the ridge between the flanks of the two cuts, from the edge along the bisector of the two facets.
+  double strip_mm = 0.0;  ///< width of the uncut strip of a facet next to a dihedral edge
+  /// Height of the ridge between the flanks of the two cuts, measured from the dihedral edge along the bisector of the
+  /// two facets.
   double ridge_mm = 0.0;
 };
 
 /// Measures the residual material along lines, by simulating the programs with the rounded tool. The search is limited
-/// to 40 radii.
+/// to 40 nose radii from the dihedral edges.
 /// \param sweeps swept volumes of the element
 /// \param poses machine_from_workpiece for each SweptVolume::pose
 NoseResidue nose_residue(const CubeCavity& cavity, double radius_mm, std::span<const SweptVolume> sweeps,

@@ -13,7 +13,7 @@ namespace {
 using geometry::Vec2;
 using geometry::Vec3;
 
-/// Extent of the blank in a section.
+/// Extent of the modelled part of the blank in a cross-section.
 struct Extent {
   double half_mm = 0.0;   ///< half of the width
   double below_mm = 0.0;  ///< depth below the origin of the section
