@@ -1,6 +1,7 @@
 #pragma once
 
-// Runs commands such as `mpirun retrace sweep` on several machines with MPI. docs/commands.md lists these commands.
+// Runs commands such as `mpirun retrace sweep` on several machines with MPI. docs/commands/sweep.md lists these
+// commands.
 
 #include <functional>
 

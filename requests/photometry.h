@@ -39,7 +39,7 @@ struct PhotometryRequest {
   std::string engine = "auto";
   /// Minimum power of a beam that is followed exactly, as a fraction of the light on one element (weaker beams are
   /// resampled with auto and truncated with exact); > 0 and < 1. Default: 1e-5; finite parts with resampling: see
-  /// docs/commands.md.
+  /// docs/commands/photometry.md.
   std::optional<double> cutoff = {};
   /// Number of Monte Carlo rays for each direction of the incident light; a whole number >= 1 and <= 68719476736.
   /// Default: 1048576.

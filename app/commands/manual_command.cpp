@@ -128,6 +128,7 @@ The same prism in polycarbonate, as JSON on standard output:
 .SH SEE ALSO
 The documents installed with retrace:
 .IR commands.md ,
+.IR commands/*.md ,
 .I design_file.md
 and
 .IR CONVENTIONS.md .

@@ -12,7 +12,7 @@ namespace retrace::fabrication {
 
 /// Error in a program.
 struct Finding {
-  std::string kind;           ///< kind, such as "gouge"; docs/commands.md lists all kinds
+  std::string kind;           ///< kind, such as "gouge"; docs/commands/verify.md lists all kinds
   std::string program;        ///< file name; empty if the finding belongs to no single program
   std::int32_t line = 0;      ///< line of the program; 0: no line
   std::int64_t element = -1;  ///< number of the element; -1: no element

@@ -16,7 +16,7 @@ namespace retrace {
 
 /// A fault of a program.
 struct Finding {
-  std::string kind;     ///< kind of fault, such as "gouge"; docs/commands.md lists all kinds
+  std::string kind;     ///< kind of fault, such as "gouge"; docs/commands/verify.md lists all kinds
   std::string program;  ///< program file; empty if the finding concerns no file or all files together
   int line = 0;         ///< line of the NC text; 0 if the finding concerns no line
   std::string message;

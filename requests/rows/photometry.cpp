@@ -102,7 +102,7 @@ constexpr Row kPhotometryRows[] = {
      "minimum power of a beam that is followed exactly, as a fraction of the light on one element (weaker beams are "
      "resampled with auto and truncated with exact)",
      access<&PhotometryRequest::cutoff>,
-     {.value = "W", .otherwise = "1e-5; finite parts with resampling: see docs/commands.md"},
+     {.value = "W", .otherwise = "1e-5; finite parts with resampling: see docs/commands/photometry.md"},
      kNeedExact},
     {"diffraction",
      Flag{},

@@ -1,7 +1,8 @@
 // Reads heights from text files: a matrix with one row per line, or a list of points. Header lines "key = value", "key:
 // value" or "key value" may precede the heights, with or without # in front. Headers of two other programs are
 // accepted: those of Gwyddion's text export ("# Width: 1.0 mm") and those of ESRI ASCII grids (ncols, nrows, cellsize,
-// xllcorner, NODATA_value), whose first row has the largest y. docs/commands.md lists all keys.
+// xllcorner, NODATA_value), whose first row has the largest y. docs/commands/metrology.md lists all
+// keys.
 
 #include <fmt/format.h>
 

@@ -15,11 +15,11 @@
 
 #include "tests/app/program.h"
 
-// Runs every command that README.md, docs/*.md and docs/tutorials/*.md show, exactly as the page shows it. Each page is
-// a separate test, so that pages run in parallel. A test runs in a temporary folder with the layout of the project. In
-// this folder, tools/run and retrace are the program, and examples/ is a link to the examples. Tests of tutorials also
-// write the files that the reader is told to save. They compare the output that a tutorial shows with the output of the
-// program.
+// Runs every command that README.md, docs/*.md, docs/commands/*.md and docs/tutorials/*.md show, exactly as the page
+// shows it. Each page is a separate test, so that pages run in parallel. A test runs in a temporary folder with the
+// layout of the project. In this folder, tools/run and retrace are the program, and examples/ is a link to the
+// examples. Tests of tutorials also write the files that the reader is told to save. They compare the output that a
+// tutorial shows with the output of the program.
 
 namespace retrace::test::readme_test {
 namespace {
@@ -183,11 +183,13 @@ Outcome run_in(const TemporaryFolder& folder, const std::string& command) {
   return Child(folder.path(), {"/bin/sh", "-c", "PATH=\"$PWD/tools:$PATH\"; " + command}).wait();
 }
 
-/// Returns README.md and the pages of docs/, in the order of their names.
+/// Returns README.md and the pages of docs/ and docs/commands/, in the order of their paths. The pages of
+/// docs/commands/ come before docs/commands.md.
 std::vector<fs::path> pages() {
   std::vector<fs::path> found;
-  for (const auto& entry : fs::directory_iterator(fs::path(RETRACE_SOURCE_DIR) / "docs"))
-    if (entry.path().extension() == ".md") found.push_back(entry.path());
+  for (const char* folder : {"docs", "docs/commands"})
+    for (const auto& entry : fs::directory_iterator(fs::path(RETRACE_SOURCE_DIR) / folder))
+      if (entry.path().extension() == ".md") found.push_back(entry.path());
   std::sort(found.begin(), found.end());
   found.insert(found.begin(), fs::path(RETRACE_SOURCE_DIR) / "README.md");
   return found;
@@ -396,6 +398,12 @@ TEST(Documentation, LinksLeadSomewhere) {
   EXPECT_GE(count, 100);
 }
 
+/// Names of the pages that show commands, in the order of `pages()`.
+const std::vector<std::string> kPagesWithCommands = {
+    "README", "calibrate", "explore",   "export",   "fabricate",  "forces", "image",    "init",    "inspect",     "job",
+    "list",   "manual",    "metrology", "optimize", "photometry", "plane",  "rays",     "report",  "roughness",   "rre",
+    "schema", "sweep",     "tolerance", "turn",     "validate",   "verify", "commands", "gallery", "planing_file"};
+
 class Pages : public testing::TestWithParam<std::string> {};
 
 TEST_P(Pages, CommandsRun) {
@@ -406,13 +414,13 @@ TEST_P(Pages, CommandsRun) {
 }
 
 // ctest runs every page as a separate test (register_tests.py).
-INSTANTIATE_TEST_SUITE_P(Docs, Pages, testing::Values("README", "commands", "gallery", "planing_file"), name_of);
+INSTANTIATE_TEST_SUITE_P(Docs, Pages, testing::ValuesIn(kPagesWithCommands), name_of);
 
 TEST(Readme, PagesWithCommandsAreAllRun) {
   std::vector<std::string> names;
   for (const fs::path& page : pages())
     if (std::ranges::any_of(commands_of(read_text(page)), is_run)) names.push_back(page.stem().string());
-  EXPECT_EQ(names, (std::vector<std::string>{"README", "commands", "gallery", "planing_file"}));
+  EXPECT_EQ(names, kPagesWithCommands);
 }
 
 TEST(Readme, CommandsOfAllPagesAreKnown) {

@@ -4,8 +4,8 @@
 
 #include "tests/app/program.h"
 
-// Tests that every command of the program is in its help, its manual, the list in docs/commands.md and the completion
-// of each shell. The tests run the completion scripts in their shells.
+// Tests that every command of the program is in its help, its manual, the table in docs/commands.md and the completion
+// of each shell, and has a page in docs/commands/. The tests run the completion scripts in their shells.
 
 namespace retrace::test::registry_test {
 namespace {
@@ -184,29 +184,52 @@ TEST(Manual, HasEveryCommandAndOptionAndIsWellFormed) {
   EXPECT_EQ(Child(folder.path(), {"/bin/sh", "-c", lint}).wait().out, "");
 }
 
+/// Returns a page of docs/.
+std::string documentation(const std::string& page) {
+  return read_text(std::string(RETRACE_SOURCE_DIR) + "/docs/" + page);
+}
+
 /// Returns the text between two marks in docs/commands.md.
 std::string listed() {
-  const std::string page = read_text(std::string(RETRACE_SOURCE_DIR) + "/docs/commands.md");
+  const std::string page = documentation("commands.md");
   const std::string mark = "<!-- commands -->\n";
   const std::size_t first = page.find(mark) + mark.size();
   return page.substr(first, page.find("<!-- end -->", first) - first);
 }
 
-TEST(Documentation, ListsTheCommandsAndNamesTheirOptions) {
+void expect_options_on(const std::string& page, const Json& arguments) {
+  for (const Json& argument : arguments)
+    for (const std::string option : argument["names"]) EXPECT_NE(page.find("`" + option), std::string::npos) << option;
+}
+
+TEST(Documentation, ListsTheCommands) {
   const TemporaryFolder folder;
   const Json manual = retrace_json(folder, {"manual"});
-  const std::string page = read_text(std::string(RETRACE_SOURCE_DIR) + "/docs/commands.md");
-  std::string expected = "\n";
+  std::string expected = "\n| command | arguments | does |\n|---|---|---|\n";
   for (const Json& command : manual["commands"]) {
-    const std::string synopsis = command["synopsis"];
-    expected += "    " + synopsis + std::string(std::max<std::size_t>(40, synopsis.size() + 1) - synopsis.size(), ' ') +
-                command["summary"].get<std::string>() + "\n";
-    EXPECT_NE(page.find("\n## retrace " + command["name"].get<std::string>() + "\n"), std::string::npos) << command;
-    for (const Json& argument : command["arguments"])
-      for (const std::string option : argument["names"])
-        EXPECT_NE(page.find("`" + option), std::string::npos) << command["name"] << option;
+    const std::string name = command["name"];
+    std::string arguments = command["synopsis"].get<std::string>().substr(("retrace " + name + " ").size());
+    // A bar would begin the next column of the table.
+    for (std::size_t at = arguments.find('|'); at != std::string::npos; at = arguments.find('|', at + 2))
+      arguments.insert(at, 1, '\\');
+    expected += "| [" + name + "](commands/" + name + ".md) | `" + arguments + "` | " +
+                command["summary"].get<std::string>() + " |\n";
   }
   EXPECT_EQ(listed(), expected + "\n");
+  expect_options_on(documentation("commands.md"), manual["arguments"]);
+}
+
+TEST(Documentation, HasAPageWithAllOptionsOfEachCommand) {
+  const TemporaryFolder folder;
+  const Json manual = retrace_json(folder, {"manual"});
+  for (const Json& command : manual["commands"]) {
+    const std::string name = command["name"];
+    SCOPED_TRACE(name);
+    const std::string page = documentation("commands/" + name + ".md");
+    EXPECT_TRUE(page.starts_with("# retrace " + name + "\n"));
+    EXPECT_NE(page.find("\n    " + command["synopsis"].get<std::string>() + "\n"), std::string::npos);
+    expect_options_on(page, command["arguments"]);
+  }
 }
 
 // Runs several fast commands. The formats that they write must be those that the registry contains.

@@ -1,5 +1,5 @@
 """Writes texts that repeat the descriptions of requests: the comments on the members in requests/*.h, and the tables of
-options in docs/commands.md between the marks `<!-- fields of NAME -->` and `<!-- end -->`.
+options in docs/commands/*.md between the marks `<!-- fields of NAME -->` and `<!-- end -->`.
 
     python3 request_texts.py PROGRAM [--check]
 
@@ -123,7 +123,7 @@ def main() -> int:
     requests = descriptions(sys.argv[1])
     is_check = "--check" in sys.argv[2:]
     stale = []
-    for path in [*sorted((ROOT / "requests").glob("*.h")), ROOT / "docs/commands.md"]:
+    for path in [*sorted((ROOT / "requests").glob("*.h")), *sorted((ROOT / "docs/commands").glob("*.md"))]:
         text = path.read_text(encoding="utf-8")
         new = with_tables(text, requests) if path.suffix == ".md" else text
         if path.suffix == ".h":

@@ -28,7 +28,7 @@ LANGUAGES = {".toml": "toml", ".h": "cpp", ".cpp": "cpp", ".py": "python", ".slu
 MOST_LINES = 200  # of a file that is shown
 
 # What the navigation has, in its order; pages that are not there are left out. A pattern takes the pages that no other
-# line names.
+# line names. A dictionary within a section is a second level of the navigation.
 SECTIONS = {
     "Start": ["README.md", "docs/install.md"],
     "Tutorials": ["docs/tutorials/first_curve.md", "docs/tutorials/regulation.md", "docs/tutorials/nc_program.md",
@@ -36,9 +36,9 @@ SECTIONS = {
                   "docs/tutorials/*.md"],
     "Notebooks": ["examples/notebooks/*.md"],
     "How to": ["docs/nc_dialects.md", "docs/adding_a_dialect.md", "docs/python.md", "docs/library.md", "CONTRIBUTING.md", "docs/*.md"],
-    "Reference": ["docs/commands.md", "docs/design_file.md", "docs/study_file.md", "docs/job_file.md",
-                  "docs/machine_file.md", "docs/turning_file.md", "docs/planing_file.md", "docs/json_documents.md",
-                  "CONVENTIONS.md"],
+    "Reference": [{"Commands": ["docs/commands.md", "docs/commands/*.md"]}, "docs/design_file.md",
+                  "docs/study_file.md", "docs/job_file.md", "docs/machine_file.md", "docs/turning_file.md",
+                  "docs/planing_file.md", "docs/json_documents.md", "CONVENTIONS.md"],
     "Theory": ["docs/theory/README.md", "docs/theory/closed_forms.md", "docs/theory/monte_carlo.md",
                "docs/theory/beams.md", "docs/theory/photometry.md", "docs/theory/scatter.md", "docs/theory/*.md"],
     "Validation": ["docs/validation.md"],
@@ -345,7 +345,7 @@ def document_page():
         for schema in command["writes"]:
             writers.setdefault(schema, []).append(command["name"])
     for schema, names in sorted(writers.items()):
-        links = ", ".join(f"[{name}](commands.md#retrace-{name})" for name in names)
+        links = ", ".join(f"[{name}](commands/{name}.md)" for name in names)
         lines.append(f"| `{schema}` | {links} |")
     lines += ["", "## File formats", "", "`retrace schema FORMAT` prints a JSON Schema of a file format, for editors and "
               "validators. FORMAT is one of:", ""]
@@ -355,17 +355,34 @@ def document_page():
 
 # --- The site ---------------------------------------------------------------------------------------------------------
 
+def named_pages(entries):
+    """Returns the pages and patterns of a list of entries, with those of its second level."""
+    named = set()
+    for entry in entries:
+        named |= {entry} if isinstance(entry, str) else {page for inner in entry.values() for page in named_pages(inner)}
+    return named
+
+
+def pages_of(entries, named):
+    """Returns the entries of the navigation for a list of pages, patterns and dictionaries of these."""
+    pages = []
+    for entry in entries:
+        if isinstance(entry, dict):
+            pages += [{title: pages_of(inner, named)} for title, inner in entry.items()]
+            continue
+        found = [entry] if "*" not in entry else sorted(
+            str(file.relative_to(PAGES)) for file in PAGES.glob(entry)
+            if str(file.relative_to(PAGES)) not in named)
+        pages += ["index.md" if page == "README.md" else page for page in found
+                  if page == "README.md" or (PAGES / page).exists()]
+    return pages
+
+
 def navigation():
-    named = {page for pages in SECTIONS.values() for page in pages}
+    named = {page for entries in SECTIONS.values() for page in named_pages(entries)}
     sections = []
-    for title, wanted in SECTIONS.items():
-        pages = []
-        for entry in wanted:
-            found = [entry] if "*" not in entry else sorted(
-                str(file.relative_to(PAGES)) for file in PAGES.glob(entry)
-                if str(file.relative_to(PAGES)) not in named)
-            pages += ["index.md" if page == "README.md" else page for page in found
-                      if page == "README.md" or (PAGES / page).exists()]
+    for title, entries in SECTIONS.items():
+        pages = pages_of(entries, named)
         sections.append({title: pages if len(pages) > 1 else pages[0]})
     return sections
 
