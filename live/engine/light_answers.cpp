@@ -33,14 +33,6 @@ RrePoint point_at(const OpenedDesign& opened, const studies::SceneLight& light) 
   return at;
 }
 
-/// Returns the index of the wavelength for which `model.optics` is computed.
-std::size_t middle_of(const studies::OpticalModel& model) {
-  std::size_t middle = 0;
-  for (std::size_t k = 0; k < model.spectral.size(); ++k)
-    if (model.spectral[k].wavelength_nm == model.optics.wavelength_nm) middle = k;
-  return middle;
-}
-
 /// Settings for tracing one direction of incidence.
 struct Way {
   /// Maximum truncated power (exact engine), or target standard error of the RRE (resampled beams).
@@ -108,12 +100,12 @@ class Tracing {
 };
 
 /// Traces one direction of incidence at all wavelengths. The footprint and the far field are computed only at the
-/// wavelength with the index middle_of(). Returns nothing if the time limit is reached.
+/// wavelength with the index OpticalModel::nearest_wavelength(). Returns nothing if the time limit is reached.
 std::optional<Found> traced(const OpenedDesign& opened, const studies::SceneLight& light, const Way& way,
                             const TimeLimit* limit) {
   const studies::OpticalModel& model = opened.require_model();
   const RrePoint at = point_at(opened, light);
-  const std::size_t middle = middle_of(model);
+  const std::size_t middle = model.nearest_wavelength();
   Found all;
   std::vector<std::vector<studies::SpectralPoint>> spectral(opened.design().detector.acceptance_half_angle_deg.size());
   TaskProgress unseen(nullptr, model.spectral.size());

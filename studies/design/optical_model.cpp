@@ -358,13 +358,6 @@ void add_texture_warnings(const Design& design, OpticalModel& model) {
       [](const Optics& o) -> const auto& { return o.entrance.roughness; }, [](const Optics&) { return 1.0; }, model);
 }
 
-/// Returns the traced wavelength that is nearest to `wavelength_nm`.
-const SpectralOptics& nearest(const std::vector<SpectralOptics>& light, double wavelength_nm) {
-  return *std::min_element(light.begin(), light.end(), [&](const SpectralOptics& a, const SpectralOptics& b) {
-    return std::abs(a.wavelength_nm - wavelength_nm) < std::abs(b.wavelength_nm - wavelength_nm);
-  });
-}
-
 raytrace::Optics with_back_index(const Design& design, raytrace::Optics optics, double back_index) {
   optics.back_index = back_index;
   if (const auto* const texture = std::get_if<HarveyShackTexture>(&design.surface.texture))
@@ -387,10 +380,18 @@ void wet(const Design& design, const std::shared_ptr<const geometry::ChosenEleme
 void add_wet_back(const Design& design, OpticalModel& model) {
   model.wet_elements = std::make_shared<const geometry::ChosenElements>(model.part, design.wet_back->where);
   for (SpectralOptics& at : model.spectral) wet(design, model.wet_elements, at.optics);
-  model.optics = nearest(model.spectral, model.wavelength_nm).optics;
+  model.optics = model.spectral[model.nearest_wavelength()].optics;
 }
 
 }  // namespace
+
+std::size_t OpticalModel::nearest_wavelength() const {
+  const auto nearest =
+      std::min_element(spectral.begin(), spectral.end(), [this](const SpectralOptics& a, const SpectralOptics& b) {
+        return std::abs(a.wavelength_nm - wavelength_nm) < std::abs(b.wavelength_nm - wavelength_nm);
+      });
+  return static_cast<std::size_t>(nearest - spectral.begin());
+}
 
 OpticalModel make_model(const Design& design, const materials::MaterialLibrary& library, Entrances entrances) {
   check_taken(design, {.what = {}, .solids = true, .entrances = true, .wet_backs = true});
@@ -451,7 +452,7 @@ OpticalModel make_light_model(const Design& design, const materials::MaterialLib
   for (std::size_t k = 0; k < light.size(); ++k)
     model.spectral.push_back({light.wavelengths_nm[k], light.weights[k], optics.at(light.wavelengths_nm[k])});
   model.wavelength_nm = light.centroid_nm();
-  model.optics = nearest(model.spectral, model.wavelength_nm).optics;
+  model.optics = model.spectral[model.nearest_wavelength()].optics;
   if (!design.substance.refractive_index) {
     warn_of_extrapolation(design, optics.material(), model);
     warn_of_temperature(design, optics.material(), model);

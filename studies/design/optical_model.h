@@ -32,10 +32,14 @@ struct OpticalModel {
   std::shared_ptr<const geometry::ChosenElements> wet_elements;
   std::optional<geometry::Entrance> entrance;  ///< curved entrance face; if empty, the face is plane
   double wavelength_nm = 0.0;                  ///< wavelength of the light; for a spectrum, its centroid
-  raytrace::Optics optics;  ///< properties at the traced wavelength that is nearest to `wavelength_nm`
+  raytrace::Optics optics;                     ///< properties at the wavelength with the index nearest_wavelength()
   /// Properties at the traced wavelengths, in ascending order; the weights add up to 1.
   std::vector<SpectralOptics> spectral;
   Warnings warnings;  ///< warnings for the user, for example about an extrapolated index
+
+  /// Returns the index in `spectral` of the wavelength that is nearest to `wavelength_nm`.
+  /// \pre `spectral` is not empty
+  std::size_t nearest_wavelength() const;
 };
 
 /// Entrance faces that a caller supports: only a plane face, or also a curved one.

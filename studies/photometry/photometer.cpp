@@ -227,15 +227,6 @@ std::vector<double> Photometer::wavelengths_nm() const {
   return all;
 }
 
-std::size_t Photometer::middle_wavelength() const {
-  std::size_t best = 0;
-  for (std::size_t k = 1; k < model_.spectral.size(); ++k)
-    if (std::abs(model_.spectral[k].wavelength_nm - model_.wavelength_nm) <
-        std::abs(model_.spectral[best].wavelength_nm - model_.wavelength_nm))
-      best = k;
-  return best;
-}
-
 PhotometerReading Photometer::reading_of(const PhotometerSetting& setting, const std::vector<Piece>& pieces) const {
   PhotometerReading reading;
   const raytrace::SourceAngles source = raytrace::source_angles(frame_of(setting).to_source);

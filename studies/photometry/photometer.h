@@ -213,7 +213,6 @@ class Photometer {
                                                                      Progress* progress,
                                                                      const Cancellation* cancel) const;
   PhotometerReading reading_of(const PhotometerSetting& setting, const std::vector<Piece>& pieces) const;
-  std::size_t middle_wavelength() const;
   bool resamples_weak() const;   ///< true: beams below the cut-off power are resampled; false: they are truncated
   double element_count() const;  ///< number of elements over which the light is distributed, >= 1
   double cutoff() const;

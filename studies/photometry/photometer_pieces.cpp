@@ -249,7 +249,7 @@ void Photometer::estimate_missing(const std::vector<PhotometerSetting>& settings
   const double unplaced = field.scattered_power() > 0.0 ? field.unplaced_power() / field.scattered_power() : 0.0;
   if (truncated <= kLeastTruncated && unplaced <= kLeastTruncated) return;
   std::optional<Traced> coarse;
-  if (truncated > kLeastTruncated && !resamples_weak() && wavelength == middle_wavelength()) {
+  if (truncated > kLeastTruncated && !resamples_weak() && wavelength == model_.nearest_wavelength()) {
     coarse = this->traced(frame_of(settings[alike.front().index]).to_source, wavelength, tracer, cancel, kCoarseness);
     if (!coarse) return;
   }
@@ -291,7 +291,7 @@ void Photometer::look(const PhotometerSetting& setting, const SharedDirection& s
     for (std::size_t bin = 0; bin < grid.size(); ++bin) piece.map_per_sr[bin] /= grid.solid_angle_sr(bin);
   }
   const double points = std::numbers::pi * std::pow(1.5 * window_rad / field.detail_rad(), 2.0);
-  if (setting.split && wavelength == middle_wavelength() && points < kMostLatticePoints) {
+  if (setting.split && wavelength == model_.nearest_wavelength() && points < kMostLatticePoints) {
     const raytrace::FarField::Split parts = field.split(frame, window_rad);
     piece.split = {model_.spectral[wavelength].wavelength_nm, parts.inside, parts.outside, field.total_power()};
   }
