@@ -6,7 +6,6 @@
 #include "live/engine/answers.h"
 #include "live/engine/request.h"
 #include "raytrace/engines/beam_race.h"
-#include "raytrace/engines/wavelengths.h"
 #include "studies/rre/beam_tracing.h"
 #include "studies/rre/spectral_mean.h"
 
@@ -108,21 +107,18 @@ std::optional<Found> traced(const OpenedDesign& opened, const studies::SceneLigh
   const std::size_t middle = model.nearest_wavelength();
   Found all;
   std::vector<std::vector<studies::SpectralPoint>> spectral(opened.design().detector.acceptance_half_angle_deg.size());
-  TaskProgress unseen(nullptr, model.spectral.size());
-  const auto trace_one = [&](std::size_t, std::size_t k, Progress&) {
+  for (std::size_t k = 0; k < model.spectral.size(); ++k) {
     Way of_wavelength = way;
     if (k != middle) of_wavelength.question = {};
     std::optional<Found> found = Tracing(opened, at, k).trace(of_wavelength, limit);
-    if (!found) return false;
+    if (!found) return std::nullopt;
     for (std::size_t cone = 0; cone < spectral.size(); ++cone)
       spectral[cone].push_back({model.spectral[k].weight, found->points[cone]});
-    if (k != middle) return true;
+    if (k != middle) continue;
     all.at_middle = found->points.back();
     all.footprint = std::move(found->footprint);
     all.far_field = std::move(found->far_field);
-    return true;
-  };
-  if (!raytrace::trace_wavelengths(1, model.spectral.size(), false, unseen, trace_one)) return std::nullopt;
+  }
   for (const std::vector<studies::SpectralPoint>& points : spectral) {
     all.points.push_back(points.size() == 1 ? points.front().point : studies::spectral_mean(at, points));
     all.points.back().acceptance_half_angle_deg = points.front().point.acceptance_half_angle_deg;
