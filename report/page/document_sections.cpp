@@ -63,9 +63,11 @@ PageSection roughness_section(const ResultDocument& document, const ResultFolder
     values.push_back({number(p, "sa_nm"), number_or_0(p, "correlation_length_um"), {}, number(p, "rre"), 0.0});
   for (const Json& p : list(document.json, "measured")) {
     const std::size_t facets = count_in(p, "facets");
+    // Older documents do not have the key `is_process`.
+    const bool is_process = p.contains("is_process") ? flag(p, "is_process") : facets > 1;
     values.push_back(
         {number(p, "roughness_sa_nm"), number_or_0(p, "correlation_length_um"),
-         MeasuredFacets{facets > 1, text(p, "name"), text(p, "table"), facets, number_or_0(p, "waviness_sa_nm")},
+         MeasuredFacets{is_process, text(p, "name"), text(p, "table"), facets, number_or_0(p, "waviness_sa_nm")},
          number(p, "rre"), 0.0});
   }
   section.charts.push_back(roughness_plot(DesignNames(folder).of(document, 0.0), values));

@@ -26,6 +26,7 @@ Json curve_json(const RoughnessPoint& p) {
 Json measured_json(const RoughnessPoint& p, const FacetGroup& group) {
   return {{"table", group.table},
           {"name", group.name},
+          {"is_process", group.is_process},
           {"facets", group.facets},
           {"roughness_sa_nm", p.roughness_sa_nm},
           {"waviness_sa_nm", p.waviness_sa_nm},

@@ -79,14 +79,18 @@ TEST(SamePlots, Roughness) {
   process.waviness_sa_nm = 32.93;
   single.table = "some/ten_facets.csv";
   single.facets = 1;
-  result.measured = {process, single};
+  studies::FacetGroup process_of_one = process;
+  process_of_one.name = "pin";
+  process_of_one.facets = 1;
+  result.measured = {process, single, process_of_one};
   for (const double length_um : {5.0, 20.0})
     for (const double sa_nm : {0.0, 10.0})
       result.points.push_back({sa_nm, 0.0, length_um, {}, 1.0 - 0.01 * sa_nm, 0.0});
   result.points.push_back({10.0, 32.93, 5.0, 0U, 0.5, 0.01});
   result.points.push_back({20.0, 0.0, 5.0, 1U, 0.4, 0.01});
+  result.points.push_back({15.0, 32.93, 5.0, 2U, 0.45, 0.01});
   const LinePlot plot = roughness_plot(result);
-  EXPECT_EQ(plot.series.size(), 4U);
+  EXPECT_EQ(plot.series.size(), 5U);
   expect_same(plot_on_page("roughness", studies::roughness_json(result)), plot);
 }
 
