@@ -9,6 +9,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -59,6 +60,7 @@ void go_to(Words& at, const Words& to);
 
 /// Purpose of a move. In a rapid move, the axes move as fast as possible.
 enum class Motion : std::uint8_t { plunge, plough, retract, translate, rapid };
+inline constexpr std::string_view kMotionWords[] = {"plunge", "plough", "retract", "translate", "rapid"};
 
 /// Straight move. Its values are positions in the main program and increments in subroutines.
 struct Move {

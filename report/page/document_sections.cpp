@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "core/number_format.h"
+#include "fabrication/program/program.h"
 #include "report/page/design_names.h"
 #include "report/page/document_view.h"
 #include "report/plot_contents.h"
@@ -88,8 +89,6 @@ namespace {
 /// \param document document of the job
 /// \param path JSON object with `name` and `moves`
 PathPlot tool_path(const Json& document, const Json& path) {
-  // Names of the kinds of moves in the document, in the order in which tool_path_plot() returns these kinds.
-  constexpr std::array kMotions = {"plunge", "plough", "retract", "translate"};
   PathPlot plot = tool_path_plot({.job = std::filesystem::path(text(document, "job")).filename().string(),
                                   .machine = text(document, "machine"),
                                   .elements = count_in(document, "elements"),
@@ -99,12 +98,12 @@ PathPlot tool_path(const Json& document, const Json& path) {
   for (const Json& move : list(path, "moves")) {
     if (!move.is_array() || move.size() != 5 || !move[0].is_string()) continue;
     if (!std::all_of(move.begin() + 1, move.end(), [](const Json& c) { return c.is_number(); })) continue;
-    const auto kind = std::ranges::find(kMotions, move[0].get<std::string>());
+    const auto word = std::ranges::find(fabrication::kMotionWords, move[0].get<std::string>());
+    const auto kind = static_cast<std::size_t>(word - std::begin(fabrication::kMotionWords));
     const auto point = [&](std::size_t at) {
       return geometry::Vec2(move[at].get<double>(), move[at + 1].get<double>());
     };
-    if (kind != kMotions.end())
-      plot.kinds[static_cast<std::size_t>(kind - kMotions.begin())].moves.emplace_back(point(1), point(3));
+    if (kind < plot.kinds.size()) plot.kinds[kind].moves.emplace_back(point(1), point(3));
   }
   std::erase_if(plot.kinds, [](const PathKind& kind) { return kind.moves.empty(); });
   return plot;
@@ -196,9 +195,12 @@ LinePlot sweep_plot(const Json& json) {
       if (key != *axis) others.push_back(key + " " + cell_of(member(p, key.c_str())).text);
     const std::string label = others.empty() ? plot.y_label : fmt::format("{}", fmt::join(others, ", "));
     if (!std::isfinite(number(p, quantities.front().c_str()))) continue;
-    const auto is_it = [&](const Series& series) { return series.label == label; };
-    if (plot.series.size() == most_series && std::ranges::none_of(plot.series, is_it)) continue;
-    series_of(plot, label).add(number(p, axis->c_str()), number(p, quantities.front().c_str()));
+    auto series = std::ranges::find(plot.series, label, &Series::label);
+    if (series == plot.series.end()) {
+      if (plot.series.size() == most_series) continue;
+      series = plot.series.insert(series, {label, {}, {}, {}});
+    }
+    series->add(number(p, axis->c_str()), number(p, quantities.front().c_str()));
   }
   return plot;
 }

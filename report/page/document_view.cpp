@@ -134,13 +134,6 @@ std::string csv_name(const ResultDocument& document, const char* what) {
   return name + "_" + what + ".csv";
 }
 
-Series& series_of(LinePlot& plot, const std::string& label) {
-  const auto found = std::ranges::find(plot.series, label, &Series::label);
-  if (found != plot.series.end()) return *found;
-  plot.series.push_back({label, {}, {}, {}});
-  return plot.series.back();
-}
-
 Rating rating_of(const std::string& verdict) {
   if (verdict == "pass") return Rating::good;
   return verdict == "fail" ? Rating::bad : Rating::open;

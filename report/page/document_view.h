@@ -43,9 +43,6 @@ PageTable table_of(const Json& rows, const std::vector<std::string>& keys, const
 PageTable figures_of(const Json& json, const std::string& caption, const std::string& csv_name);
 std::string csv_name(const ResultDocument& document, const char* what);
 
-/// Returns the series with the given label. Adds an empty series if there is none.
-Series& series_of(LinePlot& plot, const std::string& label);
-
 /// Returns the rating of a verdict: good for "pass", bad for "fail", and open for all others.
 Rating rating_of(const std::string& verdict);
 std::string name_of_design(const Json& design);

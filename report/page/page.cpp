@@ -30,10 +30,8 @@ std::string json_list(const Values& values, const Text& text) {
 }
 
 std::string json_of(const LinePlot& plot) {
-  return fmt::format(R"({{"title":{},"x_label":{},"y_label":{},"y_from":{},"series":{}}})", json_string(plot.title),
-                     json_string(plot.x_label), json_string(plot.y_label),
-                     plot.y_range ? json_number(plot.y_range->low) : "null",
-                     json_list(plot.series, [&](const Series& s) {
+  return fmt::format(R"({{"title":{},"x_label":{},"y_label":{},"series":{}}})", json_string(plot.title),
+                     json_string(plot.x_label), json_string(plot.y_label), json_list(plot.series, [&](const Series& s) {
                        return fmt::format(R"({{"label":{},"line":{},"x":{},"y":{}}})",
                                           json_string(s.label.empty() ? plot.y_label : s.label), s.has_line,
                                           json_list(s.x, json_number), json_list(s.y, json_number));

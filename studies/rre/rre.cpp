@@ -28,7 +28,7 @@ std::vector<Field> exact_results(const RreSettings& request) {
 void check(const RreSettings& request) {
   const std::string engine = reference({"engine"});
   raytrace::EngineFacts facts;
-  facts.needs_plain_sampling = request.sampling == raytrace::Sampling::Kind::plain;
+  facts.needs_plain_sampling = request.needs_plain_sampling();
   if (raytrace::why_not(request.engine, facts))
     throw InputError(Field{"sampling"},
                      fmt::format("plain needs {} montecarlo or embree, got {}", engine, engine_name(request.engine)));
@@ -125,8 +125,7 @@ void check_results(const Design& design, const raytrace::EngineFacts& facts, con
 /// Returns the model of a design.
 /// \throw InputError if the engine does not support its shape
 OpticalModel model_of(const Design& design, const materials::MaterialLibrary& library, const RreSettings& request) {
-  raytrace::EngineFacts facts = engine_facts(design, nullptr);
-  facts.needs_plain_sampling = request.sampling == raytrace::Sampling::Kind::plain;
+  const raytrace::EngineFacts facts = engine_facts(design, nullptr, request);
   check_engine(design, facts, request.engine, request);
   check_results(design, facts, request);
   return design.balls() ? make_light_model(design, library) : make_model(design, library, Entrances::any);
@@ -149,7 +148,7 @@ RreStudy::RreStudy(std::vector<Design> designs, RreSettings request) : prepared_
     check_planes(design, request);
     if (design.balls()) continue;
     if (request.derivatives) check_taken(design, {.what = reference({"derivatives"})});
-    const raytrace::EngineFacts facts = engine_facts(design, prepared_->models.back(), request);
+    const raytrace::EngineFacts facts = engine_facts(design, &prepared_->models.back(), request);
     check_results(design, facts, request);
     check_engine(design, facts, must_be_exact(request) ? Engine::exact : request.engine, request);
   }

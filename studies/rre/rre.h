@@ -48,6 +48,7 @@ struct RreSettings {
   /// 1e-10 if the exact engine is requested by name or needed for other results.
   std::optional<double> target_error;
   raytrace::Sampling::Kind sampling = raytrace::Sampling::Kind::stratified;  ///< `plain` uses Embree
+  bool needs_plain_sampling() const { return sampling == raytrace::Sampling::Kind::plain; }
   /// Minimum power that is traced, as a fraction of the incident power. Default: 1e-10 (Monte Carlo), or the value that
   /// target_error requires (exact).
   std::optional<double> cutoff;

@@ -174,7 +174,7 @@ class DesignTracing {
 };
 
 bool may_follow_beams(const RreSettings& request) {
-  const bool asks_for_rays = request.rays || request.sampling == raytrace::Sampling::Kind::plain;
+  const bool asks_for_rays = request.rays || request.needs_plain_sampling();
   return request.engine == Engine::exact || request.engine == Engine::stochastic ||
          (request.engine == Engine::automatic && !asks_for_rays);
 }
@@ -183,10 +183,10 @@ bool must_be_exact(const RreSettings& request) {
   return request.engine == Engine::exact || asks_for_more(request);
 }
 
-raytrace::EngineFacts engine_facts(const Design& design, const OpticalModel& model, const RreSettings& request) {
-  raytrace::EngineFacts facts = engine_facts(design, &model.optics);
-  facts.has_unequal_cells = !facts.has_balls && !raytrace::MonteCarlo::cell_serves(model.part);
-  facts.needs_plain_sampling = request.sampling == raytrace::Sampling::Kind::plain;
+raytrace::EngineFacts engine_facts(const Design& design, const OpticalModel* model, const RreSettings& request) {
+  raytrace::EngineFacts facts = engine_facts(design, model != nullptr ? &model->optics : nullptr);
+  facts.has_unequal_cells = model != nullptr && !facts.has_balls && !raytrace::MonteCarlo::cell_serves(model->part);
+  facts.needs_plain_sampling = request.needs_plain_sampling();
   return facts;
 }
 
@@ -205,7 +205,7 @@ void DirectionTracing::trace(std::vector<Direction>& directions, Progress* progr
     const auto last = std::find_if(first, directions.end(), [&](const Direction& at) { return at.at.design != d; });
     if (!tracings_[d])
       tracings_[d] = std::make_unique<DesignTracing>(designs_[d], models_[d], request_,
-                                                     engine_facts(designs_[d], models_[d], request_), cancel_);
+                                                     engine_facts(designs_[d], &models_[d], request_), cancel_);
     DesignTracing& tracing = *tracings_[d];
     const auto count = static_cast<std::size_t>(last - first);
     tracing.expect(count * wavelengths);

@@ -29,7 +29,8 @@ bool may_follow_beams(const RreSettings& request);
 /// engine is requested by name, or if results are requested that only this engine computes.
 bool must_be_exact(const RreSettings& request);
 /// Returns the facts about a design and a request on which the choice of the engine depends.
-raytrace::EngineFacts engine_facts(const Design& design, const OpticalModel& model, const RreSettings& request);
+/// \param model null: facts that depend on it are not set
+raytrace::EngineFacts engine_facts(const Design& design, const OpticalModel* model, const RreSettings& request);
 
 class DesignTracing;
 

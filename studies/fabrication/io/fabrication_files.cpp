@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -94,11 +93,6 @@ std::string job_table(const MadeJob& made) {
 
 namespace {
 
-const char* word_of(fabrication::Motion motion) {
-  constexpr std::array kWords = {"plunge", "plough", "retract", "translate", "rapid"};
-  return kWords[static_cast<std::size_t>(motion)];
-}
-
 /// Returns the path of the tool through one element: for each move, its kind and its start and end point in the
 /// section, in mm.
 Json section_path_json(const FabricationResult& result) {
@@ -110,7 +104,8 @@ Json section_path_json(const FabricationResult& result) {
     Json moves = Json::array();
     for (const SectionMove& m : section_moves(result, roughing))
       if (moves.size() < kMostMoves)
-        moves.push_back({word_of(m.motion), m.from_u_mm, m.from_z_mm, m.to_u_mm, m.to_z_mm});
+        moves.push_back({fabrication::kMotionWords[static_cast<std::size_t>(m.motion)], m.from_u_mm, m.from_z_mm,
+                         m.to_u_mm, m.to_z_mm});
     if (!moves.empty()) paths.push_back({{"name", roughing ? "roughing" : "finishing"}, {"moves", std::move(moves)}});
   }
   return paths;

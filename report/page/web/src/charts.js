@@ -37,7 +37,7 @@ function optionsOf(chart, width, figure) {
   return {
     width,
     height: 340,
-    scales: { x: { time: false }, y: chart.y_from != null ? { range: (_, low, high) => [chart.y_from, high] } : {} },
+    scales: { x: { time: false }, y: {} },
     axes: [axis(chart.x_label, 46), axis(chart.y_label, 62)],
     cursor: { drag: { x: true, y: false }, focus: { prox: 30 } },
     legend: { live: true },
