@@ -198,7 +198,7 @@ LinePlot sweep_plot(const Json& json) {
     auto series = std::ranges::find(plot.series, label, &Series::label);
     if (series == plot.series.end()) {
       if (plot.series.size() == most_series) continue;
-      series = plot.series.insert(series, {label, {}, {}, {}});
+      series = plot.series.insert(series, Series{label, {}, {}, {}});
     }
     series->add(number(p, axis->c_str()), number(p, quantities.front().c_str()));
   }
