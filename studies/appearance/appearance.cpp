@@ -31,7 +31,7 @@ constexpr std::size_t kPartsOfProbes = 4;
 // Azimuth of the test light by which back_of() distinguishes prisms from cube corners. At this azimuth, prisms and cube
 // corners return light into clearly different directions.
 constexpr double kAsideDeg = 30.0;
-constexpr RandomKey kProbeKey{.seed = 0x6d61746cU, .stream = 2};
+constexpr RandomKey kProbeKey{.seed = kAppearanceSeed, .stream = 2};
 
 /// Checks that the exact engine supports the design.
 /// \throw InputError if the engine does not support it
@@ -112,7 +112,7 @@ std::optional<std::vector<AppearanceProbe>> probes_of(const Design& design, cons
 AppearanceError appearance_error(const std::vector<AppearanceProbe>& probes, const std::vector<double>& r_a) {
   std::vector<double> errors;
   for (std::size_t k = 0; k < probes.size(); ++k) errors.push_back(error_of(r_a[k], probes[k].r_a, probes[k].r_a_most));
-  return {errors.size(), quantile(errors, 0.5), quantile(errors, 0.95), quantile(errors, 1.0)};
+  return {errors.size(), quantile(errors, 0.5), judged_error(errors), quantile(errors, 1.0)};
 }
 
 AppearanceResult compute_appearance(const Design& design, const MaterialRequest& request, Progress* progress,

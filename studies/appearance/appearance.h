@@ -16,10 +16,9 @@
 namespace retrace::studies {
 
 /// Errors of a table, or of lobes that are fitted to it, compared with the photometer at random directions of light and
-/// view. Each error is relative to the photometer's value. If this value is below the fraction kFloor of the maximum
-/// value for the same light, the error is relative to this fraction of the maximum.
+/// view. Each error is relative to the photometer's value. If this value is below the fraction kErrorFloor of the
+/// maximum value for the same light, the error is relative to this fraction of the maximum.
 struct AppearanceError {
-  static constexpr double kFloor = 0.01;
   std::size_t geometries = 0;
   double median = 0.0;
   double of_95_percent = 0.0;

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "geometry/direction.h"
-#include "studies/appearance/appearance.h"
+#include "studies/appearance/table_errors.h"
 
 namespace retrace::studies {
 namespace {
@@ -144,7 +144,7 @@ class Fit {
     const Eigen::MatrixXd densities = table_.step() * table_.step() * lobe_densities().matrix();
     for (Index light = 0; light < luminous_.cols(); ++light) {
       const Eigen::VectorXd power = luminous_.col(light).matrix();
-      const double floor = AppearanceError::kFloor * std::max(power.maxCoeff(), 1e-300);
+      const double floor = kErrorFloor * std::max(power.maxCoeff(), 1e-300);
       const Eigen::VectorXd weights = power.cwiseMax(floor).cwiseInverse();
       const Eigen::MatrixXd weighted = weights.asDiagonal() * densities;
       of_light_.row(light) = weighted.colPivHouseholderQr().solve(weights.cwiseProduct(power)).transpose().array();

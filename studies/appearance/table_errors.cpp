@@ -4,20 +4,13 @@
 #include <cmath>
 
 #include "core/random.h"
-#include "studies/appearance/appearance.h"
 
 namespace retrace::studies {
-namespace {
-
-// Fraction of random views whose error must be below the requested error.
-constexpr double kJudgedShare = 0.95;
-
-}  // namespace
 
 using geometry::Vec2, geometry::Vec3;
 
 double error_of(double told, double truth, double most) {
-  return std::abs(told - truth) / std::max({truth, AppearanceError::kFloor * most, 1e-300});
+  return std::abs(told - truth) / std::max({truth, kErrorFloor * most, 1e-300});
 }
 
 double quantile(std::vector<double> errors, double share) {
@@ -26,7 +19,7 @@ double quantile(std::vector<double> errors, double share) {
 }
 
 double judged_error(const std::vector<double>& errors) {
-  return quantile(errors, kJudgedShare);
+  return quantile(errors, 0.95);
 }
 
 Vec2 random_deviation(const ReflectionTable& table, std::uint32_t x, std::uint32_t y) {

@@ -13,9 +13,13 @@ namespace retrace::studies {
 
 /// Number of random views at which a grid or the finished table is compared with the photometer.
 inline constexpr std::uint32_t kProbes = 200;
+/// Seed of all random numbers of the study. Each use has a stream of its own.
+inline constexpr std::uint32_t kAppearanceSeed = 0x6d61746cU;
+/// Minimum reference of relative errors, as a fraction of the maximum value for the same light.
+inline constexpr double kErrorFloor = 0.01;
 
 /// Returns the relative error of the interpolated value `told` compared with the true value `truth`. If `truth` is
-/// below AppearanceError::kFloor times the maximum `most`, the error is relative to this product.
+/// below kErrorFloor times the maximum `most`, the error is relative to this product.
 double error_of(double told, double truth, double most);
 
 double quantile(std::vector<double> errors, double share);

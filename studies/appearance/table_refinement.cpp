@@ -26,7 +26,7 @@ constexpr double kLeastBend = 0.3;
 constexpr std::size_t kBatch = 16;
 // Number of random view directions at which the error of a cell is measured, for each tested direction of light.
 constexpr std::uint32_t kViews = 48;
-constexpr RandomKey kViewKey{.seed = 0x6d61746cU, .stream = 1};
+constexpr RandomKey kViewKey{.seed = kAppearanceSeed, .stream = 1};
 
 /// Adds directions of light to a table.
 class DirectionList {

@@ -28,7 +28,7 @@ constexpr double kShareOfGrid = 0.5;
 constexpr double kFinerGrid = 1.5;
 // Number of grid points along a side above which a grid is not refined further.
 constexpr std::size_t kMostColumnsForError = 121;
-constexpr RandomKey kGridKey{.seed = 0x6d61746cU, .stream = 3};
+constexpr RandomKey kGridKey{.seed = kAppearanceSeed, .stream = 3};
 
 /// Deviations of random views, and R_A of these views for the eye's response.
 struct TestViews {

@@ -13,6 +13,7 @@
 #include "studies/appearance/io/glsl_file.h"
 #include "studies/appearance/io/radiance_file.h"
 #include "studies/appearance/lobes.h"
+#include "studies/appearance/table_errors.h"
 #include "studies/appearance/tensor_tree.h"
 #include "studies/design/io/design_json.h"
 
@@ -26,7 +27,7 @@ Json error_json(const AppearanceError& error) {
           {"median", error.median},
           {"of_95_percent", error.of_95_percent},
           {"greatest", error.greatest},
-          {"floor", AppearanceError::kFloor}};
+          {"floor", kErrorFloor}};
 }
 
 Json range_json(const std::array<Angle, 2>& range) {
@@ -164,7 +165,7 @@ std::string appearance_table(const AppearanceResult& result, const AppearanceTex
   lines += fmt::format("  returned   {} of the light at normal incidence\n",
                        percent(result.table.returned(geometry::Vec3::UnitZ())));
   lines += fmt::format("  error      {} of the value, or of {} of the brightest view, over {} random geometries\n",
-                       error_text(result.error), percent(AppearanceError::kFloor), result.error.geometries);
+                       error_text(result.error), percent(kErrorFloor), result.error.geometries);
   if (!text.what.empty()) lines += "  file       " + text.what + '\n';
   return lines;
 }
