@@ -2,6 +2,7 @@
 
 #include "core/schema/access.h"
 #include "core/schema/conditions.h"
+#include "raytrace/engines/engine.h"
 #include "raytrace/light/ledger.h"
 #include "studies/quantity/machining.h"
 
@@ -153,7 +154,6 @@ constexpr Row kQuantityRows[] = {
 
 // Keys of the tables [analysis] and [machining], with their words and conditions.
 
-constexpr Words kEngines = {"auto", "exact", "stochastic", "montecarlo", "cell", "embree"};
 constexpr Words kRayEngineWords = {"auto", "montecarlo", "cell", "embree"};
 constexpr Words kCutoffEngineWords = {"auto", "exact", "montecarlo", "cell", "embree"};
 constexpr Condition kOfRays[] = {is("engine", kRayEngineWords)};
@@ -165,7 +165,7 @@ constexpr Row kAnalysisRows[] = {
     {"rotation_deg", Number{{.low = -360.0, .high = 360.0}}, 0.0,
      "Rotation of the part about its normal, counter-clockwise as seen from the light. It applies to all optical "
      "quantities."},
-    {"engine", Word{kEngines}, "auto", "Engine, as for `retrace rre --engine`."},
+    {"engine", Word{raytrace::kEngineNames}, "auto", "Engine, as for `retrace rre --engine`."},
     {"target_error", Number{{.low = 0.0, .low_included = false, .high = 1.0, .high_included = false}}, Computed{"1e-4"},
      "Target error, as for `retrace rre --target-error`. It is allowed only if the study has a quantity of RRE."},
     {"samples", Whole{{.low = 1.0, .high = 0x1p36}}, kNone, "Number of rays, as for `retrace rre --samples`.", kOfRays},
