@@ -107,10 +107,6 @@ void check_fins(const Job& job, const Machine& machine, const CubeCorner& corner
       allowed_um);
 }
 
-bool has_finishing_cuts(const Job& job) {
-  return job.strategy == Strategy::two_step || job.strategy == Strategy::dmc;
-}
-
 void check_on_machine(const Job& job, const Machine& machine) {
   check_tilt(job, machine);
   check_increments(job, machine);

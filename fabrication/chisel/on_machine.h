@@ -17,9 +17,6 @@ namespace retrace::fabrication {
 /// facets are at least 60 degrees apart.
 inline constexpr double kAlongFacet = 0.985;
 
-/// Returns true if the strategy of the job has finishing cuts.
-bool has_finishing_cuts(const Job& job);
-
 /// Checks that a machine can cut a job.
 /// \throw InputError naming file, line and key if the wrong axis tilts, or a feed exceeds the limits of the axes. It is
 ///        also thrown if finishing cuts are deeper than roughing cuts, or if a depth of cut is too small compared to

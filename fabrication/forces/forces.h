@@ -27,8 +27,8 @@ struct MeasuredForce {
   std::optional<double> fz_n;
 };
 
-/// Configuration of a cut. Isolated: only the edge touches the material. Orthogonal: the sides of the tool also rub on
-/// walls.
+/// Configuration of a cut. Isolated: the sides of the tool rub on the walls of the groove. Orthogonal: only the edge
+/// touches the material.
 enum class Configuration { isolated, orthogonal };
 inline constexpr std::string_view kConfigurationWords[] = {"isolated", "orthogonal"};
 

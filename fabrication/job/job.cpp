@@ -23,6 +23,10 @@ bool cuts_prisms(const Job& job) {
   return std::holds_alternative<geometry::RtpElement>(job.element);
 }
 
+bool has_finishing_cuts(const Job& job) {
+  return job.strategy == Strategy::two_step || job.strategy == Strategy::dmc;
+}
+
 const geometry::RtpElement& prism_of(const Job& job) {
   const auto* const prism = std::get_if<geometry::RtpElement>(&job.element);
   if (prism == nullptr) throw InputError(job.where("element.kind"), "must be \"rtp\" for this");

@@ -171,6 +171,9 @@ struct CutElement {
 /// `dmc`).
 bool cuts_prisms(const Job& job);
 
+/// Returns true if the strategy of the job has finishing cuts.
+bool has_finishing_cuts(const Job& job);
+
 /// Returns the prism that a job cuts.
 /// \throw InputError if the job cuts cube corners
 const geometry::RtpElement& prism_of(const Job& job);

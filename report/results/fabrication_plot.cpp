@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/number_format.h"
+#include "fabrication/job/v_tool.h"
 #include "geometry/elements/element_cells.h"
 #include "report/results/result_plots.h"
 #include "studies/fabrication/fabricate.h"
@@ -35,7 +36,7 @@ std::pair<double, double> section_of(const fabrication::Job& job) {
   }
   // A dihedral edge of a cube corner with length sqrt(3) rises by 1. It is at 45 degrees to the line of steepest slope
   // of the facet.
-  const double edge_mm = std::numbers::sqrt3 * geometry::element_depth_mm(fabrication::blank_element(job));
+  const double edge_mm = fabrication::cavity_edge_mm(fabrication::blank_element(job));
   const double up_mm = edge_mm / std::numbers::sqrt2;
   return {up_mm, up_mm};
 }
@@ -109,7 +110,7 @@ DrawnElements drawn_from(std::size_t first, const std::vector<fabrication::CutEl
                          const std::vector<std::int64_t>& places, const fabrication::Job& job, const InPlan& in_plan) {
   const auto outline_at = [&](std::size_t k) { return outline_of(job, elements[k], in_plan(elements[k].centre_mm)); };
   DrawnElements drawn{outline_at(first), 1, places[first]};
-  if (!std::holds_alternative<geometry::RtpElement>(job.element) || elements.size() <= kMostElementsDrawn) return drawn;
+  if (!cuts_prisms(job) || elements.size() <= kMostElementsDrawn) return drawn;
   for (std::size_t next = first + 1; next < elements.size() && elements[next].row == elements[first].row &&
                                      elements[next].column == elements[next - 1].column + 1;
        ++next) {
@@ -126,7 +127,6 @@ DrawnElements drawn_from(std::size_t first, const std::vector<fabrication::CutEl
 
 MapPlot arrangement_plot(const studies::FabricationResult& result) {
   const std::vector<fabrication::CutElement>& elements = result.plan.elements;
-  const bool is_of_prisms = std::holds_alternative<geometry::RtpElement>(result.job.element);
   const std::vector<std::int64_t> places = studies::cutting_places(result);
   const Vec2 extent(fabrication::blank_extent_mm(result.job).y(), fabrication::blank_extent_mm(result.job).x());
   MapPlot plot;
@@ -150,7 +150,7 @@ MapPlot arrangement_plot(const studies::FabricationResult& result) {
     const double mean = static_cast<double>(drawn.places) / static_cast<double>(drawn.count);
     const Vec2 half = 0.5 * geometry::bounding_box(drawn.outline).size();
     panel.regions.push_back({drawn.outline, 100.0 * mean / static_cast<double>(elements.size())});
-    if (drawn.count == 1 && is_of_prisms) {
+    if (drawn.count == 1 && cuts_prisms(result.job)) {
       const Vec2 along = elements[k].rotated ? Vec2(half.x(), 0.0) : Vec2(0.0, half.y());
       panel.fine_lines.push_back({centre - along, centre + along});
     }

@@ -59,9 +59,8 @@ PredictedTexture predicted_texture(const Job& job) {
   texture.roughness_sq_nm = kRoughnessShare * texture.sa_nm * kSqPerSa;
   texture.waviness_sq_nm = kWavinessShare * texture.sa_nm * kSqPerSa;
   texture.correlation_length_um = kCorrelationLengthUm;
-  const bool is_finished = job.strategy == Strategy::two_step || job.strategy == Strategy::dmc;
   const double feed_mm_per_min =
-      is_finished ? job.process.finishing_feed_mm_per_min : job.process.roughing_feed_mm_per_min;
+      has_finishing_cuts(job) ? job.process.finishing_feed_mm_per_min : job.process.roughing_feed_mm_per_min;
   texture.waviness_length_um = 1e3 * feed_mm_per_min / 60.0 / kFeedMarksHz;
   return texture;
 }

@@ -15,10 +15,6 @@ namespace fs = std::filesystem;
 using namespace fabrication;
 using geometry::Vec3;
 
-bool is_prism(const Job& job) {
-  return std::holds_alternative<geometry::RtpElement>(job.element);
-}
-
 /// Transforms points of a mould's blank to the frame of the part that is moulded in it.
 class PartFrame {
  public:
@@ -97,11 +93,11 @@ geometry::PartSpec machined_elements(const Job& job, bool has_planes) {
   // Margins of a design are flat, but the machined cavities of cube corners extend into them. If cube corners have
   // individual facet planes, cells of the array therefore cover the margins as well. The table of planes determines
   // which cells are elements, and which are land with cuts of neighbouring cavities.
-  if (!has_planes || is_prism(job)) {
+  if (!has_planes || cuts_prisms(job)) {
     part.array.x_offset_mm = job.array.x_offset_mm;
     part.array.y_offset_mm = job.array.y_offset_mm;
   }
-  if (is_prism(job) && !job.substrate && part.array.arrangement != geometry::Arrangement::offset)
+  if (cuts_prisms(job) && !job.substrate && part.array.arrangement != geometry::Arrangement::offset)
     part.array.partial_elements = geometry::PartialElements::cut;
   return part;
 }
@@ -111,8 +107,8 @@ geometry::FacetPlanes part_planes(const Job& job, const std::vector<ElementCutPl
   const PartFrame frame(job);
   std::vector<geometry::ElementPlanes> planes;
   for (std::size_t i = 0; i < places.size(); ++i)
-    if (!elements[i].empty()) planes.push_back(planes_of(frame, places[i], elements[i], is_prism(job)));
-  if (is_prism(job)) return {std::move(planes), std::min(prism_of(job).base_mm, prism_of(job).width_mm)};
+    if (!elements[i].empty()) planes.push_back(planes_of(frame, places[i], elements[i], cuts_prisms(job)));
+  if (cuts_prisms(job)) return {std::move(planes), std::min(prism_of(job).base_mm, prism_of(job).width_mm)};
   if (const auto* const hexagonal = std::get_if<geometry::HexagonalCube>(&job.element))
     geometry::add_flares(planes, 0.5 * hexagonal->aperture_mm);
   return {std::move(planes), geometry::cube_spacing_mm(job.element)};

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/json_text.h"
@@ -93,9 +92,7 @@ void check_design(const Design& design, const JobRequest& request) {
 }  // namespace
 
 double reachable_share(const geometry::Element& element, double tool_width_mm) {
-  const double edge_mm = std::sqrt(3.0) * geometry::element_depth_mm(element);
-  const double area_mm2 = (std::holds_alternative<geometry::HexagonalCube>(element) ? 0.25 : 0.5) * edge_mm * edge_mm;
-  return std::max(0.0, 1.0 - 0.25 * tool_width_mm * tool_width_mm / area_mm2);
+  return std::max(0.0, 1.0 - 0.25 * tool_width_mm * tool_width_mm / fabrication::facet_area_mm2(element));
 }
 
 ReachablePart reachable_part(const Design& design, const JobRequest& request, const std::string& facets_file) {

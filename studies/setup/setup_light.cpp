@@ -37,10 +37,9 @@ Job patch_of(Job job) {
   array.pattern.clear();
   array.x_offset_mm = array.y_offset_mm = 0.0;
   const geometry::Vec2 size = geometry::bounding_box(geometry::aperture_outline(job.element)).size();
-  const bool is_prism = std::holds_alternative<geometry::RtpElement>(job.element);
   // Offset rows are shifted against each other, and cube corners interlock. Therefore, a slightly larger area is needed
   // for the same number of elements.
-  const double more = is_prism && array.arrangement != geometry::Arrangement::offset ? 0.0 : 1.01;
+  const double more = cuts_prisms(job) && array.arrangement != geometry::Arrangement::offset ? 0.0 : 1.01;
   array.x_length_mm = std::min(array.x_length_mm, (kElementsAcross + more) * (size.x() + array.x_gap_mm));
   array.y_length_mm = std::min(array.y_length_mm, (kElementsAcross + more) * (size.y() + array.y_gap_mm));
   array.partial_elements = geometry::PartialElements::omit;

@@ -28,8 +28,7 @@ double standing_mm(std::span<const ConvexPiece> pieces, const Vec2& foot, const 
 /// Returns the point of a cross-section that a chisel's cutting edge reaches at the deeper end of a move, in
 /// coordinates of the section.
 /// \param tip position of the center of the cutting edge at the deeper end of the move, in the workpiece frame
-Vec2 deepest_place(const SectionPlane& plane, const PrismGroove&, const ToolWedge& wedge, const RigidMotion& back,
-                   const Vec3& tip) {
+Vec2 deepest_place(const SectionPlane& plane, const ToolWedge& wedge, const RigidMotion& back, const Vec3& tip) {
   const Vec3 edge = back.direction(wedge.edge);
   const double across = plane.normal.dot(edge);
   if (wedge.half_width_mm <= 0.0 || std::abs(across) < 0.5) return plane.point(tip);
@@ -40,8 +39,7 @@ Vec2 deepest_place(const SectionPlane& plane, const PrismGroove&, const ToolWedg
 /// Projects the tip of a V-shaped tool onto a cross-section, parallel to the dihedral edge that crosses the section. If
 /// the element has angle errors, this dihedral edge is not perpendicular to the section.
 /// \param tip position of the tip at the deeper end of the move, in the workpiece frame
-Vec2 deepest_place(const SectionPlane& plane, const CubeCavity& cavity, const ToolWedge&, const RigidMotion&,
-                   const Vec3& tip) {
+Vec2 deepest_place(const SectionPlane& plane, const CubeCavity& cavity, const Vec3& tip) {
   const auto across = [&](const Vec3& edge) { return std::abs(plane.normal.dot(edge)); };
   const Vec3& edge = *std::ranges::max_element(cavity.edges, {}, across);
   return plane.point(tip - plane.beside_mm(tip) / plane.normal.dot(edge) * edge);
@@ -126,8 +124,9 @@ void ChipCheck::check_chips(const SweptVolume& sweep, const std::optional<FacetC
     const Vec2 square = plane.direction(normal);
     if (removed[s].empty() || square.norm() < kLeastInPlane) continue;
     const Vec2 along = Vec2(-square.y(), square.x()).normalized();
-    const double deepest_mm = along.dot(
-        std::visit([&](const auto& groove) { return deepest_place(plane, groove, wedge_, back, tip); }, groove_));
+    const auto* const cavity = std::get_if<CubeCavity>(&groove_);
+    const double deepest_mm =
+        along.dot(cavity != nullptr ? deepest_place(plane, *cavity, tip) : deepest_place(plane, wedge_, back, tip));
     const double beside_mm = std::min(std::abs(plane.beside_mm(from)), std::abs(plane.beside_mm(to)));
     std::vector<double> bends;
     for (const double bend : limit.bends_mm())

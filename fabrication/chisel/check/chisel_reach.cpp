@@ -13,6 +13,7 @@
 #include "core/number_format.h"
 #include "fabrication/chisel/check/groove.h"
 #include "fabrication/chisel/check/simulation/swept_volume.h"
+#include "fabrication/job/v_tool.h"
 #include "geometry/elements/element_cells.h"
 
 namespace retrace::fabrication {
@@ -20,14 +21,6 @@ namespace {
 
 using geometry::Vec2;
 using geometry::Vec3;
-
-double facet_area_mm2(const geometry::Element& element, double edge_mm) {
-  return (std::holds_alternative<geometry::HexagonalCube>(element) ? 0.25 : 0.5) * edge_mm * edge_mm;
-}
-
-double edge_mm_of(const geometry::Element& element) {
-  return std::numbers::sqrt3 * geometry::element_depth_mm(element);
-}
 
 /// Returns a machine without rotary axes for the simulation. Its linear axes are parallel to the coordinate axes.
 /// Instead of rotary axes, the class Cutter rotates the workpiece: the machine frame is the frame of the facet that is
@@ -123,10 +116,15 @@ class Cutter {
 
 }  // namespace
 
+double facet_area_mm2(const geometry::Element& element) {
+  const double edge_mm = cavity_edge_mm(element);
+  return (std::holds_alternative<geometry::HexagonalCube>(element) ? 0.25 : 0.5) * edge_mm * edge_mm;
+}
+
 ChiselReach chisel_reach(const geometry::Element& element, const Tool& tool) {
   const double half_mm = 0.5 * tool.width_mm;
   ChiselReach reach;
-  reach.facet_area_mm2 = facet_area_mm2(element, edge_mm_of(element));
+  reach.facet_area_mm2 = facet_area_mm2(element);
   reach.share = 1.0 - half_mm * half_mm / reach.facet_area_mm2;
   const double rake = Angle::from_deg(tool.clearance_deg + tool.wedge_deg).rad();
   for (std::size_t k = 0; k < 3; ++k) {

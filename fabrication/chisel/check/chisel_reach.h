@@ -30,6 +30,9 @@ struct ChiselReach {
   double cut_core_mm = 0.0;       ///< same as `core_mm`, computed by this simulation
 };
 
+/// Returns the area of one facet of a cube corner.
+double facet_area_mm2(const geometry::Element& element);
+
 /// Computes the part of a cube corner that a chisel can cut.
 /// \pre the element is a cube corner and the tool is a chisel
 ChiselReach chisel_reach(const geometry::Element& element, const Tool& tool);

@@ -83,7 +83,7 @@ bool EdgeAccount::needs_program(const EdgeUse& visit) const {
   return job_.tool.next_edge == NextEdge::program && wears_out(visit);
 }
 
-void EdgeAccount::check(const EdgeUse& visit, double fresh_s, std::int32_t element) const {
+void EdgeAccount::check(const EdgeUse& visit, std::int32_t element) const {
   const auto& life_mm = job_.tool.edge_life_mm;
   if (life_mm && visit.cut_mm > *life_mm)
     throw LimitError(job_.where("tool.edge_life_mm"),
@@ -91,7 +91,7 @@ void EdgeAccount::check(const EdgeUse& visit, double fresh_s, std::int32_t eleme
                                  fixed(visit.cut_mm, 3), element, shortest(*life_mm)),
                      visit.cut_mm);
   const auto& most_min = job_.process.stop_every_min;
-  const double minutes = (fresh_s + visit.seconds) / kSecondsPerMinute;
+  const double minutes = (used_.seconds + visit.seconds) / kSecondsPerMinute;
   if (most_min && minutes > *most_min)
     throw InputError(job_.where("process.stop_every_min"),
                      fmt::format("must be at least {}, what the way to element {}, warm-up included, and one visit "

@@ -49,9 +49,9 @@ class EdgeAccount {
   /// Returns true if the visit needs a new edge and therefore a new program.
   bool needs_program(const EdgeUse& visit) const;
   /// Checks that a new edge and a stop before the visit are sufficient to make the visit within the limits.
-  /// \param fresh_s run time from this stop to the visit
+  /// \pre the edge has made no visit since its last stop
   /// \throw InputError that names the key, if the visit exceeds the tool life or the maximum run time
-  void check(const EdgeUse& visit, double fresh_s, std::int32_t element) const;
+  void check(const EdgeUse& visit, std::int32_t element) const;
 
  private:
   bool wears_out(const EdgeUse& visit) const;

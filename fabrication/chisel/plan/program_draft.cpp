@@ -25,13 +25,11 @@ void ProgramDraft::raise() {
 
 void ProgramDraft::raise_to(Nanometres z_nm) {
   if (at_[kZ] != z_nm) {
-    const double up_mm = at_[kZ] ? millimetres(z_nm - *at_[kZ]) : 0.0;
-    spend(&TimeShares::fixed_s, linear_move_s(machine_, Vec3(0.0, 0.0, up_mm), std::nullopt));
     Move up;
     up.to[kZ] = z_nm;
+    go(up, &TimeShares::fixed_s);
     add(up);
   }
-  at_[kZ] = z_nm;
   just_turned_ = true;
 }
 
@@ -61,22 +59,13 @@ void ProgramDraft::turn(RotaryUnits a, RotaryUnits c) {
 void ProgramDraft::traverse(Axis axis, double to_mm) {
   Move move;
   move.to[axis] = to_step(to_mm * kNanometresPerMm, machine_.increments.linear_nm);
-  Vec3 by = Vec3::Zero();
-  if (at_[axis]) by[axis] = millimetres(*move.to[axis] - *at_[axis]);
-  spend(&TimeShares::fixed_s, linear_move_s(machine_, by, std::nullopt));
+  go(move, &TimeShares::fixed_s);
   add(move);
-  go_to(at_, move.to);
 }
 
 void ProgramDraft::visit(const Visit& visit, const Place& end, const TimeShares& routine, Stage& stage) {
-  for (const Move& move : approach(at_, visit)) {
-    Vec3 by = Vec3::Zero();
-    for (const Axis axis : {kX, kY, kZ})
-      if (move.to[axis] && at_[axis]) by[axis] = millimetres(*move.to[axis] - *at_[axis]);
-    go_to(at_, move.to);
-    spend(just_turned_ ? &TimeShares::fixed_s : &TimeShares::rapid_s, linear_move_s(machine_, by, std::nullopt),
-          &stage);
-  }
+  for (const Move& move : approach(at_, visit))
+    go(move, just_turned_ ? &TimeShares::fixed_s : &TimeShares::rapid_s, &stage);
   just_turned_ = false;
   for (double TimeShares::*const share : {&TimeShares::cutting_s, &TimeShares::dwell_s, &TimeShares::retract_s})
     spend(share, routine.*share, &stage);
@@ -101,6 +90,14 @@ void ProgramDraft::stop(StopReason reason, std::string comment) {
   edge_.stop();
   at_ = {};
   raise_to(heights_.first_nm);
+}
+
+void ProgramDraft::go(const Move& move, double TimeShares::*share, Stage* stage) {
+  Vec3 by = Vec3::Zero();
+  for (const Axis axis : {kX, kY, kZ})
+    if (move.to[axis] && at_[axis]) by[axis] = millimetres(*move.to[axis] - *at_[axis]);
+  spend(share, linear_move_s(machine_, by, std::nullopt), stage);
+  go_to(at_, move.to);
 }
 
 void ProgramDraft::spend(double TimeShares::*share, double seconds, Stage* stage) {

@@ -69,6 +69,8 @@ class ProgramDraft {
  private:
   void raise_to(Nanometres z_nm);
   RotaryUnits rotation(char axis, RotaryUnits units) const;
+  /// Updates the axis positions and the run time by a rapid move of linear axes.
+  void go(const Move& move, double TimeShares::*share, Stage* stage = nullptr);
   void spend(double TimeShares::*share, double seconds, Stage* stage = nullptr);
 
   const Job& job_;

@@ -293,7 +293,7 @@ class ProgramMaker {
       enter(stage);
     }
     const EdgeUse anew = use_of(stage, passes);
-    if (since_stop_.is_fresh) program_->edge().check(anew, program_->edge().used().seconds, element);
+    if (since_stop_.is_fresh) program_->edge().check(anew, element);
     program_->cut(anew.cut_mm);
     since_stop_.is_fresh = false;
   }

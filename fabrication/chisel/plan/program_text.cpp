@@ -8,7 +8,6 @@
 #include <span>
 
 #include "core/number_format.h"
-#include "fabrication/chisel/on_machine.h"
 #include "fabrication/job/substrate_cells.h"
 
 namespace retrace::fabrication {

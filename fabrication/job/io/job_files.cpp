@@ -481,8 +481,7 @@ void check_tool(const Job& job, const Refuse& refuse) {
 }
 
 void check_stops(const Job& job, const Refuse& refuse) {
-  const bool finishes = job.strategy == Strategy::two_step || job.strategy == Strategy::dmc;
-  if (job.process.stop_before_finishing && !finishes)
+  if (job.process.stop_before_finishing && !has_finishing_cuts(job))
     refuse("process.stop_before_finishing",
            fmt::format("must be false where nothing is finished: strategy = \"two-step\" or \"dmc\" does, got {}",
                        in_quotes(kStrategyWords[static_cast<std::size_t>(job.strategy)])));
