@@ -5,7 +5,6 @@
 
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "core/progress.h"
 #include "core/shared_tasks.h"

@@ -5,7 +5,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "materials/io/material_library.h"
 #include "raytrace/exact/beam_tracer.h"

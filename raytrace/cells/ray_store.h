@@ -3,9 +3,7 @@
 // Memory for many rays with one array per value, padded for SIMD.
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
-#include <span>
 #include <vector>
 
 #include "raytrace/cells/cell_lanes.h"

@@ -2,8 +2,6 @@
 
 // Length of a beam's next step, and the region of the part that the beam passes through in this step.
 
-#include <cmath>
-
 #include "raytrace/exact/beam_scene.h"
 
 namespace retrace::raytrace {

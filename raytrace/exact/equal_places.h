@@ -3,9 +3,7 @@
 // Translational symmetry of arrays. Identical elements act on light identically. A beam and its copies at other
 // elements are therefore traced as one beam until their paths differ near a border.
 
-#include <array>
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <vector>
 

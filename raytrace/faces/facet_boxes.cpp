@@ -1,7 +1,6 @@
 #include "raytrace/faces/facet_boxes.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace retrace::raytrace {
 namespace {

@@ -3,7 +3,6 @@
 // Internal parts of CameraTracer: the lens from which rays start, the intersection of rays with a film, and the lamp.
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 

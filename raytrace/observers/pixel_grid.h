@@ -3,7 +3,6 @@
 // Pixels in the plane of the part, and the exact area of each pixel that a polygon covers.
 
 #include <cstddef>
-#include <cstdint>
 #include <functional>
 #include <optional>
 

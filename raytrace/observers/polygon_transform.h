@@ -3,7 +3,6 @@
 // Fourier transform of a polygonal aperture in closed form. The transform is the diffraction pattern of the aperture.
 
 #include <complex>
-#include <vector>
 
 #include "geometry/polygon.h"
 

@@ -2,10 +2,8 @@
 
 // Single light paths as polylines, with the events along the path. They are used for drawings.
 
-#include <cstddef>
 #include <functional>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "geometry/part/part.h"

@@ -1,7 +1,6 @@
 // Start of paths with any position and direction. These member functions of PathWalker are not used for the light of
 // the incident beam.
 #include <algorithm>
-#include <cmath>
 
 #include "core/infinity.h"
 #include "raytrace/paths/path_tracer.h"

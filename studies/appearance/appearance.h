@@ -3,8 +3,6 @@
 // Computes the light that a part reflects, as a table over the directions of light and view. Renderers and lidar
 // simulators use the table as the material of a surface. `retrace export` uses this study to write material files.
 
-#include <cstdint>
-#include <string>
 #include <vector>
 
 #include "core/progress.h"

@@ -3,7 +3,6 @@
 // Estimates the errors of a machine from height maps of a part that it cut, and predicts the deviations of the next
 // part. `retrace correct` runs this study.
 
-#include <filesystem>
 #include <string>
 #include <vector>
 

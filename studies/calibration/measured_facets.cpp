@@ -4,7 +4,6 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/QR>
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 

@@ -4,7 +4,6 @@
 
 #include <Eigen/Core>
 #include <cstddef>
-#include <filesystem>
 #include <map>
 #include <numbers>
 #include <optional>

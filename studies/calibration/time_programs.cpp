@@ -1,7 +1,6 @@
 #include "studies/calibration/time_programs.h"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>

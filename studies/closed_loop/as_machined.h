@@ -3,7 +3,6 @@
 // Converts the result of verified NC programs to a design that can be traced: the machined part with its facet tilts,
 // edges and texture.
 
-#include <array>
 #include <optional>
 #include <string>
 #include <vector>

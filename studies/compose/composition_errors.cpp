@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "compute/sampling/unit_samples.h"
 #include "studies/compose/cell_errors.h"

@@ -1,7 +1,5 @@
 #include "studies/design/azimuth_symmetry.h"
 
-#include <algorithm>
-
 #include "core/overloaded.h"
 
 namespace retrace::studies {

@@ -4,7 +4,6 @@
 // [form] of the design determines it.
 
 #include <string>
-#include <vector>
 
 #include "core/warning.h"
 #include "studies/design/design.h"

@@ -1,8 +1,6 @@
 #include "studies/design/mask_part.h"
 
 #include <algorithm>
-#include <cmath>
-#include <string>
 #include <vector>
 
 #include "geometry/elements/whole_elements.h"

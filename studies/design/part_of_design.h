@@ -2,9 +2,6 @@
 
 // Builds the part of any design from its elements or its plate, or reads it from a mesh and checks the mesh.
 
-#include <string>
-#include <vector>
-
 #include "core/warning.h"
 #include "geometry/part/part.h"
 #include "geometry/part/triangle_mesh.h"

@@ -3,9 +3,6 @@
 // Makes a fabrication job from a design, with a tool, a machine and a process.
 
 #include <filesystem>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "core/error.h"
 #include "core/warning.h"

@@ -1,6 +1,5 @@
 #include "studies/inspect/entrance_state_report.h"
 
-#include <cmath>
 #include <numbers>
 
 #include "raytrace/faces/soiled_entrance.h"

@@ -1,7 +1,5 @@
 #include "studies/planing/planing_study.h"
 
-#include <algorithm>
-
 #include "core/error.h"
 #include "fabrication/check/io/program_files.h"
 #include "fabrication/planing/io/part_files.h"

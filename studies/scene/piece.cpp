@@ -1,7 +1,6 @@
 #include "studies/scene/piece.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <utility>
 

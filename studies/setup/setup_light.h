@@ -3,9 +3,7 @@
 // Computes how errors of the set-up change the retroreflected light of a moulded part.
 
 #include <filesystem>
-#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "core/warning.h"

@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <string>
-#include <vector>
 
 #include "core/warning.h"
 #include "geometry/part/closed_boundary.h"

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
-#include <cmath>
 #include <random>
 
 // Least squares against normal equations, and what observations cannot tell.

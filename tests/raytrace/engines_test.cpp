@@ -1,7 +1,6 @@
 // Tests of the rules that determine which engine can trace a model, and of the seeds of wavelengths.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <memory>
 #include <set>
 #include <vector>

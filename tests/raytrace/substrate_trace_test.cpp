@@ -4,10 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <algorithm>
-#include <array>
 #include <cmath>
-#include <memory>
 #include <numbers>
 #include <string>
 #include <vector>

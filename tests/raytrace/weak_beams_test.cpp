@@ -2,7 +2,6 @@
 // power, and far fields.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>

@@ -1,7 +1,6 @@
 // Tests of the engine that `auto` selects, and of the accuracy of exact values if some power is truncated.
 #include <gtest/gtest.h>
 
-#include <array>
 #include <string>
 
 #include "core/threads.h"

@@ -3,7 +3,6 @@
 // Converts a point of a study to texts: the name of its design file, and overrides of keys in the design file and in
 // the study file. A candidate (design with settings) is then made from these texts.
 
-#include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>

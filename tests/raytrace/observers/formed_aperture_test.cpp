@@ -7,7 +7,6 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
-#include <vector>
 
 #include "core/error.h"
 #include "materials/fresnel.h"

@@ -1,9 +1,6 @@
 // Tests of the far fields of meshes. Each far field must equal that of the design for any division into triangles.
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <string>
-
 #include "geometry/part/mesh_part.h"
 #include "raytrace/observers/far_field.h"
 #include "raytrace/observers/photometric_geometry.h"

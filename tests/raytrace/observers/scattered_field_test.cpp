@@ -2,8 +2,6 @@
 // reference traces rays one by one. It adds the fields of all paths over the aperture by fast Fourier transforms.
 #include <gtest/gtest.h>
 
-#include <vector>
-
 #include "tests/raytrace/observers/phase_screens.h"
 
 namespace retrace::testing::scattered_field_test {

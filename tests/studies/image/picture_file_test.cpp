@@ -5,8 +5,6 @@
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "report/colour_scale.h"
 #include "report/image_plot.h"
 
