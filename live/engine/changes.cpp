@@ -1,7 +1,5 @@
 #include "live/engine/changes.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>

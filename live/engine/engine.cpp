@@ -1,7 +1,5 @@
 #include "live/engine/engine.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
 #include <nlohmann/json.hpp>
 

@@ -9,7 +9,7 @@
 namespace retrace::raytrace {
 namespace {
 
-using geometry::Vec2, geometry::Vec3, geometry::rotation_about, std::numbers::pi;
+using geometry::Vec3, geometry::rotation_about, std::numbers::pi;
 
 // Directions are treated as parallel if the sine of their angle is less than this value.
 constexpr double kParallel = 1e-14;

@@ -1,6 +1,5 @@
 #include "raytrace/paths/monte_carlo.h"
 
-#include <fmt/format.h>
 #include <tbb/enumerable_thread_specific.h>
 
 #include <limits>

@@ -21,7 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace fabrication;
-using geometry::Vec3;
 
 constexpr double kArcminPerRad = 180.0 * 60.0 / std::numbers::pi;
 constexpr double kUmPerMm = 1e3;

@@ -13,9 +13,6 @@ using geometry::PartSpec;
 using geometry::RtpElement;
 using geometry::Vec2;
 
-// Relative tolerance within which lengths count as a whole number of elements.
-constexpr double kWhole = 1e-9;
-
 /// Returns the planes of the nominal element whose lower left corner is at `corner`.
 geometry::ElementPlanes element_at(const PartSpec& spec, const Vec2& corner, bool rotated) {
   const auto& element = std::get<RtpElement>(spec.element);

@@ -11,8 +11,7 @@
 namespace retrace::studies {
 namespace {
 
-using geometry::BoundaryMesh, geometry::FacetRole, geometry::Part, geometry::SurfacePatch, geometry::Vec2,
-    geometry::Vec3;
+using geometry::FacetRole, geometry::Part, geometry::SurfacePatch, geometry::Vec2, geometry::Vec3;
 
 // Tolerance of the cosine between the normals of two neighbouring triangles. Within it, there is no edge between them.
 constexpr double kSameDirection = 1e-6;

@@ -10,8 +10,8 @@
 namespace retrace::studies {
 namespace {
 
-using geometry::Part, geometry::PatchFacet, geometry::Placement, geometry::Polygon, geometry::Rectangle,
-    geometry::SurfacePatch, geometry::Vec2, geometry::Vec3;
+using geometry::Part, geometry::PatchFacet, geometry::Placement, geometry::Rectangle, geometry::SurfacePatch,
+    geometry::Vec2, geometry::Vec3;
 
 // Vertical component of the unit normal below which faces count as walls, which a plan shows as lines.
 constexpr double kLevelShare = 1e-6;

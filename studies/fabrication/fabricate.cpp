@@ -14,7 +14,7 @@
 namespace retrace::studies {
 namespace {
 
-using fabrication::Plan, geometry::Vec3;
+using geometry::Vec3;
 
 fabrication::PlanOptions plan_options(const FabricationRequest& request) {
   fabrication::PlanOptions options;

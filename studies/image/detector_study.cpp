@@ -15,10 +15,8 @@
 namespace retrace::studies {
 namespace {
 
-using geometry::Rectangle, geometry::Vec2, geometry::Vec3;
+using geometry::Rectangle, geometry::Vec2;
 
-constexpr std::size_t kMostPixels = 8192;
-constexpr std::size_t kMostAnglePixels = 2049;
 // Maximum fraction of the power that remains untraced if light is traced as beams. It is too small to be visible in a
 // picture.
 constexpr double kTruncatedGoal = 1e-5;

@@ -1,7 +1,5 @@
 #include "studies/image/road_study.h"
 
-#include <fmt/format.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <chrono>

@@ -16,7 +16,7 @@
 namespace retrace::studies {
 namespace {
 
-using geometry::Vec2, geometry::Vec3, raytrace::PhotometricGeometry;
+using geometry::Vec3, raytrace::PhotometricGeometry;
 
 // Maximum power whose diffraction may be omitted because the budget of polygons is exhausted, as a fraction of the
 // incident power. If more power is affected, the reading counts as lacking diffraction.

@@ -23,7 +23,6 @@ namespace retrace::studies {
 namespace {
 
 namespace turning = fabrication::turning;
-using geometry::Vec2;
 
 /// Returns the first 60 characters of a text. Spaces replace all characters except ASCII letters, digits and commas, so
 /// that the text is valid in a comment of every dialect.
