@@ -3,18 +3,13 @@
 #include <nlohmann/json.hpp>
 
 #include "core/overloaded.h"
+#include "core/schema/json.h"
 #include "requests/descriptions.h"
 
 namespace retrace::requests {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json json_of(const schema::Value& value) {
-  return std::visit(Overloaded{[](std::monostate) { return Json(); }, [](const schema::Named&) { return Json(); },
-                               [](const auto& given) { return Json(given); }},
-                    value);
-}
 
 std::string kind_name(const schema::Kind& kind) {
   return std::visit(
@@ -64,7 +59,7 @@ Json field_json(const Request& request, const Row& row) {
   }
   if (const std::string_view unit = schema::unit_of(row.name); !unit.empty()) json["unit"] = unit;
   json["meaning"] = row.meaning;
-  json["default"] = json_of(row.access.get(request.initial()));
+  json["default"] = schema::to_json(row.access.get(request.initial()));
   json["default_text"] = default_text(request, row);
   if (!row.spelling.otherwise.empty()) json["otherwise"] = row.spelling.otherwise;
   if (!row.spelling.usual.empty()) json["usual"] = row.spelling.usual;

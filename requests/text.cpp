@@ -94,8 +94,8 @@ std::string default_text(const Request& request, const Row& row) {
   if (!row.spelling.otherwise.empty()) return std::string(row.spelling.otherwise);
   if (!row.spelling.usual.empty()) return std::string(row.spelling.usual);
   if (row.is_required) return {};
-  const bool is_set = std::holds_alternative<bool>(row.access.get(request.initial()));
-  if (is_set) return row.spelling.notation == Notation::absent ? "on" : "off";
+  const Value initial = row.access.get(request.initial());
+  if (const bool* const is_on = std::get_if<bool>(&initial)) return *is_on ? "on" : "off";
   return text_of(row, request.initial());
 }
 

@@ -79,7 +79,7 @@ def with_comments(header: str, request: str, fields: list[dict]) -> str:
 
 def needs_text(field: dict, fields: list[dict]) -> str:
     """Returns the conditions of a field as sentences: "Not with `--lamp`."."""
-    options = {other["name"]: other.get("option") or f"--{other['name']}" for other in fields}
+    options = {other["name"]: other["option"] for other in fields if "option" in other}
     sentences = []
     for need in field.get("needs", []):
         names = [f"`{options.get(one['field'], '--' + one['field'])}`" for one in need]
