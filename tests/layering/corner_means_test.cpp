@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/layering/layer_rules.h"
+
 namespace retrace::layering::corner_means_test {
 namespace fs = std::filesystem;
 namespace {
@@ -55,8 +57,7 @@ TEST(CornerMeans, NoneIsAPosition) {
   const fs::path root = RETRACE_SOURCE_DIR;
   std::set<std::string> met;
   std::size_t files = 0;
-  for (const char* folder : {"core", "compute", "requests", "geometry", "materials", "surface_models", "raytrace",
-                             "fabrication", "studies", "report", "live", "app"})
+  for (const auto& [folder, lower] : read_rules(root / "tests/layering/layers.json").folders)
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / folder)) {
       const std::string extension = entry.path().extension().string();
       if (extension != ".cpp" && extension != ".h") continue;
