@@ -55,9 +55,10 @@ std::string mean_of_points(const std::string& text) {
 
 TEST(CornerMeans, NoneIsAPosition) {
   const fs::path root = RETRACE_SOURCE_DIR;
+  const Rules rules = read_rules(root / "tests/layering/layers.json");
   std::set<std::string> met;
   std::size_t files = 0;
-  for (const auto& [folder, lower] : read_rules(root / "tests/layering/layers.json").folders)
+  for (const auto& [folder, lower] : rules.folders)
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / folder)) {
       const std::string extension = entry.path().extension().string();
       if (extension != ".cpp" && extension != ".h") continue;
