@@ -5,12 +5,10 @@
 #include <optional>
 
 #include "core/error.h"
-#include "core/message_text.h"
 #include "core/schema/reader.h"
 #include "core/schema/writer.h"
 #include "live/engine/form.h"
 #include "studies/design/io/design_format.h"
-#include "studies/design/io/design_reader.h"
 #include "studies/design/io/init_templates.h"
 
 namespace retrace::live {

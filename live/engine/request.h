@@ -8,7 +8,6 @@
 #include <string>
 
 #include "core/error.h"
-#include "geometry/vec.h"
 #include "requests/descriptions.h"
 #include "studies/scene/piece.h"
 

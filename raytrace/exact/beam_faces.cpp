@@ -4,7 +4,6 @@
 #include <boost/container/small_vector.hpp>
 #include <utility>
 
-#include "core/infinity.h"
 #include "raytrace/faces/textured_facet.h"
 
 namespace retrace::raytrace {

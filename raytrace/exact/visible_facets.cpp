@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <span>
 
-#include "core/infinity.h"
 #include "geometry/centroid.h"
 
 namespace retrace::raytrace {

@@ -4,8 +4,6 @@
 
 #include <limits>
 
-#include "core/error.h"
-#include "core/threads.h"
 #include "raytrace/cells/cell_walker.h"
 #include "raytrace/faces/back_surface.h"
 #include "raytrace/paths/path_tracer.h"

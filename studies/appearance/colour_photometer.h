@@ -12,7 +12,6 @@
 
 #include "raytrace/observers/disc_means.h"
 #include "requests/part.h"
-#include "studies/appearance/reflection_table.h"
 #include "studies/photometry/photometer.h"
 
 namespace retrace::studies {

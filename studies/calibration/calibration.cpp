@@ -12,7 +12,6 @@
 #include <utility>
 
 #include "core/error.h"
-#include "core/number_format.h"
 #include "studies/calibration/linear_model.h"
 
 namespace retrace::studies {

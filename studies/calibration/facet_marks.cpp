@@ -6,7 +6,6 @@
 #include <functional>
 
 #include "fabrication/chisel/plan/edge_cuts.h"
-#include "fabrication/machine/setup.h"
 
 namespace retrace::studies {
 namespace {

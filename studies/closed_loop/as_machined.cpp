@@ -10,11 +10,8 @@
 
 #include "core/error.h"
 #include "core/number_format.h"
-#include "fabrication/job/substrate_cells.h"
-#include "geometry/elements/element_cells.h"
 #include "studies/closed_loop/machined_zones.h"
 #include "studies/design/io/design_document.h"
-#include "studies/design/io/design_reader.h"
 
 namespace retrace::studies {
 namespace {

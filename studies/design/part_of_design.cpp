@@ -5,7 +5,6 @@
 #include <cmath>
 #include <optional>
 
-#include "core/atomic_file.h"
 #include "core/named_file.h"
 #include "core/number_format.h"
 #include "geometry/check/boundary_check.h"

@@ -3,7 +3,6 @@
 #include <set>
 
 #include "core/file_texts.h"
-#include "fabrication/chisel/plan/chiseling.h"
 #include "fabrication/job/cube_corner.h"
 #include "fabrication/job/io/job_files.h"
 #include "fabrication/machine/io/machine_files.h"

@@ -7,7 +7,6 @@
 
 #include "core/warning.h"
 #include "fabrication/forces/forces.h"
-#include "fabrication/job/job.h"
 
 namespace retrace::studies {
 

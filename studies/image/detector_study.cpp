@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "core/number_format.h"
 #include "core/task_progress.h"
 #include "raytrace/engines/wavelengths.h"
 #include "requests/descriptions.h"

@@ -9,11 +9,9 @@
 #include <optional>
 
 #include "core/error.h"
-#include "core/number_format.h"
 #include "core/task_progress.h"
 #include "core/threads.h"
 #include "materials/io/spectrum_reader.h"
-#include "raytrace/observers/photometric_geometry.h"
 #include "requests/descriptions.h"
 #include "studies/image/io/lamp_reader.h"
 #include "studies/photometry/io/standard_reader.h"

@@ -1,7 +1,5 @@
 #include "studies/inspect/coating_report.h"
 
-#include "raytrace/light/light_setup.h"
-
 namespace retrace::studies {
 namespace {
 

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "compute/sampling/unit_samples.h"
-#include "core/number_format.h"
 #include "studies/optimise/bands.h"
 #include "studies/optimise/evaluator.h"
 #include "studies/optimise/refine.h"

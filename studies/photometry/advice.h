@@ -6,7 +6,6 @@
 #include <optional>
 #include <vector>
 
-#include "core/progress.h"
 #include "studies/photometry/photometry.h"
 
 namespace retrace::studies {

@@ -9,7 +9,6 @@
 #include "core/memory_budget.h"
 #include "raytrace/engines/wavelengths.h"
 #include "raytrace/exact/element_memory.h"
-#include "raytrace/observers/small_angle.h"
 #include "studies/photometry/photometer.h"
 
 namespace retrace::studies {

@@ -10,7 +10,6 @@
 #include <string>
 #include <utility>
 
-#include "core/progress.h"
 #include "geometry/part/part.h"
 #include "studies/design/design.h"
 #include "studies/design/part_of_design.h"

@@ -11,7 +11,6 @@
 #include <string>
 
 #include "core/error.h"
-#include "core/number_format.h"
 #include "studies/rays/ray_limits.h"
 
 namespace retrace::studies {

@@ -9,7 +9,6 @@
 
 #include "core/error.h"
 #include "fabrication/chisel/plan/chiseling.h"
-#include "fabrication/chisel/plan/routines.h"
 #include "fabrication/job/cube_corner.h"
 #include "fabrication/job/substrate_cells.h"
 #include "fabrication/job/tool_angles.h"

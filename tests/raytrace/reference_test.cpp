@@ -10,7 +10,6 @@
 #include "tests/support/designs.h"
 #include "tests/support/engines.h"
 #include "tests/support/sample_size.h"
-#include "tests/support/statistics.h"
 
 namespace retrace::testing::reference_test {
 namespace {

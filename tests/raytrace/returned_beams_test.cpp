@@ -6,7 +6,6 @@
 #include <cmath>
 #include <vector>
 
-#include "materials/fresnel.h"
 #include "raytrace/exact/beam_tracer.h"
 #include "tests/support/closed_forms.h"
 #include "tests/support/designs.h"

@@ -3,7 +3,6 @@
 
 #include <cstring>
 
-#include "core/error.h"
 #include "core/threads.h"
 #include "tests/support/designs.h"
 #include "tests/support/sample_size.h"

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <vector>
 
-#include "core/error.h"
 #include "geometry/part/closed_boundary.h"
 #include "raytrace/exact/beam_tracer.h"
 #include "tests/support/designs.h"

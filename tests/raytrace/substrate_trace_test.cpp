@@ -13,7 +13,6 @@
 #include "tests/support/designs.h"
 #include "tests/support/engines.h"
 #include "tests/support/reference_tracer.h"
-#include "tests/support/statistics.h"
 
 namespace retrace::testing::substrate_trace_test {
 namespace {

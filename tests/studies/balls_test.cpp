@@ -14,7 +14,6 @@
 #include "studies/inspect/inspect.h"
 #include "studies/inspect/io/inspect_files.h"
 #include "studies/photometry/photometry.h"
-#include "studies/rre/io/rre_files.h"
 #include "studies/rre/rre.h"
 #include "tests/support/refusals.h"
 

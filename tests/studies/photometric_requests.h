@@ -7,7 +7,6 @@
 #include "studies/photometry/io/limits_reader.h"
 #include "studies/photometry/photometry.h"
 #include "studies/photometry/standards.h"
-#include "tests/support/closed_forms.h"
 #include "tests/support/designs.h"
 
 // Designs and requests for tests of photometry.

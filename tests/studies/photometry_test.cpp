@@ -8,8 +8,6 @@
 #include <numbers>
 #include <tuple>
 
-#include "core/error.h"
-#include "core/number_format.h"
 #include "core/threads.h"
 #include "materials/io/spectrum_reader.h"
 #include "requests/descriptions.h"

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/error.h"
 #include "studies/design/io/design_reader.h"
 #include "studies/design/optical_model.h"
 #include "studies/roughness/io/facet_table_reader.h"

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "core/number_format.h"
 #include "studies/compose/goals.h"
 
 namespace retrace::studies {

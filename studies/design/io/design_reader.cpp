@@ -8,10 +8,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/angle.h"
 #include "core/atomic_file.h"
 #include "core/message_text.h"
-#include "core/number_format.h"
 #include "core/overloaded.h"
 #include "core/schema/reader.h"
 #include "core/sin_cos.h"

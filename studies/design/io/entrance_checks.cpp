@@ -3,7 +3,6 @@
 #include <string>
 
 #include "core/number_format.h"
-#include "core/schema/conditions.h"
 #include "studies/design/haze.h"
 #include "studies/design/io/optics_checks.h"
 

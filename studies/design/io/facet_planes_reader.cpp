@@ -10,7 +10,6 @@
 #include "core/angle.h"
 #include "core/csv.h"
 #include "core/error.h"
-#include "core/message_text.h"
 #include "core/number_format.h"
 #include "geometry/direction.h"
 

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "core/number_format.h"
-#include "core/schema/conditions.h"
 
 namespace retrace::studies {
 namespace {

@@ -6,7 +6,6 @@
 
 #include "core/csv.h"
 #include "core/json_text.h"
-#include "core/number_format.h"
 
 namespace retrace::studies {
 namespace {

@@ -7,7 +7,6 @@
 #include "core/csv.h"
 #include "core/error.h"
 #include "core/message_text.h"
-#include "core/number_format.h"
 #include "core/text.h"
 #include "studies/rays/io/ray_input.h"
 #include "studies/rays/ray_accounts.h"

@@ -9,7 +9,6 @@
 #include <numbers>
 
 #include "core/error.h"
-#include "materials/fresnel.h"
 #include "raytrace/observers/far_field.h"
 #include "raytrace/paths/monte_carlo.h"
 #include "tests/support/closed_forms.h"

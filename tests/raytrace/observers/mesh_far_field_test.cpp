@@ -3,12 +3,10 @@
 
 #include "geometry/part/mesh_part.h"
 #include "raytrace/observers/far_field.h"
-#include "raytrace/observers/photometric_geometry.h"
 #include "tests/support/designs.h"
 #include "tests/support/mesh_variants.h"
 #include "tests/support/part_specs.h"
 #include "tests/support/return_frames.h"
-#include "tests/support/statistics.h"
 
 namespace retrace::testing::mesh_far_field_test {
 namespace {

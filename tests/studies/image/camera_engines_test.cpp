@@ -9,7 +9,6 @@
 #include "raytrace/observers/camera.h"
 #include "raytrace/observers/photometric_geometry.h"
 #include "tests/support/designs.h"
-#include "tests/support/statistics.h"
 
 namespace retrace::testing::camera_engines_test {
 namespace {

@@ -11,7 +11,6 @@
 #include <string>
 
 #include "core/atomic_file.h"
-#include "studies/rays/ray_accounts.h"
 #include "tests/support/refusals.h"
 
 namespace retrace::testing::ray_csv_test {

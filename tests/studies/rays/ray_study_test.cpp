@@ -9,7 +9,6 @@
 #include <complex>
 #include <numbers>
 
-#include "core/threads.h"
 #include "materials/dispersion.h"
 #include "materials/io/material_library.h"
 #include "studies/design/io/design_reader.h"

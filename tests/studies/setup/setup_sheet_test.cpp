@@ -5,7 +5,6 @@
 #include <numbers>
 #include <string>
 
-#include "core/atomic_file.h"
 #include "core/error.h"
 #include "fabrication/chisel/check/verify.h"
 #include "fabrication/machine/setup.h"

@@ -12,7 +12,6 @@
 #include <optional>
 #include <set>
 
-#include "core/error.h"
 #include "geometry/check/boundary_check.h"
 #include "geometry/check/mesh_union.h"
 #include "geometry/io/stl_file.h"

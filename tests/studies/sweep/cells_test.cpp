@@ -8,7 +8,6 @@
 #include <numbers>
 
 #include "studies/quantity/io/study_reader.h"
-#include "studies/sweep/io/sweep_reader.h"
 #include "studies/sweep/sweep.h"
 
 namespace retrace::studies::cells_test {

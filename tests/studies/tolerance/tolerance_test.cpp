@@ -12,7 +12,6 @@
 
 #include "core/error.h"
 #include "studies/quantity/io/study_reader.h"
-#include "studies/sweep/io/sweep_files.h"
 #include "studies/tolerance/io/tolerance_files.h"
 #include "studies/tolerance/io/tolerance_reader.h"
 #include "tests/support/refusals.h"
