@@ -63,21 +63,15 @@ std::string choice(const std::vector<std::string>& there_are, const std::optiona
                          printable(of_what), in_quotes(*asked)));
 }
 
-/// Classes and colours of one standard in a table.
-struct Contents {
+std::vector<std::string> classes_of(const LimitTable& table, const std::string& standard) {
   std::vector<std::string> classes;
-  std::vector<std::string> colours;
-};
-
-Contents contents_of(const LimitTable& table, const std::string& standard) {
-  Contents contents;
   const auto add = [&](const auto& row) {
     if (row.standard != standard) return;
-    for (const std::string& name : row.classes) add_once(contents.classes, name);
+    for (const std::string& name : row.classes) add_once(classes, name);
   };
   for (const LimitRow& row : table.rows) add(row);
   for (const LimitFactor& factor : table.factors) add(factor);
-  return contents;
+  return classes;
 }
 
 std::vector<std::string> colours_of(const LimitTable& table, const std::string& standard,
@@ -167,8 +161,7 @@ TestProgramme programme_of(const LimitTable& table, const std::optional<std::str
   for (const LimitRow& row : table.rows) add_once(standards, row.standard);
   TestProgramme programme;
   programme.standard = choice(standards, standard, {"standard"}, table.source);
-  programme.part_class =
-      choice(contents_of(table, programme.standard).classes, part_class, {"part_class"}, programme.standard);
+  programme.part_class = choice(classes_of(table, programme.standard), part_class, {"part_class"}, programme.standard);
   const std::optional<std::string> asked = colour ? std::optional(known_colour(*colour)) : std::nullopt;
   programme.colour =
       choice(colours_of(table, programme.standard, programme.part_class), asked, {"colour"}, programme.standard);
