@@ -3,8 +3,6 @@
 // Parses the command line. Reads and checks the options of a command.
 
 #include <functional>
-#include <span>
-#include <string>
 
 #include "app/command.h"
 

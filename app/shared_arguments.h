@@ -3,7 +3,6 @@
 // Arguments of several commands: design, job and part files, machines and dialects, and the options --resume and
 // --overwrite for a store that already exists.
 
-#include <span>
 #include <string>
 #include <vector>
 

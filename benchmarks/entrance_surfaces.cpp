@@ -2,7 +2,6 @@
 // entrance face.
 #include <benchmark/benchmark.h>
 
-#include <cmath>
 #include <memory>
 
 #include "core/threads.h"

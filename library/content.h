@@ -3,7 +3,6 @@
 // Internal to library/: data of a Design.
 
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "retrace/design.h"

@@ -1,7 +1,6 @@
 #include "retrace/photometry.h"
 
 #include <memory>
-#include <utility>
 
 #include "core/threads.h"
 #include "library/content.h"

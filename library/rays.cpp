@@ -1,7 +1,6 @@
 #include "retrace/rays.h"
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <utility>
 

@@ -1,8 +1,5 @@
 #include "retrace/report.h"
 
-#include <nlohmann/json.hpp>
-#include <utility>
-
 #include "report/page/page.h"
 #include "report/page/result_folder.h"
 #include "report/page/scene_view.h"

@@ -1,7 +1,6 @@
 #include "retrace/study.h"
 
 #include <chrono>
-#include <functional>
 #include <memory>
 #include <utility>
 

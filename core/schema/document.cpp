@@ -1,7 +1,5 @@
 #include "core/schema/document.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <stdexcept>
 #include <utility>

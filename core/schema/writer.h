@@ -2,7 +2,6 @@
 
 // Writes documents and C++ objects as TOML files of their format. This is the inverse of core/schema/reader.h.
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 

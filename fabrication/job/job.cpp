@@ -1,7 +1,6 @@
 #include "fabrication/job/job.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "core/error.h"

@@ -3,8 +3,6 @@
 // Geometry of V-shaped tools in cube corners: edges of the tool, size of the cavity, and the check that the tool can
 // cut the whole cavity.
 
-#include <array>
-
 #include "core/schema/schema.h"
 #include "fabrication/job/job.h"
 #include "geometry/vec.h"

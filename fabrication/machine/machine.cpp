@@ -2,9 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include "core/error.h"

@@ -4,7 +4,6 @@
 // tool. Also computes how each quantity changes the plane of a cut.
 
 #include <span>
-#include <string>
 #include <string_view>
 
 #include "fabrication/machine/edge_cut.h"

@@ -3,9 +3,6 @@
 // Readers of NC text for each dialect (RS274NGC, Sinumerik, Fanuc, Power PMAC, Aerotech). They are based on published
 // rules and share no code with the writers in post/.
 
-#include <string>
-#include <string_view>
-
 #include "fabrication/read/nc_program.h"
 #include "fabrication/read/nc_text.h"
 

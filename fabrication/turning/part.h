@@ -4,7 +4,6 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "core/warning.h"
 #include "fabrication/turning/path_options.h"

@@ -2,9 +2,7 @@
 
 // Turning tools as mounted. Computes the clearance of the flank and the sharp arc of the nose that a surface requires.
 
-#include <functional>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "core/angle.h"

@@ -1,6 +1,5 @@
 #include "geometry/elements/lattice.h"
 
-#include <cmath>
 #include <numbers>
 
 #include "geometry/elements/edges.h"

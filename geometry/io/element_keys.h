@@ -3,7 +3,6 @@
 // Keys of the tables [element] and [array] that design files and job files have in common. Each format adds the members
 // of its objects or the conditions under which a key applies (core/schema/conditions.h).
 
-#include <span>
 #include <string_view>
 
 #include "core/schema/conditions.h"

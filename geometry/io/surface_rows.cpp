@@ -1,5 +1,4 @@
 // Defines the keys of the tables that describe a surface.
-#include <algorithm>
 #include <array>
 #include <iterator>
 #include <utility>

@@ -3,7 +3,6 @@
 // Collects the samples of absorption in a data file. Samples that cannot be used cause warnings instead of errors,
 // because the refractive index in the same file does not depend on them.
 
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>

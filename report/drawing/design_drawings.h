@@ -3,7 +3,6 @@
 // Makes the drawings of `retrace inspect`.
 
 #include <string>
-#include <vector>
 
 #include "core/warning.h"
 #include "studies/inspect/inspect.h"

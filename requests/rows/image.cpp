@@ -1,7 +1,5 @@
 #include "requests/descriptions.h"
 
-#include <array>
-
 #include <fmt/format.h>
 
 #include "core/error.h"

@@ -6,7 +6,6 @@
 
 #include <bit>
 #include <cstdint>
-#include <string>
 #include <string_view>
 
 #include "surface_models/io/raw_map.h"

@@ -3,9 +3,6 @@
 // ABG model of scatter: a BSDF that is fitted to measured scatter. It is used if the heights of the surface are not
 // known.
 
-#include <string>
-#include <vector>
-
 #include "core/warning.h"
 #include "surface_models/scatter/random_stream.h"
 #include "surface_models/scatter/scatter_event.h"

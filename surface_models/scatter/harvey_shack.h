@@ -4,8 +4,6 @@
 
 #include <array>
 #include <memory>
-#include <string>
-#include <vector>
 
 #include "core/warning.h"
 #include "materials/fresnel.h"

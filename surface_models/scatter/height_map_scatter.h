@@ -4,8 +4,6 @@
 // are large compared with the wavelength.
 
 #include <memory>
-#include <string>
-#include <vector>
 
 #include "core/warning.h"
 #include "surface_models/height_map.h"

@@ -3,9 +3,6 @@
 // Scatter from surfaces whose roughness is coarse compared with the wavelength, by geometrical optics of tilted
 // microfacets.
 
-#include <string>
-#include <vector>
-
 #include "core/warning.h"
 #include "surface_models/scatter/slope_distribution.h"
 

@@ -3,9 +3,7 @@
 // Interface of all scatter models for the tracers. It draws facets and directions, and returns specular fractions,
 // BSDFs and ranges of validity.
 
-#include <string>
 #include <variant>
-#include <vector>
 
 #include "core/warning.h"
 #include "surface_models/scatter/abg.h"

@@ -2,9 +2,6 @@
 
 // Scatter model of facets without texture: all light is specular.
 
-#include <string>
-#include <vector>
-
 #include "core/warning.h"
 #include "surface_models/scatter/random_stream.h"
 #include "surface_models/scatter/scatter_event.h"

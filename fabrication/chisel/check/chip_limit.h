@@ -4,7 +4,6 @@
 // measuring line of a cross-section (docs/theory/verification.md).
 
 #include <array>
-#include <limits>
 
 #include "core/angle.h"
 #include "fabrication/chisel/check/facet_cut.h"

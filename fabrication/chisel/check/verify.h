@@ -3,10 +3,8 @@
 // Verification of the NC programs of a chisel job: simulates the cuts and compares the machined surface with the
 // design.
 
-#include <array>
 #include <cstdint>
 #include <optional>
-#include <string>
 #include <string_view>
 #include <vector>
 

@@ -6,7 +6,6 @@
 
 #include <array>
 #include <string>
-#include <vector>
 
 #include "fabrication/chisel/plan/routines.h"
 #include "fabrication/chisel/plan/section.h"

@@ -3,7 +3,6 @@
 // Lists the cuts of a plan that produce facets. Each cut is a straight move of the edge, given by axis positions.
 
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
 #include "fabrication/chisel/plan/plan.h"

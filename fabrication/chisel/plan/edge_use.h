@@ -2,7 +2,6 @@
 
 // Computes how much a cutting edge is used (length of cut and run time) and decides where a program must stop.
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>

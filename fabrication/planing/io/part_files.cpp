@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "core/atomic_file.h"
 #include "core/message_text.h"
 #include "core/number_format.h"

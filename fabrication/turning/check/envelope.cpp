@@ -1,7 +1,5 @@
 #include "fabrication/turning/check/envelope.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,10 +1,7 @@
 #include "fabrication/turning/check/inspection.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <numbers>
 

@@ -2,7 +2,6 @@
 
 // Reads the files of parts that are turned (retrace.turned_part/1).
 
-#include <cstddef>
 #include <string>
 #include <string_view>
 

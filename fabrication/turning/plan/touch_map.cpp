@@ -1,7 +1,6 @@
 #include "fabrication/turning/plan/touch_map.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "geometry/surface/concavity_bound.h"
 

@@ -1,7 +1,6 @@
 #include "fabrication/turning/plan/turning_program.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace retrace::fabrication::turning {

@@ -3,7 +3,6 @@
 // Measures the machined facets of an element relative to the design: distance, angle, residual material at the root,
 // and residual volume.
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>

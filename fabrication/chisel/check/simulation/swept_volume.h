@@ -5,9 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "core/angle.h"
