@@ -1,6 +1,6 @@
 #pragma once
 
-// Statistics of tolerance studies: Sobol indices, yield and spread, with confidence intervals.
+// Statistics of samples: Sobol indices, yield and spread, with confidence intervals.
 
 #include <cstddef>
 #include <cstdint>
