@@ -282,7 +282,7 @@ std::string refusal(const std::string& keys, const std::string& parameters = kIn
 }
 
 TEST(Compose, ReadsItsExample) {
-  const std::string file = std::string(RETRACE_SOURCE_DIR) + "/examples/studies/compose_reflector.toml";
+  const std::string file = test::kStudies + "compose_reflector.toml";
   EXPECT_NO_THROW(read_compose(read_study(file, {})));
 }
 

@@ -16,6 +16,7 @@
 #include "studies/compose/io/composition_files.h"
 #include "studies/compose/part_yield.h"
 #include "studies/quantity/io/study_reader.h"
+#include "tests/support/analytic_study.h"
 #include "tests/support/refusals.h"
 
 namespace retrace::testing::errors_test {
@@ -23,8 +24,6 @@ namespace {
 
 using namespace studies;
 using Numbers = std::vector<double>;
-
-const std::string kFolder = std::string(RETRACE_SOURCE_DIR) + "/examples/studies/";
 
 /// Returns the response of a function. The function is evaluated at the errors that the response requires.
 ErrorResponse response_to(std::size_t angles, double step, const std::function<Numbers(const Numbers&)>& goals) {
@@ -161,7 +160,7 @@ Study study_of_peaks(const std::string& keys) {
       "[[quantity]]\nkind = \"elements_full\"\nname = \"g.1\"\n[[quantity]]\nkind = \"elements_full\"\nname = "
       "\"g.2\"\n[compose]\nmaximize = \"g\"\n" +
           keys,
-      kFolder + "study.toml");
+      test::kStudies + "study.toml");
   study.quantities = {std::make_shared<Peak>(0.5), std::make_shared<Peak>(-0.5)};
   return study;
 }
@@ -198,14 +197,14 @@ TEST(ComposeErrors, AreAddedToThoseOfTheDesign) {
       "design = \"../honeycomb_infinite.toml\"\n[[parameter]]\nkey = \"surface.dihedral_error_arcmin\"\nvalues = [5]\n"
       "[[quantity]]\nkind = \"rre\"\nincidence_deg = [0, 15]\nover_directions = \"each\"\n[compose]\nmaximize = "
       "\"rre\"\n";
-  const Study study = parse_study(text, kFolder + "study.toml");
+  const Study study = parse_study(text, test::kStudies + "study.toml");
   EXPECT_EQ(angles_of(study, some_values(study)), 3U);
   const auto goals =
       goals_with_errors(study, read_compose(study), {0, some_values(study), {}}, {{0, 0, 0}, {3, 0, -2}}, nullptr);
   const auto measured = [&](const std::string& values) {
     std::string with = text;
     with.replace(with.find("[5]"), 3, values);
-    const Study other = parse_study(with, kFolder + "study.toml");
+    const Study other = parse_study(with, test::kStudies + "study.toml");
     const Candidate candidate = make_candidate(other, some_values(other));
     Numbers all;
     for (const auto& quantity : other.quantities) all.push_back(*quantity->measure(candidate, nullptr)->value);

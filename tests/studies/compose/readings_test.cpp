@@ -8,6 +8,7 @@
 
 #include "studies/compose/io/compose_reader.h"
 #include "studies/quantity/io/study_reader.h"
+#include "tests/support/analytic_study.h"
 #include "tests/support/refusals.h"
 
 namespace retrace::testing::readings_test {
@@ -17,7 +18,7 @@ using namespace studies;
 
 /// What the quantities of a study come to at the first of its points.
 std::map<std::string, double> measured(const std::string& text) {
-  const Study study = parse_study(text, std::string(RETRACE_SOURCE_DIR) + "/examples/studies/study.toml");
+  const Study study = parse_study(text, test::kStudies + "study.toml");
   const Candidate candidate = make_candidate(study, some_values(study));
   std::map<std::string, double> values;
   for (const auto& quantity : study.quantities)
@@ -81,7 +82,7 @@ TEST(Readings, TellWhatTheyAreOfAndWhatTheLimitIs) {
   const Study study = parse_study(
       reflector("0", photometry("r", "points = \"each_reading\"\nrotation_deg = [-5, 0]\n") +
                          "[[quantity]]\nkind = \"rre\"\nover_directions = \"each\"\nincidence_deg = [0, 20]\n"),
-      std::string(RETRACE_SOURCE_DIR) + "/examples/studies/study.toml");
+      test::kStudies + "study.toml");
   EXPECT_EQ(study.quantities[0]->label(), "20' V 5 H 0, turned -5");
   EXPECT_EQ(study.quantities[3]->label(), "20' V -5 H 0");
   EXPECT_EQ(study.quantities[0]->limit()->value, 300.0);
@@ -94,8 +95,8 @@ TEST(Readings, LeastsAreNoGoalsOfMixtures) {
        {photometry("g", ""), photometry("g", "points = \"each\"\n"),
         std::string(
             "[[quantity]]\nkind = \"rre\"\nname = \"g\"\nover_directions = \"least\"\nincidence_deg = [0, 9]\n")}) {
-    const Study study = parse_study(reflector("0", quantity + "[compose]\nmaximize = \"g\"\n"),
-                                    std::string(RETRACE_SOURCE_DIR) + "/examples/studies/study.toml");
+    const Study study =
+        parse_study(reflector("0", quantity + "[compose]\nmaximize = \"g\"\n"), test::kStudies + "study.toml");
     try {
       read_compose(study);
       FAIL() << quantity;

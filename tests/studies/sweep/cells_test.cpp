@@ -9,11 +9,10 @@
 
 #include "studies/quantity/io/study_reader.h"
 #include "studies/sweep/sweep.h"
+#include "tests/support/analytic_study.h"
 
 namespace retrace::studies::cells_test {
 namespace {
-
-const std::string kFolder = std::string(RETRACE_SOURCE_DIR) + "/examples/studies/";
 
 /// Returns a quantity of an example study as a function of the angle of incidence.
 /// \param only if given, only points with this value of the first parameter
@@ -21,7 +20,7 @@ std::map<double, compute::StoredOutput> curve(const std::string& file, std::size
                                               const std::vector<std::string>& overrides = {},
                                               const std::string& only = "",
                                               const std::vector<double>& incidence_deg = {}) {
-  Study study = read_study(kFolder + file, overrides);
+  Study study = read_study(test::kStudies + file, overrides);
   if (!incidence_deg.empty()) {
     study.parameters.back().values.clear();
     for (const double t : incidence_deg) study.parameters.back().values.push_back(Parameter::value_of(t));
