@@ -2,7 +2,6 @@
 
 #include "fabrication/machine/io/machine_files.h"
 #include "fabrication/read/nc_program.h"
-#include "studies/rre/rre.h"
 
 namespace retrace::app {
 

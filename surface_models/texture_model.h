@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "surface_models/gaussian_filter.h"
-#include "surface_models/height_map.h"
 
 namespace retrace::surface_models {
 

@@ -4,7 +4,6 @@
 #include "app/job_output.h"
 #include "app/output.h"
 #include "app/shared_arguments.h"
-#include "core/atomic_file.h"
 #include "core/error.h"
 #include "studies/calibration/io/calibration_files.h"
 #include "studies/design/io/design_reader.h"

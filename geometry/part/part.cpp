@@ -10,7 +10,6 @@
 #include "core/error.h"
 #include "geometry/elements/array_sheet.h"
 #include "geometry/elements/facet_planes.h"
-#include "geometry/elements/substrate_checks.h"
 #include "geometry/part/tiling.h"
 #include "geometry/part/welded_part.h"
 #include "geometry/part/zones.h"

@@ -6,7 +6,6 @@
 #include <iterator>
 #include <map>
 
-#include "core/error.h"
 #include "geometry/direction.h"
 #include "geometry/elements/array_sheet.h"
 #include "geometry/elements/element_cells.h"

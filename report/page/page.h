@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "report/page/html_text.h"
 #include "report/page/live_page.h"
 #include "report/path_plot.h"
 #include "report/plot.h"

@@ -23,7 +23,6 @@
 #include "fabrication/chisel/check/zone_overcut.h"
 #include "fabrication/chisel/on_machine.h"
 #include "fabrication/job/substrate_cells.h"
-#include "fabrication/job/v_tool.h"
 #include "geometry/elements/element_cells.h"
 
 namespace retrace::fabrication {

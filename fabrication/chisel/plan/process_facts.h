@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "fabrication/job/job.h"
-#include "fabrication/machine/machine.h"
 
 namespace retrace::fabrication {
 

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "core/angle.h"
-#include "core/atomic_file.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
 #include "core/schema/access.h"

@@ -5,7 +5,6 @@
 #include <limits>
 #include <numbers>
 
-#include "core/number_format.h"
 #include "core/threads.h"
 #include "fabrication/turning/check/deviation_map.h"
 #include "fabrication/turning/finish.h"

@@ -12,7 +12,6 @@
 #include "fabrication/chisel/check/groove.h"
 #include "fabrication/chisel/check/program_check.h"
 #include "fabrication/chisel/check/simulation/dexel.h"
-#include "fabrication/chisel/check/verify.h"
 #include "fabrication/chisel/on_machine.h"
 
 namespace retrace::fabrication {
