@@ -212,7 +212,7 @@ fs::path followed(const fs::path& path) {
 }
 
 [[noreturn]] void refuse_long(const std::string& name, std::size_t most_bytes) {
-  throw InputError(InputLocation{name, 0, ""}, fmt::format("must have at most {} bytes, got more", most_bytes));
+  throw InputError(InputLocation{name, 0, ""}, fmt::format("must have at most {} bytes, but is larger", most_bytes));
 }
 
 /// Reads a stream to its end. Stops after `most_bytes` + 1 bytes, because the stream may be infinite.
@@ -292,7 +292,7 @@ class GrowingFile::Hidden {
 GrowingFile::GrowingFile(const fs::path& path) {
   std::error_code ignored;
   if (fs::exists(path, ignored) && !fs::is_regular_file(path, ignored))
-    throw OutputError(path.string() + ": cannot be written: it is no regular file");
+    throw OutputError(path.string() + ": cannot be written: it is not a regular file");
   hidden_ = std::make_unique<Hidden>(followed(path));
 }
 GrowingFile::~GrowingFile() = default;
@@ -312,8 +312,8 @@ void make_output_folder(const fs::path& folder) {
   fs::create_directories(folder, error);
   std::error_code ignored;
   if (!fs::is_directory(folder, ignored)) {
-    const std::string why = error ? error.message() : "a file of that name is in the way";
-    throw OutputError(fmt::format("{}: the output folder cannot be made: {}", folder.string(), why));
+    const std::string why = error ? error.message() : "a file with this name already exists";
+    throw OutputError(fmt::format("{}: the output folder cannot be created: {}", folder.string(), why));
   }
   if (::access(folder.c_str(), W_OK | X_OK) != 0)
     throw OutputError(fmt::format("{}: the output folder cannot be written to: {}", folder.string(), reason(errno)));
@@ -326,7 +326,7 @@ void require_short_text(std::string_view text, const std::string& name, std::siz
 void require_short_file(const fs::path& path, std::size_t most_bytes) {
   std::error_code ignored;
   if (!fs::exists(path, ignored)) return;
-  if (!fs::is_regular_file(path, ignored)) refuse_unreadable(path, "it is no regular file");
+  if (!fs::is_regular_file(path, ignored)) refuse_unreadable(path, "it is not a regular file");
   if (fs::file_size(path, ignored) > most_bytes) refuse_long(path.string(), most_bytes);
 }
 

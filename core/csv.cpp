@@ -29,14 +29,15 @@ std::optional<std::size_t> CsvReader::find(std::string_view column) const {
   const auto found = std::find(columns_.begin(), columns_.end(), column);
   if (found == columns_.end()) return std::nullopt;
   const auto place = static_cast<std::size_t>(found - columns_.begin());
-  if (std::find(found + 1, columns_.end(), column) != columns_.end()) fail(place, "stands twice in the header");
+  if (std::find(found + 1, columns_.end(), column) != columns_.end()) fail(place, "appears twice in the header");
   return place;
 }
 
 bool CsvReader::next() {
   if (!next_line()) return false;
   if (values_.size() != columns_.size())
-    fail(fmt::format("must have the {} values of the header, got {}", columns_.size(), values_.size()));
+    fail(
+        fmt::format("must have {} values, one for each column of the header, got {}", columns_.size(), values_.size()));
   ++rows_;
   return true;
 }

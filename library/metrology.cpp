@@ -34,19 +34,19 @@ Metrology result_of(studies::MetrologyResult measured) {
 
 surface_models::HeightMapFile to_file(const HeightMap& heights, const MetrologyRequest& request) {
   const surface_models::HeightMapOptions reading = studies::reading_of(request);
-  if (!reading.x_pixel_um) throw InputError(Field{"pixel_um"}, "is required with heights in memory");
+  if (!reading.x_pixel_um) throw InputError(Field{"pixel_um"}, "is required for heights in memory");
   if (heights.columns < surface_models::kLeastColumns || heights.rows < 1)
     throw InputError({"", 0, "heights"},
                      "must be rows of at least " + std::to_string(surface_models::kLeastColumns) + " numbers");
   if (heights.heights_nm.size() != heights.columns * heights.rows)
-    throw InputError({"", 0, "heights"}, "must be columns times rows numbers");
+    throw InputError({"", 0, "heights"}, "must be as many numbers as columns times rows");
   if (heights.heights_nm.size() > surface_models::kMostPoints)
     throw InputError({"", 0, "heights"}, "must be at most " + std::to_string(surface_models::kMostPoints) + " numbers");
   surface_models::HeightMapFile file;
   file.format = "heights in memory";
   file.map = {heights.columns, heights.rows, *reading.x_pixel_um, *reading.y_pixel_um, heights.heights_nm};
   if (surface_models::measured_points(file.map) == 0)
-    throw InputError({"", 0, "heights"}, "must hold a height that was measured, all are NaN");
+    throw InputError({"", 0, "heights"}, "must contain at least one measured height, but all are NaN");
   return file;
 }
 

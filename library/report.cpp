@@ -12,7 +12,7 @@ ReportPage report_page(const std::vector<ReportPart>& parts, const std::string& 
   report::ResultFolder folder;
   for (const std::string& path : readable) report::allow_reading(folder, path, "read");
   for (const ReportPart& part : parts) report::add_result(folder, part.file, part.text);
-  if (folder.documents.empty()) throw InputError({"", 0, "results"}, "must hold a document of retrace");
+  if (folder.documents.empty()) throw InputError({"", 0, "results"}, "must contain a document of retrace");
   report::Page page = report::study_page(folder, title);
   ReportPage made;
   made.warnings = report::add_scene(page, folder);

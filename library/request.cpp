@@ -13,7 +13,7 @@ namespace {
 template <class Request>
 void assign_field(Request& request, std::string_view field, const FieldValue& value) {
   const requests::Row* const row = requests::row_of(requests::description<Request>(), field);
-  if (row == nullptr) throw InputError(Field{field}, "there is no such field");
+  if (row == nullptr) throw InputError(Field{field}, "the request has no field of this name");
   if (std::holds_alternative<std::monostate>(value))
     requests::reset(requests::description<Request>(), *row, &request);
   else

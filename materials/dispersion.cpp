@@ -111,10 +111,10 @@ double refractive_index(const Dispersion& dispersion, double wavelength_nm) {
   const double n = std::visit([&](const auto& d) { return index_at(d, 1e-3 * wavelength_nm); }, dispersion);
   if (std::isfinite(n)) return n;
   if (const auto* const table = std::get_if<TabulatedIndex>(&dispersion))
-    throw InputError(fmt::format("the table of the index reaches from {} to {} nm, got {} nm",
+    throw InputError(fmt::format("the table of the refractive index covers {} to {} nm, got {} nm",
                                  shortest(table->n.wavelengths_nm.front()), shortest(table->n.wavelengths_nm.back()),
                                  shortest(wavelength_nm)));
-  throw InputError(fmt::format("the dispersion formula has no index at {} nm", wavelength_nm));
+  throw InputError(fmt::format("the dispersion formula gives no refractive index at {} nm", wavelength_nm));
 }
 
 double index_relative_to_air(const Material& material, const Material& air, double wavelength_nm) {
@@ -127,15 +127,15 @@ double index_relative_to_air(const Material& material, const Material& air, doub
   const double n = index_relative_to_air(material, air, wavelength_nm);
   if (temperature_c == material.temperature_c) return n;
   if (!material.thermo_optic)
-    throw InputError(fmt::format("{} has no thermo-optic coefficients, so its index is known at {} C alone, got {} C",
+    throw InputError(fmt::format("{} has no thermo-optic coefficients, so its index is known only at {} C, got {} C",
                                  material.name, shortest(material.temperature_c), shortest(temperature_c)));
   const double grown =
       growth_of_index(*material.thermo_optic, n, 1e-3 * wavelength_nm, temperature_c - material.temperature_c);
   const double warm = (n * index_of_air(air, wavelength_nm, material.temperature_c) + grown) /
                       index_of_air(air, wavelength_nm, temperature_c);
   if (!std::isfinite(warm))
-    throw InputError(fmt::format("the thermo-optic formula has no index at {} nm and {} C", shortest(wavelength_nm),
-                                 shortest(temperature_c)));
+    throw InputError(fmt::format("the thermo-optic formula gives no refractive index at {} nm and {} C",
+                                 shortest(wavelength_nm), shortest(temperature_c)));
   return warm;
 }
 

@@ -85,19 +85,19 @@ class KindCheck {
     const auto& numbers = taken<std::vector<double>>(kind);
     if (numbers.empty() && !kind.may_be_empty) refuse(row_, "at least one number", "none");
     if (numbers.size() > kind.most)
-      refuse(row_, fmt::format("1 to {} numbers", kind.most), fmt::format("{} of them", numbers.size()));
+      refuse(row_, fmt::format("1 to {} numbers", kind.most), fmt::format("{} numbers", numbers.size()));
     check_numbers(numbers, kind.range, kind.is_whole);
   }
   void operator()(const schema::Numbers& kind) const {
     const auto& numbers = taken<std::vector<double>>(kind);
-    if (numbers.size() != kind.count) refuse(row_, schema::allowed(kind), fmt::format("{} of them", numbers.size()));
+    if (numbers.size() != kind.count)
+      refuse(row_, schema::allowed(kind), fmt::format("a list of length {}", numbers.size()));
     check_numbers(numbers, kind.range, kind.is_whole);
   }
   void operator()(const schema::NumberRows& kind) const {
     const auto& rows = taken<std::vector<std::vector<double>>>(kind);
     if (rows.size() < kind.least || rows.size() > kind.most)
-      refuse(row_, fmt::format("{} to {} {}", kind.least, kind.most, kind.what),
-             fmt::format("{} of them", rows.size()));
+      refuse(row_, fmt::format("{} to {} {}", kind.least, kind.most, kind.what), fmt::format("{}", rows.size()));
     for (const std::vector<double>& numbers : rows) {
       if (numbers.size() != kind.columns) refuse(row_, schema::allowed(kind), shown(value_));
       check_numbers(numbers, kind.range, false);

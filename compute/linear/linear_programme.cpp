@@ -68,7 +68,7 @@ class Silence {
 };
 
 [[noreturn]] void refuse() {
-  throw BudgetError("the linear programme cannot be solved: its numbers are too far apart");
+  throw BudgetError("the linear programme cannot be solved: its coefficients differ by too many orders of magnitude");
 }
 
 constexpr int kCancelled = 0;

@@ -63,7 +63,7 @@ std::chrono::duration<double> silence_limit() {
   const std::optional<LeadingNumber> seconds = leading_number(text);
   if (!seconds || text[seconds->length] != '\0' || !(seconds->value >= 1.0 && seconds->value <= 86400.0))
     throw InputError(
-        fmt::format("{}: must be a number of seconds in 1..86400, got {}", kSilenceVariable, in_quotes(text)));
+        fmt::format("{}: must be a number of seconds from 1 to 86400, got {}", kSilenceVariable, in_quotes(text)));
   return std::chrono::duration<double>(seconds->value);
 }
 
@@ -141,7 +141,7 @@ bool MpiSession::is_launched() {
 
 MpiSession::MpiSession() : state_(std::make_unique<State>()) {
   if (!state_->mailbox->wait_for_start(kStart))
-    throw BudgetError("MPI has not started after ten minutes: is a rank missing?");
+    throw BudgetError("MPI has not started within ten minutes; check that all ranks run");
   if (rank() != 0) return;
   for (int other = 1; other < state_->mailbox->size(); ++other) {
     state_->there.insert(other);
@@ -290,7 +290,7 @@ bool MpiSession::deal(const ComputeTask& compute, TaskLedger& ledger, std::size_
     dealer.take_back(rank);
     state.at_work.erase(rank);
     waiting.erase(rank);
-    state.remarks.push_back({"rank_lost", fmt::format("rank {} {}; its points went to others", rank, why)});
+    state.remarks.push_back({"rank_lost", fmt::format("rank {} {}; other ranks compute its points", rank, why)});
   };
   const auto read = [&](const Letter& letter) {
     if (!state.there.contains(letter.rank)) return;  // the rank was given up earlier, but it is alive
@@ -298,13 +298,13 @@ bool MpiSession::deal(const ComputeTask& compute, TaskLedger& ledger, std::size_
     if (letter.tag == Tag::result)
       dealer.finish(tasks_of(letter.bytes.substr(0, sizeof(std::uint64_t))).front(),
                     letter.bytes.substr(sizeof(std::uint64_t)));
-    if (letter.tag == Tag::leaving) leaves(letter.rank, "left: " + letter.bytes);
+    if (letter.tag == Tag::leaving) leaves(letter.rank, "stopped: " + letter.bytes);
   };
   const auto give_up_silent = [&] {
     const std::set<int> there = state.there;
     for (const int rank : there) {
       if (!state.is_silent(rank)) continue;
-      if (state.at_work.contains(rank)) leaves(rank, fmt::format("was silent for {:g} s", state.silence.count()));
+      if (state.at_work.contains(rank)) leaves(rank, fmt::format("did not respond for {:g} s", state.silence.count()));
       state.give_up(rank);
     }
   };

@@ -99,8 +99,8 @@ struct ResultStore::Database {
   std::int64_t owner() const { return locks ? locks->own() : 0; }
 
   [[noreturn]] void refuse(const std::string& what) const {
-    throw InputError({name(), 0, ""},
-                     fmt::format("{}: {} starts anew, another folder keeps it", what, reference({"overwrite"})));
+    throw InputError({name(), 0, ""}, fmt::format("{}; use {} to replace it, or another output folder to keep it", what,
+                                                  reference({"overwrite"})));
   }
   [[noreturn]] void refuse_damaged(const std::string& why) const {
     refuse("is damaged: " + printable(why, kMaxReasonLength));
@@ -108,10 +108,10 @@ struct ResultStore::Database {
   [[noreturn]] void fail(const SQLite::Exception& error) const {
     const int code = error.getErrorCode() & 0xff;
     if (code == SQLITE_NOMEM) throw std::bad_alloc();
-    if (code == SQLITE_NOTADB) refuse("is no store of retrace");
+    if (code == SQLITE_NOTADB) refuse("is not a store of retrace");
     if (!is_of_the_system(code)) refuse_damaged(error.getErrorStr());
     throw OutputError(
-        fmt::format("{}: cannot be written: {}; the points that are finished are kept", name(), error.getErrorStr()));
+        fmt::format("{}: cannot be written: {}; the finished points are kept", name(), error.getErrorStr()));
   }
   /// Calls `work` while the mutex is locked. Converts errors of SQLite to errors of this program.
   template <class Work>
@@ -212,11 +212,12 @@ void ResultStore::Database::check() {
 void ResultStore::Database::check_kind() const {
   const int application = sqlite->execAndGet("PRAGMA application_id").getInt();
   const int format = sqlite->execAndGet("PRAGMA user_version").getInt();
-  if (application != kApplication) refuse("is no store of retrace");
+  if (application != kApplication) refuse("is not a store of retrace");
   if (format > kFormat)
     throw InputError(
         {name(), 0, ""},
-        fmt::format("is of a newer version of retrace (format {}), this one reads up to {}", format, kFormat));
+        fmt::format("was written by a newer version of retrace (format {}); this version reads formats up to {}",
+                    format, kFormat));
 }
 
 void ResultStore::Database::make_tables() {
@@ -253,14 +254,15 @@ void ResultStore::Database::check_study() const {
     return query.executeStep() ? query.getColumn(0).getString() : std::string();
   };
   const std::string kind = stored("kind");
-  if (kind.empty()) refuse_damaged("its study is missing");
+  if (kind.empty()) refuse_damaged("its kind of study is missing");
   if (kind != layout.kind)
     throw InputError({name(), 0, ""}, fmt::format("is a store of {}, not of {}", kind, layout.kind));
   for (const auto& [key, value] : layout.parts)
     if (stored("part." + key) != value)
-      throw InputError({layout.source, 0, ""},
-                       fmt::format("{} differs from that of {}: {} starts anew, another folder keeps both", key, name(),
-                                   reference({"overwrite"})));
+      throw InputError(
+          {layout.source, 0, ""},
+          fmt::format("{} differs from that of {}; use {} to replace the store, or another output folder to keep both",
+                      key, name(), reference({"overwrite"})));
 }
 
 void ResultStore::Database::prepare() {
@@ -280,7 +282,7 @@ ResultStore::ResultStore(const fs::path& file, const StoreLayout& layout, IfExis
   database_->layout = layout;
   if (!is_new(file) && if_exists == IfExists::refuse)
     throw InputError({file.string(), 0, ""},
-                     fmt::format("exists: {} goes on with it, {} starts anew, another folder keeps it",
+                     fmt::format("exists; use {} to continue it, {} to replace it, or another output folder to keep it",
                                  reference({"resume"}), reference({"overwrite"})));
   try {
     // An existing store is checked before other files are created. If the store is refused, no new files remain next to

@@ -45,7 +45,7 @@ void check_nesting(std::string_view text, const std::string& file) {
     }
     if (text[i] == '.' && !is_decimal_point(text, i) && ++dots > kMostDotsInALine)
       throw InputError({file, line, ""},
-                       fmt::format("a line may have at most {} dots beside those of numbers", kMostDotsInALine));
+                       fmt::format("a line may have at most {} dots outside of numbers", kMostDotsInALine));
   }
 }
 
@@ -241,15 +241,15 @@ std::optional<std::vector<std::vector<double>>> TomlTable::pairs(std::string_vie
   const toml::node* const given = hidden_->take(key);
   if (given == nullptr) return std::nullopt;
   const auto refuse = [&](const toml::node& node, const std::string& what) -> InputError {
-    return {hidden_->location(node, key), fmt::format("must be a list of {}, got {}", shape, what)};
+    return {hidden_->location(node, key), fmt::format("must be a list of {}, {}", shape, what)};
   };
   const toml::array* const list = given->as_array();
-  if (list == nullptr || list->empty()) throw refuse(*given, shown_node(*given));
+  if (list == nullptr || list->empty()) throw refuse(*given, "got " + shown_node(*given));
   std::vector<std::vector<double>> pairs;
   for (const toml::node& node : *list) {
     const toml::array* const pair = node.as_array();
-    if (pair == nullptr) throw refuse(node, shown_node(node) + " in it");
-    if (pair->size() != 2) throw refuse(node, fmt::format("a list of {} in it", pair->size()));
+    if (pair == nullptr) throw refuse(node, "but the list contains " + shown_node(node));
+    if (pair->size() != 2) throw refuse(node, fmt::format("but the list contains a list of length {}", pair->size()));
     pairs.push_back({hidden_->checked(key, *pair->get(0), first), hidden_->checked(key, *pair->get(1), second)});
   }
   return pairs;
@@ -262,7 +262,7 @@ std::optional<std::vector<double>> TomlTable::numbers(std::string_view key, std:
   const toml::array* const list = node->as_array();
   if (list == nullptr || list->size() != count)
     fail(key, fmt::format("must be a list of {} {}, got {}", count, what,
-                          list != nullptr ? fmt::format("{} of them", list->size()) : shown_node(*node)));
+                          list != nullptr ? fmt::format("a list of length {}", list->size()) : shown_node(*node)));
   std::vector<double> values;
   for (const toml::node& item : *list) values.push_back(hidden_->checked(key, item, range));
   return values;
@@ -279,8 +279,8 @@ std::optional<std::vector<std::vector<double>>> TomlTable::number_rows(std::stri
   for (const toml::node& item : *list) {
     const toml::array* const row = item.as_array();
     if (row == nullptr || row->size() != columns)
-      fail(key, fmt::format("{}, got {}", allowed,
-                            row != nullptr ? fmt::format("one of {}", row->size()) : shown_node(item)));
+      fail(key, fmt::format("{}, but the list contains {}", allowed,
+                            row != nullptr ? fmt::format("a list of length {}", row->size()) : shown_node(item)));
     rows.emplace_back();
     for (const toml::node& value : *row) rows.back().push_back(hidden_->checked(key, value, range));
   }
@@ -316,7 +316,8 @@ std::optional<std::vector<std::string>> TomlTable::texts(std::string_view key) {
   std::vector<std::string> values;
   for (const toml::node& item : *list) {
     if (!item.is_string())
-      throw InputError(hidden_->location(item, key), "must be a list of strings, got " + shown_node(item) + " in it");
+      throw InputError(hidden_->location(item, key),
+                       "must be a list of strings, but the list contains " + shown_node(item));
     values.push_back(item.as_string()->get());
   }
   return values;
@@ -357,7 +358,8 @@ std::vector<TomlTable> TomlTable::tables(std::string_view key, std::string_view 
   std::vector<TomlTable> result;
   for (const toml::node& item : *list) {
     if (!item.is_table())
-      throw InputError(hidden_->location(item, key), fmt::format("must be {}, got {} in it", shape, shown_node(item)));
+      throw InputError(hidden_->location(item, key),
+                       fmt::format("must be {}, but the list contains {}", shape, shown_node(item)));
     std::string name = hidden_->full_name(key);
     if (are_numbered) name += fmt::format("[{}]", result.size() + 1);
     result.push_back(hidden_->child(item.as_table(), std::move(name), hidden_->source->line(item)));
@@ -431,7 +433,7 @@ void TomlTable::finish() const {
     const std::vector<std::string_view> known(hidden_->taken.begin(), hidden_->taken.end());
     const std::string_view meant = closest(name, known);
     fail(name, fmt::format("unknown {}{}", shape_of(name) == Shape::table ? "table" : "key",
-                           meant.empty() ? " (known: " + fmt::format("{}", fmt::join(known, ", ")) + ")"
+                           meant.empty() ? " (allowed: " + fmt::format("{}", fmt::join(known, ", ")) + ")"
                                          : ", did you mean " + in_quotes(meant) + "?"));
   }
   for (const TomlTable& table : hidden_->handed_out) table.finish();

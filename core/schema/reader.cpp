@@ -123,7 +123,7 @@ Value terms_of(const Terms& kind, std::string_view key, TomlTable& source) {
   if (source.shape_of(key) == Shape::list) numbers = source.number_or_numbers(key);
   if (!numbers || numbers->size() % kind.count != 0)
     source.fail(key, fmt::format("must be {}, got {}", allowed(kind),
-                                 numbers ? fmt::format("{} of them", numbers->size()) : source.shown(key)));
+                                 numbers ? fmt::format("a list of length {}", numbers->size()) : source.shown(key)));
   return *std::move(numbers);
 }
 
@@ -162,7 +162,7 @@ std::vector<std::string> texts_of(const TextOrTexts& kind, std::string_view key,
   if (!items || items->empty()) source.fail(key, fmt::format("must be {}, got {}", kind.what, source.shown(key)));
   std::vector<std::string> texts;
   for (const TomlItem& item : *items) {
-    if (!item.text) source.fail(key, fmt::format("must be {}, got {} in it", kind.what, item.shown));
+    if (!item.text) source.fail(key, fmt::format("must be {}, but the list contains {}", kind.what, item.shown));
     texts.push_back(*item.text);
   }
   return texts;
@@ -176,7 +176,8 @@ std::vector<std::string> anything_of(std::string_view key, TomlTable& source) {
   std::vector<std::string> texts;
   for (const TomlItem& item : *items) {
     if (!item.text && !item.is_list && !(item.number && std::isfinite(*item.number)))
-      source.fail(key, fmt::format("must be a list of finite numbers, strings or lists, got {} in it", item.shown));
+      source.fail(
+          key, fmt::format("must be a list of finite numbers, strings or lists, but the list contains {}", item.shown));
     texts.push_back(item.toml);
   }
   return texts;
@@ -188,7 +189,7 @@ Named named_of(const ByName& kind, std::string_view key, TomlTable& source) {
   TomlTable table = source.table(key);
   std::vector<std::string> names(kind.names.begin(), kind.names.end());
   if (names.empty()) names = table.names();
-  if (names.empty()) source.fail(key, "must name at least one, got an empty table");
+  if (names.empty()) source.fail(key, "must have at least one key, got an empty table");
   Named named;
   for (const std::string& name : names)
     std::visit(Overloaded{[&](const Number& each) { named[name] = table.required_number(name, each.range); },
@@ -534,7 +535,7 @@ std::string complaint_about_key(const Format& format, std::string_view path) {
   const std::vector<std::string> keys = keys_of(format);
   if (std::ranges::count(keys, path) > 0) return {};
   const std::string_view meant = closest(path, std::vector<std::string_view>(keys.begin(), keys.end()));
-  return fmt::format("{} is no key of a {}{}", in_quotes(path), format.name,
+  return fmt::format("{} is not a key of a {}{}", in_quotes(path), format.name,
                      meant.empty() ? "" : fmt::format(", did you mean {}?", in_quotes(meant)));
 }
 

@@ -16,7 +16,7 @@ FacetPlanes::FacetPlanes(std::vector<ElementPlanes> elements, double spacing_mm)
     : elements_(std::move(elements)), spacing_mm_(spacing_mm) {
   for (std::size_t i = 0; i < elements_.size(); ++i)
     if (!places_.try_emplace(key_of(elements_[i].centre_mm), i).second)
-      throw InputError("two elements lie in one place");
+      throw InputError("two elements have the same position");
 }
 
 FacetPlanes::Key FacetPlanes::key_of(const Vec2& centre_mm) const {

@@ -36,10 +36,9 @@ void check_count(const PartSpec& spec) {
                        std::holds_alternative<CylinderSubstrate>(spec.substrate->shape);
   const double count = spec.array.x_length_mm * spec.array.y_length_mm / area(aperture_outline(spec.element));
   if (!repeats && count > kMostUnlike)
-    throw InputError(
-        fmt::format("must carry at most {:.0f} elements, as no two of them are alike there; there are "
-                    "some {:.3g}",
-                    kMostUnlike, count));
+    throw InputError(fmt::format(
+        "must have at most {:.0f} elements, because no two elements on it are alike; the array has about {:.3g}",
+        kMostUnlike, count));
 }
 
 /// Returns the facet normals, towards the light, of an element and of its rotated neighbour, if the array has rotated

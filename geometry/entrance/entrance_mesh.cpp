@@ -90,10 +90,10 @@ std::vector<Vec3> moved(const std::vector<Vec3>& vertices, const Vec3& move_mm) 
 std::string refusal_text(const MeshCover& cover, MeshSide side) {
   const bool is_nearly_all = cover.fraction > 0.999 && cover.fraction < 1.001;
   std::string text =
-      fmt::format("the {} of the mesh must cover the part once, it covers {} % of it",
+      fmt::format("the {} of the mesh must cover the whole part one time, but covers {} % of it",
                   side == MeshSide::top ? "top" : "bottom", fixed(100.0 * cover.fraction, is_nearly_all ? 6 : 2));
   if (cover.gap)
-    text += fmt::format("; at x = {}, y = {} mm of its frame {}", fixed(cover.gap->at_mm.x(), 4),
+    text += fmt::format("; at x = {}, y = {} mm of its frame, {}", fixed(cover.gap->at_mm.x(), 4),
                         fixed(cover.gap->at_mm.y(), 4), text_of(cover.gap->fault));
   return text;
 }

@@ -145,12 +145,12 @@ std::string_view text_of(TilingFault fault) {
   switch (fault) {
     case TilingFault::hole: return "there is a hole";
     case TilingFault::overlap: return "triangles overlap";
-    case TilingFault::height_jump: return "the height jumps";
-    case TilingFault::corner_on_side: return "a corner lies on the side of a triangle";
+    case TilingFault::height_jump: return "the height is discontinuous";
+    case TilingFault::corner_on_side: return "a vertex is on the edge of another triangle";
     case TilingFault::no_area: return "a triangle has no area";
-    case TilingFault::upright_triangle: return "a triangle stands upright";
-    case TilingFault::overhang: return "a triangle hangs over";
-    case TilingFault::reversed_triangle: return "a triangle is turned over";
+    case TilingFault::upright_triangle: return "a triangle is vertical";
+    case TilingFault::overhang: return "a triangle overhangs others";
+    case TilingFault::reversed_triangle: return "a triangle has the wrong orientation";
   }
   return "";
 }

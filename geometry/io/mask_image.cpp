@@ -65,7 +65,9 @@ std::vector<std::string> mask_pattern(const std::filesystem::path& file, double 
       pattern[row][column] = '#';
       any = true;
     }
-  if (!any) throw InputError(where, fmt::format("{}: no pixel is dark enough", name));
+  if (!any)
+    throw InputError(where,
+                     fmt::format("{}: no pixel is darker than the threshold, so the mask selects no element", name));
   return pattern;
 }
 

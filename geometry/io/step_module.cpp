@@ -133,7 +133,7 @@ std::string written(const TopoDS_Solid& solid, const std::string& name) {
   Interface_Static::SetIVal("write.surfacecurve.mode", 0);
   STEPControl_Writer writer;
   if (writer.Transfer(solid, STEPControl_ManifoldSolidBrep) != IFSelect_RetDone)
-    throw std::runtime_error("OpenCASCADE could not put the solid into STEP");
+    throw std::runtime_error("OpenCASCADE could not convert the solid to STEP");
   const Handle(StepData_StepModel) model = writer.Model();
   name_product(model, name);
   set_header(model, name);
@@ -141,7 +141,7 @@ std::string written(const TopoDS_Solid& solid, const std::string& name) {
   text.FloatWriter().SetFormat("%.16E");
   text.SendModel(Handle(StepData_Protocol)::DownCast(writer.WS()->Protocol()));
   std::ostringstream stream;
-  if (!text.Print(stream)) throw std::runtime_error("OpenCASCADE could not write STEP");
+  if (!text.Print(stream)) throw std::runtime_error("OpenCASCADE could not write the STEP file");
   return std::move(stream).str();
 }
 

@@ -184,7 +184,7 @@ class Words {
 
   [[noreturn]] void fail(std::string_view wanted, std::string_view got) const {
     throw InputError({name_, line_, ""},
-                     fmt::format("not an STL file: must go on with {}, got {}", wanted,
+                     fmt::format("not an STL file: expected {}, got {}", wanted,
                                  got.empty() ? std::string("the end of the file") : in_quotes(got)));
   }
 
@@ -216,7 +216,7 @@ TriangleMesh parse_ascii(std::string_view text, const std::string& name, double 
       words.skip_line();
       word = words.next();
       if (word.empty()) break;
-      if (!Words::is(word, "solid")) words.fail("\"solid\" or the end", word);
+      if (!Words::is(word, "solid")) words.fail("\"solid\" or the end of the file", word);
       words.skip_line();
       continue;
     }

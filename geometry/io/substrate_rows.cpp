@@ -42,7 +42,9 @@ void set_radius(Substrate& substrate, const Value& value) {
   auto* const cylinder = std::get_if<CylinderSubstrate>(&substrate.shape);
   double& radius_mm = cylinder != nullptr ? cylinder->radius_mm : std::get<SphereSubstrate>(substrate.shape).radius_mm;
   radius_mm = std::get<double>(value);
-  if (radius_mm == 0.0) throw InputError("must not be 0; > 0 bulges towards the light, < 0 is hollow, got 0");
+  if (radius_mm == 0.0)
+    throw InputError(
+        "must not be 0, got 0; a positive radius is convex towards the light, a negative radius is concave");
 }
 
 Value get_axis(const Substrate& substrate) {

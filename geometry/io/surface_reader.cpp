@@ -157,7 +157,7 @@ std::vector<Vec2> read_places(const Document& file) {
   const double pitch = file.number(key);
   const double within = file.number("lenslets.within_mm");
   if (!(within / pitch < std::sqrt(static_cast<double>(kMostLenslets)) / 2.0))
-    file.fail(key, fmt::format("must leave at most {} lenslets, got {}", kMostLenslets, shortest(pitch)));
+    file.fail(key, fmt::format("must be large enough for at most {} lenslets, got {}", kMostLenslets, shortest(pitch)));
   return grid(pitch, within, hexagonal);
 }
 
@@ -177,8 +177,9 @@ BoundaryRequest read_request(const Document& file) {
   const double inner = number("inner_share");
   const double outer = number("outer_share");
   if (!(inner < outer))
-    file.fail("lenslets.outer_share", fmt::format("must be above inner_share, or the boundaries cross, got {} and {}",
-                                                  shortest(inner), shortest(outer)));
+    file.fail("lenslets.outer_share",
+              fmt::format("must be greater than inner_share, got inner_share {} and outer_share {}", shortest(inner),
+                          shortest(outer)));
   const BoundaryOptions options = {static_cast<int>(number("degree")), static_cast<int>(number("samples"))};
   return {file.text("lenslets.boundary") == "intersection",
           options,

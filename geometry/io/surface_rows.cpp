@@ -125,7 +125,8 @@ constexpr auto kLensletRows =
 }
 (std::make_index_sequence<std::size(kSagRows)>{}, std::make_index_sequence<std::size(kPlacedRows)>{});
 
-constexpr Condition kBeyondBoundary[] = {beside("boundary", "needs a [boundary] beyond which to extrapolate")};
+constexpr Condition kBeyondBoundary[] = {
+    beside("boundary", "needs a [boundary], outside of which the surface is extrapolated")};
 constexpr Table kTables[] = {{.name = "base", .meaning = "Sag of the surface.", .rows = kSagRows},
                              {.name = "boundary",
                               .meaning = "Closed curve inside of which the surface is the sag of `[base]`.",

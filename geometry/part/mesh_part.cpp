@@ -56,7 +56,7 @@ Ring take_ring(std::map<std::uint32_t, std::uint32_t>& next) {
   const std::uint32_t first = next.begin()->first;
   for (std::uint32_t v = first;;) {
     const auto it = next.find(v);
-    if (it == next.end()) throw InputError("the mesh has a border that does not close");
+    if (it == next.end()) throw InputError("the mesh has a border that is not a closed curve");
     ring.push_back(v);
     v = it->second;
     next.erase(it);
@@ -120,7 +120,7 @@ class PartBuilder {
     auto next = borders(top, "the entrance face of the mesh");
     const Ring ring = take_ring(next);
     if (!next.empty())
-      throw InputError("the entrance face of the mesh must be one face without holes, it has several borders");
+      throw InputError("the entrance face of the mesh must be one face without holes, but it has several borders");
     for (std::size_t i = 0; i < ring.size(); ++i) add_corner(ring, i);
     require_convex();
   }
@@ -141,8 +141,9 @@ class PartBuilder {
       const Vec2 a = outline_[(i + 1) % outline_.size()] - p;
       const Vec2 b = outline_[(i + 2) % outline_.size()] - outline_[(i + 1) % outline_.size()];
       if (a.x() * b.y() - a.y() * b.x() <= 0.0)
-        throw InputError(fmt::format("the outline of the mesh's entrance face must be convex, it is not at ({}, {}) mm",
-                                     outline_[(i + 1) % outline_.size()].x(), outline_[(i + 1) % outline_.size()].y()));
+        throw InputError(
+            fmt::format("the outline of the mesh's entrance face must be convex, but is not at ({}, {}) mm",
+                        outline_[(i + 1) % outline_.size()].x(), outline_[(i + 1) % outline_.size()].y()));
     }
   }
 
@@ -246,7 +247,8 @@ class PartBuilder {
     for (const auto& t : back_)
       for (const std::uint32_t v : t)
         if (settled_[v].z() >= top_z_)
-          throw InputError("the mesh must have a plate: its back must be below the entrance face, but touches it");
+          throw InputError(
+              "the mesh must have a plate: its back must be below the entrance face, but the back touches this face");
   }
 
   /// Moves the mesh along z so that the highest point of its back is at z = 0, and sets the heights of the part.

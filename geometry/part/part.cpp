@@ -131,8 +131,8 @@ namespace {
 
 void check_plate(const Part& part) {
   if (part.thickness_mm <= part.top_mm)
-    throw InputError(
-        fmt::format("body.thickness_mm must be above {} mm, the highest rim, got {}", part.top_mm, part.thickness_mm));
+    throw InputError(fmt::format("body.thickness_mm must be greater than {} mm, the height of the highest rim, got {}",
+                                 part.top_mm, part.thickness_mm));
 }
 
 Part build(const PartSpec& spec, const Vec2& origin_mm, const FacetPlanes* planes, double elements_per_patch) {
@@ -160,7 +160,7 @@ Part build_part(const PartSpec& spec, const FacetPlanes& planes) {
   const auto given = static_cast<std::int64_t>(planes.element_count());
   if (part.elements_full != given)
     throw InputError(
-        fmt::format("{} of the {} elements are no whole elements of the array", given - part.elements_full, given));
+        fmt::format("{} of the {} elements are not whole elements of the array", given - part.elements_full, given));
   return part;
 }
 

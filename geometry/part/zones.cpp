@@ -319,14 +319,14 @@ std::optional<ZoneFault> fault_of_cells(const ZonedSpec& spec) {
                                                 [](const ArrayCell& c, std::uint32_t n) { return c.number < n; });
       has_elements |= cell.is_element;
       if (const auto [other, is_new] = holder.try_emplace(number, z); !is_new)
-        return ZoneFault{z, fmt::format("holds {}, which zone {} holds as well", words_of(cell), other->second + 1)};
+        return ZoneFault{z, fmt::format("contains {}, which is also in zone {}", words_of(cell), other->second + 1)};
     }
-    if (!has_elements) return ZoneFault{z, "holds no element"};
+    if (!has_elements) return ZoneFault{z, "contains no element"};
   }
   const auto is_free = [&](const ArrayCell& cell) { return !holder.contains(cell.number); };
   const auto free = std::ranges::find_if(first.cells, is_free);
   if (free == first.cells.end()) return std::nullopt;
-  return ZoneFault{spec.zones.size() - 1, fmt::format("and those before it leave {} of {} cells free, {} among them",
+  return ZoneFault{spec.zones.size() - 1, fmt::format("the zones leave {} of {} cells uncovered, such as {}",
                                                       std::count_if(first.cells.begin(), first.cells.end(), is_free),
                                                       first.cells.size(), words_of(*free))};
 }
@@ -362,7 +362,7 @@ std::optional<ZoneFault> fault_of_zones(const ZonedSpec& spec) {
   for (std::size_t z = 0; z < spec.zones.size(); ++z)
     for (const Polygon& region : spec.zones[z].regions) {
       const Rectangle box = bounding_box(region);
-      if (!contains({Vec2::Zero(), spec.size_mm}, region, near_mm)) return ZoneFault{z, "reaches beyond the part"};
+      if (!contains({Vec2::Zero(), spec.size_mm}, region, near_mm)) return ZoneFault{z, "extends beyond the part"};
       for (const Placed& other : placed) {
         const bool is_apart = (box.lower.array() >= other.box.upper.array()).any() ||
                               (other.box.lower.array() >= box.upper.array()).any();
@@ -376,9 +376,8 @@ std::optional<ZoneFault> fault_of_zones(const ZonedSpec& spec) {
       covered_mm2 += area(region);
     }
   if (spec.area_mm2() - covered_mm2 > near_mm2)
-    return ZoneFault{spec.zones.size() - 1,
-                     fmt::format("and those before it leave {:.6g} of {:.6g} mm2 of the part free",
-                                 spec.area_mm2() - covered_mm2, spec.area_mm2())};
+    return ZoneFault{spec.zones.size() - 1, fmt::format("the zones leave {:.6g} of {:.6g} mm2 of the part uncovered",
+                                                        spec.area_mm2() - covered_mm2, spec.area_mm2())};
   return std::nullopt;
 }
 

@@ -334,8 +334,8 @@ SubstrateMeasures measure_substrate(const SubstrateSurface& substrate, const Vec
       const Jet jet = substrate.at(p);
       if (!jet.is_finite())
         throw InputError(
-            fmt::format("is not finite, or has no finite slope or curvature, at x = {:.6g}, y = {:.6g} mm "
-                        "from the middle of the part",
+            fmt::format("must have a finite height, slope and curvature, but has none at x = {:.6g}, y = {:.6g} mm "
+                        "from the centre of the part",
                         p.x(), p.y()));
       measures.lowest_mm = std::min(measures.lowest_mm, jet.value);
       measures.highest_mm = std::max(measures.highest_mm, jet.value);

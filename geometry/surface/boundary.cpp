@@ -29,8 +29,8 @@ void measure(Boundary& boundary, const InputLocation& where) {
       const double angle = knots[i] + (next - knots[i]) * k / kPlaces;
       const double r = boundary.radius_mm.evaluate(angle);
       if (!(r > 0.0))
-        throw InputError(where, fmt::format("must have a radius > 0 all round its centre, at {} degrees the spline "
-                                            "through it has {} mm",
+        throw InputError(where, fmt::format("must have a radius > 0 at every angle about its centre, but at {} degrees "
+                                            "its spline has a radius of {} mm",
                                             degrees(angle), shortest(r)));
       boundary.least_mm = std::min(boundary.least_mm, r);
       boundary.most_mm = std::max(boundary.most_mm, r);
@@ -72,12 +72,12 @@ void check_single_valued(const std::vector<double>& angles, const InputLocation&
   for (std::size_t i = 0; i < angles.size(); ++i) {
     const double next = i + 1 < angles.size() ? angles[i + 1] : closing;
     if (!(next - angles[i] > 1e-12))
-      throw InputError(where, fmt::format("must not cross itself and have one radius at every angle about its centre, "
-                                          "turns back at point {} ({} degrees)",
+      throw InputError(where, fmt::format("must not cross itself and must have one radius at each angle about its "
+                                          "centre, but the angle reverses at point {} ({} degrees)",
                                           i + 1, degrees(angles[i])));
   }
   if (std::abs(closing - angles.front() - kTurn) > 1e-9)
-    throw InputError(where, fmt::format("must go once round its centre, goes {} times",
+    throw InputError(where, fmt::format("must go around its centre one time, but goes around it {} times",
                                         std::lround((closing - angles.front()) / kTurn)));
 }
 
@@ -106,7 +106,8 @@ Boundary boundary_from_points(std::vector<Vec2> points_mm, std::optional<Vec2> c
   const Vec2 centre = centre_mm.value_or(centroid(std::span<const Vec2>(points_mm)));
   for (std::size_t i = 0; i < points_mm.size(); ++i)
     if (!((points_mm[i] - centre).norm() > 0.0))
-      throw InputError(where, fmt::format("must have a radius > 0 at every angle, point {} is the centre", i + 1));
+      throw InputError(where,
+                       fmt::format("must have a radius > 0 at every angle, but point {} is at the centre", i + 1));
   if (scattered) sort_by_angle(points_mm, centre);
   std::vector<double> angles = unwound(points_mm, centre);
   if (angles.back() < angles.front()) {
@@ -128,7 +129,7 @@ Boundary boundary_from_radius(const Vec2& centre_mm, const std::function<double(
     radii.push_back(radius_mm(angles.back()));
     if (!(radii.back() > 0.0) || !std::isfinite(radii.back()))
       throw InputError(
-          where, fmt::format("must give a finite radius > 0 at every angle, at {} degrees it gives {}",
+          where, fmt::format("must give a finite radius > 0 at every angle, but at {} degrees it gives {}",
                              degrees(angles.back()), std::isfinite(radii.back()) ? shortest(radii.back()) : "none"));
   }
   return boundary_from_radii(centre_mm, angles, radii, options.degree, where);
@@ -188,8 +189,10 @@ Boundary boundary_of_intersection(const Vec2& centre_mm, const std::function<dou
       low = high;
       f_low = f_high;
     }
-    throw InputError(where, fmt::format("must meet the base all round, at {} degrees it does not within {} mm",
-                                        degrees(angle), shortest(most_mm)));
+    throw InputError(
+        where,
+        fmt::format("must intersect the base at every angle, but at {} degrees there is no intersection within {} mm",
+                    degrees(angle), shortest(most_mm)));
   };
   return boundary_from_radius(centre_mm, radius, options, where);
 }
@@ -208,9 +211,10 @@ void check_nested(const Boundary& inner, const Boundary& outer, const InputLocat
     const double r = inner.radius_mm.evaluate(angle);
     const double R = outer.radius_mm.evaluate(angle);
     if (!(r < R))
-      throw InputError(where, fmt::format("must not cross or touch the boundary round it, at {} degrees they have {} "
-                                          "and {} mm",
-                                          degrees(angle), fixed(r, 6), fixed(R, 6)));
+      throw InputError(
+          where,
+          fmt::format("must not cross or touch the boundary around it, but at {} degrees their radii are {} and {} mm",
+                      degrees(angle), fixed(r, 6), fixed(R, 6)));
   }
 }
 

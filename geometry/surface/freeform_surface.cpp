@@ -166,8 +166,10 @@ void check_apart(const std::vector<Lenslet>& lenslets, std::uint32_t a, std::uin
     const double angle = kTurn * i / kAngles;
     const Vec2 p = first.point_mm(angle);
     if (second.contains(p.x(), p.y()))
-      throw InputError(where, fmt::format("must leave room between blends, lenslets {} and {} cross at {}", a + 1,
-                                          b + 1, place(p.x(), p.y())));
+      throw InputError(
+          where,
+          fmt::format("must be so far apart that their blends do not overlap, but lenslets {} and {} overlap at {}",
+                      a + 1, b + 1, place(p.x(), p.y())));
   }
 }
 
@@ -217,7 +219,7 @@ void place_on_base(Lenslet& lenslet, const FreeformSurface& base, double x_mm, d
                    bool tilted, const InputLocation& where) {
   const Gradient z = base.gradient(x_mm, y_mm);
   if (!std::isfinite(z.value) || !std::isfinite(z.x) || !std::isfinite(z.y))
-    throw InputError(where, "must lie where the base has a height and slope, got " + place(x_mm, y_mm));
+    throw InputError(where, "must be at a position where the base has a height and a slope, got " + place(x_mm, y_mm));
   const Vec3 normal = Vec3(-z.x, -z.y, 1.0).normalized();
   lenslet.origin_mm = Vec3(x_mm, y_mm, z.value) + height_mm * (tilted ? normal : Vec3(Vec3::UnitZ()));
   lenslet.part_from_lenslet = Eigen::Matrix3d::Identity();
@@ -235,13 +237,13 @@ void check_surface(const FreeformSurface& surface, double radius_mm, const Input
       const double x = r * std::cos(angle);
       const double y = r * std::sin(angle);
       if (!std::isfinite(surface.height_mm(x, y)))
-        throw InputError(where, "must be finite all over the part, is not at " + place(x, y));
+        throw InputError(where, "must be finite over the whole part, but is not at " + place(x, y));
       // At the centre, a formula of the radius r may have no slope. An example is a cone.
       if (i == 0) continue;
       const Gradient z = surface.gradient(x, y);
       const double slope = std::hypot(z.x, z.y);
       if (!(slope < kSteepestSlope))
-        throw InputError(where, fmt::format("must have no vertical slope, at {} it is {}", place(x, y),
+        throw InputError(where, fmt::format("must not be vertical, but at {} its slope is {}", place(x, y),
                                             std::isfinite(slope) ? "above 89 degrees" : "not finite"));
     }
 }

@@ -57,7 +57,7 @@ void AbsorptionData::finish(Material& material) {
                                               shortest(first.wavelength_nm)));
   }
   warn(zeros_, "counts as 0", "count as 0", material);
-  warn(left_out_, "is left out", "are left out", material);
+  warn(left_out_, "is ignored", "are ignored", material);
   if (curve.values.empty() && left_out_.count > 0)
     material.warnings.push_back(
         {"no_absorption_data",

@@ -80,7 +80,7 @@ GlassCatalogue::GlassCatalogue(std::string_view text, std::string file) : file_(
     if (records->empty()) continue;  // skips text before the first record
     for (const std::string_view word : words) records->back().push_back({std::string(word), number});
   }
-  if (glasses_.empty()) throw InputError({file_, 0, ""}, "holds no glass: no line begins with NM");
+  if (glasses_.empty()) throw InputError({file_, 0, ""}, "contains no glass: no line begins with NM");
   for (const std::vector<Record>& glass : glasses_) {
     const Record& name = glass.front();
     if (name.size() < 2) fail(name.front().line, "NM", "must have a name");
@@ -120,8 +120,8 @@ void GlassCatalogue::require_no_more(const Record& record, std::size_t most) con
   if (record.size() <= most + 1 || record.back().line == record.front().line) return;
   fail(record.back().line, record.front().text,
        fmt::format(
-           "must have at most {} numbers in its joined lines, got {}; a line without a code continues the record "
-           "before it",
+           "must have at most {} numbers including its continuation lines, got {}; a line without a code continues the "
+           "previous record",
            most, record.size() - 1));
 }
 
@@ -308,7 +308,7 @@ void GlassCatalogue::require(std::string_view name, const InputLocation& where) 
   const std::vector<std::string_view> known(names_.begin(), names_.end());
   const std::string_view meant = closest(name, known);
   throw InputError(
-      where, fmt::format("no glass of that name among the {} of {}, got {}{}", names_.size(), printable(file_),
+      where, fmt::format("must be the name of one of the {} glasses in {}, got {}{}", names_.size(), printable(file_),
                          in_quotes(name), meant.empty() ? "" : fmt::format("; did you mean {}?", in_quotes(meant))));
 }
 

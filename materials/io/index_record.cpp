@@ -59,7 +59,7 @@ class Record {
   Material read(std::string_view text) {
     const YAML::Node root = parsed(text);
     if (!root.IsMap() || !root["DATA"] || !root["DATA"].IsSequence() || root["DATA"].size() == 0)
-      throw InputError({file_, 0, "DATA"}, "must be a list of what the record knows");
+      throw InputError({file_, 0, "DATA"}, "must be a list of the dispersion formulas and tables of the record");
     Material material;
     material.name = printable(std::filesystem::path(file_).stem().string());
     material.source = file_;
@@ -76,7 +76,8 @@ class Record {
     try {
       return YAML::Load(std::string(text));
     } catch (const YAML::Exception& error) {
-      throw InputError({file_, error.mark.is_null() ? 0 : error.mark.line + 1, ""}, "no YAML: " + printable(error.msg));
+      throw InputError({file_, error.mark.is_null() ? 0 : error.mark.line + 1, ""},
+                       "not valid YAML: " + printable(error.msg));
     }
   }
 
@@ -195,7 +196,7 @@ class Record {
   /// \throw InputError if the first word is not a positive number, or if the row does not have `columns` words
   double wavelength_um_of(const Row& row, std::size_t columns) const {
     if (row.words.size() != columns)
-      fail(row, fmt::format("must have {} numbers a line, got {}", columns, row.words.size()));
+      fail(row, fmt::format("must have {} numbers in each line, got {}", columns, row.words.size()));
     const double um = number_in_row(row, 0);
     if (!(um > 0.0)) fail(row, fmt::format("wavelengths must be > 0, got {} um", shortest(um)));
     return um;
@@ -235,8 +236,8 @@ class Record {
         fail(entry["type"], "type", "must give k only once, got a second table of k");
       for (const Row& row : rows_of(entry, columns)) add_extinction(row, columns, data);
     } catch (const InputError& error) {
-      material.warnings.push_back({"absorption_table_ignored",
-                                   InputError(error.where(), error.text() + "; this table of k is left out").what()});
+      material.warnings.push_back(
+          {"absorption_table_ignored", InputError(error.where(), error.text() + "; this table is ignored").what()});
       return;
     }
     data.finish(material);

@@ -116,7 +116,8 @@ std::variant<double, SpectralCurve> absorption_of(const Document& file, const st
     curve.wavelengths_nm.push_back(pair[0]);
     curve.values.push_back(pair[1]);
   }
-  if (curve.values.size() < 2) file.fail(key, "must be a number or a list of two or more pairs, got a list of one");
+  if (curve.values.size() < 2)
+    file.fail(key, "must be a number or a list of two or more pairs, got a list of one pair");
   return curve;
 }
 
@@ -151,8 +152,7 @@ const Item* search(const std::vector<Item>& items, std::string_view name, std::v
 
 [[noreturn]] void fail(std::string_view kind, std::string_view name, const std::vector<std::string>& names,
                        const InputLocation& where) {
-  throw InputError(where,
-                   fmt::format("no {} of that name, got \"{}\"; there are {}", kind, name, fmt::join(names, ", ")));
+  throw InputError(where, fmt::format("unknown {} \"{}\" (allowed: {})", kind, name, fmt::join(names, ", ")));
 }
 
 /// Returns the item with this name.
@@ -173,7 +173,7 @@ const schema::Format& materials_format() {
 
 MaterialLibrary MaterialLibrary::read(const std::filesystem::path& file) {
   const Document document = read_document(kFormat, read_file(file), file.string());
-  if (!document.has("material")) document.fail("material", "the file must hold [[material]] tables");
+  if (!document.has("material")) document.fail("material", "the file must contain [[material]] tables");
   MaterialLibrary library;
   for (std::size_t i = 0; i < document.count("material"); ++i)
     library.materials_.push_back(material_of(document, path_of_entry("material", i)));

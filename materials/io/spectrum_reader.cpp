@@ -31,7 +31,7 @@ std::vector<std::vector<double>> read_columns(std::string_view text, const std::
       table.fail(0, fmt::format("must ascend, got {} after {}", shortest(columns[0][count - 1]),
                                 shortest(columns[0][count - 2])));
   }
-  if (table.rows() < 2) table.fail(fmt::format("must hold at least two wavelengths, got {}", table.rows()));
+  if (table.rows() < 2) table.fail(fmt::format("must contain at least two wavelengths, got {}", table.rows()));
   return columns;
 }
 

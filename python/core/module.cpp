@@ -138,7 +138,7 @@ void bind_rre(py::module_& module) {
         rre(designs, request);
         return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
       },
-      "What the library alone takes, to tell what Python adds.");
+      "Time in seconds that the library takes, without the overhead of Python.");
 }
 
 void bind_photometry(py::module_& module) {
@@ -397,7 +397,7 @@ void bind_surfaces(py::module_& module) {
 
 PYBIND11_MODULE(_core, module) {
   using namespace retrace::python;
-  module.doc() = "The library of retrace, for the package.";
+  module.doc() = "Bindings of the C++ library, for the package retrace.";
   pybind11::register_exception_translator(translate);
   module.def("version", &retrace::version);
   bind_design(module);

@@ -28,8 +28,8 @@ class Forked : public std::runtime_error {
  public:
   Forked()
       : std::runtime_error(
-            "this process was forked after retrace had begun to compute, and has none of its threads: "
-            "use multiprocessing.get_context(\"forkserver\") or \"spawn\", or fork before") {}
+            "this process was forked after retrace had started its threads, which do not exist in the fork: "
+            "use multiprocessing.get_context(\"forkserver\") or \"spawn\", or fork before the first computation") {}
 };
 
 /// Records the first process that runs a computation.

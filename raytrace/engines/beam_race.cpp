@@ -83,8 +83,8 @@ double BeamRace::share_done() const {
 bool BeamRace::advance() {
   if (beams_ && beams_ns() <= stochastic_ns()) return advance_exact();
   if (may_resample_) return advance_stochastic();
-  throw BudgetError("beams do not reach the target error within their budgets: give " + reference({"engine"}) +
-                    " montecarlo");
+  throw BudgetError("tracing beams does not reach the target error within the memory and beam budgets: use " +
+                    reference({"engine"}) + " montecarlo");
 }
 
 bool BeamRace::advance_exact() try {

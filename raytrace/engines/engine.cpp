@@ -61,16 +61,16 @@ std::optional<Obstacle> why_not(Engine engine, const EngineFacts& facts) {
 std::string_view subject_of(Obstacle obstacle) {
   switch (obstacle) {
     case Obstacle::balls: return "balls";
-    case Obstacle::curved_entrance: return "curved fronts";
-    case Obstacle::unequal_backs: return "backs that are not all alike";
-    case Obstacle::plain_sampling: return "plain samples";
-    case Obstacle::unequal_cells: return "parts without an inner region of equal elements";
+    case Obstacle::curved_entrance: return "curved entrance surfaces";
+    case Obstacle::unequal_backs: return "parts whose elements have different media behind them";
+    case Obstacle::plain_sampling: return "plain sampling points";
+    case Obstacle::unequal_cells: return "parts without an inner region of identical elements";
     case Obstacle::form_and_texture: return "facets with both a form and a texture";
     case Obstacle::texture: return "rough facets";
     case Obstacle::form: return "facets with a form";
     case Obstacle::scattering_entrance: return "an entrance face that scatters";
     case Obstacle::texture_without_phases:
-      return "textures that say nothing of phases (abg, microfacet, height_map, roughness with a lay)";
+      return "textures without phase information (abg, microfacet, height_map, roughness with a lay)";
   }
   return "";
 }

@@ -80,8 +80,8 @@ std::shared_ptr<const BeamPlaces> BeamQueue::shared(BeamPlaces places) {
 void BeamQueue::require_memory() const {
   if (memory_->is_exceeded())
     throw TraceBudgetError(fmt::format(
-        "beams exceed {} with {:.3g} of the power not accounted for: give a larger {}, which follows fewer beams, a "
-        "larger budget, or {} montecarlo",
+        "beams exceed {} with {:.3g} of the power not accounted for: use a larger {} to follow fewer beams, a "
+        "larger memory budget, or {} montecarlo",
         memory_budget_text(), open_power(), reference({"cutoff"}), reference({"engine"})));
   memory_->require_shared();
 }

@@ -194,10 +194,10 @@ void BeamWalk::advance(const Beam& beam, const Cancellation* cancel) {
 }
 
 void BeamWalk::fail_on_budget() const {
-  throw TraceBudgetError(
-      fmt::format("the budget of {} beams ran out with {:.3g} of the power not accounted for; a larger {} follows "
-                  "fewer beams",
-                  scene_.policy.max_beams, queue_.open_power(), reference({"cutoff"})));
+  throw TraceBudgetError(fmt::format(
+      "the budget of {} beams ran out with {:.3g} of the power not accounted for; use a larger {} to follow "
+      "fewer beams",
+      scene_.policy.max_beams, queue_.open_power(), reference({"cutoff"})));
 }
 
 }  // namespace retrace::raytrace

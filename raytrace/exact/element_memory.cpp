@@ -41,7 +41,7 @@ void require_element_memory(const geometry::Part& part) {
   const ElementCost cost = element_cost(part);
   if (cost.fits_memory()) return;
   throw TraceBudgetError(fmt::format(
-      "beams through {:.3g} cells take about {:.3g} GiB, which exceeds half of {}: give a larger budget, or {} "
+      "beams through {:.3g} cells take about {:.3g} GiB, which exceeds half of {}: use a larger memory budget, or {} "
       "montecarlo",
       cost.cells, cost.bytes / static_cast<double>(1U << 30), memory_budget_text(), reference({"engine"})));
 }

@@ -201,8 +201,8 @@ class Cutter {
   void require(std::size_t waiting) const {
     if (made_.polygons.size() + waiting > policy_.most_pieces)
       throw BudgetError(
-          fmt::format("the form of the facets bends the light of a cell too much to diffract it: more "
-                      "than {} plane waves would stand for it",
+          fmt::format("the form of the facets deflects the light of a cell too much for diffraction: more "
+                      "than {} plane waves would be required",
                       policy_.most_pieces));
   }
 

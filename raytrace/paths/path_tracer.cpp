@@ -23,9 +23,9 @@ constexpr int kMostMirrors = 8;
 
 // If there is no cut-off and every branch is traced, the paths of a ray split without end.
 [[noreturn]] void fail_on_segments(std::uint64_t max_segments) {
-  throw BudgetError(fmt::format(
-      "a ray has more than {} segments after it has split: give a larger {}, or a larger {} of retrace rays",
-      max_segments, reference({"cutoff"}), reference({"split"})));
+  throw BudgetError(
+      fmt::format("the paths of one ray have more than {} segments: use a larger {}, or a larger {} of retrace rays",
+                  max_segments, reference({"cutoff"}), reference({"split"})));
 }
 
 }  // namespace

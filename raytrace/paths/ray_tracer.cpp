@@ -115,7 +115,7 @@ class RayTracer::Walk : public ExitObserver {
   void add_memory() {
     memory_.add(kRaysTogether * sizeof(LeavingRay));
     if (memory_.is_exceeded())
-      throw TraceBudgetError(fmt::format("the rays that leave the part exceed {}: give a larger {} or {}",
+      throw TraceBudgetError(fmt::format("the rays that leave the part exceed {}: use a larger {} or {}",
                                          memory_budget_text(), reference({"cutoff"}), reference({"split"})));
   }
 

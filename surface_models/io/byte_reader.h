@@ -25,8 +25,8 @@ class ByteReader {
 
   std::string_view take(std::uint64_t count) {
     if (count > rest_.size())
-      source_->fail(0, fmt::format("the file is cut short: {} bytes are wanted at byte {}, {} are left", count, at_,
-                                   rest_.size()));
+      source_->fail(0, fmt::format("the file is cut short: {} bytes are required at byte {}, but only {} follow", count,
+                                   at_, rest_.size()));
     const std::string_view taken = rest_.substr(0, static_cast<std::size_t>(count));
     rest_.remove_prefix(taken.size());
     at_ += taken.size();
@@ -40,7 +40,7 @@ class ByteReader {
   std::string_view text() {
     const std::size_t end = rest_.find('\0');
     if (end == std::string_view::npos)
-      source_->fail(0, fmt::format("the file is cut short: a text at byte {} has no end", at_));
+      source_->fail(0, fmt::format("the file is cut short: the text at byte {} is not terminated by a zero byte", at_));
     return take(end + 1).substr(0, end);
   }
   /// Skips the next `count` bytes and returns a separate reader of these bytes.

@@ -78,10 +78,13 @@ class GsfReader {
   void read_heights(RawMap& raw, std::size_t start) const {
     const std::size_t wanted = raw.columns * raw.rows;
     if (source_.content.size() < start || (source_.content.size() - start) / 4 < wanted)
-      source_.fail(0, fmt::format("the file is cut short: {} x {} heights want {} bytes from byte {} on, it has {}",
-                                  raw.columns, raw.rows, 4 * wanted, start, source_.content.size()));
+      source_.fail(
+          0,
+          fmt::format(
+              "the file is cut short: {} x {} heights require {} bytes from byte {} on, but the file ends at byte {}",
+              raw.columns, raw.rows, 4 * wanted, start, source_.content.size()));
     if (source_.content.size() - start != 4 * wanted)
-      source_.fail(0, fmt::format("there are {} bytes after the last of {} x {} heights",
+      source_.fail(0, fmt::format("the file has {} bytes after the last of {} x {} heights",
                                   source_.content.size() - start - 4 * wanted, raw.columns, raw.rows));
     ByteReader bytes(source_, source_.content.substr(start), start);
     raw.heights.reserve(wanted);

@@ -135,7 +135,7 @@ Channels read_channels(const Source& source) {
       skip_value(source, container.components, type);
     }
   }
-  if (channels.fields.empty()) source.fail(0, "the file holds no channel (/0/data) with heights");
+  if (channels.fields.empty()) source.fail(0, "the file contains no channel (/0/data) with heights");
   return channels;
 }
 
@@ -158,8 +158,8 @@ RawMap parse_gwy(const Source& source) {
   const std::size_t wanted = source.options.channel.value_or(channels.fields.begin()->first);
   const auto found = channels.fields.find(wanted);
   if (found == channels.fields.end())
-    source.fail(
-        0, fmt::format("{}: the file has the channels {}, got {}", reference({"channel"}), names_of(channels), wanted));
+    source.fail(0, fmt::format("{}: must be a channel of the file ({}), got {}", reference({"channel"}),
+                               names_of(channels), wanted));
   DataField field = read_field(source, found->second);
 
   RawMap raw;
@@ -169,7 +169,7 @@ RawMap parse_gwy(const Source& source) {
   raw.rows = field.rows;
   if (!field.heights || field.count != raw.columns * raw.rows)
     source.fail(
-        0, fmt::format("channel {} must hold {} x {} heights, got {}", wanted, raw.columns, raw.rows, field.count));
+        0, fmt::format("channel {} must contain {} x {} heights, got {}", wanted, raw.columns, raw.rows, field.count));
   if (field.x_size > 0.0 && field.y_size > 0.0 && !field.lateral_unit.empty()) {
     const double um = nm_per_or_fail(source, field.lateral_unit, "lengths") / kNmPerUm;
     raw.x_pixel_um = field.x_size * um / field.columns;
@@ -182,8 +182,8 @@ RawMap parse_gwy(const Source& source) {
     raw.heights.push_back(std::isfinite(z) ? z : kMissing);
   }
   if (channels.fields.size() > 1 && !source.options.channel)
-    raw.warnings.push_back({"channel_chosen", fmt::format("channel {} of {} is used; another one can be chosen", wanted,
-                                                          names_of(channels))});
+    raw.warnings.push_back({"channel_chosen", fmt::format("channel {} of {} is used; choose another channel with {}",
+                                                          wanted, names_of(channels), reference({"channel"}))});
   if (channels.has_mask)
     raw.warnings.push_back(
         {"masks_ignored", "masks in the file are ignored: the points that they cover count as measured"});

@@ -21,18 +21,20 @@ constexpr double kMostPixelUm = 1e6;
 
 RawMap parse_known(const Source& source) {
   const std::string_view content = source.content;
-  const auto refuse = [&](std::string_view what) { source.fail(0, fmt::format("{}; allowed is {}", what, kFormats)); };
+  const auto refuse = [&](std::string_view what) {
+    source.fail(0, fmt::format("{}; allowed formats: {}", what, kFormats));
+  };
   if (content.empty()) refuse("the file is empty");
   if (content.starts_with("GWYP")) return parse_gwy(source);
   if (content.starts_with("Gwyddion Simple Field")) return parse_gsf(source);
   if (content.starts_with("aISO-") || content.starts_with("aBCR-")) return parse_sdf(source);
-  if (content.starts_with("bISO-") || content.starts_with("bBCR-")) refuse("SDF in binary form is not read");
-  if (content.starts_with("GWYO")) refuse("Gwyddion files before version 2 are not read");
-  if (content.starts_with("PK\x03\x04")) refuse("X3P and other zip archives are not read");
+  if (content.starts_with("bISO-") || content.starts_with("bBCR-")) refuse("binary SDF is not supported");
+  if (content.starts_with("GWYO")) refuse("Gwyddion files before version 2 are not supported");
+  if (content.starts_with("PK\x03\x04")) refuse("X3P and other zip archives are not supported");
   const std::string_view start = content.substr(0, 1024);
   if (std::any_of(start.begin(), start.end(),
                   [](char c) { return c >= 0 && c < ' ' && c != '\t' && c != '\n' && c != '\r'; }))
-    refuse("the format is not known");
+    refuse("the format is unknown");
   return parse_text_grid(source);
 }
 
@@ -95,11 +97,11 @@ HeightMapFile finish(const Source& source, RawMap raw) {
   for (double& height : raw.heights) {
     height *= scale;
     if (std::isinf(height) || std::abs(height) > kMostHeightNm)
-      source.fail(0, fmt::format("heights must lie within 1 km (is the unit right?), got {} nm", height));
+      source.fail(0, fmt::format("heights must be within 1 km, got {} nm; check the unit of heights", height));
   }
   file.map.heights_nm = std::move(raw.heights);
   if (measured_points(file.map) < kLeastColumns)
-    source.fail(0, fmt::format("at least {} points must be measured, got {} of {}", kLeastColumns,
+    source.fail(0, fmt::format("at least {} points must have a measured height, got {} of {}", kLeastColumns,
                                measured_points(file.map), file.map.heights_nm.size()));
   file.format = raw.format;
   file.warnings = std::move(raw.warnings);

@@ -54,7 +54,7 @@ class SdfReader {
       header_[lower_case(trimmed(text.substr(0, equals)))] = {std::string(trimmed(text.substr(equals + 1))),
                                                               lines_.number()};
     }
-    source_.fail(lines_.number(), "the file ends in its header; a line \"*\" must end it");
+    source_.fail(lines_.number(), "the file ends within its header; the header must end with a line \"*\"");
   }
 
   double number(const std::string& key) const {

@@ -79,7 +79,7 @@ class TextReader {
         read_values(*line);
       }
     }
-    if (values_.empty()) source_.fail(0, "there are no heights in it");
+    if (values_.empty()) source_.fail(0, "the file contains no heights");
     return header_.layout == Columns::matrix ? matrix() : points();
   }
 
@@ -186,8 +186,9 @@ class TextReader {
     });
     if (columns_ == 0) columns_ = count;
     if (count != columns_)
-      source_.fail(lines_.number(), fmt::format("every row must have the {} values of the first (line {}), got {}",
-                                                columns_, first_line_, count));
+      source_.fail(lines_.number(),
+                   fmt::format("every row must have {} values, as the first row does (line {}), got {}", columns_,
+                               first_line_, count));
     if (rows_ == 0) first_line_ = lines_.number();
     all_end_empty_ &= ends_empty;
     ++rows_;
@@ -213,7 +214,7 @@ class TextReader {
     if (all_end_empty_ && columns_ > 1) drop_last_column();
     if ((header_.columns && *header_.columns != static_cast<double>(columns_)) ||
         (header_.rows && *header_.rows != static_cast<double>(rows_)))
-      source_.fail(last_line_, fmt::format("the header promises {} columns and {} rows, there are {} and {}",
+      source_.fail(last_line_, fmt::format("the header specifies {} columns and {} rows, but the file has {} and {}",
                                            header_.columns.value_or(static_cast<double>(columns_)),
                                            header_.rows.value_or(static_cast<double>(rows_)), columns_, rows_));
     check_size(source_, 0, static_cast<double>(columns_), static_cast<double>(rows_));
@@ -267,12 +268,12 @@ class TextReader {
   Grid grid_of(std::size_t column, const char* name) const {
     std::vector<double> all;
     for (std::size_t i = column; i < values_.size(); i += columns_) {
-      if (std::isnan(values_[i])) source_.fail(0, fmt::format("a point without its {} cannot be placed", name));
+      if (std::isnan(values_[i])) source_.fail(0, fmt::format("each point must have a value of {}, got NaN", name));
       all.push_back(values_[i]);
     }
     std::sort(all.begin(), all.end());
     const double range = all.back() - all.front();
-    if (!std::isfinite(range)) source_.fail(0, fmt::format("the values of {} spread too far", name));
+    if (!std::isfinite(range)) source_.fail(0, fmt::format("the range of the values of {} is too large", name));
     // The last digits of a coordinate may differ from row to row because of rounding.
     const double tolerance = 1e-7 * range + 1e-12 * std::max(std::abs(all.front()), std::abs(all.back()));
     std::vector<double> distinct = {all.front()};
@@ -283,7 +284,8 @@ class TextReader {
     grid.step = range / static_cast<double>(grid.count - 1);
     for (std::size_t i = 0; i < grid.count; ++i)
       if (std::abs(distinct[i] - grid.first - static_cast<double>(i) * grid.step) > 0.05 * grid.step)
-        source_.fail(0, fmt::format("the values of {} must be evenly spaced, {} is off", name, distinct[i]));
+        source_.fail(
+            0, fmt::format("the values of {} must be evenly spaced, but {} is not on the grid", name, distinct[i]));
     return grid;
   }
 
@@ -312,7 +314,7 @@ class TextReader {
     std::vector<bool> is_set(raw.heights.size(), false);
     for (std::size_t i = 0; i < values_.size(); i += columns_) {
       const std::size_t at = (has_y ? y.index_of(values_[i + 1]) * x.count : 0) + x.index_of(values_[i]);
-      if (is_set[at]) source_.fail(0, fmt::format("point {} lies where another one does", i / columns_ + 1));
+      if (is_set[at]) source_.fail(0, fmt::format("point {} has the same position as another point", i / columns_ + 1));
       is_set[at] = true;
       raw.heights[at] = values_[i + columns_ - 1];
     }

@@ -32,9 +32,10 @@ Abg::Abg(double a, double b, double g) : a_(a), b_(b), g_(g) {
     total_ += quadrature.integrate([&](double log_r) { return std::exp(log_r) * ring(std::exp(log_r)); },
                                    std::log(shoulder_), std::log(kLargestShift));
   if (total_ > 1.0)
-    throw InputError({"", 0, "a"}, "must be <= " + shortest(a / total_) +
-                                       " with these b and g, as more light would scatter than there is; got " +
-                                       shortest(a));
+    throw InputError({"", 0, "a"},
+                     "must be <= " + shortest(a / total_) +
+                         " with these b and g, because the scattered light would exceed the incident light; got " +
+                         shortest(a));
 }
 
 /// Returns the integral of r^(1 - g).
@@ -91,11 +92,12 @@ double Abg::specular_share(const ScatterEvent& event, const Facet& facet, Lobe l
 
 Warnings Abg::warnings(double, double) const {
   if (total_ <= kMostScatterOfSmooth) return {};
-  return {{"strong_scatter",
-           "up to " + shortest(std::round(1e3 * total_) / 10.0) +
-               " % of the light scatters by abg, but this model is valid only for smooth surfaces (up to " +
-               shortest(100.0 * kMostScatterOfSmooth) +
-               " %): the scatter of rougher surfaces depends on the angle of incidence"}};
+  return {
+      {"strong_scatter",
+       "up to " + shortest(std::round(1e3 * total_) / 10.0) +
+           " % of the light is scattered by the model abg, but this model is valid only for smooth surfaces (up to " +
+           shortest(100.0 * kMostScatterOfSmooth) +
+           " %): the scatter of rougher surfaces depends on the angle of incidence"}};
 }
 
 }  // namespace retrace::surface_models

@@ -247,11 +247,11 @@ HarveyShack::HarveyShack(const Roughness& roughness)
   const Roughness& r = roughness;
   require(r.sq_nm >= 0.0, "roughness_sq_nm", "must be >= 0", r.sq_nm);
   require(r.sq_nm == 0.0 || r.correlation_length_um > 0.0, "correlation_length_um",
-          "must be > 0 where roughness_sq_nm is", r.correlation_length_um);
+          "must be > 0 if roughness_sq_nm is > 0", r.correlation_length_um);
   require(r.y_correlation_length_um >= 0.0, "y_correlation_length_um", "must be >= 0", r.y_correlation_length_um);
   require(r.waviness_sq_nm >= 0.0, "waviness_sq_nm", "must be >= 0", r.waviness_sq_nm);
   require(r.waviness_sq_nm == 0.0 || r.waviness_length_um > 0.0, "waviness_length_um",
-          "must be > 0 where waviness_sq_nm is", r.waviness_length_um);
+          "must be > 0 if waviness_sq_nm is > 0", r.waviness_length_um);
   require_modelled_slope(slopes_.rms_slope(), "waviness");
 }
 

@@ -223,8 +223,8 @@ HeightMapScatter::HeightMapScatter(const HeightMap& map, double wavelength_nm) {
   if (map.rows * map.columns > kMostScatterPoints)
     throw InputError("a height map that scatters light may have at most " + std::to_string(kMostScatterPoints) +
                      " points, got " + std::to_string(map.columns) + " x " + std::to_string(map.rows) +
-                     ": give a part of it");
-  if (measured_points(map) == 0) throw InputError("the height map holds no measured point");
+                     ": use a section of the map");
+  if (measured_points(map) == 0) throw InputError("the height map contains no measured point");
   const HeightMap levelled = without_form(map, 1);
   const HeightParameters heights = height_parameters(levelled.heights_nm);
   auto texture = std::make_shared<Texture>();

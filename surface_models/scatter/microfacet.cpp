@@ -16,7 +16,7 @@ Microfacet Microfacet::of_waviness(SlopeShape shape, double waviness_sq_nm, doub
     throw InputError({"", 0, "waviness_sq_nm"}, "must be >= 0, got " + shortest(waviness_sq_nm));
   if (waviness_sq_nm > 0.0 && !(waviness_length_um > 0.0))
     throw InputError({"", 0, "waviness_length_um"},
-                     "must be > 0 where waviness_sq_nm is, got " + shortest(waviness_length_um));
+                     "must be > 0 if waviness_sq_nm is > 0, got " + shortest(waviness_length_um));
   Microfacet made(shape, waviness_rms_slope(waviness_sq_nm, waviness_length_um));
   made.waviness_sq_nm_ = waviness_sq_nm;
   return made;
@@ -71,8 +71,9 @@ Warnings Microfacet::warnings(double index, double wavelength_nm) const {
   const double phase = reflection_phase_rad(waviness_sq_nm_, index, 1.0, wavelength_nm);
   if (waviness_sq_nm_ > 0.0 && phase * phase < kSlopePhase2)
     found.push_back(
-        {"low_waviness", "waviness of " + shortest(waviness_sq_nm_) +
-                             " nm is too low for facets, because it diffracts light: use the model harvey_shack"});
+        {"low_waviness",
+         "waviness of " + shortest(waviness_sq_nm_) +
+             " nm is too low for the microfacet model, because it diffracts light: use the model harvey_shack"});
   return found;
 }
 
