@@ -23,8 +23,8 @@ constexpr double kMaxRounding = 2e-3;
 /// Maximum tolerance, relative to the limit, for the rounding of a feed or an inverse time in a program.
 constexpr double kMaxRelativeRounding = 1e-3;
 
-constexpr NcNeed kRotationNeed = {nc_said::kRotationOff, "G69", "that coordinates are not turned"};
-constexpr NcNeed kMirrorNeed = {nc_said::kMirrorOff, "G50.1", "that coordinates are not mirrored"};
+constexpr NcNeed kRotationNeed = {nc_said::kRotationOff, "G69", "to switch off the rotation of coordinates"};
+constexpr NcNeed kMirrorNeed = {nc_said::kMirrorOff, "G50.1", "to switch off the mirroring of coordinates"};
 
 bool has_bit(unsigned bits, char axis) {
   return (bits >> kNcAxisLetters.find(axis) & 1U) != 0;
@@ -43,10 +43,11 @@ void ControlCheck::begin(const NcProgram& program) {
   known_ = 0;
   wrong_.clear();
   if (program.coordinate_system != 0 && program.coordinate_system != control_.coordinate_system)
-    findings_.add("setup", 0,
-                  fmt::format("the program uses coordinate system {}, the machine's axes belong to {}",
-                              program.coordinate_system, control_.coordinate_system),
-                  program.coordinate_system, control_.coordinate_system);
+    findings_.add(
+        "setup", 0,
+        fmt::format("the program uses coordinate system {}, but the machine's axes belong to coordinate system {}",
+                    program.coordinate_system, control_.coordinate_system),
+        program.coordinate_system, control_.coordinate_system);
 }
 
 bool ControlCheck::turns_wrong(const std::string& kind, bool holds) {
@@ -77,7 +78,7 @@ void ControlCheck::first_move(const NcSettings& settings, const NcMotion& motion
   const auto ask = [&](const NcNeed& need) {
     if ((settings.said & need.said) == 0)
       findings_.add("setup", motion.place.line,
-                    fmt::format("before the first move the program does not say {}: {}", need.words, need.meaning));
+                    fmt::format("before this move, the program must contain {} {}", need.words, need.meaning));
   };
   for (const NcNeed& need : needs_of(dialect_)) ask(need);
   if (dialect_ == NcDialect::fanuc && control_.has_rotation) ask(kRotationNeed);
@@ -98,15 +99,15 @@ void ControlCheck::stop(const NcSettings& settings, const AxisPositions& at, con
     if (!holds && has_moved_) findings_.add("unsafe_stop", place.line, std::move(message));
   };
   ask((known_ & rule_.axes) == rule_.axes && at.z_mm >= rule_.safe_z_mm - z_slack_mm_,
-      fmt::format("the program stops while Z is at {} mm, it must be at {} mm or higher", shortest(at.z_mm),
+      fmt::format("the program stops while Z is at {} mm, but Z must be at {} mm or higher", shortest(at.z_mm),
                   shortest(rule_.safe_z_mm)));
   const auto is_at_zero = [](double deg) { return std::abs(std::remainder(deg, 360.0)) < kSlack; };
   ask(is_at_zero(at.a_deg) && is_at_zero(at.b_deg) && is_at_zero(at.c_deg),
-      "the program stops while the rotary axes are not at 0, where the operator works");
+      "the program stops while the rotary axes are not at 0; the operator needs them at 0");
   ask(!settings.mist_on.value_or(false), "the program stops with the mist on");
   const NcSpindle spindle = settings.spindle.value_or(NcSpindle::stopped);
   ask(spindle == NcSpindle::stopped || spindle == NcSpindle::stopped_by_text,
-      "the program stops while the spindle turns");
+      "the program stops while the spindle is running");
   has_moved_ = false;
   known_ = 0;
   wrong_.clear();
@@ -135,7 +136,7 @@ void ControlCheck::refuse_option(const NcSettings& settings, const NcPlace& plac
   const bool holds = dialect_ != NcDialect::fanuc || is_there || (settings.said & option.said) == 0;
   if (turns_wrong(std::string(option.words), holds))
     findings_.add("setup", place.line,
-                  fmt::format("the program says {}, an option that the machine's control lacks", option.words));
+                  fmt::format("the program uses {}, an option that the machine's control does not have", option.words));
 }
 
 void ControlCheck::rest(double seconds, const NcPlace& place) {
@@ -146,7 +147,7 @@ void ControlCheck::rest(double seconds, const NcPlace& place) {
   const bool is_stop = std::isinf(seconds);
   findings_.add("dwell_too_long", place.line,
                 is_stop ? "the program stops for the operator while the tool is in the material"
-                        : fmt::format("the tool dwells in the material for {} s, at most {} s are allowed",
+                        : fmt::format("the tool dwells in the material for {} s, but at most {} s are allowed",
                                       fixed(rested_s_, 3), fixed(rule_.most_rest_s, 3)),
                 is_stop ? 0.0 : rested_s_, rule_.most_rest_s);
 }
@@ -158,17 +159,18 @@ void ControlCheck::spindle(const NcSettings& settings, const NcPlace& place) {
   const bool stands = is == NcSpindle::stopped || is == NcSpindle::stopped_by_text;
   std::string message;
   if (rule.turns == NcSpindle::stopped && !settings.spindle && !has_own_texts(dialect_))
-    message = "the program does not say that the spindle stands still";
+    message = "the program must stop the spindle before the first cut";
   else if (rule.turns == NcSpindle::stopped && !stands)
-    message = "the spindle turns, which must stand still";
+    message = "the spindle is running, but it must be stopped";
   else if (rule.turns == NcSpindle::stopped)
     message = "";
   else if (stands)
-    message = "the tool feeds while the spindle stands still";
+    message = "the tool moves at a feed while the spindle is stopped";
   else if (is != rule.turns)
-    message = rule.is_by_text() ? "the spindle is not started by spindle_start" : "the spindle turns the wrong way";
+    message =
+        rule.is_by_text() ? "the spindle is not started by spindle_start" : "the spindle turns in the wrong direction";
   else if (!rule.is_by_text() && rpm != rule.rpm)
-    message = "the spindle turns at another speed";
+    message = fmt::format("the spindle runs at {} rpm instead of {} rpm", shortest(rpm), shortest(rule.rpm));
   if (turns_wrong("spindle", message.empty()))
     findings_.add("spindle", place.line, message, stands ? 0.0 : rpm, rule.rpm);
 }
@@ -208,7 +210,7 @@ void ControlCheck::words_of_axes(const NcMotion& motion) {
   const int decimals = 3 + static_cast<int>(control_.increment_system);
   if (dialect_ == NcDialect::fanuc && motion.decimals > decimals)
     findings_.add("word", motion.place.line,
-                  fmt::format("a word has {} decimals, increment system IS-{} takes {}", motion.decimals,
+                  fmt::format("a word has {} decimals, but increment system IS-{} allows {}", motion.decimals,
                               kIncrementSystemWords[static_cast<std::size_t>(control_.increment_system)], decimals),
                   motion.decimals, decimals);
   if (dialect_ != NcDialect::sinumerik) return;
@@ -264,7 +266,7 @@ void ControlCheck::axis_speeds(const Machine& machine, const NcMotion& motion) {
       const double speed = motion.path_speed_per_min() * share;
       if (!is_too_fast(speed, axis.most_per_min, motion)) continue;
       findings_.add("feed_too_high", motion.place.line,
-                    fmt::format("{} is fed at {} {}/min, the machine's limit is {}", axis.letter,
+                    fmt::format("{} moves at {} {}/min, but the machine's limit is {}", axis.letter,
                                 fixed_apart(speed, axis.most_per_min, 3), unit, shortest(axis.most_per_min)),
                     speed, axis.most_per_min);
     }
@@ -288,13 +290,14 @@ void ControlCheck::feed(const NcMotion& motion, double process_mm_per_min) {
   if (feed <= 0.0) return findings_.add("zero_feed", motion.place.line, "a cutting move has no feed");
   const auto find = [&](const char* kind, const char* bound, double limit) {
     findings_.add(kind, motion.place.line,
-                  fmt::format("a cut has a feed of {} mm/min, {} {}", fixed_apart(feed, limit, 3), bound,
+                  fmt::format("a cut has a feed of {} mm/min, but {} {}", fixed_apart(feed, limit, 3), bound,
                               fixed_visible(limit, 3)),
                   feed, limit);
   };
-  if (is_too_fast(feed, process_mm_per_min, motion)) find("feed_too_high", "the process allows", process_mm_per_min);
+  if (is_too_fast(feed, process_mm_per_min, motion))
+    find("feed_too_high", "the process allows at most", process_mm_per_min);
   if (is_too_fast(kLeastShare * process_mm_per_min, feed, motion))
-    find("feed_too_low", "the tool rubs below a tenth of the process's feed,", kLeastShare * process_mm_per_min);
+    find("feed_too_low", "the tool rubs at less than a tenth of the process's feed,", kLeastShare * process_mm_per_min);
 }
 
 }  // namespace retrace::fabrication

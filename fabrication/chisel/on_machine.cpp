@@ -39,7 +39,7 @@ void check_increments(const Job& job, const Machine& machine) {
     if (depth_um < least_um)
       throw InputError(
           job.where(key),
-          fmt::format("must be at least {}, as the control of machine {} rounds positions to {} um, got {}",
+          fmt::format("must be at least {}, because the control of machine {} rounds positions to {} um, got {}",
                       fixed(least_um, 2), machine.name, shortest(step_um), shortest(depth_um)));
   };
   check("process.roughing_depth_um", job.process.roughing_depth_um);
@@ -83,7 +83,7 @@ void check_fins(const Job& job, const Machine& machine, const CubeCorner& corner
   const double left_mm = fin_mm(job.tool, step_mm);
   if (left_mm <= max_mm) return;
   const std::string step_text = shortest(1e-3 * static_cast<double>(machine.increments.linear_nm));
-  const std::string fin = fmt::format("{} may remain between the cuts of the facets, at most {} um are allowed",
+  const std::string fin = fmt::format("{} may remain between the cuts of the facets, but at most {} um are allowed",
                                       fin_text(left_mm), fixed(1e3 * std::max(0.0, max_mm), 3));
   const auto at_step = [&](const Tool& tool) { return fin_mm(tool, step_mm); };
   if (const std::optional<double> wedge_deg = allowed_wedge_deg(job, max_mm, at_step))
@@ -93,9 +93,11 @@ void check_fins(const Job& job, const Machine& machine, const CubeCorner& corner
                      *wedge_deg);
   const std::string none = fmt::format("no tool.wedge_deg up to {} is large enough", shortest(kMaxWedgeDeg));
   if (machine.increments.linear_nm <= Increments{}.linear_nm)
-    throw InputError(job.where("tool.nose_angle_deg"),
-                     fmt::format("{}with clearance_deg does not fit the element: {}, and {}, got {}", who, fin, none,
-                                 shortest(job.tool.nose_angle_deg)));
+    throw InputError(
+        job.where("tool.nose_angle_deg"),
+        fmt::format(
+            "{}the tool with this nose_angle_deg and clearance_deg does not fit the element: {}, and {}, got {}", who,
+            fin, none, shortest(job.tool.nose_angle_deg)));
   // The height of a fin is proportional to the increment. Compute the maximum increment that is allowed.
   const double max_step_um = 1e3 * kEdgeStripMm / (fin_mm(job.tool, 1.0) + kEdgeStripMm - max_fin_mm(1.0));
   const double allowed_um = std::floor(1e4 * max_step_um) * 1e-4;
@@ -115,7 +117,7 @@ void check_on_machine(const Job& job, const Machine& machine) {
   const Process& p = job.process;
   if (has_finishing_cuts(job) && p.finishing_depth_um > p.roughing_depth_um)
     throw InputError(job.where("process.finishing_depth_um"),
-                     fmt::format("must be at most roughing_depth_um, {}, got {}", shortest(p.roughing_depth_um),
+                     fmt::format("must be at most roughing_depth_um ({}), got {}", shortest(p.roughing_depth_um),
                                  shortest(p.finishing_depth_um)));
   double most = machine.x.max_feed_mm_per_min.value;
   for (const LinearAxis* const axis : {&machine.y, &machine.z}) most = std::min(most, axis->max_feed_mm_per_min.value);
@@ -123,7 +125,7 @@ void check_on_machine(const Job& job, const Machine& machine) {
                                   {"process.finishing_feed_mm_per_min", p.finishing_feed_mm_per_min},
                                   {"process.retract_feed_mm_per_min", p.retract_feed_mm_per_min}})
     if (feed > most)
-      throw InputError(job.where(key), fmt::format("must be at most the max_feed_mm_per_min of machine {}, {}, got {}",
+      throw InputError(job.where(key), fmt::format("must be at most the max_feed_mm_per_min of machine {} ({}), got {}",
                                                    machine.name, shortest(most), shortest(feed)));
 }
 

@@ -174,19 +174,21 @@ Warnings force_warnings(const ForceModel& model, const CutConditions& cut) {
   Warnings warnings;
   if (cut.depth_of_cut_um < kLeastLinearDepthUm)
     warnings.push_back(
-        {"depth_below_linear_law",
-         fmt::format("a depth of cut of {} um lies below {} um, where the linear law is not shown to hold",
-                     shortest(cut.depth_of_cut_um), shortest(kLeastLinearDepthUm))});
+        {"depth_below_linear_law", fmt::format("a depth of cut of {} um is below {} um, where the linear force law has "
+                                               "not been confirmed by measurements",
+                                               shortest(cut.depth_of_cut_um), shortest(kLeastLinearDepthUm))});
   if (cut.depth_of_cut_um > model.calibrated_to_um)
     warnings.push_back(
-        {"depth_beyond_calibration", fmt::format("a depth of cut of {} um lies beyond the {} um that were measured",
-                                                 shortest(cut.depth_of_cut_um), shortest(model.calibrated_to_um))});
+        {"depth_beyond_calibration",
+         fmt::format("a depth of cut of {} um is above {} um, the largest measured depth: forces are extrapolated",
+                     shortest(cut.depth_of_cut_um), shortest(model.calibrated_to_um))});
   if (cut.strategy == Strategy::bidirectional)
     warnings.push_back({"peaks_of_another_tool",
-                        "root and retract peaks of bidirectional cuts were measured with another tool than the other "
-                        "forces, at one depth of cut"});
-  warnings.push_back({"forces_of_one_material",
-                      "forces are those of aluminium 6061, a wedge of 50 degrees and a clearance of 3 degrees"});
+                        "root and retract peaks of bidirectional cuts were measured at one depth of cut only, and with "
+                        "a different tool from that of the other forces"});
+  warnings.push_back(
+      {"forces_of_one_material",
+       "forces are valid for aluminium 6061, a wedge angle of 50 degrees and a clearance angle of 3 degrees"});
   return warnings;
 }
 

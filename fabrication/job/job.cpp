@@ -28,7 +28,7 @@ bool has_finishing_cuts(const Job& job) {
 
 const geometry::RtpElement& prism_of(const Job& job) {
   const auto* const prism = std::get_if<geometry::RtpElement>(&job.element);
-  if (prism == nullptr) throw InputError(job.where("element.kind"), "must be \"rtp\" for this");
+  if (prism == nullptr) throw InputError(job.where("element.kind"), "must be \"rtp\"");
   return *prism;
 }
 

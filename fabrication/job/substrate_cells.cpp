@@ -141,8 +141,8 @@ double stock_mm(const Job& job, const std::vector<CutElement>& elements, double 
       stock = highest;
       if (stock > kMostDepths * opening.depth_mm || round + 1 == kMostRounds)
         throw InputError(
-            fmt::format("must rise less over its elements for a tool to come out of its cuts: beside the element at "
-                        "x = {}, y = {} mm of the blank it stands more than {} depths over the rims",
+            fmt::format("is too steep for the tool to leave its cuts: next to the element at x = {}, y = {} mm of the "
+                        "blank, the base is more than {} element depths above the rims",
                         fixed(cut.foot_mm.x(), 4), fixed(cut.foot_mm.y(), 4), shortest(kMostDepths)));
       if (more <= kSettledMm) break;
     }

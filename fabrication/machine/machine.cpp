@@ -133,8 +133,8 @@ PlungePose solve_plunge_pose(const Machine& machine, const Vec3& facet_normal, c
   const double r = a_axis.dot(target) - a_axis.dot(c_axis) * along;
   const double amplitude = std::hypot(p, q);
   if (!(amplitude > std::abs(r)))
-    throw InputError("machine " + machine.name + ": no " + std::string(1, machine.tilt_letter()) +
-                     " and C turn that facet to where the tool plunges it");
+    throw InputError("machine " + machine.name + ": there are no positions of " +
+                     std::string(1, machine.tilt_letter()) + " and C at which the tool can plunge this facet");
   const double middle = std::atan2(q, p);
   const double half_width = std::acos(r / amplitude);
 

@@ -39,7 +39,7 @@ struct Interval {
 
 /// Default jerk limit of an axis: no limit, so that the acceleration may change instantaneously.
 inline const Sourced<double> kNoJerkLimit = {std::numeric_limits<double>::infinity(), Basis::assumed,
-                                             "acceleration begins at once, as for every axis that names no jerk"};
+                                             "no jerk limit is given"};
 
 /// Linear axis. Increasing positions move the tool along `direction` relative to the workpiece.
 struct LinearAxis {
@@ -55,10 +55,10 @@ struct LinearAxis {
 struct RotaryAxis {
   /// Point on the axis, in the workpiece frame.
   Sourced<geometry::Vec3> point_mm = {geometry::Vec3::Zero(), Basis::assumed,
-                                      "the origin of the workpiece, as for every machine that names none"};
+                                      "the origin of the workpiece, because no point is given"};
   Sourced<geometry::Vec3> direction;  ///< unit vector along the axis
   /// 1 if positive angles rotate the workpiece about `direction` by the right-hand rule; -1 for the opposite sense.
-  Sourced<double> sign = {1.0, Basis::assumed, "positive words turn the workpiece by the right hand"};
+  Sourced<double> sign = {1.0, Basis::assumed, "positive positions rotate the workpiece by the right-hand rule"};
   Sourced<Interval> limits_deg;
   Sourced<double> speed_deg_per_s;
   Sourced<double> acceleration_deg_per_s2;
@@ -125,11 +125,11 @@ struct Machine {
   std::vector<MachineBody> bodies;
   /// Minimum Z position of the first move of a program. At this position, the tool is clear of the part for all
   /// positions of the other axes. If the value is above the upper limit of Z, the limit is used.
-  Sourced<double> safe_z_mm = {1e9, Basis::assumed, "the upper limit of Z, as for every machine that names none"};
+  Sourced<double> safe_z_mm = {1e9, Basis::assumed, "the upper limit of Z, because no height is given"};
   /// Time that the control waits at every exact stop until the axes have settled.
-  Sourced<double> settling_s = {0.0, Basis::assumed, "axes arrive at once, as for every machine that names none"};
+  Sourced<double> settling_s = {0.0, Basis::assumed, "no settling time is given"};
   /// Time that the axes must move before the first cut of a program or after a stop.
-  Sourced<double> warm_up_s = {0.0, Basis::assumed, "cuts may begin cold, as for every machine that names none"};
+  Sourced<double> warm_up_s = {0.0, Basis::assumed, "no warm-up time is given"};
   Control control;
   Increments increments;  ///< increments to which planned positions are rounded
   /// Letters of the rotary axes that take the shortest path to a programmed angle in the dialect of the programs.

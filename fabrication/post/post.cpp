@@ -239,10 +239,11 @@ class FileWriter {
   void time_of(const Move& move) {
     const double way = way_of(move);
     if (dialect_.has_paths_by_speed && way == 0.0)
-      throw InputError(Field{"dialect"},
-                       fmt::format("{} cannot say how long a move of a path takes that goes nowhere: its time is "
-                                   "that of its way",
-                                   dialect_.dialect.name));
+      throw InputError(
+          Field{"dialect"},
+          fmt::format(
+              "{} cannot contain a move of zero length within a path, because the feed cannot define its duration",
+              dialect_.dialect.name));
     add(dialect_.path_time, 60.0 / move.seconds, 1e3 * move.seconds, 60.0 * way / move.seconds);
   }
 
@@ -310,8 +311,8 @@ class FileWriter {
   [[noreturn]] void refuse(const std::string& what) const {
     throw InputError(
         Field{"dialect"},
-        fmt::format("{} cannot say {} in increment system IS-{}, which has nine digits", dialect_.dialect.name, what,
-                    kIncrementSystemWords[static_cast<std::size_t>(program_.control.increment_system)]));
+        fmt::format("{} cannot write {} in increment system IS-{}, which allows nine digits", dialect_.dialect.name,
+                    what, kIncrementSystemWords[static_cast<std::size_t>(program_.control.increment_system)]));
   }
 
   void feed(double mm_per_min) {
@@ -377,24 +378,23 @@ void check_words(const Program& program, std::string_view dialect) {
   const auto need = [&](const std::string& text, std::string_view what, std::string_view key,
                         std::string_view otherwise) {
     if (text.empty())
-      throw InputError(Field{"dialect"}, fmt::format("{} has no words of its own for {}: the machine file must give "
-                                                     "control.{}, or {}",
-                                                     dialect, what, key, otherwise));
+      throw InputError(Field{"dialect"},
+                       fmt::format("{} has no standard code for {}: give control.{} in the machine file, or {}",
+                                   dialect, what, key, otherwise));
   };
   for (const OwnLine& line : control_lines(program.control))
     check_line(line, dialect, "control", program.control.has_unchecked_lines);
   if (program.spindle)
     for (const OwnLine& line : spindle_lines(*program.spindle))
       check_line(line, dialect, "lathe", program.spindle->has_unchecked_lines);
-  if (program.needs_mist) need(program.control.mist_on, "mist", "mist_on", "the job say process.mist = false");
-  if (program.needs_mist) need(program.control.mist_off, "mist", "mist_off", "the job say process.mist = false");
+  if (program.needs_mist) need(program.control.mist_on, "mist", "mist_on", "set process.mist = false in the job");
+  if (program.needs_mist) need(program.control.mist_off, "mist", "mist_off", "set process.mist = false in the job");
   for (const Item& item : program.items) {
     if (std::holds_alternative<OptionalStop>(item))
-      need(program.control.optional_stop, "an optional stop", "optional_stop",
-           reference({"stop_every"}) + " be left out");
+      need(program.control.optional_stop, "an optional stop", "optional_stop", "omit " + reference({"stop_every"}));
     if (std::holds_alternative<Stop>(item))
       need(program.control.stop, "a stop", "stop",
-           "the job ask for none by tool.edge_life_mm, process.stop_every_min and stop_before_finishing");
+           "avoid stops in the job: omit tool.edge_life_mm, process.stop_every_min and process.stop_before_finishing");
   }
 }
 

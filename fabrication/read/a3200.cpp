@@ -121,7 +121,7 @@ class A3200Reader {
     while (!rest.empty() && !rest.starts_with("TIME")) {
       const NcWord word = take_word(rest, lines_);
       const std::size_t axis = axis_index(word.letter);
-      if (axis == kNcAxes || !rest.starts_with(',')) lines_.fail("PVT must have axes, each with place, velocity");
+      if (axis == kNcAxes || !rest.starts_with(',')) lines_.fail("PVT must have axes, each with position, velocity");
       rest.remove_prefix(1);
       iso.set_cubic(axis, word.number, take_number(rest, lines_).value, cubic);
     }
@@ -154,7 +154,7 @@ class A3200Reader {
 
   void end_program() {
     if (table_.is_open() || has_end_program_)
-      lines_.fail("END PROGRAM must stand once, at the end of the main program");
+      lines_.fail("END PROGRAM is allowed only one time, at the end of the main program");
     has_end_program_ = true;
     if (is_over_) return;
     NcBlock& block = program_.blocks.emplace_back();

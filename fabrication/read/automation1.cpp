@@ -137,7 +137,7 @@ class Automation1Reader {
 
   /// Reads a cubic move such as [X,C],[1,2],[3,4],0.5: axes, positions, velocities, and the time of the move.
   void read_cubic(std::string_view& text, IsoBlock& iso, NcBlock& block) {
-    constexpr std::string_view needs = "MovePvt needs [axes], [places], [velocities], time";
+    constexpr std::string_view needs = "MovePvt needs [axes], [positions], [velocities], time";
     const auto numbers = [&] {
       std::vector<NcNumber> result;
       if (!text.starts_with('[')) lines_.fail(needs);
@@ -159,7 +159,7 @@ class Automation1Reader {
     const std::vector<NcNumber> velocities = numbers();
     const std::size_t count = places.size();
     if (axes.size() != 2 * count - 1 || velocities.size() != count)
-      lines_.fail("MovePvt needs as many axes as places and velocities");
+      lines_.fail("MovePvt needs as many axes as positions and velocities");
     NcCubic cubic;
     for (std::size_t k = 0; k < count; ++k) {
       const std::size_t axis = axis_index(axes[2 * k]);
@@ -184,7 +184,7 @@ class Automation1Reader {
         continue;
       }
       if (axis_index(word.letter) < kNcAxes && letter != word.letter)
-        lines_.fail(fmt::format("names of axes are capitals, got {}", letter));
+        lines_.fail(fmt::format("names of axes must be capital letters, got {}", letter));
       const bool is_unit = word.letter == 'G' && (word.number.value == 70 || word.number.value == 71);
       if (is_unit) lines_.fail("units must be set by SetupTaskDistanceUnits(), not by G70 or G71");
       take_aerotech_word(word, iso, lines_);

@@ -87,7 +87,7 @@ class FanucReader {
     }
     if (text.front() == '/') lines_.fail("a line with block delete (/) is not understood");
     if (text.front() == 'O') return begin_program(text.substr(1));
-    if (!has_main_) lines_.fail("stands before the program's number: O1, say, must come first");
+    if (!has_main_) lines_.fail("must not precede the program number, such as O1");
     Line line;
     line.block.line = lines_.number();
     IsoBlock iso(lines_, line.block);
@@ -98,7 +98,7 @@ class FanucReader {
   void begin_program(std::string_view text) {
     const NcNumber number = take_number(text, lines_);
     if (!number.is_whole() || number.has_point || !text.empty())
-      lines_.fail("O must have a whole number and stand alone");
+      lines_.fail("O must have a whole number and be alone in its line");
     if (table_.is_open()) lines_.fail("a subprogram must end with M99 before another begins");
     close_part();
     if (has_main_ && !table_.begin(fmt::format("{}", number.value)))
@@ -114,7 +114,8 @@ class FanucReader {
 
   void read_word(const NcWord& word, IsoBlock& iso, Line& line) {
     if (axis_index(word.letter) < kNcAxes && !word.number.has_point)
-      lines_.fail(fmt::format("{} needs a decimal point: without one it counts least increments", word.letter));
+      lines_.fail(fmt::format("{} needs a decimal point: without one, the control reads the number in least increments",
+                              word.letter));
     if (axis_index(word.letter) < kNcAxes) line.block.decimals = std::max(line.block.decimals, word.number.decimals);
     if (word.letter == 'N') return check_line_number(word.number, lines_);
     if (word.letter == 'P') {
@@ -132,7 +133,7 @@ class FanucReader {
 
   void finish(IsoBlock& iso, Line& line) {
     if (iso.wants_dwell() && line.p) {
-      if (line.p_has_point) lines_.fail("P of a dwell counts milliseconds and takes no decimal point");
+      if (line.p_has_point) lines_.fail("P of a dwell is in milliseconds and must not have a decimal point");
       iso.set_dwell(*line.p / 1000.0);
     }
     // The axis words of G50.1 select axes, but do not move them.
@@ -154,7 +155,8 @@ class FanucReader {
   }
 
   void set_return(NcBlock& block) {
-    if (!table_.is_open()) lines_.fail("M99 outside of a subprogram would run the program again without end");
+    if (!table_.is_open())
+      lines_.fail("M99 is allowed only in a subprogram; elsewhere, it would repeat the program endlessly");
     block.returns = true;
   }
 

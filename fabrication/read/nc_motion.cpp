@@ -120,7 +120,7 @@ class Runner {
 
   NcEnd missing_subroutine(const NcBlock& block) const {
     const std::string& name = program_.subroutines[static_cast<std::size_t>(block.call)].name;
-    return {false, block.line, fmt::format("the file does not hold the whole of subroutine {}", name), {}};
+    return {false, block.line, fmt::format("the file does not contain the complete subroutine {}", name), {}};
   }
 
   bool call(const NcBlock& block) {
@@ -210,7 +210,7 @@ class Runner {
   }
 
   void move(const NcBlock& block) {
-    if (!move_) fail(block, "axes move before G0 or G1 says how");
+    if (!move_) fail(block, "axes move before G0 or G1 is given");
     NcMotion motion = motion_of(block, *move_);
     if (motion.move == NcMove::linear) motion.duration_s = duration_of(block, motion);
     if (motion.move == NcMove::linear && motion.duration_s == 0.0) motion.feed_mm_per_min = feed_mm_per_min();
@@ -223,8 +223,8 @@ class Runner {
   void expect_standstill(const NcBlock& block) const {
     for (std::size_t axis = 0; axis < kNcAxes; ++axis)
       if (velocities_[axis] != 0.0)
-        fail(block,
-             fmt::format("{} still moves at the end of the preceding move with velocities", kNcAxisLetters[axis]));
+        fail(block, fmt::format("{} still has a velocity at the end of the preceding move, but must be at rest there",
+                                kNcAxisLetters[axis]));
   }
 
   /// Converts velocities from the units of the program to mm/s and degrees/s.
@@ -236,14 +236,15 @@ class Runner {
         velocities[axis] =
             cubic.velocities[axis] * per_s * (axis < kFirstRotaryAxis ? settings_.unit_mm.value_or(1.0) : 1.0);
       else if (velocities_[axis] != 0.0)
-        fail(block, fmt::format("{} still moves and has no word", kNcAxisLetters[axis]));
+        fail(block, fmt::format("{} is still moving and must be given in this move", kNcAxisLetters[axis]));
     return velocities;
   }
 
   double cubic_time_s(const NcBlock& block, const NcCubic& cubic) {
     double time_s = cubic.time_s;
     if (has_times_since_begin(program_.dialect)) {
-      if (!cubics_s_) fail(block, "PVT INIT TIME ABS must say since when times count");
+      if (!cubics_s_)
+        fail(block, "PVT INIT TIME ABS must precede moves with velocities, because it starts the count of their times");
       time_s -= std::exchange(*cubics_s_, cubic.time_s);
     }
     if (!(time_s > 0.0)) fail(block, fmt::format("a move with velocities must have a duration > 0, got {} s", time_s));
@@ -254,8 +255,8 @@ class Runner {
     const NcCubic& cubic = program_.cubics[static_cast<std::size_t>(block.cubic)];
     // For other time units, the documents of the control contradict each other about the units of times and velocities.
     if (has_feeds_of_all_axes(program_.dialect) && settings_.feed_time_s != 1.0)
-      fail(block, "moves by velocities must be in seconds");
-    if ((block.axes & ~known_) != 0) fail(block, "a move by velocities begins at a place that is not known");
+      fail(block, "moves with velocities must have their times in seconds");
+    if ((block.axes & ~known_) != 0) fail(block, "a move with velocities begins at an unknown position");
     const double time_s = cubic_time_s(block, cubic);
     const std::array<double, kNcAxes> from = position_;
     const std::array<double, kNcAxes> begin = velocities_;
@@ -312,7 +313,8 @@ class Runner {
   double duration_of(const NcBlock& block, const NcMotion& motion) const {
     if (has_feeds_of_all_axes(program_.dialect)) return duration_by_way(block, motion);
     if (!inverse_time_.value_or(false)) return move_time_s_;
-    if (!block.feed || !(*block.feed > 0.0)) fail(block, "under inverse time every linear move needs its own F > 0");
+    if (!block.feed || !(*block.feed > 0.0))
+      fail(block, "in inverse time mode (G93), every linear move needs its own F > 0");
     return 60.0 / *block.feed;
   }
 
@@ -348,7 +350,7 @@ class Runner {
     const bool is_absolute = settings_.absolute.value_or(true) && !is_increment;
     const double unit = axis < kFirstRotaryAxis ? settings_.unit_mm.value_or(1.0) : 1.0;
     if (!is_absolute && (known_ & bit) == 0)
-      fail(block, fmt::format("{} moves by an increment before its position is known", kNcAxisLetters[axis]));
+      fail(block, fmt::format("{} has an incremental move before its position is known", kNcAxisLetters[axis]));
     if (is_absolute && (block.shortest & bit) == 0) motion.absolute = static_cast<std::uint8_t>(motion.absolute | bit);
     double to = block.words[axis] * unit + (is_absolute ? 0.0 : position_[axis]);
     if ((block.shortest & bit) != 0) to += kTurnDeg * std::round((position_[axis] - to) / kTurnDeg);

@@ -295,7 +295,7 @@ void IsoBlock::set_dwell(double seconds) {
 void IsoBlock::finish() {
   if (wants_dwell_ != block_.dwell_s.has_value())
     lines_.fail(wants_dwell_ ? "G4 needs a time" : "has a dwell time without G4");
-  if (wants_dwell_ && (block_.axes != 0 || block_.move)) lines_.fail("G4 must stand alone in its line");
+  if (wants_dwell_ && (block_.axes != 0 || block_.move)) lines_.fail("G4 must be alone in its line");
 }
 
 }  // namespace retrace::fabrication

@@ -28,7 +28,7 @@ class PmacReader {
   NcProgram run() {
     std::string_view line;
     while (lines_.next(line))
-      if (!take_text(trimmed(line), texts_, is_in_main_ ? "" : "stands outside of open prog ... close", lines_,
+      if (!take_text(trimmed(line), texts_, is_in_main_ ? "" : "a line must be inside of open prog ... close", lines_,
                      program_))
         read_line_that_may_be_cut(lines_, program_, [&] { read(line.substr(0, line.find("//"))); });
     program_.lines = lines_.number();
@@ -44,7 +44,7 @@ class PmacReader {
     if (text.empty()) return;
     if (starts_with_word(text, "OPEN")) return open(trimmed(text.substr(4)));
     if (text == "CLOSE") return close();
-    if (!is_in_main_ && !table_.is_open()) lines_.fail("stands outside of open ... close");
+    if (!is_in_main_ && !table_.is_open()) lines_.fail("a line must be inside of open ... close");
     NcBlock block;
     block.line = lines_.number();
     IsoBlock iso(lines_, block);
@@ -56,13 +56,13 @@ class PmacReader {
       read_statement(text, iso, block);
       text = trimmed(text);
     }
-    if (block.dwell_s && (block.axes != 0 || block.move)) lines_.fail("dwell must stand alone in its line");
+    if (block.dwell_s && (block.axes != 0 || block.move)) lines_.fail("dwell must be alone in its line");
     if (block.call >= 0 && block.axes != 0) lines_.fail("a call must not move axes");
     program_.blocks.push_back(block);
   }
 
   void open(std::string_view text) {
-    if (is_in_main_ || table_.is_open()) lines_.fail("open within open");
+    if (is_in_main_ || table_.is_open()) lines_.fail("open is not allowed between open and close");
     const bool is_main = starts_with_word(text, "PROG");
     if (!is_main && !starts_with_word(text, "SUBPROG")) lines_.fail("must be open prog or open subprog");
     text = trimmed(text.substr(is_main ? 4 : 7));
@@ -137,7 +137,7 @@ class PmacReader {
     for (text = trimmed(text); !text.empty(); text = trimmed(text)) {
       const NcWord word = take_word(text, lines_);
       const std::size_t axis = axis_index(word.letter);
-      if (axis == kNcAxes || !text.starts_with(':')) lines_.fail("PVT must have axes, each with place:velocity");
+      if (axis == kNcAxes || !text.starts_with(':')) lines_.fail("PVT must have axes, each with position:velocity");
       text.remove_prefix(1);
       iso.set_cubic(axis, word.number, take_number(text, lines_).value, cubic);
     }
@@ -146,7 +146,7 @@ class PmacReader {
   }
 
   void set_distance(bool absolute, NcBlock& block) {
-    if (block.absolute) lines_.fail("says abs or inc twice");
+    if (block.absolute) lines_.fail("has abs or inc twice");
     block.absolute = absolute;
   }
 

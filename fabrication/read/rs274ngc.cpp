@@ -135,7 +135,7 @@ class Rs274Reader {
 
   void begin(const std::string& name) {
     if (table_.is_open()) lines_.fail("a subroutine must end before another begins");
-    if (!is_before_main()) lines_.fail("a subroutine must stand before the main program");
+    if (!is_before_main()) lines_.fail("a subroutine must precede the main program");
     if (!table_.begin(name)) lines_.fail("there is a subroutine of that number already: " + name);
   }
 

@@ -34,14 +34,13 @@ Warnings tool_warnings(const TurningTool& tool) {
   if (tool.rake_deg < kTriedRakeLowDeg || tool.rake_deg > kTriedRakeHighDeg)
     warnings.push_back(
         {"untried_rake",
-         fmt::format("a rake of {} degrees lies outside of the -45 to 18 degrees that were tried with good "
-                     "finish",
+         fmt::format("a rake of {} degrees is outside of -45 to 18 degrees, the range with proven good surface finish",
                      shortest(tool.rake_deg))});
   if (std::abs(tool.skew_deg) > kTriedSkewDeg)
     warnings.push_back(
-        {"untried_skew", fmt::format("a skew of {} degrees lies outside of the -60 to 60 degrees that were tried with "
-                                     "good finish",
-                                     shortest(tool.skew_deg))});
+        {"untried_skew",
+         fmt::format("a skew of {} degrees is outside of -60 to 60 degrees, the range with proven good surface finish",
+                     shortest(tool.skew_deg))});
   return warnings;
 }
 

@@ -149,8 +149,8 @@ void ChipCheck::check_chips(const SweptVolume& sweep, const std::optional<FacetC
   constexpr double kRoundingMm = 1e-7;
   if (worst_mm <= allowed_mm + kRoundingMm) return;
   find("chip_too_thick", sweep,
-       fmt::format("the chip is {} um thick, at a depth of cut of {} um at most {} um are allowed: an earlier cut is "
-                   "missing",
+       fmt::format("the chip is {} um thick, but at a depth of cut of {} um at most {} um are allowed: a previous cut "
+                   "is probably missing",
                    fixed(1e3 * worst_mm, 3), fixed(1e3 * limit.depth_mm(), 3), fixed(1e3 * allowed_mm, 3)),
        1e3 * worst_mm, 1e3 * allowed_mm);
 }
@@ -193,7 +193,7 @@ ChipFigures ChipCheck::finish() {
         workpiece_.tolerance_mm)
       continue;
     find("finishing_missing", line.last,
-         fmt::format("{} finishing cuts removed the last {} um of facet {}, the process requires {}",
+         fmt::format("{} finishing cuts removed the last {} um of facet {}, but the process requires {} finishing cuts",
                      line.finishing_cuts, fixed(1e3 * allowance_mm_, 3), line.facet + 1, process.finishing_cuts),
          line.finishing_cuts, process.finishing_cuts);
   }

@@ -148,7 +148,8 @@ void check_chisel_reach(const geometry::Element& element, const Tool& tool, cons
   const double least_deg = Angle::from_rad(std::atan(std::sqrt(0.5))).deg();
   const double rake_deg = tool.clearance_deg + tool.wedge_deg;
   if (rake_deg <= least_deg)
-    throw InputError(wedge, fmt::format("with clearance_deg must be > {}, or fins remain along dihedral edges, got {}",
+    throw InputError(wedge, fmt::format("the sum of wedge_deg and clearance_deg must be > {}, otherwise fins remain "
+                                        "along the dihedral edges, got {}",
                                         fixed_apart(least_deg, rake_deg, 3), shortest(rake_deg)));
   const double rake = Angle::from_deg(rake_deg).rad();
   // Height of the uncut core above the apex, per mm of the tool's width.
@@ -156,9 +157,11 @@ void check_chisel_reach(const geometry::Element& element, const Tool& tool, cons
       0.5 * std::sin(rake) * std::numbers::sqrt3 / (std::numbers::sqrt2 * std::sin(rake) - std::cos(rake));
   const double most_mm = geometry::element_depth_mm(element) / rise;
   if (tool.width_mm >= most_mm)
-    throw InputError(width,
-                     fmt::format("must be < {}, or what it leaves over the apex reaches the blank's face, got {}",
-                                 fixed_apart(most_mm, tool.width_mm, 6), shortest(tool.width_mm)));
+    throw InputError(
+        width,
+        fmt::format(
+            "must be < {}, otherwise the remaining material above the apex reaches the face of the blank, got {}",
+            fixed_apart(most_mm, tool.width_mm, 6), shortest(tool.width_mm)));
 }
 
 }  // namespace retrace::fabrication

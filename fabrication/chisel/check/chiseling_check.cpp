@@ -78,7 +78,7 @@ void ChiselingCheck::check_layer(const OpenCut& cut, const State& state) {
   const double chip_mm = state.left_mm[cut.facet] - tip_mm;
   const double least_mm = 1e-3 * process_.least_chip_um.value_or(0.0);
   if (std::abs(chip_mm) < kSameTipMm)
-    find("cut_twice", cut.place, cut.element, "this cut has been made before");
+    find("cut_twice", cut.place, cut.element, "an equal cut was already made");
   else if (chip_mm > 0.0 && chip_mm < least_mm - kSameTipMm)
     find("rubs", cut.place, cut.element, rubbing_text(1e3 * chip_mm, 1e3 * least_mm), 1e3 * chip_mm, 1e3 * least_mm);
   for (std::size_t g = 0; g < 3; ++g) {
@@ -96,8 +96,9 @@ void ChiselingCheck::check_layer(const OpenCut& cut, const State& state) {
   const bool begins_layer = tip_mm < *least - limit_mm;
   if (begins_layer && hangs_mm > limit_mm)
     find("chip_not_separated", cut.place, cut.element,
-         fmt::format("facet {} was not cut as deep as the others before the next layer: its chip does not separate",
-                     most - state.left_mm.begin() + 1),
+         fmt::format(
+             "facet {} was not cut as deep as the other facets before the next layer: its chip does not separate",
+             most - state.left_mm.begin() + 1),
          1e3 * hangs_mm, 1e3 * limit_mm);
 }
 

@@ -82,8 +82,9 @@ class CutCheck {
 
 /// Returns the message for a cut that is too thin for the edge.
 inline std::string rubbing_text(double takes_um, double least_um) {
-  return fmt::format("the cut removes at most {} um along its whole length, but the edge rubs below {} um",
-                     fixed(takes_um, 4), shortest(least_um));
+  return fmt::format(
+      "the cut removes at most {} um along its whole length, but the edge rubs instead of cutting below {} um",
+      fixed(takes_um, 4), shortest(least_um));
 }
 
 /// Maximum component of a cut's direction along the outward normal of the clearance face. Both are unit vectors. A

@@ -65,7 +65,7 @@ void PlungeCheck::plunge(const CutMove& cut) {
                             groove.to_face_mm(tip, groove.facets[plunge.facet].normal));
   for (const auto& known : state.tips)
     if (known[3] == static_cast<double>(plunge.facet) && (Vec3(known[0], known[1], known[2]) - tip).norm() < kSameTipMm)
-      find("cut_twice", motion.place, element, "this cut has been made before");
+      find("cut_twice", motion.place, element, "an equal cut was already made");
   state.tips.push_back({tip.x(), tip.y(), tip.z(), static_cast<double>(plunge.facet)});
   open_ = plunge;
 }
@@ -78,8 +78,8 @@ void PlungeCheck::plough(const CutMove& cut) {
   const double chip_mm = std::min(open_->chip_mm, 1e-3 * process_.roughing_depth_um);
   if (length_mm < chip_mm - workpiece_.tolerance_mm)
     find("chip_not_separated", cut.motion.place, cut.element,
-         fmt::format("the plough is {} um long, the chip {} um thick", fixed(1e3 * length_mm, 3),
-                     fixed(1e3 * chip_mm, 3)),
+         fmt::format("the plough is {} um long and does not separate the chip, which is {} um thick",
+                     fixed(1e3 * length_mm, 3), fixed(1e3 * chip_mm, 3)),
          1e3 * length_mm, 1e3 * chip_mm);
   State& state = states_[cut.element];
   for (std::size_t f = 0; f < 2; ++f) state.surface_mm[f] = std::min(state.surface_mm[f], open_->tip_mm[f]);
@@ -115,8 +115,8 @@ void PlungeCheck::check_chip() {
   const bool meets = before && before->tip_mm[f] <= open_->tip_mm[f] + tolerance_mm;
   if (meets) return;
   find("chip_not_separated", open_->place, open_->element,
-       "the plunge does not pass the other facet, and no cut along that facet passes this one: its chip does not "
-       "separate",
+       "the chip of the plunge does not separate: the plunge does not extend beyond the other facet, and no cut along "
+       "the other facet extends beyond the plunged facet",
        1e3 * (open_->tip_mm[g] - std::min(state.surface_mm[g], 1e3)), 0.0);
 }
 

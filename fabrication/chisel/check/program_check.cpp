@@ -106,7 +106,7 @@ void ProgramCheck::end(const NcEnd& end) {
   cuts_->close();
   runs_.end();
   is_in_blank_ = false;
-  if (!end.is_complete) findings_.add("truncated", end.line, "the program stops in the middle: " + end.reason);
+  if (!end.is_complete) findings_.add("truncated", end.line, "the program is incomplete: " + end.reason);
 }
 
 void ProgramCheck::motion(const NcMotion& motion, const NcSettings& settings) {
@@ -210,12 +210,12 @@ void ProgramCheck::check_cut(const NcMotion& motion, const SweptVolume& sweep, s
   }
   deepest_wall_mm_ = std::max(deepest_wall_mm_, wall_mm);
   if (gouge_mm > workpiece_.tolerance_mm)
-    find("gouge", fmt::format("the tool goes {} nm below the design's facet", fixed(gouge_mm * kNmPerMm, 1)), gouge_mm,
+    find("gouge", fmt::format("the tool cuts {} nm below the design's facet", fixed(gouge_mm * kNmPerMm, 1)), gouge_mm,
          workpiece_.tolerance_mm);
   const double wall_limit_mm = prediction.wall_mm + workpiece_.tolerance_mm;
   if (wall_mm > wall_limit_mm)
     find("wall_overcut",
-         fmt::format("the tool goes {} nm into the wall, {} are unavoidable", fixed(wall_mm * kNmPerMm, 1),
+         fmt::format("the tool cuts {} nm into the wall, but only {} nm are unavoidable", fixed(wall_mm * kNmPerMm, 1),
                      fixed(prediction.wall_mm * kNmPerMm, 1)),
          wall_mm, wall_limit_mm);
   if (sweep.is_rapid) return cuts_->close();

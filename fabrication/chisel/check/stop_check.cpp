@@ -68,7 +68,7 @@ void StopCheck::check_time(const NcPlace& place, std::int64_t element, double no
   const double warm_s = workpiece_.machine->warm_up_s.value;
   if (!has_cut_ && ran_s * kSlack < warm_s)
     findings_.add("cold", place.line,
-                  fmt::format("the first cut comes {} s after the machine began to move, the warm-up takes {} s",
+                  fmt::format("the first cut begins {} s after the machine began to move, but the warm-up takes {} s",
                               fixed_apart(ran_s, warm_s, 1), shortest(warm_s)),
                   ran_s, warm_s, element);
   has_cut_ = true;
@@ -76,7 +76,7 @@ void StopCheck::check_time(const NcPlace& place, std::int64_t element, double no
   if (!most_min || is_late_ || ran_s <= 60.0 * *most_min * kSlack) return;
   is_late_ = true;
   findings_.add("stop_overdue", place.line,
-                fmt::format("the program cuts {} min after its start or last stop, at most {} min are allowed",
+                fmt::format("the program cuts {} min after its start or last stop, but at most {} min are allowed",
                             fixed(ran_s / 60.0, 3), shortest(*most_min)),
                 ran_s / 60.0, *most_min, element);
 }
@@ -89,9 +89,10 @@ void StopCheck::check_inspection(const CutMove& cut, const FacetCut& along) {
   }
   if (!workpiece_.job->process.stop_before_finishing || roughed != stops_) return;
   roughed = -1;
-  findings_.add("not_inspected", cut.motion.place.line,
-                fmt::format("element {} is finished without a stop for inspection after its roughing", cut.element),
-                0.0, 0.0, static_cast<std::int64_t>(cut.element));
+  findings_.add(
+      "not_inspected", cut.motion.place.line,
+      fmt::format("element {} is finished without a stop for inspection between roughing and finishing", cut.element),
+      0.0, 0.0, static_cast<std::int64_t>(cut.element));
 }
 
 }  // namespace retrace::fabrication

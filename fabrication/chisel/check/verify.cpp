@@ -55,8 +55,8 @@ void refuse_other_machine(const Job& job, const Machine& machine, const std::vec
     if (other.name == machine.name || other.tilt != machine.tilt || other.a.direction.basis != Basis::measured)
       continue;
     if (has_poses_of(workpiece_of(job, other), words))
-      throw InputError({file, 0, ""}, fmt::format("is a program for machine {}, the job is for {}: its poses are those "
-                                                  "of the other machine's axes",
+      throw InputError({file, 0, ""}, fmt::format("is a program for machine {}, but the job is for machine {}: the "
+                                                  "positions of the rotary axes do not fit the job's machine",
                                                   other.name, machine.name));
   }
 }
@@ -151,10 +151,10 @@ class Judge {
            fmt::format("facet {} of element {}: {} nm {}", f + 1, number, fixed(std::abs(deviation.nm), 1), what),
            deviation.nm, limit, 1});
     };
-    if (facet.highest.nm > tolerance_nm) add("excess", facet.highest, "of material are left above it", tolerance_nm);
-    if (facet.deepest.nm < -tolerance_nm) add("gouge", facet.deepest, "too much are removed below it", tolerance_nm);
+    if (facet.highest.nm > tolerance_nm) add("excess", facet.highest, "of material remain above it", tolerance_nm);
+    if (facet.deepest.nm < -tolerance_nm) add("gouge", facet.deepest, "of material are removed below it", tolerance_nm);
     if (facet.root.nm > root_nm + tolerance_nm)
-      add("root_residual", facet.root, "are left at the root", root_nm + tolerance_nm);
+      add("root_residual", facet.root, "of material remain at the root", root_nm + tolerance_nm);
   }
 
   const Workpiece3d& workpiece_;

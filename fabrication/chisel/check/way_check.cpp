@@ -65,15 +65,15 @@ void WayCheck::turn(const NcMotion& motion) {
   if (machine_.tilt == Tilt::table && tip.z() < highest_mm + clearance_mm)
     findings_.add(
         "turn_too_low", motion.place.line,
-        fmt::format("the rotating blank reaches Z {} mm while the tool is at Z {} mm, the clearance must be at "
-                    "least {} mm",
-                    fixed(highest_mm, 3), fixed(tip.z(), 3), fixed(clearance_mm, 3)),
+        fmt::format(
+            "the rotating blank reaches Z {} mm while the tool is at Z {} mm, but the clearance must be at least {} mm",
+            fixed(highest_mm, 3), fixed(tip.z(), 3), fixed(clearance_mm, 3)),
         tip.z(), highest_mm + clearance_mm);
   // The blank remains horizontal. A tilting head rotates the tool about B, so the tip must stay above the blank's face.
   if (machine_.tilt == Tilt::head && lowest_tip_mm < clearance_mm)
     findings_.add(
         "turn_too_low", motion.place.line,
-        fmt::format("the tip is {} mm above the blank's face while the axes rotate, at least {} mm are required",
+        fmt::format("the tip is {} mm above the blank's face while the axes rotate, but at least {} mm are required",
                     fixed(lowest_tip_mm, 3), fixed(clearance_mm, 3)),
         lowest_tip_mm, clearance_mm);
 }
@@ -85,7 +85,7 @@ void WayCheck::turn_from_anywhere(const NcMotion& motion) {
   if (motion.from.z_mm < safe_mm - rounding_slack(motion, 'Z'))
     findings_.add(
         "turn_too_low", motion.place.line,
-        fmt::format("rotary axes with unknown positions move while Z is at {} mm, which must be at least {} mm",
+        fmt::format("rotary axes with unknown positions move while Z is at {} mm, but Z must be at least at {} mm",
                     fixed_apart(motion.from.z_mm, safe_mm, 3), shortest(safe_mm)),
         motion.from.z_mm, safe_mm);
 }
@@ -180,7 +180,7 @@ void WayCheck::rapid(const NcMotion& motion, const RigidMotion& back, std::optio
                   1e3 * lowest_mm, 0.0, element ? static_cast<std::int64_t>(*element) : -1);
   else if (lowest_mm < clearance_mm && (goes_down || motion.moved != 0b00100))
     findings_.add("clearance", motion.place.line,
-                  fmt::format("a rapid move comes to {} um above the blank's face, must keep {}",
+                  fmt::format("a rapid move is only {} um above the blank's face, but at least {} um are required",
                               fixed(1e3 * lowest_mm, 3), fixed(1e3 * clearance_mm, 1)),
                   1e3 * lowest_mm, 1e3 * clearance_mm);
   if (goes_down && (motion.moved & 0b00011) != 0)
@@ -193,7 +193,7 @@ void WayCheck::fixtures(const NcMotion& motion, std::span<const PlacedBody> stan
 }
 
 void WayCheck::report_contact(const BodyContact& contact, const NcPlace& place) {
-  findings_.add("fixture_collision", place.line, "the " + contact.tool + " runs into the " + contact.other);
+  findings_.add("fixture_collision", place.line, "the " + contact.tool + " collides with the " + contact.other);
 }
 
 void WayCheck::holder(const SweptVolume& sweep, const RigidMotion& back) {
@@ -218,7 +218,7 @@ void WayCheck::outside(const SweptVolume& sweep, std::span<const Vec3> corners) 
   for (const Vec3& corner : corners) deepest_mm = std::min(deepest_mm, face_.height_mm(corner));
   if (deepest_mm < -tolerance_mm_)
     findings_.add("gouge", sweep.place.line,
-                  fmt::format("the tool cuts {} nm deep beside the elements", fixed(-deepest_mm * kNmPerMm, 1)),
+                  fmt::format("the tool cuts {} nm deep outside the elements", fixed(-deepest_mm * kNmPerMm, 1)),
                   -deepest_mm * kNmPerMm, tolerance_mm_ * kNmPerMm);
 }
 

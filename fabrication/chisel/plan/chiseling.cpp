@@ -134,10 +134,11 @@ void check_v_in_poses(const Job& job, const Machine& machine, const std::array<C
     }
     const double turned_deg = std::abs(poses[k].root_tilt.deg());
     if (turned_deg > room_deg)
-      throw InputError(where,
-                       fmt::format("{}the tool would stand turned by {} degrees in facet {}, which B and C cannot "
-                                   "mend, and run into a neighbouring facet: at most {} fit its angles",
-                                   stance.who(), fixed(turned_deg, 3), k + 1, fixed(room_deg, 3)));
+      throw InputError(
+          where, fmt::format(
+                     "{0}in facet {2}, the tool would be rotated by {1} degrees, which B and C cannot correct, and "
+                     "would cut into a neighbouring facet. At most {3} degrees are allowed for the angles of this tool",
+                     stance.who(), fixed(turned_deg, 3), k + 1, fixed(room_deg, 3)));
     spines[k] = turn * edges.spine;
   }
   for (std::size_t k = 0; k < 3; ++k) {
@@ -149,7 +150,7 @@ void check_v_in_poses(const Job& job, const Machine& machine, const std::array<C
     if (covered_deg < 90.0 + error_deg)
       throw InputError(where,
                        fmt::format("{}the cuts along facets {} and {} would leave a fin of {} degrees between them, "
-                                   "but no fin is allowed: increase tool.wedge_deg, or incline the base less",
+                                   "but no fin is allowed: increase tool.wedge_deg, or reduce the slope of the base",
                                    stance.who(), k + 1, (k + 1) % 3 + 1, fixed(90.0 + error_deg - covered_deg, 3)));
   }
   check_fins_in_poses();

@@ -87,16 +87,16 @@ void EdgeAccount::check(const EdgeUse& visit, std::int32_t element) const {
   const auto& life_mm = job_.tool.edge_life_mm;
   if (life_mm && visit.cut_mm > *life_mm)
     throw LimitError(job_.where("tool.edge_life_mm"),
-                     fmt::format("must be at least {}, what one visit of element {} cuts, got {}",
+                     fmt::format("must be at least {}, the length of cut of one visit to element {}, got {}",
                                  fixed(visit.cut_mm, 3), element, shortest(*life_mm)),
                      visit.cut_mm);
   const auto& most_min = job_.process.stop_every_min;
   const double minutes = (used_.seconds + visit.seconds) / kSecondsPerMinute;
   if (most_min && minutes > *most_min)
-    throw InputError(job_.where("process.stop_every_min"),
-                     fmt::format("must be at least {}, what the way to element {}, warm-up included, and one visit "
-                                 "take, got {}",
-                                 fixed(std::ceil(minutes * 1e3) * 1e-3, 3), element, shortest(*most_min)));
+    throw InputError(
+        job_.where("process.stop_every_min"),
+        fmt::format("must be at least {}, the time of the move to element {} (with warm-up) and one visit, got {}",
+                    fixed(std::ceil(minutes * 1e3) * 1e-3, 3), element, shortest(*most_min)));
 }
 
 std::string stop_text(const Job& job, StopReason reason, int number) {

@@ -33,9 +33,9 @@ bool is_named(const Stage& stage, std::string_view name) {
     names.emplace_back("...");
   }
   const bool is_phase = field.name == "phase";
-  throw InputError(field,
-                   fmt::format("must be {}roughing, finishing or one of {}{}, got {}", is_phase ? "all, " : "",
-                               fmt::join(names, ", "), is_phase ? " (with + for all after it too)" : "", plain(name)));
+  throw InputError(
+      field, fmt::format("must be {}roughing, finishing or one of {}{}, got {}", is_phase ? "all, " : "",
+                         fmt::join(names, ", "), is_phase ? " (add + to include all later stages)" : "", plain(name)));
 }
 
 /// Removes all stages from `plan` except the requested ones.
@@ -47,7 +47,7 @@ std::vector<Stage> choose_stages(Plan& plan, const PlanOptions& options) {
                                     [&](const Stage& stage) { return is_named(stage, options.before); });
     if (first == plan.stages.end()) refuse_phase(plan, Field{"standing"}, options.before);
     if (first == plan.stages.begin())
-      throw InputError(Field{"standing"}, "must be a stage before which something is cut, got the first");
+      throw InputError(Field{"standing"}, "must not be the first stage, because nothing has been cut before it");
     plan.stages.erase(first, plan.stages.end());
   }
   if (options.phase == "all") return {};

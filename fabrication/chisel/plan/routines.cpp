@@ -122,7 +122,7 @@ double left_of_roughing_mm(const Job& job, double across_mm, int cut, int cuts, 
   const double shared_mm = cut < cuts ? 0.5 * (taken_mm + depth_mm) : taken_mm;
   if (share * shared_mm - dip_mm < least_mm)
     throw InputError(job.where("process.least_chip_um"),
-                     fmt::format("must be at most {}, what the first cut of roughing takes, got {}",
+                     fmt::format("must be at most {}, the chip thickness of the first roughing cut, got {}",
                                  fixed(1e3 * (share * shared_mm - dip_mm), 3), shortest(*job.process.least_chip_um)));
   return across_mm - shared_mm;
 }
@@ -131,15 +131,14 @@ void check_allowance(const Job& job, double left_mm) {
   if (left_mm > 0.0) return;
   throw InputError(
       job.where("process.finishing_depth_um"),
-      fmt::format("must leave material for roughing: {} finishing cuts of {} um are {} um more than a facet is "
-                  "deep",
+      fmt::format("must leave material for roughing: {} finishing cuts of {} um exceed the depth of a facet by {} um",
                   job.process.finishing_cuts, shortest(job.process.finishing_depth_um), fixed(-1e3 * left_mm, 3)));
 }
 
 int whole_cuts(const Job& job, double cuts) {
   if (!(cuts <= kMostCuts))
     throw InputError(job.where("process.roughing_depth_um"),
-                     fmt::format("must leave at most {} cuts a facet, {} um would make {:.3g}", kMostCuts,
+                     fmt::format("must give at most {} cuts per facet, but {} um gives {:.3g} cuts", kMostCuts,
                                  job.process.roughing_depth_um, cuts));
   return std::max(1, static_cast<int>(std::ceil(cuts - kWholeTolerance)));
 }

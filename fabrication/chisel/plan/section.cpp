@@ -60,14 +60,13 @@ void check_root(const Job& job, const Machine& machine, const CuttingPose& pose,
   const double strip_mm = max_strip_mm(job, machine, stance.element >= 0);
   const double tangent = std::abs(std::tan(pose.root_tilt.rad()));
   if (job.tool.width_mm * tangent <= strip_mm) return;
-  throw InputError(
-      where,
-      fmt::format("{}the root is at {} degrees to the tool's edge, and A and C cannot correct this angle; at most {} "
-                  "degrees are allowed, so that the strip that the edge leaves is at most {} um wide, less than the "
-                  "depth of cut (or tool.width_mm at most {})",
-                  stance.who(), fixed(std::abs(pose.root_tilt.deg()), 4),
-                  fixed(Angle::from_rad(std::atan(strip_mm / job.tool.width_mm)).deg(), 4), fixed(1e3 * strip_mm, 3),
-                  fixed(strip_mm / tangent, 4)));
+  throw InputError(where,
+                   fmt::format("{}the angle between the root and the tool's edge is {} degrees, and A and C cannot "
+                               "correct it; at most {} degrees are allowed for this tool, so that the uncut strip at "
+                               "the root is at most {} um wide. Reduce tool.width_mm to at most {}",
+                               stance.who(), fixed(std::abs(pose.root_tilt.deg()), 4),
+                               fixed(Angle::from_rad(std::atan(strip_mm / job.tool.width_mm)).deg(), 4),
+                               fixed(1e3 * strip_mm, 3), fixed(strip_mm / tangent, 4)));
 }
 
 /// Refuses a pose in which the angle between the ploughed facet and the plane that the edge sweeps is too large.
@@ -82,11 +81,11 @@ void check_ploughed_facet(const Job& job, const Machine& machine, const CuttingP
   if (cosine > kAlongFacet) return;
   const double at_deg = Angle::from_rad(std::acos(cosine)).deg();
   const double max_deg = Angle::from_rad(std::acos(kAlongFacet)).deg();
-  throw InputError(where,
-                   fmt::format("{}the root is at {} degrees to the tool's edge, and A and C cannot correct this angle; "
-                               "the ploughed facet would be off by {} degrees, at most {} are allowed",
-                               stance.who(), fixed(std::abs(pose.root_tilt.deg()), 4), fixed_apart(at_deg, max_deg, 4),
-                               fixed(max_deg, 4)));
+  throw InputError(
+      where, fmt::format("{}the angle between the root and the tool's edge is {} degrees, and A and C cannot correct "
+                         "it. The ploughed facet would have an error of {} degrees, but at most {} degrees are allowed",
+                         stance.who(), fixed(std::abs(pose.root_tilt.deg()), 4), fixed_apart(at_deg, max_deg, 4),
+                         fixed(max_deg, 4)));
 }
 
 }  // namespace

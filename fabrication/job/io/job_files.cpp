@@ -315,7 +315,7 @@ const Table kJobTables[] = {
 void check_chips(const Job& job, const Refuse& refuse) {
   const auto& chips = job.tool.edge_chips;
   if (chips.size() > kMostChips)
-    refuse("tool.edge_chips", fmt::format("must be at most {}, got {}", kMostChips, chips.size()));
+    refuse("tool.edge_chips", fmt::format("must have at most {} chips, got {}", kMostChips, chips.size()));
   for (std::size_t i = 0; i < chips.size(); ++i) {
     const std::string path = path_of_entry("tool.edge_chips", i);
     const auto check = [&](std::string_view key, double value, const NumberRange& range) {
@@ -328,7 +328,7 @@ void check_chips(const Job& job, const Refuse& refuse) {
     check("depth_um", depth_um, {.low = 0.0, .low_included = false, .high = 0.5 * width_um});
     for (std::size_t k = 0; k < i; ++k)
       if (std::abs(chips[k].position_um - position_um) < 0.5 * (chips[k].width_um + width_um) * (1.0 - 1e-9))
-        refuse(path_in(path, "position_um"), "must keep clear of the other chips, got " + shortest(position_um));
+        refuse(path_in(path, "position_um"), "must not overlap another chip, got " + shortest(position_um));
   }
 }
 
@@ -340,20 +340,20 @@ void check_chisel(const Job& job, const Refuse& refuse) {
   const double apex_deg = prism_of(job).apex_angle_deg;
   const double taken_deg = job.tool.wedge_deg + job.tool.clearance_deg;
   if (taken_deg >= apex_deg)
-    refuse("tool.wedge_deg", fmt::format("with clearance_deg must be < {}, the element's apex angle, for the tool "
-                                         "to fit the root, got {}",
+    refuse("tool.wedge_deg", fmt::format("the sum of wedge_deg and clearance_deg must be < {}, the element's apex "
+                                         "angle, so that the tool fits the root, got {}",
                                          shortest(apex_deg), fixed_apart(taken_deg, apex_deg, 3)));
   if (apex_deg - taken_deg < kChipRoomDeg)
-    refuse("tool.wedge_deg", fmt::format("with clearance_deg must be <= {} for chips to leave between rake face "
-                                         "and facet, got {}",
+    refuse("tool.wedge_deg", fmt::format("the sum of wedge_deg and clearance_deg must be <= {}, so that chips can "
+                                         "leave between the rake face and the facet, got {}",
                                          fixed_apart(apex_deg - kChipRoomDeg, taken_deg, 3),
                                          fixed_apart(taken_deg, apex_deg - kChipRoomDeg, 3)));
   // If both facets are cut by plunging, the rake faces of both cuts must intersect above the root. Otherwise, a fin
   // remains.
   if (job.strategy != Strategy::unidirectional && 2.0 * taken_deg < apex_deg)
     refuse("tool.wedge_deg",
-           fmt::format("with clearance_deg must be >= {}, half the apex angle, or a fin of {} degrees "
-                       "stays between the plunges of both facets, got {}",
+           fmt::format("the sum of wedge_deg and clearance_deg must be >= {}, half the apex angle, otherwise a fin of "
+                       "{} degrees remains between the plunges of both facets, got {}",
                        shortest(0.5 * apex_deg), fixed_visible(apex_deg - 2.0 * taken_deg, 3),
                        fixed_apart(taken_deg, 0.5 * apex_deg, 3)));
   // The diamond becomes narrower towards its shank. Its width must still be positive at the height of the element's
@@ -363,7 +363,7 @@ void check_chisel(const Job& job, const Refuse& refuse) {
   const double side_limit_deg = Angle::from_rad(std::atan(0.5 * job.tool.width_mm / facet_mm)).deg();
   if (job.tool.side_clearance_deg >= side_limit_deg)
     refuse("tool.side_clearance_deg",
-           fmt::format("must be < {}, or the diamond ends in a point within its element, got {}",
+           fmt::format("must be < {}, otherwise the diamond ends in a point within the depth of the element, got {}",
                        fixed_apart(side_limit_deg, job.tool.side_clearance_deg, 3),
                        shortest(job.tool.side_clearance_deg)));
 }
@@ -392,7 +392,7 @@ void check_row(const std::string& row, std::size_t k, std::int64_t columns, cons
                                         columns, row.size(), k));
   const std::size_t wrong = row.find_first_not_of("#-");
   if (wrong != std::string::npos)
-    refuse("array.pattern", fmt::format("must hold # and - only, got {} in row {}",
+    refuse("array.pattern", fmt::format("must contain only # and -, got {} in row {}",
                                         in_quotes(std::string_view(row).substr(wrong, 1)), k));
 }
 
@@ -404,23 +404,23 @@ void check_pattern(const Job& job, const Refuse& refuse) {
     refuse("array.pattern",
            fmt::format("must have {} rows, as many as the array, got {}", lengths.size(), pattern.size()));
   for (std::size_t k = 0; k < pattern.size(); ++k) check_row(pattern[k], k, lengths[lengths.size() - 1 - k], refuse);
-  if (cut_elements(job).empty()) refuse("array.pattern", "leaves no element to cut");
+  if (cut_elements(job).empty()) refuse("array.pattern", "must mark at least one element with #");
 }
 
 void check_room(const Job& job, const Refuse& refuse) {
   const ArrayLayout& array = job.array;
   if (array.arrangement == Arrangement::single || !job.zones.empty()) return;
   if (const double elements = geometry::element_estimate(array, job.element); elements > kMostElements)
-    refuse("array.x_length_mm",
-           fmt::format("the array would have {:.6g} elements, at most {:.0f} are allowed", elements, kMostElements));
+    refuse("array.x_length_mm", fmt::format("the array would have {:.6g} elements, but at most {:.0f} are allowed",
+                                            elements, kMostElements));
   if (cuts_prisms(job)) {
     const geometry::CellCounts counts = geometry::prism_block(array, prism_of(job)).counts;
     for (const auto& [count, key, length_mm] : {std::tuple(counts.columns, "array.x_length_mm", array.x_length_mm),
                                                 {counts.rows, "array.y_length_mm", array.y_length_mm}})
-      if (count < 1) refuse(key, "must hold one element between the margins, got " + shortest(length_mm));
+      if (count < 1) refuse(key, "must have room for one element between the margins, got " + shortest(length_mm));
   } else if (geometry::row_lengths(array, job.element).empty()) {
     refuse("array.x_length_mm",
-           fmt::format("with y_length_mm must hold one whole element round the middle, got {} and {}",
+           fmt::format("x_length_mm and y_length_mm must have room for one whole element at the centre, got {} and {}",
                        shortest(array.x_length_mm), shortest(array.y_length_mm)));
   }
 }
@@ -439,7 +439,7 @@ void check_array_on_substrate(const Job& job, const Refuse& refuse) {
   const std::string_view key = geometry::substrate_shape_key(*job.substrate);
   const ArrayLayout& array = job.array;
   if (job.workpiece.kind == WorkpieceKind::direct)
-    refuse(key, "needs a mould: workpiece.kind must be \"mould\" where elements stand on a base, got \"direct\"");
+    refuse(key, "workpiece.kind must be \"mould\" for elements on a base, got \"direct\"");
   if (array.arrangement == Arrangement::single) refuse(key, "not allowed for arrangement = \"single\"");
   if (array.x_offset_mm != 0.0 || array.y_offset_mm != 0.0)
     refuse(key, "not allowed together with array.x_offset_mm and y_offset_mm");
@@ -452,7 +452,7 @@ void check_substrate(const Job& job, const Refuse& refuse) {
   try {
     geometry::check_substrate(part_on_substrate(job));
     const std::vector<CutElement> elements = cut_elements(job);
-    if (elements.empty()) throw InputError("must carry one whole element within the part, it carries none");
+    if (elements.empty()) throw InputError("must have room for at least one whole element within the part");
     stock_mm(job, elements, job.process.clearance_mm);
   } catch (const InputError& error) {
     refuse(geometry::substrate_shape_key(*job.substrate), error.what());
@@ -468,7 +468,7 @@ void check_machine(const Job& job, const Refuse& refuse) {
 void check_workpiece(const Job& job, const Refuse& refuse) {
   if (!cuts_prisms(job) && job.workpiece.kind == WorkpieceKind::direct)
     refuse("workpiece.kind",
-           "must be \"mould\" for cube corners, whose cavities are not their elements, got \"direct\"");
+           "must be \"mould\" for cube corners, because the cavities differ from the elements, got \"direct\"");
 }
 
 void check_tool(const Job& job, const Refuse& refuse) {
@@ -482,7 +482,8 @@ void check_tool(const Job& job, const Refuse& refuse) {
 void check_stops(const Job& job, const Refuse& refuse) {
   if (job.process.stop_before_finishing && !has_finishing_cuts(job))
     refuse("process.stop_before_finishing",
-           fmt::format("must be false where nothing is finished: strategy = \"two-step\" or \"dmc\" does, got {}",
+           fmt::format("must be false unless strategy is \"two-step\" or \"dmc\", because other strategies have no "
+                       "finishing cuts, got strategy {}",
                        in_quotes(kStrategyWords[static_cast<std::size_t>(job.strategy)])));
 }
 

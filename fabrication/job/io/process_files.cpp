@@ -112,8 +112,8 @@ std::string hanging_chip(const Process& p) {
 std::string rubbing_depth(const Process& p) {
   const double most_um = 0.5 * std::min(p.roughing_depth_um, p.finishing_depth_um);
   if (!p.least_chip_um || *p.least_chip_um <= most_um) return {};
-  return fmt::format("must be at most half of roughing_depth_um and finishing_depth_um, {}, got {}", shortest(most_um),
-                     shortest(*p.least_chip_um));
+  return fmt::format("must be at most half of roughing_depth_um and of finishing_depth_um, which is {}, got {}",
+                     shortest(most_um), shortest(*p.least_chip_um));
 }
 
 constexpr std::string_view kPloughKeys[] = {"plough_length_mm"};

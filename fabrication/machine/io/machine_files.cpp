@@ -107,44 +107,50 @@ void set_source(Sourced<Type>& item, const Value& value) {
 
 template <class Type>
 std::string nameless_source(const Sourced<Type>& item) {
-  return item.source.empty() ? "must name its source, got \"\"" : "";
+  return item.source.empty() ? "must give the source of the value, got \"\"" : "";
 }
 std::string no_direction(const Sourced<Vec3>& item) {
   if (item.value.norm() > kLeastLength) return {};
-  return fmt::format("must be a vector of a length above 0, got [{}, {}, {}]", shortest(item.value.x()),
+  return fmt::format("must be a vector with a length above 0, got [{}, {}, {}]", shortest(item.value.x()),
                      shortest(item.value.y()), shortest(item.value.z()));
 }
 std::string falling(const Sourced<Interval>& item) {
   if (item.value.low < item.value.high) return {};
-  return fmt::format("must rise, got [{}, {}]", shortest(item.value.low), shortest(item.value.high));
+  return fmt::format("the first number must be less than the second, got [{}, {}]", shortest(item.value.low),
+                     shortest(item.value.high));
 }
 std::string no_sign(const Sourced<double>& item) {
   return std::abs(item.value) == 1.0 ? "" : "must be 1 or -1, got " + shortest(item.value);
 }
 std::string falling_box(const Sourced<Points>& item) {
   if ((item.value.front().array() < item.value.back().array()).all()) return {};
-  return "must be [x_min, y_min, z_min, x_max, y_max, z_max], each rising";
+  return "must be [x_min, y_min, z_min, x_max, y_max, z_max] with each minimum less than its maximum";
 }
 std::string flat_hull(const Sourced<Points>& item) {
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
   for (const Vec3& p : item.value) spread += (p - item.value.front()) * (p - item.value.front()).transpose();
   if (std::sqrt(std::max(spread.determinant(), 0.0)) > kLeastVolumeMm3) return {};
-  return "must be points that do not lie in one plane";
+  return "must not have all points in one plane";
 }
 std::string skew_linear_axes(const Machine& m) {
   const double volume = m.x.direction.value.cross(m.y.direction.value).dot(m.z.direction.value);
-  return volume > kLeastDeterminant ? "" : "X, Y and Z must be right-handed and near to square to each other";
+  return volume > kLeastDeterminant
+             ? ""
+             : "the directions of X, Y and Z must be right-handed and nearly perpendicular to each other";
 }
 std::string aligned_rotary_axes(const Machine& m) {
   const double across = m.a.direction.value.cross(m.c.direction.value).norm();
-  return across > kLeastDeterminant ? "" : std::string("C must lie across ") + m.tilt_letter();
+  return across > kLeastDeterminant
+             ? ""
+             : std::string("the direction of C must not be nearly parallel to ") + m.tilt_letter();
 }
 
 // Tables with a value and its origin: { value = ..., measured = "source" } or { value = ..., assumed = "reason" }.
 
 constexpr std::string_view kSourceKeys[] = {"measured", "assumed"};
 constexpr std::string_view kValueKeys[] = {"value"};
-constexpr std::string_view kSourcedShape = "{ value = ..., measured = \"source\" } or with assumed";
+constexpr std::string_view kSourcedShape =
+    "{ value = ..., measured = \"source\" } or { value = ..., assumed = \"reason\" }";
 
 template <class Type>
 constexpr std::array<Row, 3> sourced(Kind kind, Access value) {
@@ -157,7 +163,7 @@ constexpr std::array<Row, 3> sourced(Kind kind, Access value) {
 
 template <class Type, class... More>
 constexpr std::array<Rule, 2 + sizeof...(More)> source_rules(More... more) {
-  return {{more..., OneOf{kSourceKeys, "must say either measured = \"source\" or assumed = \"why\""},
+  return {{more..., OneOf{kSourceKeys, "must have either measured = \"source\" or assumed = \"reason\""},
            Check{{}, "The source must not be empty.", check_by<nameless_source<Type>>}}};
 }
 
@@ -337,9 +343,9 @@ std::string unfit_text(const Control& control) {
   const std::string* const lines[] = {&control.mist_on, &control.mist_off, &control.optional_stop, &control.stop};
   const bool is_other = std::any_of(std::begin(lines), std::end(lines),
                                     [&](const auto* other) { return other != &text && *other == text; });
-  return is_other
-             ? "must be another line than those of mist_on, mist_off, optional_stop and stop, got " + in_quotes(text)
-             : "";
+  return is_other ? "must differ from the lines of the other keys (mist_on, mist_off, optional_stop, stop), got " +
+                        in_quotes(text)
+                  : "";
 }
 std::string unknown_modulo_axes(const Control& control) {
   if (control.modulo_axes.find_first_not_of("ABC") == std::string::npos) return {};
@@ -456,7 +462,7 @@ constexpr Table kTables[] = {
 constexpr std::string_view kTiltingKeys[] = {"a", "b"};
 constexpr std::string_view kZKeys[] = {"z"};
 constexpr std::string_view kCKeys[] = {"c"};
-constexpr Rule kRules[] = {OneOf{kTiltingKeys, "must have either [a], if the table tilts, or [b], if the head does"},
+constexpr Rule kRules[] = {OneOf{kTiltingKeys, "must have either [a], if the table tilts, or [b], if the head tilts"},
                            Check{kZKeys, "X, Y and Z must be right-handed and nearly perpendicular to each other.",
                                  check_by<skew_linear_axes>},
                            Check{kCKeys, "C must not be nearly parallel to A or B.", check_by<aligned_rotary_axes>}};

@@ -158,7 +158,7 @@ void LatheCheck::end_run() {
     const double taken = before_run_[i] - heights[i];
     result_.chip_mm_max = std::max(result_.chip_mm_max, taken);
     if (taken > limit + part_.tolerance_mm)
-      add("chip_too_thick", standing_.who(i), "a pass takes more than the depth of cut", taken, limit);
+      add("chip_too_thick", standing_.who(i), "a pass removes more than the depth of cut", taken, limit);
   }
   before_run_ = heights;
 }
@@ -218,8 +218,8 @@ void LatheCheck::find_gouges(const std::vector<SectionPoint>& path, const Sectio
     const SectionPoint left{standing_.place_mm(i), heights[i]};
     const double distance = largest_distance({left}, reachable, 2.0 * part_.tolerance_mm + 2.0 * spacing_mm_);
     if (distance > limit_mm + spacing_mm_)
-      add("gouge", standing_.who(i), "a move goes below what the last pass leaves", last.heights_mm()[i] - heights[i],
-          part_.tolerance_mm);
+      add("gouge", standing_.who(i), "a move cuts below the surface of the last pass",
+          last.heights_mm()[i] - heights[i], part_.tolerance_mm);
   }
 }
 
@@ -248,8 +248,8 @@ void LatheCheck::measure() {
         std::max(largest_distance(reachable, left, reach),
                  largest_distance(nose > 0.0 ? left : along(left, spacing_mm_), reachable, reach));
   if (result_.path_distance_mm_max > limit)
-    findings_.add("path", 0, "the last pass leaves a surface that is outside of the tolerance",
-                  result_.path_distance_mm_max, part_.tolerance_mm);
+    findings_.add("path", 0, "the surface of the last pass is outside of the tolerance", result_.path_distance_mm_max,
+                  part_.tolerance_mm);
   find_gouges(path, reachable, limit);
 }
 

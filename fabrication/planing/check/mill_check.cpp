@@ -52,7 +52,7 @@ void MillCheck::check_length(const NcMotion& motion, std::size_t axis, double le
   if (shortest_mm == 0.0 || length_mm < shortest_mm) shortest_mm = length_mm;
   if (length_mm < least[axis] - kRoundingMm)
     findings_.add("short_move", motion.place.line,
-                  fmt::format("{} moves by less than the minimum move of fast feed", kLetters[axis]), length_mm,
+                  fmt::format("a move of {} is shorter than the minimum move of fast feed", kLetters[axis]), length_mm,
                   least[axis]);
 }
 
@@ -121,7 +121,7 @@ void MillCheck::end(const NcEnd& end) {
   const std::array travel = {part_.mill->travel_x_mm, part_.mill->travel_y_mm, part_.mill->travel_z_mm};
   for (std::size_t axis = 0; axis < 3; ++axis)
     if (high_mm_[axis] - low_mm_[axis] > travel[axis] + kRoundingMm)
-      findings_.add("travel", 0, fmt::format("{} travels farther than the machine allows", kLetters[axis]),
+      findings_.add("travel", 0, fmt::format("the travel of {} exceeds that of the machine", kLetters[axis]),
                     high_mm_[axis] - low_mm_[axis], travel[axis]);
   if (height_mm_ < part_.mill->clear_mm - kRoundingMm)
     findings_.add("ends_low", 0, "the program ends with the tool below clear_mm", height_mm_, part_.mill->clear_mm);
@@ -180,7 +180,7 @@ void MillCheck::measure() {
   }
   std::reverse(result_.profile.begin(), result_.profile.end());
   if (result_.standing_mm_max > part_.tolerance_mm + kRoundingMm)
-    findings_.add("excess", 0, "material stands above the design", result_.standing_mm_max, part_.tolerance_mm);
+    findings_.add("excess", 0, "material remains above the design", result_.standing_mm_max, part_.tolerance_mm);
 }
 
 }  // namespace retrace::fabrication

@@ -142,8 +142,8 @@ void check_clearance(const Document& file) {
   const double least_mm = file.numbers("mill.least_move_mm")[2];
   const double clear_mm = file.number("mill.clear_mm");
   if (clear_mm < least_mm)
-    file.fail("mill.clear_mm",
-              fmt::format("must be at least the least move of Z, {}, got {}", shortest(least_mm), shortest(clear_mm)));
+    file.fail("mill.clear_mm", fmt::format("must be at least the minimum move of Z ({}), got {}", shortest(least_mm),
+                                           shortest(clear_mm)));
 }
 
 void check_spindle_texts(const Document& file) {
@@ -156,7 +156,7 @@ void check_spindle_texts(const Document& file) {
                                  in_quotes(file.text(key))));
   }
   if (file.has(kStop) && file.text_if(kStart) == file.text(kStop))
-    file.fail(kStop, "must not be spindle_start, got " + in_quotes(file.text(kStop)));
+    file.fail(kStop, "must differ from spindle_start, got " + in_quotes(file.text(kStop)));
 }
 
 ZoneProfile profile_of(const Document& file, const ZoneLens& lens) {
@@ -174,7 +174,7 @@ void check_sizes(const Document& file) {
   const double step_mm = part.lens.wavelength_mm / (part.lens.refractive_index - 1.0);
   const auto refuse_form = [&](std::string_view limit, double limit_mm) {
     file.fail("tolerance.form_mm",
-              fmt::format("must be {}, {}, got {}", limit, fixed_apart(limit_mm, part.tolerance_mm, 6),
+              fmt::format("must be {} ({}), got {}", limit, fixed_apart(limit_mm, part.tolerance_mm, 6),
                           shortest(part.tolerance_mm)));
   };
   if (part.tolerance_mm > 0.5 * step_mm) refuse_form("<= half the depth of a zone", 0.5 * step_mm);
@@ -195,12 +195,13 @@ void check_zones(const Document& file) {
   const double least_mm = kLeastStepsOfZone * (part.mill ? part.mill->grid_mm : 0.1 * part.tolerance_mm);
   for (const Zone& zone : profile.zones())
     if (zone.to_mm - zone.from_mm < least_mm && zone.to_mm < part.lens.half_width_mm)
-      file.fail("element.width_mm",
-                fmt::format("zones must be >= {} wide, got one of {} at {}", fixed(least_mm, 4),
-                            fixed_apart(zone.to_mm - zone.from_mm, least_mm, 4), fixed(zone.from_mm, 3)));
+      file.fail(
+          "element.width_mm",
+          fmt::format("zones must be at least {} mm wide, got a zone of {} mm at a distance of {} mm from the centre",
+                      fixed(least_mm, 4), fixed_apart(zone.to_mm - zone.from_mm, least_mm, 4), fixed(zone.from_mm, 3)));
   if (part.lathe && !nose_fits(profile, part.lathe->nose_radius_mm))
     file.fail("lathe.nose_radius_mm",
-              fmt::format("must be <= {}, or the nose does not reach the bottom of every zone, got {}",
+              fmt::format("must be <= {}, otherwise the nose does not reach the bottom of every zone, got {}",
                           fixed_apart(largest_nose_mm(profile), part.lathe->nose_radius_mm, 3),
                           shortest(part.lathe->nose_radius_mm)));
 }

@@ -76,8 +76,9 @@ bool MillMoves::ends_in_time() const {
 
 void MillMoves::require_in_time() const {
   if (!ends_in_time())
-    throw InputError(fmt::format("a single cut or depth takes longer than the most_hours of a program, {}",
-                                 shortest(part_.mill->most_hours)));
+    throw InputError(fmt::format(
+        "a single cut, or a single depth of all cuts, takes longer than {} hours, the most_hours of a program",
+        shortest(part_.mill->most_hours)));
 }
 
 void MillMoves::single(Axis axis, std::int64_t to) {

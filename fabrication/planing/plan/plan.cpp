@@ -110,8 +110,9 @@ void check_travel(const PlanedPart& part, const PlaningPlan& plan) {
     if (high[k] - low[k] > travel[k] + 1e-9)
       throw InputError(
           {part.source, 0, "mill.travel_mm"},
-          fmt::format("must reach from {} to {} along {}, which is {} mm, got {}", fixed(low[k], 3), fixed(high[k], 3),
-                      std::string(1, "XYZ"[k]), fixed_apart(high[k] - low[k], travel[k], 3), shortest(travel[k])));
+          fmt::format("must be at least {3} mm along {2}, because the programs move from {0} to {1} mm, got {4}",
+                      fixed(low[k], 3), fixed(high[k], 3), std::string(1, "XYZ"[k]),
+                      fixed_apart(high[k] - low[k], travel[k], 3), shortest(travel[k])));
 }
 
 PlaningPlan plan_mill(const PlanedPart& part) {

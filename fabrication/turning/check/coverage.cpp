@@ -58,7 +58,8 @@ class CoverageCheck {
       if (is_spiral() ? rises : falls) continue;
       figures_.is_orderly = false;
       add("direction", pass, i,
-          is_spiral() ? "C does not rise along the cut" : "C turns, or Y does not fall, along the line", 0.0, 0.0);
+          is_spiral() ? "C does not increase along the cut" : "along the line, C changes or Y does not decrease", 0.0,
+          0.0);
       return;
     }
   }
@@ -99,7 +100,8 @@ class CoverageCheck {
         check_step(pass, i, before - radius(pass, i));
         const double off = std::abs(pass.x_mm[i] * sine + pass.y_mm[i] * cosine);
         if (off > kOffSkewMm)
-          add("skew", pass, i, fmt::format("the tool is {} mm away from the line of its skew", fixed(off, 6)), off,
+          add("skew", pass, i,
+              fmt::format("the tool is {} mm away from the line on which its skew is correct", fixed(off, 6)), off,
               kOffSkewMm);
       }
     }
@@ -139,16 +141,17 @@ class CoverageCheck {
       std::vector<geometry::Vec2> line;
       for (std::size_t i = 0; i < pass.size(); ++i) line.push_back(place(pass, i));
       if (std::abs(pass.c_rad.front() / kDegree + part_.tool.skew_deg) > kSameDeg)
-        add("skew", pass, 1, "C does not stand at the tool's skew", pass.c_rad.front() / kDegree, -part_.tool.skew_deg);
+        add("skew", pass, 1, "the position of C does not match the tool's skew", pass.c_rad.front() / kDegree,
+            -part_.tool.skew_deg);
       if (line.front().y() < half_along || line.back().y() > -half_along)
-        add_uncut(pass.program, pass.line.front(), "a line does not go over the whole part",
+        add_uncut(pass.program, pass.line.front(), "a line does not extend over the whole part",
                   line.front().y() - line.back().y(), path_.width_mm);
       for (std::size_t i = 0; i < line.size(); ++i) {
         const std::optional<double> neighbour = across_at(before, line[i].y());
         if (neighbour) check_step(pass, i, *neighbour - line[i].x());
       }
       if (before.empty())
-        check_edge(pass, pass.line.front(), half_across - lowest_across(line), "the first line lies inside the border");
+        check_edge(pass, pass.line.front(), half_across - lowest_across(line), "the first line is inside the border");
       before = std::move(line);
     }
     const CutPass& last = cuts_.passes.back();
@@ -167,7 +170,7 @@ class CoverageCheck {
     const double limit_mm = 0.5 * path_.feed_mm;
     if (inside_mm <= limit_mm + kPlacesMm) return;
     add_uncut(pass.program, line,
-              fmt::format("{} of the part by {} um, at most half the feed is allowed, {} um", what,
+              fmt::format("{} of the part by {} um, but at most half the feed ({} um) is allowed", what,
                           fixed_apart(1e3 * inside_mm, 1e3 * limit_mm, 3), fixed(1e3 * limit_mm, 3)),
               inside_mm, limit_mm);
   }
@@ -178,7 +181,7 @@ class CoverageCheck {
     const bool is_wide = step_mm > path_.feed_mm + kPlacesMm;
     if (is_wide && !was_wide_)
       add("feed_step", pass, i,
-          fmt::format("the distance to the previous cut is {} um, at most the feed of {} um is allowed",
+          fmt::format("the distance to the previous cut is {} um, but at most the feed of {} um is allowed",
                       fixed_apart(1e3 * step_mm, 1e3 * path_.feed_mm, 3), fixed(1e3 * path_.feed_mm, 3)),
           step_mm, path_.feed_mm);
     was_wide_ = is_wide;

@@ -104,7 +104,7 @@ class CutReader : public NcSink {
                          !motion.is_exact_stop && !settings.blend_mm;
     if (is_free && !std::exchange(has_free_path_, true))
       findings_.add("blending", motion.place.line,
-                    "without P, the tool may leave the path by any distance between blocks");
+                    "G64 without P allows any distance between the tool and the path between blocks");
   }
 
   void check_cut(const NcMotion& motion, bool is_approach) {
@@ -209,7 +209,7 @@ void add_strokes(TurningCuts& cuts, const std::string& table, const std::string&
       const double c_deg = pass.c_rad[i] / kDegree;
       if (std::abs(stroke.c_deg - c_deg) > kSameDeg && std::exchange(fits, false))
         findings.add({"servo", cuts.programs[pass.program], pass.line[i], -1,
-                      fmt::format("line {} of the servo's file has a stroke for C {}, the program goes to {}",
+                      fmt::format("line {} of the servo's file has a stroke for C {}, but the program moves to C {}",
                                   stroke.line, shortest(stroke.c_deg), fixed(c_deg, 7)),
                       c_deg, stroke.c_deg, 1});
       pass.servo_mm[i] = stroke.stroke_mm;
@@ -219,7 +219,7 @@ void add_strokes(TurningCuts& cuts, const std::string& table, const std::string&
       if (begins_at(pass, move)) move.stroke_mm = pass.servo_mm.front();
   }
   if (row != strokes.size())
-    findings.add("servo", 0, "the servo's file does not have one stroke for every point of the program");
+    findings.add("servo", 0, "the servo's file must have one stroke for every point of the program");
 }
 
 }  // namespace retrace::fabrication::turning

@@ -151,7 +151,7 @@ void fill_map(Inspection& result, const Envelope& envelope, const FreeformSurfac
   std::size_t count = 0;
   for (const Pixel& pixel : found) {
     result.map_nm.push_back(pixel.greatest);
-    if (std::isinf(pixel.greatest)) throw InputError("the programs leave a place of the part uncut");
+    if (std::isinf(pixel.greatest)) throw InputError("the programs leave a region of the part uncut");
     result.interference_nm = std::max(result.interference_nm, -pixel.lowest);
     if (std::isnan(pixel.any)) continue;
     sum += pixel.any * pixel.any;

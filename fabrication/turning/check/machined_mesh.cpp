@@ -39,7 +39,7 @@ std::vector<Vec3> back_of(const Envelope& envelope, const FreeformSurface& desig
     }
   });
   for (const Vec3& v : vertices)
-    if (!std::isfinite(v.z())) throw InputError("the programs leave a place of the part uncut");
+    if (!std::isfinite(v.z())) throw InputError("the programs leave a region of the part uncut");
   return vertices;
 }
 

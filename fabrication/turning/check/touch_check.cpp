@@ -376,7 +376,7 @@ class TouchCheck {
     if (standing.touches_mm > kNowhere)
       figures_.highest_mm = std::max(figures_.highest_mm.value_or(kNowhere), standing.touches_mm - stroke_mm);
     add(gouge_, "the edge goes below the surface", -standing.low_nm, program, line);
-    add(excess_, "the edge stays off the surface", standing.high_nm, program, line);
+    add(excess_, "the edge stays above the surface", standing.high_nm, program, line);
   }
 
   void add(Stretch& stretch, const char* what, double nm, std::size_t program, std::int32_t line) const {
@@ -435,8 +435,8 @@ void check_border(const TurnedPart& part, const TurningCuts& cuts, const Envelop
     }
     excess.add(place.program, place.line, left_nm, limit_nm, [&] {
       return fmt::format(
-          "the edge stays off the surface: {} nm of material are left at the border of the part, at most {} nm are "
-          "allowed (the tolerance of {} nm plus the material that a cut with contact would leave)",
+          "the edge stays above the surface: {} nm of material remain at the border of the part, but at most {} nm are "
+          "allowed (the tolerance of {} nm plus the material that remains after a cut with contact)",
           fixed_apart(left_nm, limit_nm, 2), fixed(limit_nm, 2), shortest(part.form_tolerance_nm));
     });
   }

@@ -65,8 +65,7 @@ void judge(double tolerance_nm, double blend_nm, const Inspection& inspection, F
                                shortest(tolerance_nm)),
                    value, tolerance_nm);
   };
-  check("form", blend_nm > 0.0 ? "a form error, blends included," : "a form error",
-        inspection.form_error_nm + blend_nm);
+  check("form", blend_nm > 0.0 ? "a form error (with blends)" : "a form error", inspection.form_error_nm + blend_nm);
   check("gouge", "a cut below the surface", inspection.interference_nm);
 }
 

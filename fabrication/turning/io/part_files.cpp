@@ -54,7 +54,7 @@ PathOptions read_path(const Document& file, const TurningTool& tool) {
                 "needs machine.c_acceleration_deg_per_s2, because moves with velocities begin and end at rest");
     if (path.cubic_error_nm && path.servo == Servo::fast)
       file.fail("path.cubic_error_nm",
-                "must not be given with a fast tool servo, whose strokes belong to straight moves");
+                "not allowed with a fast tool servo, because its strokes require straight moves");
   }
   if (path.sampling == Sampling::arc)
     path.arc_mm = 1e-3 * number("arc_um");
@@ -73,7 +73,8 @@ AxisLimits read_limits(const Document& file, const std::string& table) {
   if (!file.has(key)) return limits;
   const std::vector<double> ends = file.numbers(key);
   if (!(ends[0] < ends[1]))
-    file.fail(key, fmt::format("must rise, got [{}, {}]", shortest(ends[0]), shortest(ends[1])));
+    file.fail(key, fmt::format("the first number must be less than the second, got [{}, {}]", shortest(ends[0]),
+                               shortest(ends[1])));
   limits.low_mm = ends[0];
   limits.high_mm = ends[1];
   return limits;
@@ -99,10 +100,9 @@ void settle_skew(TurnedPart& part, const InputLocation& where) {
   if (part.skew_is_least) {
     const auto skew = least_skew_deg(part.tool, slopes, kTriedSkewDeg);
     if (!skew)
-      throw InputError(where,
-                       fmt::format("must have a clearance and a window that clear the surface at some skew within "
-                                   "+-60 degrees, got {} and {} degrees, which do at none",
-                                   shortest(part.tool.clearance_deg), shortest(part.tool.window_deg)));
+      throw InputError(where, fmt::format("the tool does not clear the surface at any skew within +-60 degrees with a "
+                                          "clearance of {} and a window of {} degrees",
+                                          shortest(part.tool.clearance_deg), shortest(part.tool.window_deg)));
     part.tool.skew_deg = *skew;
     return;
   }
@@ -110,12 +110,12 @@ void settle_skew(TurnedPart& part, const InputLocation& where) {
   if (figures.clears(part.tool)) return;
   const auto skew = least_skew_deg(part.tool, slopes, kTriedSkewDeg);
   throw InputError(
-      where,
-      fmt::format(
-          "must clear the surface, needs a clearance of {} and a window of {} degrees, got {} and {}; {}",
-          fixed(std::max(0.0, figures.clearance_needed_deg), 2), fixed(figures.window_needed_deg, 2),
-          shortest(part.tool.clearance_deg), shortest(part.tool.window_deg),
-          skew ? fmt::format("a skew of {} degrees would clear", fixed(*skew, 2)) : std::string("no skew clears")));
+      where, fmt::format("the tool does not clear the surface: a clearance of {} and a window of {} degrees are "
+                         "required, got {} and {}; {}",
+                         fixed(std::max(0.0, figures.clearance_needed_deg), 2), fixed(figures.window_needed_deg, 2),
+                         shortest(part.tool.clearance_deg), shortest(part.tool.window_deg),
+                         skew ? fmt::format("a skew of {} degrees is sufficient", fixed(*skew, 2))
+                              : std::string("no skew is sufficient")));
 }
 
 }  // namespace

@@ -134,7 +134,7 @@ CubicPath cubic_path(const geometry::FreeformSurface& surface, const TurningTool
           std::max<std::int64_t>(1, static_cast<std::int64_t>(static_cast<double>(units) * growth(most_mm, error_mm)));
       if (error_mm > most_mm && units == 1)
         throw InputError(
-            where, fmt::format("is too small: a cubic move of {} ms at a radius of {} mm has an error of {} nm, use a "
+            where, fmt::format("is too small: a cubic move of {} ms at a radius of {} mm has an error of {} nm. Use a "
                                "lower spindle_rpm",
                                fixed_visible(1e3 * unit_s, 3), fixed(std::hypot(point.place.x_mm, point.place.y_mm), 4),
                                fixed(kNmPerMm * error_mm, 2)));
@@ -146,7 +146,7 @@ CubicPath cubic_path(const geometry::FreeformSurface& surface, const TurningTool
       path.error_nm = std::max(path.error_nm, kNmPerMm * error_mm);
       path.points.push_back(point);
       if (path.points.size() > kMostPathPoints)
-        throw InputError(where, fmt::format("must give at most {} points of the path", kMostPathPoints));
+        throw InputError(where, fmt::format("must give a path of at most {} points", kMostPathPoints));
       at += units;
     }
   }

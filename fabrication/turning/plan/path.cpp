@@ -28,8 +28,8 @@ std::vector<double> spiral_turns(const PathOptions& o, const InputLocation& wher
   const double mean_arc = std::numbers::pi * start;
   const double count = o.sampling == Sampling::angle ? turns * o.points_per_turn : turns * mean_arc / o.arc_mm;
   if (!(count < static_cast<double>(kMostPathPoints)))
-    throw InputError(where,
-                     fmt::format("must give at most {} points of the path, gives {:.3g}", kMostPathPoints, count));
+    throw InputError(
+        where, fmt::format("must give a path of at most {} points, but gives {:.3g} points", kMostPathPoints, count));
   std::vector<double> result;
   result.reserve(static_cast<std::size_t>(count) + 2);
   if (o.sampling == Sampling::angle) {
@@ -82,8 +82,8 @@ std::vector<Pass> raster(const FreeformSurface& surface, const TurningTool& tool
   const double lines = std::ceil(o.height_mm / o.feed_mm - 0.5 - 1e-9) + 1.0;
   const double points = std::max(1.0, std::ceil(o.width_mm / o.arc_mm - 1e-9));
   if (!(lines * points < static_cast<double>(kMostPathPoints)))
-    throw InputError(
-        where, fmt::format("must give at most {} points of the path, gives {:.3g}", kMostPathPoints, lines * points));
+    throw InputError(where, fmt::format("must give a path of at most {} points, but gives {:.3g} points",
+                                        kMostPathPoints, lines * points));
   const NoseCompensation nose(surface, tool, TouchMap(surface, tool, 0.5 * std::hypot(o.width_mm, o.height_mm)));
   // The rake face is perpendicular to machine Y. A skew rotates the part, and with it the lines, relative to the rake
   // face.
