@@ -162,6 +162,8 @@ void check_needs(const GivenOptions& options, const std::vector<Argument>& argum
       if (std::ranges::any_of(need, holds)) continue;
       const Condition& first = need.front();
       const bool is_of_value = first.kind == Condition::Kind::value;
+      if (need.size() == 1 && first.kind == Condition::Kind::absent)
+        throw InputError({"", 0, option_names(argument).back()}, "not allowed together with " + first.option);
       throw InputError({"", 0, option_names(argument).back()},
                        fmt::format("needs {}{}", text_of(need),
                                    is_of_value ? ", got " + printable(options.value(first.option)) : ""));
@@ -186,7 +188,7 @@ std::string missing(const CLI::App& app, const std::string& otherwise) {
     if (word.starts_with('-')) return "unknown option " + printable(word);
   if (!app.get_subcommands().empty()) return otherwise;
   return (unknown.empty() ? "a command is required" : "unknown command " + printable(unknown.front())) +
-         ": there are " + in_words(commands());
+         "; the commands are " + in_words(commands());
 }
 
 /// Returns an error message of CLI11 as one line, in which long words are shortened.
@@ -230,7 +232,7 @@ bool parse(CLI::App& app, int argc, const char* const* argv) {
 }  // namespace
 
 std::function<ExitCode()> read_command_line(int argc, const char* const* argv) {
-  CLI::App app("retrace: what a retroreflector array sends back, from its design file", "retrace");
+  CLI::App app("retrace: computes the light that a retroreflector array returns, from its design file", "retrace");
   app.require_subcommand(1);
   app.fallthrough();
   app.get_formatter()->column_width(34);

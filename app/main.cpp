@@ -34,7 +34,7 @@ int fail(ExitCode code, const std::string& text) {
 /// in its store.
 [[noreturn]] void end_without_memory() {
   constexpr std::string_view text =
-      "retrace: out of memory; the finished points of a study are kept, and --resume goes on from there\n";
+      "retrace: out of memory; the finished points of a study are kept, and --resume continues from them\n";
   static_cast<void>(!::write(STDERR_FILENO, text.data(), text.size()));
   ::_exit(static_cast<int>(ExitCode::failed));
 }

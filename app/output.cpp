@@ -33,7 +33,7 @@ void refuse_input(const std::string& option, const fs::path& output, const std::
   for (const std::string& input : inputs)
     if (input != "-" && is_same_file(output, input))
       throw InputError({"", 0, option},
-                       printable(output.string()) + " is a file that is read; it would be overwritten");
+                       printable(output.string()) + " is an input file and would be overwritten; give another name");
 }
 
 /// Refuses an output file of the option `own` that is also an output file of another option.
@@ -41,7 +41,7 @@ void refuse_input(const std::string& option, const fs::path& output, const std::
 void refuse_second(const std::string& own, const fs::path& file, const std::string& option, const fs::path& output) {
   if (own != option && !file.empty() && is_same_file(file, output))
     throw InputError({"", 0, own},
-                     printable(file.string()) + " is a file that " + option + " writes; give another name");
+                     printable(file.string()) + " is also the output of " + option + "; give another name");
 }
 
 /// Checks that the JSON document can be written. A file in the output folder is not checked, because this folder may

@@ -35,7 +35,7 @@ CommonOptions without_folder(CommonOptions options);
 struct Ending {
   bool complete = true;  ///< false if the command was interrupted
   /// Text after "interrupted; " in the message about an interrupt.
-  std::string interrupted = "what is finished is in the result";
+  std::string interrupted = "the result contains what was finished";
   bool is_yes = true;  ///< false if the result is negative, such as a missed limit: exit code 1
 };
 

@@ -162,6 +162,14 @@ class Conditions {
     return condition.is == Is::one_of ? is_listed : !is_listed;
   }
 
+  /// Returns the error message for a field whose need is not met.
+  std::string complaint(Need need) const {
+    if (need.size() > 1 || need.front().is != schema::Condition::Is::absent)
+      return fmt::format("needs {}{}", text_of(need), given(need));
+    const Row* const other = row_of(request_, need.front().key);
+    return "not allowed together with " + reference(other != nullptr ? other->field() : Field{need.front().key});
+  }
+
   std::string text_of(Need need) const {
     std::vector<std::string> texts;
     for (const schema::Condition& condition : need) {
@@ -211,7 +219,7 @@ void check(const Request& request, const void* object) {
     check_kind(row, value);
     for (const Need need : row.needs)
       if (std::ranges::none_of(need, [&](const auto& condition) { return conditions.holds(condition); }))
-        throw InputError(row.field(), fmt::format("needs {}{}", conditions.text_of(need), conditions.given(need)));
+        throw InputError(row.field(), conditions.complaint(need));
   }
   if (request.check != nullptr) request.check(object);
 }

@@ -28,8 +28,8 @@ std::vector<Argument> arguments(CalibrateOptions& options) {
   std::vector<Argument> all = {
       {"MEASUREMENTS", "table with measurements of parts that the machine cut", &options.measurements, files(".csv")},
       {"--times MACHINE",
-       "MEASUREMENTS has run times of programs on this machine (name or file), from which acceleration and settling "
-       "of its axes are estimated. Without MEASUREMENTS: write programs to be timed",
+       "estimate the acceleration and settling of the axes of this machine (name or file). MEASUREMENTS then contains "
+       "run times of programs; without it, the programs to be timed are written",
        &options.times, machine_traits()}};
   all.push_back(dialect_argument(options.dialect));
   // The dialect is needed only for writing programs. Programs are written if --times is given without a table.
@@ -50,7 +50,8 @@ std::vector<std::string> inputs_of(const CalibrateOptions& options, const studie
 ExitCode write_time_programs(const CalibrateOptions& options, const CommonOptions& common,
                              const fabrication::Machine& machine) {
   if (common.out.empty())
-    throw InputError({"", 0, "MEASUREMENTS"}, "must be given, or --out for programs that are to be timed");
+    throw InputError({"", 0, "MEASUREMENTS"},
+                     "is required; without it, give --out FOLDER to write the programs to be timed");
   const std::vector<fabrication::Program> programs = studies::time_programs(machine, options.dialect);
   ResultFiles files(common, {options.times});
   std::vector<std::string> names;
@@ -61,7 +62,7 @@ ExitCode write_time_programs(const CalibrateOptions& options, const CommonOption
   files.add("times.csv", [&] { return studies::times_csv(names); });
   files.prepare();
   return files.write(studies::time_programs_json(machine, names),
-                     "Programs to be timed, which cut nothing; times.csv takes their times\n");
+                     "Wrote programs to be timed; they do not cut. Enter their run times in times.csv.\n");
 }
 
 /// Estimates the acceleration and settling of the axes from measured times of programs. Without a table of times,
@@ -83,7 +84,7 @@ ExitCode calibrate_times(const CalibrateOptions& options, const CommonOptions& c
 
 ExitCode run(const CalibrateOptions& options, const CommonOptions& common) {
   if (!options.times.empty()) return calibrate_times(options, common);
-  if (!options.measurements) throw InputError({"", 0, "MEASUREMENTS"}, "must be given");
+  if (!options.measurements) throw InputError({"", 0, "MEASUREMENTS"}, "is required");
   studies::MeasuredParts parts = studies::read_measurements(*options.measurements);
   ResultFiles files(common, inputs_of(options, parts), "calibration.json");
   const studies::Calibration result = studies::calibrate(std::move(parts));
@@ -96,21 +97,20 @@ ExitCode run(const CalibrateOptions& options, const CommonOptions& common) {
 }  // namespace
 
 Command calibrate_command() {
-  return {
-      .name = "calibrate",
-      .summary = "where a machine's axes are, from what was measured of parts that it cut",
-      .manual =
-          "Estimates, from depths, distances and angles of facets, by how much a machine differs from its file: "
-          "centres and directions of its axes, squareness, how the tool stands - each with its uncertainty -, says "
-          "which of them the measurements do not tell apart and which measurements the others contradict, and "
-          "writes machine.toml, for which the next programs are made. With --times: how its axes speed up and settle, "
-          "from how long programs took.",
-      .reads = {"table of measurements (CSV)", "table of times (CSV)", "retrace.job/1", "retrace.machine/1",
-                "NC program"},
-      .writes = {"retrace.calibration/1", "retrace.time_calibration/1", "retrace.time_programs/1", "retrace.machine/1",
-                 "NC program", "table of times (CSV)"},
-      .refuses_set = "calibrate reads no design",
-      .begin = begins<CalibrateOptions>(arguments, run)};
+  return {.name = "calibrate",
+          .summary = "positions and directions of a machine's axes, from measurements of parts that it cut",
+          .manual =
+              "Estimates, from depths, distances and angles of facets, how a machine differs from its file: centres "
+              "and directions of its axes, squareness, and the position of the tool, each with its uncertainty. "
+              "Reports which of these quantities the measurements cannot separate, and which measurements contradict "
+              "the others. Writes machine.toml, the machine file for further programs. With --times, estimates the "
+              "acceleration and settling of the axes from run times of programs.",
+          .reads = {"table of measurements (CSV)", "table of times (CSV)", "retrace.job/1", "retrace.machine/1",
+                    "NC program"},
+          .writes = {"retrace.calibration/1", "retrace.time_calibration/1", "retrace.time_programs/1",
+                     "retrace.machine/1", "NC program", "table of times (CSV)"},
+          .refuses_set = "calibrate reads no design",
+          .begin = begins<CalibrateOptions>(arguments, run)};
 }
 
 }  // namespace retrace::app

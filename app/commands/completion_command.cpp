@@ -319,8 +319,8 @@ Command completion_command() {
   return {.name = "completion",
           .summary = "completion of commands, options and values for a shell",
           .manual =
-              "Prints the script that completes commands, options, files and what else may stand for a value in "
-              "`bash`, `zsh` or `fish`, as it is installed: `source <(retrace completion bash)`.",
+              "Prints a script that completes commands, options, file names and other values in `bash`, `zsh` or "
+              "`fish`. To use it: `source <(retrace completion bash)`.",
           .writes = {"retrace.completion/1"},
           .refuses_set = "completion reads no design",
           .begin = begins<CompletionOptions>(arguments, run)};

@@ -171,7 +171,7 @@ ExitCode compose_part(const ComposeOptions& options, const CommonOptions& common
                                     {.complete = composition.complete,
                                      .interrupted = fmt::format("cells evaluated: {}", composition.evaluations),
                                      .is_yes = why_not.empty()});
-  if (code == ExitCode::answer_is_no) say("retrace: no such part: " + why_not);
+  if (code == ExitCode::answer_is_no) say("retrace: no part meets all constraints: " + why_not);
   return code == ExitCode::done && !whole.is_complete ? ExitCode::failed : code;
 }
 
@@ -191,16 +191,17 @@ ExitCode run_compose(const ComposeOptions& options, const CommonOptions& common)
 }  // namespace
 
 Command compose_command() {
-  return {.name = "compose",
-          .summary = "the best part of several zones of cells, as defined in a study file",
-          .manual =
-              "Searches for the cells, and their fractions of the area, for which the worst of all goals is best, by "
-              "linear programming. Reports the active constraints and their prices. Evaluated cells are kept in "
-              "`composition.sqlite` in the output folder and serve the next run. `--design` writes the part with its "
-              "zones as one design, `--job` its fabrication job. Exits with 1 if no part meets all constraints.",
-          .reads = {"retrace.study/1", "retrace.design/1", "retrace.machine/1", "retrace.process/1"},
-          .writes = {"retrace.composition/1", "retrace.design/1", "retrace.job/1"},
-          .begin = begins(compose_arguments, run_compose)};
+  return {
+      .name = "compose",
+      .summary = "the best division of a part into zones of cells, as defined in a study file",
+      .manual =
+          "Searches by linear programming for the cells, and their fractions of the area, that maximize the worst of "
+          "all goals. Reports the active constraints and their prices. Evaluated cells are kept in "
+          "`composition.sqlite` in the output folder and are reused by the next run. `--design` writes the part with "
+          "its zones as one design, `--job` its fabrication job. Exits with 1 if no part meets all constraints.",
+      .reads = {"retrace.study/1", "retrace.design/1", "retrace.machine/1", "retrace.process/1"},
+      .writes = {"retrace.composition/1", "retrace.design/1", "retrace.job/1"},
+      .begin = begins(compose_arguments, run_compose)};
 }
 
 }  // namespace retrace::app

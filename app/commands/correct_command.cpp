@@ -33,9 +33,8 @@ struct CorrectOptions {
 std::vector<Argument> arguments(CorrectOptions& options) {
   std::vector<Argument> all = {job_argument(options.job, "job file whose programs cut the part"),
                                {"MAP",
-                                "height maps of it, each FILE@X,Y or FILE@X,Y,TURN: where its middle lies on the "
-                                "workpiece, in mm, and how it is "
-                                "turned about Z, in degrees",
+                                "height maps of the part, each as FILE@X,Y or FILE@X,Y,TURN: position of the map's "
+                                "centre on the workpiece, in mm, and rotation of the map about Z, in degrees",
                                 &options.maps, files("")}};
   const std::array<CommandRequest, 1> of_command = {{{requests::height_map_reading()}}};
   for (Argument& argument : field_arguments(of_command, options.reading)) all.push_back(std::move(argument));
@@ -44,7 +43,7 @@ std::vector<Argument> arguments(CorrectOptions& options) {
 
 [[noreturn]] void refuse_place(const std::string& text) {
   throw InputError({"", 0, "MAP"},
-                   "must say where its middle lies, as in facets.txt@0.25,-0.5, got " + in_quotes(text));
+                   "must give the position of its centre in mm, as in facets.txt@0.25,-0.5, got " + in_quotes(text));
 }
 
 /// Reads the file name and the position of a height map from a text. The returned map does not contain heights yet.
@@ -110,10 +109,9 @@ Command correct_command() {
   return {.name = "correct",
           .summary = "a corrected machine and job, from height maps of the part that the job cut",
           .manual =
-              "Registers height maps of a part on its design, takes from them how far each facet and the blank's face "
-              "are off, and estimates from these what of the set-up was wrong, each with its uncertainty. Writes the "
-              "machine's "
-              "file as it is and the job for it, and tells what its next part will be.",
+              "Registers height maps of a part with its design and measures the deviations of each facet and of the "
+              "blank's face. From these it estimates the set-up errors, each with its uncertainty. Writes the "
+              "corrected machine file and a job for it, and predicts the deviations of the next part.",
           .reads = {"retrace.job/1", "retrace.machine/1", "height map (text, SDF, GSF, GWY)"},
           .writes = {"retrace.correction/1", "retrace.machine/1", "retrace.job/1"},
           .refuses_set = "correct reads no design",

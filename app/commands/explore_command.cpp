@@ -30,7 +30,7 @@ constexpr std::string_view kTitle = "retrace: prism arrays and their light";
 /// Returns the design that the page shows first. Its text is the content of the design file, byte for byte, unless
 /// --set changes it.
 report::LiveStart start_of(const studies::Design& design) {
-  studies::check_names_no_file(design, "which a page by itself does not have");
+  studies::check_names_no_file(design, "which a self-contained page cannot read");
   const schema::Document& document = *design.document;
   const bool is_changed = !document.origin().overrides.empty();
   const std::string name =
@@ -60,16 +60,16 @@ ExitCode run(const ExploreOptions& options, const CommonOptions& common) {
 }  // namespace
 
 Command explore_command() {
-  return {
-      .name = "explore",
-      .summary = "a page with the exact engine in it: change a design and watch its light",
-      .manual =
-          "Writes one HTML file that needs no other file and no network: a form with the keys of designs, and "
-          "live beside it the part with light paths, its footprint, RRE over incidence and azimuth, the ledger, the "
-          "far field and the test points of standards. Without a design it begins with templates.",
-      .reads = {"retrace.design/1"},
-      .writes = {"retrace.explore/1", "HTML"},
-      .begin = begins<ExploreOptions>(arguments, run)};
+  return {.name = "explore",
+          .summary = "an interactive page with the exact engine: change a design and see its light paths",
+          .manual =
+              "Writes one HTML file that needs no other file and no network: a form with the keys of designs, and next "
+              "to it views that are updated with each change: the part with light paths, its footprint, RRE over "
+              "incidence and azimuth, the ledger, the far field and the test points of standards. Without a design it "
+              "begins with templates.",
+          .reads = {"retrace.design/1"},
+          .writes = {"retrace.explore/1", "HTML"},
+          .begin = begins<ExploreOptions>(arguments, run)};
 }
 
 }  // namespace retrace::app

@@ -45,8 +45,8 @@ void check_options(const ExportOptions& options, bool is_material) {
   for (const requests::Row& row : unused.rows) {
     const std::optional<std::string>& given = options.fields.values.at(requests::option_of(row));
     if (given && *given != requests::text_of(row, unused.initial()))
-      throw InputError(row.field(),
-                       is_material ? "is of solids: a material has none" : "is of materials: .json, .xml or .glsl");
+      throw InputError(row.field(), is_material ? "only allowed for solids, but the output is a material"
+                                                : "only allowed for materials (.json, .xml or .glsl)");
   }
 }
 
@@ -83,7 +83,7 @@ ExitCode run_material(const ExportOptions& options, const CommonOptions& common,
 /// \throw InputError if both are given
 std::string output_file(const ExportOptions& options, const CommonOptions& common) {
   if (options.file && !common.out.empty())
-    throw InputError({"", 0, "--out"}, "FILE was given already, as " + *options.file);
+    throw InputError({"", 0, "--out"}, "not allowed together with the argument FILE, " + *options.file);
   return options.file.value_or(common.out);
 }
 
@@ -109,9 +109,9 @@ Command export_command() {
       .name = "export",
       .summary = "a design's solid as STL, OBJ, glTF or STEP; its reflection as a material",
       .manual =
-          "Writes a solid of a design as STL, OBJ, glTF or STEP, by the ending of FILE, or how it sends light "
-          "back as a material for renderers and simulators: a table of R_A (.json, with a .csv beside it), a "
-          "BSDF of Radiance (.xml), or lobes in a shader (.glsl).",
+          "Writes the solid of a design as STL, OBJ, glTF or STEP, or its reflection as a material for renderers and "
+          "simulators: a table of R_A (.json, with a .csv next to it), a BSDF of Radiance (.xml), or lobes in a shader "
+          "(.glsl). The ending of FILE selects the format.",
       .reads = {"retrace.design/1"},
       .writes = {"retrace.export/1", "STL", "OBJ", "glTF", "STEP", "retrace.material/1", "BSDF of Radiance", "GLSL"},
       .begin = begins<ExportOptions>(arguments, run)};

@@ -51,7 +51,7 @@ std::vector<report::PageFigure> drawings_of(const studies::FabricationResult& re
   add("The elements, in the order in which they are cut", report::render_svg(report::arrangement_plot(result)));
   for (const bool roughing : {true, false})
     if (has_stage(result, roughing))
-      add(fmt::format("The way of the tool through one element: {}", roughing ? "roughing" : "finishing"),
+      add(fmt::format("Tool path through one element: {}", roughing ? "roughing" : "finishing"),
           report::render_svg(report::tool_path_plot(result, roughing)));
   return figures;
 }
@@ -86,17 +86,17 @@ ExitCode run(const FabricateOptions& options, const CommonOptions& common) {
 }  // namespace
 
 Command fabricate_command() {
-  return {
-      .name = "fabricate",
-      .summary = "NC programs, set-up, tool path and time of a fabrication job",
-      .manual =
-          "Plans a job and writes it as NC programs, with drawings of the tool path and the time it takes, and "
-          "setup.html, a sheet for who sets up the machine: blank, tool, zero, axes, control, what to measure when, "
-          "and what an error of each costs. Long jobs can be split, and begun again at an element or a stage.",
-      .reads = {"retrace.job/1", "retrace.machine/1"},
-      .writes = {"retrace.fabrication/1"},
-      .refuses_set = "fabricate reads no design; change the job file, or make it anew",
-      .begin = begins<FabricateOptions>(arguments, run)};
+  return {.name = "fabricate",
+          .summary = "NC programs, set-up, tool path and time of a fabrication job",
+          .manual =
+              "Plans a job and writes its NC programs, drawings of the tool path, the machining time, and setup.html, "
+              "a set-up sheet for the operator of the machine: blank, tool, zero, axes, control, measurements, and the "
+              "effect of each set-up error. Long jobs can be split into several programs, and restarted at an element "
+              "or a stage.",
+          .reads = {"retrace.job/1", "retrace.machine/1"},
+          .writes = {"retrace.fabrication/1"},
+          .refuses_set = "fabricate reads no design; change the job file, or make a new one with retrace job",
+          .begin = begins<FabricateOptions>(arguments, run)};
 }
 
 }  // namespace retrace::app

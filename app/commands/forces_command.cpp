@@ -16,7 +16,7 @@ struct ForcesOptions {
 
 std::vector<Argument> arguments(ForcesOptions& options) {
   return {job_argument(options.request.job),
-          {"--configuration WORD", "isolated: between walls that rub, or orthogonal: with the edge alone",
+          {"--configuration WORD", "isolated: between walls with friction, or orthogonal: forces at the edge only",
            &options.request.configuration, one_of(words_of(fabrication::kConfigurationWords))},
           {"--facet N", "of a bidirectional job: 1 or 2", &options.facet, whole(1, 2)},
           {"--plunge-mm L", "length of the plunge [that of the last cut]", &options.plunge_mm}};
@@ -42,7 +42,9 @@ ExitCode run(const ForcesOptions& options, const CommonOptions& common) {
 Command forces_command() {
   return {.name = "forces",
           .summary = "cutting forces of a fabrication job over one cycle",
-          .manual = "Forces on the tool over one cycle of roughing, by a model that published measurements calibrate.",
+          .manual =
+              "Computes the forces on the tool over one cycle of roughing, with a model that is calibrated by "
+              "published measurements.",
           .reads = {"retrace.job/1"},
           .writes = {"retrace.forces/1"},
           .refuses_set = "forces reads no design",

@@ -205,11 +205,11 @@ ExitCode run(const ImageOptions& options, const CommonOptions& common) {
 
 Command image_command() {
   return {.name = "image",
-          .summary = "pictures: what a detector or a camera sees",
+          .summary = "pictures of a detector or a camera",
           .manual =
-              "Pictures: maps of a detector on the entrance face, the part as a camera sees it in the light of a "
-              "lamp, or two such reflectors on a car ahead at night; one of `--detector`, `--camera` and `--road` "
-              "says which. Pictures need `--out`; OpenEXR files have the numbers.",
+              "Computes pictures: maps of a detector on the entrance face, the part as a camera sees it in the light "
+              "of a lamp, or two such reflectors on a car ahead at night. One of `--detector`, `--camera` and `--road` "
+              "selects the kind of picture. Pictures need `--out`; OpenEXR files contain the numbers.",
           .reads = {"retrace.design/1", "absorption of a dye (CSV)", "lamps (IES LM-63, EULUMDAT)"},
           .writes = {"retrace.image/1"},
           .begin = begins<ImageOptions>(arguments, run)};

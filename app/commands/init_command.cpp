@@ -23,9 +23,10 @@ std::vector<Argument> arguments(InitOptions& options) {
     words.emplace_back("round_zone_lens");
     return words;
   };
-  return {{"KIND", "rtp, hexagonal_icc, triangular_icc or round_zone_lens", &options.kind, one_of(kinds)},
-          {"--editor", "begin with a line that tells editors the schema of the file, by its place on this machine",
-           &options.editor}};
+  return {
+      {"KIND", "rtp, hexagonal_icc, triangular_icc or round_zone_lens", &options.kind, one_of(kinds)},
+      {"--editor", "add a first line that names the JSON Schema of the file for editors, by its path on this machine",
+       &options.editor}};
 }
 
 /// Returns the URL of a file (RFC 3986). Bytes other than letters, digits and "/-._~" are written as %XX.
@@ -53,24 +54,23 @@ ExitCode run(const InitOptions& options, const CommonOptions& common) {
   // An existing file is never overwritten, because it may be a design on which the user has worked.
   if (!common.out.empty() &&
       std::filesystem::symlink_status(common.out).type() != std::filesystem::file_type::not_found)
-    throw OutputError(common.out + ": is there already; not overwritten");
+    throw OutputError(common.out + ": exists already and is not overwritten; give another name or remove the file");
   return write_text(common, "retrace.template/1", {{"kind", options.kind}}, text);
 }
 
 }  // namespace
 
 Command init_command() {
-  return {
-      .name = "init",
-      .summary = "a commented design or part file to start from",
-      .manual =
-          "Prints a commented design that works as it is, or of kind `round_zone_lens` a part for `plane`. "
-          "With `--out FILE` it goes to that file, which must not exist yet. With `--editor` its first line names the "
-          "JSON Schema of the file, so that editors complete and check its keys; the line holds for this machine "
-          "alone.",
-      .writes = {"retrace.template/1"},
-      .refuses_set = "init writes its template as it is; edit the file",
-      .begin = begins<InitOptions>(arguments, run)};
+  return {.name = "init",
+          .summary = "a commented design or part file to start from",
+          .manual =
+              "Prints a commented design that can be computed without changes, or, with the kind `round_zone_lens`, a "
+              "part for `plane`. `--out FILE` writes it to a new file. `--editor` adds a first line that names the "
+              "JSON Schema of the file, so that editors complete and check its keys. The path in this line is valid "
+              "only on this machine.",
+          .writes = {"retrace.template/1"},
+          .refuses_set = "init writes its template as it is; edit the file",
+          .begin = begins<InitOptions>(arguments, run)};
 }
 
 }  // namespace retrace::app

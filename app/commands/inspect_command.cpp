@@ -36,10 +36,10 @@ ExitCode run(const InspectOptions& options, const CommonOptions& common) {
 
 Command inspect_command() {
   return {.name = "inspect",
-          .summary = "what a design is: counts, areas, limits of total reflection; its drawings",
+          .summary = "counts, areas, limits of total reflection and drawings of a design",
           .manual =
-              "What a design is, before any light is traced: counts, areas, depth, limits of total reflection, "
-              "and whether its boundary is closed; drawings of its plan, its section and in three dimensions.",
+              "Describes a design without tracing light: counts, areas, depth, limits of total reflection, and whether "
+              "its boundary is closed. Draws its plan, its section and a three-dimensional view.",
           .reads = {"retrace.design/1"},
           .writes = {"retrace.inspect/1"},
           .begin = begins<InspectOptions>(arguments, run)};

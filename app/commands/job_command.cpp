@@ -26,12 +26,13 @@ struct JobOptions : MakingOptions {
 std::vector<Argument> arguments(JobOptions& options) {
   std::vector<Argument> all = making_arguments(options, "");
   all.insert(all.begin(), design_argument(options.design));
-  all.push_back({"--reachable FILE",
-                 "write what a chisel with a straight edge makes of cube corners, as a design, instead of a job",
-                 &options.reachable, files(".toml")});
+  all.push_back(
+      {"--reachable FILE",
+       "instead of a job, write a design of the part that a chisel with a straight edge can make of cube corners",
+       &options.reachable, files(".toml")});
   all.push_back({"--test-cuts FOLDER",
-                 "write jobs of few prisms that tell how the machine is set up, and the table of what to measure of "
-                 "them, instead of a job",
+                 "instead of a job, write jobs of a few prisms that show how the machine is set up, and the table for "
+                 "their measurements",
                  &options.test_cuts, not_with("--reachable")});
   return all;
 }
@@ -46,7 +47,8 @@ std::vector<std::string> inputs_of(const JobRequest& request, const studies::Des
 /// Writes a design that has the facets that a chisel can cut, in place of ideal cube corners. The output is a design
 /// file, such as part.toml, and the table of its facet planes, such as part_facets.csv.
 ExitCode write_reachable(const JobOptions& options, const CommonOptions& common, const studies::Design& design) {
-  if (!common.out.empty()) throw InputError({"", 0, "--out"}, "makes a job: not allowed together with --reachable");
+  if (!common.out.empty())
+    throw InputError({"", 0, "--out"}, "not allowed together with --reachable, which writes no job");
   const fs::path file = options.reachable;
   const fs::path facets_file = file.parent_path() / (file.stem().string() + "_facets.csv");
   const JobRequest request = job_request(options, common);
@@ -60,7 +62,8 @@ ExitCode write_reachable(const JobOptions& options, const CommonOptions& common,
 
 /// Writes jobs of test cuts, and measurements.csv, in which the user enters the measured values.
 ExitCode write_test_cuts(const JobOptions& options, const CommonOptions& common, const studies::Design& design) {
-  if (!common.out.empty()) throw InputError({"", 0, "--out"}, "makes a job: not allowed together with --test-cuts");
+  if (!common.out.empty())
+    throw InputError({"", 0, "--out"}, "not allowed together with --test-cuts, which writes no job for the design");
   const fs::path folder = options.test_cuts;
   const JobRequest request = job_request(options, common);
   studies::TestCuts cuts = studies::plan_test_cuts(design, request);
@@ -91,10 +94,10 @@ Command job_command() {
   return {.name = "job",
           .summary = "a fabrication job from a design",
           .manual =
-              "Makes a fabrication job of a design: blank, tool, machine, strategy and process. Elements on a base "
-              "are cut in place; pins are not. With `--reachable FILE` writes the part that a chisel can make of "
-              "cube corners instead, with `--test-cuts FOLDER` the smallest jobs from which `retrace calibrate` tells "
-              "how the machine is set up.",
+              "Makes a fabrication job of a design: blank, tool, machine, strategy and process. Elements on a base are "
+              "cut at their positions on the base; pins are not cut. `--reachable FILE` writes, instead of a job, the "
+              "part that a chisel can make of cube corners. `--test-cuts FOLDER` writes the smallest jobs from which "
+              "`retrace calibrate` estimates the set-up of the machine.",
           .reads = {"retrace.design/1", "retrace.machine/1", "retrace.process/1"},
           .writes = {"retrace.job_summary/1", "retrace.job/1", "retrace.reach/1", "retrace.test_cuts/1"},
           .begin = begins<JobOptions>(arguments, run)};

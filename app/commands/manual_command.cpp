@@ -61,7 +61,7 @@ std::string section(const Command& command) {
 
 constexpr const char* kHead = R"(.TH RETRACE 1 "" "retrace {version}" "User Commands"
 .SH NAME
-retrace \- what a retroreflector array sends back, from its design file
+retrace \- computes the light that a retroreflector array returns, from its design file
 .SH SYNOPSIS
 .B retrace
 .I COMMAND
@@ -70,8 +70,8 @@ retrace \- what a retroreflector array sends back, from its design file
 .SH DESCRIPTION
 .B retrace
 traces light through arrays of right triangular prisms and cube corners and
-says how much of it returns to the source; it plans how they are made, and
-verifies what was made.
+computes how much of it returns to the source. It also plans the fabrication
+of these arrays and verifies NC programs.
 A DESIGN is a TOML file, or \- for standard input.
 Lengths are in mm, angles in degrees.
 Without
@@ -80,39 +80,41 @@ and
 .B \-\-json
 a table goes to standard output, and nothing is written.
 .SH OPTIONS OF EVERY COMMAND
-They may stand before or after the command word.
+They can be given before or after the command word.
 )";
 
 constexpr const char* kTail = R"(.SH ENVIRONMENT
 .TP
 .B RETRACE_DATA_DIR
-The folder of shipped data, in place of
+Folder of shipped data, in place of
 .I share/retrace
 beside the program's
 .I bin
 folder.
 .TP
 .B RETRACE_MPI_SILENCE_S
-Seconds of silence after which a rank under MPI is given up; 15 without it.
+Seconds without a response after which an MPI rank is considered lost;
+the default is 15.
 .SH EXIT STATUS
 .TP
 .B 0
 Done.
 .TP
 .B 1
-The answer to what was asked is no, a verdict is undetermined, or every point of a sweep failed.
+The answer is no (such as no feasible design or a missed limit), a verdict is
+undetermined, or every point of a sweep failed.
 .TP
 .B 2
-Usage, or an input that cannot be opened, read or understood; nothing was written.
+Wrong usage, or an input that cannot be opened, read or understood; nothing was written.
 .TP
 .B 3
-An output that cannot be written, memory, or a budget that ran out.
+An output cannot be written, memory is not sufficient, or a budget is exceeded.
 .TP
 .B 130
-Interrupted; what is written is valid and says "complete": false.
-Work that does not stop within a second is given up.
+Interrupted; the written files are valid and contain "complete": false.
+If the computation does not stop within one second, no results are written.
 .SH EXAMPLES
-A design, what it is, and its curve:
+Write a design, inspect it, and compute its curve:
 .PP
 .nf
     retrace init rtp \-o prism.toml
@@ -203,8 +205,8 @@ Command manual_command() {
   return {.name = "manual",
           .summary = "the manual page, and all commands and options as data",
           .manual =
-              "Prints this page, for `man -l`. `--json` has every command with its arguments, the words they may "
-              "be, and the formats it reads and writes.",
+              "Prints this page, for `man -l`. `--json` writes every command with its arguments, their allowed words, "
+              "and the formats that it reads and writes.",
           .writes = {"retrace.manual/1"},
           .refuses_set = "manual reads no design",
           .begin = begins<ManualOptions>(arguments, run)};

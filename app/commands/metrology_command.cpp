@@ -41,8 +41,8 @@ Command metrology_command() {
   return {.name = "metrology",
           .summary = "roughness, waviness and edge radius of a measured surface",
           .manual =
-              "Roughness, waviness, dominant waves, scratches and edge radius of a measured height map or profile, "
-              "and `surface.toml`, which describes such a surface to a design.",
+              "Computes roughness, waviness, dominant waves, scratches and edge radius of a measured height map or "
+              "profile, and writes `surface.toml`, which describes such a surface in a design.",
           .reads = {"height map or profile (text, SDF, GSF, GWY)"},
           .writes = {"retrace.metrology/1"},
           .refuses_set = "metrology reads no design",

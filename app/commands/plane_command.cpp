@@ -36,11 +36,12 @@ ExitCode run(const PlaneOptions& options, const CommonOptions& common) {
 
 Command plane_command() {
   return {.name = "plane",
-          .summary = "NC programs of a flat lens of zones, planed or turned",
+          .summary = "NC programs of a flat zone lens, planed or turned",
           .manual =
-              "NC programs of a flat lens of zones, planed on a mill that moves one axis at a time or turned on a "
-              "lathe, with frames and hours, checked from their text against the profile and, on a lathe, for "
-              "the spindle that the part's file asks for. Exits with 1 if anything was found.",
+              "Writes NC programs of a flat zone lens, planed on a mill that moves one axis at a time or turned on a "
+              "lathe, with the form error and the machining time. The programs are read back and compared with the "
+              "profile; on a lathe, the spindle must rotate as the part's file requires. Exits with 1 if there are "
+              "findings.",
           .reads = {"retrace.planed_part/1"},
           .writes = {"retrace.planing/1"},
           .refuses_set = "plane reads no design: change the part file",

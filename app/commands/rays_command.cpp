@@ -66,17 +66,16 @@ ExitCode run(const RaysOptions& options, const CommonOptions& common) {
 }  // namespace
 
 Command rays_command() {
-  return {
-      .name = "rays",
-      .summary = "what becomes of the rays of a file or an emitter",
-      .manual =
-          "Traces the rays of a file (IES TM-25, or a table), or of an emitter, and writes every ray that leaves the "
-          "part with its account to the file of `--out`, in the format of its ending. Places are those of the "
-          "part's frame, in mm; a source is moved and turned by `--at-mm` and `--aim-mm`, or by `--incidence`, "
-          "`--azimuth` and `--distance-mm`.\n\nMemory does not grow with the number of rays.",
-      .reads = {"retrace.design/1", "rays (IES TM-25, CSV)"},
-      .writes = {"retrace.rays/1", "rays (IES TM-25, CSV)"},
-      .begin = begins<RaysOptions>(arguments, run)};
+  return {.name = "rays",
+          .summary = "paths of the rays of a file or an emitter",
+          .manual =
+              "Traces the rays of a file (IES TM-25, or a table), or of an emitter. Writes every ray that leaves the "
+              "part, with its term of the ledger, to the file of `--out`, whose ending selects the format. Positions "
+              "are in the frame of the part, in mm. A source is moved and rotated by `--at-mm` and `--aim-mm`, or by "
+              "`--incidence`, `--azimuth` and `--distance-mm`.\n\nMemory does not grow with the number of rays.",
+          .reads = {"retrace.design/1", "rays (IES TM-25, CSV)"},
+          .writes = {"retrace.rays/1", "rays (IES TM-25, CSV)"},
+          .begin = begins<RaysOptions>(arguments, run)};
 }
 
 }  // namespace retrace::app

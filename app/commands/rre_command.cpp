@@ -116,13 +116,13 @@ Command rre_command() {
       .name = "rre",
       .summary = "retroreflective efficiency against angle",
       .manual =
-          R"(Retroreflective efficiency (RRE) over angles of incidence and azimuths, with its standard error and a ledger of where all other light went.
+          R"(Computes the retroreflective efficiency (RRE) over angles of incidence and azimuths, with its standard error and a ledger of all other light.
 
-`exact` follows beams and has no noise. `stochastic` follows strong beams as `exact` does, and of weak ones some that stand for all: its noise is far below that of rays for the same time, but where light enters prisms askew. `cell` is Monte Carlo in SIMD lanes, for endless arrays and those of equal elements that reach more than two elements from every border, which it leaves to Embree; `embree` is Monte Carlo for every design; `montecarlo` is the first of them that can. `auto` takes, for each direction and wavelength, that of `exact`, `stochastic` and `montecarlo` which is expected to reach the target error first.
+`exact` follows beams and has no noise. `stochastic` follows strong beams like `exact` and resamples weak beams; its noise is far below that of rays for the same time, except where light enters prisms obliquely to their roof edges. `cell` is a Monte Carlo engine in SIMD lanes for infinite arrays, and for arrays of equal elements that extend more than two elements from every border (Embree traces the borders). `embree` is a Monte Carlo engine for every design. `montecarlo` uses `cell` if possible, and otherwise `embree`. `auto` selects, for each direction and wavelength, the one of `exact`, `stochastic` and `montecarlo` that is expected to reach the target error first.
 
-A LIST mixes `a,b,c` and `start:stop:step`, stop included, such as `--incidence=-40:40:5`. With `start:stop:auto` `--incidence` chooses points itself: the ends, 0, where total reflection begins or ends, and so many between that straight lines miss RRE by no more than the target error, or 1e-3 if that is more.
+A LIST can combine values `a,b,c` and ranges `start:stop:step`, which include the stop, such as `--incidence=-40:40:5`. With `start:stop:auto`, `--incidence` selects the angles automatically: the ends, 0, the angles at which total reflection begins or ends, and as many others as needed for linear interpolation with an error below the target error or 1e-3, whichever is greater.
 
-`--derivatives` gives the change of RRE by size, angle of the facets, index, thickness and incidence, with an estimate of its error; left out, with the reason, where RRE has a kink or a jump. `--footprint` and `--far-field` write files of those names to the folder of `--out`.)",
+`--derivatives` computes the derivatives of RRE with respect to size, angle of the facets, index, thickness and incidence, with an estimate of their errors. Where RRE has a kink or a jump, a derivative is left out and the reason is given. `--footprint` and `--far-field` write files of these names to the folder of `--out`.)",
       .reads = {"retrace.design/1"},
       .writes = {"retrace.rre/1", "retrace.footprint/1", "retrace.far_field/1"},
       .begin = begins<RreOptions>(arguments, run)};

@@ -36,9 +36,9 @@ Command sweep_command() {
   return {.name = "sweep",
           .summary = "designs and directions over ranges, as defined in a study file",
           .manual =
-              "Computes every point of a study file: keys of a design over lists, ranges and samples. Finished "
-              "points are kept in `sweep.sqlite` in the output folder, so that work can go on after an end. "
-              "Exits with 1 if every point failed.",
+              "Computes every point of a study file: keys of a design over lists, ranges and samples. Finished points "
+              "are kept in `sweep.sqlite` in the output folder, so that a later run can continue. Exits with 1 if "
+              "every point failed.",
           .reads = {"retrace.study/1", "retrace.design/1"},
           .writes = {"retrace.sweep/1"},
           .begin = begins(study_arguments, run_sweep)};

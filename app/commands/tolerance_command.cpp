@@ -40,15 +40,16 @@ ExitCode run_tolerance(const StudyOptions& options, const CommonOptions& common)
 }  // namespace
 
 Command tolerance_command() {
-  return {.name = "tolerance",
-          .summary = "effect of manufacturing errors on a design, as defined in a study file",
-          .manual =
-              "Makes parts with the errors of manufacture that a study gives its parameters: how quantities are "
-              "spread, the yield, and the main contributors. Points are kept in `tolerance.sqlite` in the output "
-              "folder. Exits with 1 if the yield is below what the study asks for or every point failed.",
-          .reads = {"retrace.study/1", "retrace.design/1"},
-          .writes = {"retrace.tolerance/1"},
-          .begin = begins(study_arguments, run_tolerance)};
+  return {
+      .name = "tolerance",
+      .summary = "effect of manufacturing errors on a design, as defined in a study file",
+      .manual =
+          "Computes parts with random manufacturing errors, as the parameters of a study define them, and reports the "
+          "distribution of the quantities, the yield, and the main contributors. Points are kept in `tolerance.sqlite` "
+          "in the output folder. Exits with 1 if the yield is below the required yield or every point failed.",
+      .reads = {"retrace.study/1", "retrace.design/1"},
+      .writes = {"retrace.tolerance/1"},
+      .begin = begins(study_arguments, run_tolerance)};
 }
 
 }  // namespace retrace::app

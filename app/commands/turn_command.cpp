@@ -38,10 +38,11 @@ ExitCode run(const TurnOptions& options, const CommonOptions& common) {
 
 Command turn_command() {
   return {.name = "turn",
-          .summary = "NC programs of a turned freeform, and what they leave",
+          .summary = "NC programs of a turned freeform surface, and its deviations",
           .manual =
-              "Path and NC programs of a freeform cut on a lathe, in all dialects, and what their text leaves "
-              "against the design. Exits with 1 if that is not what the part allows.",
+              "Writes the tool path and the NC programs of a freeform surface that is cut on a lathe, in all dialects. "
+              "The programs are read back and the machined surface is compared with the design. Exits with 1 if the "
+              "deviation exceeds the tolerances of the part.",
           .reads = {"retrace.turned_part/1"},
           .writes = {"retrace.turning/1"},
           .refuses_set = "turn reads no design",

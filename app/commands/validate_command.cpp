@@ -33,14 +33,14 @@ ExitCode run(const ValidateOptions&, const CommonOptions& common) {
 
 Command validate_command() {
   return {.name = "validate",
-          .summary = "published figures and closed forms beside what retrace computes",
+          .summary = "comparison of retrace with published values and closed forms",
           .manual =
-              "Computes every published figure, closed form and independent computation that retrace is held "
-              "against, and prints a page of Markdown with each, its source, what retrace makes of it, the "
-              "difference, and the difference that is allowed, with the reason. With `--out FILE` the page goes "
-              "to that file. The exit code is 1 if a difference is not allowed.",
+              "Compares results of retrace with published values, closed forms and independent computations. Prints a "
+              "page of Markdown with each value, its source, the result of retrace, the difference, and the allowed "
+              "difference with its reason. `--out FILE` writes the page to a file. Exits with 1 if a difference is "
+              "greater than allowed.",
           .writes = {"retrace.validation/1"},
-          .refuses_set = "validate has designs of its own",
+          .refuses_set = "validate uses its own designs",
           .begin = begins<ValidateOptions>(arguments, run)};
 }
 

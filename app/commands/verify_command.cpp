@@ -42,7 +42,7 @@ struct VerifyOptions {
 std::vector<Argument> arguments(VerifyOptions& options) {
   std::vector<Argument> all = {
       {"JOB|PART", "job file, or the file of a planed or turned part", &options.job, files(".toml")},
-      {"PROGRAM", "NC programs, in the order in which they run; FILE@LINE: stopped behind that line", &options.programs,
+      {"PROGRAM", "NC programs, in the order in which they run; FILE@LINE: stopped after that line", &options.programs,
        files("")}};
   const std::array<CommandRequest, 1> of_command = {{{requests::description<VerificationRequest>()}}};
   for (Argument& argument : field_arguments(of_command, options.fields)) all.push_back(std::move(argument));
@@ -91,7 +91,8 @@ Kind kind_of(const std::string& file) {
 /// Refuses options that do not apply to files of kind `kind`.
 void refuse_others(const VerifyOptions& options, const VerificationRequest& request, Kind kind) {
   const auto refuse = [&](const std::string& option, const char* whom) {
-    throw InputError({"", 0, option}, fmt::format("is for {}; {} is none", whom, options.job));
+    throw InputError({"", 0, option},
+                     fmt::format("only allowed for {}, but {} is another kind of file", whom, options.job));
   };
   if (kind != Kind::turned_part && !options.servo.empty()) refuse("--servo", "turned parts");
   if (kind == Kind::job) return;
@@ -185,12 +186,12 @@ ExitCode run(const VerifyOptions& options, const CommonOptions& common) {
 Command verify_command() {
   return {
       .name = "verify",
-      .summary = "what NC programs really cut, against their fabrication job or part",
+      .summary = "check of NC programs against their fabrication job or part",
       .manual =
-          "Reads NC programs as a controller would, cuts the blank through the axes of the job's machine and "
-          "says, by line, what differs from the design. With `--as-machined` the part that is left is "
-          "written as a design, with `--map` it is drawn. Programs of planed and turned parts are held to the "
-          "file of the part in the same way, wherever they come from. Exits with 1 if anything was found.",
+          "Reads NC programs as a controller does, cuts the blank with the axes of the job's machine, and reports, "
+          "with the lines of the programs, what differs from the design. `--as-machined` writes the machined part as a "
+          "design, `--map` draws the remaining material. Programs of planed and turned parts from any source are "
+          "compared with the file of the part. Exits with 1 if there are findings.",
       .reads = {"retrace.job/1", "retrace.machine/1", "retrace.planed_part/1", "retrace.turned_part/1", "NC programs"},
       .writes = {"retrace.verification/1", "retrace.design/1"},
       .refuses_set = "verify reads no design",

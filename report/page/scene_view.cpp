@@ -85,7 +85,7 @@ void add_live(Page& page, const ResultFolder& folder) {
   try {
     const std::string toml = schema::toml_of_json(studies::design_format(), *json);
     const studies::Design design = studies::parse_design(toml, "design.toml");
-    studies::check_names_no_file(design, "which a page does not have");
+    studies::check_names_no_file(design, "which a self-contained page cannot read");
     PageSection section =
         titled("Live",
                "The design with the engine in this page: change a value or turn the light, and see what "
