@@ -110,7 +110,7 @@ compute::LeastSquaresEstimate fit(const std::vector<CutPart>& parts, const Measu
     }
   }
   throw InputError({measured.file, 0, ""},
-                   "no machine near that of the jobs would produce these measurements: check units and facets");
+                   "no machine similar to that of the jobs would produce these measurements: check units and facets");
 }
 
 /// Returns the index of the measurement with the largest deviation from the fit, and this deviation in standard
@@ -140,8 +140,8 @@ double most_by_chance(std::size_t measurements) {
   const int line = outliers.front().measurement.line;
   throw InputError(
       {line > 0 ? measured.file : measured.jobs[outliers.front().measurement.part], line, ""},
-      fmt::format("measurements contradict each other by more than their uncertainties: {}{}, the worst first",
-                  line > 0 ? "those of lines " : "", places));
+      fmt::format("measurements contradict each other by more than their uncertainties: {}{} (worst first)",
+                  line > 0 ? "lines " : "", places));
 }
 
 /// Returns true if two measurements have the same sign convention. This is the case if they are of the same quantity
@@ -178,7 +178,7 @@ void check_signs(const MeasuredParts& measured, const std::vector<CutPart>& part
         fmt::format("all measurements of {} of facet {}{} of {} (line{} {}) contradict the other rows: check the "
                     "sign, a positive value means \"{}\" at {}0 C0",
                     kFacetQuantityWords[static_cast<std::size_t>(worst.what)], worst.at.facet + 1,
-                    plan.plan.elements[worst.at.element].rotated ? " of turned elements" : "",
+                    plan.plan.elements[worst.at.element].rotated ? " of rotated elements" : "",
                     measured.jobs[worst.part], lines.size() > 1 ? "s" : "", fmt::join(lines, ", "),
                     parts[worst.part].positive_sense(worst), plan.machine.tilt_letter()));
   }

@@ -51,8 +51,8 @@ void tell_rests(Correction& result, double feed_mm_per_min) {
     result.calibration.warnings.push_back(
         {"marks_not_corrected",
          fmt::format("{}: marks are not corrected. {}", words_of(mark),
-                     mark.is_of_edge ? "Most facets with this position have it, so that the tool's edge causes it"
-                                     : "The facets are measured next to it")});
+                     mark.is_of_edge ? "Most facets with this position have the mark, so the tool's edge causes it"
+                                     : "The facets are measured next to the mark")});
 }
 
 }  // namespace
@@ -65,11 +65,11 @@ std::string words_of(const FacetWave& wave, std::size_t facets) {
 }
 
 std::string words_of(const FacetMark& mark) {
-  return fmt::format("{}{} {} nm {}, {} um wide, {} um {}, on {} of {} facets that show the place",
-                     mark.is_of_edge ? (mark.height_nm > 0.0 ? "a chip of the edge: " : "the edge stands out: ") : "",
+  return fmt::format("{}{} {} nm {}, {} um wide, {} um {}, on {} of {} facets measured at this position",
+                     mark.is_of_edge ? (mark.height_nm > 0.0 ? "a chip of the edge: " : "a bulge of the edge: ") : "",
                      mark.height_nm > 0.0 ? "a ridge" : "a groove", fixed(std::abs(mark.height_nm), 1),
                      mark.height_nm > 0.0 ? "high" : "deep", fixed(mark.width_um, 1), fixed(mark.place_um, 1),
-                     mark.is_along_cut ? "along the edge from its middle" : "up the facet", mark.facets.size(),
+                     mark.is_along_cut ? "along the edge from its centre" : "up the facet", mark.facets.size(),
                      mark.shown);
 }
 
@@ -93,9 +93,8 @@ Correction correct(const FabricationResult& plan, std::vector<FacetMap> maps) {
     if (!result.registered[k].face)
       result.calibration.warnings.push_back(
           {"blank_face_not_visible",
-           fmt::format(
-               "{} shows too little of the blank's face: it does not determine errors that shift all facets equally",
-               result.maps[k].file)});
+           fmt::format("{} shows too little of the blank's face to determine errors that shift all facets equally",
+                       result.maps[k].file)});
   tell_outlooks(result);
   tell_rests(result, plan.job.process.finishing_feed_mm_per_min);
   return result;

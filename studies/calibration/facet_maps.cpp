@@ -448,7 +448,8 @@ RegisteredMap registered(const FacetMap& map, const FabricationResult& plan) {
     add_figures(result, region, *fit);
     result.rests.push_back(std::move(rest));
   }
-  if (result.figures.empty()) throw InputError({map.file, 0, ""}, "shows no facet: its points lie too near to edges");
+  if (result.figures.empty())
+    throw InputError({map.file, 0, ""}, "shows no facet, because all points are too close to edges");
   return result;
 }
 

@@ -67,14 +67,14 @@ std::string CutPart::fault_of(const Measurement& m) const {
     if (!cuts_.contains({place->element, place->facet})) return fmt::format("element {} is not cut", place->element);
   }
   if (m.what == FacetQuantity::angle) {
-    if (!m.from) return "an angle is one with another facet: from_element and from_facet must be given";
+    if (!m.from) return "an angle is measured between two facets: from_element and from_facet must be given";
     const Vec3& a = common(grooves_[m.at.element]).facets[m.at.facet].normal;
     const Vec3& b = common(grooves_[m.from->element]).facets[m.from->facet].normal;
-    if (a.cross(b).norm() < kParallel) return "facets that are parallel include no angle";
+    if (a.cross(b).norm() < kParallel) return "the two facets of an angle must not be parallel";
   }
   if (m.what == FacetQuantity::end && m.from)
-    return "the end of a cut is measured above the other facet of its element: from_element and from_facet must be "
-           "empty";
+    return "from_element and from_facet must be empty for end_nm, which is the height above the other facet of this "
+           "element";
   return {};
 }
 

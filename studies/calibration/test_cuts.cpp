@@ -43,7 +43,8 @@ Design test_design(const Design& design, double apex_angle_deg, double most_mm) 
   const auto* const array = std::get_if<ElementArray>(&design.shape);
   const auto* const prism = array ? std::get_if<geometry::RtpElement>(&array->part.element) : nullptr;
   if (prism == nullptr)
-    throw InputError(Field{"test_cuts"}, "test cuts are prisms: the design must have such (rtp), got another element");
+    throw InputError(Field{"test_cuts"},
+                     "test cuts are prisms: the design must have element.kind = \"rtp\", got another kind");
   Design test = design;
   test.title = fmt::format("Test cuts, apex angle {} degrees", shortest(apex_angle_deg));
   const double size_mm = std::min({prism->base_mm, prism->width_mm, most_mm});

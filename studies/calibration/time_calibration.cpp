@@ -217,7 +217,7 @@ void warn_of_misses(TimeCalibration& result, const compute::LeastSquaresEstimate
     if (deviations > kManyDeviations)
       result.warnings.push_back(
           {"outlier",
-           fmt::format("line {}: {} s misses the best fit of all rows by {} standard uncertainties",
+           fmt::format("line {}: {} s differs from the best fit of all rows by {} standard uncertainties",
                        result.programs.rows[k].line, shortest(result.programs.rows[k].seconds), fixed(deviations, 1))});
   }
 }

@@ -51,10 +51,10 @@ struct TimeQuantityWords {
   std::string_view words;
 };
 inline constexpr std::array<TimeQuantityWords, kTimeQuantities> kTimeQuantityWords = {{
-    {"settling_s", "settling at every exact stop, s"},
-    {"linear_acceleration_factor", "accelerations of X, Y and Z, times the file's"},
-    {"linear_ramp_s", "until X, Y and Z have their acceleration, s"},
-    {"rotary_acceleration_factor", "accelerations of the rotary axes, times the file's"},
+    {"settling_s", "settling time at every exact stop, s"},
+    {"linear_acceleration_factor", "factor on the accelerations of X, Y and Z"},
+    {"linear_ramp_s", "time until X, Y and Z reach their acceleration, s"},
+    {"rotary_acceleration_factor", "factor on the accelerations of the rotary axes"},
 }};
 
 struct CalibratedTime {

@@ -146,20 +146,23 @@ geometry::FacetPlanes facet_planes_of(const VerificationRun& run) {
 }
 
 /// Adds warnings about differences between the elements. A design with equal elements cannot represent them.
-/// \param where end of the warning, such as "on a base"
+/// \param where description of the part in the warning, such as "on a base"
 void warn_of(const Unlikeness& unlike, AsMachined& part, const char* where) {
   if (unlike.along_arcmin > kShownArcmin)
     part.warnings.push_back(
-        {"rotation_along_root_omitted", fmt::format("facets are turned by up to {} arcmin along the root: left out {}",
-                                                    fixed(unlike.along_arcmin, 2), where)});
+        {"rotation_along_root_omitted",
+         fmt::format(
+             "facets of a part {} are rotated by up to {} arcmin along the root: the as-machined design omits this",
+             where, fixed(unlike.along_arcmin, 2))});
   if (unlike.spread_arcmin > kShownArcmin)
     part.warnings.push_back(
-        {"facets_differ_from_mean", fmt::format("facets of single elements differ from the mean by up to {} arcmin",
+        {"facets_differ_from_mean", fmt::format("facets of individual elements differ from the mean by up to {} "
+                                                "arcmin: the as-machined design contains the mean",
                                                 fixed(unlike.spread_arcmin, 2))});
   if (unlike.missing > 0)
     part.warnings.push_back({"uncut_elements_included",
-                             "elements that are not cut are nevertheless contained in the as-machined design of a part "
-                             "that is cut directly"});
+                             "the as-machined design of a part that is cut directly contains all elements, even "
+                             "elements that are not cut"});
 }
 
 }  // namespace
@@ -177,21 +180,19 @@ bool has_flares(const VerificationRun& run) {
 /// \throw InputError if an element is not cut
 void check_on_substrate(const VerificationRun& run, const Unlikeness& unlike, AsMachined& part) {
   if (unlike.missing > 0)
-    throw InputError(
-        Field{"as_machined"},
-        fmt::format("a design with [base] has all its elements: must be cut all, {} are not", unlike.missing));
+    throw InputError(Field{"as_machined"},
+                     fmt::format("all elements on a [base] must be cut for an as-machined design, but {} are not cut",
+                                 unlike.missing));
   warn_of(unlike, part, "on a base");
   if (run.result.rim_overcut_um_max > 0.0)
     part.warnings.push_back(
-        {"rim_overcut",
-         fmt::format(
-             "cuts of neighbouring elements, whose rims are at other heights, remove up to {} um below the rims of an "
-             "element: the design has walls there",
-             fixed(run.result.rim_overcut_um_max, 3))});
+        {"rim_overcut", fmt::format("cuts of neighbouring elements with rims at other heights remove up to {} um below "
+                                    "the rims of an element, but the as-machined design has walls there",
+                                    fixed(run.result.rim_overcut_um_max, 3))});
   if (has_flares(run))
-    part.warnings.push_back(
-        {"border_cavities_omitted",
-         "cavities of hexagons reach beyond the elements' outlines at the border: left out on a base"});
+    part.warnings.push_back({"border_cavities_omitted",
+                             "cavities of hexagons extend beyond the elements' outlines at the border: the as-machined "
+                             "design omits this for elements on a base"});
 }
 
 ZonedPart zones_of_run(const VerificationRun& run, AsMachined& part) {
@@ -206,10 +207,10 @@ ZonedPart zones_of_run(const VerificationRun& run, AsMachined& part) {
     part.warnings.push_back(
         {"zone_border_cavities_omitted",
          run.result.elements_overcut == 0
-             ? "cavities of hexagons extend into the flat land at borders of zones: the design omits this"
+             ? "cavities of hexagons extend into the flat land at borders of zones: the as-machined design omits this"
              : fmt::format(
                    "cavities of hexagons extend beyond the elements' outlines at borders of zones, and remove {} "
-                   "mm2 of the apertures of other elements: the design omits this",
+                   "mm2 of the apertures of other elements: the as-machined design omits this",
                    fixed(run.result.zone_overcut_mm2, 4))});
   return machined_zones(run.job, run.request.job, elements, part.warnings);
 }
@@ -233,7 +234,7 @@ AsMachined as_machined(const VerificationRun& run) {
   // Facet 1 faces -x in a moulded part. A part that is cut directly is rotated about y, which exchanges its facets.
   if (is_direct) std::swap(part.facet_tilt_arcmin[0], part.facet_tilt_arcmin[1]);
   if (is_direct)
-    warn_of(unlike, part, "of a part that is cut directly");
+    warn_of(unlike, part, "that is cut directly");
   else if (!run.job.zones.empty())
     part.zones = zones_of_run(run, part);
   else if (run.job.substrate)
@@ -245,21 +246,20 @@ AsMachined as_machined(const VerificationRun& run) {
       run.job.process.plough_sa_nm != run.job.process.roughing_plunge_sa_nm)
     part.warnings.push_back(
         {"facet_roughness_averaged",
-         fmt::format("plunged and ploughed facets differ in roughness (Sa {} and {} nm), which a design "
-                     "cannot describe: it contains their root mean square",
+         fmt::format("plunged and ploughed facets differ in roughness (Sa {} and {} nm), but a design has only one "
+                     "roughness: it contains their root mean square",
                      shortest(run.job.process.roughing_plunge_sa_nm), shortest(run.job.process.plough_sa_nm))});
   part.root_radius_um = run.result.root_radius_um;
   part.root_chamfer_um = run.result.root_chamfer_um;
   if (run.result.root_ridge_um > 0.0)
-    part.warnings.push_back(
-        {"root_ridges_as_flats",
-         fmt::format(
-             "the nose of the tool leaves ridges {} um high in dihedral edges: the design has flats of {} um there",
-             fixed(run.result.root_ridge_um, 2), fixed(run.result.root_chamfer_um, 2))});
+    part.warnings.push_back({"root_ridges_as_flats",
+                             fmt::format("the nose of the tool leaves ridges of a height of {} um in the dihedral "
+                                         "edges: the as-machined design has flats with a width of {} um instead",
+                                         fixed(run.result.root_ridge_um, 2), fixed(run.result.root_chamfer_um, 2))});
   part.texture = predicted_texture(run.job);
   part.scratches = scratches_of(run.job);
   if (run.job.substrate && !part.scratches.empty()) {
-    part.warnings.push_back({"scratches_omitted", "scratches of a chipped edge are left out on a base"});
+    part.warnings.push_back({"scratches_omitted", "scratches of a chipped edge are omitted for elements on a base"});
     part.scratches.clear();
   }
   part.body = machined_body(run.job, run.request.job, part.warnings);
@@ -311,9 +311,9 @@ std::string as_machined_toml(const VerificationRun& run, const AsMachined& part,
       HarveyShackTexture{rounded(part.texture.roughness_sq_nm), part.texture.correlation_length_um,
                          rounded(part.texture.waviness_sq_nm), rounded(part.texture.waviness_length_um)};
   design.detector.acceptance_half_angle_deg = {0.05, 0.5};
-  return design_text(design, fmt::format("# Facets as the programs leave them: {}. Sa {} nm is a published value for\n"
+  return design_text(design, fmt::format("# Facets as the programs cut them: {}. Sa {} nm is a published value for\n"
                                          "# facets that were cut by such motions; feed marks at 7.07 Hz.\n",
-                                         part.planes  ? "a plane each"
+                                         part.planes  ? "one plane for each facet"
                                          : part.zones ? "the mean over the elements of each zone"
                                                       : "the mean over the elements",
                                          fixed(part.texture.sa_nm, 1)));

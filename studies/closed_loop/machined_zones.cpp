@@ -92,15 +92,16 @@ void check_zone(const fabrication::Job& job, std::size_t zone, const DesignEleme
   for (const Vec2& apex : job.zones[zone].apexes_mm) {
     const std::string which = fmt::format("the element at x = {}, y = {} mm", shortest(apex.x()), shortest(apex.y()));
     const DesignElements::Element* const at = elements.at(apex);
-    if (at == nullptr) throw InputError(where, which + " is not in the job's design: there is no as-machined part");
+    if (at == nullptr)
+      throw InputError(where, which + " is not in the job's design, so no as-machined part can be written");
     const geometry::Element& designed = spec.zones[at->zone].elements.element;
     constexpr double kSame = 1e-9;
     const double turn_deg = std::remainder(at->rotation_deg - job.zones[zone].rotation_deg, 360.0);
     const double size = geometry::element_depth_mm(cut) / geometry::element_depth_mm(designed);
     if (cut.index() != designed.index() || std::abs(turn_deg) > kSame || std::abs(size - 1.0) > kSame)
-      throw InputError(where, which +
-                                  " has another kind, size or rotation in the job's design: there is no as-machined "
-                                  "part");
+      throw InputError(
+          where,
+          which + " has another kind, size or rotation in the job's design, so no as-machined part can be written");
   }
 }
 
@@ -124,8 +125,8 @@ std::vector<CutAngles> cut_angles(const fabrication::Job& job, const std::vector
       CutAngles& of_zone = angles[designed.at(apex)->zone];
       if (of_zone.asked.value_or(asked) != asked)
         throw InputError(job.where(schema::path_of_entry("zone", z)),
-                         "has other angles than an earlier zone of the job, but both are the same zone in the job's "
-                         "design: there is no as-machined part");
+                         "has different angles from an earlier zone of the job, but both belong to one zone of the "
+                         "job's design, so no as-machined part can be written");
       of_zone.asked = asked;
       of_zone.missed.add(*element);
     }

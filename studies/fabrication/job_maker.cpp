@@ -79,8 +79,8 @@ geometry::Element element_of(const Design& design, const JobRequest& request) {
   if (const auto* const rtp = std::get_if<geometry::RtpElement>(&design.part().element)) {
     if (is_dmc(request))
       throw InputError(Field{"strategy"},
-                       "dmc cuts cube corners: must be unidirectional, bidirectional or two-step "
-                       "for element.kind = \"rtp\", got dmc");
+                       "must be unidirectional, bidirectional or two-step for element.kind = \"rtp\", because dmc is "
+                       "only for cube corners, got dmc");
     geometry::RtpElement prism = *rtp;
     prism.apex_angle_deg += design.part().angle_errors.dihedral_error_arcmin[0] / 60.0;
     return prism;
@@ -88,8 +88,8 @@ geometry::Element element_of(const Design& design, const JobRequest& request) {
   if (!is_dmc(request))
     throw InputError(
         Field{"strategy"},
-        fmt::format("a chisel with a straight edge reaches {} % of the facets of this cube corner, and not its apex: "
-                    "must be dmc, or give {} FILE for the part that it can make, got {}",
+        fmt::format("a chisel with a straight edge reaches only {} % of the facets of this cube corner, and not its "
+                    "apex: use dmc, or give {} FILE to write the design of the part that a chisel can cut, got {}",
                     fixed(100.0 * reachable_share(design.part().element, request.tool_width_mm), 2),
                     reference({"reachable"}), request.strategy));
   check_upright(design.part().element, {design.source_name(), 0, "element.cant_deg"});
@@ -128,7 +128,9 @@ std::int64_t partial_elements(const PartSpec& part) {
 }
 
 std::string cut_warning(const std::string& name, std::int64_t partial) {
-  return fmt::format("{}: array.partial_elements is \"cut\", but a job leaves partial elements out: {}", name, partial);
+  return fmt::format(
+      "{}: array.partial_elements is \"cut\", but a job contains only whole elements; number of omitted elements: {}",
+      name, partial);
 }
 
 void add_warnings(const Design& design, MadeJob& made) {
@@ -154,7 +156,7 @@ void check_zones(const Design& design, const JobRequest& request) {
     if (is_prism(zones[z].elements)) throw InputError(where, "must have cube corners to be cut, got prisms");
     if (zones[z].elements.element.index() != zones.front().elements.element.index())
       throw InputError(where,
-                       "must have the same kind of cube corners as the zones before it, hexagonal or triangular");
+                       "must have the same kind of cube corners (hexagonal or triangular) as the preceding zones");
     check_upright(zones[z].elements.element, where);
   }
   check_cuts_zones(request);
@@ -224,10 +226,8 @@ void tell_overcut(MadeJob& made) {
   const fabrication::ZoneOvercut overcut =
       fabrication::zone_overcut(workpiece, std::vector<bool>(workpiece.grooves.size(), true));
   if (overcut.elements == 0) return;
-  made.warnings.push_back({"zones_overcut", fmt::format("cavities remove {} mm2 of the apertures of {} of {} elements, "
-                                                        "because they extend into other zones: at most {} "
-                                                        "um "
-                                                        "deep",
+  made.warnings.push_back({"zones_overcut", fmt::format("cavities extend into other zones, and remove {} mm2 of the "
+                                                        "apertures of {} of {} elements, at most {} um deep",
                                                         fixed(overcut.area_mm2, 4), overcut.elements,
                                                         workpiece.grooves.size(), fixed(1e3 * overcut.deepest_mm, 1))});
 }
@@ -301,7 +301,8 @@ MadeJob make_job(const Design& design, const JobRequest& request) {
   check_taken(design, {.what = "retrace job", .zones = true, .wet_backs = true});
   check_substrate(design, request);
   if (design.facet_planes())
-    throw InputError(design.where("part.facets"), "planes of single facets are traced, not cut, in this version");
+    throw InputError(design.where("part.facets"),
+                     "not allowed for a job: individual facet planes cannot be cut in this version");
   MadeJob made;
   Job& job = made.job;
   job.title = design.title;

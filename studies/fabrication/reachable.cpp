@@ -76,9 +76,10 @@ void check_design(const Design& design, const JobRequest& request) {
   check_taken(design, {.what = "retrace job --reachable", .wet_backs = true});
   const geometry::PartSpec& part = design.part();
   if (std::holds_alternative<geometry::RtpElement>(part.element))
-    throw InputError(Field{"reachable"}, "is for cube corners: a chisel reaches all of a prism");
+    throw InputError(Field{"reachable"}, "is only for cube corners, because a chisel reaches every point of a prism");
   if (request.strategy == "dmc")
-    throw InputError(Field{"reachable"}, "is for strategies with a chisel: dmc reaches all of a cube corner");
+    throw InputError(Field{"reachable"},
+                     "is only for strategies with a chisel, because dmc reaches every point of a cube corner");
   if (part.array.extent == geometry::Extent::infinite)
     throw InputError({design.source_name(), 0, "array.extent"}, "must be \"finite\" to be cut, got \"infinite\"");
   if (geometry::cant_of(part.element).deg != 0.0)
@@ -108,7 +109,8 @@ ReachablePart reachable_part(const Design& design, const JobRequest& request, co
   for (const geometry::WholeElement& whole : geometry::whole_elements(part.array, part.element))
     planes.push_back(element_at(part.element, result.reach, middle_of(part) + whole.centre_mm, whole.is_rotated));
   if (planes.empty())
-    throw InputError({design.source_name(), 0, "array.x_length_mm"}, "the array holds no whole element");
+    throw InputError({design.source_name(), 0, "array.x_length_mm"},
+                     "the array must have room for at least one whole element");
   result.elements = static_cast<std::int64_t>(planes.size());
   const auto* const hexagonal = std::get_if<geometry::HexagonalCube>(&part.element);
   if (hexagonal != nullptr && part.array.arrangement != geometry::Arrangement::single)
@@ -134,9 +136,9 @@ std::string reach_json(const ReachablePart& part, const JobRequest& request) {
 std::string reach_table(const ReachablePart& part) {
   const fabrication::ChiselReach& r = part.reach;
   std::string text = fmt::format("  elements            {}\n", part.elements);
-  text += fmt::format("  facets reached      {} % of their area, {} % found by cutting\n", fixed(100.0 * r.share, 2),
+  text += fmt::format("  facets reached      {} % of their area, {} % in simulated cuts\n", fixed(100.0 * r.share, 2),
                       fixed(100.0 * r.cut_share, 2));
-  text += fmt::format("  left over the apex  {} mm high, {} mm found by cutting\n", fixed(r.core_mm, 6),
+  text += fmt::format("  uncut above apex    {} mm high, {} mm in simulated cuts\n", fixed(r.core_mm, 6),
                       fixed(r.cut_core_mm, 6));
   return text;
 }

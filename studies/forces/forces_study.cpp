@@ -38,7 +38,7 @@ CutConditions conditions_of(const Job& job, const ForcesRequest& request) {
   cut.width_mm = std::min(job.tool.width_mm, element.width_mm);
   cut.plunge_mm = request.plunge_mm > 0.0 ? request.plunge_mm : facet_mm;
   if (cut.plunge_mm > facet_mm * (1.0 + 1e-9))
-    throw InputError(Field{"plunge_mm"}, fmt::format("must be at most the length of the facet, {}, got {}",
+    throw InputError(Field{"plunge_mm"}, fmt::format("must be at most the length of the facet ({}), got {}",
                                                      shortest(facet_mm), shortest(cut.plunge_mm)));
   cut.plough_mm = job.process.plough_length_mm;
   cut.dwell_s = job.process.dwell_s;

@@ -13,8 +13,9 @@ namespace {
 void check_spindle(const fabrication::PlanedPart& part, const std::string& dialect) {
   if (!part.lathe || !fabrication::has_own_texts(fabrication::dialect_of(dialect, {}, {}))) return;
   if (part.lathe->spindle_start.empty())
-    throw InputError(part.lathe->spindle_start_at, "missing, must be the line that starts the spindle: dialect " +
-                                                       dialect + " has no word for it that every control knows");
+    throw InputError(part.lathe->spindle_start_at,
+                     "missing, must be the line that starts the spindle, because dialect " + dialect +
+                         " has no standard code for it");
 }
 
 }  // namespace

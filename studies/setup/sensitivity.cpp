@@ -186,7 +186,7 @@ std::vector<FacetKind> kinds_of(const CutsOfFacets& cuts, const std::vector<CutE
 }  // namespace
 
 std::string FacetKind::name() const {
-  return fmt::format("facet {}{}", facet + 1, rotated ? " of turned elements" : "");
+  return fmt::format("facet {}{}", facet + 1, rotated ? " of rotated elements" : "");
 }
 
 double Sensitivity::farthest_nm() const {

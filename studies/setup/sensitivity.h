@@ -17,7 +17,7 @@ struct FacetKind {
   std::size_t facet = 0;  ///< index of the facet, from 0
   bool rotated = false;   ///< true: facets of rotated elements
 
-  std::string name() const;  ///< name such as "facet 1" or "facet 1 of turned elements"
+  std::string name() const;  ///< name such as "facet 1" or "facet 1 of rotated elements"
   bool operator==(const FacetKind&) const = default;
 };
 

@@ -111,7 +111,8 @@ turning::TurningCheck check_text(const TurningResult& r, bool by_cubics, fabrica
       reference = std::move(cuts);
       file = program.file;
     } else if (!same_cuts(reference->passes, cuts.passes)) {
-      findings.add({"differs", program.file, 0, -1, fmt::format("moves otherwise than {}", file), 0.0, 0.0, 1});
+      findings.add(
+          {"differs", program.file, 0, -1, fmt::format("the moves differ from the moves of {}", file), 0.0, 0.0, 1});
     }
   }
   std::optional<turning::StrokeTable> strokes;
@@ -200,9 +201,10 @@ TurningVerification verify_turning(const TurningRequest& request) {
   TurningVerification run{request, turning::parse_turned_part(read_file(request.part), request.part), {}, {}, {}};
   const bool is_fast = run.part.path.servo == turning::Servo::fast;
   if (is_fast && request.servo.empty())
-    throw InputError(Field{"servo"}, "must name the table of strokes, as the servo of " + request.part + " is fast");
+    throw InputError(Field{"servo"},
+                     "must name the table of strokes, because " + request.part + " has a fast tool servo");
   if (!is_fast && !request.servo.empty())
-    throw InputError(Field{"servo"}, request.part + " has no fast servo that takes strokes");
+    throw InputError(Field{"servo"}, request.part + " has no fast tool servo, so a table of strokes is not allowed");
   run.programs = fabrication::read_programs(request.programs, request.dialect);
   std::optional<turning::StrokeTable> strokes;
   if (is_fast) strokes = {request.servo, read_file(request.servo, kMostDataBytes)};

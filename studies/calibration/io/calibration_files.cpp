@@ -64,15 +64,15 @@ void put(Json& json, const Calibration& result) {
 std::string rows_of(const Calibration& result) {
   std::string text;
   for (const CalibratedQuantity& q : result.quantities)
-    text += fmt::format("  {:<38} {}\n", fmt::format("{}, {}", q.quantity->words, q.quantity->unit()),
-                        q.is_told ? fmt::format("{:>12} +- {}", fixed(q.value, 3), fixed(q.uncertainty, 3))
-                                  : fmt::format("{:>12}", "not told"));
-  for (const std::string& combination : result.untold) text += fmt::format("  not told: {}\n", combination);
+    text += fmt::format(
+        "  {:<38} {}\n", fmt::format("{}, {}", q.quantity->words, q.quantity->unit()),
+        q.is_told ? fmt::format("{:>12} +- {}", fixed(q.value, 3), fixed(q.uncertainty, 3)) : "unobservable");
+  for (const std::string& combination : result.untold) text += fmt::format("  unobservable: {}\n", combination);
   if (result.freedom > 0)
-    text += fmt::format("  residuals scatter {} times their uncertainties, {} to spare\n", fixed(scatter(result), 2),
-                        result.freedom);
+    text += fmt::format("  scatter of residuals {} times their uncertainties, {} degrees of freedom\n",
+                        fixed(scatter(result), 2), result.freedom);
   for (const Outlier& outlier : result.outliers)
-    text += fmt::format("  left out, {} deviations off: {}\n", fixed(outlier.deviations, 1),
+    text += fmt::format("  omitted, {} standard uncertainties from the fit: {}\n", fixed(outlier.deviations, 1),
                         place_of(result.parts, outlier.measurement));
   return text;
 }
@@ -146,7 +146,7 @@ std::string correction_json(const Correction& result) {
 
 std::string correction_table(const Correction& result) {
   const Calibration& found = result.calibration;
-  std::string text = fmt::format("{} on machine {}: {} maps\n", printable(found.parts.file, std::string::npos),
+  std::string text = fmt::format("{} on machine {}: {} height maps\n", printable(found.parts.file, std::string::npos),
                                  printable(found.machine.name), result.maps.size());
   for (std::size_t k = 0; k < result.maps.size(); ++k) {
     const RegisteredMap& map = result.registered[k];
@@ -156,14 +156,15 @@ std::string correction_table(const Correction& result) {
                         map.figures.size() / 3, map.face ? " and the face" : "", fixed(map.rms_nm, 1));
   }
   text += rows_of(found);
-  text += fmt::format("  facets, up to                          {} nm, {} arcsec off\n",
+  text += fmt::format("  largest errors of facets               {} nm, {} arcsec\n",
                       fixed(result.before.distance_nm, 1), fixed(result.before.tilt_arcsec, 2));
-  text += fmt::format("  on the corrected machine within        {} nm, {} arcsec\n", fixed(result.after.distance_nm, 1),
+  text += fmt::format("  largest errors after correction        {} nm, {} arcsec\n", fixed(result.after.distance_nm, 1),
                       fixed(result.after.tilt_arcsec, 2));
-  for (const FacetWave& wave : result.waves) text += fmt::format("  left: {}\n", words_of(wave, result.facets));
-  for (const FacetMark& mark : result.marks) text += fmt::format("  left: {}\n", words_of(mark));
+  for (const FacetWave& wave : result.waves)
+    text += fmt::format("  not corrected: {}\n", words_of(wave, result.facets));
+  for (const FacetMark& mark : result.marks) text += fmt::format("  not corrected: {}\n", words_of(mark));
   if (result.waves.empty() && result.marks.empty())
-    text += fmt::format("  left: no waves or marks on {} facets\n", result.facets);
+    text += fmt::format("  no other waves or marks on {} facets\n", result.facets);
   return text;
 }
 
@@ -213,18 +214,18 @@ std::string test_cuts_json(const TestCuts& cuts) {
 }
 
 std::string test_cuts_table(const TestCuts& cuts) {
-  std::string text = fmt::format("Test cuts for machine {}: {} figures to be measured\n",
+  std::string text = fmt::format("Test cuts for machine {}: {} values to be measured\n",
                                  printable(cuts.parts.plans.front().machine.name), cuts.parts.measurements.size());
   for (std::size_t k = 0; k < cuts.jobs.size(); ++k)
     text += fmt::format("  {:<24} {} prisms, {} s\n", cuts.parts.jobs[k], cuts.jobs[k].elements,
                         fixed(cuts.parts.plans[k].plan.time.total_s(), 0));
   for (const PlannedQuantity& q : cuts.quantities) {
-    std::string line = q.is_told ? fmt::format("{:>10}", "+- " + fixed(q.uncertainty, 3)) : "  not told";
+    std::string line = q.is_told ? fmt::format("{:>10}", "+- " + fixed(q.uncertainty, 3)) : "unobservable";
     for (std::size_t k = 0; k < q.needs.size(); ++k)
       line += fmt::format("{}{}", k == 0 ? "  needs " : ", ", cuts.parts.jobs[q.needs[k]]);
     text += fmt::format("  {:<38} {}\n", fmt::format("{}, {}", q.quantity->words, q.quantity->unit()), line);
   }
-  for (const std::string& combination : cuts.untold) text += fmt::format("  not told: {}\n", combination);
+  for (const std::string& combination : cuts.untold) text += fmt::format("  unobservable: {}\n", combination);
   return text;
 }
 

@@ -63,7 +63,7 @@ std::optional<FacetPlace> from_of(const CsvReader& row, const Columns& columns) 
   const auto is_given = [&](const std::optional<std::size_t>& column) { return column && !row[*column].empty(); };
   if (!is_given(columns.from_element) && !is_given(columns.from_facet)) return std::nullopt;
   if (!is_given(columns.from_element) || !is_given(columns.from_facet))
-    row.fail("from_element and from_facet are given together or not at all");
+    row.fail("from_element and from_facet must be given together or not at all");
   return FacetPlace{whole(row, *columns.from_element, kElement), whole(row, *columns.from_facet, kFacet) - 1};
 }
 
@@ -76,7 +76,8 @@ Measurement measurement_of(const CsvReader& row, const Columns& columns) {
   m.from = from_of(row, columns);
   if (columns.at && !row[*columns.at].empty()) {
     m.along_edge = row.number(*columns.at, kAlongEdge);
-    if (m.what != FacetQuantity::end) row.fail(*columns.at, "says where along the edge a cut ends: of end_nm alone");
+    if (m.what != FacetQuantity::end)
+      row.fail(*columns.at, "is allowed only for end_nm, as the position along the edge at which a cut ends");
   }
   return m;
 }
@@ -118,8 +119,8 @@ class Reader {
     FabricationResult plan = read_named({result_.file, table_.line(), "job"}, [&] { return fabricate(file, request); });
     if (!result_.plans.empty() && plan.machine.name != result_.plans.front().machine.name)
       table_.fail(columns_.job,
-                  fmt::format("is a job for machine {}, those before are for {}", in_quotes(plan.machine.name),
-                              in_quotes(result_.plans.front().machine.name)));
+                  fmt::format("is a job for machine {}, but the preceding jobs are for machine {}",
+                              in_quotes(plan.machine.name), in_quotes(result_.plans.front().machine.name)));
     result_.jobs.push_back(job);
     result_.plans.push_back(std::move(plan));
     return result_.jobs.size() - 1;

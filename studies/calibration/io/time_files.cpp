@@ -43,8 +43,7 @@ class Timeline final : public NcSink {
  public:
   explicit Timeline(const NcProgram& program) : program_(program) {
     const NcEnd end = run_nc(program, *this);
-    if (!end.is_complete)
-      throw InputError({program.file, end.line, ""}, "the program stops in the middle: " + end.reason);
+    if (!end.is_complete) throw InputError({program.file, end.line, ""}, "the program is incomplete: " + end.reason);
   }
 
   void motion(const NcMotion& motion, const NcSettings&) override {
@@ -152,17 +151,17 @@ class TimeReader {
     const Timeline& timeline = timeline_of(row.program);
     const int from = line_or(columns_.from_line, 1);
     const int to = line_or(columns_.to_line, std::numeric_limits<int>::max());
-    if (from > to) table_.fail(*columns_.to_line, fmt::format("must be at least from_line, {}, got {}", from, to));
+    if (from > to) table_.fail(*columns_.to_line, fmt::format("must be at least from_line ({}), got {}", from, to));
     if (from > timeline.lines())
       table_.fail(*columns_.from_line,
-                  fmt::format("must be a line of {}, which has {}", row.program, timeline.lines()));
+                  fmt::format("must be a line of {}, which has {} lines", row.program, timeline.lines()));
     if (table_[columns_.seconds].empty()) {
       ++result_.empty_rows;
       return;
     }
     row.seconds = table_.number(columns_.seconds, kSeconds);
     timeline.add(row, from, to);
-    if (row.moves.empty()) table_.fail("must be of lines that move an axis");
+    if (row.moves.empty()) table_.fail("must include a line that moves an axis");
     result_.rows.push_back(std::move(row));
   }
 
@@ -249,21 +248,22 @@ std::string time_calibration_table(const TimeCalibration& result) {
     const CalibratedTime& found = result.quantities[k];
     text += fmt::format("  {:<50} {}\n", kTimeQuantityWords[k].words,
                         found.is_told ? fmt::format("{:>10} +- {}", fixed(found.value, 4), fixed(found.uncertainty, 4))
-                                      : fmt::format("{:>10}", "not told"));
+                                      : "unobservable");
   }
   for (const std::string& keys : result.untold)
-    text += fmt::format("  not told{}: {}\n", keys.find(',') == std::string::npos ? "" : " apart", keys);
+    text += fmt::format("  {}: {}\n", keys.find(',') == std::string::npos ? "unobservable" : "not separable", keys);
   constexpr std::size_t kMostShown = 20;
   for (std::size_t k = 0; k < std::min(result.programs.rows.size(), kMostShown); ++k) {
     const TimedMoves& row = result.programs.rows[k];
-    text += fmt::format("  line {:<4} {:<28} took {} s; by the file {}, now {}\n", row.line, row.program,
-                        fixed(row.seconds, 2), fixed(row.on_s(result.nominal), 2), fixed(row.on_s(result.machine), 2));
+    text += fmt::format("  line {:<4} {:<28} measured {} s; computed {} s before and {} s after the calibration\n",
+                        row.line, row.program, fixed(row.seconds, 2), fixed(row.on_s(result.nominal), 2),
+                        fixed(row.on_s(result.machine), 2));
   }
   if (result.programs.rows.size() > kMostShown)
-    text += fmt::format("  and {} rows more\n", result.programs.rows.size() - kMostShown);
+    text += fmt::format("  and {} more rows\n", result.programs.rows.size() - kMostShown);
   if (result.freedom > 0)
-    text += fmt::format("  residuals scatter {} times their uncertainties, {} to spare\n", fixed(result.scatter, 2),
-                        result.freedom);
+    text += fmt::format("  scatter of residuals {} times their uncertainties, {} degrees of freedom\n",
+                        fixed(result.scatter, 2), result.freedom);
   return text;
 }
 

@@ -82,21 +82,21 @@ std::string verification_table(const VerificationRun& run) {
   row("facet angle", fmt::format("{} arcmin, {} unavoidable", fixed(r.facet_angle_arcmin_max, 4),
                                  fixed(r.facet_angle_arcmin_predicted, 4)));
   row("apex error", fixed(r.apex_error_arcmin_max, 4) + " arcmin");
-  row("left at the root",
+  row("remaining at the root",
       fmt::format("{} nm, {} unavoidable", fixed(r.root_residual_nm_max, 1), fixed(r.root_residual_nm_predicted, 1)));
   row("cut into walls",
       fmt::format("{} nm, {} unavoidable", fixed(r.wall_overcut_nm_max, 1), fixed(r.wall_overcut_nm_predicted, 1)));
   row("thickest chip", fixed(r.chip_um_max, 3) + " um");
-  row("removed", fixed(r.removed_volume_mm3, 6) + " mm3");
+  row("removed volume", fixed(r.removed_volume_mm3, 6) + " mm3");
   if (r.border_overcut_mm3 > 0.0)
-    row("beyond the apertures", fixed(r.border_overcut_mm3, 6) + " mm3, as triangular cavities must");
+    row("removed outside apertures", fixed(r.border_overcut_mm3, 6) + " mm3, unavoidable with triangular cavities");
   if (r.elements_overcut > 0)
-    row("of other elements",
-        fmt::format("cut at borders: {} elements, {} mm2 of their apertures, at most {} um deep", r.elements_overcut,
+    row("overcut of other elements",
+        fmt::format("{} elements at borders, {} mm2 of their apertures, at most {} um deep", r.elements_overcut,
                     fixed(r.zone_overcut_mm2, 4), fixed(r.zone_overcut_um_max, 3)));
   if (r.rim_overcut_um_max > 0.0)
-    row("under rims", fixed(r.rim_overcut_um_max, 3) + " um, unavoidable next to neighbours at other heights");
-  row("free tool length", fixed(r.free_tool_length_mm, 2) + " mm needed");
+    row("removed below rims", fixed(r.rim_overcut_um_max, 3) + " um, unavoidable next to neighbours at other heights");
+  row("free tool length", fixed(r.free_tool_length_mm, 2) + " mm required");
   row("time", fixed(r.time.total_s(), 1) + " s");
   return text + findings_table(r.findings);
 }

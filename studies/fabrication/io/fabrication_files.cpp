@@ -84,7 +84,7 @@ std::string job_table(const MadeJob& made) {
   std::string text;
   text +=
       fmt::format("  elements            {}{}\n", made.elements,
-                  made.partial_elements > 0 ? fmt::format(", {} partial ones left out", made.partial_elements) : "");
+                  made.partial_elements > 0 ? fmt::format(", {} partial elements omitted", made.partial_elements) : "");
   text += fmt::format("  machine, strategy   {}, {}\n", printable(job.machine), word_of(job.strategy));
   text +=
       fmt::format("  process             {} ({})\n", printable(job.process.name), printable(job.process.source, 200));
@@ -175,11 +175,11 @@ std::string fabrication_table(const FabricationResult& result) {
   const Plan& plan = result.plan;
   const TimeShares& t = plan.time;
   std::string text;
-  text += fmt::format("  elements            {}, {} cuts a facet{}\n", plan.elements.size(), plan.cuts_per_facet,
+  text += fmt::format("  elements            {}, {} cuts per facet{}\n", plan.elements.size(), plan.cuts_per_facet,
                       plan.passes > 1 ? fmt::format(", {} passes side by side", plan.passes) : "");
   text += fmt::format("  machine, dialect    {}, {}\n", printable(result.machine.name), result.dialect);
   text += fmt::format("  rotations of C      {}\n", plan.c_rotations);
-  text += fmt::format("  time                {}: {} s an element, {} mm2/h, {} h a cm2\n", hours_text(t.total_s()),
+  text += fmt::format("  time                {}: {} s per element, {} mm2/h, {} h per cm2\n", hours_text(t.total_s()),
                       fixed(per_element_s(plan), 2), fixed(area_rate(plan), 1),
                       fixed(100.0 * t.total_s() / plan.aperture_area_mm2 / kSecondsPerHour, 2));
   text += fmt::format("  of which            cutting {} %, dwell {} %, retract {} %, rapid {} %, fixed {} %\n",

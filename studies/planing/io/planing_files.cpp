@@ -168,8 +168,9 @@ std::string planing_table(const PlaningResult& result) {
                         result.plan.programs[k].cuts, result.check.frames[k], fixed(result.check.time_s[k] / 3600.0, 2),
                         fixed(per_frame(result.check.time_s[k], result.check.frames[k]), 2));
   const Totals totals = totals_of(result.check);
-  text += fmt::format("in all, {} run{} each: {} frames, {} hours\n", result.plan.runs, result.plan.runs > 1 ? "s" : "",
-                      result.plan.runs * totals.frames, fixed(result.plan.runs * totals.time_s / 3600.0, 2));
+  text += fmt::format("total of {} run{} of each program: {} frames, {} hours\n", result.plan.runs,
+                      result.plan.runs > 1 ? "s" : "", result.plan.runs * totals.frames,
+                      fixed(result.plan.runs * totals.time_s / 3600.0, 2));
   text += fmt::format("form error {} mm, tolerance {} mm", fixed(form_error_mm(result.part, result.check), 4),
                       shortest(result.part.tolerance_mm));
   if (result.part.mill)
@@ -215,10 +216,12 @@ std::string verification_table(const PlaningVerification& run) {
   const auto row = [&](const char* name, const std::string& value) {
     text += fmt::format("  {:<28} {}\n", name, value);
   };
-  const auto in_mm = [](double value) { return value < 1e6 ? fixed(value, 4) + " mm" : std::string("beyond measure"); };
+  const auto in_mm = [](double value) {
+    return value < 1e6 ? fixed(value, 4) + " mm" : std::string("too large to measure");
+  };
   row("form error", in_mm(form_error_mm(run.part, check)));
   row("tolerance", shortest(run.part.tolerance_mm) + " mm");
-  if (run.part.lathe) row("most that a pass takes", in_mm(check.chip_mm_max));
+  if (run.part.lathe) row("largest depth of a pass", in_mm(check.chip_mm_max));
   row("frames", std::to_string(totals.frames));
   row("time", fixed(totals.time_s / 3600.0, 2) + " h");
   return text + findings_table(check.findings);

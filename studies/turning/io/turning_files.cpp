@@ -149,9 +149,9 @@ std::string turning_table(const TurningResult& r) {
   const auto row = [&](const char* name, double value, int digits, const char* unit) {
     text += fmt::format("  {:<34} {:>10} {}\n", name, fixed(value, digits), unit);
   };
-  row("clearance needed", r.clearance.clearance_needed_deg, 2, "deg");
+  row("clearance required", r.clearance.clearance_needed_deg, 2, "deg");
   row("clearance of the tool", tool.clearance_deg, 2, "deg");
-  row("window needed", r.clearance.window_needed_deg, 2, "deg");
+  row("window required", r.clearance.window_needed_deg, 2, "deg");
   row("skew", tool.skew_deg, 2, "deg");
   row("effective nose radius", turning::effective_radius_mm(tool), 4, "mm");
   row("Ra on a flat", r.finish.ra_nm, 3, "nm");
@@ -159,17 +159,17 @@ std::string turning_table(const TurningResult& r) {
   row("Rq by Sohn and Naples (mean height)", r.finish.rq_of_paper_nm, 3, "nm");
   row("peak to valley on a flat", r.finish.peak_to_valley_nm, 3, "nm");
   row("Z acceleration", r.axes[2].acceleration_mm_per_s2, 3, "mm/s^2");
-  row("largest jump of it", r.axes[2].acceleration_jump_mm_per_s2, 3, "mm/s^2");
+  row("largest jump of Z acceleration", r.axes[2].acceleration_jump_mm_per_s2, 3, "mm/s^2");
   row("form error of the programs", r.check.inspection.form_error_nm, 3, "nm");
   row("deepest cut below the surface", r.check.inspection.interference_nm, 3, "nm");
   row("scallops, mean", r.check.inspection.scallop_nm, 3, "nm");
   if (r.cubics) {
     const double share = static_cast<double>(r.cubics->bytes) / static_cast<double>(r.cubics->straight_bytes);
-    row("moves by cubics", static_cast<double>(r.cubics->path.points.size() - 1), 0, "");
-    row("their distance from the spiral", r.cubics->path.error_nm, 3, "nm");
-    row("form error of their programs", r.cubics->check.inspection.form_error_nm, 3, "nm");
-    row(("size of " + printable(r.cubics->file, std::string::npos) + " for straight moves'").c_str(), 100.0 * share, 1,
-        "%");
+    row("cubic moves", static_cast<double>(r.cubics->path.points.size() - 1), 0, "");
+    row("deviation of cubics from spiral", r.cubics->path.error_nm, 3, "nm");
+    row("form error of cubic programs", r.cubics->check.inspection.form_error_nm, 3, "nm");
+    row(("size of " + printable(r.cubics->file, std::string::npos)).c_str(), 100.0 * share, 1,
+        "% of the size with straight moves");
   }
   text += fmt::format("  {:<34} {:>10}\n", "verdict", r.passes_inspection() ? "pass" : "fail");
   for (const fabrication::Finding& finding : r.findings)
@@ -213,12 +213,12 @@ std::string verification_table(const TurningVerification& run) {
   row("deepest block", fixed(check.touch.low_nm, 2) + " nm");
   row("highest block", fixed(check.touch.high_nm, 2) + " nm");
   row("tolerance", shortest(run.part.form_tolerance_nm) + " nm");
-  row("from cut to cut", fixed(1e3 * check.coverage.step_mm_max, 3) + " um");
+  row("largest distance of cuts", fixed(1e3 * check.coverage.step_mm_max, 3) + " um");
   if (check.envelope) {
     row("form error", fixed(check.inspection.form_error_nm, 2) + " nm");
     row("scallops, mean", fixed(check.inspection.scallop_nm, 2) + " nm");
   }
-  row("blocks a second", fixed(check.motion.blocks_per_s, 1));
+  row("blocks per second", fixed(check.motion.blocks_per_s, 1));
   return text + fabrication::findings_table(run.findings);
 }
 
