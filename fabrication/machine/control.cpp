@@ -122,7 +122,7 @@ std::string unknown_line(std::string_view text, LineUse use, std::string_view di
     if (line.use == LineUse::output && (dialect.empty() || dialect == line.dialect) &&
         std::find(forms.begin(), forms.end(), line.form) == forms.end())
       forms.push_back(line.form);
-  return fmt::format("must set an output or a variable, such as {} (# a whole number, ~ a number, @ an axis)",
+  return fmt::format("must set an output or a variable, such as {} (# is a whole number, ~ is a number, @ is an axis)",
                      fmt::join(forms, ", "));
 }
 

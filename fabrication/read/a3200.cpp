@@ -141,11 +141,11 @@ class A3200Reader {
     if (table_.is_open()) lines_.fail("a subroutine must end before another begins");
     if (!is_over_) lines_.fail("a subroutine must follow END PROGRAM");
     const std::string name = name_in(text);
-    if (!table_.begin(name)) lines_.fail("there is a subroutine of that name already: " + name);
+    if (!table_.begin(name)) lines_.fail("a subroutine with this name already exists: " + name);
   }
 
   void end_subroutine() {
-    if (!table_.is_open()) lines_.fail("ENDDFS without DFS");
+    if (!table_.is_open()) lines_.fail("ENDDFS needs a preceding DFS");
     NcBlock& block = program_.blocks.emplace_back();
     block.line = lines_.number();
     block.returns = true;

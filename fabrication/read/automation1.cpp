@@ -65,22 +65,22 @@ class Automation1Reader {
   }
 
   void begin_main() {
-    if (is_in_main_ || table_.is_open()) lines_.fail("program within a block that has not ended");
-    if (has_main_) lines_.fail("there is a program already; one file is one program");
+    if (is_in_main_ || table_.is_open()) lines_.fail("program is not allowed within a block that has not ended");
+    if (has_main_) lines_.fail("a file must contain only one program");
     has_main_ = is_in_main_ = true;
     program_.main_first = program_.blocks.size();
   }
 
   void begin_function(std::string_view text) {
-    if (is_in_main_ || table_.is_open()) lines_.fail("function within a block that has not ended");
+    if (is_in_main_ || table_.is_open()) lines_.fail("function is not allowed within a block that has not ended");
     const std::string whole = without_gaps(text);
     const std::string name = whole.substr(0, whole.find('('));
     if (!is_aerotech_name(name) || whole != name + "()") lines_.fail("must be function NAME(), without arguments");
-    if (!table_.begin(name)) lines_.fail("there is a function of that name already: " + name);
+    if (!table_.begin(name)) lines_.fail("a function with this name already exists: " + name);
   }
 
   void end() {
-    if (!is_in_main_ && !table_.is_open()) lines_.fail("end without program or function");
+    if (!is_in_main_ && !table_.is_open()) lines_.fail("end needs a preceding program or function");
     NcBlock& block = program_.blocks.emplace_back();
     block.line = lines_.number();
     block.ends = is_in_main_;
@@ -97,7 +97,7 @@ class Automation1Reader {
     const std::string name(text.substr(0, bracket));
     const std::string_view whole = text;
     text.remove_prefix(bracket + 1);
-    if (!text.ends_with(')')) lines_.fail("has a ( that does not end");
+    if (!text.ends_with(')')) lines_.fail("must end with )");
     text.remove_suffix(1);
     IsoBlock iso(lines_, block);
     if (name == "Dwell") {

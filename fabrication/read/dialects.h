@@ -43,7 +43,7 @@ void read_line_that_may_be_cut(const NcLines& lines, NcProgram& program, Read re
   try {
     read();
   } catch (const InputError&) {
-    program.truncated = "the text ends within this line";
+    program.truncated = "the file ends within this line";
   }
 }
 

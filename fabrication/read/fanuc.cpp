@@ -44,7 +44,7 @@ std::string with_marked_comments(std::string_view line, const NcLines& lines) {
     if (open == std::string_view::npos) break;
     result += kNcCommentMark;
     const std::size_t close = line.find(')', open);
-    if (close == std::string_view::npos) lines.fail("has a comment that does not end");
+    if (close == std::string_view::npos) lines.fail("has a comment without an end");
     line.remove_prefix(close + 1);
   }
   return without_blanks(result);
@@ -102,7 +102,7 @@ class FanucReader {
     if (table_.is_open()) lines_.fail("a subprogram must end with M99 before another begins");
     close_part();
     if (has_main_ && !table_.begin(fmt::format("{}", number.value)))
-      lines_.fail(fmt::format("there is a program O{} already", number.value));
+      lines_.fail(fmt::format("a program O{} already exists", number.value));
     has_main_ = true;
   }
 

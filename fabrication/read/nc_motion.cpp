@@ -58,7 +58,7 @@ class Runner {
       if (program_.stop_line > 0 && !stops_in_main_ && block.line == program_.stop_line) return {};
     }
     if (program_.stop_line > 0) return stopped();
-    return {false, program_.lines, program_.truncated.value_or("the program does not end"), {}};
+    return {false, program_.lines, program_.truncated.value_or("the program has no end"), {}};
   }
 
   /// Returns true if a line belongs to the main program. Lines of subroutines between its lines do not belong to it.
@@ -79,7 +79,7 @@ class Runner {
   [[noreturn]] void fail_to_stop() const {
     throw InputError(
         {program_.file, program_.stop_line, ""},
-        "the program cannot be stopped there: nothing is executed in that line, or no axis moved before it");
+        "the program cannot be stopped after this line: nothing is executed in this line, or no axis has moved before");
   }
   /// Returns true if the execution must stop before a block: a block of the main program after the stop line. A
   /// subroutine that the stop line calls is executed completely.

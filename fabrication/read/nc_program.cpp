@@ -48,10 +48,9 @@ NcDialect recognise_dialect(std::string_view text, const std::string& file) {
     return is_word ? NcDialect::rs274ngc : NcDialect::fanuc;
   }
   if (has_percent) return NcDialect::rs274ngc;
-  throw InputError(
-      {file, 0, ""},
-      "no word of rs274ngc (o101 sub), sinumerik (MSG), fanuc (O0001), pmac (open prog), a3200 (END PROGRAM) or "
-      "automation1 (program) was found in it");
+  throw InputError({file, 0, ""},
+                   "the dialect is unknown, because the file contains no word of rs274ngc (o101 sub), sinumerik (MSG), "
+                   "fanuc (O0001), pmac (open prog), a3200 (END PROGRAM) or automation1 (program)");
 }
 
 }  // namespace retrace::fabrication

@@ -89,7 +89,7 @@ bool set_text(std::string_view line, const NcTexts& texts, NcBlock& block) {
 
 NcLines::NcLines(std::string_view text, const std::string& file) : file_(file), rest_(text) {
   if (text.find_first_not_of(" \t\r\n") == std::string_view::npos)
-    throw InputError({file, 0, ""}, "must be an NC program, is empty");
+    throw InputError({file, 0, ""}, "must be an NC program, but is empty");
   if (text.size() > kLongestNcBytes)
     throw InputError({file, 0, ""}, fmt::format("too long, at most {} bytes are allowed", kLongestNcBytes));
 }

@@ -68,17 +68,17 @@ class PmacReader {
     text = trimmed(text.substr(is_main ? 4 : 7));
     const std::string name = whole_number(text);
     if (!text.empty()) lines_.fail_word(text);
-    if (is_main && has_main_) lines_.fail("there is a program already; one file is one program");
+    if (is_main && has_main_) lines_.fail("a file must contain only one program");
     if (is_main) {
       has_main_ = is_in_main_ = true;
       program_.main_first = program_.blocks.size();
       return;
     }
-    if (!table_.begin(name)) lines_.fail("there is a subprogram of that number already: " + name);
+    if (!table_.begin(name)) lines_.fail("a subprogram with this number already exists: " + name);
   }
 
   void close() {
-    if (!is_in_main_ && !table_.is_open()) lines_.fail("close without open");
+    if (!is_in_main_ && !table_.is_open()) lines_.fail("close needs a preceding open");
     NcBlock& block = program_.blocks.emplace_back();
     block.line = lines_.number();
     block.ends = is_in_main_;

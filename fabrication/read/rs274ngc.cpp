@@ -54,7 +54,7 @@ std::string with_marked_rs274ngc_comments(std::string_view line, const NcLines& 
     }
     const std::size_t end = line.find_first_of("()", 1);
     if (end == std::string_view::npos || line[end] == '(')
-      lines.fail("has a comment that does not end, or a nested one");
+      lines.fail("has a comment without an end, or a nested comment");
     result += kNcCommentMark;
     line.remove_prefix(end + 1);
   }
@@ -96,7 +96,7 @@ class Rs274Reader {
     skip_comment_marks(text);
     if (text.empty()) return;
     if (has_comment_first && (text.front() == 'N' || text.front() == 'O'))
-      lines_.fail("a comment must not precede a word N or O");
+      lines_.fail("a comment must not precede an N or O word");
     if (text.front() == '/') lines_.fail("a line with block delete (/) is not understood");
     skip_line_number(text);
     if (text.empty()) return;
@@ -108,8 +108,7 @@ class Rs274Reader {
 
   /// Reads a line that contains only %. A program either has no such line, or begins and ends with one.
   void read_percent() {
-    if (percent_signs_ == 0 && has_text_)
-      lines_.fail("% must be the first line with text, or be left out; there is text above it");
+    if (percent_signs_ == 0 && has_text_) lines_.fail("% is optional, but must be the first line with text");
     is_over_ = ++percent_signs_ == 2;
   }
 
@@ -136,11 +135,11 @@ class Rs274Reader {
   void begin(const std::string& name) {
     if (table_.is_open()) lines_.fail("a subroutine must end before another begins");
     if (!is_before_main()) lines_.fail("a subroutine must precede the main program");
-    if (!table_.begin(name)) lines_.fail("there is a subroutine of that number already: " + name);
+    if (!table_.begin(name)) lines_.fail("a subroutine with this number already exists: " + name);
   }
 
   void end(const std::string& name) {
-    if (!table_.is_open(name)) lines_.fail("endsub without its sub: " + name);
+    if (!table_.is_open(name)) lines_.fail("endsub needs a preceding sub with this number: " + name);
     NcBlock& block = program_.blocks.emplace_back();
     block.line = lines_.number();
     block.returns = true;

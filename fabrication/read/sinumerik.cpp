@@ -63,7 +63,7 @@ class SinumerikReader {
     program_.main_last = program_.blocks.size();
     resolve_sections();
     // The dialect has no mark for the end of a file. A last line without line end therefore indicates a truncated file.
-    if (lines_.is_open_end() && !program_.truncated) program_.truncated = "the last line does not end";
+    if (lines_.is_open_end() && !program_.truncated) program_.truncated = "the last line is incomplete";
     return std::move(program_);
   }
 
@@ -99,9 +99,9 @@ class SinumerikReader {
     const std::size_t colon = text.find(':');
     if (colon == std::string_view::npos || text.find('"') < colon) return;
     const std::string label(text.substr(0, colon));
-    if (!is_name(label)) lines_.fail("is no label: " + in_quotes(label));
+    if (!is_name(label)) lines_.fail("must be a label, got " + in_quotes(label));
     if (!labels_.emplace(label, program_.blocks.size()).second)
-      lines_.fail("there is a label of that name already: " + label);
+      lines_.fail("a label with this name already exists: " + label);
     text = trimmed(text.substr(colon + 1));
     // The words after a label belong to its block. A label without words gets an empty block, so that a section can end
     // there.
@@ -187,7 +187,7 @@ class SinumerikReader {
       NcWord word{text[0], {}, text};
       text.remove_prefix(5);
       word.number = take_number(text, lines_);
-      if (!text.starts_with(')')) lines_.fail("has a ( that does not end");
+      if (!text.starts_with(')')) lines_.fail("has a ( without a )");
       text = trimmed(text.substr(1));
       constexpr double turn_deg = 360.0;
       if (is_shortest && !(word.number.value >= 0.0 && word.number.value < turn_deg))
@@ -212,7 +212,7 @@ class SinumerikReader {
 
   void read_word(const NcWord& word, IsoBlock& iso, NcBlock& block) {
     if (word.letter == 'D') {
-      if (word.number.value != 0) lines_.fail("D must be 0: offsets of the tool are not understood");
+      if (word.number.value != 0) lines_.fail("D must be 0, because tool offsets are not supported");
       block.say(nc_said::kLengthOff);
     } else if (!iso.set(word, kSinumerikCodes)) {
       lines_.fail_word(word.rest);

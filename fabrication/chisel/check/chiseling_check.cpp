@@ -114,7 +114,7 @@ void ChiselingCheck::close() {
          0, process_.dwell_s);
   if (!open_->went_up)
     find("chip_not_separated", open_->place, open_->element,
-         "the cut does not go up its second edge: its chip does not separate");
+         "the cut does not move up its second dihedral edge: its chip does not separate");
   State& state = states_[open_->element];
   state.left_mm[open_->facet] = std::min(state.left_mm[open_->facet], open_->tip_mm[open_->facet]);
   state.last = open_->place;

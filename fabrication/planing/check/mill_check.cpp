@@ -107,7 +107,7 @@ void MillCheck::motion(const NcMotion& motion, const NcSettings& settings) {
   }
   if (moved == 0) return;
   if (moved > 1)
-    findings_.add("several_axes", motion.place.line, "more than one axis moves at a time", static_cast<double>(moved),
+    findings_.add("several_axes", motion.place.line, "several axes move at the same time", static_cast<double>(moved),
                   1.0);
   if (motion.move != NcMove::rapid)
     findings_.add("not_fast", motion.place.line, "the tool must plane in fast feed (rapid moves) only",

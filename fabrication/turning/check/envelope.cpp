@@ -25,7 +25,7 @@ void CutRecorder::motion(const NcMotion& motion, const NcSettings&) {
   if (findings_.empty() && motion.is_exact_stop)
     findings_.push_back({"stops", "", motion.place.line, -1, "the cut stops at every point", 0.0, 0.0, 1});
   if (findings_.empty() && !(motion.duration_s > 0.0))
-    findings_.push_back({"untimed", "", motion.place.line, -1, "a move of the cut has no time", 0.0, 0.0, 1});
+    findings_.push_back({"untimed", "", motion.place.line, -1, "a move of the cut has no duration", 0.0, 0.0, 1});
   const auto add = [&](const AxisPositions& p, double duration_s) {
     pass_.duration_s.push_back(duration_s);
     pass_.line.push_back(motion.place.line);
