@@ -18,7 +18,7 @@ namespace retrace::report::document {
 
 PageSection inspect_section(const ResultDocument& document, const ResultFolder&) {
   PageSection section = titled("Design");
-  section.tables.push_back(figures_of(document.json, "What the design is", csv_name(document, "figures")));
+  section.tables.push_back(figures_of(document.json, "Figures of the design", csv_name(document, "figures")));
   return section;
 }
 
@@ -37,8 +37,8 @@ PageSection photometry_section(const ResultDocument& document, const ResultFolde
                              fmt::format("x {}, y {}", fixed(number(colour, "x"), 4), fixed(number(colour, "y"), 4)),
                              colour.contains("verdict") ? rating_of(text(colour, "verdict")) : Rating::none});
   section.paragraphs.push_back(
-      "R_I at the test points of the standard. Limits that are recalled, not confirmed, make a verdict unconfirmed. It "
-      "is no approval test.");
+      "R_I at the test points of the standard. A verdict that is based on recalled, unconfirmed limits is unconfirmed. "
+      "The computation is not an approval test.");
   PageTable table =
       table_of(list(json, "points"),
                {"observation_deg", "v_deg", "h_deg", "rotation_deg", "value_mcd_per_lx", "std_error_mcd_per_lx",
@@ -115,7 +115,7 @@ PageSection fabrication_section(const ResultDocument& document, const ResultFold
   const Json& json = document.json;
   PageSection section = titled("Tool path");
   section.facts = {{"Machining time", measured(number(json, "time_s") / 3600.0, 3, " h")},
-                   {"Time an element", measured(number(json, "time_per_element_s"), 2, " s")},
+                   {"Time per element", measured(number(json, "time_per_element_s"), 2, " s")},
                    {"Elements", shown(number(json, "elements"))},
                    {"Machine", text(json, "machine")},
                    {"Strategy", text(json, "strategy")},
@@ -138,21 +138,21 @@ PageSection verification_section(const ResultDocument& document, const ResultFol
   section.facts = {{"Verdict", verdict, rating_of(verdict)},
                    {"Findings", std::to_string(findings.size()), findings.empty() ? Rating::good : Rating::bad}};
   const std::tuple<const char*, const char*, const char*> figures[] = {
-      {"Facets off by at most", "facet_distance_nm_max", " nm"},
-      {"Angles off by at most", "facet_angle_arcmin_max", " arcmin"},
-      {"Form off by at most", "form_error_mm_max", " mm"},
-      {"Lowest block", "block_low_nm", " nm"}};
+      {"Maximum facet displacement", "facet_distance_nm_max", " nm"},
+      {"Maximum angle error", "facet_angle_arcmin_max", " arcmin"},
+      {"Maximum form error", "form_error_mm_max", " mm"},
+      {"Maximum cut below the surface", "block_low_nm", " nm"}};
   for (const auto& [name, key, unit] : figures)
     if (const double value = number(json, key); std::isfinite(value))
       section.facts.push_back({name, measured(value, unit)});
   section.paragraphs.push_back(
-      "The text of the programs was read back, the machine's axes moved and the blank cut again; planner and writers "
-      "take no part in it.");
+      "The programs were read back from their text, and their cuts were simulated with the axes of the machine. The "
+      "simulation does not use the code that plans and writes programs.");
   if (!findings.empty())
     section.tables.push_back(table_of(findings,
                                       {"kind", "program", "line", "element", "message", "value", "limit", "count"},
                                       "Findings", csv_name(document, "findings")));
-  section.tables.push_back(figures_of(json, "Figures of the part that is left", csv_name(document, "figures")));
+  section.tables.push_back(figures_of(json, "Figures of the machined part", csv_name(document, "figures")));
   return section;
 }
 
@@ -226,7 +226,7 @@ PageSection optimum_section(const ResultDocument& document, const ResultFolder&)
   section.tables.push_back(table_of(front, keys_of(front), "Pareto front", csv_name(document, "front")));
   const Json& rejected = list(document.json, "rejected");
   section.tables.push_back(
-      table_of(rejected, keys_of(rejected), "What was rejected, and why", csv_name(document, "rejected")));
+      table_of(rejected, keys_of(rejected), "Rejected designs, with reasons", csv_name(document, "rejected")));
   return section;
 }
 

@@ -40,7 +40,7 @@ std::vector<EfficiencyPoint> efficiency_points(const ResultDocument& document, c
 PageTable ledger_table(const ResultDocument& document, const DesignNames& names) {
   const Json& points = list(document.json, "points");
   PageTable table;
-  table.caption = "Where the light goes, in percent of the incident power";
+  table.caption = "Ledger: terms of the light, in percent of the incident power";
   table.csv_name = csv_name(document, "ledger");
   table.columns = {"design", "incidence (deg)", "azimuth (deg)", "acceptance (deg)", "RRE (%)", "std. error (%)"};
   std::vector<std::string> accounts;
@@ -69,10 +69,9 @@ PageTable ledger_table(const ResultDocument& document, const DesignNames& names)
 
 PageSection rre_section(const ResultDocument& document, const ResultFolder& folder) {
   const DesignNames names(folder);
-  PageSection section = titled(
-      "Efficiency",
-      "RRE is the power that comes back into the acceptance cone over the incident power. The standard error covers "
-      "sampling alone; the exact engine has none.");
+  PageSection section = titled("Efficiency",
+                               "RRE is the power that returns into the acceptance cone, divided by the incident power. "
+                               "The standard error covers only random sampling; the exact engine has no such error.");
   LinePlot plot = rre_plot(efficiency_points(document, names));
   if (std::ranges::any_of(plot.series, [](const Series& s) { return s.x.size() > 1; }))
     section.charts.push_back(std::move(plot));
@@ -196,7 +195,7 @@ PageFigure figure_of(const MapPanel& panel) {
     shapes += fmt::format("<polygon class=\"region\" fill-opacity=\"{:.3f}\" points=\"",
                           0.15 + 0.85 * std::clamp(0.01 * region.value, 0.0, 1.0));
     for (const geometry::Vec2& p : region.outline) shapes += fmt::format("{:.6g},{:.6g} ", p.x(), -p.y());
-    shapes += fmt::format("\"><title>{} comes back</title></polygon>", percent(0.01 * region.value));
+    shapes += fmt::format("\"><title>{} returns</title></polygon>", percent(0.01 * region.value));
   }
   PageFigure figure;
   figure.caption = fmt::format("{}: {}.", panel.title, fmt::join(panel.remarks, "; "));
@@ -218,10 +217,9 @@ PageFigure figure_of(const MapPanel& panel) {
 }  // namespace
 
 PageSection footprint_section(const ResultDocument& document, const ResultFolder& folder) {
-  PageSection section = titled(
-      "Footprint",
-      "Where light must fall on the entrance face to come back into the acceptance cone; what is left blank is dead. "
-      "Darker regions return more of it.");
+  PageSection section = titled("Footprint",
+                               "Regions of the entrance face from which light returns into the acceptance cone. Blank "
+                               "regions are dead zones. Darker regions return more of the light.");
   const Json& regions = list(document.json, "regions");
   const DesignNames names(folder);
   for (const Json* region : spread(regions)) {
@@ -273,7 +271,8 @@ PageFigure far_field_panel(const Json& direction, const std::string& design) {
     const double angle = number(spot, "deviation_azimuth_deg") * std::acos(-1.0) / 180.0;
     const double size = std::max(0.6, 9.0 * std::sqrt(std::max(0.0, power)));
     shapes += fmt::format(
-        "<circle class=\"spot{}\" cx=\"{:.4g}\" cy=\"{:.4g}\" r=\"{:.3g}\"><title>{:.4g} arcmin off, {} of the "
+        "<circle class=\"spot{}\" cx=\"{:.4g}\" cy=\"{:.4g}\" r=\"{:.3g}\"><title>{:.4g} arcmin from the centre, {} of "
+        "the "
         "light</title></circle>",
         number(spot, "depth_min") == 0.0 ? " front" : "", 95.0 * r / reach * std::cos(angle),
         -95.0 * r / reach * std::sin(angle), size, r, percent(power));
@@ -292,10 +291,10 @@ PageFigure far_field_panel(const Json& direction, const std::string& design) {
 }  // namespace
 
 PageSection far_field_section(const ResultDocument& document, const ResultFolder& folder) {
-  PageSection section = titled(
-      "Far field",
-      "The directions in which light leaves the entrance face, seen from the source: the centre is the way back. The "
-      "area of a spot is as its power.");
+  PageSection section =
+      titled("Far field",
+             "The directions in which light leaves the entrance face, seen from the source: the centre is the "
+             "direction back to the source. The area of a spot is proportional to its power.");
   const DesignNames names(folder);
   Json rows = Json::array();
   for (const Json* direction : spread(list(document.json, "directions")))
@@ -314,7 +313,7 @@ PageSection far_field_section(const ResultDocument& document, const ResultFolder
   section.tables.push_back(table_of(rows,
                                     {"design", "incidence_deg", "azimuth_deg", "deviation_arcmin",
                                      "deviation_azimuth_deg", "power", "s1", "s2", "s3", "depth_min"},
-                                    "Spots, by falling power (share of the incident power)",
+                                    "Spots, by descending power (fraction of the incident power)",
                                     csv_name(document, "spots")));
   return section;
 }

@@ -165,8 +165,8 @@ class HtmlWriter {
 
   void write_scene() {
     add("<div class=\"scene-box\">\n<div id=\"scene\" tabindex=\"0\" role=\"application\" "
-        "aria-label=\"The part and light paths in three dimensions. Arrow keys turn it, plus and minus move nearer and "
-        "away. The paths are listed in words beside it.\"></div>\n"
+        "aria-label=\"The part and light paths in three dimensions. Arrow keys rotate the view, plus and minus zoom. "
+        "The paths are listed as text next to it.\"></div>\n"
         "<div><fieldset id=\"scene-paths\"><legend>Light paths</legend></fieldset>\n"
         "<ol id=\"scene-steps\" aria-live=\"polite\"></ol>\n<noscript><ul>\n");
     for (const ScenePathView& path : page_.scene->paths) add("<li>{}</li>\n", markup_text(path.label));
@@ -223,7 +223,7 @@ class HtmlWriter {
       add("</tr>\n");
     }
     add("</tbody></table></div>\n");
-    if (table.left_out > 0) add("<p>{} more rows are in the file itself.</p>\n", table.left_out);
+    if (table.left_out > 0) add("<p>The file contains {} more rows.</p>\n", table.left_out);
   }
 
   const Page& page_;

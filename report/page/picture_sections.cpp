@@ -14,9 +14,8 @@ PageSection detector_section(const Json& json) {
                    {"Azimuth", measured(number(json, "azimuth_deg"), " deg")},
                    {"Engine", text(json, "engine")}};
   section.paragraphs.push_back(
-      "A detector on the entrance face. Irradiances are relative to that of the beam on the face, so that either map "
-      "has "
-      "RRE for its mean.");
+      "Maps of a detector on the entrance face. Irradiances are divided by the irradiance of the beam on the face, so "
+      "that the mean of each map is RRE.");
   return section;
 }
 
@@ -24,7 +23,7 @@ PageSection camera_section(const Json& json) {
   PageSection section = titled("Camera");
   const double error = number(json, "part_std_error_cd_per_m2");
   section.facts = {{"Mean luminance of the part", measured(number(json, "part_luminance_cd_per_m2"), " cd/m2")},
-                   {"Its standard error", measured(error, " cd/m2")},
+                   {"Standard error of the mean", measured(error, " cd/m2")},
                    {"Observation angle", measured(number(json, "observation_deg"), " deg")},
                    {"Entrance angle", measured(number(json, "entrance_deg"), " deg")},
                    {"Illuminance of the lamp", measured(number(json, "illuminance_lx"), " lx")},
@@ -32,7 +31,7 @@ PageSection camera_section(const Json& json) {
   std::erase_if(section.facts, [](const PageFact& fact) { return fact.value.empty(); });
   section.paragraphs.push_back(
       "The part in the light of a lamp, as the camera sees it. Tones are mapped for the screen; luminances are in the "
-      "OpenEXR file beside the result.");
+      "OpenEXR file next to the result.");
   return section;
 }
 

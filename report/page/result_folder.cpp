@@ -52,8 +52,7 @@ void add_document(ResultFolder& result, const fs::path& file, const std::string&
     document.json = nlohmann::ordered_json::parse(text);
   } catch (const nlohmann::json::exception&) {
     if (text.find("retrace.") == std::string::npos) return;  // a file of another program
-    throw InputError({file.string(), 0, ""},
-                     "not valid JSON; a run that was cut off leaves no such file, write it anew");
+    throw InputError({file.string(), 0, ""}, "not valid JSON; run the command that writes this file again");
   }
   document.kind = kind_of(document.json);
   if (document.kind.empty()) return;
@@ -100,8 +99,9 @@ bool may_read(const ResultFolder& result, const fs::path& file) {
 ResultFolder read_result_folder(const fs::path& folder, const std::vector<std::string>& named) {
   std::error_code ignored;
   if (!fs::is_directory(folder, ignored))
-    throw InputError({folder.string(), 0, ""},
-                     fs::exists(folder, ignored) ? "must be a folder of results, is none" : "there is no such folder");
+    throw InputError({folder.string(), 0, ""}, fs::exists(folder, ignored)
+                                                   ? "must be a folder of results, but is not a folder"
+                                                   : "there is no such folder");
   ResultFolder result;
   result.path = folder.string();
   allow_reading(result, folder, "DIR");
@@ -114,8 +114,9 @@ ResultFolder read_result_folder(const fs::path& folder, const std::vector<std::s
     const std::string type = media_type_of(ending);
     if (ending != ".json" && type.empty()) continue;
     if (!may_read(result, file)) {
-      result.warnings.push_back({"result_outside_folder",
-                                 name + ": left out because it links to a file outside the folder; --read allows it"});
+      result.warnings.push_back(
+          {"result_outside_folder",
+           name + ": left out because it links to a file outside the folder; allow it with --read"});
       continue;
     }
     if (ending == ".json") add_document(result, file, name, read_file(file, kLongestDocumentBytes));
@@ -124,9 +125,9 @@ ResultFolder read_result_folder(const fs::path& folder, const std::vector<std::s
     result.pictures.push_back({name, type, read_file(file)});
   }
   if (result.documents.empty())
-    throw InputError({folder.string(), 0, ""},
-                     "no results in it: there must be JSON files that commands of retrace wrote (--out), such as "
-                     "rre.json");
+    throw InputError(
+        {folder.string(), 0, ""},
+        "contains no results: it must contain JSON files that commands of retrace wrote with --out, such as rre.json");
   return result;
 }
 

@@ -27,9 +27,10 @@ std::array<double, 3> numbers(const geometry::Vec3& p) {
 void check_files(const studies::Design& design, const ResultFolder& folder) {
   for (const std::string& key : design.document->keys_of_files())
     if (const std::filesystem::path file = design.document->file(key); !may_read(folder, file))
-      throw InputError({design.source, 0, key}, fmt::format("names {}, which is outside the folder of results and is "
-                                                            "not read; --read FILE allows it",
-                                                            in_quotes(file.string())));
+      throw InputError(
+          {design.source, 0, key},
+          fmt::format("names {}, which is outside the folder of results and was not read; allow it with --read FILE",
+                      in_quotes(file.string())));
 }
 
 }  // namespace
@@ -86,10 +87,9 @@ void add_live(Page& page, const ResultFolder& folder) {
     const std::string toml = schema::toml_of_json(studies::design_format(), *json);
     const studies::Design design = studies::parse_design(toml, "design.toml");
     studies::check_names_no_file(design, "which a self-contained page cannot read");
-    PageSection section =
-        titled("Live",
-               "The design with the engine in this page: change a value or turn the light, and see what "
-               "becomes of it. The results of the other sections stay what they are.");
+    PageSection section = titled("Live",
+                                 "The design with the engine in this page: change a value or the direction of the "
+                                 "light to see the effect. The results of the other sections do not change.");
     if (const DesignNames names(folder); names.are_several()) section.paragraphs.push_back(names.of(*json) + ".");
     section.id = "live-section";
     section.has_live = true;

@@ -60,11 +60,11 @@ std::string caption_of(const std::string& picture) {
   if (picture == "section") return "Section across the elements, lengths in mm";
   if (picture == "view") return "The part seen from behind";
   if (picture == "irradiance")
-    return "Irradiance over that of the beam: what the detector sees, and where that light entered";
-  if (picture == "angular") return "Share of the light per steradian, around the direction back to the source";
-  if (picture == "camera") return "What the camera sees, tones mapped";
+    return "Irradiance divided by that of the beam: light on the detector, and the positions at which it entered";
+  if (picture == "angular") return "Fraction of the light per steradian, around the direction back to the source";
+  if (picture == "camera") return "Picture of the camera, tones mapped";
   if (picture == "false_colour") return "Luminance in cd/m2, by decades";
-  if (picture == "road") return "What the driver sees at each distance, tones mapped";
+  if (picture == "road") return "View of the driver at each distance, tones mapped";
   return picture;
 }
 
@@ -94,7 +94,7 @@ void add_efficiencies(const Json& points, double design, const std::string& whos
   }
   if (normal != nullptr) facts.push_back({"RRE at normal incidence" + whose, percent(number(*normal, "rre"))});
   if (best != nullptr && best != normal)
-    facts.push_back({fmt::format("Greatest RRE, at {} deg{}", shown(number(*best, "incidence_deg")), whose),
+    facts.push_back({fmt::format("Maximum RRE, at {} deg{}", shown(number(*best, "incidence_deg")), whose),
                      percent(number(*best, "rre"))});
 }
 
@@ -167,15 +167,15 @@ PageSection summary_section(const ResultFolder& folder) {
   }
   section.facts.push_back({"Documents", std::to_string(folder.documents.size())});
   if (warnings > 0) section.facts.push_back({"Warnings", fmt::format("{}, see Provenance", warnings), Rating::open});
-  if (!is_complete) section.facts.push_back({"Completeness", "interrupted: not all is computed", Rating::bad});
+  if (!is_complete) section.facts.push_back({"Completeness", "interrupted: some results are missing", Rating::bad});
   return section;
 }
 
 PageSection provenance_section(const ResultFolder& folder) {
   PageSection section = titled("Provenance");
   section.paragraphs.push_back(
-      fmt::format("This page was made by retrace {} from the documents below. With the same design, seed and version "
-                  "they come out the same.",
+      fmt::format("This page was made by retrace {} from the documents below. The same design, seed and version give "
+                  "the same results.",
                   kVersion));
   PageTable table;
   table.caption = "Documents";

@@ -89,22 +89,22 @@ PageSection blank_section(const FabricationResult& result, const SetupSheet& she
              {"Deepest cut below the face", mm(blank.deepest_mm, 6)}};
   if (blank.fixture_height_mm)
     s.facts.push_back({"Table to face, blank with its fixture", mm(*blank.fixture_height_mm, 3)});
-  if (blank.free_radius_mm > 0.0) s.facts.push_back({"Face and clamps may reach, from C", mm(blank.free_radius_mm, 2)});
+  if (blank.free_radius_mm > 0.0)
+    s.facts.push_back({"Maximum radius of face and clamps about C", mm(blank.free_radius_mm, 2)});
   if (!blank.base.empty()) s.paragraphs.push_back(blank.base);
   for (const std::string& zone : blank.zones) s.paragraphs.push_back(zone);
   const double tilt_nm = 1e6 * 0.5 * blank.array_mm.maxCoeff() * std::tan(Angle::from_deg(1.0 / 3600.0).rad());
-  s.steps = {
-      fmt::format(
-          "Clamp the blank on its lower face, against two edges: roof edges come to lie along X at {}0 C0. Nothing "
-          "may stand above the face{}.",
-          tilt_word(result),
-          blank.free_radius_mm > 0.0
-              ? fmt::format(", and nothing beyond {} mm from C at its height: the table turns under a tool at Z {}",
-                            fixed(blank.free_radius_mm, 2), fixed(result.plan.safe_z_mm, 3))
-              : std::string()),
-      fmt::format("At {}0 C0 indicate the face along X and along Y. Each arcsec that it leans shifts the rims at the "
-                  "array's border by {} nm and turns no facet against another.",
-                  tilt_word(result), fixed(tilt_nm, 1))};
+  s.steps = {fmt::format("Clamp the blank on its lower face, against two edges, so that roof edges are parallel to X "
+                         "at {}0 C0. Nothing may project above the face{}.",
+                         tilt_word(result),
+                         blank.free_radius_mm > 0.0
+                             ? fmt::format(", and at its height nothing may extend beyond {} mm from the C axis, "
+                                           "because the table rotates under the tool at Z {}",
+                                           fixed(blank.free_radius_mm, 2), fixed(result.plan.safe_z_mm, 3))
+                             : std::string()),
+             fmt::format("At {}0 C0, align the face along X and along Y with an indicator. Each arcsec of tilt shifts "
+                         "the rims at the border of the array by {} nm, and does not change the angles between facets.",
+                         tilt_word(result), fixed(tilt_nm, 1))};
   return s;
 }
 
@@ -112,22 +112,25 @@ PageSection blank_section(const FabricationResult& result, const SetupSheet& she
 std::vector<std::string> tool_steps(const FabricationResult& result, const SetupSheet& sheet) {
   const bool is_dmc = !cuts_prisms(result.job);
   std::vector<std::string> steps;
-  steps.push_back(fmt::format(
-      "Mount the diamond so that its clearance face stands {} degrees off the facet that it cuts: looked at "
-      "along X with a microscope.",
-      shortest(result.job.tool.clearance_deg)));
+  steps.push_back(
+      fmt::format("Mount the diamond so that its clearance face is at {} degrees to the facet that it cuts. Check this "
+                  "angle along X with a microscope.",
+                  shortest(result.job.tool.clearance_deg)));
   if (is_dmc) {
     steps.push_back(
-        fmt::format("Its leading edge stands {} degrees over the level line of the facet, the middle of its "
-                    "{} degrees in the plane of Y and Z. About Z: {}.",
+        fmt::format("Its leading edge must be at {} degrees to the horizontal line of the facet, and the bisector of "
+                    "its nose angle of {} degrees must be in the YZ plane. Rotation about Z: {}.",
                     shortest(90.0 - 0.5 * result.job.tool.nose_angle_deg), shortest(result.job.tool.nose_angle_deg),
                     cost(sheet, "tool_turn_z_arcsec")));
   } else {
-    steps.push_back(
-        fmt::format("Edge along X: traverse it along X under a probe. {}.", cost(sheet, "tool_turn_z_arcsec")));
-    steps.push_back(fmt::format("Edge level: both ends at one height. {}.", cost(sheet, "tool_turn_y_arcsec")));
+    steps.push_back(fmt::format("Align the edge with X: traverse it along X under a probe. {}.",
+                                cost(sheet, "tool_turn_z_arcsec")));
+    steps.push_back(fmt::format("Make the edge horizontal: both ends must be at the same height. {}.",
+                                cost(sheet, "tool_turn_y_arcsec")));
   }
-  steps.push_back("Look at the edge under a microscope before and after: a chip in it leaves a ridge on every facet.");
+  steps.push_back(
+      "Inspect the edge under a microscope before and after the job: a chip in the edge leaves a ridge on every "
+      "facet.");
   return steps;
 }
 
@@ -135,13 +138,13 @@ PageSection tool_section(const FabricationResult& result, const SetupSheet& shee
   const Tool& tool = result.job.tool;
   PageSection s = section("tool", "2. Tool");
   const bool is_dmc = !cuts_prisms(result.job);
-  s.facts = {{is_dmc ? "V, width across its edges" : "Chisel, width of its edge", mm(tool.width_mm)},
-             {"Wedge", shortest(tool.wedge_deg) + " degrees"},
-             {"Clearance as mounted", shortest(tool.clearance_deg) + " degrees"},
-             {"Rake while it plunges", fixed(sheet.tool.plunge_rake_deg, 2) + " degrees"},
-             {is_dmc ? "Radius of its nose" : "Radius of its edge", shortest(tool.edge_radius_um) + " um"}};
-  if (is_dmc) s.facts.push_back({"Between its edges", shortest(tool.nose_angle_deg) + " degrees"});
-  if (sheet.tool.free_length_mm) s.facts.push_back({"Free below the holder", mm(*sheet.tool.free_length_mm, 2)});
+  s.facts = {{is_dmc ? "Width of the V across its edges" : "Width of the chisel's edge", mm(tool.width_mm)},
+             {"Wedge angle", shortest(tool.wedge_deg) + " degrees"},
+             {"Clearance angle as mounted", shortest(tool.clearance_deg) + " degrees"},
+             {"Rake angle during the plunge", fixed(sheet.tool.plunge_rake_deg, 2) + " degrees"},
+             {is_dmc ? "Nose radius" : "Edge radius", shortest(tool.edge_radius_um) + " um"}};
+  if (is_dmc) s.facts.push_back({"Angle between its edges", shortest(tool.nose_angle_deg) + " degrees"});
+  if (sheet.tool.free_length_mm) s.facts.push_back({"Free length below the holder", mm(*sheet.tool.free_length_mm, 2)});
   const ToolMount& mount = result.machine.mount;
   if (mount.offset_mm.value != Vec3::Zero() || mount.turn_deg.value != Vec3::Zero())
     s.paragraphs.push_back(fmt::format(
@@ -157,24 +160,24 @@ PageSection zero_section(const FabricationResult& result, const SetupSheet& shee
   PageSection s = section("zero", "3. Zero");
   s.paragraphs.push_back(fmt::format(
       "The work zero is the centre of the array on the face of the blank{}, at {}0 C0. The tool reference point is {}.",
-      result.job.substrate ? ", as high as its highest place" : "", tilt_word(result),
-      is_dmc ? "the tip" : "the middle of the edge's width, where its clearance side and its lowest line meet"));
+      result.job.substrate ? ", at the height of its highest point" : "", tilt_word(result),
+      is_dmc ? "the tip"
+             : "the centre of the edge's width, at the intersection of its clearance side and its lowest line"));
   s.steps = {
+      fmt::format("Move to {}0 C0, stop the spindle and switch off the coordinate transformation of the control. The "
+                  "tool must be mounted and aligned: if it is rotated in its holder later, touch it off again.",
+                  tilt_word(result)),
       fmt::format(
-          "{}0 C0, spindle stopped, the control's transformation off. The tool is mounted and aligned: if it is "
-          "turned in its holder later, touch it off again.",
-          tilt_word(result)),
-      fmt::format("Z: bring the edge down to the face beside the array until it marks, and set that as Z0. {}.",
-                  cost(sheet, "tool_z_um")),
-      fmt::format(
-          "Y: bring the clearance side to a reference edge of the blank, or cut a mark and measure it, and set the "
-          "middle of the array as Y0. {}.",
-          cost(sheet, "tool_y_um")),
-      fmt::format("X: likewise with the middle of the edge. {}.", cost(sheet, "tool_x_um")),
-      fmt::format(
-          "C: turn to 180 degrees, touch the same place, halve the difference: where C is from the zero must be what "
-          "the table below says. {}.",
-          cost(sheet, "c_y_um"))};
+          "Z: lower the edge onto the face next to the array until it leaves a mark, and set this height as Z0. {}.",
+          cost(sheet, "tool_z_um")),
+      fmt::format("Y: move the clearance side to a reference edge of the blank, or cut a mark and measure it, and set "
+                  "the centre of the array as Y0. {}.",
+                  cost(sheet, "tool_y_um")),
+      fmt::format("X: use the same method with the centre of the edge, and set the centre of the array as X0. {}.",
+                  cost(sheet, "tool_x_um")),
+      fmt::format("C: rotate C to 180 degrees, touch off the same point again, and halve the difference. The resulting "
+                  "distance of the C axis from the zero must agree with the table below. {}.",
+                  cost(sheet, "c_y_um"))};
   return s;
 }
 
@@ -184,14 +187,14 @@ std::string basis(const auto& sourced) {
 
 PageSection axes_section(const FabricationResult& result, const SetupSheet& sheet) {
   const Machine& m = result.machine;
-  PageSection s =
-      section("axes", "4. Where the axes are taken to be",
-              "Programs hold the kinematics: where an axis stands elsewhere, facets do. All that is measured is told "
-              "from the work zero at A0 C0, and of a head from the tip.");
+  PageSection s = section(
+      "axes", "4. Positions of the axes in the programs",
+      "The programs are computed for these axes: if the real axes differ, the facets are displaced and tilted. "
+      "Positions are relative to the work zero at A0 C0; those of a tilting head are relative to the tool tip.");
   PageTable table;
   table.caption = "Axes";
   table.csv_name = "axes.csv";
-  table.columns = {"axis", "through X, Y, Z (mm)", "along X, Y, Z", "where that comes from"};
+  table.columns = {"axis", "point X, Y, Z (mm)", "direction X, Y, Z", "source"};
   for (const auto& [name, axis] : {std::pair{tilt_word(result), &m.a}, std::pair{std::string("C"), &m.c}})
     table.rows.push_back({name, triple(axis->point_mm.value, 6), triple(axis->direction.value, 8),
                           basis(axis->point_mm) + "; " + basis(axis->direction)});
@@ -209,15 +212,14 @@ PageSection control_section(const FabricationResult& result, const SetupSheet& s
   PageSection s = section("control", "5. Control");
   s.steps.push_back(fmt::format("{}", fmt::join(sheet.control_needs, " ")));
   s.steps.push_back(
-      fmt::format("G54, or the work offset of the control, is the zero of section 3; tool offsets and any "
-                  "transformation are off. Every program says so again at its beginning ({}).",
+      fmt::format("Set G54, or the work offset of the control, to the zero of section 3. Switch off tool offsets and "
+                  "all transformations. Every program repeats this at its beginning ({}).",
                   result.dialect));
-  s.steps.push_back(result.job.process.mist ? "Mist is ready: programs switch it on for cuts and off for stops."
-                                            : "No mist: the process has none.");
-  s.steps.push_back(
-      fmt::format("Nothing that stands on the table comes higher than Z {}: the first move of every program "
-                  "goes there alone.",
-                  fixed(result.machine.first_z_mm(), 3)));
+  s.steps.push_back(result.job.process.mist ? "Keep the mist ready: programs switch it on for cuts and off for stops."
+                                            : "No mist is needed: the process does not use it.");
+  s.steps.push_back(fmt::format(
+      "Nothing on the table may be higher than Z {}: the first move of every program moves only Z, to this height.",
+      fixed(result.machine.first_z_mm(), 3)));
   return s;
 }
 
@@ -226,7 +228,7 @@ PageTable stops_table(const FabricationResult& result) {
   PageTable table;
   table.caption = "Stops";
   table.csv_name = "stops.csv";
-  table.columns = {"program", "after", "why", "goes on with", "edge has cut (mm)", "done, by"};
+  table.columns = {"program", "after", "why", "continues with", "edge has cut (mm)", "done by"};
   for (const fabrication::PlannedStop& stop : result.plan.stops)
     table.rows.push_back({result.program_file(stop.program), hours(stop.at_s),
                           std::string(fabrication::kStopReasonWords[static_cast<std::size_t>(stop.reason)]),
@@ -241,7 +243,7 @@ PageSection programs_section(const FabricationResult& result, const SetupSheet& 
   PageTable table;
   table.caption = "Programs";
   table.csv_name = "programs.csv";
-  table.columns = {"", "program", "time", "begins after", "optional stops", "run on, by"};
+  table.columns = {"", "program", "time", "begins after", "optional stops", "run (date, name)"};
   double before_s = 0.0;
   for (std::size_t k = 0; k < result.plan.programs.size(); ++k) {
     const double seconds = result.plan.program_times_s[k];
@@ -252,7 +254,7 @@ PageSection programs_section(const FabricationResult& result, const SetupSheet& 
   s.tables.push_back(std::move(table));
   if (!result.plan.stops.empty()) s.tables.push_back(stops_table(result));
   PageTable travel;
-  travel.caption = "Travel that they use";
+  travel.caption = "Travel of the axes in the programs";
   travel.csv_name = "travel.csv";
   travel.columns = {"axis", "from", "to", "limits", ""};
   for (const studies::AxisTravel& axis : sheet.travel)
@@ -262,29 +264,30 @@ PageSection programs_section(const FabricationResult& result, const SetupSheet& 
   s.tables.push_back(std::move(travel));
   if (result.machine.warm_up_s.value > 0.0)
     s.paragraphs.push_back(fmt::format(
-        "X and Y move to and fro for {} s before the first cut of a program and behind a stop: nothing stands in their "
-        "way.",
+        "X and Y move to and fro for {} s before the first cut of a program and after a stop: keep their travel clear.",
         shortest(result.machine.warm_up_s.value)));
   if (result.job.tool.edge_life_mm)
-    s.paragraphs.push_back(
-        fmt::format("Every program begins with an edge that cuts {} mm; {}.", shortest(*result.job.tool.edge_life_mm),
-                    result.job.tool.next_edge == fabrication::NextEdge::stop ? "so does one that goes on behind a stop"
-                                                                             : "it stays at stops"));
-  s.paragraphs.push_back(fmt::format(
-      "Rotary axes turn while the tool stands at Z {} or higher. Before the first: dry-run high above the table.",
-      fixed(result.plan.safe_z_mm, 3)));
+    s.paragraphs.push_back(fmt::format(
+        "Every program begins with an unused edge that can cut {} mm; {}.", shortest(*result.job.tool.edge_life_mm),
+        result.job.tool.next_edge == fabrication::NextEdge::stop ? "so does every program that continues after a stop"
+                                                                 : "the edge is not changed at stops"));
+  s.paragraphs.push_back(
+      fmt::format("Rotary axes rotate only while the tool is at Z {} or higher. Before the first program, do a dry run "
+                  "high above the table.",
+                  fixed(result.plan.safe_z_mm, 3)));
   return s;
 }
 
 PageSection checks_section(const FabricationResult& result, const SetupSheet& sheet) {
-  PageSection s = section(
-      "checks", "7. What to measure, and when",
-      "Depths by stylus or AFM, angles by autocollimator. Where a depth differs by more than the process bears, "
-      "or facets differ in angle, measure before the next stage takes the rest.");
+  PageSection s = section("checks", "7. What to measure, and when",
+                          "Measure depths with a stylus instrument or an AFM, and angles with an autocollimator. If a "
+                          "depth differs by more than the process allows, or if facets differ in angle, measure again "
+                          "before the next stage removes the remaining material.");
   PageTable table;
   table.caption = "After each stage";
   table.csv_name = "checks.csv";
-  table.columns = {"stage", "program", "ends after", "left on its facets (um)", "root below the rims (mm)", "measured"};
+  table.columns = {"stage",   "program", "ends after", "remaining on the facets (um)", "root below the rims (mm)",
+                   "measured"};
   constexpr std::size_t kMost = 60;
   for (const studies::StageCheck& check : sheet.checks) {
     if (table.rows.size() == kMost) break;
@@ -315,14 +318,15 @@ std::string change_text(double change, double of, double least) {
 PageTable sensitivity_table(const FabricationResult& result, const SetupSheet& sheet) {
   PageTable table;
   table.caption =
-      "Of one um or one arcsec, the largest first. Of each facet: distance of its middle; tilt up its slope and along "
-      "its root in arcmin";
+      "Effects of one um or one arcsec, the largest first. For each facet: displacement of its centroid; tilt up its "
+      "slope and along its root in arcmin";
   table.csv_name = "sensitivities.csv";
-  table.columns = {"quantity, by one"};
+  table.columns = {"quantity, unit"};
   for (const studies::FacetKind& kind : sheet.sensitivities.kinds) table.columns.push_back(kind.name());
-  table.columns.insert(table.columns.end(), {"farthest (nm)", "chip (nm)", "left at root (nm)", "into root (nm)"});
+  table.columns.insert(table.columns.end(), {"facets, maximum (nm)", "chip thickness (nm)",
+                                             "material left at root (nm)", "cut into root (nm)"});
   const bool has_walls = result.machine.tilt == Tilt::table;
-  if (has_walls) table.columns.emplace_back("into walls (nm)");
+  if (has_walls) table.columns.emplace_back("cut into walls (nm)");
   if (sheet.light) table.columns.insert(table.columns.end(), {"RRE (%)", "R_A (%)"});
   for (const Sensitivity& row : sheet.sensitivities.rows) {
     std::vector<PageCell> cells = {fmt::format("{}, {}", row.quantity->words, row.quantity->unit())};
@@ -342,20 +346,20 @@ PageTable sensitivity_table(const FabricationResult& result, const SetupSheet& s
 
 PageSection sensitivity_section(const FabricationResult& result, const SetupSheet& sheet) {
   PageSection s = section(
-      "sensitivities", "8. What an error costs",
-      "By how much the real machine differs from what sections 2 to 4 say. A positive distance leaves material. "
-      "A cut ends short of the other facet and leaves material at the root, or goes into it.");
+      "sensitivities", "8. Effects of set-up errors",
+      "An error is a difference between the real machine and sections 2 to 4. A positive displacement leaves material. "
+      "At the root, a cut either ends before the other facet and leaves material, or cuts into the other facet.");
   s.tables.push_back(sensitivity_table(result, sheet));
   if (sheet.light)
     s.paragraphs.push_back(
-        fmt::format("RRE within {} degrees along the normal, {} %; R_A at {} degrees of observation and {} of "
-                    "entrance, {} cd/(lx m2): "
-                    "smooth facets, {} elements in the middle of the array, exact with diffraction.",
+        fmt::format("RRE within {} degrees at normal incidence: {} %. R_A at an observation angle of {} degrees and an "
+                    "entrance angle of {} degrees: {} cd/(lx m2). Both are computed exactly with diffraction, for "
+                    "smooth facets and {} elements at the centre of the array.",
                     shortest(sheet.light->cones_deg.back()), fixed(100.0 * sheet.light->nominal.rre.back(), 3),
                     shortest(studies::SetupLight::kObservationDeg), shortest(studies::SetupLight::kEntranceDeg),
                     fixed(sheet.light->nominal.r_a, 2), sheet.light->elements));
   else
-    s.paragraphs.push_back("Of RRE and R_A nothing is said: " + sheet.why_no_light + ".");
+    s.paragraphs.push_back("RRE and R_A are not computed: " + sheet.why_no_light + ".");
   return s;
 }
 

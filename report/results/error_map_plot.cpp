@@ -12,7 +12,7 @@ SurfacePlot error_map_plot(const studies::ErrorMap& map) {
   GridPanel panel;
   panel.title =
       "x_w to the right, y_w up; shown from -" + fixed(map.shown_nm, 0) + " to " + fixed(map.shown_nm, 0) + " nm";
-  panel.value_label = "left over the facets (nm)";
+  panel.value_label = "material above the facets (nm)";
   panel.columns = map.field.columns;
   panel.rows = map.field.rows;
   panel.x_size_um = kUmPerMm * map.field.size_mm.x();
@@ -20,7 +20,7 @@ SurfacePlot error_map_plot(const studies::ErrorMap& map) {
   panel.values = map.field.height_nm;
   for (double& value : panel.values)
     if (std::isfinite(value)) value = std::clamp(value, -map.shown_nm, map.shown_nm);
-  return {"What the programs leave", {std::move(panel)}};
+  return {"Material that the programs leave", {std::move(panel)}};
 }
 
 }  // namespace retrace::report

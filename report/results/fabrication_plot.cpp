@@ -132,14 +132,14 @@ MapPlot arrangement_plot(const studies::FabricationResult& result) {
   MapPlot plot;
   plot.title = fmt::format("{}: {} elements", name_of(result), elements.size());
   plot.axis_unit = "mm";
-  plot.value_label = "Place in the order of cutting (%)";
+  plot.value_label = "Position in the order of cutting (%)";
   plot.rest_label = "not cut";
   plot.full_value = 100.0;
   MapPanel panel;
   panel.title = sizes_of(result.job);
   panel.remarks = {"the blank seen from the tool, in the frame of the part that is moulded in it"};
   if (result.job.workpiece.kind == fabrication::WorkpieceKind::direct)
-    panel.remarks = {"the optic's back seen from the tool: mirrored against the design"};
+    panel.remarks = {"the back of the part seen from the tool: mirrored relative to the design"};
   panel.outline = rectangle(Vec2::Zero(), extent);
   // Converts workpiece coordinates to coordinates of the part (x_part = -y_w, y_part = x_w). The origin is moved to a
   // corner of the array.

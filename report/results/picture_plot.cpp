@@ -47,18 +47,18 @@ ImagePlot irradiance_plot(const DetectorResult& result) {
   plot.title = studies::short_name(result.design);
   plot.remarks.push_back(fmt::format("{}; returned within {}°: RRE {} %{}", direction_text(result),
                                      shortest(result.acceptance_half_angle_deg), fixed(100.0 * result.maps.rre, 2),
-                                     result.is_period ? "; one period of an endless array" : ""));
+                                     result.is_period ? "; one period of an infinite array" : ""));
   const auto panel = [&](const char* title, const std::vector<double>& values) {
     return ImagePanel{title,
-                      "irradiance over that of the beam",
+                      "irradiance divided by that of the beam",
                       result.face.columns(),
                       result.face.rows(),
                       values,
                       result.face.bounds_mm().size().x(),
                       "mm"};
   };
-  plot.panels.push_back(panel("What the detector sees", result.maps.leaving.value));
-  plot.panels.push_back(panel("Where that light entered", result.maps.entering.value));
+  plot.panels.push_back(panel("Light on the detector", result.maps.leaving.value));
+  plot.panels.push_back(panel("Positions at which it entered", result.maps.entering.value));
   return plot;
 }
 
@@ -68,7 +68,7 @@ ImagePlot angular_plot(const DetectorResult& result) {
   plot.remarks.push_back(direction_text(result) + "; around the direction back to the source");
   plot.remarks.push_back(fmt::format("{} % of the light leaves beyond {}°", fixed(100.0 * result.maps.outside, 2),
                                      shortest(result.request.window_deg)));
-  ImagePanel panel{"Share of the light by direction",
+  ImagePanel panel{"Fraction of the light by direction",
                    "per steradian",
                    result.request.angle_pixels,
                    result.request.angle_pixels,

@@ -18,7 +18,7 @@ std::string title_of(const studies::PlaningResult& result, const std::string& wh
 LinePlot plot_over_distance(const studies::PlaningResult& result, const std::string& what, const std::string& y_label) {
   LinePlot plot;
   plot.title = title_of(result, what);
-  plot.x_label = result.part.mill ? "distance from the middle (mm)" : "radius (mm)";
+  plot.x_label = result.part.mill ? "distance from the centre (mm)" : "radius (mm)";
   plot.y_label = y_label;
   return plot;
 }
@@ -34,7 +34,7 @@ std::size_t stride_of(std::size_t samples) {
 LinePlot planing_profile_plot(const studies::PlaningResult& result) {
   LinePlot plot = plot_over_distance(result, "profile", "height (mm)");
   Series design{"design", {}, {}, {}};
-  Series left{result.part.mill ? "left by the programs" : "chords", {}, {}, {}};
+  Series left{result.part.mill ? "machined surface" : "chords", {}, {}, {}};
   const auto& profile = result.check.profile;
   for (std::size_t k = 0; k < profile.size(); k += stride_of(profile.size())) {
     design.add(profile[k].x_mm, -profile[k].design_mm);
@@ -67,7 +67,7 @@ LinePlot planing_zones_plot(const studies::PlaningResult& result) {
 }
 
 LinePlot planing_error_plot(const studies::PlaningResult& result) {
-  LinePlot plot = plot_over_distance(result, "what is left standing", "left above the design (mm)");
+  LinePlot plot = plot_over_distance(result, "remaining material", "height above the design (mm)");
   Series error;
   const fabrication::ZoneProfile profile(result.part.lens);
   std::size_t zone = 0;

@@ -33,7 +33,7 @@ LinePlot tolerance_plot(const studies::Study& study, const studies::ToleranceReq
   const studies::QuantityTolerance& quantity = result.quantities.front();
   LinePlot plot;
   plot.title = (study.title.empty() ? std::filesystem::path(study.source).filename().string() : study.title) +
-               ": what manufacture leaves";
+               ": distribution over manufactured parts";
   plot.x_label = quantity.quantity;
   plot.y_label = "Parts below (%)";
   plot.y_range = Range{0.0, kPercent};
@@ -41,8 +41,8 @@ LinePlot tolerance_plot(const studies::Study& study, const studies::ToleranceReq
   if (quantity.nominal) plot.series.push_back(line_at("nominal", *quantity.nominal));
   for (const studies::Constraint& limit : request.constraints) {
     if (limit.quantity != quantity.quantity) continue;
-    if (limit.least) plot.series.push_back(line_at("least allowed", *limit.least));
-    if (limit.most) plot.series.push_back(line_at("most allowed", *limit.most));
+    if (limit.least) plot.series.push_back(line_at("minimum allowed", *limit.least));
+    if (limit.most) plot.series.push_back(line_at("maximum allowed", *limit.most));
   }
   return plot;
 }

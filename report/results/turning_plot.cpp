@@ -30,7 +30,7 @@ LinePlot turning_acceleration_plot(const studies::TurningResult& r) {
 
 LinePlot turning_profile_plot(const studies::TurningResult& r) {
   LinePlot plot;
-  plot.title = fmt::format("{}: what the programs leave across a few cuts", title_of(r));
+  plot.title = fmt::format("{}: machined surface across a few cuts", title_of(r));
   plot.x_label = "x (mm)";
   plot.y_label = "deviation from the design (nm)";
   Series series;
@@ -62,8 +62,9 @@ ImagePlot turning_maps(const studies::TurningResult& r) {
   plot.title = title_of(r);
   plot.remarks = {fmt::format("form error {} nm, scallops {} nm", fixed(inspection.form_error_nm, 2),
                               fixed(inspection.scallop_nm, 2))};
-  plot.panels = {{"surface", "height (µm)", n, n, height, inspection.map_width_mm, "mm", 0.0, false},
-                 {"left by the programs", "|deviation| (nm)", n, n, left, inspection.map_width_mm, "mm", 0.0, false}};
+  plot.panels = {
+      {"surface", "height (µm)", n, n, height, inspection.map_width_mm, "mm", 0.0, false},
+      {"error of the machined surface", "|deviation| (nm)", n, n, left, inspection.map_width_mm, "mm", 0.0, false}};
   return plot;
 }
 

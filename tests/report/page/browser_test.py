@@ -131,7 +131,7 @@ class PageWorks(PageCase):
 
     def test_tables_are_saved_as_csv(self):
         target = self.downloads_to("saved")
-        button = next(b for b in self.all("button.download") if "Where the light goes" in b.get_attribute("aria-label"))
+        button = next(b for b in self.all("button.download") if "Ledger" in b.get_attribute("aria-label"))
         self.driver.execute_script("arguments[0].click()", button)
         file = target / "rre_ledger.csv"
         deadline = time.monotonic() + 60

@@ -240,8 +240,8 @@ TEST(StudyPage, CardsNameTheirDesign) {
   };
   EXPECT_EQ(value_of("RRE at normal incidence: A"), "10.00 %");
   EXPECT_EQ(value_of("RRE at normal incidence: B"), "20.00 %");
-  EXPECT_EQ(value_of("Greatest RRE, at 10 deg: A"), "20.00 %");
-  EXPECT_EQ(value_of("Greatest RRE, at 10 deg: B"), "30.00 %");
+  EXPECT_EQ(value_of("Maximum RRE, at 10 deg: A"), "20.00 %");
+  EXPECT_EQ(value_of("Maximum RRE, at 10 deg: B"), "30.00 %");
   EXPECT_EQ(value_of("Whole elements: A"), "1");
   EXPECT_EQ(value_of("Photometry: B"), "pass");
   EXPECT_EQ(value_of("Machining time: cut.toml"), "1.00 h");
@@ -252,7 +252,7 @@ TEST(StudyPage, ADesignThatIsAloneIsNotNamedAgain) {
   const Page page =
       study_page({"x", {document("rre", efficiencies({a})), document("inspect", {{"design", a}})}, {}}, "");
   EXPECT_EQ(page.title, "A");
-  EXPECT_EQ(card_names(page), (std::vector<std::string>{"RRE at normal incidence", "Greatest RRE, at 10 deg"}));
+  EXPECT_EQ(card_names(page), (std::vector<std::string>{"RRE at normal incidence", "Maximum RRE, at 10 deg"}));
 }
 
 /// On a page with several designs, all names of cards, curves and captions are different, even if designs have the same

@@ -100,7 +100,7 @@ TEST(Report, ShowsDrawingsAndPictures) {
   ASSERT_EQ(retrace(folder, {"report", "study"}).code, 0);
   const std::string html = folder.read("study/report.html");
   for (const char* text : {"Plan: the part seen from the light", "Section across the elements", "seen from behind",
-                           "Irradiance over that of the beam", "per steradian"})
+                           "Irradiance divided by that of the beam", "per steradian"})
     EXPECT_NE(html.find(text), std::string::npos) << text;
   EXPECT_NE(html.find("data:image/svg+xml;base64,"), std::string::npos);
 }

@@ -179,7 +179,8 @@ TEST(SetupSheet, StopsAreTold) {
   EXPECT_GT(stops[0]["at_s"], 20.0);
   EXPECT_GT(stops[0]["cut_mm"], 3.0);
   const std::string html = report::setup_html(report::setup_page(result, sheet, {}));
-  for (const char* const text : {"Stops", "of finishing-1-facet-1", "Every program begins with an edge that cuts"})
+  for (const char* const text :
+       {"Stops", "of finishing-1-facet-1", "Every program begins with an unused edge that can cut"})
     EXPECT_NE(html.find(text), std::string::npos) << text;
   EXPECT_EQ(report::setup_html(report::setup_page(made(), sheet, {})).find("stops.csv"), std::string::npos);
 }
@@ -193,7 +194,7 @@ TEST(SetupSheet, ThePageSaysItAll) {
   for (const char* const text :
        {"Four prisms", "1. Blank and fixture", "2. Tool", "3. Zero", "5. Control", "Needs: G54 without rotation",
         "6. Programs, in this order", "program.ngc", "7. What to measure, and when", "finishing-2-facet-2",
-        "8. What an error costs", "centre of C along Y, um", "1414.2"})
+        "8. Effects of set-up errors", "centre of C along Y, um", "1414.2"})
     EXPECT_NE(html.find(text), std::string::npos) << text;
   const nlohmann::ordered_json json = setup_json(result, sheet);
   EXPECT_EQ(json["sensitivities"].size(), 17U);
