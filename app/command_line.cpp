@@ -15,6 +15,7 @@
 #include "core/number_format.h"
 #include "core/text.h"
 #include "core/version.h"
+#include "requests/row.h"
 
 namespace retrace::app {
 namespace {
@@ -209,12 +210,31 @@ void set_memory_budget(const CommonOptions& common) {
   set_memory_budget_bytes(static_cast<std::uint64_t>(*common.memory_gib * 0x1p30));
 }
 
+/// Replaces the options of former versions by the current ones, with a warning for each.
+std::vector<std::string> with_current_options(int argc, const char* const* argv) {
+  std::vector<std::string> words(argv, argv + argc);
+  for (const requests::Request* const request : requests::all_requests())
+    for (const requests::Row& row : request->rows) {
+      const std::string former = requests::former_option_of(row);
+      if (former.empty()) continue;
+      for (std::string& word : words) {
+        if (word != former && !word.starts_with(former + "=")) continue;
+        word.replace(0, former.size(), requests::option_of(row));
+        say(fmt::format("warning: {} is the former name of {}", former, requests::option_of(row)));
+      }
+    }
+  return words;
+}
+
 /// Parses the command line. Prints the help or the version if it is requested.
 /// \return true if a command is to be run
 /// \throw InputError
 bool parse(CLI::App& app, int argc, const char* const* argv) {
+  const std::vector<std::string> words = with_current_options(argc, argv);
+  std::vector<const char*> pointers;
+  for (const std::string& word : words) pointers.push_back(word.c_str());
   try {
-    app.parse(argc, argv);
+    app.parse(argc, pointers.data());
   } catch (const CLI::CallForHelp&) {
     print(app.help());
     return false;

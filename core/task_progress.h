@@ -3,6 +3,7 @@
 // Combines the progress of parts, repeated attempts or parallel tasks into the progress of the whole computation.
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <mutex>
 

@@ -27,6 +27,25 @@ struct TomlItem {
   std::string shown;  ///< text of the entry in messages
 };
 
+/// Name that a key, a table or a word of a file format had in former versions of the program.
+struct FormerName {
+  std::string table;    ///< path of the table that contains the key or table, without indices; empty for the root
+  std::string former;   ///< former name of the key or table, or former word
+  std::string current;  ///< name or word that replaces it
+  bool is_word = false;
+  std::string key = {};  ///< key whose value is the word; if empty, the word may be the value of any key of the table
+};
+
+/// Former name that was found in an input and replaced by the current one.
+struct RenamedInput {
+  InputLocation where;  ///< location with the former path of a key or table, or with the path of the key of a word
+  std::string former;   ///< former name of the key or table, or former word
+  std::string current;  ///< name or word that replaced it
+};
+
+/// Returns the path of a key or table with all former names replaced. Paths have no indices.
+std::string current_path(std::string_view path, std::span<const FormerName> names);
+
 /// One table of a TOML file. Functions that return values check them and record that their key was requested. A table
 /// that is not in the file is treated as empty. Copies are cheap and share their data. All functions throw InputError
 /// with file, line and key if a value is not allowed. Numbers must be finite.
@@ -86,6 +105,8 @@ class TomlTable {
   /// Returns the value of a key as text for messages, such as -3, "text", a table or a list.
   /// \pre the key was given
   std::string shown(std::string_view key) const;
+  /// Returns the former names that were replaced in the whole input, in the order of the list given to parse_toml().
+  const std::vector<RenamedInput>& renamed() const;
   /// Returns the names of all keys and tables, in the order of the file. Keys that overrides set come last.
   std::vector<std::string> names() const;
   /// Returns the names of all keys and tables, sorted by name.
@@ -125,10 +146,12 @@ std::optional<std::string_view> unset_key(std::string_view override_text);
 /// \param most_bytes maximum length of the text in bytes
 /// \param overrides texts of the form KEY=VALUE, which set a key, or KEY=, which remove a key. Messages about an
 /// override quote the override instead of the name of the file.
-/// \throw InputError if the text is not TOML, is longer than `most_bytes`, or has keys that nest too deeply, or if an
-/// override is neither KEY=VALUE nor KEY=
+/// \param names former names, which are replaced in the text and in the overrides. The list is applied in its order,
+/// so that a table comes before the keys that it contains.
+/// \throw InputError if the text is not TOML, is longer than `most_bytes`, or has keys that nest too deeply, if an
+/// override is neither KEY=VALUE nor KEY=, or if a table contains both a name and its former name
 TomlTable parse_toml(std::string_view text, const std::string& source_name, std::size_t most_bytes = kMostTextBytes,
-                     std::span<const std::string> overrides = {});
+                     std::span<const std::string> overrides = {}, std::span<const FormerName> names = {});
 
 /// Returns `text` as a TOML string in double quotes, with escapes.
 std::string toml_text(std::string_view text);

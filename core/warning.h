@@ -19,6 +19,11 @@ struct Warning {
 
 using Warnings = std::vector<Warning>;
 
+/// Appends `more` to `warnings`.
+inline void append(Warnings& warnings, const Warnings& more) {
+  warnings.insert(warnings.end(), more.begin(), more.end());
+}
+
 /// Returns the texts without the identifiers.
 inline std::vector<std::string> texts_of(const Warnings& warnings) {
   std::vector<std::string> texts;

@@ -101,7 +101,7 @@ StudyResult tolerance(const Study& study, const StudyRequest& request, const Run
   studies::SweepResult swept = carried_out(*held, request, running);
   const auto found =
       std::make_shared<const studies::ToleranceResult>(studies::analyse(held->sweep, asked, swept.points));
-  swept.warnings.insert(swept.warnings.end(), found->warnings.begin(), found->warnings.end());
+  append(swept.warnings, found->warnings);
   StudyResult result;
   result.complete = swept.complete;
   result.is_yes = found->is_enough;

@@ -24,7 +24,7 @@ namespace {
 /// written to the same folder, such as part_facets.csv.
 void write_as_machined(studies::VerificationRun& run, const std::filesystem::path& file) {
   const studies::AsMachined part = studies::as_machined(run);
-  run.warnings.insert(run.warnings.end(), part.warnings.begin(), part.warnings.end());
+  append(run.warnings, part.warnings);
   const std::filesystem::path facets = file.parent_path() / (file.stem().string() + "_facets.csv");
   const std::string design = studies::as_machined_toml(run, part, facets.filename().string());
   if (part.planes) write_file_atomically(facets, studies::facet_planes_text(*part.planes));

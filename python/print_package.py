@@ -45,7 +45,7 @@ def schemas_in(schema, path: tuple[str, ...] = ()):
     if not isinstance(schema, dict):
         return
     for key, inner in schema.get("properties", {}).items():
-        if isinstance(inner, dict):
+        if isinstance(inner, dict) and not inner.get("deprecated"):
             yield path + (key,), inner
             yield from schemas_in(inner, path + (key,))
     for word in ("allOf", "anyOf", "oneOf", "then", "else"):
@@ -197,10 +197,18 @@ def requests_of(program: str) -> dict[str, list[dict]]:
 
 
 def fields_module(requests: dict[str, list[dict]]) -> str:
+    former = {
+        field["former"]: field["keyword"]
+        for fields in requests.values()
+        for field in fields
+        if "former" in field
+    }
     lines = [
         '"""Fields of the requests of the library: printed by the program."""',
         "",
         "from ._request import Field, Fields",
+        "",
+        f"FORMER = {former!r}  #: keywords of former versions",
         "",
         "FIELDS: dict[str, Fields] = {",
     ]

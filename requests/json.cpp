@@ -49,6 +49,7 @@ Json needs_json(const Row& row) {
 Json field_json(const Request& request, const Row& row) {
   Json json = {{"name", row.name}};
   if (!row.spelling.is_no_keyword) json["keyword"] = keyword_of(row);
+  if (!row.spelling.former.empty()) json["former"] = row.spelling.former;
   json["kind"] = kind_name(row.kind);
   json["allowed"] = schema::allowed(row.kind);
   if (const auto* const word = std::get_if<schema::Word>(&row.kind))

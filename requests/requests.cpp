@@ -24,11 +24,23 @@ const Row* row_of(const Request& request, std::string_view name) {
   return found == request.rows.end() ? nullptr : &*found;
 }
 
-std::string option_of(const Row& row) {
-  if (!row.spelling.option.empty()) return std::string(row.spelling.option);
-  std::string option = (row.spelling.notation == Notation::absent ? "--no-" : "--") + std::string(row.name);
+namespace {
+
+std::string option_named(std::string_view name, Notation notation) {
+  std::string option = (notation == Notation::absent ? "--no-" : "--") + std::string(name);
   std::replace(option.begin(), option.end(), '_', '-');
   return option;
+}
+
+}  // namespace
+
+std::string option_of(const Row& row) {
+  if (!row.spelling.option.empty()) return std::string(row.spelling.option);
+  return option_named(row.name, row.spelling.notation);
+}
+
+std::string former_option_of(const Row& row) {
+  return row.spelling.former.empty() ? std::string() : option_named(row.spelling.former, row.spelling.notation);
 }
 
 std::string option_of_field(std::string_view field) {

@@ -41,6 +41,8 @@ struct Spelling {
   std::string_view qualified = {};
   bool is_no_option = false;   ///< true if no option is generated, because the program sets the field in another way
   bool is_no_keyword = false;  ///< true if no keyword is generated, because Python sets the field in another way
+  /// Name of the field in former versions, or empty. The option and the keyword made from it are still accepted.
+  std::string_view former = {};
 };
 
 /// Description of a field of a request. The default value is the initialiser of the C++ member, so it is not repeated
@@ -87,6 +89,8 @@ const Row* row_of(const Request& request, std::string_view name);
 
 /// Returns the command-line option of a field, such as "--target-error".
 std::string option_of(const Row& row);
+/// Returns the option that a field had in former versions, or an empty text.
+std::string former_option_of(const Row& row);
 /// Returns the command-line option of a field. The function can be used as a FieldSpelling (core/field.h).
 /// \param field name of the field in messages, as returned by Row::field()
 std::string option_of_field(std::string_view field);

@@ -109,7 +109,7 @@ WholePart whole_part_of(const ComposeOptions& options, const JobRequest& making,
     whole.design = studies::zoned_design_text(study, zones, zoned);
     if (options.job.empty()) return whole;
     whole.job = studies::make_job(studies::parse_design(whole.design, options.design), making);
-    warnings.insert(warnings.end(), whole.job->warnings.begin(), whole.job->warnings.end());
+    append(warnings, whole.job->warnings);
   } catch (const InputError& error) {
     warnings.push_back(
         {"zones_not_written", fmt::format("{} is not written: {}", whole.design.empty() ? options.design : options.job,
@@ -164,7 +164,7 @@ ExitCode compose_part(const ComposeOptions& options, const CommonOptions& common
   const std::string why_not = studies::why_not_reached(study, request, composition);
   Warnings warnings = remarks_of(session);
   const Warnings without_effect = studies::keys_without_effect(study);
-  warnings.insert(warnings.end(), without_effect.begin(), without_effect.end());
+  append(warnings, without_effect);
   if (composition.best) whole = whole_part_of(options, making, study, written_zones(), zoned, warnings);
   const ExitCode code = files.write(studies::composition_json(study, request, composition, elapsed_s),
                                     studies::composition_text(study, request, composition), warnings,

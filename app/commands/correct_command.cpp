@@ -99,7 +99,7 @@ ExitCode run(const CorrectOptions& options, const CommonOptions& common) {
   }
   result = studies::correct(plan, std::move(maps));
   files.prepare();
-  warnings.insert(warnings.end(), result->calibration.warnings.begin(), result->calibration.warnings.end());
+  append(warnings, result->calibration.warnings);
   return files.write(studies::correction_json(*result), studies::correction_table(*result), warnings);
 }
 

@@ -78,7 +78,7 @@ ExitCode run(const FabricateOptions& options, const CommonOptions& common) {
   files.add("setup.html", [&] { return report::setup_html(report::setup_page(result, sheet, drawings_of(result))); });
   files.prepare();
   Warnings warnings = result.warnings;
-  warnings.insert(warnings.end(), sheet.warnings.begin(), sheet.warnings.end());
+  append(warnings, sheet.warnings);
   return files.write(studies::fabrication_json(result, studies::setup_json(result, sheet)),
                      studies::fabrication_table(result), warnings);
 }

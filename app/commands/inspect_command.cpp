@@ -28,7 +28,7 @@ ExitCode run(const InspectOptions& options, const CommonOptions& common) {
   files.add("front.svg", [&] { return drawings.entrance; });
   files.prepare();
   if (!common.out.empty()) drawings = report::design_drawings(inspection);
-  inspection.warnings.insert(inspection.warnings.end(), drawings.warnings.begin(), drawings.warnings.end());
+  append(inspection.warnings, drawings.warnings);
   return files.write(studies::inspect_json(inspection), studies::inspect_text(inspection), inspection.warnings);
 }
 

@@ -96,13 +96,13 @@ ExitCode look(const OptimizeOptions& options, const CommonOptions& common, compu
   const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   Warnings warnings = remarks_of(session);
   const Warnings without_effect = studies::keys_without_effect(study);
-  warnings.insert(warnings.end(), without_effect.begin(), without_effect.end());
+  append(warnings, without_effect);
   if (optimum.ran_out > 0)
     warnings.push_back(
         {"designs_out_of_budget",
          fmt::format("{} of {} designs are not evaluated because a budget ran out; the first message is: {}",
                      optimum.ran_out, optimum.evaluations, optimum.ran_out_because)});
-  if (made) warnings.insert(warnings.end(), made->warnings.begin(), made->warnings.end());
+  if (made) append(warnings, made->warnings);
   const ExitCode code = files.write(studies::optimum_json(study, request, optimum, elapsed_s),
                                     studies::optimum_text(study, request, optimum), warnings,
                                     {.complete = optimum.complete,

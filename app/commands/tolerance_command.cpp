@@ -30,7 +30,7 @@ ExitCode run_tolerance(const StudyOptions& options, const CommonOptions& common)
   };
   command.write = [&](studies::SweepResult& result, const ResultFiles& files) {
     found = studies::analyse(result.sweep, request, result.points);
-    result.warnings.insert(result.warnings.end(), found.warnings.begin(), found.warnings.end());
+    append(result.warnings, found.warnings);
     return files.write(studies::tolerance_json(result, request, found),
                        studies::tolerance_text(result.sweep.study(), request, found), {}, {.is_yes = found.is_enough});
   };

@@ -155,7 +155,7 @@ ExitCode run_job(const VerifyOptions& options, const VerificationRequest& reques
   run = timed(common, elapsed_s, [&] { return studies::run_verification(request); });
   if (!options.as_machined.empty()) {
     const studies::AsMachined part = studies::as_machined(run);
-    run.warnings.insert(run.warnings.end(), part.warnings.begin(), part.warnings.end());
+    append(run.warnings, part.warnings);
     design = studies::as_machined_toml(run, part, facets_file.filename().string());
     if (part.planes) facets = studies::facet_planes_text(*part.planes);
   }

@@ -132,6 +132,7 @@ struct TomlSource {
   toml::table root;
   /// Names that toml++ stores as the source of a value: the file name, followed by names for the overrides.
   std::vector<toml::source_path_ptr> paths;
+  std::vector<RenamedInput> renamed;
 
   /// Returns 0 for a value from the file; otherwise the number of its override, from 1.
   std::size_t index_of(const toml::node& node) const {
@@ -145,7 +146,74 @@ struct TomlSource {
   int line(const toml::node& node) const {
     return index_of(node) == 0 ? static_cast<int>(node.source().begin.line) : 0;
   }
+  /// \param path path of the value, for messages
+  InputLocation location(const toml::node& node, std::string path) const {
+    const std::size_t index = index_of(node);
+    return {index == 0 ? file : *paths[index], line(node), std::move(path)};
+  }
 };
+
+namespace {
+
+std::string path_in(std::string_view table, std::string_view name) {
+  return table.empty() ? std::string(name) : fmt::format("{}.{}", table, name);
+}
+
+/// Calls `act` with each table at a path, which may lead through lists of tables, and with its path in messages.
+template <class Act>
+void visit_tables(toml::table& table, std::string_view path, const std::string& shown, const Act& act) {
+  if (path.empty()) return act(table, shown);
+  const std::size_t dot = path.find('.');
+  const std::string_view first = path.substr(0, dot);
+  const std::string_view rest = dot == std::string_view::npos ? std::string_view() : path.substr(dot + 1);
+  toml::node* const node = table.get(first);
+  if (node == nullptr) return;
+  if (toml::table* const inner = node->as_table()) visit_tables(*inner, rest, path_in(shown, first), act);
+  toml::array* const list = node->as_array();
+  for (std::size_t i = 0; list != nullptr && i < list->size(); ++i)
+    if (toml::table* const entry = list->get_as<toml::table>(i))
+      visit_tables(*entry, rest, fmt::format("{}[{}]", path_in(shown, first), i + 1), act);
+}
+
+/// Replaces a former name in one table and records the replacement in `source`.
+void replace(const FormerName& name, toml::table& table, const std::string& shown, TomlSource& source) {
+  if (name.is_word) {
+    for (auto&& [key, node] : table) {
+      toml::value<std::string>* const word = node.as_string();
+      if (word == nullptr || word->get() != name.former || (!name.key.empty() && key.str() != name.key)) continue;
+      source.renamed.push_back({source.location(node, path_in(shown, key.str())), name.former, name.current});
+      word->get() = name.current;
+    }
+    return;
+  }
+  toml::node* const node = table.get(name.former);
+  if (node == nullptr) return;
+  const InputLocation where = source.location(*node, path_in(shown, name.former));
+  if (table.contains(name.current))
+    throw InputError(where, fmt::format("is the former name of {}, which is also given; remove it", name.current));
+  source.renamed.push_back({where, name.former, name.current});
+  node->visit([&](auto& value) { table.insert_or_assign(name.current, std::move(value)); });
+  table.erase(name.former);
+}
+
+void replace_all(std::span<const FormerName> names, toml::table& root, TomlSource& source) {
+  for (const FormerName& name : names)
+    visit_tables(root, name.table, "",
+                 [&](toml::table& table, const std::string& shown) { replace(name, table, shown, source); });
+}
+
+}  // namespace
+
+std::string current_path(std::string_view path, std::span<const FormerName> names) {
+  std::string current(path);
+  for (const FormerName& name : names) {
+    if (name.is_word) continue;
+    const std::string former = path_in(name.table, name.former);
+    if (current == former || current.starts_with(former + "."))
+      current.replace(0, former.size(), path_in(name.table, name.current));
+  }
+  return current;
+}
 
 /// Data of a TomlTable.
 struct TomlTable::Hidden {
@@ -165,8 +233,7 @@ struct TomlTable::Hidden {
     return name.empty() ? printable(key) : name + "." + printable(key);
   }
   InputLocation location(const toml::node& node, std::string_view key) const {
-    const std::size_t index = source->index_of(node);
-    return {index == 0 ? source->file : *source->paths[index], source->line(node), full_name(key)};
+    return source->location(node, full_name(key));
   }
 
   double checked(std::string_view key, const toml::node& node, const NumberRange& range) const {
@@ -414,6 +481,10 @@ TomlTable::Position TomlTable::position(std::string_view key) const {
   return node != nullptr ? hidden_->source->position(*node) : Position{};
 }
 
+const std::vector<RenamedInput>& TomlTable::renamed() const {
+  return hidden_->source->renamed;
+}
+
 std::vector<std::string> TomlTable::sorted_names() const {
   std::vector<std::string> names;
   if (hidden_->table != nullptr)
@@ -448,22 +519,24 @@ std::optional<std::string_view> unset_key(std::string_view override_text) {
 }
 
 TomlTable parse_toml(std::string_view text, const std::string& source_name, std::size_t most_bytes,
-                     std::span<const std::string> overrides) {
+                     std::span<const std::string> overrides, std::span<const FormerName> names) {
   auto source = std::make_shared<TomlSource>();
   source->file = printable(source_name, std::string::npos);
   require_short_text(text, source->file, most_bytes);
   if (text.size() > kShortTomlBytes) check_nesting(text, source->file);
   source->root = parse_file(text, source->file);
   source->paths.push_back(source->root.source().path);
+  replace_all(names, source->root, *source);
   for (const std::string& each : overrides) {
     std::string label = "--set " + printable(each);
     if (const auto key = unset_key(each)) {
-      erase(source->root, *key);
+      erase(source->root, current_path(*key, names));
       source->paths.push_back(std::make_shared<const std::string>(std::move(label)));
       continue;
     }
     toml::table table = parse_override(each, label);
     source->paths.push_back(table.source().path);
+    replace_all(names, table, *source);
     merge(source->root, table);
   }
   auto hidden = std::make_shared<TomlTable::Hidden>();

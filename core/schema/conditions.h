@@ -47,4 +47,10 @@ constexpr Row with(Row row, Access access, When when = {}) {
   return row;
 }
 
+/// Returns a copy of a row whose key had another name in former versions of the format.
+constexpr Row renamed(std::string_view former, Row row) {
+  row.former = former;
+  return row;
+}
+
 }  // namespace retrace::schema

@@ -62,6 +62,14 @@ std::string Document::text_if(std::string_view path) const {
   return text != nullptr ? *text : std::string();
 }
 
+std::string Document::text_as_written(std::string_view path) const {
+  const InputLocation place = where(path);
+  for (const RenamedInput& each : renamed_)
+    if (each.where.file == place.file && each.where.line == place.line && each.where.key == place.key)
+      return each.former;
+  return text(path);
+}
+
 std::size_t Document::index(std::string_view path) const {
   const auto words = std::get<Word>(row(path)->kind).words;
   return static_cast<std::size_t>(std::ranges::find(words, text(path)) - words.begin());

@@ -13,6 +13,7 @@
 
 #include "core/error.h"
 #include "core/schema/schema.h"
+#include "core/toml_file.h"
 
 namespace retrace::schema {
 
@@ -78,6 +79,11 @@ class Document {
   /// Returns the input from which the document was read. It is empty if the document was not read from a text.
   const Origin& origin() const { return origin_; }
   void set_origin(Origin origin) { origin_ = std::move(origin); }
+  /// Returns the former names that the input contains instead of current ones.
+  const std::vector<RenamedInput>& renamed() const { return renamed_; }
+  void set_renamed(std::vector<RenamedInput> renamed) { renamed_ = std::move(renamed); }
+  /// Returns the value of a key that is a text, as it was written in the input: a former word is not replaced.
+  std::string text_as_written(std::string_view path) const;
   /// Returns the position (file, line, key) of a key. If the key was not given, the line is that of its table.
   InputLocation where(std::string_view path) const;
   [[noreturn]] void fail(std::string_view path, std::string_view text) const { throw InputError(where(path), text); }
@@ -121,6 +127,7 @@ class Document {
   InputLocation place_;
   std::filesystem::path folder_;
   Origin origin_;
+  std::vector<RenamedInput> renamed_;
   std::map<std::string, Given, std::less<>> given_;
 };
 

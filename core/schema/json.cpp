@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/overloaded.h"
+#include "core/schema/reader.h"
 #include "core/toml_file.h"
 
 namespace retrace::schema {
@@ -72,10 +73,12 @@ Json to_json(const Document& document) {
 std::string toml_of_json(const Format& format, const Json& json) {
   std::string keys = fmt::format("schema = {}\n", toml_text(format.id));
   std::string tables;
+  const std::vector<FormerName> names = former_names(format);
   if (!json.is_object()) return keys;
   for (const auto& [name, value] : json.items()) {
-    const bool is_known = std::ranges::count(format.root.rows, name, &Row::key) > 0 ||
-                          std::ranges::count(format.root.tables, name, &Table::name) > 0;
+    const std::string current = current_path(name, names);
+    const bool is_known = std::ranges::count(format.root.rows, current, &Row::key) > 0 ||
+                          std::ranges::count(format.root.tables, current, &Table::name) > 0;
     if (is_known && !value.is_object()) keys += fmt::format("{} = {}\n", name, toml_value(value));
     if (!is_known || !value.is_object()) continue;
     tables += fmt::format("[{}]\n", name);

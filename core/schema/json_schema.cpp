@@ -34,11 +34,16 @@ Json texts_json() {
   return {{"type", "array"}, {"items", {{"type", "string"}}}, {"minItems", 1}};
 }
 
+/// Former words are allowed as well.
+Json word_json(const Word& word) {
+  Json words(word.words);
+  for (const FormerWord& each : word.former) words.push_back(each.former);
+  return {{"type", "string"}, {"enum", std::move(words)}};
+}
+
 Json named_json(const ByName& named) {
   const Json each = std::visit(Overloaded{[](const Number& number) { return number_json(number.range); },
-                                          [](const Word& word) {
-                                            return Json{{"type", "string"}, {"enum", word.words}};
-                                          }},
+                                          [](const Word& word) { return word_json(word); }},
                                named.each);
   Json json = {{"type", "object"}, {"minProperties", 1}, {"additionalProperties", each}};
   if (named.names.empty()) return json;
@@ -59,9 +64,7 @@ Json kind_json(const Kind& kind) {
                  [](const Flag&) {
                    return Json{{"type", "boolean"}};
                  },
-                 [](const Word& word) {
-                   return Json{{"type", "string"}, {"enum", word.words}};
-                 },
+                 [](const Word& word) { return word_json(word); },
                  [](const Text&) {
                    return Json{{"type", "string"}};
                  },
@@ -214,6 +217,7 @@ struct Property {
   bool is_required;
   When when;
   bool zero_is_none;
+  std::string_view former;  ///< former name, or empty
 };
 
 Json table_json(const Table& table, Place* around);
@@ -247,16 +251,31 @@ std::vector<Property> properties_of(Place& place) {
       Json forms = Json::array({kind_json(last->kind), kind_json(row.kind)});
       properties.back().json = {{"description", properties.back().json["description"]}, {"anyOf", std::move(forms)}};
     } else {
-      properties.push_back(
-          {row.key, row_json(row), std::holds_alternative<Required>(row.otherwise), row.when, row.zero_is_none});
+      properties.push_back({row.key, row_json(row), std::holds_alternative<Required>(row.otherwise), row.when,
+                            row.zero_is_none, row.former});
     }
     last = &row;
   }
   for (const Table& inner : place.table.tables)
     properties.push_back(
-        {inner.name, table_json(inner, &place), inner.presence == Presence::always, inner.when, false});
+        {inner.name, table_json(inner, &place), inner.presence == Presence::always, inner.when, false, inner.former});
   for (Property& property : properties) add_ties(place, property.name, property.json);
   return properties;
+}
+
+/// Returns the schema of a table that contains a key or table under its name or its former name.
+Json contains_json(std::string_view name, std::string_view former) {
+  Json current = {{"required", {name}}};
+  return former.empty() ? current : Json{{"anyOf", {std::move(current), {{"required", {former}}}}}};
+}
+
+/// Returns the former name of a key or table, or an empty text.
+std::string_view former_name(const Table& table, std::string_view name) {
+  for (const Row& row : table.rows)
+    if (row.key == name) return row.former;
+  for (const Table& inner : table.tables)
+    if (inner.name == name) return inner.former;
+  return {};
 }
 
 /// Adds the conditional schema of a key to the table that contains the keys of its conditions. The key is refused if
@@ -271,7 +290,7 @@ void add_conditions(const std::vector<Property>& all, std::string_view name, Pla
     any.push_back(all_met(outer->table, property.when));
     if (property.zero_is_none) refusal = {{"const", 0}};
     Json then = {{"properties", {{name, property.json}}}};
-    if (property.is_required) then["required"] = {name};
+    if (property.is_required) then.update(contains_json(name, property.former));
     outer->conditions.push_back({{"if", any.back()}, {"then", as_seen_from(*outer, place, std::move(then))}});
   }
   outer->conditions.push_back({{"if", {{"anyOf", std::move(any)}}},
@@ -282,9 +301,14 @@ void add_properties(Json& json, Place& place) {
   const std::vector<Property> properties = properties_of(place);
   for (const Property& property : properties) {
     if (json["properties"].contains(property.name)) continue;
+    if (!property.former.empty())
+      json["properties"][property.former] = {{"description", fmt::format("Former name of {}.", property.name)},
+                                             {"deprecated", true}};
     if (property.when.empty()) {
       json["properties"][property.name] = property.json;
-      if (property.is_required) json["required"].push_back(property.name);
+      if (property.is_required && property.former.empty()) json["required"].push_back(property.name);
+      if (property.is_required && !property.former.empty())
+        place.conditions.push_back(contains_json(property.name, property.former));
     } else {
       json["properties"][property.name] = {{"description", property.json["description"]}};
       add_conditions(properties, property.name, place);
@@ -292,17 +316,17 @@ void add_properties(Json& json, Place& place) {
   }
 }
 
-void add_rule(const OneOf& rule, Json& json) {
+void add_rule(const OneOf& rule, const Table& table, Json& json) {
   Json one_of = Json::array();
-  for (const std::string_view key : rule.keys) one_of.push_back({{"required", {key}}});
+  for (const std::string_view key : rule.keys) one_of.push_back(contains_json(key, former_name(table, key)));
   json["oneOf"] = std::move(one_of);
 }
 /// Adds a rule about a whole table to the description of this table. Rules about single keys are added to the
 /// descriptions of these keys instead.
-void add_rule(const Check& rule, Json& json) {
+void add_rule(const Check& rule, const Table&, Json& json) {
   if (rule.keys.empty()) add_meaning(rule.meaning, json);
 }
-void add_rule(const Precedence&, Json&) {}
+void add_rule(const Precedence&, const Table&, Json&) {}
 
 Json table_json(const Table& table, Place* around) {
   Place place = {table, around};
@@ -312,7 +336,7 @@ Json table_json(const Table& table, Place* around) {
                {"required", Json::array()},
                {"properties", Json::object()}};
   add_properties(json, place);
-  for (const Rule& rule : table.rules) std::visit([&](const auto& each) { add_rule(each, json); }, rule);
+  for (const Rule& rule : table.rules) std::visit([&](const auto& each) { add_rule(each, table, json); }, rule);
   if (!place.conditions.empty()) json["allOf"] = std::move(place.conditions);
   if (table.presence != Presence::list) return json;
   return {{"description", json["description"]}, {"type", "array"}, {"items", std::move(json)}};

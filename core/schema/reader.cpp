@@ -386,11 +386,31 @@ bool has_key_or_table(const Table& root, std::string_view path) {
   return table_at(*table, name) != nullptr || std::ranges::count(table->rows, name, &Row::key) > 0;
 }
 
+void add_former_words(const Word& word, const std::string& table, std::string_view key,
+                      std::vector<FormerName>& names) {
+  for (const FormerWord& each : word.former)
+    names.push_back({table, std::string(each.former), std::string(each.current), true, std::string(key)});
+}
+
+void add_former_names(const Table& table, const std::string& path, std::vector<FormerName>& names) {
+  for (const Row& row : table.rows) {
+    if (!row.former.empty()) names.push_back({path, std::string(row.former), std::string(row.key)});
+    if (const Word* const word = std::get_if<Word>(&row.kind)) add_former_words(*word, path, row.key, names);
+    if (const ByName* const named = std::get_if<ByName>(&row.kind))
+      if (const Word* const word = std::get_if<Word>(&named->each))
+        add_former_words(*word, path_in(path, row.key), "", names);
+  }
+  for (const Table& inner : table.tables) {
+    if (!inner.former.empty()) names.push_back({path, std::string(inner.former), std::string(inner.name)});
+    add_former_names(inner, path_in(path, inner.name), names);
+  }
+}
+
 /// Checks overrides of the form KEY=, which remove a key. KEY must be a key of the format, but need not be in the file.
 /// \throw InputError for the first override with an unknown key
-void check_unset_keys(const Format& format, std::span<const std::string> overrides) {
+void check_unset_keys(const Format& format, std::span<const std::string> overrides, std::span<const FormerName> names) {
   for (const std::string& each : overrides)
-    if (const auto key = unset_key(each); key && !has_key_or_table(format.root, *key))
+    if (const auto key = unset_key(each); key && !has_key_or_table(format.root, current_path(*key, names)))
       throw InputError({"--set " + printable(each), 0, ""}, complaint_about_key(format, *key));
 }
 
@@ -405,12 +425,14 @@ TomlTable checked_root(const Format& format, TomlTable root) {
 
 Document read_document(const Format& format, std::string_view text, const std::string& source_name,
                        std::size_t most_bytes, std::span<const std::string> overrides) {
-  check_unset_keys(format, overrides);
-  const TomlTable root = checked_root(format, parse_toml(text, source_name, most_bytes, overrides));
+  const std::vector<FormerName> names = former_names(format);
+  check_unset_keys(format, overrides, names);
+  const TomlTable root = checked_root(format, parse_toml(text, source_name, most_bytes, overrides, names));
   Document document(format.root, root.where(), std::filesystem::path(source_name).parent_path());
   Names(document).take(format.root, root, "");
   Values(document).read(format.root, root, "");
   document.set_origin({std::string(text), {overrides.begin(), overrides.end()}});
+  document.set_renamed(root.renamed());
   return document;
 }
 
@@ -424,7 +446,7 @@ Document unchecked_names(const Format& format, std::string_view text, const std:
                          std::size_t most_bytes, std::span<const std::string> overrides) {
   Document document(format.root, {source_name, 0, ""}, std::filesystem::path(source_name).parent_path());
   try {
-    Names(document).take(format.root, parse_toml(text, source_name, most_bytes, overrides), "");
+    Names(document).take(format.root, parse_toml(text, source_name, most_bytes, overrides, former_names(format)), "");
   } catch (const Error&) {  // the error is ignored here, because read_document() reports it
   }
   return document;
@@ -510,6 +532,27 @@ Warnings superseded_keys(const Document& document) {
   Warnings warnings;
   add_superseded(document, document.table(), "", warnings);
   return warnings;
+}
+
+Warnings renamed_keys(const Document& document) {
+  Warnings warnings;
+  for (const RenamedInput& each : document.renamed())
+    warnings.push_back(
+        {"renamed_key", InputError(each.where, fmt::format("{} is a former name: write {}", in_quotes(each.former),
+                                                           in_quotes(each.current)))
+                            .what()});
+  return warnings;
+}
+
+std::vector<FormerName> former_names(const Format& format) {
+  std::vector<FormerName> names;
+  add_former_names(format.root, "", names);
+  // The rows of one key have the same former name, so the list may contain equal entries, which are next to each other.
+  const auto repeated = std::ranges::unique(names, [](const FormerName& a, const FormerName& b) {
+    return a.table == b.table && a.former == b.former && a.key == b.key;
+  });
+  names.erase(repeated.begin(), repeated.end());
+  return names;
 }
 
 Document read_object(const Format& format, std::string_view text, const std::string& source_name, void* object) {

@@ -36,6 +36,11 @@ Document unchecked_names(const Format& format, std::string_view text, const std:
 /// Returns a warning for each key that has no effect because another key takes precedence over it. Keys with their
 /// default value cause no warning.
 Warnings superseded_keys(const Document& document);
+/// Returns a warning for each former name in the input of a document. The warning contains the current name.
+Warnings renamed_keys(const Document& document);
+
+/// Returns the former names of all tables, keys and words of a format, in the order that parse_toml() requires.
+std::vector<FormerName> former_names(const Format& format);
 
 /// Reads a document and stores its values in an object.
 /// \param object object of the root table of the format

@@ -47,9 +47,15 @@ struct Whole {
   NumberRange range;
 };
 struct Flag {};
+/// Word that was allowed in former versions of a format, and the word that replaces it.
+struct FormerWord {
+  std::string_view former;
+  std::string_view current;
+};
 struct Word {
   std::span<const std::string_view> words;
   std::string_view or_else = {};  ///< text in messages for other allowed values: " or a list of four numbers"
+  std::span<const FormerWord> former = {};
 };
 struct Text {
   std::string_view what = "a string";  ///< text for the allowed values in messages
@@ -165,6 +171,8 @@ struct Row {
   Access access;
   When when;
   bool zero_is_none = false;  ///< true if the value 0 is allowed, and ignored, where the conditions do not hold
+  /// Name of the key in former versions of the format, or empty. All rows of a key have the same former name.
+  std::string_view former = {};
 };
 inline constexpr bool kZeroIsNone = true;
 
@@ -234,7 +242,8 @@ struct Table {
   std::string_view shape = {};          ///< text for the required type in messages; empty: "a table" or "tables"
   std::string_view otherwise = "none";  ///< text for the default of an optional table in the documentation
   When when = {};
-  bool is_open = false;  ///< true if unknown keys are allowed, because another reader checks them
+  bool is_open = false;          ///< true if unknown keys are allowed, because another reader checks them
+  std::string_view former = {};  ///< name of the table in former versions of the format, or empty
 };
 
 struct Format {

@@ -14,6 +14,7 @@
 
 #include "core/error.h"
 #include "core/schema/document.h"
+#include "core/warning.h"
 #include "geometry/elements/part_spec.h"
 #include "geometry/vec.h"
 
@@ -109,6 +110,7 @@ struct Process {
   double plough_sa_nm = 468.0;
   double roughing_plunge_sa_nm = 115.0;
   double finishing_plunge_sa_nm = 48.9;
+  Warnings warnings;  ///< warnings about the file of the process
 };
 
 /// Zone of a job: a group of equal cube corners at given positions. If an optional value is empty, the value of the
@@ -144,6 +146,7 @@ struct Job {
   /// Remarks that were added when the job was made, for example about omitted elements.
   std::vector<std::string> notes;
   std::shared_ptr<const schema::Document> document;  ///< content of the job file; null if there is no file
+  Warnings warnings;                                 ///< warnings about the job file and the file of its process
 
   /// Returns the location of a key in the job file. If the key is missing, returns the location of its table.
   InputLocation where(std::string_view key) const;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/angle.h"
+#include "core/warning.h"
 #include "fabrication/machine/control.h"
 #include "geometry/vec.h"
 
@@ -134,6 +135,7 @@ struct Machine {
   Increments increments;  ///< increments to which planned positions are rounded
   /// Letters of the rotary axes that take the shortest path to a programmed angle in the dialect of the programs.
   std::string shortest_axes;
+  Warnings warnings;  ///< warnings about the file of the machine
 
   double first_z_mm() const { return std::min(safe_z_mm.value, z.limits_mm.value.high); }
 

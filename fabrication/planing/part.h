@@ -71,6 +71,7 @@ struct PlanedPart {
   double tolerance_mm = 0.0;  ///< tolerance of the depth (mill) or of the distance from the profile (lathe)
   std::optional<PlaningMill> mill;
   std::optional<PlaningLathe> lathe;  ///< exactly one of mill and lathe is given
+  Warnings warnings;                  ///< warnings about the file of the part
 };
 
 }  // namespace retrace::fabrication

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "core/error.h"
+#include "core/text.h"
 #include "fabrication/read/nc_program.h"
 
 namespace retrace::fabrication {

@@ -8,6 +8,7 @@ import inspect
 import math
 import numbers
 import os
+import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, ParamSpec, TypeVar, Union
 
@@ -165,6 +166,13 @@ def thread_count(value: object) -> int:
     return 0 if value is None else whole("threads", value, 1, 4096)
 
 
+def former_keywords() -> Mapping[str, str]:
+    """Returns the keywords of former versions and the keywords that replace them."""
+    from ._fields import FORMER  # imported here, because _fields imports this module
+
+    return FORMER
+
+
 def checked(meanings: Mapping[str, str]) -> Callable[[Callable[_P, _R]], Callable[_P, _R]]:
     """Decorates a function with keywords.
 
@@ -179,8 +187,17 @@ def checked(meanings: Mapping[str, str]) -> Callable[[Callable[_P, _R]], Callabl
 
         @functools.wraps(function)
         def call(*args: _P.args, **kwargs: _P.kwargs) -> _R:
-            for keyword in kwargs:
+            for keyword in list(kwargs):
                 if keyword not in keywords:
+                    current = former_keywords().get(keyword)
+                    if current in keywords and current not in kwargs:
+                        warnings.warn(
+                            f"{function.__name__}(): {keyword} is the former name of {current}",
+                            FutureWarning,
+                            stacklevel=2,
+                        )
+                        kwargs[current] = kwargs.pop(keyword)
+                        continue
                     raise TypeError(
                         f"{function.__name__}() has no keyword {keyword}"
                         f"{nearest(keyword, keywords)}"

@@ -34,6 +34,8 @@ VerificationRun run_verification(const VerificationRequest& request, const Cance
   run.request = request;
   run.job = read_job(request.job, request.texts);
   run.machine = load_machine(run.job.machine, run.job.where("machine"));
+  run.warnings = run.job.warnings;
+  append(run.warnings, run.machine.warnings);
   if (!request.standing.empty()) run.programs = programs_before(request.standing, run.job, run.machine);
   run.standing = run.programs.size();
   for (NcProgram& program :

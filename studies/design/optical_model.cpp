@@ -415,7 +415,7 @@ struct OpticsOfDesign::Hidden {
 
 OpticsOfDesign::OpticsOfDesign(const Design& design, const materials::MaterialLibrary& library, Warnings& warnings) {
   materials::Material material = material_of(design, library);
-  warnings.insert(warnings.end(), material.warnings.begin(), material.warnings.end());
+  append(warnings, material.warnings);
   if (!design.substance.refractive_index) require_temperature(design, material);
   std::optional<surface_models::HeightMap> map = facet_map(design, warnings);
   hidden_ = std::make_unique<const Hidden>(
@@ -459,8 +459,7 @@ OpticalModel make_light_model(const Design& design, const materials::MaterialLib
   }
   add_coating_warnings(design, library, model);
   add_texture_warnings(design, model);
-  const Warnings superseded = design.warnings();
-  model.warnings.insert(model.warnings.end(), superseded.begin(), superseded.end());
+  append(model.warnings, design.warnings());
   return model;
 }
 

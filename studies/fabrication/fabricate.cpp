@@ -56,6 +56,8 @@ FabricationResult fabricate(const std::filesystem::path& job, const FabricationR
   if (request.job_text) texts[job.string()] = *request.job_text;
   result.job = fabrication::read_job(job, texts);
   result.machine = fabrication::load_machine(result.job.machine, result.job.where("machine"));
+  result.warnings = result.job.warnings;
+  append(result.warnings, result.machine.warnings);
   result.machine.increments = fabrication::word_increments(result.dialect, result.machine.control);
   result.machine.shortest_axes = fabrication::shortest_axes(result.dialect, result.machine.control);
   result.plan = fabrication::make_plan(result.job, result.machine, plan_options(request));

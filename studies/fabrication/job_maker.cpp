@@ -324,6 +324,7 @@ MadeJob make_job(const Design& design, const JobRequest& request) {
   job.tool = tool_of(job, request);
   job.machine = machine_of(request);
   job.process = process_of(request);
+  append(made.warnings, job.process.warnings);
   if (design.mask())
     job.array.pattern = geometry::mask_pattern(design.mask()->file, design.mask()->threshold,
                                                geometry::prism_block(job.array, fabrication::prism_of(job)).counts,

@@ -25,6 +25,7 @@ PlaningResult plane(const std::string& part_file, const std::string& dialect) {
   PlaningResult result;
   const std::string ending(ending_of(dialect));  // refuses unknown dialects before the planning begins
   result.part = read_planed_part(part_file);
+  result.warnings = result.part.warnings;
   check_spindle(result.part, dialect);
   result.dialect = dialect;
   try {

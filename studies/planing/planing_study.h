@@ -35,7 +35,7 @@ struct PlaningVerification {
   fabrication::PlaningCheck check;
 
   bool passes() const { return check.passes(); }
-  Warnings part_warnings() const { return {}; }
+  const Warnings& part_warnings() const { return part.warnings; }
 };
 
 /// Checks programs for a part.

@@ -197,8 +197,7 @@ RreResult RreStudy::begun() const {
   result.engine_requested = raytrace::engine_name(request.engine);
   result.seed = request.seed;
   for (const OpticalModel& model : models) result.light.push_back(model.spectral);
-  for (const OpticalModel& model : models)
-    result.warnings.insert(result.warnings.end(), model.warnings.begin(), model.warnings.end());
+  for (const OpticalModel& model : models) append(result.warnings, model.warnings);
   return result;
 }
 

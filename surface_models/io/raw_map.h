@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "core/message_text.h"
+#include "core/text.h"
 #include "core/warning.h"
 #include "surface_models/io/height_map_reader.h"
 

@@ -549,6 +549,7 @@ void check_job(const Job& job, const InputLocation& where) {
 Job parse_job(std::string_view text, const std::string& source_name) {
   Job job;
   job.document = std::make_shared<const Document>(read_object(kJobFormat, text, source_name, &job));
+  job.warnings = schema::renamed_keys(*job.document);
   job.source = source_name;
   return job;
 }

@@ -146,7 +146,7 @@ schema::Table process_table(std::string_view name, schema::Child child) {
 
 Process parse_process(std::string_view text, const std::string& source_name) {
   Process process;
-  schema::read_object(kFormat, text, source_name, &process);
+  process.warnings = schema::renamed_keys(schema::read_object(kFormat, text, source_name, &process));
   return process;
 }
 

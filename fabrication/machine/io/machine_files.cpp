@@ -482,7 +482,7 @@ const schema::Format& machine_format() {
 
 Machine parse_machine(std::string_view text, const std::string& source_name) {
   Machine machine;
-  schema::read_object(kFormat, text, source_name, &machine);
+  machine.warnings = schema::renamed_keys(schema::read_object(kFormat, text, source_name, &machine));
   return machine;
 }
 

@@ -240,7 +240,9 @@ const Format& planed_part_format() {
 PlanedPart parse_planed_part(std::string_view text, const std::string& source_name) {
   const Document file = read_document(kFormat, text, source_name);
   check(file, kFormat.root, "", &file);
-  return part_of(file);
+  PlanedPart part = part_of(file);
+  part.warnings = schema::renamed_keys(file);
+  return part;
 }
 
 PlanedPart read_planed_part(const std::filesystem::path& file) {

@@ -139,7 +139,8 @@ TurnedPart parse_turned_part(std::string_view text, const std::string& source_na
                   {}};
   geometry::check_surface(part.surface, reach_mm(part.path, part.tool), surface_where);
   settle_skew(part, file.where("tool.clearance_deg"));
-  part.warnings = tool_warnings(part.tool);
+  part.warnings = schema::renamed_keys(file);
+  append(part.warnings, tool_warnings(part.tool));
   return part;
 }
 

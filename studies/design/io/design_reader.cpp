@@ -303,9 +303,9 @@ Warnings lengths_without_heights(const Document& document) {
 
 Warnings Design::warnings() const {
   if (!document) return {};
-  Warnings warnings = schema::superseded_keys(*document);
-  const Warnings more = lengths_without_heights(*document);
-  warnings.insert(warnings.end(), more.begin(), more.end());
+  Warnings warnings = schema::renamed_keys(*document);
+  append(warnings, schema::superseded_keys(*document));
+  append(warnings, lengths_without_heights(*document));
   return warnings;
 }
 

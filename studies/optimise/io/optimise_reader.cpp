@@ -8,6 +8,7 @@
 #include "core/schema/reader.h"
 #include "studies/design/io/design_format.h"
 #include "studies/quantity/io/constraint_reader.h"
+#include "studies/quantity/io/point_texts.h"
 
 namespace retrace::studies {
 namespace {
@@ -45,7 +46,8 @@ std::vector<std::string> read_band_keys(const Document& document, const Study& s
   constexpr std::string_view list = "optimize.bands_of";
   if (!document.has(list)) return {};
   std::vector<std::string> keys = document.texts(list);
-  for (const std::string& key : keys) {
+  for (std::string& key : keys) {
+    key = current_key(key);
     const bool is_varied = std::ranges::any_of(
         study.parameters, [&](const Parameter& parameter) { return std::ranges::count(parameter.keys, key) > 0; });
     if (!is_varied && !schema::is_number_key(design_format(), key))

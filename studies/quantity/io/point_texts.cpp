@@ -6,6 +6,10 @@
 #include <array>
 #include <set>
 
+#include "core/schema/reader.h"
+#include "studies/design/io/design_format.h"
+#include "studies/quantity/io/study_format.h"
+
 namespace retrace::studies {
 namespace {
 
@@ -45,6 +49,10 @@ std::string key_of(const std::string& override_text) {
   std::string key = override_text.substr(0, override_text.find('='));
   std::erase_if(key, [](char c) { return c == ' ' || c == '\t'; });
   return key;
+}
+
+std::string current_key(std::string_view key) {
+  return current_path(key, schema::former_names(is_setting(key) ? study_format() : design_format()));
 }
 
 std::vector<std::string> overrides_for(std::span<const std::string> overrides, bool study) {

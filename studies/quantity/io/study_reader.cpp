@@ -166,9 +166,11 @@ Parameter read_parameter(const Document& document, const std::string& at) {
   Parameter parameter;
   parameter.location = document.where(at);
   parameter.keys = document.texts(at + ".key");
-  for (const std::string& key : parameter.keys)
-    if (const std::string text = complaint_about_parameter(key); !text.empty()) document.fail(at + ".key", text);
   parameter.name = document.has(at + ".name") ? document.text(at + ".name") : parameter.keys.front();
+  for (std::string& key : parameter.keys) {
+    key = current_key(key);
+    if (const std::string text = complaint_about_parameter(key); !text.empty()) document.fail(at + ".key", text);
+  }
   if (document.has(at + ".distribution")) {
     parameter.distribution = read_distribution(document, at);
   } else if (document.has(at + ".values")) {
@@ -225,7 +227,7 @@ void check_keys_once(const Study& study) {
       if (!taken.insert(key).second)
         throw InputError(parameter.location, fmt::format("{} has a parameter already", in_quotes(key)));
   for (const std::string& text : study.overrides)
-    if (taken.contains(key_of(text)))
+    if (taken.contains(current_key(key_of(text))))
       throw InputError({"--set " + printable(text), 0, ""}, "the study varies this key");
 }
 
@@ -247,17 +249,39 @@ std::string fingerprints(const std::vector<NamedFile>& files) {
   return parts;
 }
 
+/// Returns replacements of names after which texts with former and with current names are equal: both then contain the
+/// names of the first version. Stores of former versions contain such texts.
+std::vector<FormerName> names_of_stores(const schema::Format& format) {
+  std::vector<FormerName> names = schema::former_names(format);
+  for (std::size_t i = names.size(); i-- > 0;) {
+    names.push_back(names[i]);
+    std::swap(names.back().former, names.back().current);
+  }
+  return names;
+}
+
+/// Returns the text of an override for stores.
+std::string override_of_stores(const std::string& text) {
+  const std::string key = key_of(text);
+  const std::string stored = current_path(key, names_of_stores(is_setting(key) ? study_format() : design_format()));
+  return stored == key ? text : stored + text.substr(text.find('='));
+}
+
 std::vector<std::pair<std::string, std::string>> parts_of(const Study& study, const std::vector<NamedFile>& named) {
   std::vector<std::pair<std::string, std::string>> parts;
   const Document::Origin& origin = study.document->origin();
-  const TomlTable as_given = parse_toml(origin.text, study.source, kMostDesignBytes, origin.overrides);
+  const TomlTable as_given =
+      parse_toml(origin.text, study.source, kMostDesignBytes, origin.overrides, names_of_stores(study_format()));
   for (const std::string_view key : kParts) parts.emplace_back(key, as_given.as_json(key));
   std::string designs;
   for (const auto& [file, text] : study.design_texts)
-    designs += fs::path(file).filename().string() + " " + parse_toml(text, file, kMostDesignBytes).as_json() + "\n";
+    designs += fs::path(file).filename().string() + " " +
+               parse_toml(text, file, kMostDesignBytes, {}, names_of_stores(design_format())).as_json() + "\n";
   parts.emplace_back("the design", designs);
   parts.emplace_back("a file of the design", fingerprints(named));
-  parts.emplace_back("--set", fmt::format("{}", fmt::join(study.overrides, "\n")));
+  std::vector<std::string> overrides;
+  for (const std::string& text : study.overrides) overrides.push_back(override_of_stores(text));
+  parts.emplace_back("--set", fmt::format("{}", fmt::join(overrides, "\n")));
   parts.emplace_back("--seed", fmt::format("{}", study.seed));
   return parts;
 }
@@ -336,10 +360,13 @@ Candidate make_candidate(const Study& study, std::span<const ParameterValue> val
   return {varied, analysis_of(document, study.seed), machining};
 }
 
-Warnings keys_without_effect(const Study& study) try {
-  return make_candidate(study, some_values(study)).design().warnings();
-} catch (const InputError&) {
-  return {};
+Warnings keys_without_effect(const Study& study) {
+  Warnings warnings = schema::renamed_keys(*study.document);
+  try {
+    append(warnings, make_candidate(study, some_values(study)).design().warnings());
+  } catch (const InputError&) {  // the study reports it when it computes this point
+  }
+  return warnings;
 }
 
 }  // namespace retrace::studies
