@@ -19,12 +19,11 @@ std::vector<std::string> notes_of(const OpenedDesign& opened) {
   const studies::OpticalModel* const model = opened.model();
   if (model == nullptr || !opened.why_not().empty()) return notes;
   if (!model->part.period_mm && model->part.elements_full > kManyElements)
-    notes.push_back(fmt::format("every one of its {} elements is traced: an endless array is quicker by far",
-                                model->part.elements_full));
+    notes.push_back(
+        fmt::format("all of its {} elements are traced: an infinite array is much faster", model->part.elements_full));
   if (model->spectral.size() > 1)
     notes.push_back(
-        fmt::format("its light is {} wavelengths, each of which is traced; footprint and far field are of "
-                    "{} nm",
+        fmt::format("its light has {} wavelengths, which are all traced; footprint and far field are computed at {} nm",
                     model->spectral.size(), fixed(model->optics.wavelength_nm, 1)));
   return notes;
 }

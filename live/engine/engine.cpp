@@ -111,7 +111,7 @@ Json Engine::answer(const Json& request) {
   if (ask == "path") return path_json(design_of(request), request);
   if (ask == "stories") return stories_json(design_of(request), request);
   if (ask == "photometry") return photometry_json(design_of(request), request, limit);
-  throw InputError({"", 0, "ask"}, "is none of those of live/README.md, got " + ask);
+  throw InputError({"", 0, "ask"}, "must be a request of live/README.md, got " + ask);
 }
 
 Json Engine::about() const {

@@ -189,7 +189,7 @@ Json by_wavelength_json(const RrePoint& point) {
 
 [[noreturn]] void fail_on_time() {
   throw BudgetError(
-      "this direction takes longer than it was given: ask for less exactness, or use the program retrace");
+      "the computation of this direction exceeds its time limit: choose a lower accuracy, or use the program retrace");
 }
 
 }  // namespace

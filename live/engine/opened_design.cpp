@@ -12,7 +12,7 @@ OpenedDesign::OpenedDesign(std::string toml, const std::string& source, const ma
   if (!design_.balls()) model_ = studies::make_model(design_, library_);
   const raytrace::EngineFacts facts = studies::engine_facts(design_, model_ ? &model_->optics : nullptr);
   if (const auto obstacle = raytrace::why_not(raytrace::Engine::exact, facts))
-    why_not_ = raytrace::traced_by(*obstacle, "Monte Carlo, which the live page has not");
+    why_not_ = raytrace::traced_by(*obstacle, "Monte Carlo, which the live page does not support");
   else
     tracer_.emplace(model_->part, raytrace::BeamTracer::Elements::equal_at_once);
 }

@@ -63,7 +63,8 @@ Json photometry_json(const OpenedDesign& opened, const Json& request, TimeLimit&
   settings.colour = false;
   const studies::PhotometryResult result =
       studies::PhotometryStudy(opened.design(), std::move(settings)).run(&limit, limit.cancel());
-  if (!result.complete) throw BudgetError("these test points take longer than they were given: use retrace photometry");
+  if (!result.complete)
+    throw BudgetError("the computation of these test points exceeds its time limit: use retrace photometry");
   Json points = Json::array();
   for (const PhotometricPoint& point : result.points) points.push_back(point_json(point));
   return {{"verdict", studies::verdict_name(result.verdict)},

@@ -23,7 +23,7 @@ Type get(const Json& request, const char* key) {
   try {
     return found->template get<Type>();
   } catch (const Json::exception&) {
-    throw InputError({"", 0, key}, "is of another type than the request needs");
+    throw InputError({"", 0, key}, "has the wrong type for the request");
   }
 }
 template <class Type>
@@ -53,12 +53,12 @@ Type fields_of(const Json& request) {
 /// \throw InputError unless the value is between 0 and 1
 inline double share_of(const Json& request, const char* key, double otherwise) {
   const double value = get<double>(request, key, otherwise);
-  if (!(value > 0.0 && value < 1.0)) throw InputError({"", 0, key}, "must lie between 0 and 1");
+  if (!(value > 0.0 && value < 1.0)) throw InputError({"", 0, key}, "must be between 0 and 1");
   return value;
 }
 
 inline studies::SceneLight checked(double incidence_deg, double azimuth_deg) {
-  if (!(std::abs(incidence_deg) < 90.0)) throw InputError({"", 0, "incidence_deg"}, "must lie between -90 and 90");
+  if (!(std::abs(incidence_deg) < 90.0)) throw InputError({"", 0, "incidence_deg"}, "must be between -90 and 90");
   if (!std::isfinite(azimuth_deg)) throw InputError({"", 0, "azimuth_deg"}, "must be finite");
   return {incidence_deg, azimuth_deg};
 }

@@ -38,9 +38,9 @@ def _text(value: str) -> str:
 
 def toml_value(name: str, value: object, depth: int = 0) -> str:
     """Returns a value as TOML. name: name of the value for messages."""
-    allowed = "a number, a text, True, False, or a list or dict of such"
+    allowed = "a number, a text, True, False, or a list or dict of these"
     if depth > _DEEPEST:
-        raise InputError(f"lists and dicts may lie {_DEEPEST} deep in each other", key=name)
+        raise InputError(f"lists and dicts may be nested at most {_DEEPEST} deep", key=name)
     if isinstance(value, (np.generic, np.ndarray)):
         value = value.tolist()
     if isinstance(value, bool):

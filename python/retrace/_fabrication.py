@@ -179,14 +179,16 @@ def _programs(value: object) -> tuple[list[str], dict[str, str]]:
         for name, text in value.items():
             if not isinstance(name, str) or not isinstance(text, str):
                 raise InputError(
-                    f"must be texts by their names, got {shown(value)}", key="programs"
+                    f"must be a dict of program texts by name, got {shown(value)}", key="programs"
                 )
         return list(value), dict(value)
     if isinstance(value, str) or hasattr(value, "__fspath__"):
         return [path("programs", value)], {}
     if isinstance(value, (list, tuple)):
         return [path("programs", one) for one in value], {}
-    raise refuse("programs", "what fabricate() gave, texts by names, or names of files", value)
+    raise refuse(
+        "programs", "the result of fabricate(), a dict of texts by name, or names of files", value
+    )
 
 
 @described(FIELDS["verification"])

@@ -53,7 +53,7 @@ def teller(progress: Progress, doing: str) -> Iterator[Callable[[float], object]
             yield tell
     else:
         raise InputError(
-            "must be None, True or a function of the share that is done, got "
+            "must be None, True or a function of the fraction that is done, got "
             f"a {type(progress).__name__}",
             key="progress",
         )

@@ -122,7 +122,9 @@ def trace(
     if wavelength_nm is not None:
         waves = np.asarray(wavelength_nm)
         if waves.dtype.kind not in "iuf" or waves.ndim > 1 or waves.size not in (1, len(places)):
-            raise refuse("wavelength_nm", f"a number, or {len(places)} of them", wavelength_nm)
+            raise refuse(
+                "wavelength_nm", f"a number, or a list of {len(places)} numbers", wavelength_nm
+            )
         waves = np.ascontiguousarray(waves, dtype=np.float64).reshape(-1)
     request = _core.TraceRequest()  # generated: sets the fields of the request trace
     light = _stokes(stokes, len(places))

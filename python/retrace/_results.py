@@ -213,7 +213,9 @@ class Drawing:
 
     def _made(self) -> Any:
         if self._source is None:
-            raise Error("a drawing that was not made before its result was pickled is gone")
+            raise Error(
+                "this drawing is not available: it was not drawn before its result was pickled"
+            )
         return self._source
 
     @property
@@ -338,8 +340,8 @@ class Result:
         # Before version 1.0, results of different minor versions may be incompatible.
         if made_by.split(".")[:2] != version().split(".")[:2]:
             raise InputError(
-                f"was pickled by retrace {made_by}, must be of {version()}; "
-                "its document (save()) can be read by any",
+                f"was pickled by retrace {made_by}, but this is retrace {version()}; "
+                "the document that save() writes can be read by every version",
                 key=type(self).__name__,
             )
         self.__dict__.update(state)
@@ -359,7 +361,7 @@ class Result:
     def to_pandas(self) -> Any:
         """Returns a pandas.DataFrame with one row per point. attrs contains seed, version, etc."""
         if not self._rows:
-            raise Error(f"{type(self).__name__} is no list of points")
+            raise Error(f"{type(self).__name__} has no list of points")
         frame = getattr(self, self._rows).to_pandas()
         frame.attrs.update(self._attributes())
         return frame

@@ -20,7 +20,7 @@ def number_of(name: str, value: object) -> float:
     """Checks the value that a function of a result returned."""
     array = np.asarray(value)
     if array.size != 1 or array.dtype.kind not in "iufb":
-        raise InputError(f"must return one number, has returned {shown(value)}", key=name)
+        raise InputError(f"must return one number, but returned {shown(value)}", key=name)
     return float(array.reshape(-1)[0])
 
 
@@ -44,7 +44,7 @@ class FoundOptimum:
     def __repr__(self) -> str:
         values = ", ".join(f"{key} {value:.6g}" for key, value in self.values.items())
         looked = len(self.points.rows)
-        return f"<FoundOptimum: {self.objective:.6g} at {values}, {looked} designs looked at>"
+        return f"<FoundOptimum: {self.objective:.6g} at {values}, {looked} designs evaluated>"
 
     def _repr_html_(self) -> str:
         return html_table(self.points.rows)
@@ -94,7 +94,7 @@ def search(
         low_high = number_list("parameters", interval)
         if len(low_high) != 2 or not low_high[0] < low_high[1]:
             raise InputError(
-                f"{key}: must be a pair (least, most), got {shown(interval)}", key="parameters"
+                f"{key}: must be a pair (minimum, maximum), got {shown(interval)}", key="parameters"
             )
         ends[key] = (low_high[0], low_high[1])
     rows: list[dict[str, Any]] = []
@@ -146,7 +146,7 @@ def search(
     good = [row for row in rows if math.isfinite(row.get("objective", math.nan))]
     if not good:
         raise InputError(
-            f"no design could be computed, the first of {len(rows)}: "
+            f"none of {len(rows)} designs could be computed, the first error: "
             f"{rows[0].get('reason', 'no number')}",
             key="parameters",
         )

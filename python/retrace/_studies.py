@@ -128,7 +128,7 @@ class Optimum(Result):
         """The original design with the keys of the best design."""
         if self.design is None or not self.is_feasible:
             raise InputError(
-                "there is one only where a design was given, and a feasible one was found",
+                "exists only if the study has a design and a feasible design was found",
                 key="best_design",
             )
         best = self.document["best"]
@@ -194,7 +194,7 @@ def _constraints(constraints: object) -> list[dict[str, Any]]:
     for name, ends in constraints.items():
         if not isinstance(ends, (tuple, list)) or len(ends) != 2:
             raise InputError(
-                f"{name}: must be a pair (least, most) with None for none, got {shown(ends)}",
+                f"{name}: must be (minimum, maximum) with None for no limit, got {shown(ends)}",
                 key="constraints",
             )
         limits = {
@@ -246,7 +246,7 @@ def _request(
     changes: list[str], seed: int, store: PathLike | None, resume: bool, overwrite: bool
 ) -> Any:
     if flag("resume", resume) and flag("overwrite", overwrite):
-        raise InputError("not together with overwrite", key="resume")
+        raise InputError("not allowed together with overwrite", key="resume")
     request = given(_core.StudyRequest(), FIELDS["study"], seed=seed)
     request.overrides = changes
     if store is not None:
@@ -273,7 +273,9 @@ def _grid(parameters: object) -> list[dict[str, Any]]:
     for key, values in parameters.items():
         row = _parameter(key, values)
         if "values" not in row:
-            raise InputError(f"{key}: functions take lists of values", key="parameters")
+            raise InputError(
+                f"{key}: must be a list of values if quantities are functions", key="parameters"
+            )
         lists.append([(key, value) for value in row["values"]])
     return [dict(point) for point in itertools.product(*lists)]
 
@@ -357,10 +359,10 @@ def sweep(
             return SweepResult(_core.sweep(read, request, tell, count))
     design = design_of(study)
     if changes is not None:
-        raise InputError("are for study files; a design has replace()", key="changes")
+        raise InputError("are only for study files; use replace() of the design", key="changes")
     tables, functions = _split(quantities)
     if functions and store is not None:
-        raise InputError("keeps quantities of retrace, not functions", key="store")
+        raise InputError("can contain only quantities of retrace, not functions", key="store")
     if not callable(of):
         raise refuse("of", "a function of a design", of)
     assert parameters is not None
@@ -385,7 +387,9 @@ def sweep(
     taken = {*document["parameters"], *document["quantities"]}
     for name in functions:
         if name in taken:
-            raise InputError(f"{name} is taken: give the function another name", key="quantities")
+            raise InputError(
+                f"{name} is already used: give the function another name", key="quantities"
+            )
     with teller(progress, "sweeping") as tell:
         _with_functions(design, document["points"], document["parameters"], functions, of, tell)
     document["quantities"] += list(functions)

@@ -51,7 +51,7 @@ class MetrologyResult(Result):
 
 def _heights(value: object) -> Array:
     """Converts heights in nm to an array whose rows are along x."""
-    allowed = "the name of a file, or an array of heights in nm, one row a profile along x"
+    allowed = "the name of a file, or an array of heights in nm, each row a profile along x"
     try:
         heights = np.asarray(value)
     except Exception:  # __array__() of a foreign class may raise anything
@@ -86,5 +86,5 @@ def metrology(
         ("channel", channel),
     ):
         if value is not None:
-            raise InputError("is for files; heights in memory are in nm", key=name)
+            raise InputError("is only for files; heights in memory are in nm", key=name)
     return MetrologyResult(_core.measure_heights(_heights(heights), request))

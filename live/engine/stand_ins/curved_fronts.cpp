@@ -6,7 +6,7 @@
 namespace retrace::studies {
 
 geometry::Entrance entrance_of_design(const Design&, const geometry::Part&) {
-  live::fail_as_absent("no files beside the design");
+  live::fail_as_absent("no access to other files than the design");
 }
 
 }  // namespace retrace::studies

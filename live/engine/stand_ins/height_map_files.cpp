@@ -6,7 +6,7 @@
 namespace retrace::surface_models {
 
 HeightMapFile read_height_map(const std::filesystem::path&, const HeightMapOptions&) {
-  live::fail_as_absent("no files beside the design");
+  live::fail_as_absent("no access to other files than the design");
 }
 
 }  // namespace retrace::surface_models

@@ -5,7 +5,7 @@
 namespace retrace::materials {
 
 Material read_index_record(const std::filesystem::path&) {
-  live::fail_as_absent("no files beside the design");
+  live::fail_as_absent("no access to other files than the design");
 }
 
 }  // namespace retrace::materials

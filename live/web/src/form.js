@@ -16,7 +16,7 @@ function allowedText(row) {
 
 /** Returns the description of a key, its range and its default. */
 function meaningOf(row) {
-  const without = row.default != null ? `Without it: ${row.default}.` : row.otherwise ? `Without it: ${row.otherwise}.` : "";
+  const without = row.default != null ? `Default: ${row.default}.` : row.otherwise ? `Default: ${row.otherwise}.` : "";
   const allowed = allowedText(row);
   return [row.meaning, allowed && `Allowed: ${allowed}.`, without].filter(Boolean).join(" ");
 }
@@ -116,7 +116,7 @@ export class Form {
     const id = `key-${row.path.replaceAll(".", "-")}`;
     const change = (value) => this.session.change(row.path, value, row.kind === "word" || row.kind === "flag" || CHANGES_SHAPE.test(row.path));
     const field = fieldOf(row, entry, { id, size_mm: this.size_mm, materials: this.materials, change, edit: this.edit });
-    const back = h("button", { type: "button", class: "plain back", title: "Take it back: the default holds", "aria-label": `${label}: take it back`, onclick: () => this.session.change(row.path, null, true) }, "↺");
+    const back = h("button", { type: "button", class: "plain back", title: "Reset to the default", "aria-label": `${label}: reset to the default`, onclick: () => this.session.change(row.path, null, true) }, "↺");
     const error = h("p", { class: "error", id: newId("error"), role: "alert" });
     const name = h(field.isGroup ? "span" : "label", { for: field.isGroup ? null : id, id: field.isGroup ? id : null }, label);
     for (const part of field.holds) if (part) part.setAttribute("aria-description", meaningOf(row));

@@ -27,7 +27,7 @@ function stageTabs(results, names, number) {
     tabs.forEach((tab) => tab.setAttribute("aria-pressed", String(tab.dataset.show === name)));
   };
   choose(names[0][0]);
-  return h("div", { class: "stage-tabs", role: "group", "aria-label": "Which picture is shown" }, ...tabs, number);
+  return h("div", { class: "stage-tabs", role: "group", "aria-label": "Displayed picture" }, ...tabs, number);
 }
 
 export function layOut(root, { header, design, notice, readout, stage, more, number, isEmbedded }) {

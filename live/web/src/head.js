@@ -21,9 +21,9 @@ export class Head {
       button("Open", () => this.file.click(), { title: "Open a design from a file" }),
       button("Save", () => this.save(), { title: "Download the design as TOML" }),
       button("Copy", () => this.copyText(), { title: "Copy the design as TOML" }),
-      button("Link", () => this.copyLink(), { id: "live-link", title: "Copy an address that holds the design and all that is chosen here" }),
+      button("Link", () => this.copyLink(), { id: "live-link", title: "Copy a link that contains the design and all settings of this page" }),
       button("STL", () => this.stl(), { title: "Download one element on its plate as STL" }),
-      button("Pin", () => this.pin(), { title: "Keep this design to compare with: up to four" }),
+      button("Pin", () => this.pin(), { title: "Keep this design for comparison (up to four)" }),
       h("button", { type: "button", id: "theme", hidden: true }),
     ];
     const name = isEmbedded ? null : h("h1", {}, "retrace ", h("small", { title: version }, "live"));
@@ -75,11 +75,11 @@ export class Head {
   }
 
   async copyText() {
-    if (this.session.base) this.say((await copy(this.session.base.toml)) ? "The design is on the clipboard." : "The browser does not allow it.");
+    if (this.session.base) this.say((await copy(this.session.base.toml)) ? "The design is on the clipboard." : "The browser does not allow copying.");
   }
 
   async copyLink() {
-    this.say((await copy(await this.link())) ? "The link is on the clipboard." : "The browser does not allow it: copy the address.");
+    this.say((await copy(await this.link())) ? "The link is on the clipboard." : "The browser does not allow copying: copy the address of the page.");
   }
 
   async stl() {
@@ -93,6 +93,6 @@ export class Head {
 
   pin() {
     const { base, rest } = this.session;
-    if (base) this.say(rest.pin(base) ? "Pinned: its curve stays as a ghost." : "Four are pinned already: take one off first.");
+    if (base) this.say(rest.pin(base) ? "Pinned: its curve stays visible for comparison." : "Four designs are pinned already: remove one first.");
   }
 }

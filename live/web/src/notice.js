@@ -28,8 +28,8 @@ export class Notice {
 
   /** Explains why the new design cannot be shown. The last valid design stays visible. */
   refuse(error) {
-    const shown = this.session.base ? " The last design that can be built stays in view." : "";
-    this.refusal.replaceChildren(h("p", {}, h("strong", {}, "Not like this: "), error.text, h("span", { class: "quiet" }, shown)));
+    const shown = this.session.base ? " The last valid design is still shown." : "";
+    this.refusal.replaceChildren(h("p", {}, h("strong", {}, "Invalid design: "), error.text, h("span", { class: "quiet" }, shown)));
     if (error.command) this.refusal.append(commandLine(error.command, this.session.base && this.session.base.source));
   }
 
@@ -39,7 +39,7 @@ export class Notice {
     this.told = told;
     const lines = [...(design.notes || []), ...(design.warnings || [])].map((text) => h("p", {}, text));
     if (!design.traces) {
-      lines.unshift(h("p", { class: "cannot" }, h("strong", {}, "This page does not trace it: "), design.why_not));
+      lines.unshift(h("p", { class: "cannot" }, h("strong", {}, "This page cannot trace this design: "), design.why_not));
       if (design.command) lines.splice(1, 0, commandLine(design.command, design.source));
     }
     this.remarks.replaceChildren(...lines);

@@ -36,7 +36,7 @@ export class CurvePanel {
       class: "picture plot curve-view",
       tabindex: "0",
       role: "application",
-      "aria-label": "RRE against incidence. Left and right arrows move the incidence that is pointed at, with shift by five degrees.",
+      "aria-label": "RRE against incidence. Left and right arrows change the selected incidence, with shift by five degrees.",
     });
     this.range = h(
       "select",
@@ -175,7 +175,7 @@ export class CurvePanel {
     this.values = pins.map(() => h("output", {}));
     const entry = (pin, k) => {
       const name = pin.title || `pinned ${k + 1}`;
-      const again = h("button", { type: "button", class: "plain", title: "Take this design up again", onclick: () => this.session.open(pin.toml, pin.source) }, name);
+      const again = h("button", { type: "button", class: "plain", title: "Open this design again", onclick: () => this.session.open(pin.toml, pin.source) }, name);
       const off = h("button", { type: "button", class: "plain", "aria-label": `Unpin ${name}`, onclick: () => this.session.rest.unpin(pin) }, "×");
       return h("li", { class: "ghost" }, line(GHOSTS[k]), again, this.values[k], off);
     };

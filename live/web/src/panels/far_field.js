@@ -14,9 +14,9 @@ export class FarFieldPanel {
     this.drawing = s("svg", { viewBox: `${-HALF - 8} ${-HALF - 8} ${2 * HALF + 16} ${2 * HALF + 16}`, role: "img", "aria-label": "Spots of the far field" });
     this.reach = h(
       "select",
-      { "aria-label": "How far round the return is shown", onchange: () => this.show() },
-      h("option", { value: "near" }, "round the return"),
-      h("option", { value: "far" }, "all of it"),
+      { "aria-label": "Displayed range of directions", onchange: () => this.show() },
+      h("option", { value: "near" }, "near the return direction"),
+      h("option", { value: "far" }, "all directions"),
     );
     this.rows = h("tbody", {});
     this.rest = h("p", { class: "caption" });
@@ -99,6 +99,6 @@ export class FarFieldPanel {
       ),
     );
     const more = spots.slice(MOST).reduce((sum, { power }) => sum + power, other_power || 0);
-    this.rest.textContent = `The ring of colour is the cone that counts, ${angle(this.cone_deg)}. ${percent(total_power)} leaves the front; ${percent(more)} in other directions.`;
+    this.rest.textContent = `The coloured ring is the acceptance cone, ${angle(this.cone_deg)}. ${percent(total_power)} of the light leaves the entrance face; ${percent(more)} in directions that are not in this list.`;
   }
 }

@@ -10,7 +10,7 @@ export class Ledger {
     this.session = session;
     this.bar = h("div", { class: "ledger-bar", "aria-hidden": "true" });
     this.list = h("dl", { class: "ledger-list" });
-    this.node = h("div", { class: "ledger", role: "group", "aria-label": "Where the light ends" }, this.bar, this.list);
+    this.node = h("div", { class: "ledger", role: "group", "aria-label": "Ledger of the light" }, this.bar, this.list);
   }
 
   /** \param accounts list of {name, meaning} or of names, in the order of ledgers */

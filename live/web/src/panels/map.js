@@ -48,7 +48,7 @@ export class MapPanel {
       tabindex: "0",
       role: "application",
       "aria-label":
-        "RRE over all directions of the light. Left and right arrows turn the azimuth that is pointed at, up and down change the incidence.",
+        "RRE over all directions of the light. Left and right arrows change the selected azimuth, up and down arrows the selected incidence.",
     });
     this.caption = h("p", { class: "caption" });
     this.bar = h("div", { class: "map-bar", "aria-hidden": "true" }, h("span", {}, "0"), h("i"), h("span", {}, "100 %"));
@@ -123,8 +123,8 @@ export class MapPanel {
 
   tell(pass) {
     const done = pass.values.size;
-    const finer = pass.queue.length ? `, ${pass.queue.length} to come` : "";
-    this.caption.textContent = `Pick a direction. The rim is ${pass.most_deg}° from the normal; ${done} directions at 10⁻³${finer}.`;
+    const finer = pass.queue.length ? `, ${pass.queue.length} remaining` : "";
+    this.caption.textContent = `Select a direction. The edge of the map is ${pass.most_deg}° from the normal; ${done} directions are accurate to 10⁻³${finer}.`;
   }
 
   /** Draws the disc, interpolated linearly between rings. Pixels outside are transparent. */

@@ -34,7 +34,7 @@ export class PhotometryPanel {
     this.standard.append(h("option", { value: "" }, "choose a standard"), ...standards.map(({ name, description }) => h("option", { value: name }, `${name} – ${description}`)));
     this.fillChoices();
     this.session.on("design", () => this.followBody());
-    this.session.on("judging", () => (this.verdict.textContent = "working it out …"));
+    this.session.on("judging", () => (this.verdict.textContent = "computing …"));
     this.session.on("judged", (answer) => this.show(answer));
     this.session.on("moving", (moving) => this.node.classList.toggle("stale", moving && Boolean(this.standard.value)));
   }

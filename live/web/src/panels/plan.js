@@ -94,7 +94,7 @@ export class PlanPanel {
       "p",
       { class: "legend" },
       h("span", { class: "swatch scale" }),
-      h("span", {}, "comes back: nothing to all of it"),
+      h("span", {}, "returned light: none to all"),
       h("span", { class: "swatch hatched" }),
       h("span", {}, "dead zone"),
       h("span", { class: "stroke" }),
@@ -177,12 +177,12 @@ export class PlanPanel {
     }
     if (!spot) {
       const { active_share } = answer.footprint;
-      this.caption.textContent = `Light comes back from ${percent(active_share, 1)} of the face. Pick a spot to follow its ray.`;
+      this.caption.textContent = `Light returns from ${percent(active_share, 1)} of the face. Select a spot to follow its ray.`;
       return;
     }
     const hit = this.regions.find(({ outline }) => contains(outline, spot));
     const where = `(${short(spot[0])}, ${short(spot[1])}) mm`;
-    this.caption.textContent = hit ? `At ${where} ${percent(hit.efficiency, 1)} of the light comes back.` : `${where} lies in a dead zone.`;
+    this.caption.textContent = hit ? `At ${where} ${percent(hit.efficiency, 1)} of the light returns.` : `${where} is in a dead zone.`;
   }
 
   // --- drawing

@@ -11,10 +11,10 @@ const EVENTS = {
   total_reflection: "total reflection",
   reflection: "partial reflection",
   leaves: "leaves",
-  exits: "goes out behind",
-  enters_again: "comes in again",
+  exits: "leaves at the back",
+  enters_again: "enters again",
   leaves_side: "leaves at a side",
-  escapes: "is lost behind",
+  escapes: "is lost behind the part",
   ends: "ends",
 };
 
@@ -78,9 +78,9 @@ export class RayPanel {
     if (listed === this.listed) return;
     this.listed = listed;
     this.list.replaceChildren(
-      h("legend", {}, spot ? "The ray at the spot that was picked" : "Light paths, the most frequent first"),
+      h("legend", {}, spot ? "Ray at the selected spot" : "Light paths, the most frequent first"),
       ...texts.map((text, index) => this.choice(index, text, colourOf(paths[index], index))),
-      ...(paths.length > 1 ? [this.choice(-1, "all of them", null)] : []),
+      ...(paths.length > 1 ? [this.choice(-1, "all paths", null)] : []),
     );
   }
 

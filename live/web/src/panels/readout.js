@@ -54,15 +54,15 @@ export class Readout {
     this.number = h("output", { class: "number" }, "–");
     // copy of the value next to the pictures on narrow screens
     this.small = h("output", { "aria-hidden": "true" }, "–");
-    this.what = h("span", { class: "what" }, "of the light comes back");
-    this.moving = new Accuracy("moving", "While something moves: a standard error of at most 1e-4 of the light, or as much left untraced; 1e-3 where that takes too long to follow the hand");
-    this.resting = new Accuracy("resting", "At rest: at most 1e-6 of the light left untraced");
+    this.what = h("span", { class: "what" }, "of the light returns");
+    this.moving = new Accuracy("moving", "While you change a value: standard error or truncated light of at most 1e-4; 1e-3 if 1e-4 takes too long");
+    this.resting = new Accuracy("resting", "At rest: at most 1e-6 of the light is truncated");
     this.spoken = h("p", { class: "spoken", "aria-live": "polite" });
     this.controls = [this.control("incidence_deg", "Incidence", -80, 80, 0.5), this.control("azimuth_deg", "Azimuth", 0, 360, 1)];
     this.node = h(
       "section",
       { class: "readout", "aria-label": "Retroreflective efficiency" },
-      h("div", { class: "main-number" }, h("span", { class: "name", title: "Retroreflective efficiency: the share of the light that comes back within the cone of acceptance" }, "RRE"), this.number, this.what),
+      h("div", { class: "main-number" }, h("span", { class: "name", title: "Retroreflective efficiency: the fraction of the light that returns within the acceptance cone" }, "RRE"), this.number, this.what),
       h("div", { class: "accuracies" }, this.moving.node, this.resting.node),
       h("fieldset", { class: "direction" }, h("legend", { class: "spoken" }, "Direction of the light"), ...this.controls.map(({ node }) => node)),
       ledger.node,
@@ -111,7 +111,7 @@ export class Readout {
       return;
     }
     this.number.textContent = this.small.textContent = `${(100 * answer.rre).toFixed(2)} %`;
-    this.what.textContent = `comes back within ${short(answer.acceptance_half_angle_deg)}°`;
+    this.what.textContent = `returns within ${short(answer.acceptance_half_angle_deg)}°`;
     this.moving.show(answer);
   }
 

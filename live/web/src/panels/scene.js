@@ -40,7 +40,7 @@ export class ScenePanel {
       tabindex: "0",
       role: "application",
       "aria-label":
-        "The part and light paths in three dimensions. Arrow keys turn it, plus and minus move nearer and away. The paths are listed in words in the table of rays.",
+        "The part and light paths in three dimensions. Arrow keys rotate the view, plus and minus zoom. The table of rays lists the paths as text.",
     });
     this.remark = h("p", { class: "caption" });
     this.node = panel("scene", "Part and light", {}, this.element, this.remark);
