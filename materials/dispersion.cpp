@@ -160,8 +160,9 @@ std::string doubt_of_nd(const Material& material, double stated_nd) {
   } catch (const InputError&) {
     computed = "no index";
   }
-  return fmt::format("n_d must be within 0.001 of the formula's index at 587.56 nm, {}, got {}; check the coefficients",
-                     computed, shortest(stated_nd));
+  return fmt::format(
+      "n_d must be within 0.001 of the formula's index at 587.56 nm ({}), got {}; check the coefficients", computed,
+      shortest(stated_nd));
 }
 
 bool is_valid_at(const Material& material, double wavelength_nm) {

@@ -78,7 +78,8 @@ class ListReader {
 };
 
 void read_items(std::string_view text, ListReader& reader) {
-  if (text.find_first_not_of(' ') == std::string_view::npos) reader.fail("the list is empty");
+  if (text.find_first_not_of(' ') == std::string_view::npos)
+    reader.fail("must contain at least one number, got an empty list");
   for (const std::string_view item : split(text, ',')) reader.read_item(item);
 }
 

@@ -88,7 +88,7 @@ constexpr const char* kTail = R"(.SH ENVIRONMENT
 .B RETRACE_DATA_DIR
 Folder of shipped data, in place of
 .I share/retrace
-beside the program's
+next to the program's
 .I bin
 folder.
 .TP

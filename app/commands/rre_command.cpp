@@ -45,7 +45,7 @@ studies::RreSettings settings_of(const RreOptions& options, const CommonOptions&
 
 std::vector<studies::Design> designs_of(const RreOptions& options, const CommonOptions& common) {
   if (std::count(options.designs.begin(), options.designs.end(), "-") > 1)
-    throw InputError("standard input can be read as one design only");
+    throw InputError("standard input (-) can be given only one time");
   std::vector<studies::Design> designs;
   for (const std::string& file : options.designs) designs.push_back(studies::read_design(file, common.overrides));
   return designs;

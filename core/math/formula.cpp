@@ -131,7 +131,9 @@ Formula parse_formula(const std::string& text, const std::vector<std::string>& v
     throw InputError(where, fmt::format("must have at most {} characters, got {}", kLongestFormula, text.size()));
   const auto failed_at = [&](std::size_t position, const std::string& reason) {
     return FormulaError(
-        where, fmt::format("does not parse at character {}: {}, got {}", position, reason, in_quotes(text)), position);
+        where,
+        fmt::format("must be a valid formula; error at character {}: {}, got {}", position, reason, in_quotes(text)),
+        position);
   };
   if (const auto at =
           std::find_if(text.begin(), text.end(),

@@ -35,7 +35,7 @@ std::string unknown_name(const Table& table, std::string_view name, bool is_tabl
   if (is_root && !is_table)
     for (const Table& inner : table.tables)
       if (std::ranges::count(inner.rows, name, &Row::key) > 0)
-        return fmt::format("unknown key at the top level, it belongs in [{}]", inner.name);
+        return fmt::format("unknown key at the top level; it belongs in the table [{}]", inner.name);
   std::vector<std::string_view> names = names_in(table, !is_table || table.tables.empty());
   if (is_root && !is_table) names.insert(names.begin(), kId);
   const std::string_view meant = closest(name, names);

@@ -22,7 +22,8 @@ class GsfReader {
 
   RawMap read() {
     const std::size_t header = source_.content.find('\0');
-    if (header == std::string_view::npos) source_.fail(0, "the file is cut short: a zero byte must end its header");
+    if (header == std::string_view::npos)
+      source_.fail(0, "the file is cut short: its header is not terminated by a zero byte");
     read_header(source_.content.substr(0, header));
     RawMap raw;
     raw.format = "Gwyddion Simple Field (GSF)";
