@@ -13,7 +13,6 @@
 namespace retrace::benchmarks::fronts_benchmark {
 namespace {
 
-using geometry::Vec2;
 using geometry::Vec3;
 
 constexpr double kSize = 2.0;

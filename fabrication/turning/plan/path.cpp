@@ -16,10 +16,8 @@ namespace retrace::fabrication::turning {
 namespace {
 
 using geometry::FreeformSurface;
-using jets::Gradient;
-using jets::Jet2;
-
 using geometry::Vec2;
+using jets::Jet2;
 
 /// Returns the angles of the spindle at the points of a spiral, in turns.
 std::vector<double> spiral_turns(const PathOptions& o, const InputLocation& where) {

@@ -13,7 +13,6 @@ namespace retrace::testing::pixel_grid_test {
 namespace {
 
 using geometry::Polygon;
-using geometry::Rectangle;
 using geometry::Vec2;
 using raytrace::PixelGrid;
 
