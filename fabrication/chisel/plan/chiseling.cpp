@@ -56,7 +56,6 @@ int chiseling_layers(const Job& job, std::size_t zone, double stock_mm) {
 
 CuttingPose chiseling_pose(const Job& job, const Machine& machine, const FacetChoice& facet, double previous_c_deg,
                            const Stance& stance) {
-  const InputLocation where = job.where("machine");
   CuttingPose pose;
   pose.corner = blank_corner(job, facet.zone, facet.rotated);
   const Vec3& upright = pose.corner.normals[static_cast<std::size_t>(facet.facet - 1)];
@@ -70,13 +69,7 @@ CuttingPose chiseling_pose(const Job& job, const Machine& machine, const FacetCh
   pose.root = pose.turn * upright.cross(Vec3::UnitZ()).normalized();
   const double tilt_deg = Angle::from_rad(std::asin(upright.z())).deg();
   const RotaryPose near{machine.a.sign.value * tilt_deg, -machine.c.sign.value * azimuth_deg};
-  const PlungePose solved = solve_plunge_pose(machine, normal, pose.root, near);
-  pose.root_tilt = solved.root_tilt;
-  pose.a = to_step(solved.pose.a_deg * kRotaryUnitsPerDeg, machine.increments.rotary_units);
-  pose.c = to_step(nearest_c_deg(machine, solved.pose.c_deg, previous_c_deg, where, stance.who()) * kRotaryUnitsPerDeg,
-                   machine.increments.rotary_units);
-  pose.rounded = {static_cast<double>(pose.a) / kRotaryUnitsPerDeg, static_cast<double>(pose.c) / kRotaryUnitsPerDeg};
-  check_tilt(machine, pose.rounded.a_deg, where, stance.who());
+  set_rotary_pose(pose, machine, normal, near, previous_c_deg, job.where("machine"), stance.who());
   pose.section.depth_mm = pose.corner.depth_mm;
   pose.section.stock_mm = stance.stock_mm;
   pose.section.start_mm = stance.start_mm;

@@ -112,6 +112,11 @@ std::string Stance::who() const {
   return fmt::format("element {}, tilted by {} degrees: ", element, fixed(tilt_deg, 4));
 }
 
+namespace {
+
+/// Returns the angle of C, plus or minus full turns, that is within the limits and closest to the previous angle. Full
+/// turns are only added if C is then closer to the previous angle by more than 1 degree.
+/// \throw InputError at `where` if no angle is within the limits
 double nearest_c_deg(const Machine& machine, double c_deg, double previous_c_deg, const InputLocation& where,
                      const std::string& who) {
   const Interval& limits = machine.c.limits_deg.value;
@@ -129,12 +134,28 @@ double nearest_c_deg(const Machine& machine, double c_deg, double previous_c_deg
   return *best;
 }
 
+/// Checks that an angle of the tilting axis is within its limits.
+/// \param who beginning of the error message
+/// \throw InputError at `where` if the angle is outside of the limits
 void check_tilt(const Machine& machine, double tilt_deg, const InputLocation& where, const std::string& who) {
   const Interval& limits = machine.a.limits_deg.value;
   if (limits.contains(tilt_deg)) return;
   throw InputError(where, fmt::format("{}machine {}: axis {} would go to {} degrees, beyond its limits of {} to {}",
                                       who, machine.name, machine.tilt_letter(), fixed(tilt_deg, 4),
                                       shortest(limits.low), shortest(limits.high)));
+}
+
+}  // namespace
+
+void set_rotary_pose(CuttingPose& pose, const Machine& machine, const Vec3& normal, const RotaryPose& near,
+                     double previous_c_deg, const InputLocation& where, const std::string& who) {
+  const PlungePose solved = solve_plunge_pose(machine, normal, pose.root, near);
+  pose.root_tilt = solved.root_tilt;
+  pose.a = to_step(solved.pose.a_deg * kRotaryUnitsPerDeg, machine.increments.rotary_units);
+  pose.c = to_step(nearest_c_deg(machine, solved.pose.c_deg, previous_c_deg, where, who) * kRotaryUnitsPerDeg,
+                   machine.increments.rotary_units);
+  pose.rounded = {static_cast<double>(pose.a) / kRotaryUnitsPerDeg, static_cast<double>(pose.c) / kRotaryUnitsPerDeg};
+  check_tilt(machine, pose.rounded.a_deg, where, who);
 }
 
 CuttingPose cutting_pose(const Job& job, const Machine& machine, const FacetChoice& facet, double previous_c_deg,
@@ -150,13 +171,7 @@ CuttingPose cutting_pose(const Job& job, const Machine& machine, const FacetChoi
   pose.root = pose.turn * root_direction(facet);
   const Vec3 normal = pose.turn * facet_normal(element, facet);
   const RotaryPose near{machine.a.sign.value * 0.5 * element.apex_angle_deg, machine.c.sign.value * nominal_c_deg};
-  const PlungePose solved = solve_plunge_pose(machine, normal, pose.root, near);
-  pose.root_tilt = solved.root_tilt;
-  pose.a = to_step(solved.pose.a_deg * kRotaryUnitsPerDeg, machine.increments.rotary_units);
-  pose.c = to_step(nearest_c_deg(machine, solved.pose.c_deg, previous_c_deg, where, stance.who()) * kRotaryUnitsPerDeg,
-                   machine.increments.rotary_units);
-  pose.rounded = {static_cast<double>(pose.a) / kRotaryUnitsPerDeg, static_cast<double>(pose.c) / kRotaryUnitsPerDeg};
-  check_tilt(machine, pose.rounded.a_deg, where, stance.who());
+  set_rotary_pose(pose, machine, normal, near, previous_c_deg, where, stance.who());
   check_root(job, machine, pose, where, stance);
 
   const RigidMotion motion = machine_from_workpiece(machine, pose.rounded);

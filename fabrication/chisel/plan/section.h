@@ -77,15 +77,15 @@ geometry::Vec3 root_direction(const FacetChoice& facet);
 /// Returns the depth of the root below the rims.
 double root_depth_mm(const geometry::RtpElement& element);
 
-/// Returns the angle of C, plus or minus full turns, that is within the limits and closest to the previous angle. Full
-/// turns are only added if C is then closer to the previous angle by more than 1 degree.
-/// \throw InputError at `where` if no angle is within the limits
-double nearest_c_deg(const Machine& machine, double c_deg, double previous_c_deg, const InputLocation& where,
-                     const std::string& who = "");
-/// Checks that an angle of the tilting axis is within its limits.
+/// Sets the positions of the rotary axes of a pose, and the angle between the root line and the tool's edge. Of all
+/// equivalent angles C, it uses the one that is closest to `previous_c_deg` within the limits of the axis.
+/// \param normal normal of the facet
+/// \param near nominal positions of the axes
 /// \param who beginning of the error message
-/// \throw InputError at `where` if the angle is outside of the limits
-void check_tilt(const Machine& machine, double tilt_deg, const InputLocation& where, const std::string& who = "");
+/// \pre the direction of the root line is set
+/// \throw InputError at `where` if the machine cannot reach the pose
+void set_rotary_pose(CuttingPose& pose, const Machine& machine, const geometry::Vec3& normal, const RotaryPose& near,
+                     double previous_c_deg, const InputLocation& where, const std::string& who);
 
 /// Orientation of the elements that a pose cuts, and height of the blank above their rims.
 struct Stance {
