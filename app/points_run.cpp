@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
-#include <memory>
 #include <utility>
 
 #include "app/interrupt.h"
@@ -90,12 +89,7 @@ ExitCode compute(const StudyOptions& options, const CommonOptions& common, const
 ExitCode run_points(const StudyOptions& options, const CommonOptions& common, const PointsCommand& command) {
   return run_on_ranks(
       common, slots(common), [&](compute::MpiSession* session) { return compute(options, common, command, session); },
-      [&]() -> ComputeTask {
-        const auto sweep = std::make_shared<const studies::Sweep>(command.read());
-        return [sweep](std::uint64_t point, const Cancellation* cancel) {
-          return studies::compute_shared(*sweep, point, cancel);
-        };
-      });
+      [&] { return studies::compute_task(command.read()); });
 }
 
 }  // namespace retrace::app

@@ -13,11 +13,14 @@ namespace retrace {
 namespace {
 
 /// Runs the study of one kind of picture and copies warnings and completeness to the result.
-template <class Study, class Result>
-void run(const Study& study, const Running& running, Result& found, ImageResult& result) {
-  run_with_threads(running.threads, [&] { found = study.run(running.progress, running.cancellation); });
-  result.warnings = found.warnings;
-  result.complete = found.complete;
+/// \return result of the study
+template <class Study>
+auto run(const Study& study, const Running& running, ImageResult& result) {
+  const auto found = std::make_shared<decltype(study.run(running.progress, running.cancellation))>();
+  run_with_threads(running.threads, [&] { *found = study.run(running.progress, running.cancellation); });
+  result.warnings = found->warnings;
+  result.complete = found->complete;
+  return found;
 }
 
 Picture picture_of(const std::string& name, FloatPicture numbers, Drawing drawing) {
@@ -28,9 +31,8 @@ Picture picture_of(const std::string& name, FloatPicture numbers, Drawing drawin
 
 ImageResult detector(const Design& design, const DetectorRequest& request, const Running& running) {
   const studies::DetectorStudy study(design.content().design, request);
-  const auto found = std::make_shared<studies::DetectorResult>();
   ImageResult result;
-  run(study, running, *found, result);
+  const auto found = run(study, running, result);
   result.json = studies::detector_json(*found);
   result.table = studies::detector_table(*found);
   if (!found->complete) return result;
@@ -43,9 +45,8 @@ ImageResult detector(const Design& design, const DetectorRequest& request, const
 
 ImageResult camera(const Design& design, const CameraRequest& request, const Running& running) {
   const studies::CameraStudy study(design.content().design, request);
-  const auto found = std::make_shared<studies::CameraResult>();
   ImageResult result;
-  run(study, running, *found, result);
+  const auto found = run(study, running, result);
   result.json = studies::camera_json(*found);
   result.table = studies::camera_table(*found);
   if (found->image.passes == 0) return result;
@@ -59,9 +60,8 @@ ImageResult camera(const Design& design, const CameraRequest& request, const Run
 
 ImageResult road(const Design& design, const RoadRequest& request, const Running& running) {
   const studies::RoadStudy study(design.content().design, request);
-  const auto found = std::make_shared<studies::RoadResult>();
   ImageResult result;
-  run(study, running, *found, result);
+  const auto found = run(study, running, result);
   result.json = studies::road_json(*found);
   result.table = studies::road_table(*found);
   if (found->views.empty()) return result;

@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -178,13 +177,9 @@ ExitCode compose_part(const ComposeOptions& options, const CommonOptions& common
 ExitCode run_compose(const ComposeOptions& options, const CommonOptions& common) {
   return run_on_ranks(
       common, slots(common), [&](compute::MpiSession* session) { return compose_part(options, common, session); },
-      [&]() -> ComputeTask {
+      [&] {
         const studies::Study study = studies::read_study(options.study, common.overrides, common.seed);
-        const auto scan =
-            std::make_shared<const studies::Sweep>(studies::compose_scan(study, studies::read_compose(study)));
-        return [scan](std::uint64_t point, const Cancellation* cancel) {
-          return studies::compute_shared(*scan, point, cancel);
-        };
+        return studies::compute_task(studies::compose_scan(study, studies::read_compose(study)));
       });
 }
 

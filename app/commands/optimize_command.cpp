@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <filesystem>
-#include <memory>
 #include <optional>
 
 #include "app/commands.h"
@@ -116,13 +115,9 @@ ExitCode look(const OptimizeOptions& options, const CommonOptions& common, compu
 ExitCode run(const OptimizeOptions& options, const CommonOptions& common) {
   return run_on_ranks(
       common, slots(common), [&](compute::MpiSession* session) { return look(options, common, session); },
-      [&]() -> ComputeTask {
+      [&] {
         const studies::Study study = studies::read_study(options.study, common.overrides, common.seed);
-        const auto scan =
-            std::make_shared<const studies::Sweep>(studies::optimise_scan(study, studies::read_optimise(study)));
-        return [scan](std::uint64_t point, const Cancellation* cancel) {
-          return studies::compute_shared(*scan, point, cancel);
-        };
+        return studies::compute_task(studies::optimise_scan(study, studies::read_optimise(study)));
       });
 }
 

@@ -44,6 +44,15 @@ def nearest(word: object, words: Iterable[str]) -> str:
     return f"; did you mean {close[0]}?" if close else ""
 
 
+def real(name: str, allowed: str, value: object) -> numbers.Real:
+    """Checks that a value is a real number."""
+    if isinstance(value, np.ndarray) and value.ndim == 0:
+        value = value[()]
+    if isinstance(value, (bool, np.bool_)) or not isinstance(value, numbers.Real):
+        raise refuse(name, allowed, value)
+    return value
+
+
 def number(
     name: str,
     value: object,
@@ -59,10 +68,7 @@ def number(
         allowed += f" {'>=' if low_included else '>'} {low:g}"
     if high < math.inf:
         allowed += f"{' and' if low > -math.inf else ''} {'<=' if high_included else '<'} {high:g}"
-    if isinstance(value, np.ndarray) and value.ndim == 0:
-        value = value[()]
-    if isinstance(value, (bool, np.bool_)) or not isinstance(value, numbers.Real):
-        raise refuse(name, allowed, value)
+    value = real(name, allowed, value)
     try:
         result = float(value)
     except OverflowError:
@@ -78,10 +84,7 @@ def number(
 def whole(name: str, value: object, low: int = 0, high: int = 2**36) -> int:
     """Checks that a value is a whole number in a range."""
     allowed = f"a whole number from {low} to {high}"
-    if isinstance(value, np.ndarray) and value.ndim == 0:
-        value = value[()]
-    if isinstance(value, (bool, np.bool_)) or not isinstance(value, numbers.Real):
-        raise refuse(name, allowed, value)
+    value = real(name, allowed, value)
     if not math.isfinite(value) or value != int(value) or not low <= int(value) <= high:
         raise refuse(name, allowed, value)
     return int(value)

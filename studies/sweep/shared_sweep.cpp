@@ -2,8 +2,10 @@
 
 #include <chrono>
 #include <deque>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <thread>
+#include <utility>
 
 namespace retrace::studies {
 namespace {
@@ -95,6 +97,12 @@ class SweepLedger : public TaskLedger {
 std::optional<std::string> compute_shared(const Sweep& sweep, std::uint64_t number, const Cancellation* cancel) {
   const std::optional<compute::StoredPoint> point = compute_point(sweep.study(), number, sweep.values(number), cancel);
   return point ? std::optional(to_message(*point)) : std::nullopt;
+}
+
+ComputeTask compute_task(Sweep sweep) {
+  return [kept = std::make_shared<const Sweep>(std::move(sweep))](std::uint64_t point, const Cancellation* cancel) {
+    return compute_shared(*kept, point, cancel);
+  };
 }
 
 bool share_sweep(const Sweep& sweep, compute::ResultStore& store, SweepObserver* observer, const ShareTasks& share) {

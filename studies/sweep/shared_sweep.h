@@ -11,6 +11,9 @@ namespace retrace::studies {
 /// that of the point.
 std::optional<std::string> compute_shared(const Sweep& sweep, std::uint64_t number, const Cancellation* cancel);
 
+/// Returns the function that computes the points of a sweep as tasks.
+ComputeTask compute_task(Sweep sweep);
+
 /// Computes the points that are not in the store, like run_sweep(). `share` distributes them as tasks among processes.
 /// \throw OutputError in the same cases as run_sweep()
 /// \throw Error if `share` throws it
