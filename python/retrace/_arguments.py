@@ -10,7 +10,7 @@ import numbers
 import os
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Any, ParamSpec, TypeVar, Union
+from typing import ParamSpec, TypeVar, Union
 
 import numpy as np
 from numpy.typing import ArrayLike

@@ -6,7 +6,6 @@ import json
 from collections.abc import Sequence
 from typing import Any
 
-import numpy as np
 
 from . import _core
 from ._arguments import Numbers, thread_count

@@ -260,10 +260,6 @@ def write_file(name: str, content: bytes) -> None:
         raise OutputError(f"{name}: cannot be written: {error.strerror}") from error
 
 
-def drawing_of(source: Any) -> Drawing | None:
-    return Drawing(source) if source else None
-
-
 class Result:
     """A result. The keys of its document are attributes. If the document contains a list of
     objects, such as the points of a curve, their keys are attributes, too. These are read-only
