@@ -6,7 +6,6 @@ import json
 from collections.abc import Sequence
 from typing import Any
 
-
 from . import _core
 from ._arguments import Numbers, thread_count
 from ._design import AnyDesign, design_of, designs_of
