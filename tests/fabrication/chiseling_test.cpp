@@ -5,13 +5,11 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <numbers>
 #include <set>
 #include <sstream>
 #include <string>
-#include <vector>
 
 #include "core/atomic_file.h"
 #include "core/error.h"

@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -8,7 +6,6 @@
 #include <cmath>
 #include <functional>
 #include <set>
-#include <sstream>
 #include <string>
 #include <vector>
 

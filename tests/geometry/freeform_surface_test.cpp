@@ -5,7 +5,6 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <cmath>
-#include <numbers>
 
 #include "core/angle.h"
 #include "tests/support/refusals.h"

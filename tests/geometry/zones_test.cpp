@@ -12,7 +12,6 @@
 #include <cmath>
 #include <numbers>
 #include <random>
-#include <string>
 
 #include "geometry/elements/element_cells.h"
 #include "geometry/part/faceted_solid.h"

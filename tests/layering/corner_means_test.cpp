@@ -11,7 +11,6 @@
 #include <regex>
 #include <set>
 #include <string>
-#include <vector>
 
 #include "tests/layering/layer_rules.h"
 

@@ -5,7 +5,6 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
-#include <cmath>
 #include <random>
 
 #include "fabrication/post/post.h"

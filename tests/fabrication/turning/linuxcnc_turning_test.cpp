@@ -1,7 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "fabrication/post/post.h"
 #include "fabrication/turning/plan/path.h"
 #include "fabrication/turning/plan/turning_program.h"
