@@ -1,6 +1,7 @@
 #include "raytrace/faces/facet_boxes.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace retrace::raytrace {
 namespace {
