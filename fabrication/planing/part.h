@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "core/error.h"
+#include "core/warning.h"
 
 namespace retrace::fabrication {
 
