@@ -40,7 +40,7 @@ void check_engine(const Design& design, PhotometrySettings request) {
   const Photometer photometer(design, request, kParts);
   if (!photometer.is_exact())
     throw InputError(design.where_facets(),
-                     "a material is computed by the exact engine, which does not take this design: " +
+                     "a material is computed by the exact engine, which does not support this design: " +
                          text_of(photometer.why_undiffracted()));
 }
 
@@ -147,9 +147,8 @@ AppearanceResult compute_appearance(const Design& design, const MaterialRequest&
   if (result.error.of_95_percent > request.error)
     result.warnings.push_back(
         {"table_error_above_target",
-         fmt::format("for 95 % of random geometries, the table is within {} % of the photometer, but {} % were "
-                     "requested: allow "
-                     "more directions of light, or give a smaller largest entrance angle",
+         fmt::format("for 95 % of random geometries, the table deviates from the photometer by up to {} %, but {} % "
+                     "were requested: allow more directions of light, or reduce the maximum entrance angle",
                      fixed(100.0 * result.error.of_95_percent, 1), fixed(100.0 * request.error, 1))});
   result.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   if (progress != nullptr) progress->at(1.0);

@@ -47,7 +47,7 @@ std::vector<double> goals_from(const Study& study, const ComposeRequest& request
     for (std::size_t k = 0; k < point.outputs.size(); ++k)
       if (study.quantities[k]->name() == goal && point.outputs[k].value) goals.push_back(*point.outputs[k].value);
   if (goals.size() != request.goals.size())
-    throw InputError("a cell with errors of angle cannot be computed: " +
+    throw InputError("a cell with angle errors cannot be computed: " +
                      (point.reason.empty() ? "a goal has no value" : point.reason));
   return goals;
 }

@@ -290,18 +290,21 @@ class Composer {
   std::string why_none(const Composition& composition, const Mixture& relaxed) const {
     if (composition.catalogue.empty())
       return composition.failed > 0 ? fmt::format("no cell can be computed: {}", composition.first_failure)
-                                    : "the constraints on cells exclude all of them";
+                                    : "the constraints on cells exclude all cells";
     if (relaxed.is_there())
-      return fmt::format("no mixture of at most {} of the {} cells, each with a share of {} or more, holds the bounds",
-                         request_.most_zones.value_or(composition.catalogue.size()), composition.catalogue.size(),
-                         shortest(request_.least_share));
+      return fmt::format(
+          "no mixture of at most {} of the {} cells, each with an area fraction of at least {}, satisfies the "
+          "constraints on the part",
+          request_.most_zones.value_or(composition.catalogue.size()), composition.catalogue.size(),
+          shortest(request_.least_share));
     std::string text;
     for (const std::size_t k : composition.excluding)
       text += fmt::format("{}{}", text.empty() ? "" : " and ", request_.of_part[k].text());
     if (text.empty())
-      return fmt::format("{} cells with a share of at most {} do not fill the part", composition.catalogue.size(),
-                         shortest(request_.most_share));
-    return fmt::format("{} over the part excludes every mixture of the {} cells", text, composition.catalogue.size());
+      return fmt::format("{} cells cannot fill the part if each covers at most the fraction {} of its area",
+                         composition.catalogue.size(), shortest(request_.most_share));
+    return fmt::format("{} as a mean over the part excludes every mixture of the {} cells", text,
+                       composition.catalogue.size());
   }
 
   void add_by_zones(Composition& composition, std::size_t zones) const {

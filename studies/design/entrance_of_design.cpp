@@ -39,18 +39,18 @@ void check_region(const geometry::TurnedFront& front, const std::vector<Vec2>& b
     return (2.0 * p.cwiseAbs().array() <= kRoom * front.size_mm.array()).all();
   };
   const auto place = [](const Vec2& p) {
-    return fmt::format("x = {}, y = {} mm of its frame lies outside", fixed(p.x(), 4), fixed(p.y(), 4));
+    return fmt::format("the point x = {}, y = {} mm of its frame is outside", fixed(p.x(), 4), fixed(p.y(), 4));
   };
   for (const Vec2& p : border) {
     if (!is_turned(p))
       throw InputError(fmt::format(
-          "must be turned all over the part, its path {}, {}",
+          "must be turned over the whole part, but its path {}: {}",
           front.is_round ? fmt::format("has a radius of {} mm", shortest(front.radius_mm))
                          : fmt::format("covers {} x {} mm", shortest(front.size_mm.x()), shortest(front.size_mm.y())),
           place(p)));
     const auto& beyond = front.surface.extrapolation();
     if (beyond && !beyond->boundary.contains(p.x() / kRoom, p.y() / kRoom))
-      throw InputError("must have a boundary round the whole part, " + place(p));
+      throw InputError("must have a boundary that encloses the whole part: " + place(p));
   }
 }
 
@@ -89,9 +89,8 @@ void check_room(const geometry::Entrance& entrance, const geometry::Part& part, 
     const geometry::EntranceRange range = geometry::entrance_range(entrance, part.outline);
     if (range.lowest_mm > part.top_mm) return;
     throw InputError(
-        fmt::format("must lie above the part's back, whose highest place is z = {}, it comes down to {} mm at x = {}, "
-                    "y = {} mm: give "
-                    "more body.thickness_mm",
+        fmt::format("must be above the back of the part, whose highest point is at z = {} mm, but its lowest point is "
+                    "at z = {} mm (x = {}, y = {} mm): increase body.thickness_mm",
                     fixed(part.top_mm, 4), fixed(range.lowest_mm, 4), fixed(range.lowest_at_mm.x(), 4),
                     fixed(range.lowest_at_mm.y(), 4)));
   } catch (const InputError& error) {

@@ -116,9 +116,10 @@ FacetForm measured(const NominalFacet& facet, const FormMap& map, const std::str
   Vec2 reach_mm = Vec2::Zero();
   for (const Vec2& corner : facet.corners) reach_mm = reach_mm.cwiseMax(corner.cwiseAbs());
   if ((half_mm.array() < kLeastCover * reach_mm.array()).any())
-    fail(fmt::format("must cover the facet, {} um level and {} um down it about its middle, got {} by {} um",
-                     fixed(2.0 * reach_mm.x() / kMmPerUm, 1), fixed(2.0 * reach_mm.y() / kMmPerUm, 1),
-                     fixed(2.0 * half_mm.x() / kMmPerUm, 1), fixed(2.0 * half_mm.y() / kMmPerUm, 1)));
+    fail(fmt::format(
+        "must cover the facet around its centroid, {} um horizontally and {} um down the facet, got {} um by {} um",
+        fixed(2.0 * reach_mm.x() / kMmPerUm, 1), fixed(2.0 * reach_mm.y() / kMmPerUm, 1),
+        fixed(2.0 * half_mm.x() / kMmPerUm, 1), fixed(2.0 * half_mm.y() / kMmPerUm, 1)));
   return facet.less_plane(surface_models::fitted_form(level, map.degree));
 }
 

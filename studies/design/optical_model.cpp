@@ -149,7 +149,7 @@ double absorption_at(const Design& design, const materials::Material& material, 
   if (wavelength_nm < curve.wavelengths_nm.front() || wavelength_nm > curve.wavelengths_nm.back())
     throw InputError(
         design.where("body.absorption_per_mm"),
-        fmt::format("must reach all wavelengths of the light, such as {} nm, got {} to {} nm", shortest(wavelength_nm),
+        fmt::format("must cover all wavelengths of the light, such as {} nm, got {} to {} nm", shortest(wavelength_nm),
                     shortest(curve.wavelengths_nm.front()), shortest(curve.wavelengths_nm.back())));
   return curve.at(wavelength_nm);
 }
@@ -187,8 +187,9 @@ materials::LayerStack stack_of(const Design& design, const materials::MaterialLi
     const std::complex<double> index =
         index_of_layer(design, library, layer, design.where(entry + ".material"), wavelength_nm);
     if (!layer.thickness_nm && !(index.imag() > 0.0))
-      throw InputError(design.where(entry + ".thickness_nm"),
-                       fmt::format("missing: only metals are opaque without it, {} is none", layer.material));
+      throw InputError(
+          design.where(entry + ".thickness_nm"),
+          fmt::format("missing: only metals may have no thickness, but {} is not a metal", layer.material));
     stack.layers.push_back({index, layer.thickness_nm ? *layer.thickness_nm * air / wavelength_nm : kInfinity});
   }
   return stack;
@@ -304,8 +305,8 @@ void add_coating_warnings(const Design& design, const materials::MaterialLibrary
     if (fringes > kMostFringesPerStep)
       model.warnings.push_back(
           {"unresolved_fringes",
-           fmt::format("{}: layers of this thickness have up to {:.1f} interference fringes from one wavelength that "
-                       "is traced to the next; means over the spectrum are means over these few wavelengths",
+           fmt::format("{}: these layers have up to {:.1f} interference fringes between neighbouring traced "
+                       "wavelengths; means over the spectrum do not resolve the fringes",
                        design.source_name(), fringes)});
   }
 }
@@ -397,7 +398,7 @@ OpticalModel make_model(const Design& design, const materials::MaterialLibrary& 
   check_taken(design, {.what = {}, .solids = true, .entrances = true, .wet_backs = true});
   if (entrances == Entrances::plane && design.entrance)
     throw InputError(design.where(design.entrance_key()),
-                     "a [front] is taken by retrace rre, photometry, inspect and rays alone");
+                     "a [front] is supported only by retrace rre, photometry, inspect and rays");
   OpticalModel model = make_light_model(design, library);
   model.part = part_of_design(design, &model.warnings);
   if (design.entrance) model.entrance = entrance_of_design(design, model.part);

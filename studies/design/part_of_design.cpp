@@ -34,16 +34,16 @@ geometry::TriangleMesh closed(const Design& design, geometry::TriangleMesh mesh,
   geometry::BoundaryReport report = geometry::check_boundary(geometry::boundary_of(mesh));
   if (report.is_closed) return mesh;
   if (const auto p = geometry::mixed_winding(mesh))
-    throw InputError(fmt::format(
-        "all triangles must be counter-clockwise seen from outside, or all clockwise: near ({}, {}, {}) mm two "
-        "neighbours differ; orient the faces alike in the program that made the mesh",
-        fixed(p->x(), 3), fixed(p->y(), 3), fixed(p->z(), 3)));
+    throw InputError(
+        fmt::format("all triangles must be counter-clockwise seen from outside, or all clockwise, but two neighbours "
+                    "near ({}, {}, {}) mm differ: unify the orientation of the faces in the program that made the mesh",
+                    fixed(p->x(), 3), fixed(p->y(), 3), fixed(p->z(), 3)));
   if (!design.mesh()->allow_open)
-    throw InputError("the mesh is not closed; set allow_open = true in [part] to close its openings by flat pieces");
+    throw InputError("the mesh is not closed; set allow_open = true in [part] to close its openings with flat patches");
   geometry::ClosedMesh mended = geometry::with_openings_closed(mesh);
   tell(warnings, design, "openings_closed",
-       fmt::format("the mesh is not closed: {} opening{} with {} edges {} closed by flat pieces, results are those of "
-                   "the part with them",
+       fmt::format("the mesh is not closed: {} opening{} with {} edges {} closed with flat patches; results apply to "
+                   "the repaired mesh",
                    mended.openings, mended.openings == 1 ? "" : "s", mended.open_edges,
                    mended.openings == 1 ? "was" : "were"));
   return std::move(mended.mesh);
@@ -67,14 +67,15 @@ geometry::TriangleMesh united(const Design& design, const geometry::TriangleMesh
                     "cross itself; repair the mesh in the program that made it",
                     fault));
   tell(warnings, design, "bodies_united",
-       fmt::format("the mesh {}; results are those of the union of its {} bodies", fault, all->bodies));
+       fmt::format("the mesh {}; results apply to the union of its {} bodies", fault, all->bodies));
   return std::move(all->mesh);
 }
 
 geometry::TriangleMesh checked(const Design& design, geometry::TriangleMesh mesh, Warnings* warnings) {
   mesh = closed(design, std::move(mesh), warnings);
   if (geometry::volume_mm3(geometry::boundary_of(mesh)) < 0.0) {
-    tell(warnings, design, "triangles_reversed", "the triangles of the mesh look inward; they were turned over");
+    tell(warnings, design, "triangles_reversed",
+         "the triangles of the mesh face inwards; their orientation was reversed");
     mesh = geometry::turned_over(mesh);
   }
   const geometry::BoundaryReport report = geometry::check_boundary(geometry::boundary_of(mesh));
@@ -117,7 +118,7 @@ void warn_of_unit(const Design& design, const geometry::TriangleMesh& mesh, Warn
 void check_thickness(const Design& design, const geometry::Part& part) {
   const double given_mm = design.thickness_mm();
   if (given_mm == 0.0 || std::abs(given_mm - part.thickness_mm) <= kSameThickness * part.thickness_mm) return;
-  throw InputError(fmt::format("its plate is {} mm thick, which body.thickness_mm must say or leave out, got {}",
+  throw InputError(fmt::format("body.thickness_mm must be left out or equal the thickness of the mesh, {} mm, got {}",
                                fixed_apart(part.thickness_mm, given_mm, 6), shortest(given_mm)));
 }
 

@@ -181,7 +181,8 @@ void add_section(DesignDrawing& drawing, const Design& design, const Part& part,
   const auto view = section_view(part, a.section_y_mm, from, to);
   if (!view) {
     drawing.warnings.push_back(
-        {"no_section", design.source_name() + ": no section is drawn: the back folds under itself there"});
+        {"no_section", design.source_name() +
+                           ": no section is drawn, because the back of the part has an overhang in the section plane"});
     return;
   }
   SectionPanel panel;
@@ -210,13 +211,13 @@ std::string arrangement_text(const Part& part) {
   const PartSpec& spec = part.spec;
   if (spec.array.arrangement == Arrangement::single) return "one element";
   if (spec.array.extent == geometry::Extent::infinite)
-    return fmt::format("endless array, {} elements a period", part.elements_full);
+    return fmt::format("infinite array, {} elements per period", part.elements_full);
   std::string text = fmt::format("{} full elements", part.elements_full);
   if (part.elements_partial > 0) text += fmt::format(", {} cut by the border", part.elements_partial);
   if (spec.array.arrangement == Arrangement::offset)
-    text += fmt::format("; {} rows shifted, rows count from below",
+    text += fmt::format("; {} rows shifted (rows are counted from the bottom)",
                         spec.array.shifted_rows == geometry::RowParity::even ? "even" : "odd");
-  if (spec.array.arrangement == Arrangement::checker) text += "; every second element turned";
+  if (spec.array.arrangement == Arrangement::checker) text += "; every second element rotated by 90 degrees";
   return text;
 }
 

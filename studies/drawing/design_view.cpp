@@ -87,11 +87,11 @@ Design piece_of(const Design& design, std::vector<std::string>& remarks) {
   spec.array.x_length_mm = infinite ? wanted.x() : std::min(spec.array.x_length_mm, wanted.x());
   spec.array.y_length_mm = infinite ? wanted.y() : std::min(spec.array.y_length_mm, wanted.y());
   spec.array.x_offset_mm = spec.array.y_offset_mm = 0.0;
-  remarks.emplace_back("a piece of the array");
+  remarks.emplace_back("a few elements of the array");
   if (spec.thickness_mm > wanted.minCoeff() && !spec.substrate) {
     const double top_mm = geometry::element_top_mm(spec.element, spec.angle_errors);
     spec.thickness_mm = std::max(1.5 * top_mm, 0.3 * wanted.minCoeff());
-    remarks.emplace_back("its plate is thicker than shown");
+    remarks.emplace_back("the plate is thicker than shown");
   }
   return piece;
 }

@@ -36,16 +36,17 @@ void check_film(const CameraRequest& r, bool is_infinite) {
   if (!is_infinite) {
     constexpr std::string_view need = "needs a design with extent = \"infinite\": ";
     if (r.cylinder_mm)
-      throw InputError(Field{"cylinder_mm"}, fmt::format("{}finite parts are plane in this version", need));
-    if (r.film_mm) throw InputError(Field{"film_mm"}, fmt::format("{}a finite part is seen in its own size", need));
+      throw InputError(Field{"cylinder_mm"}, fmt::format("{}finite parts are always plane in this version", need));
+    if (r.film_mm) throw InputError(Field{"film_mm"}, fmt::format("{}a finite part is shown in its own size", need));
     return;
   }
   const double least = film_of(r)[0] / std::numbers::pi;
   if (r.cylinder_mm && std::abs(*r.cylinder_mm) < least)
     throw InputError(
         Field{"cylinder_mm"},
-        fmt::format("must be at least {} or at most its negative, so that the sheet goes half round, got {}",
-                    shortest(least), shortest(*r.cylinder_mm)));
+        fmt::format(
+            "must be at least {0} or at most -{0}, so that the sheet covers at most half of the cylinder, got {1}",
+            shortest(least), shortest(*r.cylinder_mm)));
 }
 
 std::optional<PhotometricLamp> lamp_of(const CameraRequest& r) {
@@ -86,7 +87,7 @@ void check_place(const geometry::Part& part, const raytrace::CameraScene& scene,
   if (bad)
     throw InputError(field, fmt::format("the {} must be outside the {}, got {} mm", what,
                                         scene.film ? "body, in front of its face" : "part", text_of(place)));
-  if (place == scene.view.target_mm) throw InputError(field, "must be away from what is looked at");
+  if (place == scene.view.target_mm) throw InputError(field, "must differ from the point that the camera looks at");
 }
 
 double shown_width(const CameraRequest& r, const geometry::Part& part) {
@@ -141,10 +142,11 @@ CameraStudy::CameraStudy(Design design, CameraRequest request, raytrace::DiscAve
   lamp_ = lamp_of(request_);
   if (!is_unpolarised(design_.light.polarisation))
     throw InputError({design_.source, 0, "light.polarisation"},
-                     "cameras take unpolarised light in this version: leave it out");
+                     "camera images support only unpolarised light in this version: leave this key out");
   if (design_.surface.entrance.scatters())
     throw InputError(design_.where_entrance_scatters(),
-                     "cameras take no entrance face that scatters: use retrace rre, photometry or image --detector");
+                     "camera images do not support entrance faces that scatter light: use retrace rre, photometry or "
+                     "image --detector");
   check_film(request_, design_.is_endless());
   model_ = make_model(design_, materials::MaterialLibrary::shipped());
   scene_ = scene_of(request_, lamp_, model_.part);
@@ -276,16 +278,15 @@ CameraResult CameraStudy::run(Progress* progress, const Cancellation* cancel,
   if (result.complete && !request_.passes && result.image.relative_noise() > request_.noise)
     result.warnings.push_back(
         {"noise_above_target",
-         fmt::format("{}: the noise of {} is above the target of {} after {} passes, which would take about {:.2g} "
-                     "passes, but at most {} are allowed (the number of passes can be set)",
+         fmt::format("{}: the noise of {} is above the target of {} after {} passes. The target needs about {:.2g} "
+                     "passes, but at most {} are made unless you set the number of passes",
                      design_.source_name(), fixed(result.image.relative_noise(), 4), shortest(request_.noise),
                      result.image.passes, passes_needed(result.image, request_), kMostPasses)});
   if (result.complete && result.image.part_mean() == 0.0)
     result.warnings.push_back(
         {"no_light_found",
-         fmt::format("{}: no light comes to the camera from the part in {} passes: the part is dark, or bright paths "
-                     "are too rare to "
-                     "be found (the number of passes can be set)",
+         fmt::format("{}: no light from the part reaches the camera in {} passes: the part is dark, or bright paths "
+                     "are so rare that more passes are needed (set the number of passes)",
                      design_.source_name(), result.image.passes)});
   result.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

@@ -60,7 +60,7 @@ std::string boundary_finding(const Design& design, double element_mm) {
   bool is_whole = design.facet_planes() != nullptr || design.mask() != nullptr;
   const geometry::Part part =
       is_whole ? part_of(design) : geometry::build_part(part_to_check(design.part(), element_mm, is_whole));
-  if (part.placements.size() != 1) return "not checked: the elements differ too much in size from their array";
+  if (part.placements.size() != 1) return "not checked: the elements are too small compared with the array";
   const std::string finding = finding_of(part);
   return is_whole ? finding : finding + " (checked on a smaller array of the same elements)";
 }
@@ -84,7 +84,7 @@ double mean_index(const std::vector<SpectralOptics>& light) {
 /// Returns the properties of the elements that reduce the range of total reflection. Empty if there are none.
 std::string circumstances(const Inspection& result) {
   std::string text;
-  if (back_index(result) > 1.0) text += fmt::format(", {} behind them", shortest(back_index(result)));
+  if (back_index(result) > 1.0) text += fmt::format(", index {} behind the facets", shortest(back_index(result)));
   const geometry::Cant cant = geometry::cant_of(result.design.part().element);
   if (cant.deg > 0.0) text += fmt::format(", canted by {} degrees", shortest(cant.deg));
   return text;
@@ -99,12 +99,13 @@ std::string where_it_begins(const Inspection& result) {
   const auto from_deg =
       total_reflection_from_deg(part, least_index(result.light), back_index(result), Angle::from_deg(away_deg));
   if (!from_deg) return {};
-  return fmt::format("; it begins at {:.2f} degrees of incidence at azimuth {:.1f}", *from_deg, away_deg);
+  return fmt::format("; total reflection begins at {:.2f} degrees of incidence at azimuth {:.1f}", *from_deg, away_deg);
 }
 
 std::string of_turned_elements(const geometry::PartSpec& part) {
-  return part.array.arrangement == geometry::Arrangement::triangular ? "; of turned elements, 180 degrees from there"
-                                                                     : "";
+  return part.array.arrangement == geometry::Arrangement::triangular
+             ? "; for rotated elements, add 180 degrees to the azimuth"
+             : "";
 }
 
 /// Adds a warning about the limit of total reflection, for cube corners that are canted or have a medium other than air
@@ -166,9 +167,9 @@ void add_warnings(Inspection& result, const geometry::Part& part) {
   if (!part.spec.substrate) warn_of_lost_reflection(result);
   if (part.elements_partial > 0 && part.spec.array.partial_elements == geometry::PartialElements::cut)
     result.warnings.push_back(
-        {"partial_elements",
-         fmt::format("{}: {} elements are cut by the border; light that falls on them is mostly lost through its walls",
-                     result.design.source_name(), part.elements_partial)});
+        {"partial_elements", fmt::format("{}: {} elements are cut by the border; most of the light that falls on these "
+                                         "elements is lost through the walls on the border",
+                                         result.design.source_name(), part.elements_partial)});
 }
 
 Inspection inspect_balls(const Design& design, const materials::MaterialLibrary& library) {

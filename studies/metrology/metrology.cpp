@@ -57,7 +57,7 @@ void measure_edge(MetrologyResult& result, const HeightMap& whole) {
   const HeightMap map = thinned(whole);
   if (map.rows < whole.rows)
     result.warnings.push_back(
-        {"rows_subsampled", fmt::format("the edge is fitted to {} of {} rows, evenly spread", map.rows, whole.rows)});
+        {"rows_subsampled", fmt::format("the edge is fitted to {} of {} rows at equal spacing", map.rows, whole.rows)});
   std::vector<double> radius, chamfer, dihedral, radius_residual, chamfer_residual;
   std::string refusal;
   result.surface = map;
@@ -105,11 +105,14 @@ void warn(MetrologyResult& result, const HeightMap& map) {
   if (result.edge) return;  // the heights minus the edge do not describe the texture of a facet
   const auto& length = result.texture.correlation_length_um;
   if (!length && result.of_roughness.sq_nm > 0.0)
-    result.warnings.push_back({"no_correlation_length", "the roughness has no correlation length within the cut-off"});
+    result.warnings.push_back(
+        {"no_correlation_length",
+         "no correlation length: the autocorrelation of the roughness does not fall to 1/e within the cut-off"});
   if (length && *length < kLeastPointsPerLength * map.x_pixel_um)
-    result.warnings.push_back({"correlation_length_unresolved",
-                               fmt::format("the correlation length of {} um is not resolved by a spacing of {} um",
-                                           fixed(*length, 3), shortest(map.x_pixel_um))});
+    result.warnings.push_back(
+        {"correlation_length_unresolved",
+         fmt::format("the correlation length of {} um is not resolved by the point spacing of {} um", fixed(*length, 3),
+                     shortest(map.x_pixel_um))});
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ compute::StoreLayout optimise_layout(const Study& study) {
   for (const Parameter& parameter : study.parameters) layout.inputs.push_back(parameter.name);
   for (const auto& quantity : study.quantities) layout.outputs.push_back(quantity->name());
   layout.fault_of = [study](const compute::StoredPoint& point) -> std::string {
-    return values_of(study, point.inputs) ? "" : "the study's parameters do not allow its values";
+    return values_of(study, point.inputs) ? "" : "its values are not allowed by the parameters of the study";
   };
   return layout;
 }
@@ -74,7 +74,7 @@ class Scan {
       }
       if (longer.size() > kMostCombinations)
         throw InputError(parameter.location,
-                         fmt::format("more than {} combinations of discrete values", kMostCombinations));
+                         fmt::format("the study has more than {} combinations of discrete values", kMostCombinations));
       all = std::move(longer);
     }
     return all;
@@ -254,14 +254,14 @@ std::string why_not(const Variant& variant, const Variant& best, const OptimiseR
     const Constraint& constraint = request.constraints[k];
     const std::optional<double> value = evaluator.value(variant, constraint.quantity);
     why += fmt::format(
-        "{}{} breaks {}", why.empty() ? "" : "; ",
+        "{}{} violates {}", why.empty() ? "" : "; ",
         value ? fmt::format("{} = {:.6g}", constraint.quantity, *value) : constraint.quantity + " has no value and",
         constraint.text());
   }
   if (!why.empty()) return why;
   if (!variant.objective) return "a quantity of the objective has no value";
   const double less = *best.objective - *variant.objective;
-  if (less <= 0.0) return "as good, in more digits or found later";
+  if (less <= 0.0) return "equally good, but with more digits or found later";
   return fmt::format("objective lower by {:.3g}", less);
 }
 
@@ -280,12 +280,12 @@ std::vector<Rejected> excluded_designs(const OptimiseRequest& request, const Eva
   std::vector<Rejected> rejected;
   const auto better = [&](const Variant& variant) { return *variant.objective > *best.objective; };
   const auto any = best_excluded(evaluator, [&](const Variant& v) { return !v.broken.empty() && better(v); });
-  if (any) rejected.push_back({*any, "best but for its constraints", ""});
+  if (any) rejected.push_back({*any, "best without constraints", ""});
   for (std::size_t k = 0; k < request.constraints.size(); ++k) {
     const auto one =
         best_excluded(evaluator, [&](const Variant& v) { return v.broken == std::vector{k} && better(v); });
     if (one && one->number != any->number)
-      rejected.push_back({*one, "best but for " + request.constraints[k].text(), ""});
+      rejected.push_back({*one, "best without the constraint " + request.constraints[k].text(), ""});
   }
   return rejected;
 }
@@ -382,14 +382,14 @@ std::string why_none(const OptimiseRequest& request, const std::vector<Exclusion
       text += fmt::format("{}{} excludes all {} designs", text.empty() ? "" : ", and ", request.constraints[k].text(),
                           judged);
       if (std::isfinite(exclusions[k].least_violation))
-        text += fmt::format(" (the nearest misses it by {:.3g})", exclusions[k].least_violation);
+        text += fmt::format(" (the closest design violates it by {:.3g})", exclusions[k].least_violation);
     }
   if (!text.empty()) return text;
   for (std::size_t k = 0; k < exclusions.size(); ++k)
     if (exclusions[k].designs > 0)
       text += fmt::format("{}{} excludes {} of {} designs", text.empty() ? "" : ", ", request.constraints[k].text(),
                           exclusions[k].designs, judged);
-  return text.empty() ? "the objective has no value anywhere" : text + ": none is left";
+  return text.empty() ? "the objective has no value for any design" : text + ": no design satisfies all constraints";
 }
 
 void search(const Study& study, const OptimiseRequest& request, Evaluator& evaluator, const Cancellation* cancel,

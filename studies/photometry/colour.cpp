@@ -98,15 +98,15 @@ bool is_near(const ColourPoint& point) {
 OpenReason reason_of(const PhotometricColour& colour, const Photometer& photometer) {
   using Cause = OpenReason::Cause;
   if (colour.verdict() != Verdict::undetermined) return {};
-  if (!colour.chromaticity) return {Cause::no_light, std::nullopt, "no light comes back there"};
+  if (!colour.chromaticity) return {Cause::no_light, std::nullopt, "no light is returned in this direction"};
   if (colour.lacks_diffraction) {
     const NoDiffraction why = photometer.why_undiffracted();
-    return {Cause::diffraction, why, fmt::format("diffraction is left out, as {}", text_of(why))};
+    return {Cause::diffraction, why, fmt::format("diffraction is not included, because {}", text_of(why))};
   }
   if (colour.is_of_another_light)
     return {Cause::another_light, std::nullopt, "the boundaries are defined for CIE illuminant A only"};
   return {Cause::noise, std::nullopt,
-          "the colour is nearer to a boundary than two standard errors: " + photometer.remedy_for_noise()};
+          "the colour is within two standard errors of a boundary: " + photometer.remedy_for_noise()};
 }
 
 }  // namespace

@@ -49,7 +49,8 @@ bool concerns(const LimitLine& line, const TestProgramme& programme) {
 std::string choice(const std::vector<std::string>& there_are, const std::optional<std::string>& asked, Field field,
                    std::string_view of_what) {
   if (there_are.empty()) {
-    if (asked) throw InputError(field, fmt::format("{} has none, got {}", printable(of_what), in_quotes(*asked)));
+    if (asked)
+      throw InputError(field, fmt::format("must be left out for {}, got {}", printable(of_what), in_quotes(*asked)));
     return {};
   }
   if (!asked) {
@@ -107,8 +108,9 @@ void add_boundary(const LimitTable& table, const ColourBoundary& boundary, TestP
     return std::tie(b.observation_deg, b.v_deg, b.v_beside_deg, b.h_deg);
   };
   if (!programme.boundaries.empty() && geometry(programme.boundaries.front()) != geometry(boundary))
-    throw InputError({printable(table.source, std::string::npos), boundary.line, ""},
-                     fmt::format("must bound the colour at the angles of line {}", programme.boundaries.front().line));
+    throw InputError(
+        {printable(table.source, std::string::npos), boundary.line, ""},
+        fmt::format("must limit the colour at the same angles as line {}", programme.boundaries.front().line));
   programme.boundaries.push_back(boundary);
 }
 
@@ -117,7 +119,7 @@ void refuse_doubles(const LimitTable& table, const std::vector<TestPoint>& point
     for (std::size_t j = 0; j < k; ++j)
       if (same_geometry(points[j], points[k]))
         throw InputError({printable(table.source, std::string::npos), points[k].line, ""},
-                         fmt::format("gives the point of line {} again", points[j].line));
+                         fmt::format("repeats the test point of line {}", points[j].line));
 }
 
 }  // namespace
@@ -178,9 +180,9 @@ TestProgramme programme_of(const LimitTable& table, const std::optional<std::str
     const std::size_t before = programme.points.size();
     add_rows(known_colour(factor.of_colour), &factor);
     if (programme.points.size() == before)
-      throw InputError(
-          {printable(table.source, std::string::npos), factor.line, "minimum"},
-          fmt::format("must be so many times a colour that the table holds, got {}", in_quotes(factor.of_colour)));
+      throw InputError({printable(table.source, std::string::npos), factor.line, "minimum"},
+                       fmt::format("must be a multiple of a colour that the table contains, got the colour {}",
+                                   in_quotes(factor.of_colour)));
   }
   refuse_doubles(table, programme.points);
   for (const LimitArea& area : table.areas)

@@ -54,7 +54,7 @@ OpticalModel model_of(const Design& design, const materials::MaterialLibrary& li
 void check_balls(const Design& design) {
   if (!design.balls()->pitch_mm)
     throw InputError(design.where("element.kind"),
-                     "photometry takes layers of balls: give array.arrangement = \"packed\"");
+                     "photometry does not support a single ball: give array.arrangement = \"packed\"");
 }
 
 /// Refuses an engine that cannot trace a design. Textures and entrance faces that scatter are refused by
@@ -74,11 +74,9 @@ void check_engine(const Design& design, const raytrace::EngineFacts& facts, Engi
       [[fallthrough]];
     case Obstacle::form:
     case Obstacle::form_and_texture:
-      throw InputError(
-          design.where_form(),
-          fmt::format("facets with a form are traced exactly with diffraction and without a texture alone: use {} "
-                      "montecarlo",
-                      reference({"engine"})));
+      throw InputError(design.where_form(), fmt::format("the exact engine traces facets with a form only with "
+                                                        "diffraction and without a texture: use {} montecarlo",
+                                                        reference({"engine"})));
     default: return;
   }
 }

@@ -57,8 +57,8 @@ constexpr double kLeastBeamsOfCell = 10.0;
 
 [[noreturn]] void fail_on_memory() {
   throw TraceBudgetError(
-      fmt::format("the far field of so many elements exceeds {}: give a larger budget, compute without diffraction, or "
-                  "use {} montecarlo",
+      fmt::format("the far field of all elements exceeds {}: give a larger budget, compute without diffraction, or use "
+                  "{} montecarlo",
                   memory_budget_text(), reference({"engine"})));
 }
 

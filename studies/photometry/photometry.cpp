@@ -58,10 +58,9 @@ void check(const PhotometrySettings& settings) {
   if (settings.cutoff == 0.0) throw InputError(Field{"cutoff"}, "must be > 0 for photometry, got 0");
   for (const TestPoint& point : settings.programme.points)
     if (!(point.observation_deg <= settings.window_deg))
-      throw InputError(
-          {settings.limits_source, point.line, "observation_deg"},
-          fmt::format("must lie within the far field that is computed, {} {}, got {}", reference({"window_deg"}),
-                      shortest(settings.window_deg), shortest(point.observation_deg)));
+      throw InputError({settings.limits_source, point.line, "observation_deg"},
+                       fmt::format("must be within the computed far field ({} {}), got {}", reference({"window_deg"}),
+                                   shortest(settings.window_deg), shortest(point.observation_deg)));
 }
 
 /// Geometries that are measured (settings). Each direction of light has one setting with all its observation angles.
@@ -278,10 +277,10 @@ PhotometricLight light_from_name(std::string_view name) {
 std::string text_of(const NoDiffraction& reason) {
   if (const auto* obstacle = std::get_if<raytrace::Obstacle>(&reason)) return raytrace::traced_by(*obstacle, "rays");
   switch (std::get<Undiffracted>(reason)) {
-    case Undiffracted::not_requested: return "it was not asked for";
-    case Undiffracted::unequal_cells: return "its cells differ too much to compute the diffraction of each";
-    case Undiffracted::too_many_beams: return "the exact engine would take too many beams";
-    case Undiffracted::monte_carlo: return "the Monte-Carlo engine has none";
+    case Undiffracted::not_requested: return "it was not requested";
+    case Undiffracted::unequal_cells: return "the cells differ too much to compute the diffraction of each cell";
+    case Undiffracted::too_many_beams: return "the exact engine would need too many beams";
+    case Undiffracted::monte_carlo: return "the Monte-Carlo engine does not compute it";
   }
   return "";
 }
@@ -335,9 +334,10 @@ PhotometryStudy::PhotometryStudy(Design design, PhotometrySettings settings) : p
   check(settings);
   prepared_->photometer = std::make_unique<Photometer>(design, settings, materials::kSpectralParts);
   if (settings.engine == Engine::exact && !prepared_->photometer->is_exact())
-    throw InputError(Field{"engine"},
-                     fmt::format("exact needs plane smooth faces, and those of {} scatter: use {} montecarlo",
-                                 design.source_name(), reference({"engine"})));
+    throw InputError(
+        Field{"engine"},
+        fmt::format("exact needs plane and smooth faces, but the faces of {} scatter light: use {} montecarlo",
+                    design.source_name(), reference({"engine"})));
   prepared_->plan = plan_of(settings, mirrors_source(design));
   prepared_->design = std::move(design);
   prepared_->request = std::move(settings);
@@ -382,11 +382,11 @@ OpenReason reason_of(const std::vector<PhotometricPoint>& points, const Photomet
   if (std::none_of(points.begin(), points.end(), is_open)) return {};
   if (std::none_of(points.begin(), points.end(), [](const PhotometricPoint& p) { return p.lacks_diffraction; }))
     return {OpenReason::Cause::noise, std::nullopt,
-            "a value is nearer to its limit than two standard errors: " + photometer.remedy_for_noise()};
+            "a value is within two standard errors of its limit: " + photometer.remedy_for_noise()};
   const NoDiffraction why = photometer.why_undiffracted();
   return {OpenReason::Cause::diffraction, why,
-          fmt::format("diffraction is left out, as {}, and counts for cells narrower than {} mm", text_of(why),
-                      fixed(photometer.least_undiffracted_mm(), 1))};
+          fmt::format("diffraction is not included, because {}, but it is significant for cells narrower than {} mm",
+                      text_of(why), fixed(photometer.least_undiffracted_mm(), 1))};
 }
 
 /// Measures with the exact engine, or by Monte Carlo if the exact engine needs too many beams and the request allows
@@ -481,8 +481,8 @@ PhotometryResult PhotometryStudy::run(Progress* progress, const Cancellation* ca
   result.has_diffraction = photometer.has_diffraction();
   if (request.diffraction && !result.has_diffraction)
     result.warnings.push_back(
-        {"no_diffraction", fmt::format("{}: the Monte-Carlo engine has no diffraction, which spreads the light of "
-                                       "cells under {} mm",
+        {"no_diffraction", fmt::format("{}: the Monte-Carlo engine does not include diffraction, which is significant "
+                                       "for cells narrower than {} mm",
                                        design.source_name(), fixed(photometer.least_undiffracted_mm(), 1))});
   result.complete = readings.has_value();
   if (readings) {

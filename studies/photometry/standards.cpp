@@ -27,36 +27,37 @@ std::span<const ShippedStandard> shipped_standards() {
        "UN Regulations 3 and 150, reflex reflectors",
        arcmin(10.0, 10.0),
        {0.0},
-       "apertures of 10 minutes of arc; rotation 0; at V = 5 and -5 in place of 0 where the face mirrors"},
+       "apertures of 10 minutes of arc; rotation 0; V = 5 and -5 instead of 0 if the face reflects the lamp to the "
+       "receiver"},
       {"j594", "SAE J594 / FMVSS 108 XVI-a", "SAE J594 and FMVSS 108 table XVI-a, reflex reflectors", arcmin(5.6, 2.3),
        all_round(),
-       "source of 50 mm and receiver of 13 x 25 mm at 30.5 m, as a summary of J594-2018 has them; the least value over "
-       "a whole turn, as of parts that may be mounted any way up"},
+       "source of 50 mm and receiver of 13 x 25 mm at 30.5 m, according to a summary of J594-2018; minimum over a full "
+       "rotation, as for parts that may be mounted in any orientation"},
       {"bicycle",
        "16 CFR 1512",
        "16 CFR 1512.16, bicycle reflectors",
        arcmin(10.0, 10.0),
        {0.0},
-       "unconfirmed: apertures of 10 minutes of arc are those of CIE 54.2, the regulation's own are not known; "
+       "unconfirmed: apertures of 10 minutes of arc as in CIE 54.2, because those of the regulation are not known; "
        "rotation 0"},
       {"d4956",
        "ASTM D4956",
        "ASTM D4956-01, retroreflective sheeting for traffic control",
        arcmin(10.0, 10.0),
        {0.0},
-       "unconfirmed: apertures of 10 minutes of arc are those of CIE 54.2; rotation 0"},
+       "unconfirmed: apertures of 10 minutes of arc as in CIE 54.2; rotation 0"},
       {"iso20471",
        "ISO 20471",
        "ISO 20471, separate performance retroreflective material of high visibility clothing",
        arcmin(10.0, 10.0),
        {0.0},
-       "unconfirmed: apertures of 10 minutes of arc are those of CIE 54.2; rotation 0"},
+       "unconfirmed: apertures of 10 minutes of arc as in CIE 54.2; rotation 0"},
       {"stvzvo",
        "StVZVO 1998",
        "Austrian StVZVO 1998, sheeting of road signs (until 2013)",
        arcmin(10.0, 10.0),
        {0.0},
-       "unconfirmed: apertures of 10 minutes of arc are those of CIE 54.2; rotation 0"},
+       "unconfirmed: apertures of 10 minutes of arc as in CIE 54.2; rotation 0"},
   }};
   return all;
 }

@@ -47,7 +47,7 @@ class PhotometricQuantity final : public Quantity {
     if (choice_.reading) {
       if (!point.v_beside_deg.empty()) v_deg = point.v_beside_deg.at(choice_.reading->beside);
       const double turn_deg = table_->request.rotation_deg.at(choice_.reading->turn);
-      if (turn_deg != 0.0) turn = fmt::format(", turned {:g}", turn_deg);
+      if (turn_deg != 0.0) turn = fmt::format(", rotated {:g}", turn_deg);
     }
     return fmt::format("{:.3g}' V {:g} H {:g}{}", 60.0 * point.observation_deg, v_deg, point.h_deg, turn);
   }

@@ -142,7 +142,7 @@ class ShareQuantity final : public Quantity {
 const geometry::RtpElement& prism_of(const Candidate& candidate) {
   check_taken(candidate.design(), {.what = "machining time", .substrates = false, .wet_backs = true});
   const auto* prism = std::get_if<geometry::RtpElement>(&candidate.design().part().element);
-  if (prism == nullptr) throw InputError("machining time is known for prisms (element.kind = \"rtp\") alone");
+  if (prism == nullptr) throw InputError("machining time can be computed only for prisms (element.kind = \"rtp\")");
   return *prism;
 }
 

@@ -19,10 +19,11 @@ namespace {
 void check(const Design& design) {
   check_taken(design, {.what = "retrace roughness", .solids = true});
   if (!design.surface.is_smooth())
-    throw InputError(design.where_texture(), "must be left out here: the roughness is what is varied");
+    throw InputError(design.where_texture(), "must be left out, because retrace roughness varies the roughness");
   if (design.detector.acceptance_half_angle_deg.size() != 1)
     throw InputError({design.source_name(), 0, "detector.acceptance_half_angle_deg"},
-                     fmt::format("must be one angle here, got {}", design.detector.acceptance_half_angle_deg.size()));
+                     fmt::format("must be a single angle for retrace roughness, got {}",
+                                 design.detector.acceptance_half_angle_deg.size()));
 }
 
 /// Returns the design with the facet texture of a point.

@@ -233,8 +233,8 @@ std::vector<RreDerivative> derivatives_by(RreParameter parameter, const TracedDi
 std::string_view text_of(NoDerivative reason) {
   switch (reason) {
     case NoDerivative::count_changes: return "the number of elements changes here";
-    case NoDerivative::too_many_beams: return "far more beams are needed nearby";
-    case NoDerivative::no_part: return "no part can be built nearby";
+    case NoDerivative::too_many_beams: return "slightly different values need far more beams";
+    case NoDerivative::no_part: return "no part can be built for slightly different values";
     case NoDerivative::truncated_power: return "the truncated power is too large for a derivative here";
     case NoDerivative::not_smooth: return "RRE has a kink or a jump here";
   }

@@ -124,7 +124,8 @@ void put_in_order(std::vector<Direction>& directions, const std::vector<double>&
 std::string told(const AdaptiveCurve& curve) {
   if (curve.worst_left() == 0.0) return {};
   return fmt::format(
-      "{} angles of incidence chosen in each range are not enough: straight lines between them may miss RRE by {:.2g}",
+      "{} angles of incidence in each range do not resolve the curve: linear interpolation between them may deviate "
+      "from RRE by {:.2g}",
       AdaptiveCurve::kMostPlaces, curve.worst_left());
 }
 

@@ -41,9 +41,9 @@ void check(const RreSettings& request) {
 /// sizes, but a table of facet planes or a mask does not change with the size.
 void check_planes(const Design& design, const RreSettings& request) {
   if (request.derivatives && design.facet_planes())
-    throw InputError(design.where("part.facets"), "has no derivatives: leave out " + reference({"derivatives"}));
+    throw InputError(design.where("part.facets"), "not allowed together with " + reference({"derivatives"}));
   if (request.derivatives && design.mask())
-    throw InputError(design.where("array.mask"), "has no derivatives: leave out " + reference({"derivatives"}));
+    throw InputError(design.where("array.mask"), "not allowed together with " + reference({"derivatives"}));
 }
 
 /// Refuses results that are defined at a single wavelength for light with a spectrum. Averaging them over a spectrum is
@@ -52,8 +52,8 @@ void check_light(const Design& design, const OpticalModel& model, const RreSetti
   if (model.spectral.size() < 2) return;
   for (const Field result : exact_results(request))
     throw InputError(design.where("light.spectrum"),
-                     fmt::format("{} takes one wavelength and this light has {}: give light.wavelength_nm instead, "
-                                 "or --set light.spectrum=[[{:.0f},1]]",
+                     fmt::format("{} needs a single wavelength, but this light has {}: give light.wavelength_nm "
+                                 "instead, or --set light.spectrum=[[{:.0f},1]]",
                                  reference(result), model.spectral.size(), model.wavelength_nm));
 }
 
@@ -81,10 +81,11 @@ void check_engine(const Design& design, const raytrace::EngineFacts& facts, Engi
   const std::string option = reference({"engine"});
   const auto refused_beams = [&](std::string_view what) {
     const bool may_resample = !raytrace::why_not(Engine::stochastic, facts);
-    return InputError(position_of(design, *obstacle),
-                      fmt::format("{} a beam into infinitely many: use {} {}montecarlo, without {}, {} and {}", what,
-                                  option, may_resample ? "stochastic or " : "", reference({"footprint"}),
-                                  reference({"far_field"}), reference({"derivatives"})));
+    return InputError(
+        position_of(design, *obstacle),
+        fmt::format("{} a beam into infinitely many directions: use {} {}montecarlo, without {}, {} and {}", what,
+                    option, may_resample ? "stochastic or " : "", reference({"footprint"}), reference({"far_field"}),
+                    reference({"derivatives"})));
   };
   switch (*obstacle) {
     case Obstacle::balls:
@@ -95,18 +96,17 @@ void check_engine(const Design& design, const raytrace::EngineFacts& facts, Engi
                        fmt::format("{} supports only plane entrance faces, but {} has a [front]: use {} embree", name,
                                    source, option));
     case Obstacle::unequal_backs:
-      throw InputError(
-          Field{"engine"},
-          fmt::format("{} takes backs that are all alike, {} has a [wet_back] behind some elements: use {} embree",
-                      name, source, option));
+      throw InputError(Field{"engine"}, fmt::format("{} supports only the same medium behind all elements, but {} has "
+                                                    "a [wet_back] behind some elements: use {} embree",
+                                                    name, source, option));
     case Obstacle::unequal_cells:
       throw InputError(Field{"engine"},
-                       fmt::format("cell takes endless arrays, and arrays of equal elements that reach more than two "
-                                   "elements from every border; {} is neither: use {} embree",
+                       fmt::format("cell supports only infinite arrays, and arrays of equal elements that are more "
+                                   "than two elements away from every border, but {} is neither: use {} embree",
                                    source, option));
-    case Obstacle::texture: throw refused_beams("rough facets split");
-    case Obstacle::form: throw refused_beams("facets with a form bend");
-    case Obstacle::scattering_entrance: throw refused_beams("entrance faces that scatter split");
+    case Obstacle::texture: throw refused_beams("rough facets scatter");
+    case Obstacle::form: throw refused_beams("facets with a form deflect");
+    case Obstacle::scattering_entrance: throw refused_beams("contaminated or rough entrance faces scatter");
     default:
       throw InputError(position_of(design, *obstacle),
                        fmt::format("{} cannot trace {}: use {} embree", name, raytrace::subject_of(*obstacle), option));
@@ -116,7 +116,8 @@ void check_engine(const Design& design, const raytrace::EngineFacts& facts, Engi
 /// Refuses results that the exact engine does not compute for a kind of designs.
 void check_results(const Design& design, const raytrace::EngineFacts& facts, const RreSettings& request) {
   for (const Field result : exact_results(request)) {
-    if (facts.has_balls) throw InputError(design.where("element.kind"), "balls have no " + reference(result));
+    if (facts.has_balls)
+      throw InputError(design.where("element.kind"), "balls are not supported by " + reference(result));
     if (facts.has_curved_entrance || facts.has_unequal_backs)
       check_taken(design, {.what = reference(result), .solids = true});
   }

@@ -56,7 +56,7 @@ std::string fate_of(const raytrace::LightPath& path) {
     return fmt::format("leaves through the entrance face at {} deg from the direction to the source",
                        fixed_visible(path.deviation_deg, 1));
   if (last == PathEvent::leaves_side) return "leaves through a side";
-  return last == PathEvent::escapes ? "is lost behind the part" : "fades inside";
+  return last == PathEvent::escapes ? "is lost behind the part" : "loses its power inside the part";
 }
 
 }  // namespace retrace::studies

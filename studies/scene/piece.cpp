@@ -38,7 +38,7 @@ FewElements few_elements(const Design& design, double elements) {
   if (design.mask()) remarks.push_back("the mask is not shown");
   if (!design.surface.is_smooth()) remarks.push_back("facets are shown smooth");
   if (!design.surface.form.is_plane()) remarks.push_back("facets are shown plane");
-  if (design.wet_back) remarks.push_back("wet backs are shown dry");
+  if (design.wet_back) remarks.push_back("wet elements are shown dry");
   small.surface.entrance = {};
   if (!design.surface.entrance.is_clean()) remarks.push_back("the entrance face is shown clean");
   if (design.facet_planes()) remarks.push_back("facets are shown as designed");
@@ -56,7 +56,7 @@ FewElements few_elements(const Design& design, double elements) {
       spec.array.y_length_mm = spec.array.y_length_mm > 0.0 ? std::min(spec.array.y_length_mm, wanted.y()) : wanted.y();
       spec.array.x_offset_mm = spec.array.y_offset_mm = 0.0;
       is_cut = true;
-      remarks.push_back("a piece of the array is shown");
+      remarks.push_back("only a few elements of the array are shown");
     }
   }
   const double top_mm = geometry::element_top_mm(spec.element, spec.angle_errors);
@@ -135,7 +135,7 @@ Piece::Piece(const Design& design, const materials::MaterialLibrary& library, do
   if (mesh_.triangles.size() > kMostTriangles) {
     mesh_.triangles.resize(kMostTriangles);
     mesh_.roles.resize(kMostTriangles);
-    remarks_.push_back("a part of the mesh is shown");
+    remarks_.push_back("only a part of the mesh is shown");
   }
   edges_ = sharp_edges(mesh_);
   centre_mm_ = geometry::bounding_box(model_.part.outline).middle();

@@ -48,9 +48,9 @@ geometry::PartSpec spec_of(const Design& design, SolidKind what) {
                                  reference({"what"}), name_of(what)));
   const double elements = estimated_elements(spec);
   if (elements > static_cast<double>(kMostSolidElements))
-    throw InputError(
-        {design.source_name(), 0, "array.x_length_mm"},
-        fmt::format("the solid would have some {:.0f} elements, at most {} are written", elements, kMostSolidElements));
+    throw InputError({design.source_name(), 0, "array.x_length_mm"},
+                     fmt::format("the solid would have about {:.0f} elements, but at most {} can be exported", elements,
+                                 kMostSolidElements));
   return spec;
 }
 
@@ -74,10 +74,11 @@ void add_warnings(Solid& solid) {
         {"touching_edges", name + ": the part touches itself along edges; some programs treat it as an open surface"});
   if (!solid.design.surface.is_smooth())
     solid.warnings.push_back(
-        {"texture_omitted", name + ": the texture of the facets is left out: a solid's facets are plane"});
+        {"texture_omitted",
+         name + ": the texture of the facets is not exported, because the facets of solids are plane"});
   if (!solid.design.surface.form.is_plane())
     solid.warnings.push_back(
-        {"form_omitted", name + ": the form of the facets is left out: a solid's facets are plane"});
+        {"form_omitted", name + ": the form of the facets is not exported, because the facets of solids are plane"});
 }
 
 geometry::Part part_to_write(const Design& design, SolidKind what) {
@@ -86,11 +87,11 @@ geometry::Part part_to_write(const Design& design, SolidKind what) {
   if (!design.facet_planes() && !design.mask()) return geometry::build_welded_part(spec);
   if (what == SolidKind::element)
     throw InputError(design.where("part.facets"),
-                     reference({"what"}) + " element has no planes of single facets; export the array");
+                     reference({"what"}) + " element does not support planes of individual facets: export the array");
   geometry::Part part = part_of(design);
   if (part.placements.size() != 1)
     throw InputError(design.where(design.mask() ? "array.mask" : "part.facets"),
-                     "arrays of more than some 2000 such elements are not exported");
+                     "arrays with such elements can be exported only up to about 2000 elements");
   return part;
 }
 

@@ -67,8 +67,8 @@ Sweep::Sweep(Study study, Combine combine, std::uint64_t samples) : study_(std::
   for (const Parameter& parameter : study_.parameters)
     if (parameter.values.empty())
       throw InputError(parameter.location,
-                       "a grid needs values, or a range with step or count; an interval or a distribution is for "
-                       "sweep.combine = \"sobol\", \"latin_hypercube\" and \"monte_carlo\"");
+                       "a grid needs values, or a range with step or count; an interval or a distribution is only "
+                       "allowed for sweep.combine = \"sobol\", \"latin_hypercube\" and \"monte_carlo\"");
   size_ = combine == Combine::grid ? grid_size(study_) : zipped_size(study_);
 }
 
@@ -319,8 +319,9 @@ SweepResult collect(const Sweep& sweep, const compute::ResultStore& store, bool 
                                       result.points.size(), first->point, first->reason)});
   for (const compute::StoredPoint& point : result.points)
     if (point.version != kVersion) {
-      result.warnings.push_back({"other_version", fmt::format("some points are from version {}, this is version {}",
-                                                              point.version, kVersion)});
+      result.warnings.push_back(
+          {"other_version",
+           fmt::format("some points were computed by version {}, but this is version {}", point.version, kVersion)});
       break;
     }
   return result;

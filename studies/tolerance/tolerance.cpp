@@ -167,11 +167,9 @@ void add_warnings(const ToleranceRequest& request, ToleranceResult& result) {
                                               quantity.quantity, quantity.without, result.parts)});
     if (quantity.noise && *quantity.noise > kMuchNoise)
       result.warnings.push_back(
-          {"noisy_values",
-           fmt::format(
-               "{}: the standard error of its values is {:.2g} of their deviation: part of the spread is noise; "
-               "a smaller analysis.target_error helps",
-               quantity.quantity, *quantity.noise)});
+          {"noisy_values", fmt::format("{}: the standard error of the values is {:.2g} of their standard deviation, so "
+                                       "that part of the spread is noise: give a smaller analysis.target_error",
+                                       quantity.quantity, *quantity.noise)});
     if (request.indices && quantity.rows > 1 && quantity.indices.empty())
       result.warnings.push_back(
           {"no_variation", fmt::format("{}: has no Sobol indices because it does not vary", quantity.quantity)});

@@ -47,14 +47,14 @@ std::vector<ValidationRow> ball_validation() {
     rows.push_back(std::move(row));
   };
   const BallLayer one{1.0, 0.0, 90.0, std::nullopt};
-  add({.quantity = "n = 1.5: radius of the bowl in the paraxial focus, over that of the ball, n / (2 (n - 1))",
+  add({.quantity = "n = 1.5: ratio of the radius of a bowl in the paraxial focus to that of the ball, n / (2 (n - 1))",
        .expected = 1.5 / (2.0 * 0.5),
        .allowed = 1e-6,
-       .why = "sought with a ray at 1e-4 of the radius",
+       .why = "found with a ray at 1e-4 of the radius",
        .compute = [](auto) {
          return root_of(1.1, 2.0, [](double bowl) { return return_error_rad(1e-4, 1.5, 1.0, bowl); });
        }});
-  add({.quantity = "n = 1.93: height over radius that comes straight back, n sqrt(1 - n^2 / 4)",
+  add({.quantity = "n = 1.93: ratio of height to radius without return error, n sqrt(1 - n^2 / 4)",
        .expected = 1.93 * std::sqrt(1.0 - 1.93 * 1.93 / 4.0),
        .allowed = 1e-9,
        .why = "rounding",
@@ -65,18 +65,18 @@ std::vector<ValidationRow> ball_validation() {
        .unit = "urad",
        .expected = 0.25,
        .allowed = 1e-4,
-       .why = "fifth order in h",
+       .why = "terms of fifth order in h",
        .compute = [](auto) { return 1e6 * return_error_rad(0.01, 2.0, 1.0, 1.0); }});
   // Height h of the incident ray, in ball radii, at which the return error 2 asin h - 4 asin(h / 2) is 0.5 degrees.
   const double edge = root_of(0.0, 0.9, [](double h) {
     return 2.0 * std::asin(h) - 4.0 * std::asin(0.5 * h) - 0.5 * std::numbers::pi / 180.0;
   });
-  add({.quantity = "n = 2: share of the aperture that comes back within 0.5 deg",
+  add({.quantity = "n = 2: fraction of the aperture with a return error within 0.5 deg",
        .expected = edge * edge,
        .allowed = 2.5e-4,
        .why = "one ray of a replicate",
        .compute = [one](auto cancel) { return traced(one, 2.0, cancel).rre; }});
-  add({.quantity = "share of the plan that packed balls cover, pi / (2 sqrt 3)",
+  add({.quantity = "fraction of the plan area that packed balls cover, pi / (2 sqrt 3)",
        .expected = 0.5 * std::numbers::pi / std::numbers::sqrt3,
        .allowed = 1e-3,
        .why = "131,072 rays",

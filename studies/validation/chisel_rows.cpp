@@ -49,15 +49,16 @@ void add_words(std::vector<ValidationRow>& rows) {
     std::array<double, 3> words_mm;
   };
   const auto add = [&](ValidationRow row) {
-    row.topic = "Kinematics of a table that tilts";
+    row.topic = "Kinematics of a tilting table";
     rows.push_back(std::move(row));
   };
   for (const Position& position :
        {Position{45, 0, {10, 15.050252532, -6.263455967}}, Position{45, 180, {-10, 7.979184720, -13.334523779}},
         Position{45, 90, {-5, 18.585786438, -2.727922061}}, Position{0, 90, {-5, 10, 2}}})
     for (std::size_t k = 0; k < 3; ++k)
-      add({.quantity = fmt::format("word {} of (10, 5, 2) mm at A {} C {}, A through (0, 20, 10) mm", kLinearAxes[k],
-                                   position.a_deg, position.c_deg),
+      add({.quantity =
+               fmt::format("axis word {} of the point (10, 5, 2) mm at A {} C {}, axis A through (0, 20, 10) mm",
+                           kLinearAxes[k], position.a_deg, position.c_deg),
            .unit = "mm",
            .reference = Reference::independent,
            .expected = position.words_mm[k],
@@ -72,7 +73,8 @@ void add_words(std::vector<ValidationRow>& rows) {
            }});
   constexpr std::array<double, 3> kMisalignmentUm = {13.95, -11.58, -8.10};
   for (std::size_t k = 0; k < 3; ++k)
-    add({.quantity = fmt::format("word {} at (6, 6, 0) mm, A 45 C 180: measured axes less ideal ones", kLinearAxes[k]),
+    add({.quantity = fmt::format("axis word {} of the point (6, 6, 0) mm at A 45 C 180: measured minus ideal axes",
+                                 kLinearAxes[k]),
          .unit = "um",
          .reference = Reference::independent,
          .expected = kMisalignmentUm[k],
@@ -94,7 +96,7 @@ void add_poses(std::vector<ValidationRow>& rows) {
     double a_deg, c_deg, tilt_arcmin;
   };
   const auto add = [&](ValidationRow row) {
-    row.topic = "Poses in which facets are plunged";
+    row.topic = "Rotary poses for plunging facets";
     row.reference = Reference::independent;
     row.source = "solved by another program";
     rows.push_back(std::move(row));
@@ -116,7 +118,7 @@ void add_poses(std::vector<ValidationRow>& rows) {
          .allowed = 5e-7,
          .why = "six decimals",
          .compute = [solved](auto) { return pose_of(solved.machine, solved.facet).pose.c_deg; }});
-    add({.quantity = facet + "tilt of the root against the edge",
+    add({.quantity = facet + "angle between root and tool edge",
          .unit = "arcmin",
          .expected = solved.tilt_arcmin,
          .allowed = 5e-3,
@@ -135,20 +137,20 @@ void add_poses(std::vector<ValidationRow>& rows) {
     return std::atan2(a.cross(b).norm(), a.dot(b)) * kArcminPerRad;
   };
   for (const auto& [facet, off_arcmin] : {std::pair{1, 5.06}, {2, 5.42}})
-    add({.quantity = fmt::format("machine paper planned as ideal: normal of facet {} off by", facet),
+    add({.quantity = fmt::format("machine paper, planned for ideal axes: error of the normal of facet {}", facet),
          .unit = "arcmin",
          .expected = off_arcmin,
          .allowed = 5e-3,
          .why = "two decimals",
          .compute = [=, facet = facet](auto) { return angle_arcmin(cut_normal(facet), normal_of(facet)); }});
-  add({.quantity = "machine paper planned as ideal: right angle between the facets off by",
+  add({.quantity = "machine paper, planned for ideal axes: error of the right angle between the facets",
        .unit = "arcmin",
        .expected = 3.32,
        .allowed = 5e-3,
        .why = "two decimals",
        .compute = [=](auto) { return std::abs(angle_arcmin(cut_normal(1), cut_normal(2)) - 90.0 * 60.0); }});
   rows.push_back(
-      {.topic = "Poses in which facets are plunged",
+      {.topic = "Rotary poses for plunging facets",
        .quantity = "tilt of the head at the facets of cube corners, asin(1 / sqrt 3)",
        .unit = "deg",
        .expected = std::asin(1.0 / std::numbers::sqrt3) * 180.0 / std::numbers::pi,
@@ -204,7 +206,7 @@ void add_cuts_and_times(std::vector<ValidationRow>& rows) {
                           fabrication::cuts_per_facet(job_of(c.base_mm, 1, c.depth_um, c.strategy)));
                     }});
     rows.push_back({.topic = kTopic,
-                    .quantity = cuts + ", of a study",
+                    .quantity = cuts + ", in a study",
                     .reference = Reference::published,
                     .expected = c.cuts,
                     .source = c.source,
@@ -239,18 +241,18 @@ void add_cuts_and_times(std::vector<ValidationRow>& rows) {
                   }});
   constexpr double kMeasuredS = 3600.0 * 0.0081;
   rows.push_back({.topic = kTopic,
-                  .quantity = "0.451 mm: the same, slope over 1 to 1244 elements by the clock",
+                  .quantity = "0.451 mm: time per element, from the measured times of 1 to 1244 elements",
                   .unit = "s",
                   .reference = Reference::published,
                   .expected = kMeasuredS,
                   .source = "Milliken 2017, section 2.7: 0.0081 h",
                   .allowed = 0.06 * kMeasuredS,
-                  .why = "6 %: accelerations and turns of the table are no part of the path",
+                  .why = "6 %: accelerations and rotations of the table are not part of the path",
                   .compute = [](auto) {
                     return seconds_per_element({0.451, 0.451, 90.0}, {});
                   }});
   rows.push_back({.topic = kTopic,
-                  .quantity = "613 elements planned for the machine of the thesis: time of one",
+                  .quantity = "613 elements planned for the machine of the thesis: time per element",
                   .unit = "s",
                   .reference = Reference::published,
                   .expected = kMeasuredS,
@@ -262,7 +264,7 @@ void add_cuts_and_times(std::vector<ValidationRow>& rows) {
                     return plan.time.total_s() / static_cast<double>(plan.elements.size());
                   }});
   rows.push_back({.topic = kTopic,
-                  .quantity = "613 elements planned for the machine of the thesis: aperture per hour",
+                  .quantity = "613 elements planned for the machine of the thesis: aperture area per hour",
                   .unit = "mm2/h",
                   .reference = Reference::published,
                   .expected = 25.1,
@@ -274,7 +276,7 @@ void add_cuts_and_times(std::vector<ValidationRow>& rows) {
                     return plan.aperture_area_mm2 / (plan.time.total_s() / 3600.0);
                   }});
   rows.push_back({.topic = kTopic,
-                  .quantity = "2 finishing cuts of each facet, routines kept apart: turns of C",
+                  .quantity = "2 finishing cuts of each facet, separate routines: rotations of C",
                   .reference = Reference::published,
                   .expected = 4.0,
                   .source = "Milliken 2017, chapter 2",
@@ -293,17 +295,17 @@ void add_reach(std::vector<ValidationRow>& rows) {
     return fabrication::chisel_reach(geometry::TriangularCube{1.0}, tool);
   };
   const auto add = [&](ValidationRow row) {
-    row.topic = "What a chisel of 0.2 mm reaches of a triangle of 1 mm";
+    row.topic = "Facet area that a chisel of 0.2 mm reaches in a triangular cube corner of 1 mm";
     row.source = "docs/theory/micro_chiseling.md";
     rows.push_back(std::move(row));
   };
-  add({.quantity = "share of a facet, 1 - w^2 / (4 area), by cutting",
+  add({.quantity = "fraction of a facet, 1 - w^2 / (4 area), by simulated plunges",
        .unit = "%",
        .expected = 100.0 * (1.0 - kWidthMm * kWidthMm / (4.0 * facet_mm2)),
        .allowed = 1.0,
-       .why = "counted at 1830 places of a facet, up to 14 of them along the triangle's side",
+       .why = "counted at 1830 points of a facet, up to 14 of them along the side of the triangle",
        .compute = [reach](auto) { return 100.0 * reach().cut_share; }});
-  add({.quantity = "core over the apex, sqrt 3 w / (2 (sqrt 2 - cot rho)), by cutting",
+  add({.quantity = "height of the core over the apex, sqrt 3 w / (2 (sqrt 2 - cot rho)), by simulated plunges",
        .unit = "mm",
        .expected = std::numbers::sqrt3 * kWidthMm /
                    (2.0 * (std::numbers::sqrt2 - 1.0 / std::tan(53.0 * std::numbers::pi / 180.0))),

@@ -65,7 +65,7 @@ std::vector<ValidationRow> force_validation() {
     std::optional<double> allowed;
     const char* why;
   };
-  constexpr const char* kCalibrated = "the model is calibrated on it";
+  constexpr const char* kCalibrated = "the model is calibrated with this value";
   const CutConditions five = experiment_1(5.0);
   const CutConditions ten = experiment_1(10.0);
   for (const Event& e :
@@ -81,7 +81,7 @@ std::vector<ValidationRow> force_validation() {
         Event{experiment_2(), "2, 5 um", "full chip, Fz", &ForceEvents::full_chip_fz_n, -1.29, 0.02 * 1.29,
               "2 %: predicted from experiment 1"},
         Event{experiment_2(), "2, 5 um", "root, Fz", &ForceEvents::root_fz_n, -4.06, std::nullopt,
-              "without side walls the chip moves freely: it does not scale with the width of the edge"},
+              "without side walls, the chip moves freely, and forces do not scale with the width of the edge"},
         Event{experiment_2(), "2, 5 um", "plough peak, Fy", &ForceEvents::peak_fy_n, -1.73, std::nullopt, "likewise"},
         Event{experiment_3(1), "3, facet 1", "root, Fz", &ForceEvents::root_fz_n, -26.29, 1e-9, kCalibrated},
         Event{experiment_3(1), "3, facet 1", "retract peak, Fy", &ForceEvents::peak_fy_n, -11.43, 1e-9, kCalibrated},

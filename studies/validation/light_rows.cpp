@@ -30,7 +30,7 @@ constexpr double kCubeAperture = 1.6329931618554521;
 
 constexpr const char* kClosedForms = "docs/theory/closed_forms.md, ";
 constexpr const char* kPaperTable = "Hamilton et al. 2017, Table 1";
-constexpr const char* kRounding = "rounding, and 1e-10 that the exact engine leaves";
+constexpr const char* kRounding = "rounding, and 1e-10 of the power that the exact engine truncates";
 
 PartSpec finite(const Element& element, Arrangement arrangement, double length_mm, double thickness_mm) {
   PartSpec spec;
@@ -239,7 +239,7 @@ void add_table_1(std::vector<ValidationRow>& rows) {
          .expected = rre_percent,
          .source = kPaperTable,
          .allowed = 0.011,
-         .why = "printed to 0.01 from sampled rays: one off in the last digit",
+         .why = "printed to 0.01 from sampled rays: the last digit may be off by one",
          .compute = [spec](auto cancel) { return 100.0 * rre_of(spec, real(), {}, cancel); }});
     add({.quantity = "RRE",
          .unit = "%",
@@ -268,10 +268,10 @@ void add_total_reflection(std::vector<ValidationRow>& rows) {
     row.topic = "Limits of total reflection";
     row.unit = "deg";
     row.allowed = 1e-5;
-    row.why = "the onset is looked for by bisection, from a loss of 1e-8 on";
+    row.why = "the onset, a loss of 1e-8, is found by bisection";
     rows.push_back(std::move(row));
   };
-  add({.quantity = "prism across its roof, n = 1.4917",
+  add({.quantity = "prism, incidence across the roof edge, n = 1.4917",
        .expected = std::asin(kPmma * std::sin(0.25 * std::numbers::pi - std::asin(1.0 / kPmma))) / kDeg,
        .source = fmt::format("{}2", kClosedForms),
        .compute = knee_of_a_prism_deg});
@@ -296,7 +296,7 @@ void add_apertures(std::vector<ValidationRow>& rows) {
       const Incidence light = {deg, azimuth_deg, 0.01};
       const PartSpec spec = is_honeycomb ? endless(HexagonalCube{kCubeAperture}, Arrangement::honeycomb, 1.0)
                                          : endless(TriangularCube{kCubeAperture}, Arrangement::triangular, 1.0);
-      rows.push_back({.topic = "Effective apertures of cube corners, mirrors under a lossless face",
+      rows.push_back({.topic = "Effective apertures of cube corners with mirror facets and a lossless entrance face",
                       .quantity = fmt::format("{}, incidence {} deg, azimuth {} deg: RRE",
                                               is_honeycomb ? "full cubes" : "triangles", deg, azimuth_deg),
                       .expected = is_honeycomb ? closed_forms::honeycomb_rre(deg, azimuth_deg, kPmma)
@@ -318,27 +318,27 @@ void add_cells(std::vector<ValidationRow>& rows) {
     std::array<double, 10> rre;
   };
   constexpr std::array<double, 10> kIncidenceDeg = {0, 2.5, 5, 10, 15, 20, 22.5, 25, 30, 40};
-  const std::array<Kind, 3> kinds = {Kind{"prisms across their roofs",
+  const std::array<Kind, 3> kinds = {Kind{"prisms, across the roof edge",
                                           endless(RtpElement{0.5, 0.5, 90.0}, Arrangement::offset, 1.0),
                                           {0.0},
                                           {1.000, 0.899, 0.422, 0.122, 0.067, 0.057, 0.049, 0.035, 0.026, 0.019}},
-                                     Kind{"full cubes, azimuth mean",
+                                     Kind{"full cubes, mean over azimuths",
                                           endless(HexagonalCube{kCubeAperture}, Arrangement::honeycomb, 1.0),
                                           {3.75, 11.25, 18.75, 26.25, 33.75, 41.25, 48.75, 56.25},
                                           {1.000, 0.882, 0.843, 0.759, 0.679, 0.523, 0.371, 0.280, 0.169, 0.068}},
-                                     Kind{"triangles, azimuth mean",
+                                     Kind{"triangles, mean over azimuths",
                                           endless(TriangularCube{kCubeAperture}, Arrangement::triangular, 1.0),
                                           {3.75, 11.25, 18.75, 26.25},
                                           {0.919, 0.649, 0.624, 0.630, 0.614, 0.497, 0.368, 0.282, 0.178, 0.080}}};
   for (const Kind& kind : kinds)
     for (std::size_t k = 0; k < kIncidenceDeg.size(); ++k)
-      rows.push_back({.topic = "Which cell is best where: endless arrays in PMMA, plate of 1 mm, acceptance 0.5 deg",
+      rows.push_back({.topic = "Comparison of cells: infinite arrays in PMMA, plate of 1 mm, acceptance 0.5 deg",
                       .quantity = fmt::format("{}, incidence {} deg: RRE", kind.name, kIncidenceDeg[k]),
                       .reference = Reference::independent,
                       .expected = kind.rre[k],
-                      .source = "rays followed by brute force",
+                      .source = "brute-force ray tracing",
                       .allowed = 5e-3,
-                      .why = "sampling of the brute force",
+                      .why = "sampling error of the ray tracing",
                       .compute = [spec = kind.spec, azimuths = kind.azimuth_deg, deg = kIncidenceDeg[k]](auto cancel) {
                         BeamPolicy policy;
                         policy.truncated_goal = 1e-3;
@@ -374,7 +374,7 @@ void add_paths_and_edges(std::vector<ValidationRow>& rows) {
          .expected = 1.0 - share,
          .source = fmt::format("{}6", kClosedForms),
          .allowed = 1e-8,
-         .why = "what strips of the arcs happen to send back",
+         .why = "light that the strips of the rounded edges return",
          .compute = [spec = with_edges(sharp, edges)](auto cancel) { return rre_of(spec, lossless(), {}, cancel); }});
   add({.quantity = "roots with a flat of 20 um, base 0.5 mm, lossless face",
        .expected = 1.0 - 0.04 * (1.0 - materials::reflectance(1.0 / kPmma, 1.0)),
@@ -404,14 +404,14 @@ void add_errors(std::vector<ValidationRow>& rows) {
              "Chandler, J. Opt. Soc. Am. 50, 1203 (1960)"},
         Case{"apex angle of a prism off by 1 arcmin",
              with_errors(single(RtpElement{1.0, 1.0, 90.0}, 1.0), {{1.0, 0.0, 0.0}, {}}), 3, 2.0,
-             "two reflections turn by twice the angle between the facets"}})
-    rows.push_back({.topic = "Where errors of angle send the light, n = 1.4917",
+             "two reflections rotate light by twice the angle between the facets"}})
+    rows.push_back({.topic = "Deviation of light by angle errors, n = 1.4917",
                     .quantity = fmt::format("{}: deviation", quantity),
                     .unit = "arcmin",
                     .expected = factor * kPmma,
                     .source = source,
                     .allowed = 1e-3 * factor * kPmma,
-                    .why = "first order in the error",
+                    .why = "the formula is of first order in the error",
                     .compute = [spec = spec, interfaces = interfaces](auto cancel) {
                       return deviation_arcmin(spec, interfaces, cancel);
                     }});
@@ -422,24 +422,25 @@ void add_diffraction(std::vector<ValidationRow>& rows) {
     row.topic = "Diffraction";
     rows.push_back(std::move(row));
   };
-  add({.quantity = "first dark ring of a disc, times diameter over wavelength",
+  add({.quantity = "angle of the first dark ring of a disc, times diameter / wavelength",
        .expected = 1.2196699,
        .source = "Airy; Born and Wolf, 8.5.2",
        .allowed = 2e-5,
-       .why = "a polygon of 2000 corners stands for the disc",
+       .why = "the disc is a polygon with 2000 corners",
        .compute = dark_ring});
-  add({.quantity = "full cube with mirrors: peak over that of its aperture",
+  add({.quantity = "full cube with mirror facets: peak relative to that of its aperture",
        .expected = 1.0,
        .source = "docs/theory/photometry.md",
        .allowed = 1e-6,
-       .why = "1e-6 of the light is left",
+       .why = "1e-6 of the light is truncated",
        .compute = [](auto cancel) { return on_axis_peak(mirrors(), cancel); }});
   for (const double index : {1.4585, kPmma, 1.585})
-    add({.quantity = fmt::format("full cube by total reflection, n = {}: peak over that of its aperture", index),
+    add({.quantity =
+             fmt::format("full cube with total reflection, n = {}: peak relative to that of its aperture", index),
          .expected = closed_forms::total_reflection_peak(index),
          .source = "docs/theory/polarisation.md",
          .allowed = 1e-6,
-         .why = "1e-6 of the light is left",
+         .why = "1e-6 of the light is truncated",
          .compute = [index](auto cancel) { return on_axis_peak(lossless(index), cancel); }});
 }
 

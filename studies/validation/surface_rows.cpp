@@ -27,7 +27,7 @@ void add_materials(std::vector<ValidationRow>& rows) {
                     .quantity = fmt::format("{}: index at 587.56 nm, relative to air", name),
                     .reference = Reference::published,
                     .expected = index,
-                    .source = "the papers that data/materials.toml names",
+                    .source = "the papers that data/materials.toml cites",
                     .allowed = 5e-5,
                     .why = "four decimals",
                     .compute = [name = name](auto) {
@@ -42,7 +42,7 @@ void add_materials(std::vector<ValidationRow>& rows) {
                   .expected = 1e-2 * (6432.8 + 2949810.0 / (146.0 - s2) + 25540.0 / (41.0 - s2)),
                   .source = "formula of Edlen 1953",
                   .allowed = 0.05,
-                  .why = "newer measurements",
+                  .why = "retrace uses newer measurements",
                   .compute = [](auto) {
                     const auto library = materials::MaterialLibrary::shipped();
                     return 1e6 * (materials::refractive_index(library.air().dispersion, 587.56) - 1.0);
@@ -140,25 +140,25 @@ void add_scatter(std::vector<ValidationRow>& rows) {
     const double phase = 4.0 * std::numbers::pi * 1.4917 * c.sq_nm * c.cos_incidence / c.wavelength_nm;
     rows.push_back(
         {.topic = kTopic,
-         .quantity = fmt::format("{}, Sq {} nm, {} nm: scattered by one reflection, 1 - exp(-(4 pi n s cos t "
-                                 "/ w)^2)",
-                                 c.name, c.sq_nm, c.wavelength_nm),
+         .quantity = fmt::format(
+             "{}, Sq {} nm, wavelength {} nm: fraction scattered by one reflection, 1 - exp(-(4 pi n s cos t / w)^2)",
+             c.name, c.sq_nm, c.wavelength_nm),
          .unit = "%",
          .expected = -100.0 * std::expm1(-phase * phase),
          .source = "docs/theory/scatter.md; Davies 1954; Bennett and Porteus 1961",
          .allowed = 1e-6,
-         .why = "1e-9 of the roughness is too short to scatter; 1e-10 of the light is left",
+         .why = "1e-9 of the roughness has too short periods to scatter; 1e-10 of the light is truncated",
          .compute = [c](auto cancel) {
            return scattered_percent(c.element, c.sq_nm, c.wavelength_nm, c.reflections, cancel);
          }});
   }
   rows.push_back({.topic = kTopic,
-                  .quantity = "areal Gaussian filter: amplitude of waves as long as the cut-off that passes",
+                  .quantity = "areal Gaussian filter: transmitted amplitude of waves with the cut-off wavelength",
                   .reference = Reference::published,
                   .expected = 0.5,
                   .source = "ISO 16610-61",
                   .allowed = 1e-6,
-                  .why = "weights are cut at one cut-off to each side, 1e-7 of them",
+                  .why = "weights beyond one cut-off, 1e-7 of the sum, are truncated",
                   .compute = [](auto) {
                     constexpr double kCutoffUm = 80.0;
                     surface_models::HeightMap profile{1601, 1, 0.5, 0.5, {}};

@@ -51,13 +51,13 @@ void add_finish(std::vector<ValidationRow>& rows) {
   for (const Figure& f : {Figure{"peak to valley, f^2 / (8 r)", 0.5, &FinishFigures::peak_to_valley_nm},
                           Figure{"Ra, f^2 / (18 sqrt 3 r)", 4.0 / (18.0 * std::numbers::sqrt3), &FinishFigures::ra_nm},
                           Figure{"Rq, f^2 / (12 sqrt 5 r)", 4.0 / (12.0 * std::sqrt(5.0)), &FinishFigures::rq_nm}})
-    add({.quantity = fmt::format("feed 1 um, nose 0.25 mm, the nose's circle integrated: {}", f.name),
+    add({.quantity = fmt::format("feed 1 um, nose radius 0.25 mm, integrated over the circle of the nose: {}", f.name),
          .expected = f.expected_nm,
          .source = "docs/theory/turning.md",
          .allowed = 1e-4,
-         .why = "the formulas are those of a parabola",
+         .why = "the formulas replace the circle by a parabola",
          .compute = [figure = f.figure](auto) { return measured_finish().*figure; }});
-  add({.quantity = "feed 1 um, nose 0.25 mm: Rq as printed, which is the mean height, f^2 / (24 r)",
+  add({.quantity = "feed 1 um, nose radius 0.25 mm: Rq as printed, which is the mean height, f^2 / (24 r)",
        .reference = Reference::published,
        .expected = 4.0 / 24.0,
        .source = "Sohn and Naples, eq. 4",
@@ -74,8 +74,8 @@ void add_clearance(std::vector<ValidationRow>& rows) {
   };
   constexpr double kDegree = std::numbers::pi / 180.0;
   for (const double skew_deg : {30.0, 45.0, 60.0})
-    add({.quantity =
-             fmt::format("steepest fall along the cut, clearance 12 deg, skew {} deg, by the vector test", skew_deg),
+    add({.quantity = fmt::format(
+             "maximum downward slope along the cut, clearance 12 deg, skew {} deg, by the vector test", skew_deg),
          .reference = Reference::published,
          .expected = std::asin(std::sin(12.0 * kDegree) / std::cos(skew_deg * kDegree)) / kDegree,
          .source = "Sohn and Naples, eq. 1",
@@ -93,11 +93,12 @@ void add_clearance(std::vector<ValidationRow>& rows) {
            return low;
          }});
   for (const double skew_deg : {-30.0, 0.0, 30.0})
-    add({.quantity = fmt::format("convex cylinder of 50 deg at the rim, skew {} deg: clearance needed", skew_deg),
+    add({.quantity = fmt::format("convex cylinder with a slope of 50 deg at the rim, skew {} deg: required clearance",
+                                 skew_deg),
          .expected = std::asin(0.5 * std::sin(50.0 * kDegree) * (1.0 + std::sin(skew_deg * kDegree))) / kDegree,
          .source = "docs/theory/turning.md",
          .allowed = 1e-4,
-         .why = "places along the rim 0.1 deg apart",
+         .why = "points along the rim are 0.1 deg apart",
          .compute = [skew_deg](auto) {
            const TurningTool tool = {.window_deg = 179.0, .skew_deg = skew_deg};
            return clearance_figures(tool, cylinder_slopes(50.0 * kDegree)).clearance_needed_deg;
@@ -106,11 +107,11 @@ void add_clearance(std::vector<ValidationRow>& rows) {
 
 void add_planing(std::vector<ValidationRow>& rows) {
   const auto add = [&](ValidationRow row) {
-    row.topic = "Flat lenses of zones";
+    row.topic = "Flat zone lenses";
     row.source = "docs/theory/planing.md";
     rows.push_back(std::move(row));
   };
-  add({.quantity = "chord in a circle of 10 mm within 0.01 mm, 2 sqrt(2 R t - t^2)",
+  add({.quantity = "chord of a circle of radius 10 mm within 0.01 mm, 2 sqrt(2 R t - t^2)",
        .unit = "mm",
        .expected = 2.0 * std::sqrt(2.0 * 10.0 * 0.01 - 0.01 * 0.01),
        .allowed = 1e-3,
@@ -125,9 +126,9 @@ void add_planing(std::vector<ValidationRow>& rows) {
   // For a zone lens of focal length F with steps of at most w / (n - 1), the path difference r - F - n d is a whole
   // number of wavelengths w. Here, d is the depth of the profile, and r the distance from the profile to the focus.
   for (const auto& [x_mm, zone] : {std::pair{100.0, 1.0}, {150.0, 4.0}, {200.0, 7.0}})
-    add({.quantity = fmt::format("F 500 mm, wavelength 5 mm, n 1.52, {} mm from the middle: path beyond that of the "
-                                 "middle, in wavelengths",
-                                 x_mm),
+    add({.quantity = fmt::format(
+             "F 500 mm, wavelength 5 mm, n 1.52, {} mm from the axis: path difference to the axis, in wavelengths",
+             x_mm),
          .expected = zone,
          .allowed = 1e-9,
          .why = "rounding",

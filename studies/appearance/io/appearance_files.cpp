@@ -87,21 +87,22 @@ std::string percent(double share) {
 }
 
 std::string error_text(const AppearanceError& error) {
-  return fmt::format("median {}, of 95 % within {}, at most {}", percent(error.median), percent(error.of_95_percent),
+  return fmt::format("median {}, 95th percentile {}, maximum {}", percent(error.median), percent(error.of_95_percent),
                      percent(error.greatest));
 }
 
 /// Returns a description of the central direction of view, for the header of a file.
 std::string_view where_of(const ReflectionTable& table) {
   if (table.back == geometry::Vec2::Ones()) return "back to the source";
-  return table.back.y() < 0.0 ? "that is back along x and on along y" : "that is back along y and on along x";
+  return table.back.y() < 0.0 ? "that is reversed along x and unchanged along y"
+                              : "that is reversed along y and unchanged along x";
 }
 
 AppearanceText radiance(const AppearanceResult& result) {
   const TensorTree tree = tensor_tree_of(result.table);
   const double leaf_deg = Angle::from_rad(tree.leaf_width()).deg();
   AppearanceText text;
-  text.what = fmt::format("{} leaves of a tensor tree, each the mean over {} degrees of light and of view",
+  text.what = fmt::format("{} leaves of a tensor tree, each a mean over {} degrees of the directions of light and view",
                           tree.leaves.size(), fixed_visible(leaf_deg, 2));
   text.text = radiance_text(tree, printable(short_name(result.design), 60));
   return text;
@@ -114,7 +115,7 @@ AppearanceText glsl(const AppearanceResult& result) {
     told.push_back(luminous(lobes.r_a(probe.to_source, probe.to_observer)));
   AppearanceText text;
   text.error = appearance_error(result.probes, told);
-  text.what = fmt::format("{} lobes; off the photometer: {}", lobes.lobes.size(), error_text(*text.error));
+  text.what = fmt::format("{} lobes; deviation from the photometer: {}", lobes.lobes.size(), error_text(*text.error));
   text.text = glsl_text(lobes, {printable(short_name(result.design), 60), text.what});
   return text;
 }
@@ -152,19 +153,21 @@ std::string appearance_json(const AppearanceResult& result, const AppearanceText
 
 std::string appearance_table(const AppearanceResult& result, const AppearanceText& text) {
   const MaterialRequest& request = result.request;
-  std::string lines = fmt::format("material of {}: R_A about the direction {}, CIE D65, discs of {} and {} arcmin\n",
-                                  printable(short_name(result.design), 60), where_of(result.table),
-                                  shortest(request.source_arcmin), shortest(request.receiver_arcmin));
-  lines +=
-      fmt::format("  light      entrance angles to {} degrees: {} directions in {} cells, the least {} degrees wide\n",
-                  shortest(request.entrance_deg), result.table.directions.size(), result.table.cells.size(),
-                  shortest(result.least_cell_deg));
-  lines += fmt::format("  views      deviations to {} degrees: {} x {} points\n", shortest(request.window_deg),
+  std::string lines = fmt::format(
+      "material of {}: R_A around the direction {}, CIE D65, source disc {} arcmin, receiver disc {} arcmin\n",
+      printable(short_name(result.design), 60), where_of(result.table), shortest(request.source_arcmin),
+      shortest(request.receiver_arcmin));
+  lines += fmt::format(
+      "  light      entrance angles up to {} degrees: {} directions in {} cells, the smallest {} degrees wide\n",
+      shortest(request.entrance_deg), result.table.directions.size(), result.table.cells.size(),
+      shortest(result.least_cell_deg));
+  lines += fmt::format("  views      deviations up to {} degrees: {} x {} points\n", shortest(request.window_deg),
                        result.table.columns, result.table.columns);
   lines += fmt::format("  returned   {} of the light at normal incidence\n",
                        percent(result.table.returned(geometry::Vec3::UnitZ())));
-  lines += fmt::format("  error      {} of the value, or of {} of the brightest view, over {} random geometries\n",
-                       error_text(result.error), percent(kErrorFloor), result.error.geometries);
+  lines += fmt::format(
+      "  error      {}, relative to the larger of the value and {} of the brightest view; {} random geometries\n",
+      error_text(result.error), percent(kErrorFloor), result.error.geometries);
   if (!text.what.empty()) lines += "  file       " + text.what + '\n';
   return lines;
 }

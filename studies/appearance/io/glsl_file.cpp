@@ -44,13 +44,17 @@ std::string glsl_text(const ReflectionLobes& lobes, const std::vector<std::strin
   std::string text = fmt::format("// Written by retrace {}.\n", kVersion);
   for (const std::string& remark : remarks) text += "// " + remark + '\n';
   text +=
-      "// retrace_brdf: BRDF in 1/sr, linear sRGB, of light about the direction back to its source, or "
-      "where\n"
-      "// prisms send it, for unit vectors from the surface in the part's frame (+z its normal, +y its datum mark). "
-      "R_A is\n"
-      "// this times both cosines. The mirror image and what goes elsewhere are not in it.\n";
+      "// retrace_brdf returns the BRDF in 1/sr (linear sRGB) around the direction of the returned light. This "
+      "direction is\n"
+      "// back to the source or, for prisms, reversed along only one axis. Both arguments are unit vectors that point "
+      "away\n"
+      "// from the surface, in the part frame (+z: normal of the part, +y: datum mark). R_A is the BRDF times both "
+      "cosines.\n"
+      "// The BRDF contains neither the mirror image nor light in other directions.\n";
   text += fmt::format("const int RETRACE_LOBES = {};\n", lobes.lobes.size());
-  text += "// Centres over the deviation, the inverses of covariances (xx, xy, yy), densities at centres.\n";
+  text +=
+      "// Centres of the lobes, inverses of their covariance matrices (xx, xy, yy), and their densities at the "
+      "centres.\n";
   text += constant(lobes, "vec2", "RETRACE_CENTRE", 1, [](const Lobe& lobe) {
     return fmt::format("vec2({}, {})", number(lobe.centre.x()), number(lobe.centre.y()));
   });
@@ -62,7 +66,7 @@ std::string glsl_text(const ReflectionLobes& lobes, const std::vector<std::strin
   text += constant(lobes, "vec3", "RETRACE_COLOUR", 1, [](const Lobe& lobe) {
     return fmt::format("vec3({}, {}, {})", number(lobe.colour[0]), number(lobe.colour[1]), number(lobe.colour[2]));
   });
-  text += "// Power over x and y of light: terms of degree 0, of degree 1, ...\n";
+  text += "// Power of each lobe as a polynomial in x and y of the light: terms of degree 0, of degree 1, ...\n";
   text += constant(lobes, "float", "RETRACE_POWER", Lobe::kTerms, [](const Lobe& lobe) {
     std::vector<std::string> terms;
     for (const double term : lobe.power) terms.push_back(number(term));

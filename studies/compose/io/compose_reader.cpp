@@ -32,9 +32,8 @@ std::string checked_mean(const Study& study, const std::string& name, const Inpu
   const auto found = std::ranges::find_if(study.quantities, [&](const auto& q) { return q->name() == name; });
   if (!(*found)->adds_up())
     throw InputError(where,
-                     fmt::format("{} is the least of several values, and the least of a mixture is no mixture of "
-                                 "leasts: give each its own, by points = \"each_reading\" or over_directions = "
-                                 "\"each\"",
+                     fmt::format("{} is the minimum of several values, which cannot be averaged over zones: make each "
+                                 "value a quantity with points = \"each_reading\" or over_directions = \"each\"",
                                  in_quotes(name)));
   return name;
 }
@@ -43,7 +42,8 @@ std::vector<std::string> read_goals(const Document& document, const Study& study
   std::vector<std::string> goals;
   for (const std::string& name : document.texts("compose.maximize"))
     for (std::string& goal : quantities_of(study, name)) {
-      if (std::ranges::count(goals, goal) > 0) document.fail("compose.maximize", fmt::format("names {} twice", goal));
+      if (std::ranges::count(goals, goal) > 0)
+        document.fail("compose.maximize", fmt::format("must contain each quantity only once, got {} twice", goal));
       checked_mean(study, goal, document.where("compose.maximize"));
       goals.push_back(std::move(goal));
     }
@@ -61,14 +61,18 @@ void check_shares(const Document& document, const ComposeRequest& request) {
     document.fail("compose.least_share", fmt::format("must be <= most_share ({}), got {}", shortest(request.most_share),
                                                      shortest(request.least_share)));
   if (request.most_zones && static_cast<double>(*request.most_zones) * request.most_share < 1.0 - 1e-12)
-    document.fail("compose.most_share", fmt::format("must be >= 1 / most_zones ({}), or zones fill no part, got {}",
-                                                    *request.most_zones, shortest(request.most_share)));
+    document.fail(
+        "compose.most_share",
+        fmt::format(
+            "must be >= 1 / most_zones (most_zones = {}), because otherwise the zones cannot fill the part, got {}",
+            *request.most_zones, shortest(request.most_share)));
 }
 
 void check_parameters(const Study& study) {
   for (const Parameter& parameter : study.parameters)
     if (parameter.distribution)
-      throw InputError(parameter.location, "a distribution is no family of cells: give values, or from and to");
+      throw InputError(parameter.location,
+                       "a distribution is not allowed in a composition: give values, or from and to");
 }
 
 /// Checks that each cell has only one kind of element. Cells that cannot be made are accepted here; the search reports
@@ -92,12 +96,11 @@ std::optional<ErrorSpread> read_errors(const Document& document, const Study& st
   if (!cells && !zones) {
     if (document.has("compose.worst_share"))
       document.fail("compose.worst_share",
-                    "needs cell_sigma_arcmin or zone_sigma_arcmin: without errors of angle no "
-                    "part is worse than another");
+                    "needs cell_sigma_arcmin or zone_sigma_arcmin, because all parts are equal without angle errors");
     return std::nullopt;
   }
   if (angles_of(study, some_values(study)) == 0)
-    document.fail(key, "means nothing here: cells have no facets that include angles");
+    document.fail(key, "not allowed: the cells have no angles between facets");
   ErrorSpread spread{cells.value_or(0.0), zones.value_or(0.0), {}, document.number_if("compose.worst_share")};
   spread.parts = static_cast<std::size_t>(document.number("compose.parts"));
   return spread;
@@ -107,7 +110,7 @@ std::optional<ErrorSpread> read_errors(const Document& document, const Study& st
 
 ComposeRequest read_compose(const Study& study) {
   const Document& document = *study.document;
-  if (!document.has("compose")) document.fail("compose", "missing, must be a table that says what to maximize");
+  if (!document.has("compose")) document.fail("compose", "missing, must be a table with the key maximize");
   check_parameters(study);
   check_cells(study);
   ComposeRequest request;

@@ -171,33 +171,34 @@ std::string prices_text(const Study& study, const ComposeRequest& request, const
     if (!(is_price(part.mixture.prices.goals[k]))) continue;
     const Quantity& quantity = goal_of(study, request, k);
     if (const auto cost = cost_of_limit(quantity, part.mixture, k))
-      text += fmt::format("binding: {}; 1 {} more there would cost {:.3g} points of the least margin\n",
-                          quantity.label(), quantity.limit()->unit, 100.0 * *cost);
-    else
       text +=
-          fmt::format("binding: {}; 1 more there would cost {:.3g}\n", quantity.label(), part.mixture.prices.goals[k]);
+          fmt::format("binding: {}; raising its limit by 1 {} lowers the minimum margin by {:.3g} percentage points\n",
+                      quantity.label(), quantity.limit()->unit, 100.0 * *cost);
+    else
+      text += fmt::format("binding: {}; requiring 1 more of it lowers the minimum by {:.3g}\n", quantity.label(),
+                          part.mixture.prices.goals[k]);
   }
   for (std::size_t k = 0; k < request.of_part.size(); ++k)
     if (is_price(part.mixture.prices.means[k]))
-      text += fmt::format("binding: {} over the part; 1 more of the bound is worth {:.3g}\n", request.of_part[k].text(),
-                          part.mixture.prices.means[k]);
+      text +=
+          fmt::format("binding: {} as a mean over the part; increasing this limit by 1 changes the merit by {:.3g}\n",
+                      request.of_part[k].text(), part.mixture.prices.means[k]);
   return text;
 }
 
 std::string proof_text(const Composition& composition) {
   const std::size_t cells = composition.catalogue.size();
   switch (composition.proof) {
-    case Proof::family: return fmt::format("optimal: all {} cells of the family were looked at\n", cells);
+    case Proof::family: return fmt::format("optimal: all {} cells of the family were evaluated\n", cells);
     case Proof::catalogue:
-      return fmt::format("optimal over the {} cells that were looked at; of the continuous family the best found, {}\n",
-                         cells,
-                         composition.has_converged ? "where the last search by prices found no cell that helps"
-                                                   : "and the last search by prices still found cells that help");
+      return fmt::format("optimal for the {} evaluated cells; best part found for the continuous family: {}\n", cells,
+                         composition.has_converged
+                             ? "the last search with dual prices found no cell that improves it"
+                             : "the last search with dual prices still found cells that improve it");
     case Proof::none: break;
   }
   return fmt::format(
-      "the best found of the {} cells that were looked at: the search was cut short, and at most {:.6g} "
-      "can be reached\n",
+      "best part found with the {} evaluated cells: the search was stopped early; the optimum is at most {:.6g}\n",
       cells, composition.best->mixture.bound);
 }
 
@@ -206,11 +207,11 @@ std::string worth_text(const Study& study, const ComposeRequest& request, const 
   const auto shown = [&](double value) { return goal_value_text(value, margins) + (margins ? " %" : ""); };
   std::string text;
   for (const PartOfZones& of : composition.by_zones)
-    text += fmt::format("{}{} zone{}: {}", text.empty() ? "least with at most " : ", ", of.most_zones,
+    text += fmt::format("{}{} zone{}: {}", text.empty() ? "minimum with at most " : ", ", of.most_zones,
                         of.most_zones == 1 ? "" : "s", shown(of.mixture.least));
-  text += fmt::format("\n{} with any number\n", shown(composition.unlimited));
+  text += fmt::format("\n{} with any number of zones\n", shown(composition.unlimited));
   for (const FrontPart& at : composition.front)
-    text += fmt::format("front: {} = {:.6g}, least {}\n", request.front->quantity, at.mean, shown(at.least));
+    text += fmt::format("Pareto front: {} = {:.6g}, minimum {}\n", request.front->quantity, at.mean, shown(at.least));
   return text;
 }
 
@@ -221,8 +222,9 @@ std::string composition_text(const Study& study, const ComposeRequest& request, 
   const PartOfZones& part = *composition.best;
   std::string text = zones_text(study, part.zones) + "\n" + goals_text(study, request, part) + "\n";
   const bool margins = are_margins(study, request);
-  text += fmt::format("least: {}{}\n", goal_value_text(part.mixture.least, margins), margins ? " %" : "");
-  if (!request.price.empty()) text += fmt::format("less its cost: {:.6g}\n", part.mixture.merit);
+  text +=
+      fmt::format("minimum of all goals: {}{}\n", goal_value_text(part.mixture.least, margins), margins ? " %" : "");
+  if (!request.price.empty()) text += fmt::format("minimum minus the prices: {:.6g}\n", part.mixture.merit);
   text += prices_text(study, request, part) + worth_text(study, request, composition) + proof_text(composition);
   if (composition.errors)
     text += "\n" +
@@ -241,8 +243,8 @@ std::string why_not_reached(const Study& study, const ComposeRequest& request, c
       text += fmt::format("{}{} ({:.3f})", text.empty() ? "" : ", ", goal_of(study, request, k).label(),
                           mixture.prices.goals[k]);
   return fmt::format(
-      "the least is {:.6g} and {} is asked: {} exclude every mixture of the {} cells; weighted so, none "
-      "has more than {:.6g} there",
+      "the minimum of all goals is {:.6g}, but {} is required. Limiting goals, with weights: {}. No mixture of the {} "
+      "cells has a weighted mean of these goals above {:.6g}",
       mixture.least, shortest(*request.least_goal), text, composition.catalogue.size(), mixture.least);
 }
 

@@ -32,7 +32,7 @@ std::string yield_text(const ComposeRequest& request, const PartYield& yield, bo
   if (yield.good)
     text += fmt::format("{} of {} parts reach {}{}, ", *yield.good, yield.leasts.size(),
                         goal_value_text(*request.least_goal, are_margins), unit);
-  text += fmt::format("95 % of {} {}{} or more", yield.good ? "them have" : "parts have",
+  text += fmt::format("95 % of {} {}{} or more", yield.good ? "them reach" : "parts reach",
                       goal_value_text(least_of_most(yield), are_margins), unit);
   if (yield.mean_of_worst)
     text += fmt::format(", the mean of the worst {:g} % is {}{}", 100.0 * *request.errors->worst_share,
@@ -62,21 +62,22 @@ std::string error_effects_text(const ComposeRequest& request, const ErrorEffects
                                bool are_margins) {
   const char* const unit = are_margins ? " %" : "";
   const auto shown = [&](double value) { return goal_value_text(value, are_margins) + unit; };
-  std::string text = fmt::format("every angle spread by {:g}' from cell to cell: least {}\n",
-                                 request.errors->cell_sigma_arcmin, shown(*std::ranges::min_element(effects.goals)));
-  text += fmt::format("and by {:g}' from zone to zone: {}", request.errors->zone_sigma_arcmin,
+  std::string text =
+      fmt::format("angle errors with a standard deviation of {:g}' from cell to cell: minimum of all goals {}\n",
+                  request.errors->cell_sigma_arcmin, shown(*std::ranges::min_element(effects.goals)));
+  text += fmt::format("and of {:g}' from zone to zone: {}", request.errors->zone_sigma_arcmin,
                       yield_text(request, effects.yield, are_margins));
   for (std::size_t z = 0; z < effects.slopes.size(); ++z) {
-    text += fmt::format("zone {}: 1' more of its angles changes the least by", z + 1);
+    text += fmt::format("zone {}: changes of the minimum if one of the angles increases by 1':", z + 1);
     for (std::size_t k = 0; k < effects.slopes[z].size(); ++k)
       text += (k == 0 ? " " : ", ") + shown(effects.slopes[z][k]);
     text += "\n";
   }
   if (effects.for_worst)
-    text += "best for the worst parts: " + yield_text(request, effects.for_worst->yield, are_margins) + for_worst;
-  return text +
-         fmt::format("the polynomials behind this miss goals of the part by {} at most, where that was computed\n",
-                     shown(effects.missed_by));
+    text += "best part for the worst random parts: " + yield_text(request, effects.for_worst->yield, are_margins) +
+            for_worst;
+  return text + fmt::format("error of the polynomial approximation of the goals: at most {} at the computed points\n",
+                            shown(effects.missed_by));
 }
 
 }  // namespace retrace::studies

@@ -128,7 +128,8 @@ std::string zone_design_text(const Study& study, const std::vector<Zone>& zones,
       fmt::format("# Zone {} of {} of {}: {} of the area", zone + 1, zones.size(),
                   printable(std::filesystem::path(study.source).filename().string()), shortest(zones[zone].share));
   if (const double turn_deg = candidate.analysis().rotation_deg; turn_deg != 0.0)
-    comment += fmt::format(", turned by {} degrees, which is a rotation for retrace photometry", shortest(turn_deg));
+    comment += fmt::format(", rotated by {} degrees (use this value as the rotation of retrace photometry)",
+                           shortest(turn_deg));
   return design_text(candidate.design(), comment + "\n");
 }
 
@@ -143,14 +144,17 @@ void check_zoned_design(const Study& study, const ZonedDesignRequest& request) {
   for (const Parameter& parameter : study.parameters)
     for (const std::string& key : parameter.keys)
       if (key != kTurn && !may_set_in_zone(key))
-        throw InputError(parameter.location,
-                         fmt::format("{}: zones of a part cannot differ in {}, which is one all over it",
-                                     reference({"design"}), key));
+        throw InputError(
+            parameter.location,
+            fmt::format("{}: zones of a part cannot differ in {}, which must be the same for the whole part",
+                        reference({"design"}), key));
   const Design design = whole_design(study, some_values(study), request);
   if (design.is_endless())
-    throw InputError(Field{"x_length_mm"}, "missing: the design of the study is endless, and a part of zones is not");
+    throw InputError(Field{"x_length_mm"},
+                     "missing: a part of zones is finite, but the design of the study is infinite");
   if (design.part().array.arrangement == geometry::Arrangement::single)
-    throw InputError(Field{"design"}, "the design of the study is a single element, which has no room for zones");
+    throw InputError(Field{"design"},
+                     "the design of the study is a single element, which cannot be divided into zones");
 }
 
 std::string zoned_design_text(const Study& study, const std::vector<Zone>& zones, const ZonedDesignRequest& request) {

@@ -10,8 +10,10 @@ namespace {
 using namespace schema;
 
 constexpr Condition kTableOfNoBall = is_not(kKind, kBall);
-constexpr Condition kNoMesh = without("part.mesh", "not allowed beside part.mesh, which is the whole part");
-constexpr Condition kNoPlate = without("part.plate_mm", "not allowed beside part.plate_mm, which is the whole part");
+constexpr Condition kNoMesh =
+    without("part.mesh", "not allowed together with part.mesh, which describes the whole part");
+constexpr Condition kNoPlate =
+    without("part.plate_mm", "not allowed together with part.plate_mm, which describes the whole part");
 
 constexpr Condition kWithElements[] = {kNoMesh, kNoPlate};
 constexpr Condition kWithPlanes[] = {kNoMesh, kNoPlate, kTableOfNoBall};
@@ -75,12 +77,12 @@ constexpr Condition kWithZones[] = {kNoMesh,
                                     without("part.facets", "not allowed together with facets in [part]")};
 constexpr std::string_view kWhereAreZones[] = {"share",   "rectangles_mm", "polygon_mm", "rows",
                                                "columns", "mask",          "rest"};
-constexpr Rule kZoneRules[] = {
-    OneOf{kWhereAreZones,
-          "must have one of share, rectangles_mm, polygon_mm, rows, columns, mask and rest, which say where it is"}};
+constexpr Rule kZoneRules[] = {OneOf{kWhereAreZones,
+                                     "must have one of share, rectangles_mm, polygon_mm, rows, columns, mask and rest, "
+                                     "which determine its region or its elements"}};
 constexpr std::string_view kWhichAreWet[] = {"share", "rectangle_mm", "disc_mm", "half_plane"};
 constexpr Rule kWetBackRules[] = {
-    OneOf{kWhichAreWet, "must have one of share, rectangle_mm, disc_mm and half_plane, which say where it is wet"}};
+    OneOf{kWhichAreWet, "must have one of share, rectangle_mm, disc_mm and half_plane, which select the wet elements"}};
 const Table kEntranceFaceTables[] = {
     {.name = "layers",
      .meaning = "Layers that are much thicker than the coherence length of the light, such as hard coats, in order "

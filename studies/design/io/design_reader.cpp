@@ -226,7 +226,7 @@ std::string read_material(const Document& document) {
   if (!document.has("body.catalogue") || !materials::is_index_record(document.file("body.catalogue"))) return material;
   const std::string recorded = printable(document.file("body.catalogue").stem().string());
   if (document.has("body.material") && material != recorded)
-    document.fail("body.material", fmt::format("must be {}, the material of the record, or not be given, got {}",
+    document.fail("body.material", fmt::format("must be left out or be {}, the material of the record, got {}",
                                                in_quotes(recorded), in_quotes(material)));
   return recorded;
 }
@@ -379,12 +379,13 @@ void check_taken(const Design& design, const Takes& takes) {
   const std::string what(takes.what);
   const auto refuse_solid = [&](std::string_view key, std::string_view solid) {
     if (!takes.solids)
-      throw InputError(design.where(key), fmt::format("{} takes no {}, only [element] and [array]", what, solid));
+      throw InputError(design.where(key),
+                       fmt::format("{} does not support a {}, only [element] and [array]", what, solid));
   };
   std::visit(Overloaded{[&](const ElementArray& array) {
                           if (array.part.substrate && !takes.substrates)
                             throw InputError(design.where(geometry::substrate_shape_key(*array.part.substrate)),
-                                             what + " takes no [base], only elements on a plane");
+                                             what + " does not support a [base], only elements on a plane");
                         },
                         [&](const PartMesh&) { refuse_solid("part.mesh", "mesh"); },
                         [&](const Plate&) { refuse_solid("part.plate_mm", "plate"); },
@@ -394,13 +395,15 @@ void check_taken(const Design& design, const Takes& takes) {
                         [&](const raytrace::BallLayer&) {
                           if (!takes.balls)
                             throw InputError(design.where("element.kind"),
-                                             "balls are taken by retrace rre, photometry and inspect alone");
+                                             "balls are supported only by retrace rre, photometry and inspect");
                         }},
              design.shape);
   if (design.entrance && !takes.entrances)
-    throw InputError(design.where(design.entrance_key()), what + " takes no [front], only a plane entrance face");
+    throw InputError(design.where(design.entrance_key()),
+                     what + " does not support a [front], only a plane entrance face");
   if (design.wet_back && !takes.wet_backs)
-    throw InputError(design.where("wet_back.index"), what + " takes no [wet_back], only backs that are all alike");
+    throw InputError(design.where("wet_back.index"),
+                     what + " does not support a [wet_back], only the same medium behind all elements");
 }
 
 Design parse_design(std::string_view text, const std::string& source_name, std::span<const std::string> overrides) {

@@ -43,6 +43,7 @@ inline constexpr std::string_view kKind = "element.kind";
 inline constexpr std::string_view kArrangement = "array.arrangement";
 inline constexpr std::string_view kExtent = "array.extent";
 
-inline constexpr std::string_view kOfAMesh = "not allowed with [part], whose mesh has the angles and edges that it has";
+inline constexpr std::string_view kOfAMesh =
+    "not allowed together with a mesh or plate in [part], which determines all angles and edges";
 
 }  // namespace retrace::studies

@@ -129,7 +129,8 @@ void check_dihedral_errors(const Document& document, const PartSpec& part) {
   if (!is_prism(part) && count != 1 && count != 3)
     document.fail(
         kDihedralError,
-        fmt::format("must be a number or a list of three, one for each dihedral edge, got a list of {}", count));
+        fmt::format("must be a number or a list of three numbers, one for each dihedral edge, got a list of {}",
+                    count));
 }
 
 void check_facet_tilts(const Document& document, const PartSpec& part) {
@@ -137,14 +138,15 @@ void check_facet_tilts(const Document& document, const PartSpec& part) {
   const std::vector<double> given = document.numbers(kFacetTilt);
   const bool is_list = document.is_list(kFacetTilt);
   if (is_list ? given.size() != facets : given[0] != 0.0)
-    document.fail(kFacetTilt, fmt::format("must be a list of {}, one for each facet, or 0, got {}", facets,
+    document.fail(kFacetTilt, fmt::format("must be 0 or a list of {} numbers, one for each facet, got {}", facets,
                                           is_list ? fmt::format("a list of {}", given.size()) : shortest(given[0])));
 }
 
 void check_random_tilts(const Document& document, const PartSpec& part) {
   if (part.random_tilts.sigma_arcmin > 0.0 && part.array.extent == Extent::infinite)
     document.fail(kRandomTilt,
-                  "must be 0 for extent = \"infinite\", whose elements are all alike; give lengths instead");
+                  "must be 0 for extent = \"infinite\", because all elements of an infinite array are equal; give "
+                  "lengths instead");
 }
 
 constexpr std::string_view kEdges[] = {"surface.root_radius_um", "surface.root_chamfer_um", "surface.rim_radius_um",
@@ -171,9 +173,9 @@ void check_chords(const Document& document, const PartSpec&) {
 void check_one_shape(const Document& document, const PartSpec& part) {
   const EdgeShape& edges = part.edges;
   if (edges.root_radius_mm > 0.0 && edges.root_chamfer_mm > 0.0)
-    document.fail("surface.root_chamfer_um", "must be 0 where root_radius_um is given");
+    document.fail("surface.root_chamfer_um", "must be 0 if root_radius_um is given");
   if (edges.rim_radius_mm > 0.0 && edges.rim_chamfer_mm > 0.0)
-    document.fail("surface.rim_chamfer_um", "must be 0 where rim_radius_um is given");
+    document.fail("surface.rim_chamfer_um", "must be 0 if rim_radius_um is given");
 }
 
 /// Checks that the gap between elements is wide enough for rounded or chamfered rims on both of its sides. Rims are the
@@ -187,8 +189,8 @@ void check_land(const Document& document, const PartSpec& part) {
   const auto check = [&](std::string_view gap, double gap_mm) {
     if (gap_mm <= 0.0 || gap_mm >= needed_mm) return;
     document.fail(part.edges.rim_radius_mm > 0.0 ? "surface.rim_radius_um" : "surface.rim_chamfer_um",
-                  fmt::format("rims of that shape need an array.{} of 0 or >= {} mm, got {}", gap, shortest(needed_mm),
-                              shortest(gap_mm)));
+                  fmt::format("rims of this shape need an array.{} that is 0 or >= {} mm, got {}", gap,
+                              shortest(needed_mm), shortest(gap_mm)));
   };
   check("x_gap_mm", part.array.x_gap_mm);
   if (is_checker) check("y_gap_mm", part.array.y_gap_mm);
@@ -214,13 +216,13 @@ void check_scratch(const Document& document, const PartSpec& part, std::size_t i
   for (const Scratch& other : std::span(part.scratches).first(i))
     if (other.facet == scratch.facet && std::abs(other.position_mm - scratch.position_mm) <
                                             0.5 * (other.width_mm + scratch.width_mm) * (1.0 - kRelativeTolerance))
-      document.fail(entry + ".position_um", fmt::format("must keep clear of the other scratches of its facet, got {}",
+      document.fail(entry + ".position_um", fmt::format("must not overlap the other scratches of its facet, got {}",
                                                         shortest(1e3 * scratch.position_mm)));
 }
 
 void check_scratches(const Document& document, const PartSpec& part) {
   if (!document.has(kScratches)) return;
-  if (part.substrate) document.fail(kScratches, "not allowed with [base]");
+  if (part.substrate) document.fail(kScratches, "not allowed together with [base]");
   if (part.scratches.size() > kMostScratches)
     document.fail(kScratches, fmt::format("must be at most {}, got {}", kMostScratches, part.scratches.size()));
   for (std::size_t i = 0; i < part.scratches.size(); ++i) check_scratch(document, part, i);
@@ -240,8 +242,9 @@ void check_angles(const Document& document, const PartSpec& part) {
     const auto& [dihedral, tilt] = part.angle_errors;
     const double apex_deg = rtp->apex_angle_deg + (dihedral[0] + tilt[0] + tilt[1]) / 60.0;
     if (!kApexAngle.contains(apex_deg))
-      document.fail(blamed_error(document, kFacetTilt), fmt::format("the apex angle with its errors must be {}, got {}",
-                                                                    kApexAngle.text(), shortest(apex_deg)));
+      document.fail(
+          blamed_error(document, kFacetTilt),
+          fmt::format("the apex angle including its errors must be {}, got {}", kApexAngle.text(), shortest(apex_deg)));
     return;
   }
   constexpr double steepest_deg = 88.0;
@@ -251,7 +254,7 @@ void check_angles(const Document& document, const PartSpec& part) {
                      deviations * part.random_tilts.sigma_arcmin / 60.0;
   if (deg > steepest_deg)
     document.fail(blamed_error(document, kRandomTilt),
-                  fmt::format("the steepest facet of the canted cube with its errors must be <= {} degrees, got {}",
+                  fmt::format("the slope of the facets, including angle errors, must be <= {} degrees, got {}",
                               steepest_deg, fixed_apart(deg, steepest_deg, 2)));
 }
 
@@ -266,7 +269,7 @@ void check_facet_planes(const Document& document, const PartSpec& part) {
   if (part.array.extent == Extent::infinite) document.fail(key, "only allowed for finite arrays");
   if (part.substrate) document.fail(key, "not allowed together with [base]");
   if (!(part.angle_errors == AngleErrors{}) || part.random_tilts.sigma_arcmin > 0.0)
-    document.fail(key, "not allowed together with errors of angle, which its planes hold");
+    document.fail(key, "not allowed together with angle errors in [surface], because the planes contain these errors");
 }
 
 void check_substrate_of_part(const Document& document, const PartSpec& part) {
@@ -289,7 +292,7 @@ void check_thickness(const Document& document, const PartSpec& part) {
   const double least_mm = top_mm > 0.0 ? top_mm + 1e-6 : 0.0;
   if (part.thickness_mm < least_mm)
     document.fail("body.thickness_mm",
-                  fmt::format("must be >= {} to cover rims that errors of angle or cant lift to {}, got {}",
+                  fmt::format("must be >= {} to cover the rims, which angle errors or a cant raise to {} mm, got {}",
                               shortest(least_mm), shortest(top_mm), shortest(part.thickness_mm)));
 }
 
@@ -306,7 +309,7 @@ void check_bowl(const Document& document) {
 void check_entrance(const Document& document) {
   if (!document.has("front")) return;
   const std::string_view key = document.has("front.mesh") ? "front.mesh" : "front.turned";
-  if (!document.has(key)) document.fail(key, "missing, must name the file of a turned part, or front.mesh an STL file");
+  if (!document.has(key)) document.fail(key, "missing: give the file of a turned part, or an STL file with front.mesh");
   if (has_elements(document) && document.text("array.extent") == "infinite")
     document.fail(key, "not allowed for extent = \"infinite\": give lengths");
 }
@@ -323,10 +326,10 @@ void check_form(const Document& document) {
     const std::string entry = schema::path_of_entry(kFormTerms, i);
     const double degree = document.number(entry + ".level") + document.number(entry + ".down");
     if (degree > most_degree)
-      document.fail(entry + ".down", fmt::format("must be <= {} beside level = {}, got {}",
-                                                 shortest(most_degree - document.number(entry + ".level")),
-                                                 shortest(document.number(entry + ".level")),
-                                                 shortest(document.number(entry + ".down"))));
+      document.fail(
+          entry + ".down",
+          fmt::format("must be <= {} for level = {}, got {}", shortest(most_degree - document.number(entry + ".level")),
+                      shortest(document.number(entry + ".level")), shortest(document.number(entry + ".down"))));
   }
 }
 

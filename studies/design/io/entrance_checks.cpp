@@ -20,7 +20,7 @@ std::string key_of(std::string_view name) {
 /// Checks that an amount above 0 comes with the key that describes its properties.
 void require_beside(const Document& document, std::string_view amount, std::string_view needed) {
   if (document.number(key_of(amount)) > 0.0 && !(document.number_if(key_of(needed)).value_or(-1.0) >= 0.0))
-    document.fail(key_of(needed), fmt::format("missing: needed where {} is given", amount));
+    document.fail(key_of(needed), fmt::format("missing: required if {} is given", amount));
 }
 
 void check_haze(const Document& document) {
@@ -28,9 +28,10 @@ void check_haze(const Document& document) {
   if (!(haze > 0.0)) return;
   const double most = beyond_haze_angle(document.number("entrance.haze_spread_deg"));
   if (haze > most)
-    document.fail("entrance.haze", fmt::format("must be <= {}, what a lobe of that haze_spread_deg has beyond 2.5 "
-                                               "degrees, got {}",
-                                               fixed_apart(most, haze, 6), shortest(haze)));
+    document.fail(
+        "entrance.haze",
+        fmt::format("must be <= {}, the fraction of the lobe beyond 2.5 degrees for this haze_spread_deg, got {}",
+                    fixed_apart(most, haze, 6), shortest(haze)));
 }
 
 void check_roughness_of_face(const Document& document) {
@@ -38,9 +39,10 @@ void check_roughness_of_face(const Document& document) {
   const double length_um = document.number("entrance.correlation_length_um");
   if (!(length_um > 0.0))
     document.fail("entrance.correlation_length_um",
-                  "must be > 0 where roughness_sq_nm is given, got " + shortest(length_um));
+                  "must be > 0 because roughness_sq_nm is given, got " + shortest(length_um));
   if (document.count(kThickLayers) > 0 || document.number("entrance.film_coverage") > 0.0)
-    document.fail("entrance.roughness_sq_nm", "must be 0 under layers or a film_coverage, which fill it");
+    document.fail("entrance.roughness_sq_nm",
+                  "must be 0 together with layers or a film_coverage, because they fill the roughness");
 }
 
 /// Returns the first key of the table [entrance] that makes the face scatter light. Returns an empty text if there is
@@ -59,7 +61,7 @@ void check_entrance_face(const Document& document) {
   if (document.text("idealisation.entrance") == "lossless")
     document.fail(kEntranceFace, "not allowed together with idealisation.entrance = \"lossless\"");
   if (const std::size_t count = document.count(kThickLayers); count > kMostThickLayers)
-    document.fail(kThickLayers, fmt::format("must be at most {} layers, got {}", kMostThickLayers, count));
+    document.fail(kThickLayers, fmt::format("must have at most {} layers, got {}", kMostThickLayers, count));
   require_beside(document, "drop_coverage", "drop_contact_angle_deg");
   require_beside(document, "dust_coverage", "dust_albedo");
   require_beside(document, "dust_coverage", "dust_forward_share");
@@ -68,13 +70,14 @@ void check_entrance_face(const Document& document) {
   const double spots = document.number("entrance.drop_coverage") + document.number("entrance.dust_coverage") +
                        document.number("entrance.scratch_coverage");
   if (spots > 1.0)
-    document.fail(scattering_key(document), fmt::format("drop_coverage, dust_coverage and scratch_coverage must add to "
-                                                        "at most 1, got {}",
-                                                        shortest(spots)));
+    document.fail(scattering_key(document),
+                  fmt::format("drop_coverage, dust_coverage and scratch_coverage must add up to at most 1, got {}",
+                              shortest(spots)));
   check_haze(document);
   check_roughness_of_face(document);
   if (const std::string_view key = scattering_key(document); document.has("front") && !key.empty())
-    document.fail(key, "must be 0 with a [front]: curved faces take layers and a film_coverage alone");
+    document.fail(key,
+                  "must be 0 together with a [front]: curved entrance faces support only layers and film_coverage");
 }
 
 }  // namespace retrace::studies

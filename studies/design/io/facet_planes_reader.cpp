@@ -130,7 +130,7 @@ class Reader {
                                spec_.array.arrangement == geometry::Arrangement::triangular;
     if (!resembles(row, false) && !(may_be_turned && resembles(row, true)))
       fail(row.line, "x_slope",
-           fmt::format("the plane must lie within {} degrees of facet {} of the design's element",
+           fmt::format("the angle to the plane of facet {1} of the design's element must be at most {0} degrees",
                        shortest(kMostTurnDeg), row.facet + 1));
     const double nominal_mm = nominal_height_mm(row);
     if (std::abs(row.plane.height_mm - nominal_mm) > kMostHeightShare * depth_mm_)
@@ -147,7 +147,7 @@ class Reader {
     for (const FacetRow& other : pending_)
       if (other.centre_mm != row.centre_mm || other.facet == row.facet || row.facet >= kFlares)
         fail(row.line, "",
-             fmt::format("must be {} facet of the element of the line before", is_prism() ? "the other" : "another"));
+             fmt::format("must be {} facet of the element of the previous line", is_prism() ? "the other" : "another"));
     pending_.push_back(row);
     if (pending_.size() < nominal_slopes_.size()) return;
     ElementPlanes element;
@@ -162,10 +162,10 @@ class Reader {
   /// Adds a cap to its element. Caps must follow the facets of their element, in the order of the facets.
   void take_cap(const FacetRow& row) {
     if (elements_.empty() || elements_.back().planes.empty() || elements_.back().centre_mm != row.centre_mm)
-      fail(row.line, "facet", "must stand behind the three facets of its element");
+      fail(row.line, "facet", "must follow the three facets of its element");
     auto& caps = elements_.back().caps;
     const std::size_t k = row.facet - kCaps;
-    if (caps[k] || (k > 0 && !caps[k - 1])) fail(row.line, "facet", "must follow in the order 7, 8, 9");
+    if (caps[k] || (k > 0 && !caps[k - 1])) fail(row.line, "facet", "must be in the order 7, 8, 9");
     caps[k] = row.plane;
   }
 
@@ -179,7 +179,7 @@ class Reader {
       elements_.back().planes.clear();
     }
     auto& flare = elements_.back().flares[row.facet - kFlares];
-    if (flare) fail(row.line, "facet", "must not be given twice for one place");
+    if (flare) fail(row.line, "facet", "must not be given twice for one position");
     flare = row.plane;
   }
 

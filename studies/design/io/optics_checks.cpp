@@ -36,19 +36,21 @@ std::size_t count_opaque(const Document& document, std::string_view list) {
 void check_lengths(const Document& document) {
   for (const auto& [height, length] : {std::pair(kRoughness, kRoughnessLength), {kWaviness, kWavinessLength}})
     if (document.number(height) > 0.0 && !(document.number(length) > 0.0))
-      document.fail(length, fmt::format("must be > 0 where {} is given, got {}", height.substr(height.find('.') + 1),
-                                        document.number(length)));
+      document.fail(length,
+                    fmt::format("must be > 0 because {} is given{}, got {}", height.substr(height.find('.') + 1),
+                                length == kRoughnessLength ? " (5 to 50 is common)" : "", document.number(length)));
 }
 
 void check_heights(const Document& document) {
   const std::string model = document.text_if("surface.model");
   if (model == "height_map")
-    refuse_heights(document, {kRoughness, kWaviness}, "must be 0 for model = \"height_map\", whose map holds both");
+    refuse_heights(document, {kRoughness, kWaviness},
+                   "must be 0 for model = \"height_map\", because the map contains roughness and waviness");
   if (model == "smooth" || model == "abg")
     refuse_heights(document, {kRoughness, kWaviness},
                    "must be 0 for this model; leave the model out or use \"harvey_shack\"");
   if (model == "microfacet")
-    refuse_heights(document, {kRoughness}, "must be 0 for model = \"microfacet\", which has waviness only");
+    refuse_heights(document, {kRoughness}, "must be 0 for model = \"microfacet\", which supports only waviness");
 }
 
 void check_material(const Document& document) {
@@ -75,7 +77,7 @@ void check_lines(const Document& document) {
   std::ranges::sort(wavelengths_nm);
   const auto twice = std::ranges::adjacent_find(wavelengths_nm);
   if (twice != wavelengths_nm.end())
-    document.fail(key, fmt::format("must name each wavelength once, got {} twice", shortest(*twice)));
+    document.fail(key, fmt::format("must contain each wavelength only once, got {} twice", shortest(*twice)));
 }
 
 void check_stokes(const Document& document) {
@@ -103,7 +105,8 @@ void check_wet_back(const Document& document) {
   constexpr std::string_view key = "wet_back.index";
   if (document.text("array.extent") == "infinite")
     document.fail(key,
-                  "[wet_back] is not allowed for extent = \"infinite\", whose elements are all alike: give lengths");
+                  "[wet_back] is not allowed for extent = \"infinite\", because all elements of an infinite array are "
+                  "equal: give lengths");
   if (document.text("array.arrangement") == "single")
     document.fail(key, "[wet_back] is not allowed for arrangement = \"single\": give body.back_index");
   if (document.has("base")) document.fail(key, "[wet_back] is not allowed together with [base]");
@@ -112,7 +115,8 @@ void check_wet_back(const Document& document) {
     const std::vector<double> r = document.numbers("wet_back.rectangle_mm");
     if (!(r[0] < r[2] && r[1] < r[3]))
       document.fail("wet_back.rectangle_mm",
-                    "must have its least corner first, both lengths > 0, got " + given("wet_back.rectangle_mm"));
+                    "must be x_min, y_min, x_max, y_max with x_min < x_max and y_min < y_max, got " +
+                        given("wet_back.rectangle_mm"));
   }
   if (document.has("wet_back.disc_mm") && !(document.numbers("wet_back.disc_mm")[2] > 0.0))
     document.fail("wet_back.disc_mm", "must have a radius > 0, got " + given("wet_back.disc_mm"));
@@ -121,16 +125,17 @@ void check_wet_back(const Document& document) {
 void check_layers(const Document& document) {
   for (const std::string_view list : {kFacetLayers, kEntranceLayers}) {
     const std::size_t count = document.count(list);
-    if (count > kMostLayers) document.fail(list, fmt::format("must be at most {} layers, got {}", kMostLayers, count));
+    if (count > kMostLayers)
+      document.fail(list, fmt::format("must have at most {} layers, got {}", kMostLayers, count));
     for (std::size_t i = 0; i < count; ++i) {
       const std::string key = schema::path_of_entry(list, i) + ".thickness_nm";
       if (document.has(key)) continue;
       if (list == kEntranceLayers)
-        document.fail(key, "missing: a layer without thickness is opaque, and light must enter");
+        document.fail(key,
+                      "missing: a layer without thickness is opaque, but light must pass through the entrance face");
       const auto extinction = document.number_if(schema::path_of_entry(list, i) + ".extinction_coefficient");
       if (extinction && !(*extinction > 0.0))
-        document.fail(key,
-                      "missing: only a metal, or a layer with an extinction_coefficient > 0, is opaque without it");
+        document.fail(key, "missing: only a metal or a layer with an extinction_coefficient > 0 may have no thickness");
     }
   }
   if (const std::size_t opaque = count_opaque(document, kFacetLayers); opaque > 1)
@@ -146,8 +151,9 @@ void check_coating(const Document& document) {
     if (document.text("idealisation.facets") == "mirror")
       document.fail(kFacetLayers, "not allowed together with idealisation.facets = \"mirror\"");
     if (document.text_if("element.kind") == "ball" && count_opaque(document, kFacetLayers) == 0)
-      document.fail(kFacetLayers,
-                    "must have a layer without thickness_nm for kind = \"ball\": only mirrors lie behind balls");
+      document.fail(
+          kFacetLayers,
+          "must have a layer without thickness_nm for kind = \"ball\", because layers behind balls must form a mirror");
   }
   if (document.count(kEntranceLayers) > 0 && document.text("idealisation.entrance") == "lossless")
     document.fail(kEntranceLayers, "not allowed together with idealisation.entrance = \"lossless\"");

@@ -21,10 +21,10 @@ constexpr Words kSides = {"top", "bottom"};
 
 constexpr Condition kElementOfNoBall = is_not(kKind, kBall, "not allowed for kind = \"ball\", which has diameter_mm");
 constexpr Condition kArrayOfNoBall =
-    is_not(kKind, kBall, "not allowed for kind = \"ball\", whose layers are endless, with gap_mm between the balls");
+    is_not(kKind, kBall, "not allowed for kind = \"ball\", because layers of balls are infinite and use gap_mm");
 
 constexpr Condition kPrismOnly[] = {kElementOfNoBall,
-                                    is(kKind, kRtp, "only allowed for kind = \"rtp\", others have aperture_mm")};
+                                    is(kKind, kRtp, "only allowed for kind = \"rtp\"; other kinds have aperture_mm")};
 constexpr Condition kCubeOnly[] = {
     kElementOfNoBall,
     is(kKind, geometry::kCubeKinds, "not allowed for kind = \"rtp\", which has base_mm and width_mm")};
@@ -116,11 +116,11 @@ constexpr Row kArrayRows[] = {
 constexpr std::string_view kScaleMeaning =
     "Factor that converts the unit of the STL file to mm: 1 for mm, 1000 for metres, 25.4 for inches, 0.001 for "
     "micrometres.";
-constexpr std::string_view kBesidePlate = "not allowed beside plate_mm";
+constexpr std::string_view kBesidePlate = "not allowed together with plate_mm";
 constexpr Condition kMeshOnly[] = {without("plate_mm", kBesidePlate)};
 constexpr Condition kWithMesh[] = {without("plate_mm", kBesidePlate), beside("mesh")};
 constexpr Condition kFacetsOnly[] = {without("plate_mm", kBesidePlate),
-                                     without("mesh", "not allowed beside mesh, which has the facets that it has")};
+                                     without("mesh", "not allowed together with mesh, which determines all facets")};
 
 constexpr Row kPartRows[] = {
     {"mesh", File{"an STL file"}, kNone,
@@ -140,7 +140,8 @@ constexpr Row kPartRows[] = {
      "Table with the plane of each facet of a finite part. These planes replace the nominal planes of the facets.",
      kFacetsOnly}};
 
-constexpr Condition kTurnedOnly[] = {without("mesh", "not allowed beside mesh: a part has one front")};
+constexpr Condition kTurnedOnly[] = {
+    without("mesh", "not allowed together with mesh, because a part has only one entrance surface")};
 constexpr Condition kSideOnly[] = {beside("mesh")};
 
 constexpr Row kEntranceRows[] = {
@@ -159,11 +160,11 @@ constexpr Row kEntranceRows[] = {
      "`[x, y]`: position of the origin of the file in the part frame."}};
 
 constexpr NumberRange kLines{.low = 1.0, .high = 1e6};
-constexpr Condition kBesideLines[] = {without("mask", "only allowed beside rows or columns"),
-                                      without("rest", "only allowed beside rows or columns"),
-                                      without("share", "only allowed beside rows or columns"),
-                                      without("rectangles_mm", "only allowed beside rows or columns"),
-                                      without("polygon_mm", "only allowed beside rows or columns")};
+constexpr Condition kBesideLines[] = {without("mask", "only allowed together with rows or columns"),
+                                      without("rest", "only allowed together with rows or columns"),
+                                      without("share", "only allowed together with rows or columns"),
+                                      without("rectangles_mm", "only allowed together with rows or columns"),
+                                      without("polygon_mm", "only allowed together with rows or columns")};
 constexpr Condition kBesideMask[] = {beside("mask")};
 constexpr Row kZoneRows[] = {
     {"share", Number{{.low = 0.0, .low_included = false, .high = 1.0}}, kNone,

@@ -74,13 +74,11 @@ std::vector<ZoneChange> changes_of(const Document& document, std::size_t zone) {
   for (const std::string& change : document.texts(key)) {
     const std::size_t equals = change.find('=');
     const std::string name = equals == std::string::npos ? std::string() : stripped(change.substr(0, equals), " \t");
-    if (name.empty()) document.fail(key, fmt::format("must be texts KEY=VALUE, got {}", in_quotes(change)));
+    if (name.empty()) document.fail(key, fmt::format("must be a list of texts KEY=VALUE, got {}", in_quotes(change)));
     if (!may_set_in_zone(name))
-      document.fail(
-          key,
-          fmt::format("must set keys of [element], of [array] but for extent, lengths, margins and mask, or angles and "
-                      "edges of [surface], got {}",
-                      in_quotes(change)));
+      document.fail(key, fmt::format("must set only keys of [element], keys of [array] except extent, lengths, margins "
+                                     "and mask, and keys of [surface] for angles and edges, got {}",
+                                     in_quotes(change)));
     changes.push_back({name, change});
   }
   return changes;
@@ -120,12 +118,14 @@ void lay_out_stripes(const Document& document, geometry::ZonedSpec& spec) {
   double sum = 0.0;
   for (std::size_t k = 0; k < spec.zones.size(); ++k) {
     const std::string key = entry_of(k) + ".share";
-    if (!document.has(key)) document.fail(entry_of(k), "must have share as the other zones do: all have one, or none");
+    if (!document.has(key))
+      document.fail(entry_of(k),
+                    "must have share, because other zones have it: either all zones have a share, or none");
     sum += document.number(key);
   }
   if (std::abs(sum - 1.0) > kShareRounding)
     document.fail(entry_of(spec.zones.size() - 1) + ".share",
-                  fmt::format("shares of all zones must add to 1, got {}", shortest(sum)));
+                  fmt::format("the shares of all zones must add up to 1, got {}", shortest(sum)));
   double from_mm = 0.0;
   double share = 0.0;
   for (std::size_t k = 0; k < spec.zones.size(); ++k) {
@@ -140,8 +140,9 @@ std::vector<Polygon> rectangles_of(const Document& document, const std::string& 
   std::vector<Polygon> regions;
   for (const std::vector<double>& r : document.rows(key)) {
     if (!(r[0] < r[2] && r[1] < r[3]))
-      document.fail(
-          key, fmt::format("must have the least corner of each first, both lengths > 0, got [{}]", fmt::join(r, ", ")));
+      document.fail(key,
+                    fmt::format("must be [x_from, y_from, x_to, y_to] with x_from < x_to and y_from < y_to, got [{}]",
+                                fmt::join(r, ", ")));
     regions.push_back(geometry::to_polygon({{r[0], r[1]}, {r[2], r[3]}}));
   }
   return regions;
@@ -153,11 +154,11 @@ Polygon polygon_of(const Document& document, const std::string& key) {
   const double near_mm = kRounding * geometry::bounding_box(polygon).size().norm();
   for (std::size_t k = 0; k < polygon.size(); ++k)
     if ((polygon[k] - polygon[(k + 1) % polygon.size()]).norm() <= near_mm)
-      document.fail(key, fmt::format("must have each corner once, got [{}, {}] twice", shortest(polygon[k].x()),
+      document.fail(key, fmt::format("must contain each corner only once, got [{}, {}] twice", shortest(polygon[k].x()),
                                      shortest(polygon[k].y())));
   if (geometry::area(polygon) < 0.0) std::reverse(polygon.begin(), polygon.end());
   if (!(geometry::area(polygon) > 0.0) || !geometry::is_convex(polygon, near_mm))
-    document.fail(key, "must be the corners of a convex polygon, one after another");
+    document.fail(key, "must be the corners of a convex polygon, in their order along its boundary");
   return polygon;
 }
 
@@ -189,7 +190,7 @@ ElementsOfZone elements_of(const Document& document, const std::string& zone) {
     chosen.mask = {document.text(mask), document.file(mask), document.number(zone + ".mask_threshold")};
   chosen.rest = document.has(zone + ".rest");
   if (chosen.rest && !document.flag(zone + ".rest"))
-    document.fail(zone + ".rest", "must be true where it is given, got false");
+    document.fail(zone + ".rest", "must be true if it is given, got false");
   return chosen;
 }
 
@@ -205,11 +206,11 @@ bool read_elements(const Document& document, ZonedPart& part) {
     if (!is_region) ++by_cell;
     if (by_cell != 0 && by_cell != k + 1)
       document.fail(zone,
-                    "must be of the sort that the zones before it are: regions, or rows, columns, masks and the "
-                    "rest of the elements");
+                    "must be of the same type as the previous zones: either all zones have regions (share, "
+                    "rectangles_mm, polygon_mm), or all select elements (rows, columns, mask, rest)");
     part.elements.push_back(elements_of(document, zone));
     if (part.elements.back().rest && rest)
-      document.fail(zone + ".rest", fmt::format("not allowed twice, zone {} has the rest", *rest + 1));
+      document.fail(zone + ".rest", fmt::format("only allowed for one zone, but zone {} also has it", *rest + 1));
     if (part.elements.back().rest) rest = k;
   }
   if (by_cell == 0) part.elements.clear();
@@ -222,9 +223,7 @@ void check_lines(const Document& document, const std::string& key, const std::ve
   for (const double number : numbers)
     if (number > most)
       document.fail(key, fmt::format("must be at most {}, {}, got {}", shortest(most),
-                                     every ? "as many as there are until they are counted from 1 again"
-                                           : "as many as the array has",
-                                     shortest(number)));
+                                     every ? "the value of every" : "the number in the array", shortest(number)));
 }
 
 /// Assigns the cells of the array to the zones. part_of_design() assigns the cells of masks.
@@ -298,8 +297,9 @@ ZonedPart read_zones(const Document& document) {
     check_room(document, k, part.spec.zones[k], part.spec.size_mm);
   }
   if (const double elements = geometry::element_estimate(part.spec); elements > kMostElements)
-    document.fail(kZone, fmt::format("a part of zones may have at most {:.0f} elements, it would have some {:.0f}",
-                                     kMostElements, elements));
+    document.fail(kZone,
+                  fmt::format("a part of zones may have at most {:.0f} elements, but this part would have about {:.0f}",
+                              kMostElements, elements));
   if (part.spec.is_by_cell) read_cells(document, part);
   if (part.has_masks()) return part;
   check_zones(part, [&](const std::string& key) { return document.where(key); });

@@ -29,7 +29,8 @@ class Lines {
 
   bool at_end() const { return next_ == lines_.size(); }
   std::string_view next(std::string_view what) {
-    if (at_end()) throw InputError({file_, static_cast<int>(lines_.size()), ""}, fmt::format("ends before {}", what));
+    if (at_end())
+      throw InputError({file_, static_cast<int>(lines_.size()), ""}, fmt::format("the file ends before {}", what));
     return lines_[next_++];
   }
   [[noreturn]] void fail(std::string_view key, std::string_view text) const {
@@ -61,7 +62,7 @@ class Lines {
   double checked(std::optional<double> value, const std::string& text, std::string_view key, double least,
                  double most) const {
     if (value && *value >= least && *value <= most) return *value;
-    fail(key, fmt::format("must be a number of {} to {}, got {}", shortest(least), shortest(most), in_quotes(text)));
+    fail(key, fmt::format("must be a number from {} to {}, got {}", shortest(least), shortest(most), in_quotes(text)));
   }
 
   std::size_t whole(std::string_view key, double value) const {
@@ -89,7 +90,7 @@ struct Table {
 void check_ascending(const Lines& lines, const std::vector<double>& angles, std::string_view key) {
   for (std::size_t k = 1; k < angles.size(); ++k)
     if (!(angles[k] > angles[k - 1]))
-      lines.fail(key, fmt::format("must ascend, got {} behind {}", shortest(angles[k]), shortest(angles[k - 1])));
+      lines.fail(key, fmt::format("must ascend, got {} after {}", shortest(angles[k]), shortest(angles[k - 1])));
 }
 
 /// Adds the planes on the other side of a plane of symmetry. Their angles are 2 * mirror_deg minus the present angles.
@@ -147,11 +148,11 @@ void complete_ies(Lines& lines, Table& table, LuminousIntensity::Planes kind) {
   if (kind != LuminousIntensity::Planes::c) {
     const double most = kind == LuminousIntensity::Planes::a ? 180.0 : 90.0;
     if (table.planes_deg.size() < 2 || last > most || first < -most)
-      refuse(fmt::format("be two or more of -{0} to {0}", shortest(most)));
+      refuse(fmt::format("be two or more angles from -{0} to {0}", shortest(most)));
     if (first == 0.0)
       mirror(table, 0.0, true);
     else if (!(first < 0.0 && last > 0.0))
-      refuse("begin at 0, for both sides alike, or reach from one side to the other");
+      refuse("begin at 0 (symmetric distribution), or reach from a negative to a positive angle");
     return;
   }
   if (table.planes_deg.size() == 1 && first == 0.0) return;
@@ -204,7 +205,7 @@ int edition_in(const Lines& lines, std::string_view line) {
   constexpr std::array editions = {kFirstEdition, kLastWithLampFactor, 1995, 2002, 2019};
   if (ends && (is_standard ? year >= kFirstEdition : std::ranges::count(editions, year) > 0)) return year;
   if (is_ies && is_standard)
-    lines.fail("header", "must name the year of LM-63, as IESNA:LM-63-2002 does, got " + in_quotes(line));
+    lines.fail("header", "must contain the year of LM-63, as in IESNA:LM-63-2002, got " + in_quotes(line));
   return 0;
 }
 
@@ -325,8 +326,9 @@ Table read_ldt_table(Lines& lines, std::size_t symmetry, std::size_t planes, std
   const std::size_t begins[] = {0, 0, 0, 3 * planes / 4, 0};
   const std::size_t counts[] = {planes, 1, planes / 2 + 1, planes / 2 + 1, planes / 4 + 1};
   if ((symmetry > 1 && planes % (symmetry == 2 ? 2 : 4) != 0) || all_planes.front() != 0.0)
-    lines.fail("C planes",
-               fmt::format("must begin at 0 and be as many as symmetry {} parts, got {}", symmetry, planes));
+    lines.fail("C planes", fmt::format("must begin at 0, and their number must be even for symmetry 2 and a multiple "
+                                       "of 4 for symmetry 3 and 4, got symmetry {} and {} planes",
+                                       symmetry, planes));
   for (std::size_t k = 0; k < counts[symmetry]; ++k) {
     const std::size_t plane = begins[symmetry] + k;
     // The planes of symmetry 3 go from 270 degrees through 0 to 90 degrees.

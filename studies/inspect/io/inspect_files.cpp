@@ -16,10 +16,10 @@ namespace retrace::studies {
 namespace {
 
 std::string total_reflection(const Inspection& i) {
-  if (i.entrance) return "not stated: light comes from a curved front in many directions";
-  if (i.substrate) return "not stated: elements on a base stand at angles of their own";
+  if (i.entrance) return "not computed: a curved entrance surface refracts light into many directions";
+  if (i.substrate) return "not computed: elements on a base have different orientations";
   if (!i.design.needs_total_reflection()) return "not needed: the facets are metal or mirrors";
-  if (i.coating.facets && i.coating.facets->stack.absorbs()) return "none: layers on the facets absorb";
+  if (i.coating.facets && i.coating.facets->stack.absorbs()) return "none: the layers on the facets absorb light";
   if (!i.tir_limit_deg) return "none at normal incidence";
   const bool is_rtp = std::holds_alternative<geometry::RtpElement>(i.design.part().element);
   return fmt::format("up to {} degrees {}", fixed_visible(*i.tir_limit_deg, 2),
@@ -67,7 +67,7 @@ nlohmann::ordered_json form_json(const FormReport& form) {
 
 std::string form_text(const Inspection& i) {
   if (!i.form) return {};
-  return fmt::format("  form of facets      {} to {} um from their planes, rms {} um, slopes to {} mrad{}\n",
+  return fmt::format("  form of facets      {} to {} um from their planes, rms {} um, slopes up to {} mrad{}\n",
                      fixed(i.form->lowest_um, 4), fixed(i.form->highest_um, 4), fixed(i.form->rms_um, 4),
                      fixed(i.form->steepest_mrad, 3),
                      i.form->tilt_mrad > 1e-6 ? fmt::format(", tilted by {} mrad", fixed(i.form->tilt_mrad, 3)) : "");
@@ -75,7 +75,7 @@ std::string form_text(const Inspection& i) {
 
 std::string entrance_text(const Inspection& i) {
   if (!i.entrance) return {};
-  return fmt::format("  front               {}, z = {} to {} mm, up to {} degrees steep\n",
+  return fmt::format("  entrance surface    {}, z = {} to {} mm, slopes up to {} degrees\n",
                      printable(i.design.entrance->name), fixed(i.entrance->range.lowest_mm, 6),
                      fixed(i.entrance->range.highest_mm, 6), fixed_visible(i.entrance->steepest_deg, 2));
 }
@@ -127,7 +127,7 @@ std::string coating_text(std::string_view label, const std::optional<CoatingRepo
   std::vector<std::string> layers;
   for (const CoatingLayer& layer : face->layers) layers.push_back(layer_text(layer));
   return fmt::format("  {:<20}{}, from the body outwards\n", label, fmt::join(layers, "; ")) +
-         fmt::format("  {:<20}reflects {} %, passes {} %, absorbs {} % at normal incidence\n", "",
+         fmt::format("  {:<20}reflects {} %, transmits {} %, absorbs {} % at normal incidence\n", "",
                      fixed(100.0 * face->reflectance, 3), fixed(100.0 * face->transmittance, 3),
                      fixed(100.0 * face->absorptance, 3));
 }
@@ -137,17 +137,17 @@ std::string entrance_state_text(const Inspection& i) {
   if (!i.entrance_state) return {};
   const EntranceStateReport& face = *i.entrance_state;
   std::string text = fmt::format(
-      "  {:<20}{} % under no drop, dust or scratch, which reflects {} %, passes {} %, absorbs "
-      "{} % at normal incidence\n",
+      "  {:<20}{} % free of drops, dust and scratches; this area reflects {} %, transmits {} %, absorbs {} % at normal "
+      "incidence\n",
       "entrance state", fixed(100.0 * face.clean_share, 3), fixed(100.0 * face.reflectance, 3),
       fixed(100.0 * face.transmittance, 3), fixed(100.0 * face.absorptance, 3));
-  text += fmt::format("  {:<20}passes {} % of all light as a plane does\n", "",
+  text += fmt::format("  {:<20}transmits {} % of all light without scattering\n", "",
                       fixed(100.0 * face.specular_transmittance, 3));
   if (face.haze_share > 0.0)
-    text += fmt::format("  {:<20}haze throws off {} % of a passage\n", "", fixed(100.0 * face.haze_share, 3));
-  if (i.design.surface.entrance.dust_coverage > 0.0)
     text +=
-        fmt::format("  {:<20}dust sends back {} cd/(lx m2) along the normal\n", "", fixed(face.dust_cd_per_lx_m2, 6));
+        fmt::format("  {:<20}haze scatters {} % of the light in one passage\n", "", fixed(100.0 * face.haze_share, 3));
+  if (i.design.surface.entrance.dust_coverage > 0.0)
+    text += fmt::format("  {:<20}dust returns {} cd/(lx m2) along the normal\n", "", fixed(face.dust_cd_per_lx_m2, 6));
   return text;
 }
 
@@ -160,7 +160,7 @@ std::string coatings_text(const Inspection& i) {
 std::string place_text(const geometry::ElementChoice& choice) {
   return std::visit(
       Overloaded{[](const geometry::RandomShare& random) {
-                   return fmt::format("each with a chance of {}, seed {}", shortest(random.share), random.seed);
+                   return fmt::format("each with a probability of {}, seed {}", shortest(random.share), random.seed);
                  },
                  [](const geometry::Rectangle& r) {
                    return fmt::format("x {} to {}, y {} to {} mm", shortest(r.lower.x()), shortest(r.upper.x()),
@@ -180,9 +180,10 @@ std::string place_text(const geometry::ElementChoice& choice) {
 /// Returns the lines on the elements that have another medium behind them.
 std::string wet_back_text(const Inspection& i) {
   if (!i.wet_back) return {};
-  return fmt::format("  wet back            {} of {} elements, {} behind them: {}\n", i.wet_back->elements,
-                     i.wet_back->of_all, shortest(i.design.wet_back->index), place_text(i.design.wet_back->where)) +
-         fmt::format("                      total reflection in them {}\n",
+  return fmt::format("  wet back            {} of {} elements, index {} behind their facets: {}\n",
+                     i.wet_back->elements, i.wet_back->of_all, shortest(i.design.wet_back->index),
+                     place_text(i.design.wet_back->where)) +
+         fmt::format("                      total reflection in wet elements: {}\n",
                      i.wet_back->tir_limit_deg
                          ? fmt::format("up to {} degrees", fixed_visible(*i.wet_back->tir_limit_deg, 2))
                          : "at no angle, or not computed");
@@ -200,12 +201,13 @@ std::string substrate_text(const Inspection& i) {
   if (!i.substrate) return {};
   const auto& [area_mm2, lowest_mm, highest_mm, steepest_deg, least_radius_mm] = i.substrate->measures;
   const std::string radius = std::isfinite(least_radius_mm) ? fixed(least_radius_mm, 4) + " mm" : "plane";
-  return fmt::format("  base                {} mm2, {} mm high, up to {} degrees steep\n", fixed(area_mm2, 4),
+  return fmt::format("  base                {} mm2, {} mm high, slopes up to {} degrees\n", fixed(area_mm2, 4),
                      fixed(highest_mm - lowest_mm, 4), fixed_visible(steepest_deg, 2)) +
-         fmt::format("  least radius        {}; an element measures {} mm across\n", radius,
+         fmt::format("  minimum radius      {}; an element is {} mm wide\n", radius,
                      fixed(i.substrate->element_mm, 4)) +
          fmt::format(
-             "  between elements    steps of up to {} mm, walls of {} mm2, {} mm2 seen along the base's normal\n",
+             "  between elements    steps up to {} mm; area of the walls {} mm2, projected along the normal of the "
+             "base {} mm2\n",
              fixed(i.substrate->walls.highest_mm, 6), fixed(i.substrate->walls.area_mm2, 4),
              fixed(i.substrate->walls.projected_mm2, 4));
 }
@@ -250,14 +252,14 @@ std::string zones_text(const Inspection& i) {
     for (const ZoneChange& change : i.design.zoned()->changes[k]) changes += "; " + change.text;
     const double turn_deg = i.design.zoned()->spec.zones[k].rotation_deg;
     std::string wander;
-    if (zone.wander_mm) wander = fmt::format(", light wanders {} mm", fixed(*zone.wander_mm, 4));
-    text += fmt::format("  {:<20}{} %, {} full elements, {} cut{}{}{}\n", fmt::format("zone {}", k + 1),
-                        fixed(100.0 * zone.elements.area_mm2 / i.entrance_area_mm2, 3), zone.elements.full,
-                        zone.elements.partial, wander,
-                        turn_deg != 0.0 ? fmt::format("; turned by {}", shortest(turn_deg)) : "", printable(changes));
+    if (zone.wander_mm) wander = fmt::format(", mean lateral shift of the light {} mm", fixed(*zone.wander_mm, 4));
+    text += fmt::format(
+        "  {:<20}{} %, {} full elements, {} cut{}{}{}\n", fmt::format("zone {}", k + 1),
+        fixed(100.0 * zone.elements.area_mm2 / i.entrance_area_mm2, 3), zone.elements.full, zone.elements.partial,
+        wander, turn_deg != 0.0 ? fmt::format("; rotated by {} degrees", shortest(turn_deg)) : "", printable(changes));
   }
   for (const ZoneCrossing& crossing : i.zones->crossings)
-    text += fmt::format("  {:<20}{} % of what comes back from {} degrees meets two zones\n", "",
+    text += fmt::format("  {:<20}{} % of the light that is returned at {} degrees of incidence crosses two zones\n", "",
                         fixed(100.0 * crossing.share, 2), shortest(crossing.incidence_deg));
   return text;
 }
@@ -322,14 +324,14 @@ std::string mesh_text(const Inspection& i) {
 std::string ball_text(const Inspection& i) {
   const BallFigures& balls = *i.balls;
   std::string text = fmt::format("{}\n", printable(short_name(i.design)));
-  text += fmt::format("  packing             {} % of the plan\n", fixed(100.0 * balls.packing_share, 3));
-  text += fmt::format("  mirror              {} mm behind the balls, to {} degrees from their axes\n",
+  text += fmt::format("  packing             {} % of the plan area\n", fixed(100.0 * balls.packing_share, 3));
+  text += fmt::format("  mirror              {} mm behind the balls, up to {} degrees from their axes\n",
                       shortest(i.design.balls()->mirror_offset_mm), fixed_visible(balls.mirror_half_angle_deg, 2));
-  text += fmt::format("  in focus at         {}\n",
-                      balls.focal_offset_mm ? fixed(*balls.focal_offset_mm, 6) + " mm" : "no offset");
+  text += fmt::format("  offset for focus    {}\n",
+                      balls.focal_offset_mm ? fixed(*balls.focal_offset_mm, 6) + " mm" : "none");
   text += light_text(i);
   text += coatings_text(i);
-  text += fmt::format("  paraxial error      {} rad over height / radius\n", fixed(balls.paraxial_error, 6));
+  text += fmt::format("  paraxial error      {} rad per unit of height / radius\n", fixed(balls.paraxial_error, 6));
   text += fmt::format("  max. return error   {} degrees\n", fixed_visible(balls.largest_return_error_deg, 3));
   text +=
       fmt::format("  within acceptance   {} % of a ball's aperture\n", fixed(100.0 * balls.share_within_acceptance, 3));
@@ -347,7 +349,7 @@ std::string inspect_text(const Inspection& i) {
   text += fmt::format("  elements            {} full, {} partial{}\n", i.elements_full, i.elements_partial, per_period);
   text += fmt::format("  element depth       {} mm\n", fixed(i.element_depth_mm, 6));
   text += fmt::format("  entrance area       {} mm2{}\n", fixed(i.entrance_area_mm2, 4), per_period);
-  text += fmt::format("  full elements       {} % of it\n", fixed(100.0 * i.full_element_share, 3));
+  text += fmt::format("  full elements       {} % of the entrance area\n", fixed(100.0 * i.full_element_share, 3));
   text += fmt::format("  retro facet area    {} mm2{}\n", fixed(i.facet_area_mm2, 4), per_period);
   text += substrate_text(i);
   text += entrance_text(i);

@@ -51,9 +51,10 @@ std::vector<std::string> read_band_keys(const Document& document, const Study& s
     const bool is_varied = std::ranges::any_of(
         study.parameters, [&](const Parameter& parameter) { return std::ranges::count(parameter.keys, key) > 0; });
     if (!is_varied && !schema::is_number_key(design_format(), key))
-      document.fail(list, fmt::format("must be keys of a design whose values are numbers, or of parameters of the "
-                                      "study, got {}",
-                                      in_quotes(key)));
+      document.fail(
+          list,
+          fmt::format("must be keys of a design with numbers as values, or keys of parameters of the study, got {}",
+                      in_quotes(key)));
   }
   return keys;
 }
@@ -61,14 +62,16 @@ std::vector<std::string> read_band_keys(const Document& document, const Study& s
 void check_parameters(const Study& study) {
   for (const Parameter& parameter : study.parameters)
     if (parameter.distribution)
-      throw InputError(parameter.location, "a distribution is nothing to choose from: give values, or from and to");
+      throw InputError(parameter.location,
+                       "a distribution is not allowed in an optimization: give values, or from and to");
 }
 
 }  // namespace
 
 OptimiseRequest read_optimise(const Study& study) {
   const Document& document = *study.document;
-  if (!document.has("optimize")) document.fail("optimize", "missing, must be a table that says what to maximize");
+  if (!document.has("optimize"))
+    document.fail("optimize", "missing, must be a table with the key maximize or minimize");
   check_parameters(study);
   OptimiseRequest request;
   request.objective = read_objective(document, study);

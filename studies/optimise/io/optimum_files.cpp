@@ -96,15 +96,16 @@ std::string optimum_text(const Study& study, const OptimiseRequest& request, con
   if (!optimum.best) return optimum.complete ? "no feasible design: " + optimum.none_because + "\n" : std::string();
   std::string text = "chosen:  " + variant_text(study, *optimum.best) + "\n";
   for (const Rejected& rejected : optimum.rejected)
-    text += fmt::format("not {}:  {}\n    {}\n", rejected.role, variant_text(study, rejected.variant), rejected.why);
-  if (optimum.cheaper) text += "within 1 %:  " + variant_text(study, *optimum.cheaper) + "\n";
+    text += fmt::format("not chosen ({}):  {}\n    {}\n", rejected.role, variant_text(study, rejected.variant),
+                        rejected.why);
+  if (optimum.cheaper) text += "alternative within 1 %:  " + variant_text(study, *optimum.cheaper) + "\n";
   for (const ToleranceBand& band : optimum.bands) {
     const auto side = [](const std::optional<double>& change) { return change ? fmt::format("{:.4g}", *change) : "-"; };
     text +=
-        fmt::format("{:g} % of {} is lost:  {} = {:.9g}  - {}  + {}\n", 100.0 * request.band_loss,
+        fmt::format("range for a loss of {:g} % of {}:  {} = {:.9g}  - {}  + {}\n", 100.0 * request.band_loss,
                     request.objective.weights.front().first, band.key, band.nominal, side(band.down), side(band.up));
   }
-  text += fmt::format("{} designs looked at, {} on the front; refined by {}\n", optimum.evaluations,
+  text += fmt::format("{} designs evaluated, {} on the Pareto front; refinement: {}\n", optimum.evaluations,
                       optimum.front.size(), optimum.method);
   return text;
 }

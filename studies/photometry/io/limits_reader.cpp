@@ -48,9 +48,10 @@ std::vector<double> signed_numbers(const CsvReader& row, Column column, std::str
   if (both) text.remove_prefix(2);
   const std::optional<double> value = number_in(text);
   if (!value || !(std::abs(*value) <= kMostEntranceDeg) || (both && !(*value > 0.0)))
-    row.fail(column, fmt::format("must be a number from -{0} to {0}, or +- and a number above 0{1}, got {2}",
-                                 shortest(kMostEntranceDeg), column == kV ? ", or two of them as in 0 or +-5" : "",
-                                 in_quotes(row[column])));
+    row.fail(column,
+             fmt::format("must be a number from -{0} to {0}, or +- and a number above 0{1}, got {2}",
+                         shortest(kMostEntranceDeg), column == kV ? ", or two such angles, as in \"0 or +-5\"" : "",
+                         in_quotes(row[column])));
   if (both) return {*value, -*value};
   return {*value};
 }
@@ -108,12 +109,13 @@ LimitRow limit_of(const CsvReader& row) {
 LimitFactor factor_of(const CsvReader& row) {
   auto factor = begun<LimitFactor>(row);
   factor.colour = named(row, kColour);
-  must_be_empty(row, {kObservation, kV, kH}, "of a factor");
+  must_be_empty(row, {kObservation, kV, kH}, "for a factor");
   const std::vector<std::string_view> words = split(row[kMinimum], ' ');
   const std::optional<double> times = number_in(words.front());
   if (words.size() != 3 || words[1] != "x" || words[2].empty() || !times || !(*times > 0.0 && *times <= kMostFactor))
-    row.fail(kMinimum, fmt::format("must be a number above 0, to {}, x and a colour, as in \"2.5 x red\", got {}",
-                                   shortest(kMostFactor), in_quotes(row[kMinimum])));
+    row.fail(kMinimum,
+             fmt::format("must be a number above 0 and at most {}, x and a colour, as in \"2.5 x red\", got {}",
+                         shortest(kMostFactor), in_quotes(row[kMinimum])));
   factor.factor = *times;
   factor.of_colour = printable(words[2]);
   factor.status = static_cast<LimitStatus>(row.one_of(kStatus, kStatuses));
@@ -123,12 +125,12 @@ LimitFactor factor_of(const CsvReader& row) {
 LimitArea area_of(const CsvReader& row) {
   auto area = begun<LimitArea>(row);
   area.colour = printable(row[kColour]);
-  must_be_empty(row, {kObservation, kV, kH}, "of an area");
+  must_be_empty(row, {kObservation, kV, kH}, "for an area");
   const std::vector<std::string_view> words = split(row[kMinimum], ' ');
   const bool is_begun = words.size() == 3 && words[0] == "at" && (words[1] == "most" || words[1] == "least");
   const std::optional<double> cm2 = is_begun ? number_in(words[2]) : std::nullopt;
   if (!cm2 || !(*cm2 > 0.0 && *cm2 <= kMostBoundCm2))
-    row.fail(kMinimum, fmt::format("must be \"at most\" or \"at least\" and a number above 0, to {}, got {}",
+    row.fail(kMinimum, fmt::format("must be \"at most\" or \"at least\" and a number above 0 and at most {}, got {}",
                                    shortest(kMostBoundCm2), in_quotes(row[kMinimum])));
   area.is_most = words[1] == "most";
   area.area_cm2 = *cm2;
@@ -146,16 +148,15 @@ void read_boundary(const CsvReader& row, ColourBoundary& boundary) {
   const bool is_one = (word(0) == "x" || word(0) == "y" || word(0) == "z") && (word(1) == "<=" || word(1) == ">=") &&
                       (words.size() == 3 || is_sloping);
   if (!is_one || !constant || !slope || !(std::abs(*constant) <= kMostOfColour) || !(std::abs(*slope) <= kMostOfColour))
-    row.fail(kMinimum,
-             fmt::format("must be x, y or z, <= or >=, and a number or a line, as in \"y >= 0.146 + 0.489 x\", "
-                         "of numbers from -{0} to {0}, got {1}",
-                         shortest(kMostOfColour), in_quotes(row[kMinimum])));
+    row.fail(kMinimum, fmt::format("must be a boundary such as \"z <= 0.008\" or \"y >= 0.146 + 0.489 x\", of x, y or "
+                                   "z and with numbers from -{0} to {0}, got {1}",
+                                   shortest(kMostOfColour), in_quotes(row[kMinimum])));
   // Moves all terms to the left side and replaces z by 1 - x - y.
   const bool is_z = word(0) == "z";
   const double of_x = (word(0) == "x" ? 1.0 : is_z ? -1.0 : 0.0) - (word(3) == "-" ? -*slope : *slope);
   const double of_y = word(0) == "y" ? 1.0 : is_z ? -1.0 : 0.0;
   const double most = *constant - (is_z ? 1.0 : 0.0);
-  if (of_x == 0.0 && of_y == 0.0) row.fail(kMinimum, "must bound a colour, got " + in_quotes(row[kMinimum]));
+  if (of_x == 0.0 && of_y == 0.0) row.fail(kMinimum, "must limit the colour, got " + in_quotes(row[kMinimum]));
   const double sign = word(1) == "<=" ? 1.0 : -1.0;
   boundary.of_x = sign * of_x;
   boundary.of_y = sign * of_y;
@@ -170,7 +171,7 @@ ColourBoundary boundary_of(const CsvReader& row) {
   const V v = read_v(row);
   const std::vector<double> h_deg = signed_numbers(row, kH, row[kH]);
   if (v.deg.size() != 1 || h_deg.size() != 1)
-    row.fail(v.deg.size() != 1 ? kV : kH, "must be one angle of a colour, got +-");
+    row.fail(v.deg.size() != 1 ? kV : kH, "must be a single angle for a colour, got +-");
   boundary.v_deg = v.deg.front();
   boundary.v_beside_deg = v.beside_deg;
   boundary.h_deg = h_deg.front();
@@ -182,7 +183,7 @@ ColourBoundary boundary_of(const CsvReader& row) {
 LimitGap gap_of(const CsvReader& row) {
   auto gap = begun<LimitGap>(row);
   gap.colour = printable(row[kColour]);
-  must_be_empty(row, {kObservation, kV, kH, kMinimum, kUnit}, "where the status is incomplete");
+  must_be_empty(row, {kObservation, kV, kH, kMinimum, kUnit}, "if the status is incomplete");
   return gap;
 }
 

@@ -137,7 +137,7 @@ std::string rows_of(const std::vector<PhotometricPoint>& points) {
 std::string areas_text(const PhotometrySettings& asked) {
   std::string text;
   for (const LimitArea& limit : asked.programme.areas)
-    text += fmt::format("area: {}{} - {}, has {}\n", limit.holds(asked.area_cm2) ? "pass" : "FAIL",
+    text += fmt::format("area: {}{} - must be {}, is {} cm2\n", limit.holds(asked.area_cm2) ? "pass" : "FAIL",
                         limit.status == LimitStatus::recalled ? " (limit unconfirmed)" : "", limit.text(),
                         shortest(asked.area_cm2));
   return text;
@@ -148,13 +148,13 @@ std::string colour_text(const PhotometricColour& colour) {
   std::string text = "colour: ";
   if (const auto verdict = colour.verdict())
     text += *verdict == Verdict::fail ? "FAIL - " : fmt::format("{} - ", verdict_name(*verdict));
-  if (!colour.chromaticity) return text + "no light comes back\n";
+  if (!colour.chromaticity) return text + "no light is returned\n";
   text += fmt::format("x {}, y {} at {} degrees, V {}, H {}", fixed(colour.chromaticity->x, 4),
                       fixed(colour.chromaticity->y, 4), fixed_visible(colour.observation_deg, 2),
                       shortest(colour.v_deg), shortest(colour.h_deg));
-  if (colour.boundaries.empty()) return text + "; the standard's boundaries are not known\n";
+  if (colour.boundaries.empty()) return text + "; the colour boundaries of the standard are not known\n";
   for (const ColourPoint& point : colour.boundaries)
-    if (point.margin < 0.0) text += fmt::format("; not {}", point.asked.text);
+    if (point.margin < 0.0) text += fmt::format("; violates {}", point.asked.text);
   return text + (colour.reason.text.empty() ? "" : "; " + colour.reason.text) + "\n";
 }
 
@@ -174,9 +174,9 @@ std::string verdict_text(Verdict verdict, const TestProgramme& programme, const 
   switch (verdict) {
     case Verdict::pass: return "verdict: pass\n";
     case Verdict::unconfirmed:
-      return programme.is_complete
-                 ? "verdict: unconfirmed - every point holds, but not every limit is confirmed\n"
-                 : "verdict: unconfirmed - every point holds, but the table is not all that the standard asks\n";
+      return programme.is_complete ? "verdict: unconfirmed - every point passes, but not every limit is confirmed\n"
+                                   : "verdict: unconfirmed - every point passes, but the table does not contain all "
+                                     "requirements of the standard\n";
     case Verdict::undetermined:
       return reason.empty() ? "verdict: undetermined\n" : fmt::format("verdict: undetermined - {}\n", reason);
     case Verdict::fail: return "verdict: FAIL\n";
@@ -187,7 +187,7 @@ std::string verdict_text(Verdict verdict, const TestProgramme& programme, const 
 std::string change_text(const PhotometricChange& change, const TestProgramme& programme) {
   std::string text =
       fmt::format("\n{} {} = {} (now {}):\n",
-                  change.passes() ? "what to change:" : "the best of what was tried, but not enough:", change.key,
+                  change.passes() ? "change that passes:" : "best change that was tried, not sufficient:", change.key,
                   shortest(change.to), shortest(change.from));
   return text + rows_of(change.points) + verdict_text(change.verdict, programme);
 }
@@ -249,8 +249,8 @@ std::string far_field_map_csv(const PhotometryResult& result) {
 
 std::string first_answer_table(const PhotometricFirstAnswer& answer) {
   std::string table = fmt::format(
-      "preliminary readings{} at {} wavelength{}; errors are standard errors, and systematic errors of about {:.0f} % "
-      "come on top; the computation continues\n",
+      "preliminary readings{} at {} wavelength{}; errors are standard errors, with additional systematic errors of "
+      "about {:.0f} %; the computation continues\n",
       answer.lacks_diffraction ? " without diffraction" : "", answer.wavelengths_nm.size(),
       answer.wavelengths_nm.size() == 1 ? "" : "s", 100.0 * kSystematicErrorOfFirstAnswer);
   table += fmt::format("{:>7} {:>6} {:>6} {:>9} {:>11} {:>11}\n", "alpha", "V", "H", "rotation", "mcd/lx", "error");

@@ -36,7 +36,7 @@ Constraint read_constraint(const Study& study, const std::string& at) {
   constraint.quantity = checked_quantity(study, document.text(at + ".quantity"), document.where(at + ".quantity"));
   constraint.least = document.number_if(at + ".min");
   constraint.most = document.number_if(at + ".max");
-  if (!constraint.least && !constraint.most) document.fail(at + ".max", "missing: a constraint has min, max or both");
+  if (!constraint.least && !constraint.most) document.fail(at + ".max", "missing: a constraint needs min, max or both");
   if (constraint.least && constraint.most && *constraint.least > *constraint.most)
     document.fail(at + ".max",
                   fmt::format("must be >= min ({}), got {}", shortest(*constraint.least), shortest(*constraint.most)));
@@ -50,7 +50,7 @@ std::vector<Constraint> read_constraints(const Study& study) {
   for (std::size_t k = 0; k < study.document->count("constraint"); ++k) {
     const std::string at = schema::path_of_entry("constraint", k);
     if (study.document->choice<ConstraintOver>(at + ".over") == ConstraintOver::part)
-      study.document->fail(at + ".over", "\"part\" is for retrace compose alone, whose parts have many cells");
+      study.document->fail(at + ".over", "\"part\" is only allowed for retrace compose, whose parts have many cells");
     constraints.push_back(read_constraint(study, at));
   }
   return constraints;

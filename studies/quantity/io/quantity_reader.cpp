@@ -75,7 +75,7 @@ Quantities read_share(const std::string& name, const Document& document, const s
   spec.window.by_solid_angle = document.text(at + ".weighting") == "solid_angle";
   spec.reduction = document.choice<Reduction>(at + ".over_directions");
   if (spec.window.by_solid_angle && spec.reduction != Reduction::mean)
-    document.fail(at + ".weighting", "means nothing for the least of all directions, or for each");
+    document.fail(at + ".weighting", "only allowed for over_directions = \"mean\"");
   const std::string kind = document.text(at + ".kind");
   if (kind == "ledger") spec.account = document.index(at + ".account");
   if (kind == "far_field") {
@@ -183,8 +183,10 @@ Quantities read_quantity(const Document& document, const std::string& at, std::v
   const std::string kind = document.text(at + ".kind");
   const std::string name = optional_text(document, at + ".name").value_or(kind);
   if (!is_name(name))
-    document.fail(at + ".name",
-                  fmt::format("must be of letters, digits, \"_\" and \".\", at most 64, got {}", in_quotes(name)));
+    document.fail(
+        at + ".name",
+        fmt::format("must be at most 64 letters, digits, \"_\" and \".\", and must not begin with a digit, got {}",
+                    in_quotes(name)));
   if (kind == "photometry") return read_photometric(name, document, at, files);
   const std::size_t plain = document.index(at + ".kind");
   if (plain < kFirstPlainKind) return read_share(name, document, at);

@@ -23,10 +23,10 @@ constexpr Words kDistributions = {"normal", "uniform", "triangular"};
 constexpr Words kNormal = {"normal"};
 constexpr Words kTriangular = {"triangular"};
 constexpr Words kScales = {"linear", "log"};
-constexpr Condition kNoDistribution[] = {without("distribution", "not allowed beside distribution")};
-constexpr Condition kNoValues[] = {without("values", "not allowed beside values")};
+constexpr Condition kNoDistribution[] = {without("distribution", "not allowed together with distribution")};
+constexpr Condition kNoValues[] = {without("values", "not allowed together with values")};
 constexpr Condition kSteps[] = {kNoDistribution[0], kNoValues[0]};
-constexpr Condition kCounts[] = {kNoDistribution[0], kNoValues[0], without("step", "either step or count")};
+constexpr Condition kCounts[] = {kNoDistribution[0], kNoValues[0], without("step", "not allowed together with step")};
 constexpr Condition kOfNormal[] = {is("distribution", kNormal)};
 constexpr Condition kOfTriangular[] = {is("distribution", kTriangular)};
 
@@ -178,7 +178,7 @@ constexpr Words kSurfaces = {"as_designed", "as_cut"};
 constexpr NumberRange kSane{.low = 1e-6, .high = 1e6};
 constexpr NumberRange kSaneOrNone{.low = 0.0, .high = 1e6};
 constexpr Condition kFinishing[] = {
-    is_not("strategy", kUnidirectional, "not allowed for strategy = \"unidirectional\", which finishes no facet")};
+    is_not("strategy", kUnidirectional, "not allowed for strategy = \"unidirectional\", which has no finishing cuts")};
 
 Value tool_width(const MachiningProcess& process) {
   return process.tool_width_mm ? Value(*process.tool_width_mm) : Value();

@@ -39,7 +39,7 @@ AnalysisSettings analysis_of(const Document& document, std::uint32_t seed) {
   analysis.target_error = document.number_if("analysis.target_error");
   if (const auto rays = document.number_if("analysis.samples")) analysis.rays = static_cast<std::uint64_t>(*rays);
   if (analysis.rays && analysis.target_error)
-    document.fail("analysis.target_error", "not together with analysis.samples");
+    document.fail("analysis.target_error", "not allowed together with analysis.samples");
   analysis.cutoff = document.number_if("analysis.cutoff");
   analysis.seed = seed;
   return analysis;
@@ -68,7 +68,7 @@ void refuse_setting(const Document& document, const Study& study, const std::str
 void check_settings_have_effect(const Document& document, const Study& study) {
   if (is_traced(study, "rre")) return;
   refuse_setting(document, study, "analysis.target_error",
-                 "needs a quantity of RRE: nothing else is traced to a target");
+                 "needs a quantity of RRE, because other quantities have no target error");
   const bool is_exact = raytrace::may_be_exact(document.choice<Engine>("analysis.engine")) ||
                         parameter_of(study, "analysis.engine") != nullptr;
   if (!is_exact && is_traced(study, "photometry"))
@@ -116,10 +116,10 @@ Interval read_interval(const Document& document, const std::string& at) {
 std::vector<ParameterValue> range_values(const Document& document, const std::string& at, const Interval& interval) {
   std::vector<ParameterValue> values;
   if (const auto step = document.number_if(at + ".step")) {
-    if (interval.logarithmic) document.fail(at + ".step", "a logarithmic range takes count");
+    if (interval.logarithmic) document.fail(at + ".step", "not allowed for a logarithmic range: give count");
     const double steps = std::floor((interval.to - interval.from) / *step + 1e-9);
     if (!(steps < kMostValues))
-      document.fail(at + ".step", fmt::format("makes more than {} values, got {}", kMostValues, shortest(*step)));
+      document.fail(at + ".step", fmt::format("must give at most {} values, got {}", kMostValues, shortest(*step)));
     for (double k = 0.0; k <= steps; ++k) values.push_back(Parameter::value_of(interval.from + k * *step));
     return values;
   }
@@ -148,7 +148,7 @@ Distribution read_distribution(const Document& document, const std::string& at) 
   // from a tail of the distribution.
   if (normal && distribution.range &&
       (distribution.range->from > distribution.mean || distribution.range->to < distribution.mean))
-    document.fail(at + ".mean", fmt::format("must lie between from and to, got {}", shortest(distribution.mean)));
+    document.fail(at + ".mean", fmt::format("must be between from and to, got {}", shortest(distribution.mean)));
   return distribution;
 }
 
@@ -182,11 +182,12 @@ Parameter read_parameter(const Document& document, const std::string& at) {
     else
       parameter.interval = interval;
   } else {
-    document.fail(at + ".values", "missing: a parameter has values, or from and to, or a distribution");
+    document.fail(at + ".values", "missing: a parameter needs values, or from and to, or a distribution");
   }
   const bool is_design = parameter.keys.front() == "design";
   if (is_design && (parameter.keys.size() > 1 || parameter.values.empty()))
-    document.fail(at + ".key", "\"design\" stands alone and takes values, names of design files");
+    document.fail(at + ".key",
+                  "\"design\" must be the only key of the parameter and needs values, which are names of design files");
   if (is_design) resolve_designs(document, at, parameter);
   return parameter;
 }
@@ -210,7 +211,8 @@ void check_columns(const Study& study, const std::vector<InputLocation>& quantit
   std::set<std::string> taken = {"point", "failed", "reason", "elapsed_s", "version", "status"};
   const auto take = [&](const std::string& name, const InputLocation& where, std::string_view what) {
     if (name.empty() || name.size() > 128 || printable(name, 200) != name || !taken.insert(lower(name)).second)
-      throw InputError(where, fmt::format("{} {} is taken or no name: give another name", what, in_quotes(name)));
+      throw InputError(
+          where, fmt::format("{} {} is already used or is not a valid name: give another name", what, in_quotes(name)));
   };
   for (const Parameter& parameter : study.parameters) take(parameter.name, parameter.location, "the column");
   for (std::size_t k = 0; k < study.quantities.size(); ++k) {
@@ -225,10 +227,10 @@ void check_keys_once(const Study& study) {
   for (const Parameter& parameter : study.parameters)
     for (const std::string& key : parameter.keys)
       if (!taken.insert(key).second)
-        throw InputError(parameter.location, fmt::format("{} has a parameter already", in_quotes(key)));
+        throw InputError(parameter.location, fmt::format("{} is already set by another parameter", in_quotes(key)));
   for (const std::string& text : study.overrides)
     if (taken.contains(current_key(key_of(text))))
-      throw InputError({"--set " + printable(text), 0, ""}, "the study varies this key");
+      throw InputError({"--set " + printable(text), 0, ""}, "not allowed, because the study varies this key");
 }
 
 /// Returns a fingerprint (FNV-1a) that shows whether a file was changed. It gives no protection against forgery.
@@ -295,7 +297,7 @@ void read_designs(const Document& document, const FileTexts& given, Study& study
   const auto varied = std::find_if(study.parameters.begin(), study.parameters.end(),
                                    [](const Parameter& p) { return p.keys.front() == "design"; });
   if (varied != study.parameters.end()) {
-    if (document.has("design")) document.fail("design", "a parameter names the designs");
+    if (document.has("design")) document.fail("design", "not allowed, because a parameter gives the designs");
     const auto number = static_cast<std::size_t>(varied - study.parameters.begin());
     const std::string key = schema::path_of_entry("parameter", number) + ".values";
     for (const ParameterValue& value : varied->values) study.design_texts.emplace(value.toml, text_of(value.toml, key));

@@ -80,14 +80,14 @@ bool RayCsvSource::next_line() {
 
 void RayCsvSource::read_names() {
   columns_.fill(-1);
-  if (!next_line()) fail("", "has no line of column names");
+  if (!next_line()) fail("", "the file has no line of column names");
   column_count_ = values_.size();
   for (std::size_t k = 0; k < values_.size(); ++k) {
     const auto found = std::find(kNames.begin(), kNames.end(), values_[k]);
     if (found == kNames.end())
       fail("", fmt::format("a column must be one of {}, got {}", all_names(), in_quotes(values_[k])));
     int& column = columns_[static_cast<std::size_t>(found - kNames.begin())];
-    if (column >= 0) fail("", fmt::format("the column {} is there twice", *found));
+    if (column >= 0) fail("", fmt::format("the column {} occurs twice", *found));
     column = static_cast<int>(k);
   }
   for (std::size_t k = kX; k <= kDz; ++k)

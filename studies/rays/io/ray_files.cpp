@@ -17,7 +17,7 @@ RayFormat format_of(const std::filesystem::path& file, Field field) {
   const std::string ending = ending_of(file);
   if (ending == ".tm25ray") return RayFormat::tm25;
   if (ending == ".csv") return RayFormat::csv;
-  throw InputError(field, fmt::format("must be a file .tm25ray or .csv, got {}", in_quotes(file.string())));
+  throw InputError(field, fmt::format("must end in .tm25ray or .csv, got {}", in_quotes(file.string())));
 }
 
 }  // namespace

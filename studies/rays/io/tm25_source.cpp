@@ -79,7 +79,7 @@ void Tm25Source::fail(std::uint64_t byte, std::string_view text) const {
 /// \param what name of these bytes, for messages
 std::string_view Tm25Source::take(std::uint64_t bytes, std::string_view what) {
   if (bytes > bytes_ - at_)
-    fail(at_, fmt::format("the file is cut short: {} wants {} bytes, {} are left", what, bytes, bytes_ - at_));
+    fail(at_, fmt::format("the file is too short: {} needs {} bytes, but only {} are left", what, bytes, bytes_ - at_));
   buffer_.resize(bytes);
   stream_->read(buffer_.data(), static_cast<std::streamsize>(bytes));
   if (static_cast<std::uint64_t>(stream_->gcount()) != bytes) fail(at_, "cannot be read");
@@ -116,7 +116,7 @@ std::optional<double> Tm25Source::flux(std::string_view what) {
 
 void Tm25Source::read_header() {
   if (take(std::min<std::uint64_t>(4, bytes_), "a ray file") != "TM25")
-    fail(0, "must be TM25, with which ray files of IES TM-25 begin");
+    fail(0, "must be TM25, the first four bytes of a ray file of IES TM-25");
   whole_within("the version of the format", kFormatVersion, kFormatVersion);
   whole();  // skips the method by which the rays were made
   info_.luminous_lm = flux("the luminous flux");
@@ -160,7 +160,8 @@ void Tm25Source::read_flags() {
   if (info_.spectrum == RaySpectrum::wavelength_of_each && !has_wavelengths_)
     fail(begin + 12, "the spectral data identifier is 2, but rays have no wavelengths");
   if (has_tables_ != (info_.spectrum == RaySpectrum::table_of_each))
-    fail(begin + 28, "rays must have a spectrum index where the spectral data identifier is 4, and only there");
+    fail(begin + 28,
+         "rays must have a spectrum index if the spectral data identifier is 4, and must not have one otherwise");
   if (has_wavelengths_) info_.spectrum = RaySpectrum::wavelength_of_each;
 }
 
@@ -211,7 +212,8 @@ void Tm25Source::find_rays(std::int32_t items, std::int32_t text_bytes) {
   record_bytes_ = 4 * static_cast<std::size_t>(columns);
   const std::uint64_t left = bytes_ - at_;
   if (left / record_bytes_ == *info_.rays && left % record_bytes_ == 0) return;
-  fail(at_, fmt::format("{} rays of {} bytes must fill the file, {} bytes are left", *info_.rays, record_bytes_, left));
+  fail(at_, fmt::format("{} rays of {} bytes must fill the rest of the file, which has {} bytes", *info_.rays,
+                        record_bytes_, left));
 }
 
 double Tm25Source::share_read() const {
@@ -283,8 +285,9 @@ Warnings Tm25Source::warnings() const {
   const auto compare = [&](std::string_view what, const std::optional<double>& said, bool is_there, double found) {
     if (!is_there || !said || *said == 0.0 || std::abs(found - *said) <= kFluxTolerance * *said) return;
     told.push_back(
-        {"flux_disagrees", fmt::format("{}: its header says {:.6g} {}, its rays add up to {:.6g}; they are taken",
-                                       file_, *said, what, found)});
+        {"flux_disagrees",
+         fmt::format("{}: the header gives {:.6g} {}, but the rays add up to {:.6g}; the sum of the rays is used",
+                     file_, *said, what, found)});
   };
   if (rays_read_ == *info_.rays) {
     compare("W", info_.radiant_w, info_.has_radiant, radiant_w_);
@@ -293,12 +296,12 @@ Warnings Tm25Source::warnings() const {
   if (not_unit_ > 0)
     told.push_back(
         {"directions_normalised",
-         fmt::format("{}: directions of {} rays are no unit vectors; they were made such", file_, not_unit_)});
+         fmt::format("{}: the directions of {} rays are not unit vectors; they were normalized", file_, not_unit_)});
   std::string names;
   for (const std::string& name : info_.more_items)
     if (name != "account") names += (names.empty() ? "" : ", ") + name;
   if (!names.empty())
-    told.push_back({"items_omitted", fmt::format("{}: additional items are left out: {}", file_, names)});
+    told.push_back({"items_omitted", fmt::format("{}: additional items are ignored: {}", file_, names)});
   return told;
 }
 

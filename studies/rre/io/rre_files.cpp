@@ -93,7 +93,7 @@ std::string line_of(const RrePoint& point, const RreDerivative& by) {
   std::string line =
       fmt::format("{:>6}  {:>13}  {:>11}  {:>14}  {:<18}  ", point.design, shortest(point.incidence_deg),
                   shortest(point.azimuth_deg), shortest(point.acceptance_half_angle_deg), parameter_name(by.parameter));
-  if (by.left_out) return line + fmt::format("left out: {}\n", text_of(*by.left_out));
+  if (by.left_out) return line + fmt::format("not computed: {}\n", text_of(*by.left_out));
   return line + fmt::format("{:>13.6g}  {:.1e}\n", by.derivative.value, by.derivative.error);
 }
 
@@ -147,7 +147,8 @@ std::string derivative_table(const RreResult& result) {
   for (const RrePoint& point : result.points)
     for (const RreDerivative& by : point.derivatives) lines += line_of(point, by);
   if (lines.empty()) return {};
-  return "\nd RRE (a fraction) per unit of the parameter\n"
+  return "\n"
+         "derivatives of RRE (a fraction) per unit of the parameter\n"
          "design  incidence_deg  azimuth_deg  acceptance_deg  parameter               derivative  +-\n" +
          lines;
 }

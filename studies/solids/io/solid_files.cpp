@@ -59,8 +59,9 @@ SolidFormat solid_format(const std::string& file) {
   if (ending == ".step" || ending == ".stp") return SolidFormat::step;
   throw InputError(
       Field{"out"},
-      fmt::format("must end in .stl, .obj, .glb, .step or .stp, of a material in .json, .xml or .glsl, got {}",
-                  in_quotes(file)));
+      fmt::format(
+          "must end in .stl, .obj, .glb, .step or .stp for a solid, or in .json, .xml or .glsl for a material, got {}",
+          in_quotes(file)));
 }
 
 std::string solid_text(const Solid& solid, SolidFormat format) {
@@ -73,8 +74,9 @@ std::string solid_text(const Solid& solid, SolidFormat format) {
     case SolidFormat::step: break;
   }
   if (!solid.is_manifold)
-    throw InputError({solid.design.source_name(), 0, ""},
-                     "the part touches itself along edges, which a STEP solid may not; STL and OBJ take it");
+    throw InputError(
+        {solid.design.source_name(), 0, ""},
+        "the part touches itself along edges, which is not allowed for a STEP solid: export it as STL or OBJ");
   return geometry::step_text(geometry::faceted_solid(solid.mesh), title_of(solid));
 }
 

@@ -11,7 +11,8 @@ Sweep read_sweep(Study study) {
   const auto combine = document.choice<Combine>("sweep.combine");
   const double samples = document.number_if("sweep.samples").value_or(0.0);
   if (samples > 0.0 && study.parameters.size() > compute::UnitSamples::most_dimensions)
-    document.fail("sweep.combine", fmt::format("takes at most {} parameters", compute::UnitSamples::most_dimensions));
+    document.fail("sweep.combine",
+                  fmt::format("is allowed for at most {} parameters", compute::UnitSamples::most_dimensions));
   return {std::move(study), combine, static_cast<std::uint64_t>(samples)};
 }
 

@@ -73,7 +73,7 @@ std::string quantity_text(const Study& study, const QuantityTolerance& quantity)
   std::string text = quantity.quantity + ":";
   if (quantity.nominal) text += fmt::format("  nominal {:.6g}", *quantity.nominal);
   if (quantity.spread)
-    text += fmt::format("  mean {:.6g}  deviation {:.3g}  {:.6g} to {:.6g}", quantity.spread->mean,
+    text += fmt::format("  mean {:.6g}  standard deviation {:.3g}  range {:.6g} to {:.6g}", quantity.spread->mean,
                         quantity.spread->deviation, quantity.spread->least, quantity.spread->most);
   text += "\n";
   if (!quantity.percentiles.empty()) {
@@ -84,9 +84,10 @@ std::string quantity_text(const Study& study, const QuantityTolerance& quantity)
   }
   for (const std::size_t k : by_contribution(quantity.indices)) {
     const compute::SobolIndex& index = quantity.indices[k];
-    text += fmt::format("    {:<36} alone {:6.3f} ({:.3f} to {:.3f})   with others {:6.3f} ({:.3f} to {:.3f})\n",
-                        printable(study.parameters[k].name, 36), index.first_order.value, index.first_order.low,
-                        index.first_order.high, index.total.value, index.total.low, index.total.high);
+    text += fmt::format(
+        "    {:<36} first-order index {:6.3f} ({:.3f} to {:.3f})   total index {:6.3f} ({:.3f} to {:.3f})\n",
+        printable(study.parameters[k].name, 36), index.first_order.value, index.first_order.low, index.first_order.high,
+        index.total.value, index.total.low, index.total.high);
   }
   return text;
 }

@@ -22,12 +22,12 @@ void check_size(const Study& study, const ToleranceRequest& request) {
   const std::size_t parameters = study.parameters.size();
   const std::size_t dimensions = (request.indices ? 2 : 1) * parameters;
   if (dimensions > compute::UnitSamples::most_dimensions)
-    study.document->fail("tolerance.indices", fmt::format("are known for at most {} parameters, got {}",
+    study.document->fail("tolerance.indices", fmt::format("are available for at most {} parameters, got {}",
                                                           compute::UnitSamples::most_dimensions / 2, parameters));
   const std::uint64_t points = 1 + request.samples * (request.indices ? parameters + 2 : 1);
   if (points > Sweep::most_points)
     study.document->fail("tolerance.samples",
-                         fmt::format("makes {} points with {} parameters, and at most {} are allowed", points,
+                         fmt::format("gives {} points with {} parameters, but at most {} are allowed", points,
                                      parameters, Sweep::most_points));
 }
 

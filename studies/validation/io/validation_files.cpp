@@ -15,24 +15,32 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kIntroduction =
-    "# Validation\n\n"
-    "Figures that others have published, closed forms and independent computations, and what retrace computes in their "
-    "place. `retrace validate` computes\nand writes this page; a test holds that it is what the command writes. The "
-    "publications are named in full in [docs/theory](theory/README.md).\n\n"
-    "- *published*: printed in a publication. *closed form*: a formula that the theory derives, evaluated apart from "
-    "what it is held against.\n  *independent*: by a program or formula that shares nothing with it.\n"
-    "- A difference is that of retrace from the figure; 0 stands for less than a hundredth of what is allowed. Outside "
-    "of what is allowed it is\n  marked, and the command ends with exit code 1.\n"
-    "- Figures without an allowed difference are published ones that retrace does not reproduce.\n";
+    "# Validation\n"
+    "\n"
+    "This page compares results of retrace with published values, closed forms and independent computations. `retrace "
+    "validate` computes the\n"
+    "results and writes this page. [docs/theory](theory/README.md) contains the full titles of the publications.\n"
+    "\n"
+    "- *published*: printed in a publication. *closed form*: a formula of the theory, evaluated separately from the "
+    "code under test.\n"
+    "  *independent*: computed by a program or formula that has nothing in common with retrace.\n"
+    "- A difference is the result of retrace minus the expected value. 0 means less than a hundredth of the allowed "
+    "difference. A difference\n"
+    "  that is not allowed is printed in bold, and the command ends with exit code 1.\n"
+    "- Rows without an allowed difference have a published value that retrace does not reproduce.\n";
 
 /// Published values that are not compared, and the reasons.
 constexpr const char* kLeftOut =
-    "\n## Published, and not compared\n\n"
-    "- Luminance of prisms over that of cube corners, 5.6 : 10 (Milliken 2017, 3.3.3): the observation angle of the "
-    "fixture and the period of the\n  waviness are not published, and the ratio depends on both "
+    "\n"
+    "## Published values that are not compared\n"
+    "\n"
+    "- Ratio of the luminance of prisms to that of cube corners, 5.6 : 10 (Milliken 2017, 3.3.3): the observation "
+    "angle of the fixture and the\n"
+    "  period of the waviness are not published, and the ratio depends on both "
     "([theory/photometry.md](theory/photometry.md)).\n"
-    "- 7.2 and 8.2 seconds a frame of a planed lens (Bulatov et al.): neither focal length, wavelength, feed nor "
-    "tolerance are published\n  ([theory/planing.md](theory/planing.md)).\n";
+    "- 7.2 and 8.2 seconds per frame of a planed lens (Bulatov et al.): focal length, wavelength, feed and tolerance "
+    "are not published\n"
+    "  ([theory/planing.md](theory/planing.md)).\n";
 
 /// Returns the number of decimals that shows a hundredth of the allowed difference. It is at most 9.
 int decimals_of(double allowed) {
@@ -86,7 +94,10 @@ std::string validation_markdown(const ValidationResult& result) {
     if (validated.row.topic != topic) {
       topic = validated.row.topic;
       text += fmt::format(
-          "\n## {}\n\n| quantity | figure | retrace | difference | allowed | why | what the figure is | source |\n"
+          "\n"
+          "## {}\n"
+          "\n"
+          "| quantity | expected | retrace | difference | allowed | reason | reference | source |\n"
           "|---|---|---|---|---|---|---|---|\n",
           topic);
     }
