@@ -99,7 +99,7 @@ Command job_command() {
               "part that a chisel can make of cube corners. `--test-cuts FOLDER` writes the smallest jobs from which "
               "`retrace calibrate` estimates the set-up of the machine.",
           .reads = {"retrace.design/1", "retrace.machine/1", "retrace.process/1"},
-          .writes = {"retrace.job_summary/1", "retrace.job/1", "retrace.reach/1", "retrace.test_cuts/1"},
+          .writes = {"retrace.job_summary/1", "retrace.job/1", "retrace.reach/1", "retrace.test_cuts/2"},
           .begin = begins<JobOptions>(arguments, run)};
 }
 

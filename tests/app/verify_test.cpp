@@ -55,7 +55,7 @@ TEST_F(VerifyCommand, CorrectProgramsOfEveryDialectPass) {
   for (const std::string dialect : {"rs274ngc", "sinumerik", "fanuc", "pmac", "a3200", "automation1"}) {
     const std::string file = program(dialect);
     const Json json = verified({file}, 0);
-    EXPECT_EQ(json["schema"], "retrace.verification/1");
+    EXPECT_EQ(json["schema"], "retrace.verification/2");
     EXPECT_EQ(json["verdict"], "pass");
     EXPECT_EQ(json["programs"][0]["dialect"], dialect);
     EXPECT_EQ(json["elements_cut"], 4);

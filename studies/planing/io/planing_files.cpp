@@ -87,9 +87,9 @@ double form_error_mm(const PlanedPart& part, const PlaningCheck& check) {
 
 /// Adds the data that are computed from a program's text.
 void add_run(const PlaningCheck& check, std::size_t program, Json& json) {
-  json["frames"] = check.frames[program];
+  json["blocks"] = check.frames[program];
   json["hours"] = check.time_s[program] / 3600.0;
-  json["seconds_per_frame"] = per_frame(check.time_s[program], check.frames[program]);
+  json["seconds_per_block"] = per_frame(check.time_s[program], check.frames[program]);
 }
 
 Json programs_json(const PlaningResult& result) {
@@ -110,7 +110,7 @@ void add_machine(const PlanedPart& part, const PlaningCheck& check, const Planin
     json["tool_flank_deg"] = flank_deg(check.flank_slope);
     if (plan != nullptr) json["quantum_mm"] = plan->quantum_mm;
     json["form_error_mm_max"] = form_error_mm(part, check);
-    json["standing_mm_max"] = check.standing_mm_max;
+    json["excess_mm_max"] = check.standing_mm_max;
     json["gouge_mm_max"] = check.gouge_mm_max;
     json["off_grid_nm_max"] = check.off_grid_nm_max;
     json["shortest_move_mm"] = {check.shortest_x_mm, check.shortest_y_mm, check.shortest_z_mm};
@@ -145,9 +145,9 @@ std::string planing_json(const PlaningResult& result) {
   json["zones"] = zones_json(result);
   json["programs"] = programs_json(result);
   json["runs"] = result.plan.runs;
-  json["frames"] = result.plan.runs * totals.frames;
+  json["blocks"] = result.plan.runs * totals.frames;
   json["hours"] = result.plan.runs * totals.time_s / 3600.0;
-  json["seconds_per_frame"] = per_frame(totals.time_s, totals.frames);
+  json["seconds_per_block"] = per_frame(totals.time_s, totals.frames);
   if (result.part.mill) json["published_seconds_per_frame"] = kPublishedSecondsPerFrame;
   return result_text("retrace.planing/1", json, result.warnings);
 }
@@ -202,10 +202,10 @@ std::string verification_json(const PlaningVerification& run, double elapsed_s) 
   json["tolerance_mm"] = run.part.tolerance_mm;
   add_machine(run.part, check, nullptr, json);
   const Totals totals = totals_of(check);
-  json["frames"] = totals.frames;
+  json["blocks"] = totals.frames;
   json["time_s"] = totals.time_s;
   json["elapsed_s"] = elapsed_s;
-  return result_text("retrace.verification/1", json, {});
+  return result_text("retrace.verification/2", json, {});
 }
 
 std::string verification_table(const PlaningVerification& run) {

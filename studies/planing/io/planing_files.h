@@ -15,7 +15,7 @@ std::string planing_json(const PlaningResult& result);
 std::string planing_csv(const PlaningResult& result);
 std::string planing_table(const PlaningResult& result);
 
-/// Returns the document `retrace.verification/1` of a planed part (docs/commands/verify.md).
+/// Returns the document `retrace.verification/2` of a planed part (docs/commands/verify.md).
 std::string verification_json(const PlaningVerification& run, double elapsed_s);
 std::string verification_table(const PlaningVerification& run);
 

@@ -198,7 +198,7 @@ std::string verification_json(const TurningVerification& run, double elapsed_s) 
   json["c_acceleration_deg_per_s2_max"] = motion.c_acceleration_deg_per_s2;
   json["time_s"] = motion.time_s;
   json["elapsed_s"] = elapsed_s;
-  return result_text("retrace.verification/1", json, run.part.warnings);
+  return result_text("retrace.verification/2", json, run.part.warnings);
 }
 
 std::string verification_table(const TurningVerification& run) {

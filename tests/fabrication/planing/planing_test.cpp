@@ -258,7 +258,7 @@ TEST(Planing, TheExampleIsMadeInTwoHalves) {
   // Inner zones are too flat for one cut at each depth. Outer zones are steep enough.
   EXPECT_EQ(json["zones"].front()["method"], "one_after_another");
   EXPECT_EQ(json["zones"].back()["method"], "by_depths");
-  EXPECT_NEAR(json["seconds_per_frame"].get<double>() * json["frames"].get<double>(),
+  EXPECT_NEAR(json["seconds_per_block"].get<double>() * json["blocks"].get<double>(),
               3600.0 * json["hours"].get<double>(), 1e-6 * 3600.0 * json["hours"].get<double>());
 }
 
