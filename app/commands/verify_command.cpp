@@ -97,7 +97,7 @@ void refuse_others(const VerifyOptions& options, const VerificationRequest& requ
   if (kind != Kind::turned_part && !options.servo.empty()) refuse("--servo", "turned parts");
   if (kind == Kind::job) return;
   const std::pair<std::string, bool> of_jobs[] = {
-      {requests::option_of_field("standing"), !request.standing.empty()},
+      {requests::option_of_field("next_stage"), !request.next_stage.empty()},
       {requests::option_of_field("tolerance_nm"), request.tolerance_nm.has_value()},
       {"--map", !options.map.empty()},
       {"--as-machined", !options.as_machined.empty()}};

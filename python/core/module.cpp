@@ -161,7 +161,7 @@ void bind_part(py::module_& module) {
   result_class<Inspection>(module, "Inspection")
       .def_readonly("plan", &Inspection::plan)
       .def_readonly("section", &Inspection::section)
-      .def_readonly("front", &Inspection::front)
+      .def_readonly("entrance_surface", &Inspection::entrance_surface)
       .def_readonly("view", &Inspection::view);
   module.def("inspect", [](const Design& design) {
     return watched(py::none(), 0, [design](const Running&) { return inspect(design); });
@@ -227,7 +227,7 @@ void bind_making(py::module_& module) {
       .def_readwrite("programs", &VerificationRequest::programs)
       .def_readwrite("dialect", &VerificationRequest::dialect)
       .def_readwrite("tolerance_nm", &VerificationRequest::tolerance_nm)
-      .def_readwrite("standing", &VerificationRequest::standing)
+      .def_readwrite("next_stage", &VerificationRequest::next_stage)
       .def_readwrite("texts", &VerificationRequest::texts);
   result_class<Verification>(module, "Verification")
       .def_readonly("passes", &Verification::passes)

@@ -287,7 +287,7 @@ class VerificationRequest:
     programs: list[str]
     dialect: str
     tolerance_nm: float | None
-    standing: str
+    next_stage: str
     texts: dict[str, str]
 
 def version() -> str: ...

@@ -106,7 +106,7 @@ class Verification(Result):
             "programs": list(request.programs),
             "dialect": request.dialect,
             "tolerance_nm": request.tolerance_nm,
-            "standing": request.standing,
+            "next_stage": request.next_stage,
             "texts": dict(request.texts),
         }
 

@@ -20,8 +20,8 @@ namespace {
 using namespace fabrication;
 using Json = nlohmann::ordered_json;
 
-/// Published machining times per frame (single move), in s, for the lens of E. D. Bulatov, S. A. Gridin and A. A.
-/// Danilenko. The two programs of this lens have about 2500 frames in 5 h and 3500 frames in 8 h.
+/// Published machining times per block (single move), in s, for the lens of E. D. Bulatov, S. A. Gridin and A. A.
+/// Danilenko. The two programs of this lens have about 2500 blocks in 5 h and 3500 blocks in 8 h.
 constexpr double kPublishedSecondsPerFrame[] = {7.2, 8.2};
 
 double per_frame(double time_s, std::int64_t frames) {
@@ -148,12 +148,12 @@ std::string planing_json(const PlaningResult& result) {
   json["blocks"] = result.plan.runs * totals.frames;
   json["hours"] = result.plan.runs * totals.time_s / 3600.0;
   json["seconds_per_block"] = per_frame(totals.time_s, totals.frames);
-  if (result.part.mill) json["published_seconds_per_frame"] = kPublishedSecondsPerFrame;
-  return result_text("retrace.planing/1", json, result.warnings);
+  if (result.part.mill) json["published_seconds_per_block"] = kPublishedSecondsPerFrame;
+  return result_text("retrace.planing/2", json, result.warnings);
 }
 
 std::string planing_csv(const PlaningResult& result) {
-  CsvWriter csv("x_mm,design_mm,left_mm");
+  CsvWriter csv("x_mm,design_mm,machined_mm");
   for (const ProfileSample& s : result.check.profile)
     csv.row(fixed(s.x_mm, 6), fixed(s.design_mm, 6), fixed(s.left_mm, 6));
   return csv.text();
@@ -162,13 +162,13 @@ std::string planing_csv(const PlaningResult& result) {
 std::string planing_table(const PlaningResult& result) {
   std::string text;
   if (!result.part.title.empty()) text += printable(result.part.title) + "\n";
-  text += "program                 cuts  frames   hours  s/frame\n";
+  text += "program                 cuts  blocks   hours  s/block\n";
   for (std::size_t k = 0; k < result.programs.size(); ++k)
     text += fmt::format("{:<22} {:>5} {:>7} {:>7} {:>8}\n", printable(result.programs[k].name, std::string::npos),
                         result.plan.programs[k].cuts, result.check.frames[k], fixed(result.check.time_s[k] / 3600.0, 2),
                         fixed(per_frame(result.check.time_s[k], result.check.frames[k]), 2));
   const Totals totals = totals_of(result.check);
-  text += fmt::format("total of {} run{} of each program: {} frames, {} hours\n", result.plan.runs,
+  text += fmt::format("total of {} run{} of each program: {} blocks, {} hours\n", result.plan.runs,
                       result.plan.runs > 1 ? "s" : "", result.plan.runs * totals.frames,
                       fixed(result.plan.runs * totals.time_s / 3600.0, 2));
   text += fmt::format("form error {} mm, tolerance {} mm", fixed(form_error_mm(result.part, result.check), 4),
@@ -222,7 +222,7 @@ std::string verification_table(const PlaningVerification& run) {
   row("form error", in_mm(form_error_mm(run.part, check)));
   row("tolerance", shortest(run.part.tolerance_mm) + " mm");
   if (run.part.lathe) row("largest depth of a pass", in_mm(check.chip_mm_max));
-  row("frames", std::to_string(totals.frames));
+  row("blocks", std::to_string(totals.frames));
   row("time", fixed(totals.time_s / 3600.0, 2) + " h");
   return text + findings_table(check.findings);
 }

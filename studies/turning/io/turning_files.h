@@ -8,7 +8,7 @@
 
 namespace retrace::studies {
 
-/// Returns the document `retrace.turning/1`.
+/// Returns the document `retrace.turning/2`.
 std::string turning_json(const TurningResult& result);
 
 /// Returns the tool path with the motion of Z as CSV. The points are thinned out to at most 50,000 rows. The columns

@@ -31,7 +31,7 @@ constexpr const char* kLeftOut =
     "- Luminance of prisms over that of cube corners, 5.6 : 10 (Milliken 2017, 3.3.3): the observation angle of the "
     "fixture and the period of the\n  waviness are not published, and the ratio depends on both "
     "([theory/photometry.md](theory/photometry.md)).\n"
-    "- 7.2 and 8.2 seconds a frame of a planed lens (Bulatov et al.): neither focal length, wavelength, feed nor "
+    "- 7.2 and 8.2 seconds per block of a planed lens (Bulatov et al.): neither focal length, wavelength, feed nor "
     "tolerance are published\n  ([theory/planing.md](theory/planing.md)).\n";
 
 /// Returns the number of decimals that shows a hundredth of the allowed difference. It is at most 9.

@@ -149,10 +149,9 @@ TEST(Optimise, ReachesAnOptimumOnAConstraint) {
 }
 
 TEST(Optimise, TheFrontHasNoDominatedPoint) {
-  const Study study =
-      analytic_study("[optimize]\nmaximize = {f = 1, g = -0.5}\nfront = {f = \"most\", g = \"least\"}\n",
-                     {{"f", [](double x, double y) { return x + std::sin(3.0 * y); }},
-                      {"g", [](double x, double y) { return x * y; }}});
+  const Study study = analytic_study("[optimize]\nmaximize = {f = 1, g = -0.5}\nfront = {f = \"max\", g = \"min\"}\n",
+                                     {{"f", [](double x, double y) { return x + std::sin(3.0 * y); }},
+                                      {"g", [](double x, double y) { return x * y; }}});
   const Optimum optimum = optimum_of(study);
   ASSERT_GE(optimum.front.size(), 3U);
   const auto f = [](const Variant& v) { return *v.outputs[0].value; };
