@@ -291,7 +291,8 @@ void check_substrate(const Design& design, const JobRequest& request) {
     throw InputError({design.source_name(), 0, "array.arrangement"},
                      "pins are ground one by one and bundled, not cut: must be \"honeycomb\" for a job, got \"pins\"");
   if (request.workpiece != fabrication::kWorkpieceWords[0])
-    throw InputError(Field{"workpiece"}, "must be mould for a design with [base], got " + in_quotes(request.workpiece));
+    throw InputError(Field{"workpiece"},
+                     "must be mould for a design with [substrate], got " + in_quotes(request.workpiece));
 }
 
 }  // namespace

@@ -188,7 +188,7 @@ class Bundle(unittest.TestCase):
         self.same(native, bundle, "direction")
         self.assertAlmostEqual(sum(native["ledger"]), 1.0, delta=1e-9)
         self.same(*([spot["power"] for spot in of[:6]] for of in spots), "spots")
-        for key in ("active_share", "shown"):
+        for key in ("active_fraction", "shown"):
             self.assertAlmostEqual(*(footprint[key] for footprint in footprints), delta=SAME_MM, msg=key)
         chance = random.Random(1)
         corners = [of["outline"][k::2] for of in footprints[0]["regions"] for k in (0, 1)] or [[0]]
