@@ -20,15 +20,15 @@ std::vector<std::string> quantities_of(const Study& study, const std::string& na
   std::vector<std::string> found;
   for (const auto& quantity : study.quantities)
     if (quantity->name() == name || quantity->name().starts_with(name + ".")) found.push_back(quantity->name());
-  if (found.empty()) checked_quantity(study, name, study.document->where("compose.maximize"));
+  if (found.empty()) found.push_back(checked_quantity(study, name, study.document->where("compose.maximize")));
   return found;
 }
 
 /// Checks that the quantity adds up: its value for a mixture of cells must be the area-weighted mean of its values for
 /// the cells.
-/// \return `name`
-std::string checked_mean(const Study& study, const std::string& name, const InputLocation& where) {
-  checked_quantity(study, name, where);
+/// \return name of the quantity, as returned by checked_quantity()
+std::string checked_mean(const Study& study, const std::string& given, const InputLocation& where) {
+  const std::string name = checked_quantity(study, given, where);
   const auto found = std::ranges::find_if(study.quantities, [&](const auto& q) { return q->name() == name; });
   if (!(*found)->adds_up())
     throw InputError(where,

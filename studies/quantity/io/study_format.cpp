@@ -400,4 +400,10 @@ const Format& study_format() {
   return kFormat;
 }
 
+std::string_view current_kind(std::string_view kind) {
+  for (const FormerWord& word : kFormerKinds)
+    if (word.former == kind) return word.current;
+  return kind;
+}
+
 }  // namespace retrace::studies
