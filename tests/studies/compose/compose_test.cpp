@@ -286,6 +286,20 @@ TEST(Compose, ReadsItsExample) {
   EXPECT_NO_THROW(read_compose(read_study(file, {})));
 }
 
+TEST(Compose, ReadsFormerNamesOfItsKeys) {
+  const ComposeRequest request = read_compose(analytic_study(
+      "[compose]\nmaximize = \"g\"\nleast = 0.3\nmost_zones = 3\nleast_share = 0.1\nmost_share = 0.6\nlooks = 7\n"
+      "front = {\"g.1\" = \"least\"}\n",
+      kThreePoints));
+  EXPECT_EQ(request.least_goal, 0.3);
+  EXPECT_EQ(request.most_zones, 3U);
+  EXPECT_EQ(request.least_share, 0.1);
+  EXPECT_EQ(request.most_share, 0.6);
+  EXPECT_EQ(request.looks, 7);
+  ASSERT_TRUE(request.front.has_value());
+  EXPECT_FALSE(request.front->largest);
+}
+
 TEST(Compose, RefusesWhatMeansNothing) {
   EXPECT_EQ(refusal(""), "examples/studies/study.toml: compose");
   EXPECT_EQ(refusal("[compose]\nmaximize = \"h\"\n"), "examples/studies/study.toml:22: compose.maximize");

@@ -162,6 +162,31 @@ TEST(Optimise, TheFrontHasNoDominatedPoint) {
   for (const Variant& v : optimum.front) EXPECT_GE(*optimum.best->objective, f(v) - 0.5 * g(v) - 1e-5);
 }
 
+TEST(Optimise, FormerWordsOfTheFrontKeepTheirMeaning) {
+  for (const char* const front : {"{f = \"max\", g = \"min\"}", "{f = \"most\", g = \"least\"}"}) {
+    const std::vector<FrontAxis> axes =
+        read_optimise(
+            analytic_study(std::string("[optimize]\nmaximize = \"f\"\nfront = ") + front + "\n",
+                           {{"f", [](double x, double) { return x; }}, {"g", [](double, double y) { return y; }}}))
+            .front;
+    ASSERT_EQ(axes.size(), 2U) << front;
+    EXPECT_EQ(axes[0].quantity, "f");
+    EXPECT_TRUE(axes[0].largest) << front;
+    EXPECT_FALSE(axes[1].largest) << front;
+  }
+}
+
+TEST(Optimise, FormerKindsAreNamesOfQuantities) {
+  const Study study = parse_study(
+      "design = \"../rtp_brick_1mm.toml\"\n[[parameter]]\nkey = \"body.thickness_mm\"\nfrom = 1\nto = 3\n"
+      "[[quantity]]\nkind = \"full_element_area_fraction\"\n[optimize]\nmaximize = \"full_element_share\"\n"
+      "[[constraint]]\nquantity = \"full_element_share\"\nmin = 0.1\n",
+      kStudies + "study.toml");
+  const OptimiseRequest request = read_optimise(study);
+  EXPECT_EQ(request.objective.weights.at(0).first, "full_element_area_fraction");
+  EXPECT_EQ(request.constraints.at(0).quantity, "full_element_area_fraction");
+}
+
 TEST(Optimise, DiscreteAndContinuousTogether) {
   Study study = parse_study(
       "design = \"../rtp_brick_1mm.toml\"\n[[parameter]]\nkey = \"body.thickness_mm\"\nvalues = [1, 2, 3]\n"
