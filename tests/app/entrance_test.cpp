@@ -1,5 +1,5 @@
-// Tests of curved fronts (entrance surfaces) with the program: turned parts and meshes in front of plates and prisms,
-// commands that refuse a curved front, and invalid files.
+// Tests of curved entrance surfaces with the program: turned parts and meshes in front of plates and prisms,
+// commands that refuse a curved entrance surface, and invalid files.
 
 #include <gtest/gtest.h>
 
@@ -302,7 +302,7 @@ TEST_F(Entrance, KeysThatMakeNoSenseAreRefused) {
                     kBody),
             "design.toml:8: entrance_surface.turned_part");
   EXPECT_EQ(refusal("[element]\nkind = \"ball\"\ndiameter_mm = 1\n[body]\nrefractive_index = 1.9\n" + kFront),
-            "design.toml:6: front");
+            "design.toml:6: entrance_surface");
   EXPECT_EQ(refusal("[part]\nplate_mm = [1, 1, 1]\n" + kBody), "design.toml:2: part.plate_mm");
   EXPECT_EQ(refusal("[part]\nplate_mm = 1\n" + kBody), "design.toml:2: part.plate_mm");
   EXPECT_EQ(refusal("[part]\nplate_mm = [1, 1]\nmesh = \"a.stl\"\n" + kBody), "design.toml:3: part.mesh");

@@ -48,7 +48,7 @@ TEST_F(SubstrateJob, OfTheExampleVerifiesInEveryDialect) {
     // There are ten rows of prisms. Each facet of a row has its own angle A.
     EXPECT_EQ(json["poses"].size(), 20U);
   }
-  EXPECT_EQ(refusal({"verify", "job.toml", "rs274ngc/program.ngc", "--map", "map.png"}), "job.toml:29: base");
+  EXPECT_EQ(refusal({"verify", "job.toml", "rs274ngc/program.ngc", "--map", "map.png"}), "job.toml:29: substrate");
 }
 
 /// The machined part has the RRE (retroreflective efficiency) of the design, except for the effect of the surface

@@ -221,7 +221,7 @@ class Bundle(unittest.TestCase):
 
     def test_says_what_a_browser_has_not(self):
         for toml in ('[element]\nkind = "rtp"\nbase_mm = 1\nwidth_mm = 1\n[array]\nx_length_mm = 9\ny_length_mm = 9\n[body]\n'
-                     'thickness_mm = 9\n[base]\nkind = "formula"\nformula = "x^2"\n', ):
+                     'thickness_mm = 9\n[substrate]\nkind = "formula"\nsag_mm = "x^2"\n', ):
             answer = self.bundle.ask(ask="open", toml=toml, source="design.toml")
             self.assertFalse(answer["ok"])
 

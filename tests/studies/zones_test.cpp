@@ -51,7 +51,7 @@ TEST(ZonedDesign, WhatIsWrongIsRefusedWithItsPlace) {
       {{kHalves, ""},
        {"[[zone]]\n", "d.toml:9: zone[1]"},
        {"[[zone]]\narea_fraction = 0.5\npolygon_mm = [[0, 0], [1, 0], [0, 1]]\n", "d.toml:11: zone[1].polygon_mm"},
-       {half, "d.toml:10: zone[1].share"},
+       {half, "d.toml:10: zone[1].area_fraction"},
        {half + "[[zone]]\narea_fraction = 0\n", "d.toml:12: zone[2].area_fraction"},
        {half + "[[zone]]\nrectangles_mm = [[10, 0, 20, 10]]\n", "d.toml:11: zone[2]"},
        {"[[zone]]\nrectangles_mm = [[10, 0, 20, 10]]\n" + half, "d.toml:9: zone[1]"},

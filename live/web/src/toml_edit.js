@@ -90,7 +90,7 @@ function changed(lines, path, value) {
 
 // Former names of the design format (`former` in studies/design/io and geometry/io) that a text may contain.
 const FORMER_TABLES = "base|front";
-const FORMER_KEYS = "share|dust_forward_share|height_map_level_axis|map_level_axis";
+const FORMER_KEYS = "elements|turned|share|dust_forward_share|height_map_level_axis|map_level_axis|level|down";
 const FORMER = new RegExp(
   `^\\s*(\\[\\s*["']?(${FORMER_TABLES})["']?\\s*[\\].]|["']?(${FORMER_TABLES})["']?\\s*[.=]|` +
     `(["']?\\w+["']?\\s*\\.\\s*)?["']?(${FORMER_KEYS})["']?\\s*=)`,

@@ -16,8 +16,8 @@ namespace retrace::studies {
 namespace {
 
 std::string total_reflection(const Inspection& i) {
-  if (i.entrance) return "not stated: light comes from a curved front in many directions";
-  if (i.substrate) return "not stated: elements on a base stand at angles of their own";
+  if (i.entrance) return "not stated: light comes from a curved entrance surface in many directions";
+  if (i.substrate) return "not stated: elements on a substrate have different orientations";
   if (!i.design.needs_total_reflection()) return "not needed: the facets are metal or mirrors";
   if (i.coating.facets && i.coating.facets->stack.absorbs()) return "none: layers on the facets absorb";
   if (!i.tir_limit_deg) return "none at normal incidence";
