@@ -284,7 +284,7 @@ fabrication::Tool tool_of(const Job& job, const JobRequest& request) {
 namespace {
 
 /// Checks that a design with a base can be cut. Pins are refused, because they are ground one by one and then bundled.
-/// Other elements on a base can only be cut in a mould.
+/// Other elements on a substrate can only be cut in a mould.
 void check_substrate(const Design& design, const JobRequest& request) {
   if (design.zoned() || !design.part().substrate) return;
   if (design.part().is_pin_bundle)
