@@ -260,7 +260,8 @@ AsMachined as_machined(const VerificationRun& run) {
   part.texture = predicted_texture(run.job);
   part.scratches = scratches_of(run.job);
   if (run.job.substrate && !part.scratches.empty()) {
-    part.warnings.push_back({"scratches_omitted", "scratches of a chipped edge are omitted for elements on a substrate"});
+    part.warnings.push_back(
+        {"scratches_omitted", "scratches of a chipped edge are omitted for elements on a substrate"});
     part.scratches.clear();
   }
   part.body = machined_body(run.job, run.request.job, part.warnings);

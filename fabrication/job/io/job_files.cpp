@@ -509,10 +509,11 @@ constexpr Rule kJobRules[] = {
           "A `[substrate]` is allowed only for moulds, and only for arrays without margins and pattern. It is not "
           "allowed for the arrangement `single`.",
           check_by<check_array_on_substrate>},
-    Check{kZoneKeys,
-          "With zones, margins, a pattern, a substrate and the arrangement `single` are not allowed. The elements of all "
-          "zones, at most 2,000,000 in total, must be within the lengths of the array and must not overlap.",
-          check_by<check_zones>},
+    Check{
+        kZoneKeys,
+        "With zones, margins, a pattern, a substrate and the arrangement `single` are not allowed. The elements of all "
+        "zones, at most 2,000,000 in total, must be within the lengths of the array and must not overlap.",
+        check_by<check_zones>},
     Check{kArrayKeys, "At least one element must fit between the margins, and at most 2,000,000 elements are allowed.",
           check_by<check_room>},
     Check{kSquareKeys, "In the arrangement `checker`, `base_mm` and `width_mm` must be equal.", check_by<check_square>},
