@@ -22,8 +22,9 @@ std::vector<std::string_view> names_of(const Study& study) {
 
 std::string checked_quantity(const Study& study, const std::string& name, const InputLocation& where) {
   const std::vector<std::string_view> names = names_of(study);
-  for (const std::string_view each : {std::string_view(name), current_kind(name)})
-    if (std::find(names.begin(), names.end(), each) != names.end()) return std::string(each);
+  if (std::find(names.begin(), names.end(), name) != names.end()) return name;
+  for (const std::string_view each : names)
+    if (current_kind(each) == current_kind(name)) return std::string(each);
   const std::string_view meant = closest(name, names);
   throw InputError(where,
                    fmt::format("must be a quantity of the study ({}), got {}{}", alternatives(names), in_quotes(name),

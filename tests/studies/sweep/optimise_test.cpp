@@ -177,14 +177,21 @@ TEST(Optimise, FormerWordsOfTheFrontKeepTheirMeaning) {
 }
 
 TEST(Optimise, FormerKindsAreNamesOfQuantities) {
-  const Study study = parse_study(
-      "design = \"../rtp_brick_1mm.toml\"\n[[parameter]]\nkey = \"body.thickness_mm\"\nfrom = 1\nto = 3\n"
-      "[[quantity]]\nkind = \"full_element_area_fraction\"\n[optimize]\nmaximize = \"full_element_share\"\n"
-      "[[constraint]]\nquantity = \"full_element_share\"\nmin = 0.1\n",
-      kStudies + "study.toml");
-  const OptimiseRequest request = read_optimise(study);
-  EXPECT_EQ(request.objective.weights.at(0).first, "full_element_area_fraction");
-  EXPECT_EQ(request.constraints.at(0).quantity, "full_element_area_fraction");
+  const std::string former = "full_element_share";
+  const std::string current = "full_element_area_fraction";
+  for (const std::string& kind : {former, current})
+    for (const std::string& name : {former, current}) {
+      const Study study = parse_study(
+          "design = \"../rtp_brick_1mm.toml\"\n[[parameter]]\nkey = \"body.thickness_mm\"\nfrom = 1\nto = 3\n"
+          "[[quantity]]\nkind = \"" +
+              kind + "\"\n[optimize]\nmaximize = \"" + name + "\"\n[[constraint]]\nquantity = \"" + name +
+              "\"\nmin = 0.1\n",
+          kStudies + "study.toml");
+      EXPECT_EQ(study.quantities.at(0)->name(), kind);  // the name of the column is that of the file
+      const OptimiseRequest request = read_optimise(study);
+      EXPECT_EQ(request.objective.weights.at(0).first, kind) << name;
+      EXPECT_EQ(request.constraints.at(0).quantity, kind) << name;
+    }
 }
 
 TEST(Optimise, DiscreteAndContinuousTogether) {
