@@ -9,6 +9,7 @@
 
 #include <chrono>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -390,6 +391,12 @@ void bind_surfaces(py::module_& module) {
     });
     return py::make_tuple(page.html, texts_of(page.warnings));
   });
+  module.def("former_names", [] {
+    std::vector<std::tuple<std::string, std::string, std::string>> names;
+    for (const FormerName& name : former_names()) names.emplace_back(name.kind, name.former, name.current);
+    return names;
+  });
+  module.def("current_document", [](const std::string& text) { return current_document(text); });
 }
 
 }  // namespace
