@@ -10,8 +10,8 @@
 
 namespace retrace::geometry {
 
-/// Returns the keys of `[substrate]` in designs and jobs, as rows for an object of the type Substrate. The last row is used
-/// only for pins (cube corners at the ends of pins).
+/// Returns the keys of `[substrate]` in designs and jobs, as rows for an object of the type Substrate. The last row is
+/// used only for pins (cube corners at the ends of pins).
 std::span<const schema::Row> substrate_rows();
 
 /// Returns the key that determines the shape of a substrate, for error messages about the shape.
