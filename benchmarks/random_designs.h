@@ -26,7 +26,7 @@ class RandomDesigns {
     std::string text = "[element]\n" + element(kind, size_mm) + "[array]\n" + array(kind, is_infinite, size_mm);
     const bool has_substrate = !is_infinite && one_in(6);
     if (has_substrate)
-      text += fmt::format("[base]\nkind = \"cylinder\"\nradius_mm = {}\n", between(60.0, 400.0) * size_mm);
+      text += fmt::format("[substrate]\nkind = \"cylinder\"\nradius_mm = {}\n", between(60.0, 400.0) * size_mm);
     text += fmt::format("[body]\nthickness_mm = {}\nrefractive_index = {}\n", between(0.5, 3.0), between(1.3, 1.8));
     if (one_in(4)) text += fmt::format("back_index = {}\n", between(1.0, 1.4));
     if (one_in(4)) text += "facet_coating = \"aluminium\"\n";

@@ -30,9 +30,9 @@ std::filesystem::path write_design(std::int64_t side, const std::string& substra
 std::string substrate_of(std::int64_t kind, std::int64_t side) {
   const double radius_mm = 0.451 * static_cast<double>(side);
   switch (kind) {
-    case 1: return "[base]\nkind = \"plane\"\nincline_deg = 10\n";
-    case 2: return "[base]\nkind = \"cylinder\"\nradius_mm = " + std::to_string(radius_mm) + "\n";
-    case 3: return "[base]\nkind = \"sphere\"\nradius_mm = " + std::to_string(radius_mm) + "\n";
+    case 1: return "[substrate]\nkind = \"plane\"\nincline_deg = 10\n";
+    case 2: return "[substrate]\nkind = \"cylinder\"\nradius_mm = " + std::to_string(radius_mm) + "\n";
+    case 3: return "[substrate]\nkind = \"sphere\"\nradius_mm = " + std::to_string(radius_mm) + "\n";
     default: return "";
   }
 }

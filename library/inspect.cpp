@@ -35,7 +35,7 @@ Inspection inspect(const Design& design) {
   result.table = studies::inspect_text(held->inspection);
   result.plan = drawing_of_text([held] { return held->made().plan; }, true);
   result.section = drawing_of_text([held] { return held->made().section; }, true);
-  result.front = drawing_of_text([held] { return held->made().entrance; }, true);
+  result.entrance_surface = drawing_of_text([held] { return held->made().entrance; }, true);
   result.view = drawing_of_text([held] { return held->made().view; }, false);
   return result;
 }

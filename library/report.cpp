@@ -1,5 +1,6 @@
 #include "retrace/report.h"
 
+#include "report/page/former_names.h"
 #include "report/page/page.h"
 #include "report/page/result_folder.h"
 #include "report/page/scene_view.h"
@@ -19,6 +20,17 @@ ReportPage report_page(const std::vector<ReportPart>& parts, const std::string& 
   report::add_live(page, folder);
   made.html = report::page_html(page, report::assets_for(page));
   return made;
+}
+
+std::vector<FormerName> former_names() {
+  std::vector<FormerName> names;
+  for (const report::FormerName& name : report::former_names())
+    names.push_back({std::string(name.kind), std::string(name.former), std::string(name.current)});
+  return names;
+}
+
+std::string current_document(const std::string& text) {
+  return report::current_document(text);
 }
 
 }  // namespace retrace

@@ -32,7 +32,7 @@ struct MaterialRequest {
   /// Relative error to reach; >= 0.001 and <= 0.5.
   double error = 0.02;
   /// Maximum number of directions of light that are computed; a whole number >= 64 and <= 10000.
-  std::uint64_t most_directions = 1000;
+  std::uint64_t max_directions = 1000;
 };
 
 }  // namespace retrace

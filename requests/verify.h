@@ -23,7 +23,7 @@ struct VerificationRequest {
   std::optional<double> tolerance_nm = {};
   /// Name of the next stage of a job, such as finishing-1-facet-1: all stages before it have been cut. Default: the
   /// blank is uncut.
-  std::string standing = {};
+  std::string next_stage = {};
   /// Output file for the design of the machined part. Default: none.
   std::filesystem::path as_machined = {};
   std::map<std::string, std::string> texts = {};  ///< texts of job and programs by file name, used instead of files

@@ -107,7 +107,7 @@ Command calibrate_command() {
               "acceleration and settling of the axes from run times of programs.",
           .reads = {"table of measurements (CSV)", "table of times (CSV)", "retrace.job/1", "retrace.machine/1",
                     "NC program"},
-          .writes = {"retrace.calibration/1", "retrace.time_calibration/1", "retrace.time_programs/1",
+          .writes = {"retrace.calibration/2", "retrace.time_calibration/2", "retrace.time_programs/1",
                      "retrace.machine/1", "NC program", "table of times (CSV)"},
           .refuses_set = "calibrate reads no design",
           .begin = begins<CalibrateOptions>(arguments, run)};

@@ -52,7 +52,7 @@ std::vector<Argument> compose_arguments(ComposeOptions& options) {
   all.back().traits.needs = {any_given({"--design"})};
   all.push_back(
       {"--for-worst",
-       "write the zones that are best for the worst parts; compose.worst_share of the study is their fraction",
+       "write the zones that are best for the worst parts; compose.worst_fraction of the study is their fraction",
        &options.for_worst,
        {.needs = {any_given({"--out", "--design"})}}});
   for (const auto& [name, help, length] :
@@ -126,7 +126,7 @@ ExitCode compose_part(const ComposeOptions& options, const CommonOptions& common
   const studies::ComposeRequest request = studies::read_compose(study);
   const OrderlyInterrupt interrupt;
   if (options.for_worst && !(request.errors && request.errors->worst_share))
-    throw InputError({"", 0, "--for-worst"}, "needs worst_share in [compose] of the study");
+    throw InputError({"", 0, "--for-worst"}, "needs worst_fraction in [compose] of the study");
   studies::Composition composition;
   const auto written_zones = [&] {
     if (options.for_worst) return studies::zones_for_worst(composition);
@@ -195,7 +195,7 @@ Command compose_command() {
           "`composition.sqlite` in the output folder and are reused by the next run. `--design` writes the part with "
           "its zones as one design, `--job` its fabrication job. Exits with 1 if no part meets all constraints.",
       .reads = {"retrace.study/1", "retrace.design/1", "retrace.machine/1", "retrace.process/1"},
-      .writes = {"retrace.composition/1", "retrace.design/1", "retrace.job/1"},
+      .writes = {"retrace.composition/2", "retrace.design/1", "retrace.job/1"},
       .begin = begins(compose_arguments, run_compose)};
 }
 

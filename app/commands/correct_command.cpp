@@ -113,7 +113,7 @@ Command correct_command() {
               "blank's face. From these it estimates the set-up errors, each with its uncertainty. Writes the "
               "corrected machine file and a job for it, and predicts the deviations of the next part.",
           .reads = {"retrace.job/1", "retrace.machine/1", "height map (text, SDF, GSF, GWY)"},
-          .writes = {"retrace.correction/1", "retrace.machine/1", "retrace.job/1"},
+          .writes = {"retrace.correction/2", "retrace.machine/1", "retrace.job/1"},
           .refuses_set = "correct reads no design",
           .begin = begins<CorrectOptions>(arguments, run)};
 }

@@ -66,7 +66,7 @@ ExitCode run_material(const ExportOptions& options, const CommonOptions& common,
   // The temporary OrderlyInterrupt exists only during the computation. A later interrupt ends the program immediately,
   // because only the writing of the files remains.
   const RunText running{
-      "material", {fmt::format("give a larger --error (now {:g})", request.error), "give fewer --most-directions"}};
+      "material", {fmt::format("give a larger --error (now {:g})", request.error), "give fewer --max-directions"}};
   OrderlyInterrupt().run(common, running, [&](Progress* bar, const Cancellation* cancel) {
     result = studies::compute_appearance(design, request, bar, cancel);
   });
@@ -113,7 +113,7 @@ Command export_command() {
           "simulators: a table of R_A (.json, with a .csv next to it), a BSDF of Radiance (.xml), or lobes in a shader "
           "(.glsl). The ending of FILE selects the format.",
       .reads = {"retrace.design/1"},
-      .writes = {"retrace.export/1", "STL", "OBJ", "glTF", "STEP", "retrace.material/1", "BSDF of Radiance", "GLSL"},
+      .writes = {"retrace.export/2", "STL", "OBJ", "glTF", "STEP", "retrace.material/2", "BSDF of Radiance", "GLSL"},
       .begin = begins<ExportOptions>(arguments, run)};
 }
 

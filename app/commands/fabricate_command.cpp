@@ -94,7 +94,7 @@ Command fabricate_command() {
               "effect of each set-up error. Long jobs can be split into several programs, and restarted at an element "
               "or a stage.",
           .reads = {"retrace.job/1", "retrace.machine/1"},
-          .writes = {"retrace.fabrication/1"},
+          .writes = {"retrace.fabrication/2"},
           .refuses_set = "fabricate reads no design; change the job file, or make a new one with retrace job",
           .begin = begins<FabricateOptions>(arguments, run)};
 }

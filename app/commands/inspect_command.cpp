@@ -25,7 +25,7 @@ ExitCode run(const InspectOptions& options, const CommonOptions& common) {
   files.add("plan.svg", [&] { return drawings.plan; });
   files.add("section.svg", [&] { return drawings.section; });
   files.add("view.png", [&] { return drawings.view; });
-  files.add("front.svg", [&] { return drawings.entrance; });
+  files.add("entrance_surface.svg", [&] { return drawings.entrance; });
   files.prepare();
   if (!common.out.empty()) drawings = report::design_drawings(inspection);
   append(inspection.warnings, drawings.warnings);
@@ -41,7 +41,7 @@ Command inspect_command() {
               "Describes a design without tracing light: counts, areas, depth, limits of total reflection, and whether "
               "its boundary is closed. Draws its plan, its section and a three-dimensional view.",
           .reads = {"retrace.design/1"},
-          .writes = {"retrace.inspect/1"},
+          .writes = {"retrace.inspect/2"},
           .begin = begins<InspectOptions>(arguments, run)};
 }
 

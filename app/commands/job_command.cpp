@@ -94,12 +94,12 @@ Command job_command() {
   return {.name = "job",
           .summary = "a fabrication job from a design",
           .manual =
-              "Makes a fabrication job of a design: blank, tool, machine, strategy and process. Elements on a base are "
-              "cut at their positions on the base; pins are not cut. `--reachable FILE` writes, instead of a job, the "
-              "part that a chisel can make of cube corners. `--test-cuts FOLDER` writes the smallest jobs from which "
-              "`retrace calibrate` estimates the set-up of the machine.",
+              "Makes a fabrication job of a design: blank, tool, machine, strategy and process. Elements on a "
+              "substrate are cut at their positions on the substrate; pins are not cut. `--reachable FILE` writes, "
+              "instead of a job, the part that a chisel can make of cube corners. `--test-cuts FOLDER` writes the "
+              "smallest jobs from which `retrace calibrate` estimates the set-up of the machine.",
           .reads = {"retrace.design/1", "retrace.machine/1", "retrace.process/1"},
-          .writes = {"retrace.job_summary/1", "retrace.job/1", "retrace.reach/1", "retrace.test_cuts/1"},
+          .writes = {"retrace.job_summary/1", "retrace.job/1", "retrace.reach/2", "retrace.test_cuts/2"},
           .begin = begins<JobOptions>(arguments, run)};
 }
 

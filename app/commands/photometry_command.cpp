@@ -137,7 +137,7 @@ Command photometry_command() {
               "Exits with 1 if a limit is missed, the colour lies outside its boundaries, or the verdict on the points "
               "is undetermined.",
           .reads = {"retrace.design/1", "limits (CSV)", "absorption of a dye (CSV)"},
-          .writes = {"retrace.photometry/1"},
+          .writes = {"retrace.photometry/2"},
           .begin = begins<PhotometryOptions>(arguments, run)};
 }
 

@@ -43,7 +43,7 @@ Command plane_command() {
               "profile; on a lathe, the spindle must rotate as the part's file requires. Exits with 1 if there are "
               "findings.",
           .reads = {"retrace.planed_part/1"},
-          .writes = {"retrace.planing/1"},
+          .writes = {"retrace.planing/2"},
           .refuses_set = "plane reads no design: change the part file",
           .begin = begins<PlaneOptions>(arguments, run)};
 }

@@ -124,7 +124,7 @@ A LIST can combine values `a,b,c` and ranges `start:stop:step`, which include th
 
 `--derivatives` computes the derivatives of RRE with respect to size, angle of the facets, index, thickness and incidence, with an estimate of their errors. Where RRE has a kink or a jump, a derivative is left out and the reason is given. `--footprint` and `--far-field` write files of these names to the folder of `--out`.)",
       .reads = {"retrace.design/1"},
-      .writes = {"retrace.rre/1", "retrace.footprint/1", "retrace.far_field/1"},
+      .writes = {"retrace.rre/1", "retrace.footprint/2", "retrace.far_field/1"},
       .begin = begins<RreOptions>(arguments, run)};
 }
 

@@ -48,7 +48,7 @@ Command tolerance_command() {
           "distribution of the quantities, the yield, and the main contributors. Points are kept in `tolerance.sqlite` "
           "in the output folder. Exits with 1 if the yield is below the required yield or every point failed.",
       .reads = {"retrace.study/1", "retrace.design/1"},
-      .writes = {"retrace.tolerance/1"},
+      .writes = {"retrace.tolerance/2"},
       .begin = begins(study_arguments, run_tolerance)};
 }
 

@@ -44,7 +44,7 @@ Command turn_command() {
               "The programs are read back and the machined surface is compared with the design. Exits with 1 if the "
               "deviation exceeds the tolerances of the part.",
           .reads = {"retrace.turned_part/1"},
-          .writes = {"retrace.turning/1"},
+          .writes = {"retrace.turning/2"},
           .refuses_set = "turn reads no design",
           .begin = begins<TurnOptions>(arguments, run)};
 }

@@ -97,7 +97,7 @@ void refuse_others(const VerifyOptions& options, const VerificationRequest& requ
   if (kind != Kind::turned_part && !options.servo.empty()) refuse("--servo", "turned parts");
   if (kind == Kind::job) return;
   const std::pair<std::string, bool> of_jobs[] = {
-      {requests::option_of_field("standing"), !request.standing.empty()},
+      {requests::option_of_field("next_stage"), !request.next_stage.empty()},
       {requests::option_of_field("tolerance_nm"), request.tolerance_nm.has_value()},
       {"--map", !options.map.empty()},
       {"--as-machined", !options.as_machined.empty()}};
@@ -193,7 +193,7 @@ Command verify_command() {
           "design, `--map` draws the remaining material. Programs of planed and turned parts from any source are "
           "compared with the file of the part. Exits with 1 if there are findings.",
       .reads = {"retrace.job/1", "retrace.machine/1", "retrace.planed_part/1", "retrace.turned_part/1", "NC programs"},
-      .writes = {"retrace.verification/1", "retrace.design/1"},
+      .writes = {"retrace.verification/2", "retrace.design/1"},
       .refuses_set = "verify reads no design",
       .begin = begins<VerifyOptions>(arguments, run)};
 }

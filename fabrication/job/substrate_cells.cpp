@@ -142,7 +142,7 @@ double stock_mm(const Job& job, const std::vector<CutElement>& elements, double 
       if (stock > kMostDepths * opening.depth_mm || round + 1 == kMostRounds)
         throw InputError(
             fmt::format("is too steep for the tool to leave its cuts: next to the element at x = {}, y = {} mm of the "
-                        "blank, the base is more than {} element depths above the rims",
+                        "blank, the substrate is more than {} element depths above the rims",
                         fixed(cut.foot_mm.x(), 4), fixed(cut.foot_mm.y(), 4), shortest(kMostDepths)));
       if (more <= kSettledMm) break;
     }

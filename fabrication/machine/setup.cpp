@@ -33,9 +33,9 @@ constexpr SetupQuantity kOfSlides[] = {{"y_lean_x_arcsec", "Y out of square towa
 constexpr SetupQuantity kOfTool[] = {{"tool_x_um", "touch-off of the tool along X", SetupPart::tool_offset, 0},
                                      {"tool_y_um", "touch-off of the tool along Y", SetupPart::tool_offset, 1},
                                      {"tool_z_um", "touch-off of the tool along Z", SetupPart::tool_offset, 2},
-                                     {"tool_turn_x_arcsec", "tool rotated about X", SetupPart::tool_turn, 0},
-                                     {"tool_turn_y_arcsec", "tool rotated about Y", SetupPart::tool_turn, 1},
-                                     {"tool_turn_z_arcsec", "tool rotated about Z", SetupPart::tool_turn, 2}};
+                                     {"tool_rotation_x_arcsec", "tool rotated about X", SetupPart::tool_turn, 0},
+                                     {"tool_rotation_y_arcsec", "tool rotated about Y", SetupPart::tool_turn, 1},
+                                     {"tool_rotation_z_arcsec", "tool rotated about Z", SetupPart::tool_turn, 2}};
 
 constexpr std::size_t kQuantities = std::size(kOfC) + std::size(kOfA) + std::size(kOfSlides) + std::size(kOfTool);
 

@@ -66,34 +66,35 @@ void set_parallel(Substrate& substrate, const Value&) {
 }
 
 constexpr Row kRows[] = {
-    {"kind", Word{kKinds}, kRequired, "Shape of the base.", access_by<get_kind, set_kind>},
+    {"kind", Word{kKinds}, kRequired, "Shape of the substrate.", access_by<get_kind, set_kind>},
     {"incline_deg", Number{{.low = 0.0, .high = 60.0}}, kRequired,
-     "Inclination of the plane: angle between the base and the plane z = 0.",
+     "Inclination of the plane: angle between the substrate and the plane z = 0.",
      access_in<&Substrate::shape, &PlaneSubstrate::incline_deg>, kPlaneOnly},
     {"azimuth_deg", Number{{.low = -360.0, .high = 360.0}}, 0.0,
      "Azimuth of the direction in which the plane rises, measured from +x towards +y.",
      access_in<&Substrate::shape, &PlaneSubstrate::azimuth_deg>, kPlaneOnly},
     {"radius_mm", Number{{.low = -1e9, .high = 1e9}}, kRequired,
-     "Radius of curvature, not 0. If it is positive, the base is convex towards the light; if it is negative, the base "
-     "is concave. The centre of the part is the highest or the lowest point of the base.",
+     "Radius of curvature, not 0. If it is positive, the substrate is convex towards the light; if it is negative, the "
+     "substrate is concave. The centre of the part is the highest or the lowest point of the substrate.",
      access_by<get_radius, set_radius>, kRoundOnly},
     {"axis", Word{kAxes}, "y", "Direction of the axis of the cylinder.", access_by<get_axis, set_axis>, kCylinderOnly},
     {"sag_mm", Text{"a formula of x and y in mm, such as \"-(x^2 + y^2) / 200\""}, kRequired,
-     "Height of the base in mm, positive towards the light, as a formula of `x` and `y`. These are in mm, measured "
-     "from the centre of the part. The formula can contain numbers, `pi`, `+ - * / ^`, brackets, `sqrt exp log sin cos "
-     "tan asin acos atan atan2 sinh cosh tanh abs`, and has at most 2000 characters.",
+     "Height of the substrate in mm, positive towards the light, as a formula of `x` and `y`. These are in mm, "
+     "measured from the centre of the part. The formula can contain numbers, `pi`, `+ - * / ^`, brackets, `sqrt exp "
+     "log sin cos tan asin acos atan atan2 sinh cosh tanh abs`, and has at most 2000 characters.",
      access_by<get_sag, set_sag>, kFormulaOnly},
-    {"elements", Word{kElementAxesWords}, "normal",
-     "Orientation of the elements. `\"normal\"`: the axis of each element is the normal of the base at the centre of "
-     "the element, and sizes and gaps are arc lengths. `\"parallel\"`: the axes stay parallel to z, elements are only "
-     "shifted along z, and sizes and gaps are measured in plan.",
-     access<&Substrate::element_axes>, kOfNoPins},
-    {"elements",
-     Word{only(kElementAxesWords, "parallel")},
-     "parallel",
-     "Orientation of the elements. The axes of all pins are parallel.",
-     {nullptr, set_by<set_parallel>},
-     kOfPins}};
+    renamed("elements",
+            Row{"element_axes", Word{kElementAxesWords}, "normal",
+                "Orientation of the elements. `\"normal\"`: the axis of each element is the normal of the substrate at "
+                "the centre of the element, and sizes and gaps are arc lengths. `\"parallel\"`: the axes stay parallel "
+                "to z, elements are only shifted along z, and sizes and gaps are measured in plan.",
+                access<&Substrate::element_axes>, kOfNoPins}),
+    renamed("elements", Row{"element_axes",
+                            Word{only(kElementAxesWords, "parallel")},
+                            "parallel",
+                            "Orientation of the elements. The axes of all pins are parallel.",
+                            {nullptr, set_by<set_parallel>},
+                            kOfPins})};
 
 }  // namespace
 
@@ -102,10 +103,10 @@ std::span<const Row> substrate_rows() {
 }
 
 std::string_view substrate_shape_key(const Substrate& substrate) {
-  return std::visit(
-      Overloaded{[](const PlaneSubstrate&) { return "base.incline_deg"; },
-                 [](const FormulaSubstrate&) { return "base.sag_mm"; }, [](const auto&) { return "base.radius_mm"; }},
-      substrate.shape);
+  return std::visit(Overloaded{[](const PlaneSubstrate&) { return "substrate.incline_deg"; },
+                               [](const FormulaSubstrate&) { return "substrate.sag_mm"; },
+                               [](const auto&) { return "substrate.radius_mm"; }},
+                    substrate.shape);
 }
 
 }  // namespace retrace::geometry

@@ -1,6 +1,6 @@
 #pragma once
 
-// Keys of the table [base] in design and job files: shape of a substrate and orientation of the elements on it.
+// Keys of the table [substrate] in design and job files: shape of a substrate and orientation of the elements on it.
 
 #include <span>
 #include <string_view>
@@ -10,8 +10,8 @@
 
 namespace retrace::geometry {
 
-/// Returns the keys of `[base]` in designs and jobs, as rows for an object of the type Base. The last row is used only
-/// for pins (cube corners at the ends of pins).
+/// Returns the keys of `[substrate]` in designs and jobs, as rows for an object of the type Substrate. The last row is
+/// used only for pins (cube corners at the ends of pins).
 std::span<const schema::Row> substrate_rows();
 
 /// Returns the key that determines the shape of a substrate, for error messages about the shape.

@@ -174,12 +174,13 @@ struct BoundaryRequest {
 
 BoundaryRequest read_request(const Document& file) {
   const auto number = [&](const char* key) { return file.number_if(schema::path_in("lenslets", key)).value_or(0.0); };
-  const double inner = number("inner_share");
-  const double outer = number("outer_share");
+  const double inner = number("inner_radius_ratio");
+  const double outer = number("outer_radius_ratio");
   if (!(inner < outer))
-    file.fail("lenslets.outer_share",
-              fmt::format("must be greater than inner_share, got inner_share {} and outer_share {}", shortest(inner),
-                          shortest(outer)));
+    file.fail("lenslets.outer_radius_ratio",
+              fmt::format("must be greater than inner_radius_ratio, got inner_radius_ratio {} and outer_radius_ratio "
+                          "{}",
+                          shortest(inner), shortest(outer)));
   const BoundaryOptions options = {static_cast<int>(number("degree")), static_cast<int>(number("samples"))};
   return {file.text("lenslets.boundary") == "intersection",
           options,

@@ -104,12 +104,14 @@ constexpr Row kPlacedRows[] = {
     {"boundary_radius_mm", kPositiveMm, kRequired, "Radius of the circle.", kCirclesOnly},
     {"search_mm", kPositiveMm, kRequired,
      "Maximum distance from the lenslet's position at which the intersection is searched.", kIntersectionsOnly},
-    {"inner_share", kShare, kRequired,
-     "Radius at which the blend (transition from the lenslet to the base) begins, as a fraction of the boundary's "
-     "radius."},
-    {"outer_share", kShare, kRequired,
-     "Radius at which the blend ends and the base begins, as a fraction of the boundary's radius. It must be greater "
-     "than `inner_share`."},
+    renamed("inner_share",
+            Row{"inner_radius_ratio", kShare, kRequired,
+                "Radius at which the blend (transition from the lenslet to the base) begins, divided by the boundary's "
+                "radius."}),
+    renamed("outer_share",
+            Row{"outer_radius_ratio", kShare, kRequired,
+                "Radius at which the blend ends and the base begins, divided by the boundary's radius. It must be "
+                "greater than `inner_radius_ratio`."}),
     {"blend_order", Whole{{.low = 1.0, .high = kMostBlendOrder}}, 2.0,
      "Order d of the blend, which is C^d at both ends."},
     {"degree", kSplineDegree, 3.0, "Degree of the periodic spline that represents the boundary."},

@@ -370,7 +370,7 @@ class Tiler {
   [[noreturn]] void refuse_bend(const SubstrateFrame& frame) const {
     const Vec2 at = frame.origin.head<2>() + here_->origin_mm() - sheet_.middle_mm;
     throw InputError(
-        fmt::format("the curvature of the base is too large for the element at x = {:.6g}, y = {:.6g} mm from the "
+        fmt::format("the curvature of the substrate is too large for the element at x = {:.6g}, y = {:.6g} mm from the "
                     "centre of the part",
                     at.x(), at.y()));
   }
@@ -380,10 +380,10 @@ class Tiler {
     constexpr double kAreaRounding = 1e-7;
     const double whole_mm2 = sheet_.part_mm.size().prod();
     if (!sheet_.surface || std::abs(covered_mm2_ - whole_mm2) <= kAreaRounding * whole_mm2) return;
-    throw InputError(
-        fmt::format("the curvature of the base is too large for its elements: their cells cover {:.9g} mm2, but the "
-                    "part has {:.9g} mm2",
-                    covered_mm2_, whole_mm2));
+    throw InputError(fmt::format(
+        "the curvature of the substrate is too large for its elements: their cells cover {:.9g} mm2, but the "
+        "part has {:.9g} mm2",
+        covered_mm2_, whole_mm2));
   }
 
   Part& part_;

@@ -13,12 +13,12 @@ namespace retrace {
 
 struct Inspection {
   Warnings warnings;
-  std::string json;   ///< JSON document retrace.inspect/1
+  std::string json;   ///< JSON document retrace.inspect/2
   std::string table;  ///< summary as text
-  Drawing plan;       ///< SVG; like `section` and `front`, empty if it does not apply to the design
+  Drawing plan;       ///< SVG; like `section` and `entrance_surface`, empty if it does not apply to the design
   Drawing section;
-  Drawing front;  ///< profile of a curved entrance face
-  Drawing view;   ///< view in three dimensions; PNG
+  Drawing entrance_surface;  ///< profile of a curved entrance surface
+  Drawing view;              ///< view in three dimensions; PNG
 };
 
 /// Computes the properties of a design.

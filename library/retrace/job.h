@@ -35,7 +35,7 @@ struct NcText {
 struct Fabrication {
   std::vector<NcText> programs;  ///< in the order in which they run
   Warnings warnings;
-  std::string json;     ///< JSON document retrace.fabrication/1
+  std::string json;     ///< JSON document retrace.fabrication/2
   std::string table;    ///< summary as text
   Drawing roughing;     ///< tool path through one element in roughing; empty if the job has no roughing stages
   Drawing finishing;    ///< tool path through one element in finishing; empty if the job has no finishing stages

@@ -36,7 +36,7 @@ RETRACE_API Mesh mesh(const Design& design, const SolidRequest& request = {});
 
 struct ExportResult {
   Warnings warnings;
-  std::string json;   ///< JSON document retrace.export/1
+  std::string json;   ///< JSON document retrace.export/2
   std::string table;  ///< summary as text
 };
 
@@ -49,7 +49,7 @@ RETRACE_API ExportResult export_solid(const Design& design, const std::filesyste
 struct MaterialResult {
   Warnings warnings;
   bool complete = true;  ///< false if the computation was cancelled; nothing is written then
-  std::string json;      ///< JSON document retrace.export/1
+  std::string json;      ///< JSON document retrace.export/2
   std::string table;     ///< summary as text
 };
 

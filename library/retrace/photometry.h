@@ -30,7 +30,7 @@ struct PhotometryResult {
   bool passes = false;  ///< true if all points and the area pass and the colour does not fail
   Warnings warnings;
   bool complete = true;
-  std::string json;     ///< JSON document retrace.photometry/1
+  std::string json;     ///< JSON document retrace.photometry/2
   std::string csv;      ///< table with one line for each point
   std::string table;    ///< summary as text
   Drawing far_field;    ///< R_A around the direction to the source; empty unless PhotometryRequest::pictures is true

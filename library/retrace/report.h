@@ -1,6 +1,6 @@
 #pragma once
 
-// Makes one HTML page of several results.
+// Makes one HTML page of several results, and reads results of former versions.
 
 #include <string>
 #include <vector>
@@ -29,5 +29,23 @@ struct ReportPage {
 /// `readable` does not exist
 RETRACE_API ReportPage report_page(const std::vector<ReportPart>& parts, const std::string& title = {},
                                    const std::vector<std::string>& readable = {});
+
+/// Key of result documents that has been renamed, see former_names().
+struct FormerName {
+  std::string kind;  ///< kind of the document, such as "inspect"; empty for keys of designs in all documents
+  /// Path of the key in documents of former versions. "[]" is appended to the name of a list. If the value was renamed
+  /// and not the key, "=" and the former value are appended.
+  std::string former;
+  std::string current;  ///< path in the same form in documents of the current version
+};
+
+/// Returns all renamed keys and values of result documents.
+RETRACE_API std::vector<FormerName> former_names();
+
+/// Returns a result document in the current version: with the current names and the current `schema`. A document that
+/// is of the current version is returned unchanged.
+/// \param text the document as JSON; any other text is returned unchanged
+/// \throw InputError if the version of the document is later than the current version
+RETRACE_API std::string current_document(const std::string& text);
 
 }  // namespace retrace

@@ -38,7 +38,7 @@ struct RreResult {
   std::string json;       ///< JSON document retrace.rre/1
   std::string csv;        ///< one line per point
   std::string table;      ///< summary as text
-  std::string footprint;  ///< document retrace.footprint/1 (GeoJSON); empty unless RreRequest::footprint is true
+  std::string footprint;  ///< document retrace.footprint/2 (GeoJSON); empty unless RreRequest::footprint is true
   std::string far_field;  ///< document retrace.far_field/1; empty unless RreRequest::far_field is true
   Drawing curve;          ///< RRE over the angles; empty if there are no points
   Drawing footprint_map;  ///< empty unless RreRequest::footprint is true

@@ -31,7 +31,7 @@ struct StudyResult {
   /// False if the yield of a tolerance study is too low, or if an optimisation has found no feasible design.
   bool is_yes = true;
   Warnings warnings;
-  std::string json;   ///< JSON document retrace.sweep/1, retrace.tolerance/1 or retrace.optimum/1
+  std::string json;   ///< JSON document retrace.sweep/1, retrace.tolerance/2 or retrace.optimum/1
   std::string csv;    ///< one line per point; after an optimisation, the Pareto front
   std::string table;  ///< summary as text
   Drawing drawing;    ///< plot of the fraction of parts below a value, after a tolerance study; otherwise empty

@@ -29,7 +29,7 @@ struct Verification {
   std::string verdict;  ///< pass, incomplete or fail
   std::vector<Finding> findings;
   Warnings warnings;
-  std::string json;   ///< JSON document retrace.verification/1
+  std::string json;   ///< JSON document retrace.verification/2
   std::string table;  ///< summary as text
   Drawing map;        ///< plan of the array, coloured by the deviation of the machined surface
 

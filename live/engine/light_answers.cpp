@@ -146,7 +146,7 @@ Json footprint_json(const studies::Footprint& footprint) {
   for (const studies::ActiveRegion& region : footprint.regions)
     regions.push_back({{"outline", flat(region.outline_mm)}, {"efficiency", region.efficiency}});
   return {
-      {"active_share", footprint.active_share()}, {"shown", footprint.rre_shown()}, {"regions", std::move(regions)}};
+      {"active_fraction", footprint.active_share()}, {"shown", footprint.rre_shown()}, {"regions", std::move(regions)}};
 }
 
 /// Returns the spots of the far field, the power outside these spots, and the total power.

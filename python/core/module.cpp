@@ -9,6 +9,7 @@
 
 #include <chrono>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -161,7 +162,7 @@ void bind_part(py::module_& module) {
   result_class<Inspection>(module, "Inspection")
       .def_readonly("plan", &Inspection::plan)
       .def_readonly("section", &Inspection::section)
-      .def_readonly("front", &Inspection::front)
+      .def_readonly("entrance_surface", &Inspection::entrance_surface)
       .def_readonly("view", &Inspection::view);
   module.def("inspect", [](const Design& design) {
     return watched(py::none(), 0, [design](const Running&) { return inspect(design); });
@@ -227,7 +228,7 @@ void bind_making(py::module_& module) {
       .def_readwrite("programs", &VerificationRequest::programs)
       .def_readwrite("dialect", &VerificationRequest::dialect)
       .def_readwrite("tolerance_nm", &VerificationRequest::tolerance_nm)
-      .def_readwrite("standing", &VerificationRequest::standing)
+      .def_readwrite("next_stage", &VerificationRequest::next_stage)
       .def_readwrite("texts", &VerificationRequest::texts);
   result_class<Verification>(module, "Verification")
       .def_readonly("passes", &Verification::passes)
@@ -390,6 +391,12 @@ void bind_surfaces(py::module_& module) {
     });
     return py::make_tuple(page.html, texts_of(page.warnings));
   });
+  module.def("former_names", [] {
+    std::vector<std::tuple<std::string, std::string, std::string>> names;
+    for (const FormerName& name : former_names()) names.emplace_back(name.kind, name.former, name.current);
+    return names;
+  });
+  module.def("current_document", [](const std::string& text) { return current_document(text); });
 }
 
 }  // namespace

@@ -13,6 +13,7 @@ import numpy as np
 from . import _core
 from ._arguments import PathLike, path, refuse, shown
 from ._errors import InputError
+from ._results import former_names, warn_of_former
 
 if TYPE_CHECKING:
     from . import files
@@ -213,10 +214,17 @@ class Design:
     def __getitem__(self, key: str) -> Any:
         """Returns the value of a key such as "element.base_mm", or its default."""
         value: Any = self.document
+        parent = ""
         for part in key.split("."):
-            if not isinstance(value, dict) or part not in value:
+            if not isinstance(value, dict):
                 raise KeyError(key)
-            value = value[part]
+            current = part if part in value else former_names("").get(parent + part, "")
+            if current not in value:
+                raise KeyError(key)
+            if current != part:
+                warn_of_former(parent + part, parent + current)
+            value = value[current]
+            parent += current + "."
         return value
 
     def _identity(self) -> tuple[str, str, tuple[str, ...]]:

@@ -106,7 +106,7 @@ class Verification(Result):
             "programs": list(request.programs),
             "dialect": request.dialect,
             "tolerance_nm": request.tolerance_nm,
-            "standing": request.standing,
+            "next_stage": request.next_stage,
             "texts": dict(request.texts),
         }
 
@@ -125,7 +125,8 @@ class Verification(Result):
         if self._core is None:
             request = _core.VerificationRequest()
             for name, value in self._asked.items():
-                setattr(request, name, value)
+                # An object that was pickled by a former version has the former name of a field.
+                setattr(request, "next_stage" if name == "standing" else name, value)
             self._core = _core.verify(request, None, 0)
         _core.write_as_machined(self._core, file)
         # The design may refer to a table of facets in a separate file of this folder.

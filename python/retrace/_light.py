@@ -39,6 +39,10 @@ class RreResult(Result):
         self._footprint: str = core.footprint
         self._far_field: str = core.far_field
 
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        super().__setstate__(state)
+        self._footprint = _core.current_document(self._footprint)
+
     @property
     def title(self) -> str:
         """Titles of the designs, or names of their files."""

@@ -93,7 +93,7 @@ class MaterialResult(Result):
 
 
 class Inspection(Result):
-    """Properties of a design that need no ray tracing. Drawings: plan, section, front, view."""
+    """Properties of a design that need no ray tracing. Drawings: plan, section, entrance_surface, view."""
 
     _told = ("elements_full", "element_depth_mm", "tir_limit_deg")
 
@@ -154,7 +154,7 @@ def inspect(design: AnyDesign) -> Inspection:
         drawings={
             "plan": core.plan,
             "section": core.section,
-            "front": core.front,
+            "entrance_surface": core.entrance_surface,
             "view": core.view,
         },
     )

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import functools
 import html
 import importlib
 import json
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, ClassVar
+from warnings import warn
 
 import numpy as np
 from numpy.typing import NDArray
 
+from . import _core
 from ._arguments import PathLike, nearest, path
 from ._core import version
 from ._errors import Error, InputError, OutputError
@@ -43,6 +46,35 @@ _UNITS = {
     "lx": "lx",
     "cd": "cd",
 }
+
+
+# Current names of drawings, by their former names.
+_FORMER_DRAWINGS = {"front": "entrance_surface"}
+
+
+@functools.lru_cache(maxsize=None)
+def former_names(kind: str) -> Mapping[str, str]:
+    """Returns the current name of each renamed key in documents of a kind, or in designs if the
+    kind is "". The keys are paths such as "regions[].active_share": the former name after the
+    current names of the objects that contain it."""
+    names = {}
+    for of, former, current in _core.former_names():
+        if of == kind and "=" not in current:
+            parent, dot, name = current.rpartition(".")
+            names[parent + dot + former.rpartition(".")[2]] = name
+    return names
+
+
+def names_within(names: Mapping[str, str], parent: str) -> Mapping[str, str]:
+    """Returns the names whose paths begin with a parent such as "regions[].", without it."""
+    return {
+        former[len(parent) :]: name for former, name in names.items() if former.startswith(parent)
+    }
+
+
+def warn_of_former(former: str, current: str) -> None:
+    """Warns the caller of the calling function that a name has changed."""
+    warn(f"{former} is now called {current}", FutureWarning, stacklevel=3)
 
 
 def needed(package: str, purpose: str) -> Any:
@@ -80,9 +112,11 @@ def _is_number(value: object) -> bool:
     return isinstance(value, (int, float)) and not isinstance(value, bool)
 
 
-def column_of(values: Sequence[Any]) -> Any:
+def column_of(values: Sequence[Any], former: Mapping[str, str] | None = None) -> Any:
     """Converts the values of one key. Numbers become a float64 array in which missing values (None)
-    are NaN. Tables become Columns. Other values are not changed."""
+    are NaN. Tables become Columns. Other values are not changed.
+
+    former: current names by former names of keys of the tables"""
     there = [value for value in values if value is not None]
     if all(map(_is_number, there)):
         return frozen([np.nan if value is None else value for value in values])
@@ -91,7 +125,7 @@ def column_of(values: Sequence[Any]) -> Any:
         flags.setflags(write=False)
         return flags
     if all(isinstance(value, dict) for value in there):
-        return Columns([value or {} for value in values])
+        return Columns([value or {} for value in values], former=former)
     if len(there) == len(values) and all(isinstance(value, list) for value in there):
         lengths = {len(value) for value in there}
         if len(lengths) == 1 and all(_is_number(one) for value in there for one in value):
@@ -109,23 +143,46 @@ class Columns(Mapping[str, Any]):
     """Columns of a list of objects with equal keys. Numbers are read-only float64 arrays with NaN
     for missing values."""
 
-    def __init__(self, rows: Sequence[Mapping[str, Any]], names: Sequence[str] = ()) -> None:
-        """names: columns that exist even if there are no rows."""
+    def __init__(
+        self,
+        rows: Sequence[Mapping[str, Any]],
+        names: Sequence[str] = (),
+        former: Mapping[str, str] | None = None,
+    ) -> None:
+        """names: columns that exist even if there are no rows. former: current names by former
+        names."""
         #: Rows of the list, as in the JSON document.
         self.rows = rows
         self._names = list(dict.fromkeys([*names, *(name for row in rows for name in row)]))
         self._columns: dict[str, Any] = {}
+        self._former = former or {}
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._names
+
+    def _current(self, name: str) -> str:
+        """Returns the current name of a column that has a former name, or an empty text."""
+        current = self._former.get(name, "")
+        return current if name not in self._names and current in self._names else ""
 
     def __getitem__(self, name: str) -> Any:
+        if current := self._current(name):
+            warn_of_former(name, current)
+            name = current
         if name not in self._columns:
             if name not in self._names:
                 raise KeyError(f"{name}{nearest(name, self._names)}")
-            self._columns[name] = column_of([row.get(name) for row in self.rows])
+            self._columns[name] = column_of(
+                [row.get(name) for row in self.rows], names_within(self._former, name + ".")
+            )
         return self._columns[name]
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_"):
             raise AttributeError(name)
+        if current := self._current(name):
+            warn_of_former(name, current)
+            name = current
         try:
             return self[name]
         except KeyError as error:
@@ -252,6 +309,17 @@ class Drawing:
         return "<Drawing>"
 
 
+class Drawings(dict[str, Drawing]):
+    """Drawings by name. Former names give the same drawings, with a warning."""
+
+    def __missing__(self, name: str) -> Drawing:
+        current = _FORMER_DRAWINGS.get(name, "")
+        if current not in self:
+            raise KeyError(name)
+        warn_of_former(name, current)
+        return self[current]
+
+
 def write_file(name: str, content: bytes) -> None:
     try:
         with open(name, "wb") as file:
@@ -292,9 +360,9 @@ class Result:
         self.table = core.table if core is not None else table
         self.warnings = tuple(core.warnings if core is not None else warnings)
         self.csv = getattr(core, "csv", "")
-        self.drawings = {
-            name: Drawing(source) for name, source in (drawings or {}).items() if source
-        }
+        self.drawings = Drawings(
+            {name: Drawing(source) for name, source in (drawings or {}).items() if source}
+        )
 
     @property
     def document(self) -> dict[str, Any]:
@@ -310,15 +378,30 @@ class Result:
         document = self.document
         rows = self.__dict__.get("_columns")
         if rows is None and self._rows:
-            rows = self.__dict__["_columns"] = Columns(document.get(self._rows, []))
+            rows = self.__dict__["_columns"] = Columns(
+                document.get(self._rows, []),
+                former=names_within(self._former_names(), self._rows + "[]."),
+            )
         if name == self._rows:
             return rows
         if rows is not None and name in rows and name not in document:
             return rows[name]
         if name in document:
             return document[name]
+        current = self._former_names().get(name, "")
+        if current in document:
+            warn_of_former(name, current)
+            return document[current]
+        if rows is not None and (current := rows._current(name)):
+            warn_of_former(name, current)
+            return rows[current]
         names = [*document, *(rows or ())]
         raise AttributeError(f"{type(self).__name__} has no {name}{nearest(name, names)}")
+
+    def _former_names(self) -> Mapping[str, str]:
+        """Returns the current names of renamed keys of the document."""
+        schema = str(self.document.get("schema", ""))
+        return former_names(schema.removeprefix("retrace.").partition("/")[0])
 
     def __dir__(self) -> list[str]:
         rows = getattr(self, self._rows) if self._rows else ()
@@ -341,6 +424,11 @@ class Result:
                 key=type(self).__name__,
             )
         self.__dict__.update(state)
+        # The document may have the names of a former version.
+        self.json = _core.current_document(self.json)
+        self.drawings = Drawings(
+            {_FORMER_DRAWINGS.get(name, name): one for name, one in self.drawings.items()}
+        )
 
     def __eq__(self, other: object) -> bool:
         """Whether two results are equal, except for their computing times."""

@@ -12,7 +12,7 @@ namespace {
 /// Returns the profile of a curved entrance face along two lines through its centre.
 std::string profile_svg(const studies::Design& design, const studies::EntranceReport& entrance) {
   LinePlot plot;
-  plot.title = studies::short_name(design) + ": front";
+  plot.title = studies::short_name(design) + ": entrance surface";
   plot.x_label = "x, y (mm)";
   plot.y_label = "z (mm)";
   plot.series = {{"along x", entrance.along_x.place_mm, entrance.along_x.height_mm, {}},

@@ -25,11 +25,11 @@ PageSection inspect_section(const ResultDocument& document, const ResultFolder&)
 
 PageSection photometry_section(const ResultDocument& document, const ResultFolder&) {
   const Json& json = document.json;
-  const Json& programme = member(json, "programme");
+  const Json& test_plan = member(json, "test_plan");
   const std::string verdict = text(json, "verdict");
   PageSection section = titled("Photometry");
-  section.facts = {{"Standard", text(programme, "standard")},
-                   {"Class and colour", text(programme, "class") + " " + text(programme, "colour")},
+  section.facts = {{"Standard", text(test_plan, "standard")},
+                   {"Class and colour", text(test_plan, "class") + " " + text(test_plan, "colour")},
                    {"Area", measured(number(json, "area_cm2"), " cm2")},
                    {"Verdict", verdict, rating_of(verdict)}};
   if (json.contains("reason")) section.facts.push_back({"Reason", text(json, "reason")});

@@ -178,7 +178,7 @@ MapPanel panel_of(const Json& json, const Json& region, const Rectangle& face, c
       footprint_panel({.design = design,
                        .incidence_deg = number(region, "incidence_deg"),
                        .azimuth_deg = has_azimuths ? std::optional(number_or_0(region, "azimuth_deg")) : std::nullopt,
-                       .active_share = number_or_0(region, "active_share"),
+                       .active_share = number_or_0(region, "active_fraction"),
                        .rre_shown = number_or_0(region, "rre_shown")});
   panel.outline = geometry::to_polygon(face);
   for (const Json& feature : list(json, "features"))
@@ -234,7 +234,7 @@ PageSection footprint_section(const ResultDocument& document, const ResultFolder
       if (row.is_object()) row["design"] = names.of(document, number(row, "design"));
   section.tables.push_back(table_of(rows,
                                     {"design", "incidence_deg", "azimuth_deg", "entrance_area_mm2", "active_area_mm2",
-                                     "active_share", "rre_shown", "rre"},
+                                     "active_fraction", "rre_shown", "rre"},
                                     "Active area of the entrance face", csv_name(document, "regions")));
   return section;
 }

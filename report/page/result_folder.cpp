@@ -7,12 +7,12 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/message_text.h"
+#include "report/page/former_names.h"
 
 namespace retrace::report {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::string_view kSchema = "retrace.";
 /// Maximum size of a picture in a page. Larger pictures are omitted.
 constexpr std::uintmax_t kLargestPictureBytes = std::uintmax_t{4} << 20;
 
@@ -33,19 +33,12 @@ std::vector<fs::path> files_in(const fs::path& folder) {
   return files;
 }
 
-/// Returns the kind of a result document, such as "rre" if its schema is "retrace.rre/1". Returns an empty text for
-/// documents of other programs.
-std::string kind_of(const nlohmann::ordered_json& json) {
-  if (!json.is_object() || !json.contains("schema") || !json["schema"].is_string()) return {};
-  const auto schema = json["schema"].get<std::string>();
-  if (!schema.starts_with(kSchema)) return {};
-  return schema.substr(kSchema.size(), schema.find('/') - kSchema.size());
-}
-
-/// Parses a JSON text and adds it to the documents if it is a result of retrace.
+/// Parses a JSON text and adds it to the documents if it is a result of retrace. Former names of keys are replaced by
+/// the current names.
 /// \param file path of the file in messages
 /// \param name name of the document on the page
-/// \throw InputError if the text is not valid JSON but contains "retrace."
+/// \throw InputError if the text is not valid JSON but contains "retrace.", or if the version of the document is later
+/// than the current version
 void add_document(ResultFolder& result, const fs::path& file, const std::string& name, const std::string& text) {
   ResultDocument document;
   try {
@@ -54,8 +47,9 @@ void add_document(ResultFolder& result, const fs::path& file, const std::string&
     if (text.find("retrace.") == std::string::npos) return;  // a file of another program
     throw InputError({file.string(), 0, ""}, "not valid JSON; run the command that writes this file again");
   }
-  document.kind = kind_of(document.json);
+  document.kind = schema_of(document.json).kind;
   if (document.kind.empty()) return;
+  replace_former_names(document.json, file.string());
   document.name = name;
   document.bytes = text.size();
   result.documents.push_back(std::move(document));

@@ -121,12 +121,12 @@ std::vector<std::string> tool_steps(const FabricationResult& result, const Setup
         fmt::format("Its leading edge must be at {} degrees to the horizontal line of the facet, and the bisector of "
                     "its nose angle of {} degrees must be in the YZ plane. Rotation about Z: {}.",
                     shortest(90.0 - 0.5 * result.job.tool.nose_angle_deg), shortest(result.job.tool.nose_angle_deg),
-                    cost(sheet, "tool_turn_z_arcsec")));
+                    cost(sheet, "tool_rotation_z_arcsec")));
   } else {
     steps.push_back(fmt::format("Align the edge with X: traverse it along X under a probe. {}.",
-                                cost(sheet, "tool_turn_z_arcsec")));
+                                cost(sheet, "tool_rotation_z_arcsec")));
     steps.push_back(fmt::format("Make the edge horizontal: both ends must be at the same height. {}.",
-                                cost(sheet, "tool_turn_y_arcsec")));
+                                cost(sheet, "tool_rotation_y_arcsec")));
   }
   steps.push_back(
       "Inspect the edge under a microscope before and after the job: a chip in the edge leaves a ridge on every "

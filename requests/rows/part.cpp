@@ -50,11 +50,11 @@ constexpr Row kMaterialRows[] = {{"entrance_deg",
                                   "relative error to reach",
                                   access<&MaterialRequest::error>,
                                   {.value = "E"}},
-                                 {"most_directions",
+                                 {"max_directions",
                                   Whole{{.low = 64.0, .high = 10000.0}},
                                   "maximum number of directions of light that are computed",
-                                  access<&MaterialRequest::most_directions>,
-                                  {.value = "N"}}};
+                                  access<&MaterialRequest::max_directions>,
+                                  {.value = "N", .former = "most_directions"}}};
 
 }  // namespace
 

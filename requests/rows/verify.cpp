@@ -39,12 +39,12 @@ constexpr Row kVerificationRows[] = {
      {.value = "T",
       .otherwise = "10, or the deviation that the increments of a Fanuc control cause "
                    "if it is larger"}},
-    {"standing",
+    {"next_stage",
      Text{"the name of a stage"},
      "name of the next stage of a job, such as finishing-1-facet-1: all stages before "
      "it have been cut",
-     access<&VerificationRequest::standing>,
-     {.value = "STAGE", .otherwise = "the blank is uncut"}},
+     access<&VerificationRequest::next_stage>,
+     {.value = "STAGE", .otherwise = "the blank is uncut", .former = "standing"}},
     {"as_machined",
      File{"a design file"},
      "output file for the design of the machined part",

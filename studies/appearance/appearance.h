@@ -52,7 +52,7 @@ AppearanceError appearance_error(const std::vector<AppearanceProbe>& probes, con
 /// observer. First, the grid of view directions is refined until interpolation between its points is accurate. Then the
 /// cells of light directions are halved where interpolation within a cell has an error above `error`. The cell with the
 /// largest product of error and projected solid angle comes first. Refinement ends when all cells are accurate, or when
-/// the table has `most_directions` directions of light.
+/// the table has `max_directions` directions of light.
 /// \throw InputError for numbers out of range, and for designs that the exact engine does not support
 AppearanceResult compute_appearance(const Design& design, const MaterialRequest& request, Progress* progress = nullptr,
                                     const Cancellation* cancel = nullptr);

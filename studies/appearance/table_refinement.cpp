@@ -186,7 +186,7 @@ bool measure_errors(const ReflectionTable& table, const LightLattice& lattice, c
 bool refine_cells(const MaterialRequest& request, const ColourPhotometer& photometer, const LightLattice& lattice,
                   ReflectionTable& table, std::vector<PlannedCell>& cells, Progress* progress,
                   const Cancellation* cancel) {
-  DirectionList directions(photometer, lattice, request.most_directions, table);
+  DirectionList directions(photometer, lattice, request.max_directions, table);
   cells = lattice.first_cells();
   if (!directions.add(cells, progress, cancel)) return false;
   for (std::size_t measured = 0;;) {
@@ -199,7 +199,7 @@ bool refine_cells(const MaterialRequest& request, const ColourPhotometer& photom
     });
     if (!(urgency_of(*worst) > 0.0)) return true;
     const std::vector<PlannedCell> parts = halves_of(*worst, bends_of(table, directions.cell_of(*worst)));
-    if (directions.missing(parts).size() + table.directions.size() > request.most_directions) return true;
+    if (directions.missing(parts).size() + table.directions.size() > request.max_directions) return true;
     if (!directions.add(parts, progress, cancel)) return false;
     cells.erase(worst);
     measured = cells.size();

@@ -146,7 +146,7 @@ geometry::FacetPlanes facet_planes_of(const VerificationRun& run) {
 }
 
 /// Adds warnings about differences between the elements. A design with equal elements cannot represent them.
-/// \param where description of the part in the warning, such as "on a base"
+/// \param where description of the part in the warning, such as "on a substrate"
 void warn_of(const Unlikeness& unlike, AsMachined& part, const char* where) {
   if (unlike.along_arcmin > kShownArcmin)
     part.warnings.push_back(
@@ -175,15 +175,16 @@ bool has_flares(const VerificationRun& run) {
   return run.result.border_overcut_mm3 > 0.0 && run.job.array.arrangement != geometry::Arrangement::single;
 }
 
-/// Checks the as-machined part of a job on a base. The design describes such a part by equal elements and not by a
+/// Checks the as-machined part of a job on a substrate. The design describes such a part by equal elements and not by a
 /// table of planes. Adds warnings about the differences between the elements.
 /// \throw InputError if an element is not cut
 void check_on_substrate(const VerificationRun& run, const Unlikeness& unlike, AsMachined& part) {
   if (unlike.missing > 0)
-    throw InputError(Field{"as_machined"},
-                     fmt::format("all elements on a [base] must be cut for an as-machined design, but {} are not cut",
-                                 unlike.missing));
-  warn_of(unlike, part, "on a base");
+    throw InputError(
+        Field{"as_machined"},
+        fmt::format("all elements on a [substrate] must be cut for an as-machined design, but {} are not cut",
+                    unlike.missing));
+  warn_of(unlike, part, "on a substrate");
   if (run.result.rim_overcut_um_max > 0.0)
     part.warnings.push_back(
         {"rim_overcut", fmt::format("cuts of neighbouring elements with rims at other heights remove up to {} um below "
@@ -192,7 +193,7 @@ void check_on_substrate(const VerificationRun& run, const Unlikeness& unlike, As
   if (has_flares(run))
     part.warnings.push_back({"border_cavities_omitted",
                              "cavities of hexagons extend beyond the elements' outlines at the border: the as-machined "
-                             "design omits this for elements on a base"});
+                             "design omits this for elements on a substrate"});
 }
 
 ZonedPart zones_of_run(const VerificationRun& run, AsMachined& part) {
@@ -259,7 +260,8 @@ AsMachined as_machined(const VerificationRun& run) {
   part.texture = predicted_texture(run.job);
   part.scratches = scratches_of(run.job);
   if (run.job.substrate && !part.scratches.empty()) {
-    part.warnings.push_back({"scratches_omitted", "scratches of a chipped edge are omitted for elements on a base"});
+    part.warnings.push_back(
+        {"scratches_omitted", "scratches of a chipped edge are omitted for elements on a substrate"});
     part.scratches.clear();
   }
   part.body = machined_body(run.job, run.request.job, part.warnings);

@@ -36,7 +36,7 @@ VerificationRun run_verification(const VerificationRequest& request, const Cance
   run.machine = load_machine(run.job.machine, run.job.where("machine"));
   run.warnings = run.job.warnings;
   append(run.warnings, run.machine.warnings);
-  if (!request.standing.empty()) run.programs = programs_before(request.standing, run.job, run.machine);
+  if (!request.next_stage.empty()) run.programs = programs_before(request.next_stage, run.job, run.machine);
   run.standing = run.programs.size();
   for (NcProgram& program :
        read_programs(request.programs, request.dialect, texts_of(run.machine.control), request.texts))

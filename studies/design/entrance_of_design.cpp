@@ -104,8 +104,9 @@ geometry::Entrance entrance_of_design(const Design& design, const geometry::Part
   const EntranceFile& file = *design.entrance;
   return read_named(design.where(design.entrance_key()), [&] {
     const Vec3 origin_mm = origin_of(file, part);
-    const geometry::Entrance entrance = file.is_mesh ? mesh_entrance(file, mesh_scale(design, "front"), part, origin_mm)
-                                                     : turned_entrance(file, part, origin_mm);
+    const geometry::Entrance entrance =
+        file.is_mesh ? mesh_entrance(file, mesh_scale(design, "entrance_surface"), part, origin_mm)
+                     : turned_entrance(file, part, origin_mm);
     check_room(entrance, part, file.file.string());
     return entrance;
   });

@@ -398,7 +398,7 @@ OpticalModel make_model(const Design& design, const materials::MaterialLibrary& 
   check_taken(design, {.what = {}, .solids = true, .entrances = true, .wet_backs = true});
   if (entrances == Entrances::plane && design.entrance)
     throw InputError(design.where(design.entrance_key()),
-                     "a [front] is supported only by retrace rre, photometry, inspect and rays");
+                     "an [entrance_surface] is supported only by retrace rre, photometry, inspect and rays");
   OpticalModel model = make_light_model(design, library);
   model.part = part_of_design(design, &model.warnings);
   if (design.entrance) model.entrance = entrance_of_design(design, model.part);

@@ -284,14 +284,15 @@ fabrication::Tool tool_of(const Job& job, const JobRequest& request) {
 namespace {
 
 /// Checks that a design with a base can be cut. Pins are refused, because they are ground one by one and then bundled.
-/// Other elements on a base can only be cut in a mould.
+/// Other elements on a substrate can only be cut in a mould.
 void check_substrate(const Design& design, const JobRequest& request) {
   if (design.zoned() || !design.part().substrate) return;
   if (design.part().is_pin_bundle)
     throw InputError({design.source_name(), 0, "array.arrangement"},
                      "pins are ground one by one and bundled, not cut: must be \"honeycomb\" for a job, got \"pins\"");
   if (request.workpiece != fabrication::kWorkpieceWords[0])
-    throw InputError(Field{"workpiece"}, "must be mould for a design with [base], got " + in_quotes(request.workpiece));
+    throw InputError(Field{"workpiece"},
+                     "must be mould for a design with [substrate], got " + in_quotes(request.workpiece));
 }
 
 }  // namespace

@@ -126,11 +126,11 @@ std::string reach_json(const ReachablePart& part, const JobRequest& request) {
                                        {"strategy", request.strategy},
                                        {"tool_width_mm", request.tool_width_mm},
                                        {"facet_area_mm2", r.facet_area_mm2},
-                                       {"reached_share", r.share},
-                                       {"reached_share_cut", r.cut_share},
+                                       {"reached_fraction", r.share},
+                                       {"reached_fraction_cut", r.cut_share},
                                        {"core_mm", r.core_mm},
                                        {"core_mm_cut", r.cut_core_mm}};
-  return result_text("retrace.reach/1", json, {});
+  return result_text("retrace.reach/2", json, {});
 }
 
 std::string reach_table(const ReachablePart& part) {

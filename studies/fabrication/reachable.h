@@ -28,7 +28,7 @@ ReachablePart reachable_part(const Design& design, const JobRequest& request, co
 /// Returns the fraction of the facets' area that a chisel reaches, or 0 if it reaches nothing.
 double reachable_share(const geometry::Element& element, double tool_width_mm);
 
-/// These functions return the result as JSON (retrace.reach/1) and as a table.
+/// These functions return the result as JSON (retrace.reach/2) and as a table.
 std::string reach_json(const ReachablePart& part, const JobRequest& request);
 std::string reach_table(const ReachablePart& part);
 

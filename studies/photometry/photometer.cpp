@@ -66,7 +66,7 @@ void check_engine(const Design& design, const raytrace::EngineFacts& facts, Engi
   switch (*obstacle) {
     case Obstacle::balls: throw InputError(Field{"engine"}, "must be auto or montecarlo for balls");
     case Obstacle::curved_entrance:
-      throw InputError(Field{"engine"}, "must be auto, montecarlo or embree if the design has a [front]");
+      throw InputError(Field{"engine"}, "must be auto, montecarlo or embree if the design has an [entrance_surface]");
     case Obstacle::unequal_backs:
       throw InputError(Field{"engine"}, "must be auto, montecarlo or embree for a [wet_back] behind some elements");
     case Obstacle::texture:

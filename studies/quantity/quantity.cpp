@@ -198,7 +198,7 @@ std::optional<double> plain_value(PlainQuantity which, const Candidate& candidat
       return static_cast<double>(candidate.part().elements_full) *
              geometry::build_part(single_element_of(elements_of(candidate, name)).part()).retro_facet_area_mm2;
     case PlainQuantity::entrance_area_mm2: return candidate.part().entrance_area_mm2;
-    case PlainQuantity::full_element_share:
+    case PlainQuantity::full_element_area_fraction:
       return static_cast<double>(candidate.part().elements_full) *
              full_element_area_mm2(elements_of(candidate, name).part()) / candidate.part().entrance_area_mm2;
     case PlainQuantity::tir_limit_deg: return total_reflection_limit_deg(elements_of(candidate, name));

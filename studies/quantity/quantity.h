@@ -95,7 +95,7 @@ enum class PlainQuantity {
   facet_area_mm2,
   effective_area_mm2,
   entrance_area_mm2,
-  full_element_share,
+  full_element_area_fraction,
   tir_limit_deg,
   tool_fit_mm,
   machining_time_h,

@@ -92,9 +92,10 @@ void check_engine(const Design& design, const raytrace::EngineFacts& facts, Engi
       throw InputError(Field{"engine"}, fmt::format("must be auto or montecarlo for balls, got {}", name));
     case Obstacle::plain_sampling: throw InputError(Field{"sampling"}, "must be stratified for balls, got plain");
     case Obstacle::curved_entrance:
-      throw InputError(Field{"engine"},
-                       fmt::format("{} supports only plane entrance faces, but {} has a [front]: use {} embree", name,
-                                   source, option));
+      throw InputError(
+          Field{"engine"},
+          fmt::format("{} supports only plane entrance faces, but {} has an [entrance_surface]: use {} embree", name,
+                      source, option));
     case Obstacle::unequal_backs:
       throw InputError(Field{"engine"}, fmt::format("{} supports only the same medium behind all elements, but {} has "
                                                     "a [wet_back] behind some elements: use {} embree",

@@ -38,7 +38,7 @@ TEST(Balls, InspectWritesItsFile) {
   const Outcome outcome = retrace(folder, {"inspect", kBalls, "-o", "."});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(folder.names(), std::vector<std::string>{"inspect.json"});
-  EXPECT_NEAR(folder.json("inspect.json")["packing_share"].get<double>(), 0.9069, 1e-4);
+  EXPECT_NEAR(folder.json("inspect.json")["packing_fraction"].get<double>(), 0.9069, 1e-4);
 }
 
 TEST(Balls, OtherEnginesAreRefused) {

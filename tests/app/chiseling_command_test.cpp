@@ -123,10 +123,10 @@ TEST(ReachablePart, IsAllButTheApexAndIsTraced) {
     const Json reach = folder.json("reach.json");
     const double a = std::sqrt(3.0 / 8.0);
     const double area = (is_hexagonal ? 1.0 : 0.5) * a * a;
-    EXPECT_EQ(reach["schema"], "retrace.reach/1");
+    EXPECT_EQ(reach["schema"], "retrace.reach/2");
     EXPECT_NEAR(reach["facet_area_mm2"].get<double>(), area, 1e-12);
-    EXPECT_NEAR(reach["reached_share"].get<double>(), 1.0 - 0.01 / area, 1e-12);
-    EXPECT_NEAR(reach["reached_share_cut"].get<double>(), 1.0 - 0.01 / area, 0.01);
+    EXPECT_NEAR(reach["reached_fraction"].get<double>(), 1.0 - 0.01 / area, 1e-12);
+    EXPECT_NEAR(reach["reached_fraction_cut"].get<double>(), 1.0 - 0.01 / area, 0.01);
     // The highest point of the remaining material is on the axis. Its distance t from each facet follows from the
     // equation sqrt(2) t - 0.1 = t / tan(53 degrees).
     const double t = 0.1 / (std::sqrt(2.0) - 1.0 / std::tan(53.0 * 3.14159265358979 / 180.0));

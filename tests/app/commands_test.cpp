@@ -39,9 +39,9 @@ TEST(Inspect, CountsAndMeasuresBrickRows) {
   const Json json = inspect(brick(25, "even"));
   for (const char* key :
        {"schema", "version", "warnings", "complete", "elements_full", "elements_partial", "element_depth_mm",
-        "facet_area_mm2", "entrance_area_mm2", "tir_limit_deg", "dead_zone_share"})
+        "facet_area_mm2", "entrance_area_mm2", "tir_limit_deg", "dead_zone_fraction"})
     EXPECT_TRUE(json.contains(key)) << key;
-  EXPECT_EQ(json["schema"], "retrace.inspect/1");
+  EXPECT_EQ(json["schema"], "retrace.inspect/2");
   EXPECT_EQ(json["complete"], true);
   EXPECT_EQ(json["elements_full"], 613) << "n n - floor(n / 2)";
   EXPECT_EQ(json["elements_partial"], 24) << "two at each of the twelve shifted rows";
@@ -49,7 +49,7 @@ TEST(Inspect, CountsAndMeasuresBrickRows) {
   EXPECT_NEAR(json["entrance_area_mm2"].get<double>(), 100.0, 1e-9);
   EXPECT_NEAR(json["facet_area_mm2"].get<double>(), 100.0 * std::sqrt(2.0), 1e-6) << "facets at 45 degrees";
   EXPECT_NEAR(json["tir_limit_deg"].get<double>(), 4.33, 0.005);
-  EXPECT_EQ(json["dead_zone_share"], 0);
+  EXPECT_EQ(json["dead_zone_fraction"], 0);
 }
 
 TEST(Inspect, OddRowsShiftedGiveTheCountOfThePaper) {
@@ -68,7 +68,7 @@ TEST(Inspect, ReportsTheFractionThatARootTakesOfPrisms) {
         "[element]\nkind = \"rtp\"\nbase_mm = 1\nwidth_mm = 1\n[array]\narrangement = \"aligned\"\n"
         "extent = \"infinite\"\n[body]\nthickness_mm = 1\nrefractive_index = 1.5\n[surface]\nroot_radius_um = " +
         std::to_string(radius_um) + "\n");
-    EXPECT_NEAR(json["dead_zone_share"].get<double>(), fraction, 1e-8);
+    EXPECT_NEAR(json["dead_zone_fraction"].get<double>(), fraction, 1e-8);
   }
 }
 
@@ -80,7 +80,7 @@ TEST(Inspect, ReportsTheFractionThatARootTakesOfPrisms) {
 TEST(Inspect, TellsWhatEdgesTakeOfCubeCorners) {
   const auto share = [](const std::string& kind, const std::string& key, double radius_um) {
     return inspect(infinite_cubes(kind, 1.5) + "[surface]\n" + key + " = " +
-                   std::to_string(radius_um))["dead_zone_share"]
+                   std::to_string(radius_um))["dead_zone_fraction"]
         .get<double>();
   };
   const double r = 1e-3;  // radius in mm; the edge of the cube is 1 mm long

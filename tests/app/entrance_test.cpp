@@ -1,5 +1,5 @@
-// Tests of curved fronts (entrance surfaces) with the program: turned parts and meshes in front of plates and prisms,
-// commands that refuse a curved front, and invalid files.
+// Tests of curved entrance surfaces with the program: turned parts and meshes in front of plates and prisms,
+// commands that refuse a curved entrance surface, and invalid files.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ namespace {
 const std::string kTool = "[tool]\nnose_radius_mm = 0.05\nclearance_deg = 40\n";
 const std::string kBody = "[body]\nthickness_mm = 1.2\nrefractive_index = 1.4917\n";
 const std::string kPlate = "[part]\nplate_mm = [1, 0.8]\n";
-const std::string kFront = "[front]\nturned = \"lens.toml\"\n";
+const std::string kFront = "[entrance_surface]\nturned_part = \"lens.toml\"\n";
 
 std::string turned(const std::string& substrate, const std::string& more = {}, double radius_mm = 0.7,
                    const std::string& path = "feed_um = 10\nspindle_rpm = 60\n") {
@@ -156,7 +156,8 @@ TEST_F(Entrance, MachinedMeshActsAsTheDesign) {
       "[idealisation]\nfacets = \"mirror\"\n";
   const Arguments how = {"--samples", "16384", "--incidence=0,1"};
   const Json exact = rre(kPlate + kFront + body, how);
-  const Json mesh = rre(kPlate + "[front]\nmesh = \"out/machined.stl\"\nmesh_side = \"bottom\"\n" + body, how);
+  const Json mesh =
+      rre(kPlate + "[entrance_surface]\nmesh = \"out/machined.stl\"\nmesh_side = \"bottom\"\n" + body, how);
   for (std::size_t k = 0; k < 2; ++k) {
     const Json& a = exact["points"][k];
     const Json& b = mesh["points"][k];
@@ -174,7 +175,7 @@ TEST_F(Entrance, LensletsAreACatsEye) {
   const Json json = retrace_json(folder_, {"rre", example("fronts/cats_eye_lenslets.toml"), "--samples", "16384",
                                            "--incidence=0,2", "--azimuth=40,220", "--set", "body.absorption_per_mm=0"});
   EXPECT_EQ(json["engine"], "embree");
-  EXPECT_EQ(json["designs"][0]["front"]["turned"], "../turning/cats_eye_lenslets.toml");
+  EXPECT_EQ(json["designs"][0]["entrance_surface"]["turned_part"], "../turning/cats_eye_lenslets.toml");
   for (const Json& point : json["points"]) {
     EXPECT_NEAR(total(point), 1.0, 1e-9);
     EXPECT_EQ(point["ledger"]["lost"], 0.0);
@@ -198,14 +199,14 @@ TEST_F(Entrance, InspectTellsAndDrawsIt) {
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("front               lens.toml, z = "), std::string::npos) << outcome.out;
   const Json json = folder_.json("out/inspect.json");
-  EXPECT_NEAR(json["front"]["highest_mm"].get<double>(), 1.2, 1e-12);
-  EXPECT_NEAR(json["front"]["lowest_mm"].get<double>(), 1.2 - 3.0 + std::sqrt(9.0 - 0.25 - 0.16), 1e-12);
+  EXPECT_NEAR(json["entrance_surface"]["highest_mm"].get<double>(), 1.2, 1e-12);
+  EXPECT_NEAR(json["entrance_surface"]["lowest_mm"].get<double>(), 1.2 - 3.0 + std::sqrt(9.0 - 0.25 - 0.16), 1e-12);
   const double steepest = std::asin(std::hypot(0.5, 0.4) / 3.0) * 180.0 / std::numbers::pi;
-  EXPECT_NEAR(json["front"]["steepest_deg"].get<double>(), steepest, 1e-6);
+  EXPECT_NEAR(json["entrance_surface"]["steepest_deg"].get<double>(), steepest, 1e-6);
   EXPECT_EQ(json["design"]["part"]["plate_mm"], Json::array({1.0, 0.8}));
-  EXPECT_NE(folder_.read("out/front.svg").find("<svg"), std::string::npos);
-  EXPECT_EQ(folder_.names(),
-            (std::vector<std::string>{"design.toml", "lens.toml", "out", "out/front.svg", "out/inspect.json"}));
+  EXPECT_NE(folder_.read("out/entrance_surface.svg").find("<svg"), std::string::npos);
+  EXPECT_EQ(folder_.names(), (std::vector<std::string>{"design.toml", "lens.toml", "out", "out/entrance_surface.svg",
+                                                       "out/inspect.json"}));
 }
 
 // A report must not draw a plane entrance face in place of the curved one that was traced.
@@ -221,7 +222,7 @@ TEST_F(Entrance, ReportSaysThatItIsNotShown) {
 TEST_F(Entrance, FreeformLensletsOverPrismsKeepAllLight) {
   const Json json =
       rre("[element]\nkind = \"rtp\"\nbase_mm = 0.05\nwidth_mm = 0.05\n[array]\nx_length_mm = 0.5\ny_length_mm = 0.4\n"
-          "[front]\nturned = \"" +
+          "[entrance_surface]\nturned_part = \"" +
               example("turning/lenslet_array.toml") +
               "\"\n[body]\nthickness_mm = 0.1\nrefractive_index = 1.4917\nabsorption_per_mm = 0.1\n",
           {"--samples", "8192", "--incidence=0,30,70", "--azimuth=25"});
@@ -258,7 +259,7 @@ TEST_F(Entrance, OthersRefuseItByName) {
   const std::string prisms =
       "[element]\nkind = \"rtp\"\nbase_mm = 0.25\nwidth_mm = 0.2\n[array]\nx_length_mm = 1\ny_length_mm = 0.8\n";
   const std::string design = prisms + kFront + kBody;
-  const std::string where = "design.toml:9: front.turned";
+  const std::string where = "design.toml:9: entrance_surface.turned_part";
   EXPECT_EQ(refusal(design, {"rre", "design.toml", "--engine=exact"}), "--engine");
   EXPECT_EQ(refusal(design, {"rre", "design.toml", "--engine=cell"}), "--engine");
   for (const char* option : {"--footprint", "--far-field", "--derivatives"})
@@ -273,7 +274,7 @@ TEST_F(Entrance, OthersRefuseItByName) {
 
 TEST_F(Entrance, FilesThatMakeNoSenseAreRefused) {
   const std::string design = kPlate + kFront + kBody;
-  const std::string where = "design.toml:4: front.turned";
+  const std::string where = "design.toml:4: entrance_surface.turned_part";
   EXPECT_EQ(refusal(design), where);
   folder_.write("lens.toml", turned(kFlat, {}, 0.6));
   EXPECT_EQ(refusal(design), where);
@@ -284,23 +285,24 @@ TEST_F(Entrance, FilesThatMakeNoSenseAreRefused) {
   folder_.write("lens.toml", turned("kind = \"conic\"\nradius_mm = 0\n"));
   EXPECT_EQ(refusal(design), where);
   folder_.write("lens.toml", "solid\nendsolid\n");
-  EXPECT_EQ(refusal(kPlate + "[front]\nmesh = \"lens.toml\"\n" + kBody), "design.toml:4: front.mesh");
+  EXPECT_EQ(refusal(kPlate + "[entrance_surface]\nmesh = \"lens.toml\"\n" + kBody),
+            "design.toml:4: entrance_surface.mesh");
 }
 
 TEST_F(Entrance, KeysThatMakeNoSenseAreRefused) {
   folder_.write("lens.toml", turned(kFlat));
   const std::string plate_body = kPlate + kBody;
-  EXPECT_EQ(refusal(plate_body + "[front]\n"), "design.toml:6: front.turned");
-  EXPECT_EQ(refusal(plate_body + kFront + "mesh = \"a.stl\"\n"), "design.toml:7: front.turned");
-  EXPECT_EQ(refusal(plate_body + kFront + "mesh_side = \"top\"\n"), "design.toml:8: front.mesh_side");
-  EXPECT_EQ(refusal(plate_body + "[front]\nmesh = \"a.stl\"\nmesh_side = \"left\"\n"),
-            "design.toml:8: front.mesh_side");
-  EXPECT_EQ(refusal(plate_body + kFront + "centre_mm = [1]\n"), "design.toml:8: front.centre_mm");
+  EXPECT_EQ(refusal(plate_body + "[entrance_surface]\n"), "design.toml:6: entrance_surface.turned_part");
+  EXPECT_EQ(refusal(plate_body + kFront + "mesh = \"a.stl\"\n"), "design.toml:7: entrance_surface.turned_part");
+  EXPECT_EQ(refusal(plate_body + kFront + "mesh_side = \"top\"\n"), "design.toml:8: entrance_surface.mesh_side");
+  EXPECT_EQ(refusal(plate_body + "[entrance_surface]\nmesh = \"a.stl\"\nmesh_side = \"left\"\n"),
+            "design.toml:8: entrance_surface.mesh_side");
+  EXPECT_EQ(refusal(plate_body + kFront + "centre_mm = [1]\n"), "design.toml:8: entrance_surface.centre_mm");
   EXPECT_EQ(refusal("[element]\nkind = \"rtp\"\nbase_mm = 1\nwidth_mm = 1\n[array]\nextent = \"infinite\"\n" + kFront +
                     kBody),
-            "design.toml:8: front.turned");
+            "design.toml:8: entrance_surface.turned_part");
   EXPECT_EQ(refusal("[element]\nkind = \"ball\"\ndiameter_mm = 1\n[body]\nrefractive_index = 1.9\n" + kFront),
-            "design.toml:6: front");
+            "design.toml:6: entrance_surface");
   EXPECT_EQ(refusal("[part]\nplate_mm = [1, 1, 1]\n" + kBody), "design.toml:2: part.plate_mm");
   EXPECT_EQ(refusal("[part]\nplate_mm = 1\n" + kBody), "design.toml:2: part.plate_mm");
   EXPECT_EQ(refusal("[part]\nplate_mm = [1, 1]\nmesh = \"a.stl\"\n" + kBody), "design.toml:3: part.mesh");

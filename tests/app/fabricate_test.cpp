@@ -36,7 +36,7 @@ TEST(Fabricate, CutsTheSquareOfTheThesis) {
   EXPECT_EQ(folder.json("job.json")["partial_elements"], 24);
   EXPECT_EQ(folder.json("job.json")["process"], "thesis-acrylic");
   const Json json = retrace_json(folder, {"fabricate", "j.toml"});
-  EXPECT_EQ(json["schema"], "retrace.fabrication/1");
+  EXPECT_EQ(json["schema"], "retrace.fabrication/2");
   EXPECT_EQ(json["elements"], 613);
   EXPECT_EQ(json["cuts_per_facet"], 21);
   EXPECT_EQ(json["c_rotations"], 4);

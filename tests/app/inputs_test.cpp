@@ -111,8 +111,8 @@ std::vector<FileKey> file_keys() {
       {"lens.toml",
        "schema = \"retrace.turned_part/1\"\n[base]\nkind = \"plane\"\n[tool]\nnose_radius_mm = 0.05\nclearance_deg = "
        "40\n[path]\nradius_mm = 1\nfeed_um = 10\nspindle_rpm = 60\n",
-       kPrisms + kBody + "[front]\nturned = \"", "\"\n"},
-      {"front.stl", sheet(), kPrisms + kBody + "[front]\nmesh = \"", "\"\n"},
+       kPrisms + kBody + "[entrance_surface]\nturned_part = \"", "\"\n"},
+      {"front.stl", sheet(), kPrisms + kBody + "[entrance_surface]\nmesh = \"", "\"\n"},
       {"part.stl", box(), "[body]\nrefractive_index = 1.49\n[part]\nmesh = \"", "\"\n"},
   };
 }

@@ -65,7 +65,7 @@ TEST(Photometry, ShippedStandardsAreMeasured) {
                                   "--no-diffraction", "--json=-", "--set=element.aperture_mm=20"}));
   EXPECT_EQ(outcome.code, 1) << "perfect cubes send nothing to 1.5 degrees";
   const Json json = Json::parse(outcome.out);
-  EXPECT_EQ(json["schema"], "retrace.photometry/1");
+  EXPECT_EQ(json["schema"], "retrace.photometry/2");
   EXPECT_EQ(json["verdict"], "fail");
   EXPECT_EQ(json["complete"], true);
   EXPECT_EQ(json["engine"], "stochastic") << "weak beams are resampled";

@@ -16,7 +16,7 @@ TEST(Plane, WritesProgramsDrawingsAndItsDocument) {
   const Outcome outcome = retrace(folder, {"plane", kLens, "--dialect=fanuc", "-o", "."});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const Json json = folder.json("planing.json");
-  EXPECT_EQ(json["schema"], "retrace.planing/1");
+  EXPECT_EQ(json["schema"], "retrace.planing/2");
   EXPECT_EQ(json["verdict"], "pass");
   const std::vector<std::string> names = folder.names();
   for (const char* name : {"profile.svg", "zones.svg", "form_error.svg", "profile.csv", "odd_zones_1.nc"})

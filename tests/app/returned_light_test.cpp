@@ -38,7 +38,7 @@ TEST(ReturnedLight, FootprintHoldsTheDirectionsOfTheResult) {
   ASSERT_EQ(retrace(folder, exact({"--footprint", "-o", "."})).code, 0);
   const Json footprint = folder.json("footprint.json");
   const Json rre = folder.json("rre.json");
-  EXPECT_EQ(footprint["schema"], "retrace.footprint/1");
+  EXPECT_EQ(footprint["schema"], "retrace.footprint/2");
   EXPECT_EQ(footprint["version"], rre["version"]);
   EXPECT_EQ(footprint["warnings"], Json::array());
   EXPECT_EQ(footprint["complete"], true);
@@ -46,8 +46,8 @@ TEST(ReturnedLight, FootprintHoldsTheDirectionsOfTheResult) {
   for (std::size_t k = 0; k < 2; ++k)
     for (const char* key : {"design", "incidence_deg", "azimuth_deg", "wavelength_nm", "acceptance_half_angle_deg"})
       EXPECT_EQ(footprint["regions"][k][key], rre["points"][k][key]) << key;
-  EXPECT_NEAR(footprint["regions"][0]["active_share"].get<double>(), 1.0, 1e-9);
-  EXPECT_LT(footprint["regions"][1]["active_share"].get<double>(), 0.88) << "the halves are dead";
+  EXPECT_NEAR(footprint["regions"][0]["active_fraction"].get<double>(), 1.0, 1e-9);
+  EXPECT_LT(footprint["regions"][1]["active_fraction"].get<double>(), 0.88) << "the halves are dead";
   EXPECT_NEAR(footprint["regions"][1]["rre_shown"].get<double>(), rre["points"][1]["rre"].get<double>(), 1e-3);
   EXPECT_TRUE(folder.read("footprint.png").starts_with("\x89PNG\r\n\x1a\n"));
   EXPECT_NE(folder.read("footprint.svg").find("</svg>"), std::string::npos);

@@ -48,7 +48,7 @@ TEST_F(SubstrateJob, OfTheExampleVerifiesInEveryDialect) {
     // There are ten rows of prisms. Each facet of a row has its own angle A.
     EXPECT_EQ(json["poses"].size(), 20U);
   }
-  EXPECT_EQ(refusal({"verify", "job.toml", "rs274ngc/program.ngc", "--map", "map.png"}), "job.toml:29: base");
+  EXPECT_EQ(refusal({"verify", "job.toml", "rs274ngc/program.ngc", "--map", "map.png"}), "job.toml:29: substrate");
 }
 
 /// The machined part has the RRE (retroreflective efficiency) of the design, except for the effect of the surface
@@ -63,7 +63,7 @@ TEST_F(SubstrateJob, AsMachinedReturnsWhatTheDesignDoes) {
   const Arguments verify = {"verify", "job.toml", "rs274ngc/program.ngc", "--as-machined", "part.toml", "--quiet"};
   ASSERT_EQ(retrace(folder_, verify).code, 0);
   std::string part = folder_.read("part.toml");
-  EXPECT_NE(part.find("[base]\nkind = \"cylinder\"\nradius_mm = 20\n"), std::string::npos) << part;
+  EXPECT_NE(part.find("[substrate]\nkind = \"cylinder\"\nradius_mm = 20\n"), std::string::npos) << part;
   part = without_texture(part);
   folder_.write("smooth.toml", part);
   const auto rre = [&](const std::string& name) {
@@ -89,7 +89,7 @@ TEST_F(SubstrateJob, AsMachinedReturnsWhatTheDesignDoes) {
 TEST_F(SubstrateJob, OfCubeCornersOnASphere) {
   folder_.write("design.toml",
                 "[element]\nkind = \"triangular_icc\"\naperture_mm = 0.3\n[array]\nx_length_mm = 0.76\n"
-                "y_length_mm = 0.53\npartial_elements = \"omit\"\n[base]\nkind = \"sphere\"\nradius_mm = 8\n"
+                "y_length_mm = 0.53\npartial_elements = \"omit\"\n[substrate]\nkind = \"sphere\"\nradius_mm = 8\n"
                 "[body]\nthickness_mm = 1\nrefractive_index = 1.49\n");
   ASSERT_EQ(retrace(folder_,
                     {"job", "design.toml", "--strategy", "dmc", "--tool-width-mm", "0.6", "-o", "job.toml", "--quiet"})
@@ -108,7 +108,7 @@ TEST_F(SubstrateJob, OfWhatCannotBeCutIsRefused) {
       refusal({"job", example("pin_bundle.toml"), "--strategy", "dmc", "--tool-width-mm", "9", "-o", "pins.toml"}),
       "examples/pin_bundle.toml: array.arrangement");
   ASSERT_EQ(retrace(folder_, {"job", example(kExample), "--tool-width-mm", "0.5", "-o", "job.toml", "--quiet", "--set",
-                              "base.axis=x"})
+                              "substrate.axis=x"})
                 .code,
             0);
   EXPECT_EQ(refusal({"fabricate", "job.toml", "-o", "program"}), "job.toml:5: machine");

@@ -87,13 +87,13 @@ TEST(HeightMapOfADesign, IsNotReplacedByAResult) {
 TEST(HeightMapOfADesign, IsQuotedInTheResult) {
   const TemporaryFolder folder;
   folder.write("d.toml",
-               kDesign + "height_map = \"m.txt\"\nheight_map_level_axis = \"y\"\nheight_map_form = \"poly2\"\n");
+               kDesign + "height_map = \"m.txt\"\nheight_map_horizontal_axis = \"y\"\nheight_map_form = \"poly2\"\n");
   folder.write("m.txt", stairs(32, "20"));
   const Json surface =
       Json::parse(retrace(folder, {"rre", "d.toml", "--samples=64", "--json", "-"}).out)["designs"][0]["surface"];
   EXPECT_EQ(surface["model"], "height_map");
   EXPECT_EQ(surface["height_map"], "m.txt");
-  EXPECT_EQ(surface["height_map_level_axis"], "y");
+  EXPECT_EQ(surface["height_map_horizontal_axis"], "y");
   EXPECT_EQ(surface["height_map_form"], "poly2");
 }
 

@@ -39,12 +39,12 @@ TEST_F(VerifyParts, ProgramsOfPlaneInAllDialects) {
       for (const Json& program : planed["programs"])
         programs.push_back(dialect + "/" + program["program"].get<std::string>());
       const Json json = verified(programs);
-      EXPECT_EQ(json["schema"], "retrace.verification/1");
+      EXPECT_EQ(json["schema"], "retrace.verification/2");
       EXPECT_EQ(json["verdict"], "pass");
       EXPECT_EQ(json["process"], "planing");
       EXPECT_EQ(json["programs"][0]["dialect"], dialect);
       EXPECT_EQ(json["form_error_mm_max"], planed["form_error_mm_max"]);
-      EXPECT_EQ(json["programs"][0]["frames"], planed["programs"][0]["frames"]);
+      EXPECT_EQ(json["programs"][0]["blocks"], planed["programs"][0]["blocks"]);
       std::filesystem::remove_all(folder_.path() / dialect);
     }
 }

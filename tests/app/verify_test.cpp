@@ -55,7 +55,7 @@ TEST_F(VerifyCommand, CorrectProgramsOfEveryDialectPass) {
   for (const std::string dialect : {"rs274ngc", "sinumerik", "fanuc", "pmac", "a3200", "automation1"}) {
     const std::string file = program(dialect);
     const Json json = verified({file}, 0);
-    EXPECT_EQ(json["schema"], "retrace.verification/1");
+    EXPECT_EQ(json["schema"], "retrace.verification/2");
     EXPECT_EQ(json["verdict"], "pass");
     EXPECT_EQ(json["programs"][0]["dialect"], dialect);
     EXPECT_EQ(json["elements_cut"], 4);
@@ -72,7 +72,7 @@ TEST_F(VerifyCommand, CorrectProgramsOfEveryDialectPass) {
   }
 }
 
-/// Verifies the programs of single phases, and a program that was stopped after a line. `--standing` names the phase
+/// Verifies the programs of single phases, and a program that was stopped after a line. `--next-stage` names the phase
 /// that is next when the programs start.
 TEST_F(VerifyCommand, PartsOfAJob) {
   make("paper", "two-step");
@@ -86,7 +86,7 @@ TEST_F(VerifyCommand, PartsOfAJob) {
   EXPECT_EQ(verified({roughing}, 1)["verdict"], "incomplete");
   const std::string finishing = part({"--phase", "finishing"}, "finishing");
   EXPECT_EQ(verified({finishing}, 1)["verdict"], "fail");
-  const Json after = verified({finishing, "--standing", "finishing"}, 0);
+  const Json after = verified({finishing, "--next-stage", "finishing"}, 0);
   EXPECT_EQ(after["verdict"], "pass");
   EXPECT_EQ(after["programs"].size(), 1U);
   EXPECT_EQ(verified({roughing, finishing}, 0)["verdict"], "pass");
@@ -104,8 +104,8 @@ TEST_F(VerifyCommand, PartsOfAJob) {
   };
   EXPECT_EQ(refusal({whole + "@99999"}), "rs274ngc/program.ngc");
   EXPECT_EQ(refusal({whole + "@x"}), "rs274ngc/program.ngc@x");
-  EXPECT_EQ(refusal({whole, "--standing", "polishing"}), "--standing");
-  EXPECT_EQ(refusal({whole, "--standing", "roughing"}), "--standing");
+  EXPECT_EQ(refusal({whole, "--next-stage", "polishing"}), "--next-stage");
+  EXPECT_EQ(refusal({whole, "--next-stage", "roughing"}), "--next-stage");
 }
 
 TEST_F(VerifyCommand, AFaultIsAFindingWithItsLine) {

@@ -18,10 +18,10 @@ std::string zoned_design(const std::string& kind, double length_mm = 6.0) {
   return "title = \"Zones\"\n[element]\nkind = \"" + kind +
          "\"\naperture_mm = 0.5\n[array]\nx_length_mm = " + std::to_string(length_mm) +
          "\ny_length_mm = 4\npartial_elements = \"omit\"\n[body]\nthickness_mm = 2\nrefractive_index = 1.4917\n"
-         "[[zone]]\nshare = 0.5\nset = [\"surface.dihedral_error_arcmin=9.5\"]\n"
-         "[[zone]]\nshare = 0.3\nrotation_deg = 33\n"
+         "[[zone]]\narea_fraction = 0.5\nset = [\"surface.dihedral_error_arcmin=9.5\"]\n"
+         "[[zone]]\narea_fraction = 0.3\nrotation_deg = 33\n"
          "set = [\"surface.dihedral_error_arcmin=[3, 0, -8]\", \"surface.facet_tilt_arcmin=[1, 0, 2]\"]\n"
-         "[[zone]]\nshare = 0.2\nrotation_deg = 180\nset = [\"element.aperture_mm=0.4\"]\n";
+         "[[zone]]\narea_fraction = 0.2\nrotation_deg = 180\nset = [\"element.aperture_mm=0.4\"]\n";
 }
 
 class ZoneJobCommand : public ::testing::Test {

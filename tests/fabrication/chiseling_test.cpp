@@ -484,7 +484,7 @@ TEST_F(ChiselingFaults, TheTableTurnsWithTheToolInTheBlank) {
   const std::size_t lift = text_.rfind("G0 Z", turn);
   // The rotation about B raises the tip by 100 (1 - cos B) = 18.35 mm above the position of the word Z.
   EXPECT_NE(kinds(replaced(text_, text_.substr(lift, text_.find('\n', lift) - lift), "G1 Z-18.4 F50.", lift - 1))
-                .find("turn_too_low"),
+                .find("rotation_too_low"),
             std::string::npos);
 }
 

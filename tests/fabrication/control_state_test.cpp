@@ -338,7 +338,7 @@ TEST_P(ControlState, TurnsKeepTheirClearance) {
   const NcProgram program = parse_nc(text, "p", GetParam(), control_texts());
   int found = 0;
   for (const Finding& f : verify_programs(asks_more, machine_, {program}, {}, {}).findings) {
-    EXPECT_EQ(f.kind, "turn_too_low");
+    EXPECT_EQ(f.kind, "rotation_too_low");
     ++found;
   }
   EXPECT_GE(found, 1);

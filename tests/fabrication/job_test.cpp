@@ -204,8 +204,8 @@ TEST(JobFile, WhatIsWrongIsRefusedWithFileLineAndKey) {
        "j.toml:34: tool.next_edge"},
       {"mist = true", "stop_every_min = 0", "j.toml:50: process.stop_every_min"},
       {"mist = true", "stop_before_finishing = 1", "j.toml:50: process.stop_before_finishing"},
-      {"mist = true", "least_chip_um = 0", "j.toml:50: process.least_chip_um"},
-      {"mist = true", "least_chip_um = 2.6", "j.toml:50: process.least_chip_um"},
+      {"mist = true", "min_chip_um = 0", "j.toml:50: process.min_chip_um"},
+      {"mist = true", "min_chip_um = 2.6", "j.toml:50: process.min_chip_um"},
       {"base_mm = 0.451", "base_mm = nan", "j.toml:12: element.base_mm"},
   };
   for (const Wrong& wrong : cases) {
@@ -224,16 +224,16 @@ TEST(JobFile, OnlyWhatIsFinishedStopsBeforeFinishing) {
 
 TEST(JobFile, BasesReadBackEqual) {
   for (const char* const substrate :
-       {"kind = \"plane\"\nincline_deg = 7.5\nazimuth_deg = 30\nelements = \"parallel\"\n",
-        "kind = \"cylinder\"\nradius_mm = -20\naxis = \"x\"\nelements = \"parallel\"\n",
-        "kind = \"cylinder\"\nradius_mm = 30\naxis = \"y\"\nelements = \"normal\"\n",
-        "kind = \"sphere\"\nradius_mm = 40\nelements = \"normal\"\n",
-        "kind = \"formula\"\nsag_mm = \"0.01*x^2 - y/9\"\nelements = \"parallel\"\n"}) {
-    const std::string text = job_text(square_job(4)) + "\n[base]\n" + substrate;
+       {"kind = \"plane\"\nincline_deg = 7.5\nazimuth_deg = 30\nelement_axes = \"parallel\"\n",
+        "kind = \"cylinder\"\nradius_mm = -20\naxis = \"x\"\nelement_axes = \"parallel\"\n",
+        "kind = \"cylinder\"\nradius_mm = 30\naxis = \"y\"\nelement_axes = \"normal\"\n",
+        "kind = \"sphere\"\nradius_mm = 40\nelement_axes = \"normal\"\n",
+        "kind = \"formula\"\nsag_mm = \"0.01*x^2 - y/9\"\nelement_axes = \"parallel\"\n"}) {
+    const std::string text = job_text(square_job(4)) + "\n[substrate]\n" + substrate;
     const Job job = parse_job(text, "j.toml");
     ASSERT_TRUE(job.substrate) << substrate;
     const std::string again = job_text(job);
-    EXPECT_NE(again.find(std::string("\n[base]\n") + substrate), std::string::npos) << again;
+    EXPECT_NE(again.find(std::string("\n[substrate]\n") + substrate), std::string::npos) << again;
     EXPECT_EQ(job_text(parse_job(again, "j.toml")), again);
     EXPECT_EQ(cut_elements(job).front().foot_mm, cut_elements(parse_job(again, "j.toml")).front().foot_mm);
   }
@@ -241,7 +241,7 @@ TEST(JobFile, BasesReadBackEqual) {
 
 TEST(JobFile, BasesThatCannotBeAreRefused) {
   const auto complaint = [](const Job& job, const std::string& substrate) -> std::string {
-    return refusal_of([&] { parse_job(job_text(job) + "\n[base]\n" + substrate, "j.toml"); }, "none");
+    return refusal_of([&] { parse_job(job_text(job) + "\n[substrate]\n" + substrate, "j.toml"); }, "none");
   };
   const Job good = square_job(4);
   const std::string plane = "kind = \"plane\"\nincline_deg = 5\n";
@@ -249,28 +249,28 @@ TEST(JobFile, BasesThatCannotBeAreRefused) {
   const auto expect = [&](const Job& job, const std::string& substrate, const std::string& place) {
     EXPECT_EQ(complaint(job, substrate), place) << substrate;
   };
-  expect(good, "kind = \"cone\"\n", "j.toml:56: base.kind");
-  expect(good, "kind = \"plane\"\n", "j.toml:55: base.incline_deg");
-  expect(good, "kind = \"plane\"\nincline_deg = 61\n", "j.toml:57: base.incline_deg");
-  expect(good, plane + "radius_mm = 3\n", "j.toml:58: base.radius_mm");
-  expect(good, plane + "elements = \"upright\"\n", "j.toml:58: base.elements");
-  expect(good, "kind = \"sphere\"\nradius_mm = 0\n", "j.toml:57: base.radius_mm");
-  expect(good, "kind = \"cylinder\"\nradius_mm = 0.3\n", "j.toml:57: base.radius_mm");
-  expect(good, "kind = \"cylinder\"\nradius_mm = 9\naxis = \"z\"\n", "j.toml:58: base.axis");
-  expect(good, "kind = \"formula\"\nsag_mm = \"x +\"\n", "j.toml:57: base.sag_mm");
-  expect(good, "kind = \"formula\"\nsag_mm = \"1/x\"\n", "j.toml:57: base.sag_mm");
-  expect(good, "kind = \"plane\"\nincline_deg = 55\nelements = \"parallel\"\n", "j.toml:57: base.incline_deg");
+  expect(good, "kind = \"cone\"\n", "j.toml:56: substrate.kind");
+  expect(good, "kind = \"plane\"\n", "j.toml:55: substrate.incline_deg");
+  expect(good, "kind = \"plane\"\nincline_deg = 61\n", "j.toml:57: substrate.incline_deg");
+  expect(good, plane + "radius_mm = 3\n", "j.toml:58: substrate.radius_mm");
+  expect(good, plane + "element_axes = \"upright\"\n", "j.toml:58: substrate.element_axes");
+  expect(good, "kind = \"sphere\"\nradius_mm = 0\n", "j.toml:57: substrate.radius_mm");
+  expect(good, "kind = \"cylinder\"\nradius_mm = 0.3\n", "j.toml:57: substrate.radius_mm");
+  expect(good, "kind = \"cylinder\"\nradius_mm = 9\naxis = \"z\"\n", "j.toml:58: substrate.axis");
+  expect(good, "kind = \"formula\"\nsag_mm = \"x +\"\n", "j.toml:57: substrate.sag_mm");
+  expect(good, "kind = \"formula\"\nsag_mm = \"1/x\"\n", "j.toml:57: substrate.sag_mm");
+  expect(good, "kind = \"plane\"\nincline_deg = 55\nelement_axes = \"parallel\"\n", "j.toml:57: substrate.incline_deg");
   Job direct = good;
   direct.workpiece.kind = WorkpieceKind::direct;
-  expect(direct, plane, "j.toml:57: base.incline_deg");
+  expect(direct, plane, "j.toml:57: substrate.incline_deg");
   Job offset = good;
   offset.array.x_offset_mm = 0.1;
-  expect(offset, plane, "j.toml:57: base.incline_deg");
+  expect(offset, plane, "j.toml:57: substrate.incline_deg");
   Job masked = good;
   masked.array.pattern = {"####", "###-", "####", "###-"};
-  expect(masked, plane, "j.toml:63: base.incline_deg");
-  expect(square_job(1), plane, "j.toml:55: base.incline_deg");
-  expect(good, "kind = \"plane\"\nincline_deg = 50\n", "j.toml:57: base.incline_deg");
+  expect(masked, plane, "j.toml:63: substrate.incline_deg");
+  expect(square_job(1), plane, "j.toml:55: substrate.incline_deg");
+  expect(good, "kind = \"plane\"\nincline_deg = 50\n", "j.toml:57: substrate.incline_deg");
 }
 
 TEST(JobFile, APatternMustLeaveSomethingToCut) {

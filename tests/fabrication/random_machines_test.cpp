@@ -73,7 +73,8 @@ TEST(RandomMachines, WhatGoesIntoWallsIsTheDirectionOfTravel) {
   const double facet_nm = 1e6 * 0.451 / std::numbers::sqrt2;
   for (const auto& [key, strategy, least_share] :
        {Lean{"z_lean_x_arcsec", Strategy::two_step, 0.999}, Lean{"z_lean_x_arcsec", Strategy::bidirectional, 0.999},
-        Lean{"y_lean_x_arcsec", Strategy::unidirectional, 0.8}, Lean{"tool_turn_y_arcsec", Strategy::two_step, 0.95}})
+        Lean{"y_lean_x_arcsec", Strategy::unidirectional, 0.8},
+        Lean{"tool_rotation_y_arcsec", Strategy::two_step, 0.95}})
     for (const double arcsec : {-100.0, 10.0, 300.0}) {
       SCOPED_TRACE(fmt::format("{} {}", key, arcsec));
       const Verification v = verified(prism(strategy), machine_with(key, arcsec));
@@ -102,7 +103,7 @@ TEST(RandomMachines, AnEdgeTooFarInAWallIsFound) {
 TEST(RandomMachines, PloughsKeepToTheFacetWhereSlidesLeanAlongATiltedEdge) {
   for (const double tilt_arcsec : {-1000.0, 1000.0})
     for (const double lean_arcsec : {-1000.0, 1000.0}) {
-      const Machine tilted = machine_with("tool_turn_y_arcsec", tilt_arcsec);
+      const Machine tilted = machine_with("tool_rotation_y_arcsec", tilt_arcsec);
       const Machine m = with_error(tilted, *setup_quantity(Tilt::table, "y_lean_x_arcsec"), lean_arcsec);
       const Verification v = verified(prism(Strategy::unidirectional), m);
       EXPECT_TRUE(v.passes()) << tilt_arcsec << " " << lean_arcsec << "\n" << listed(v);
@@ -212,7 +213,7 @@ TEST(RandomMachines, ATurnAboutTheEdgeMovesNoFacet) {
   cut.tip_mm = Vec3(0.0, 0.0, -0.001);
   const Machine m = machine("ideal");
   const PlaneChange change =
-      plane_change(m, cut, *setup_quantity(Tilt::table, "tool_turn_x_arcsec"), Vec3(0, -1, 1).normalized());
+      plane_change(m, cut, *setup_quantity(Tilt::table, "tool_rotation_x_arcsec"), Vec3(0, -1, 1).normalized());
   EXPECT_LT(change.point_mm.norm(), 1e-15);
   EXPECT_LT(change.normal.norm(), 1e-15);
 }

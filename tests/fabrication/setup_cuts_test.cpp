@@ -152,8 +152,8 @@ TEST(SetupCuts, AMountThatIsKnownIsPlannedFor) {
     EXPECT_LT(v.facet_distance_nm_max, 1.0);
     EXPECT_GT(cut_on(cut, machine("paper")).facet_distance_nm_max, 1000.0) << "the mount matters";
   }
-  const Made cubes =
-      made(cube_job(false), with_error(machine("ideal-dmc"), *setup_quantity(Tilt::head, "tool_turn_z_arcsec"), 600.0));
+  const Made cubes = made(
+      cube_job(false), with_error(machine("ideal-dmc"), *setup_quantity(Tilt::head, "tool_rotation_z_arcsec"), 600.0));
   const Verification v = cut_on(cubes, cubes.taken_for);
   EXPECT_TRUE(v.passes()) << listed(v);
 }
@@ -162,7 +162,7 @@ TEST(SetupCuts, AMountThatIsKnownIsPlannedFor) {
 TEST(SetupCuts, AnEdgeThatIsNotLevelLeavesItsRise) {
   Job job = square_job(1);
   job.strategy = Strategy::two_step;
-  const Machine m = with_error(machine("ideal"), *setup_quantity(Tilt::table, "tool_turn_y_arcsec"), 60.0);
+  const Machine m = with_error(machine("ideal"), *setup_quantity(Tilt::table, "tool_rotation_y_arcsec"), 60.0);
   const Made cut = made(job, m);
   const Verification v = cut_on(cut, m);
   EXPECT_TRUE(v.passes()) << listed(v);

@@ -73,8 +73,9 @@ TEST(Setup, EffectsOnAPrismInClosedForm) {
     expect_effect(facet, "a_z_um", {1000 * s, 0, 0});  // 707 nm
     expect_effect(facet, "a_y_um", {1000 * (1.0 - s), 0, 0});
     expect_effect(facet, "tool_y_um", {-1000, 0, 0});
-    for (const char* const nothing : {"c_x_um", "tool_x_um", "tool_z_um", "tool_turn_x_arcsec", "tool_turn_y_arcsec",
-                                      "y_lean_x_arcsec", "y_lean_z_arcsec", "z_lean_x_arcsec"})
+    for (const char* const nothing :
+         {"c_x_um", "tool_x_um", "tool_z_um", "tool_rotation_x_arcsec", "tool_rotation_y_arcsec", "y_lean_x_arcsec",
+          "y_lean_z_arcsec", "z_lean_x_arcsec"})
       expect_effect(facet, nothing, {0, 0, 0});
     // At C = 0, the facet is not affected by the lean of C. At 180 degrees, it is rotated by twice the lean. The
     // rotation about X closes the groove.
@@ -83,7 +84,7 @@ TEST(Setup, EffectsOnAPrismInClosedForm) {
     expect_effect(facet, "c_lean_x_arcsec", {0, 0, -twice * s});
     expect_effect(facet, "a_lean_y_arcsec", {0, 0, side * (1.0 - s)});
     expect_effect(facet, "a_lean_z_arcsec", {0, 0, side * s});
-    expect_effect(facet, "tool_turn_z_arcsec", {0, 0, -side});
+    expect_effect(facet, "tool_rotation_z_arcsec", {0, 0, -side});
   }
 }
 

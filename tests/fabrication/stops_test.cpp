@@ -449,7 +449,7 @@ TEST(StopsRefused, WhatCannotBe) {
   job.process.stop_every_min.reset();
   job.strategy = Strategy::unidirectional;
   job.process.least_chip_um = 7.0;
-  EXPECT_EQ(refusal(), "j.toml: process.least_chip_um");
+  EXPECT_EQ(refusal(), "j.toml: process.min_chip_um");
 }
 
 TEST(StopsRefused, ControlsWithoutALineForStops) {

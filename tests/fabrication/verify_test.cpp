@@ -328,7 +328,7 @@ TEST_F(Faults, BeyondAnAxisLimit) {
 TEST_F(Faults, TheTableTurnsBelowTheTool) {
   const std::size_t turn = find("G0 A", find("o101 call"));
   lines_[turn - 1] = "(no lift)";
-  expect_found("turn_too_low", turn);
+  expect_found("rotation_too_low", turn);
 }
 
 TEST_F(Faults, ShiftedOrigin) {

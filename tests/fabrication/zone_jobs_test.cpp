@@ -372,7 +372,7 @@ TEST(ZoneJobs, WhatIsWrongIsRefusedWithItsKey) {
          j.substrate.emplace();
          j.substrate->shape = geometry::SphereSubstrate{100.0};
        },
-       "j.toml:39: base.kind"},
+       "j.toml:39: substrate.kind"},
       {"tool", [](Job& j) { j.tool.width_mm = 0.2; }, "j.toml:39: tool.width_mm"},
   };
   for (const Wrong& wrong : cases) {

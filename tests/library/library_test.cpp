@@ -272,12 +272,12 @@ TEST(Library, MaterialIsThatOfTheProgram) {
   MaterialRequest request;
   request.entrance_deg = 2.0;
   request.window_deg = 0.2;
-  request.most_directions = 64;
+  request.max_directions = 64;
   fs::create_directory(folder.path() / "told");
   for (const char* ending : {"json", "xml", "glsl"}) {
     const std::string name = std::string("material.") + ending;
-    retrace(folder, {"export", file, "told/" + name, "--entrance-deg=2", "--window-deg=0.2", "--most-directions=64",
-                     "--quiet"});
+    retrace(folder,
+            {"export", file, "told/" + name, "--entrance-deg=2", "--window-deg=0.2", "--max-directions=64", "--quiet"});
     const MaterialResult result = export_material(Design::load(file), folder.path() / name, request);
     EXPECT_TRUE(result.complete);
     EXPECT_EQ(folder.read(name), folder.read("told/" + name));

@@ -188,7 +188,7 @@ class Bundle(unittest.TestCase):
         self.same(native, bundle, "direction")
         self.assertAlmostEqual(sum(native["ledger"]), 1.0, delta=1e-9)
         self.same(*([spot["power"] for spot in of[:6]] for of in spots), "spots")
-        for key in ("active_share", "shown"):
+        for key in ("active_fraction", "shown"):
             self.assertAlmostEqual(*(footprint[key] for footprint in footprints), delta=SAME_MM, msg=key)
         chance = random.Random(1)
         corners = [of["outline"][k::2] for of in footprints[0]["regions"] for k in (0, 1)] or [[0]]
@@ -221,7 +221,7 @@ class Bundle(unittest.TestCase):
 
     def test_says_what_a_browser_has_not(self):
         for toml in ('[element]\nkind = "rtp"\nbase_mm = 1\nwidth_mm = 1\n[array]\nx_length_mm = 9\ny_length_mm = 9\n[body]\n'
-                     'thickness_mm = 9\n[base]\nkind = "formula"\nformula = "x^2"\n', ):
+                     'thickness_mm = 9\n[substrate]\nkind = "formula"\nsag_mm = "x^2"\n', ):
             answer = self.bundle.ask(ask="open", toml=toml, source="design.toml")
             self.assertFalse(answer["ok"])
 

@@ -212,7 +212,7 @@ TEST(LiveEngine, TellsWhatTheStudyTells) {
     for (std::size_t k = 0; k < expected.ledger.power.size(); ++k)
       EXPECT_NEAR(told_of["ledger"][k].get<double>(), expected.ledger.power[k], kLeft) << raytrace::kAccountNames[k];
     const studies::Footprint& footprint = *study.returned[0].footprint;
-    EXPECT_NEAR(told_of["footprint"]["active_share"].get<double>(), footprint.active_share(), kLeft);
+    EXPECT_NEAR(told_of["footprint"]["active_fraction"].get<double>(), footprint.active_share(), kLeft);
     EXPECT_NEAR(told_of["footprint"]["shown"].get<double>(), footprint.rre_shown(), kLeft);
     const studies::FarFieldSpot& spot = study.returned[0].far_field->spots.front();
     EXPECT_NEAR(told_of["far_field"]["spots"][0]["power"].get<double>(), spot.stokes.i, kLeft);

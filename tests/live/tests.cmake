@@ -9,6 +9,8 @@ add_test(NAME live/live_sources_test COMMAND "${RETRACE_PYTHON}" -B live/live_so
          WORKING_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}")
 add_test(NAME live/modules_test COMMAND "${RETRACE_PYTHON}" -B live/modules_test.py "${PROJECT_SOURCE_DIR}"
          WORKING_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}")
+add_test(NAME live/toml_edit_test COMMAND "${RETRACE_NODE}" live/toml_edit_test.mjs "${PROJECT_SOURCE_DIR}"
+         WORKING_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}")
 # Whether the engine is that of the sources matters to who can make it anew.
 find_program(RETRACE_EMXX em++)
 if(RETRACE_EMXX)

@@ -275,8 +275,8 @@ class Fuzz(unittest.TestCase):
             "detector",
             "surface",
             "part",
-            "front",
-            "base",
+            "entrance_surface",
+            "substrate",
             "title",
             "schema",
         ]

@@ -171,7 +171,7 @@ class Equality(unittest.TestCase):
                     file_of_program,
                     entrance_deg=2,
                     window_deg=0.2,
-                    most_directions=64,
+                    max_directions=64,
                 )
                 return (*found, self.content(file_of_program))
 
@@ -182,7 +182,7 @@ class Equality(unittest.TestCase):
                     file_of_program,
                     "--entrance-deg=2",
                     "--window-deg=0.2",
-                    "--most-directions=64",
+                    "--max-directions=64",
                 )
                 return (*found, self.content(file_of_program))
 

@@ -10,6 +10,7 @@ import numpy as np
 
 import program
 import retrace as rt
+from retrace._results import Columns
 
 PRISM = program.example("rtp_single_0p45mm.toml")
 
@@ -117,6 +118,43 @@ class Results(unittest.TestCase):
         self.assertEqual(
             (error.file, error.line, error.key, error.message), ("file", 3, "key", "text")
         )
+
+    def test_former_names_give_the_values_with_a_warning(self):
+        found = rt.inspect(program.example("fronts/cats_eye_lenslets.toml"))
+        with self.assertWarnsRegex(FutureWarning, r"\bentrance_surface\b"):
+            self.assertEqual(found.front, found.entrance_surface)
+        prism = rt.inspect(PRISM)
+        with self.assertWarnsRegex(FutureWarning, r"\bdead_zone_fraction\b"):
+            self.assertEqual(prism.dead_zone_share, prism.dead_zone_fraction)
+        columns = Columns([{"max": 1.5}], former={"most": "max"})
+        with self.assertWarnsRegex(FutureWarning, r"\bmax\b"):
+            self.assertEqual(columns.most.tolist(), [1.5])
+        with self.assertWarns(FutureWarning):
+            self.assertEqual(columns["most"].tolist(), [1.5])
+        self.assertNotIn("most", columns)
+        with self.assertRaises(AttributeError):
+            columns.least
+        design = rt.Design.load(program.example("curved_base.toml"))
+        with self.assertWarnsRegex(FutureWarning, r"\bsubstrate\b"):
+            self.assertEqual(design["base.sag_mm"], design["substrate.sag_mm"])
+        with self.assertWarnsRegex(FutureWarning, r"\bsubstrate.element_axes\b"):
+            self.assertEqual(design["base.elements"], design["substrate.element_axes"])
+        with self.assertRaises(KeyError):
+            design["front.radius_mm"]
+
+    def test_pickles_of_former_versions_get_the_current_names(self):
+        found = rt.inspect(PRISM)
+        state = found.__getstate__()
+        former = state["json"].replace("retrace.inspect/2", "retrace.inspect/1")
+        former = former.replace('"dead_zone_fraction"', '"dead_zone_share"')
+        self.assertNotEqual(former, found.json)
+        copy = rt.Inspection.__new__(rt.Inspection)
+        copy.__setstate__({**state, "json": former})
+        self.assertEqual(copy, found)
+        self.assertEqual(copy.document, found.document)
+        later = state["json"].replace("retrace.inspect/2", "retrace.inspect/3")
+        with self.assertRaisesRegex(rt.InputError, "retrace.inspect/3"):
+            copy.__setstate__({**state, "json": later})
 
     def test_footprint(self):
         found = rt.footprint(program.example("honeycomb_infinite.toml"), incidence_deg=10)

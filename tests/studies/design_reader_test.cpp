@@ -275,7 +275,7 @@ TEST(DesignReader, FilesAreNamedInTheOrderThatStoresOfStudiesHave) {
     return files;
   };
   const std::string text =
-      "[front]\nturned = \"f.toml\"\n[light]\nspectrum = \"l.csv\"\n[part]\nfacets = \"p.csv\"\n"
+      "[entrance_surface]\nturned_part = \"f.toml\"\n[light]\nspectrum = \"l.csv\"\n[part]\nfacets = \"p.csv\"\n"
       "[surface]\nheight_map = \"h.txt\"\n[array]\nmask = \"m.png\"\n[element]\nkind = \"rtp\"\n";
   const std::vector<std::filesystem::path> expected = {"d/m.png", "d/h.txt", "d/p.csv", "d/l.csv", "d/f.toml"};
   EXPECT_EQ(paths(text), expected);
@@ -300,7 +300,8 @@ TEST(DesignReader, KeysAreUnset) {
       << "a key that the file does not have";
   EXPECT_EQ(set_complaint({"element.base_mm="}), "d.toml:1: element.base_mm");
   EXPECT_EQ(read({"schema="}).substance.refractive_index, 1.6);
-  for (const std::string key : {".", "body.", ".body", "body..material", "zone.share", "coating.facets.thickness_nm"})
+  for (const std::string key :
+       {".", "body.", ".body", "body..material", "zone.area_fraction", "coating.facets.thickness_nm"})
     EXPECT_EQ(set_complaint({key + "="}), "--set " + key + "=");
   EXPECT_EQ(set_complaint({"body.refractve_index="}), "--set body.refractve_index=");
 }

@@ -29,7 +29,7 @@ TEST(DesignReader, HeightMapIsFoundFromTheDesignsFolder) {
   EXPECT_EQ(texture.level_axis, HeightMapAxis::x);
   EXPECT_EQ(texture.form_degree, 1);
   EXPECT_EQ(texture_of("standard input").file, fs::path("maps/m.gsf"));
-  const std::vector<std::string> overrides = {"surface.height_map=m.txt", "surface.height_map_level_axis=y",
+  const std::vector<std::string> overrides = {"surface.height_map=m.txt", "surface.height_map_horizontal_axis=y",
                                               "surface.height_map_form=poly3"};
   const HeightMapTexture other = texture_of("parts/d.toml", overrides);
   EXPECT_EQ(other.file, fs::path("m.txt")) << "as typed, from the working directory";
@@ -46,7 +46,8 @@ TEST(DesignReader, HeightMapKeysAreChecked) {
                          {"height_map_form = \"poly2\"", "d.toml:12: surface.height_map_form"},
                          {"model = \"height_map\"\nheight_map = \"m.txt\"\nwaviness_sq_nm = 5\nwaviness_length_um = 9",
                           "d.toml:14: surface.waviness_sq_nm"}});
-  EXPECT_EQ(said("height_map = \"m.txt\"\nheight_map_level_axis = \"z\""), "d.toml:13: surface.height_map_level_axis");
+  EXPECT_EQ(said("height_map = \"m.txt\"\nheight_map_horizontal_axis = \"z\""),
+            "d.toml:13: surface.height_map_horizontal_axis");
   EXPECT_EQ(said("height_map = \"m.txt\"\nheight_map_form = \"none\""), "d.toml:13: surface.height_map_form");
 }
 

@@ -31,7 +31,7 @@ Design read(const std::string& lines, const std::vector<std::string>& overrides 
   return parse_design(entrance(lines), "d.toml", overrides);
 }
 
-const std::string kDust = "dust_coverage = 0.1\ndust_albedo = 0.8\ndust_forward_share = 0.75\n";
+const std::string kDust = "dust_coverage = 0.1\ndust_albedo = 0.8\ndust_forward_fraction = 0.75\n";
 const std::string kHaze = "haze = 0.05\nhaze_spread_deg = 5\n";
 const std::string kFilthy =
     "layers = [{ refractive_index = 1.6, thickness_um = 10, absorption_per_mm = 0.5 }]\n"
@@ -59,8 +59,8 @@ TEST(EntranceState, WhatIsWrongIsRefusedWithItsPlace) {
        {"layers = [{ refractive_index = 1.5, thickness_um = 0 }]", "d.toml:12: entrance.layers[1].thickness_um"},
        {"layers = [" + list + "]", "d.toml:12: entrance.layers"}});
   for (const auto& [lines, needed] : {std::pair{"drop_coverage = 0.1", "drop_contact_angle_deg"},
-                                      {"dust_coverage = 0.1\ndust_forward_share = 0.5", "dust_albedo"},
-                                      {"dust_coverage = 0.1\ndust_albedo = 0.5", "dust_forward_share"},
+                                      {"dust_coverage = 0.1\ndust_forward_fraction = 0.5", "dust_albedo"},
+                                      {"dust_coverage = 0.1\ndust_albedo = 0.5", "dust_forward_fraction"},
                                       {"scratch_coverage = 0.1", "scratch_spread_deg"},
                                       {"haze = 0.1", "haze_spread_deg"},
                                       {"roughness_sq_nm = 5", "correlation_length_um"}})
@@ -75,8 +75,9 @@ TEST(EntranceState, WhatWouldNotCountIsRefused) {
   EXPECT_EQ(complaint(entrance(kDust), {"idealisation.entrance=lossless"}), "d.toml:11: entrance");
   const std::string ball = "[element]\nkind = \"ball\"\ndiameter_mm = 1\n[entrance]\n";
   EXPECT_EQ(complaint(ball + kDust), "d.toml:4: entrance");
-  EXPECT_EQ(complaint(entrance(kDust), {"front.turned=lens.toml"}), "d.toml:12: entrance.dust_coverage");
-  EXPECT_EQ(complaint(entrance("film_coverage = 0.5"), {"front.turned=lens.toml"}), "");
+  EXPECT_EQ(complaint(entrance(kDust), {"entrance_surface.turned_part=lens.toml"}),
+            "d.toml:12: entrance.dust_coverage");
+  EXPECT_EQ(complaint(entrance("film_coverage = 0.5"), {"entrance_surface.turned_part=lens.toml"}), "");
 }
 
 TEST(EntranceState, DesignsAreWrittenAsTheyWereRead) {
@@ -177,9 +178,9 @@ TEST(EntranceState, InspectionTellsTheFace) {
   EXPECT_NE(text.find("  entrance state      90.000 % under no drop"), std::string::npos) << text;
   EXPECT_NE(text.find("dust sends back"), std::string::npos) << text;
   const auto json = nlohmann::json::parse(inspect_json(inspect(read(kFilthy), library())));
-  EXPECT_NEAR(json["entrance"]["clean_share"].get<double>(), 0.65, 1e-12);
+  EXPECT_NEAR(json["entrance"]["clean_fraction"].get<double>(), 0.65, 1e-12);
   EXPECT_GT(json["entrance"]["absorptance"].get<double>(), 0.0);
-  EXPECT_GT(json["entrance"]["haze_share"].get<double>(), 0.05);
+  EXPECT_GT(json["entrance"]["haze_fraction"].get<double>(), 0.05);
   EXPECT_FALSE(inspect(set({}), library()).entrance_state);
 }
 

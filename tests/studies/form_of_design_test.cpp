@@ -94,7 +94,7 @@ TEST(FormOfDesign, SinkIsAParaboloidAboutItsMean) {
 
 TEST(FormOfDesign, TermsAreInUnitsOfTheRadiusAndAddUp) {
   const std::string terms =
-      "terms = [{ level = 1, down = 0, height_um = 0.2 }, { level = 0, down = 3, height_um = -0.3 }]\n";
+      "terms = [{ x_power = 1, y_power = 0, height_um = 0.2 }, { x_power = 0, y_power = 3, height_um = -0.3 }]\n";
   const FacetForm form = form_of(kCubes + "[form]\n" + terms);
   const double radius = report_of(kCubes + "[form]\n" + terms).radius_mm;
   EXPECT_NEAR(form.height_mm({radius, 0.0}), 2e-4, 1e-15);
@@ -103,7 +103,7 @@ TEST(FormOfDesign, TermsAreInUnitsOfTheRadiusAndAddUp) {
   const FacetForm sink = form_of(kCubes + "[form]\nsink_um = 0.5\n");
   for (const Vec2& p : {Vec2(0.1, -0.05), Vec2(-0.02, 0.07)})
     EXPECT_NEAR(both.height_mm(p), sink.height_mm(p) + form.height_mm(p), 1e-15);
-  EXPECT_NEAR(report_of(kCubes + "[form]\nterms = [{ level = 1, down = 0, height_um = 0.2 }]\n").tilt_mrad,
+  EXPECT_NEAR(report_of(kCubes + "[form]\nterms = [{ x_power = 1, y_power = 0, height_um = 0.2 }]\n").tilt_mrad,
               0.2 / radius, 1e-9);
 }
 
@@ -156,7 +156,7 @@ TEST(FormOfDesign, MapGivesItsPolynomial) {
   EXPECT_NEAR(report_of(folder.text("")).tilt_mrad, 0.0, 1e-9);
   // If the y axis of the map is the horizontal axis of the facet, the heights along y of the map are along x of the
   // facet.
-  const FacetForm turned = form_of(folder.text("map_level_axis = \"y\"\n"));
+  const FacetForm turned = form_of(folder.text("map_horizontal_axis = \"y\"\n"));
   const auto second = [&](const Vec2& step) {
     return turned.height_mm(step) - 2.0 * turned.height_mm({0.0, 0.0}) + turned.height_mm(-step);
   };
@@ -166,14 +166,15 @@ TEST(FormOfDesign, MapGivesItsPolynomial) {
 
 TEST(FormOfDesign, WrongFormsAreRefused) {
   const auto said = [](const std::string& lines) { return refused(kCubes + "[form]\n" + lines); };
-  expect_refusals(said, {{"sink_um = 101", "d.toml:10: form.sink_um"},
-                         {"sink = 0.1", "d.toml:10: form.sink"},
-                         {"map_degree = 3", "d.toml:10: form.map_degree"},
-                         {"terms = 3", "d.toml:10: form.terms"},
-                         {"terms = [{ level = 2, down = 7, height_um = 0.1 }]", "d.toml:10: form.terms[1].down"},
-                         {"sink_um = 10", "d.toml:10: form.sink_um"}});
-  EXPECT_EQ(said("terms = [{ level = 1.5, down = 0, height_um = 0.1 }]"), "d.toml:10: form.terms[1].level");
-  EXPECT_EQ(said("terms = [{ level = 1, down = 0 }]"), "d.toml:10: form.terms[1].height_um");
+  expect_refusals(said,
+                  {{"sink_um = 101", "d.toml:10: form.sink_um"},
+                   {"sink = 0.1", "d.toml:10: form.sink"},
+                   {"map_degree = 3", "d.toml:10: form.map_degree"},
+                   {"terms = 3", "d.toml:10: form.terms"},
+                   {"terms = [{ x_power = 2, y_power = 7, height_um = 0.1 }]", "d.toml:10: form.terms[1].y_power"},
+                   {"sink_um = 10", "d.toml:10: form.sink_um"}});
+  EXPECT_EQ(said("terms = [{ x_power = 1.5, y_power = 0, height_um = 0.1 }]"), "d.toml:10: form.terms[1].x_power");
+  EXPECT_EQ(said("terms = [{ x_power = 1, y_power = 0 }]"), "d.toml:10: form.terms[1].height_um");
   EXPECT_EQ(said("map = \"none.txt\""), "d.toml:10: form.map");
   const MapFolder small([](double, double) { return 0.0; }, 5.0);
   EXPECT_EQ(refused(small.text("")), "d.toml:10: form.map");
@@ -186,8 +187,8 @@ TEST(FormOfDesign, WrongFormsAreRefused) {
 TEST(FormOfDesign, IsWrittenAsItWasRead) {
   const std::string text =
       kCubes +
-      "[form]\nsink_um = 0.25\nterms = [{ level = 2, down = 1, height_um = -0.5 }]\nmap = \"m.gsf\"\n"
-      "map_level_axis = \"y\"\nmap_degree = 6\n";
+      "[form]\nsink_um = 0.25\nterms = [{ x_power = 2, y_power = 1, height_um = -0.5 }]\nmap = \"m.gsf\"\n"
+      "map_horizontal_axis = \"y\"\nmap_degree = 6\n";
   const Design again = parse_design(design_text(parse_design(text, "d.toml")), "d.toml");
   const FormOfFacets& form = again.surface.form;
   EXPECT_EQ(form.sink_um, 0.25);
@@ -265,7 +266,7 @@ TEST(FormOfDesign, RreIsContinuousInUnequalDihedralErrors) {
   const auto rre = [](double arcmin, const std::string& lengths) {
     Design design = parse_design(
         "[element]\nkind = \"hexagonal_icc\"\naperture_mm = 1\n[array]\n" + lengths +
-            "[body]\nthickness_mm = 2\n[form]\nterms = [{ level = 1, down = 1, height_um = 1 }]\n[detector]\n"
+            "[body]\nthickness_mm = 2\n[form]\nterms = [{ x_power = 1, y_power = 1, height_um = 1 }]\n[detector]\n"
             "acceptance_half_angle_deg = [0.03, 0.1, 0.2]\n",
         "d.toml");
     design.part().angle_errors.dihedral_error_arcmin = {arcmin, 2.0 * arcmin, 3.0 * arcmin};

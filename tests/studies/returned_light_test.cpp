@@ -220,7 +220,7 @@ TEST(EntranceFace, HasTheRimsAndRootsOfItsElements) {
 TEST(FootprintFiles, AreClosedRingsAndOneEntryADirection) {
   const RreResult result = run(design_of(bricks()), {0.0, 1.0});
   const Json json = Json::parse(footprint_json(result));
-  EXPECT_EQ(json["schema"], "retrace.footprint/1");
+  EXPECT_EQ(json["schema"], "retrace.footprint/2");
   EXPECT_EQ(json["type"], "FeatureCollection");
   EXPECT_EQ(json["complete"], true);
   ASSERT_EQ(json["regions"].size(), 2U);

@@ -11,13 +11,13 @@
 #include "studies/design/io/design_reader.h"
 #include "tests/support/refusals.h"
 
-// Tests of the table [base]: allowed values, and errors at the key of a base that cannot carry the elements.
+// Tests of the table [substrate]: allowed values, and errors at the key of a base that cannot carry the elements.
 
 namespace retrace::studies::substrate_reader_test {
 namespace {
 
 std::string design(const std::string& element, const std::string& substrate) {
-  return element + "x_length_mm = 6\ny_length_mm = 6\n[base]\n" + substrate + "\n[body]\nthickness_mm = 3\n";
+  return element + "x_length_mm = 6\ny_length_mm = 6\n[substrate]\n" + substrate + "\n[body]\nthickness_mm = 3\n";
 }
 
 const std::string kPrisms = "[element]\nkind = \"rtp\"\nbase_mm = 0.5\nwidth_mm = 0.5\n[array]\n";
@@ -38,7 +38,7 @@ TEST(SubstrateReader, ReadsEveryKind) {
   EXPECT_EQ(std::get<geometry::PlaneSubstrate>(plane.shape).azimuth_deg, -30.0);
   EXPECT_EQ(plane.element_axes, geometry::ElementAxes::normal);
   const geometry::Substrate cylinder =
-      *read(design(kPrisms, "kind = \"cylinder\"\nradius_mm = -20\naxis = \"x\"\nelements = \"parallel\""))
+      *read(design(kPrisms, "kind = \"cylinder\"\nradius_mm = -20\naxis = \"x\"\nelement_axes = \"parallel\""))
            .part()
            .substrate;
   EXPECT_EQ(std::get<geometry::CylinderSubstrate>(cylinder.shape).radius_mm, -20.0);
@@ -47,8 +47,8 @@ TEST(SubstrateReader, ReadsEveryKind) {
   const geometry::Substrate sphere = *read(design(kPrisms, "kind = \"sphere\"\nradius_mm = 25")).part().substrate;
   EXPECT_EQ(std::get<geometry::SphereSubstrate>(sphere.shape).radius_mm, 25.0);
   const Design formula = read(design(kPrisms, "kind = \"formula\"\nsag_mm = \"-x^2 / 50\""));
-  EXPECT_EQ(to_json(formula)["base"]["sag_mm"], "-x^2 / 50");
-  EXPECT_EQ(to_json(formula)["base"]["elements"], "normal");
+  EXPECT_EQ(to_json(formula)["substrate"]["sag_mm"], "-x^2 / 50");
+  EXPECT_EQ(to_json(formula)["substrate"]["element_axes"], "normal");
 }
 
 TEST(SubstrateReader, PinsShareOneAxis) {
@@ -57,8 +57,8 @@ TEST(SubstrateReader, PinsShareOneAxis) {
   EXPECT_EQ(pins.part().array.arrangement, geometry::Arrangement::honeycomb);
   EXPECT_EQ(pins.part().substrate->element_axes, geometry::ElementAxes::parallel);
   EXPECT_EQ(to_json(pins)["array"]["arrangement"], "pins");
-  EXPECT_EQ(complaint(design(kPins, "kind = \"plane\"\nincline_deg = 10\nelements = \"normal\"")),
-            "d.toml:11: base.elements");
+  EXPECT_EQ(complaint(design(kPins, "kind = \"plane\"\nincline_deg = 10\nelement_axes = \"normal\"")),
+            "d.toml:11: substrate.element_axes");
   EXPECT_FALSE(read(kPins + "x_length_mm = 6\ny_length_mm = 6\n[body]\nthickness_mm = 3\n").part().substrate);
 }
 
@@ -70,23 +70,23 @@ struct Bad {
 
 TEST(SubstrateReader, SaysWhatIsWrongAndWhere) {
   const std::vector<Bad> bad = {
-      {kPrisms, "incline_deg = 3", "d.toml:8: base.kind"},
-      {kPrisms, "kind = \"cone\"", "d.toml:9: base.kind"},
-      {kPrisms, "kind = \"plane\"", "d.toml:8: base.incline_deg"},
-      {kPrisms, "kind = \"plane\"\nincline_deg = 75", "d.toml:10: base.incline_deg"},
-      {kPrisms, "kind = \"plane\"\nincline_deg = 50", "d.toml:10: base.incline_deg"},
-      {kPrisms, "kind = \"plane\"\nincline_deg = 5\nradius_mm = 9", "d.toml:11: base.radius_mm"},
-      {kPrisms, "kind = \"sphere\"\nradius_mm = 0", "d.toml:10: base.radius_mm"},
-      {kPrisms, "kind = \"sphere\"\nradius_mm = 5\naxis = \"x\"", "d.toml:11: base.axis"},
-      {kPrisms, "kind = \"cylinder\"\nradius_mm = 0.6", "d.toml:10: base.radius_mm"},
-      {kPrisms, "kind = \"sphere\"\nradius_mm = 3.5", "d.toml:10: base.radius_mm"},
-      {kPrisms, "kind = \"formula\"", "d.toml:8: base.sag_mm"},
-      {kPrisms, "kind = \"formula\"\nsag_mm = \"x +\"", "d.toml:10: base.sag_mm"},
-      {kPrisms, "kind = \"formula\"\nsag_mm = \"log(x)\"", "d.toml:10: base.sag_mm"},
-      {kPrisms, "kind = \"formula\"\nsag_mm = \"0.2*sin(9*x)\"", "d.toml:10: base.sag_mm"},
-      {kPrisms, "kind = \"plane\"\nincline_deg = 5\nwidth = 1", "d.toml:11: base.width"},
-      {kPrisms + "x_offset_mm = 1\n", "kind = \"plane\"\nincline_deg = 5", "d.toml:10: base.kind"},
-      {kPins, "kind = \"plane\"\nincline_deg = 45", "d.toml:10: base.incline_deg"},
+      {kPrisms, "incline_deg = 3", "d.toml:8: substrate.kind"},
+      {kPrisms, "kind = \"cone\"", "d.toml:9: substrate.kind"},
+      {kPrisms, "kind = \"plane\"", "d.toml:8: substrate.incline_deg"},
+      {kPrisms, "kind = \"plane\"\nincline_deg = 75", "d.toml:10: substrate.incline_deg"},
+      {kPrisms, "kind = \"plane\"\nincline_deg = 50", "d.toml:10: substrate.incline_deg"},
+      {kPrisms, "kind = \"plane\"\nincline_deg = 5\nradius_mm = 9", "d.toml:11: substrate.radius_mm"},
+      {kPrisms, "kind = \"sphere\"\nradius_mm = 0", "d.toml:10: substrate.radius_mm"},
+      {kPrisms, "kind = \"sphere\"\nradius_mm = 5\naxis = \"x\"", "d.toml:11: substrate.axis"},
+      {kPrisms, "kind = \"cylinder\"\nradius_mm = 0.6", "d.toml:10: substrate.radius_mm"},
+      {kPrisms, "kind = \"sphere\"\nradius_mm = 3.5", "d.toml:10: substrate.radius_mm"},
+      {kPrisms, "kind = \"formula\"", "d.toml:8: substrate.sag_mm"},
+      {kPrisms, "kind = \"formula\"\nsag_mm = \"x +\"", "d.toml:10: substrate.sag_mm"},
+      {kPrisms, "kind = \"formula\"\nsag_mm = \"log(x)\"", "d.toml:10: substrate.sag_mm"},
+      {kPrisms, "kind = \"formula\"\nsag_mm = \"0.2*sin(9*x)\"", "d.toml:10: substrate.sag_mm"},
+      {kPrisms, "kind = \"plane\"\nincline_deg = 5\nwidth = 1", "d.toml:11: substrate.width"},
+      {kPrisms + "x_offset_mm = 1\n", "kind = \"plane\"\nincline_deg = 5", "d.toml:10: substrate.kind"},
+      {kPins, "kind = \"plane\"\nincline_deg = 45", "d.toml:10: substrate.incline_deg"},
   };
   for (const Bad& b : bad) {
     const std::string said = complaint(design(b.array, b.substrate));
@@ -95,16 +95,17 @@ TEST(SubstrateReader, SaysWhatIsWrongAndWhere) {
   }
   const std::string endless =
       "[element]\nkind = \"rtp\"\nbase_mm = 1\nwidth_mm = 1\n[array]\nextent = \"infinite\"\n"
-      "[base]\nkind = \"plane\"\nincline_deg = 5\n[body]\nthickness_mm = 2\n";
-  EXPECT_EQ(complaint(endless), "d.toml:8: base.kind");
+      "[substrate]\nkind = \"plane\"\nincline_deg = 5\n[body]\nthickness_mm = 2\n";
+  EXPECT_EQ(complaint(endless), "d.toml:8: substrate.kind");
 }
 
 TEST(SubstrateReader, RefusesWhatASubstrateCannotHave) {
-  const std::string balls = "[element]\nkind = \"ball\"\ndiameter_mm = 1\n[base]\nkind = \"plane\"\nincline_deg = 5\n";
+  const std::string balls =
+      "[element]\nkind = \"ball\"\ndiameter_mm = 1\n[substrate]\nkind = \"plane\"\nincline_deg = 5\n";
   EXPECT_EQ(complaint(balls).substr(0, 12), "d.toml:4: ba") << complaint(balls);
-  EXPECT_EQ(complaint(balls), "d.toml:4: base");
+  EXPECT_EQ(complaint(balls), "d.toml:4: substrate");
   const std::string rounded = design(kPrisms, "kind = \"sphere\"\nradius_mm = 30") + "[surface]\nrim_radius_um = 20\n";
-  EXPECT_EQ(complaint(rounded), "d.toml:10: base.radius_mm");
+  EXPECT_EQ(complaint(rounded), "d.toml:10: substrate.radius_mm");
   const Design inclined = read(design(kPrisms, "kind = \"plane\"\nincline_deg = 5"));
   EXPECT_THROW(check_taken(inclined, {.what = "x", .substrates = false}), InputError);
   EXPECT_NO_THROW(check_taken(read(kPrisms + "x_length_mm = 6\ny_length_mm = 6\n[body]\nthickness_mm = 3\n"),

@@ -224,7 +224,7 @@ TEST(DesignTexture, LevelAxisOfTheMapLiesAlongTheRoofEdge) {
   const double first_order_deg = 1e-3 * kWavelengthNm / period_um * 180.0 / kPi;
   const std::string cone = "detector.acceptance_half_angle_deg=" + shortest(1.2 * first_order_deg);
   const auto rre = [&](const std::string& axis) {
-    return rre_of(kPrism + "[surface]\nheight_map = \"grating.txt\"\nheight_map_level_axis = \"" + axis + "\"\n",
+    return rre_of(kPrism + "[surface]\nheight_map = \"grating.txt\"\nheight_map_horizontal_axis = \"" + axis + "\"\n",
                   {cone}, {}, source)
         .rre;
   };

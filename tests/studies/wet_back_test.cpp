@@ -41,12 +41,12 @@ void expect_same(const RreResult& one, const RreResult& other) {
 
 TEST(WetBackDesign, WhatIsWrongIsRefusedWithItsPlace) {
   const auto refused = [](const std::string& lines) { return complaint(wet(lines)); };
-  expect_refusals(refused, {{"share = 0.5", "d.toml:11: wet_back.index"},
+  expect_refusals(refused, {{"fraction = 0.5", "d.toml:11: wet_back.index"},
                             {"index = 1.333", "d.toml:11: wet_back"},
-                            {"index = 1.333\nshare = 0.5\ndisc_mm = [1, 2, 3]", "d.toml:14: wet_back.disc_mm"},
-                            {"index = 0.9\nshare = 0.5", "d.toml:12: wet_back.index"},
-                            {"index = 1.333\nshare = 1.5", "d.toml:13: wet_back.share"},
-                            {"index = 1.333\nshare = 0.5\nseed = 0.5", "d.toml:14: wet_back.seed"},
+                            {"index = 1.333\nfraction = 0.5\ndisc_mm = [1, 2, 3]", "d.toml:14: wet_back.disc_mm"},
+                            {"index = 0.9\nfraction = 0.5", "d.toml:12: wet_back.index"},
+                            {"index = 1.333\nfraction = 1.5", "d.toml:13: wet_back.fraction"},
+                            {"index = 1.333\nfraction = 0.5\nseed = 0.5", "d.toml:14: wet_back.seed"},
                             {"index = 1.333\ndisc_mm = [1, 2, 3]\nseed = 1", "d.toml:14: wet_back.seed"},
                             {"index = 1.333\ndisc_mm = [1, 2, 0]", "d.toml:13: wet_back.disc_mm"},
                             {"index = 1.333\ndisc_mm = [1, 2]", "d.toml:13: wet_back.disc_mm"},
@@ -56,18 +56,18 @@ TEST(WetBackDesign, WhatIsWrongIsRefusedWithItsPlace) {
 }
 
 TEST(WetBackDesign, ArraysAreFiniteAndStandOnAPlane) {
-  const std::string lines = "index = 1.333\nshare = 0.5\n";
+  const std::string lines = "index = 1.333\nfraction = 0.5\n";
   const auto refused = [&](const std::string& element, const std::string& array) {
     return complaint(design_of(element, array) + "[wet_back]\n" + lines);
   };
   EXPECT_EQ(refused(kRtp, "arrangement = \"aligned\"; extent = \"infinite\""), "d.toml:11: wet_back.index");
   EXPECT_EQ(refused(kHexagonal, "arrangement = \"single\""), "d.toml:9: wet_back.index");
-  EXPECT_EQ(complaint(wet(lines + "[base]\nkind = \"sphere\"\nradius_mm = 100\n")), "d.toml:12: wet_back.index");
+  EXPECT_EQ(complaint(wet(lines + "[substrate]\nkind = \"sphere\"\nradius_mm = 100\n")), "d.toml:12: wet_back.index");
   EXPECT_EQ(complaint("[element]\nkind = \"ball\"\ndiameter_mm = 1\n[wet_back]\n" + lines), "d.toml:4: wet_back");
 }
 
 TEST(WetBackDesign, DesignsAreWrittenAsTheyWereRead) {
-  for (const std::string where : {"share = 0.25\nseed = 7\n", "rectangle_mm = [1, 2, 3.5, 4]\n",
+  for (const std::string where : {"fraction = 0.25\nseed = 7\n", "rectangle_mm = [1, 2, 3.5, 4]\n",
                                   "disc_mm = [1, 2, 0.3]\n", "half_plane = [1, 2, 30]\n"}) {
     const std::string text = design_text(read("index = 1.333\n" + where));
     EXPECT_NE(text.find("[wet_back]\nindex = 1.333\n" + where), std::string::npos) << text;
@@ -78,8 +78,8 @@ TEST(WetBackDesign, DesignsAreWrittenAsTheyWereRead) {
 // If no element or every element is wet, results and engines are the same as for a design with a uniform medium behind
 // all elements.
 TEST(WetBackDesign, NoShareAndAllAreTheWholeBack) {
-  expect_same(rre(read("index = 1.333\nshare = 0")), rre(set({})));
-  expect_same(rre(read("index = 1.333\nshare = 1")), rre(set({"body.back_index=1.333"})));
+  expect_same(rre(read("index = 1.333\nfraction = 0")), rre(set({})));
+  expect_same(rre(read("index = 1.333\nfraction = 1")), rre(set({"body.back_index=1.333"})));
   expect_same(rre(read("index = 1.333\nrectangle_mm = [0, 0, 10, 10]", {"body.back_index=1.1"})),
               rre(set({"body.back_index=1.333"})));
 }
@@ -119,7 +119,7 @@ TEST(WetBackDesign, InspectionTellsWhichElementsAreWet) {
   EXPECT_TRUE(some.tir_limit_deg);             // limit of the dry elements
   EXPECT_FALSE(some.wet_back->tir_limit_deg);  // no total reflection, because 1.333 > n sin 45 degrees
   EXPECT_FALSE(inspect(set({}), library).wet_back);
-  EXPECT_FALSE(inspect(read("index = 1.333\nshare = 1"), library).tir_limit_deg);
+  EXPECT_FALSE(inspect(read("index = 1.333\nfraction = 1"), library).tir_limit_deg);
 }
 
 }  // namespace

@@ -31,7 +31,7 @@
 namespace retrace::studies::zones_test {
 namespace {
 
-const std::string kHalves = "[[zone]]\nshare = 0.5\n[[zone]]\nshare = 0.5\n";
+const std::string kHalves = "[[zone]]\narea_fraction = 0.5\n[[zone]]\narea_fraction = 0.5\n";
 
 std::string zoned(const std::string& zones, const std::string& element = kHexagonal,
                   const std::string& array = "x_length_mm = 20; y_length_mm = 10") {
@@ -45,14 +45,14 @@ Design read(const std::string& zones, const std::string& element = kHexagonal,
 
 TEST(ZonedDesign, WhatIsWrongIsRefusedWithItsPlace) {
   const auto refused = [](const std::string& zones) { return complaint(zoned(zones)); };
-  const std::string half = "[[zone]]\nshare = 0.5\n";
+  const std::string half = "[[zone]]\narea_fraction = 0.5\n";
   expect_refusals(
       refused,
       {{kHalves, ""},
        {"[[zone]]\n", "d.toml:9: zone[1]"},
-       {"[[zone]]\nshare = 0.5\npolygon_mm = [[0, 0], [1, 0], [0, 1]]\n", "d.toml:11: zone[1].polygon_mm"},
-       {half, "d.toml:10: zone[1].share"},
-       {half + "[[zone]]\nshare = 0\n", "d.toml:12: zone[2].share"},
+       {"[[zone]]\narea_fraction = 0.5\npolygon_mm = [[0, 0], [1, 0], [0, 1]]\n", "d.toml:11: zone[1].polygon_mm"},
+       {half, "d.toml:10: zone[1].area_fraction"},
+       {half + "[[zone]]\narea_fraction = 0\n", "d.toml:12: zone[2].area_fraction"},
        {half + "[[zone]]\nrectangles_mm = [[10, 0, 20, 10]]\n", "d.toml:11: zone[2]"},
        {"[[zone]]\nrectangles_mm = [[10, 0, 20, 10]]\n" + half, "d.toml:9: zone[1]"},
        {"[[zone]]\nrectangles_mm = [[0, 0, 20, 9]]\n", "d.toml:9: zone[1]"},
@@ -61,7 +61,7 @@ TEST(ZonedDesign, WhatIsWrongIsRefusedWithItsPlace) {
         "d.toml:11: zone[2]"},
        {"[[zone]]\nrectangles_mm = [[0, 0, 0, 10]]\n", "d.toml:10: zone[1].rectangles_mm"},
        {"[[zone]]\npolygon_mm = [[0, 0], [20, 0], [5, 4], [0, 10]]\n", "d.toml:10: zone[1].polygon_mm"},
-       {half + half.substr(0, 8) + " \nshare = 0.5\nrotation_deg = 400\n", "d.toml:13: zone[2].rotation_deg"},
+       {half + half.substr(0, 8) + " \narea_fraction = 0.5\nrotation_deg = 400\n", "d.toml:13: zone[2].rotation_deg"},
        {half + half + "set = [\"element.cant_deg\"]\n", "d.toml:13: zone[2].set"},
        {half + half + "set = [\"body.thickness_mm=2\"]\n", "d.toml:13: zone[2].set"},
        {half + half + "set = [\"element.cant_deg=50\"]\n", "d.toml:13: zone[2].set"},
@@ -72,10 +72,11 @@ TEST(ZonedDesign, WhatIsWrongIsRefusedWithItsPlace) {
        {"[[zone]]\npolygon_mm = [[0, 0], [20, 0], [20, 10], [0, 10], [0, 0]]\n", "d.toml:10: zone[1].polygon_mm"},
        {"[[zone]]\npolygon_mm = [[0, 0], [20, 0], [20, 10], [0, 10], [0, 0], [20, 0], [20, 10], [0, 10]]\n",
         "d.toml:10: zone[1].polygon_mm"},
-       {"[[zone]]\nshare = 0.9999\n[[zone]]\nshare = 0.0001\nrotation_deg = 17\n", "d.toml:11: zone[2]"},
-       {kHalves + "[base]\nkind = \"sphere\"\nradius_mm = 100\n", "d.toml:9: zone"},
+       {"[[zone]]\narea_fraction = 0.9999\n[[zone]]\narea_fraction = 0.0001\nrotation_deg = 17\n",
+        "d.toml:11: zone[2]"},
+       {kHalves + "[substrate]\nkind = \"sphere\"\nradius_mm = 100\n", "d.toml:9: zone"},
        {kHalves + "[form]\nsink_um = 1\n", "d.toml:9: zone"},
-       {kHalves + "[wet_back]\nindex = 1.3\nshare = 0.5\n", "d.toml:9: zone"}});
+       {kHalves + "[wet_back]\nindex = 1.3\nfraction = 0.5\n", "d.toml:9: zone"}});
 }
 
 TEST(ZonedDesign, ZonesOfSingleElementsAreRefusedWithTheirPlaceToo) {
@@ -90,7 +91,7 @@ TEST(ZonedDesign, ZonesOfSingleElementsAreRefusedWithTheirPlaceToo) {
                             {odd + rest + rest, "d.toml:15: zone[3].rest"},
                             {odd + "[[zone]]\nrest = false\n", "d.toml:13: zone[2].rest"},
                             {odd + kHalves, "d.toml:12: zone[2]"},
-                            {"[[zone]]\nshare = 0.5\n" + rest, "d.toml:11: zone[2]"},
+                            {"[[zone]]\narea_fraction = 0.5\n" + rest, "d.toml:11: zone[2]"},
                             {"[[zone]]\nrows = 1.5\n" + rest, "d.toml:10: zone[1].rows"},
                             {"[[zone]]\nrows = 0\n" + rest, "d.toml:10: zone[1].rows"},
                             {"[[zone]]\nrows = [2, 99]\n" + rest, "d.toml:10: zone[1].rows"},
@@ -118,7 +119,7 @@ TEST(ZonedDesign, AnEmptyListIsNone) {
 
 TEST(ZonedDesign, DesignsAreWrittenAsTheyWereRead) {
   const Design design = read(
-      "[[zone]]\nshare = 0.25\nrotation_deg = 30\n[[zone]]\nshare = 0.75\n"
+      "[[zone]]\narea_fraction = 0.25\nrotation_deg = 30\n[[zone]]\narea_fraction = 0.75\n"
       "set = [\"element.cant_deg=5\", \"surface.dihedral_error_arcmin=[1, 2, 3]\"]\n");
   const std::string text = design_text(design);
   EXPECT_NE(text.find("[[zone]]\nrectangles_mm = [[0, 0, 5, 10]]\nrotation_deg = 30\n"), std::string::npos) << text;
@@ -136,8 +137,8 @@ TEST(ZonedDesign, DesignsAreWrittenAsTheyWereRead) {
 
 TEST(ZonedDesign, TheSameKindKeepsWhatTheDesignSays) {
   const auto aperture_mm = [](const std::string& kind) {
-    const Design design = read("[[zone]]\nshare = 0.5\nset = [" + kind + ", \"array.partial_elements=omit\"]\n" +
-                               "[[zone]]\nshare = 0.5\n");
+    const Design design = read("[[zone]]\narea_fraction = 0.5\nset = [" + kind +
+                               ", \"array.partial_elements=omit\"]\n" + "[[zone]]\narea_fraction = 0.5\n");
     const geometry::Element& element = design.zoned()->spec.zones[0].elements.element;
     return geometry::bounding_box(geometry::aperture_outline(element)).size().maxCoeff();
   };
@@ -270,7 +271,8 @@ RreResult rre(const Design& design, Engine engine, double incidence_deg, std::op
 TEST(ZonedDesign, PrismsTurnedInAZoneReturnWhatTheyDoAlone) {
   const std::string lengths = "x_length_mm = 8; y_length_mm = 4";
   const Design plain = parse_design(design_of(kRtp, lengths), "d.toml");
-  const Design turned = read("[[zone]]\nshare = 0.5\n[[zone]]\nshare = 0.5\nrotation_deg = 90\n", kRtp, lengths);
+  const Design turned =
+      read("[[zone]]\narea_fraction = 0.5\n[[zone]]\narea_fraction = 0.5\nrotation_deg = 90\n", kRtp, lengths);
   EXPECT_NEAR(rre(turned, Engine::exact, 0.0).points[0].rre, rre(plain, Engine::exact, 0.0).points[0].rre, 1e-9);
   const Inspection inspection = inspect(turned, materials::MaterialLibrary::shipped());
   EXPECT_EQ(inspection.elements_full, 32);
@@ -285,8 +287,8 @@ TEST(ZonedDesign, PrismsTurnedInAZoneReturnWhatTheyDoAlone) {
 // of the zones each. The difference arises at the borders.
 TEST(ZonedDesign, TheSumOfZonesIsThePartAsFarAsTheyAreWide) {
   const std::string set = "set = [\"element.cant_deg=8\", \"element.cant_azimuth_deg=40\"]\n";
-  const std::string one = "[[zone]]\nshare = 1\n";
-  const Design part = read("[[zone]]\nshare = 0.5\nrotation_deg = 20\n[[zone]]\nshare = 0.5\n" + set);
+  const std::string one = "[[zone]]\narea_fraction = 1\n";
+  const Design part = read("[[zone]]\narea_fraction = 0.5\nrotation_deg = 20\n[[zone]]\narea_fraction = 0.5\n" + set);
   const RrePoint beams = rre(part, Engine::exact, 15.0).points[0];
   const RrePoint rays = rre(part, Engine::embree, 15.0, 400'000).points[0];
   const double exact = beams.rre;
@@ -329,7 +331,7 @@ TEST(ZonedDesign, TellHowMuchLightMeetsTwoOfThem) {
     return inspect(read(zones, kTriangular), materials::MaterialLibrary::shipped()).zones->crossings[1].share;
   };
   const double wide = share(kHalves);
-  const std::string fifth = "[[zone]]\nshare = 0.2\n";
+  const std::string fifth = "[[zone]]\narea_fraction = 0.2\n";
   const double narrow = share(fifth + fifth + fifth + fifth + fifth);
   EXPECT_GT(wide, 0.0);
   EXPECT_GT(narrow, 2.0 * wide);

@@ -241,10 +241,10 @@ def question(file, text):
     if schema == "retrace.design/1":
         if 'kind = "ball"' in text:
             return ["rre", file, "--incidence=0:40:10", "--samples", 4096], ["rre.png"]
-        return ["inspect", file], ["view.png", "front.svg", "plan.svg"]
+        return ["inspect", file], ["view.png", "entrance_surface.svg", "plan.svg"]
     if schema == "retrace.study/1":
         design = value_of(text, "design") or re.search(r'key = "design"\nvalues = \["([^"]*)"', text).group(1)
-        return ["inspect", (file.parent / design).resolve()], ["view.png", "front.svg", "plan.svg"]
+        return ["inspect", (file.parent / design).resolve()], ["view.png", "entrance_surface.svg", "plan.svg"]
     if schema.startswith("retrace.turn"):
         return ["turn", file], ["maps.png", "profile.svg"]
     if schema.startswith("retrace.plan"):

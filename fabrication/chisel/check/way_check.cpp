@@ -38,7 +38,7 @@ void WayCheck::turn(const NcMotion& motion) {
   if ((motion.moved & kLinearBits) != 0)
     findings_.add("combined_move", motion.place.line, "rotary and linear axes move at the same time");
   if ((motion.known & 0b00100) == 0) {
-    findings_.add("turn_too_low", motion.place.line, "the table rotates before the position of Z is known");
+    findings_.add("rotation_too_low", motion.place.line, "the table rotates before the position of Z is known");
     return;
   }
   const auto rotary = static_cast<std::uint8_t>(motion.moved & ~kLinearBits);
@@ -64,7 +64,7 @@ void WayCheck::turn(const NcMotion& motion) {
   const double clearance_mm = kClearanceShare * job_.process.rotary_clearance_mm;
   if (machine_.tilt == Tilt::table && tip.z() < highest_mm + clearance_mm)
     findings_.add(
-        "turn_too_low", motion.place.line,
+        "rotation_too_low", motion.place.line,
         fmt::format(
             "the rotating blank reaches Z {} mm while the tool is at Z {} mm, but the clearance must be at least {} mm",
             fixed(highest_mm, 3), fixed(tip.z(), 3), fixed(clearance_mm, 3)),
@@ -72,7 +72,7 @@ void WayCheck::turn(const NcMotion& motion) {
   // The blank remains horizontal. A tilting head rotates the tool about B, so the tip must stay above the blank's face.
   if (machine_.tilt == Tilt::head && lowest_tip_mm < clearance_mm)
     findings_.add(
-        "turn_too_low", motion.place.line,
+        "rotation_too_low", motion.place.line,
         fmt::format("the tip is {} mm above the blank's face while the axes rotate, but at least {} mm are required",
                     fixed(lowest_tip_mm, 3), fixed(clearance_mm, 3)),
         lowest_tip_mm, clearance_mm);
@@ -84,7 +84,7 @@ void WayCheck::turn_from_anywhere(const NcMotion& motion) {
   const double safe_mm = machine_.first_z_mm();
   if (motion.from.z_mm < safe_mm - rounding_slack(motion, 'Z'))
     findings_.add(
-        "turn_too_low", motion.place.line,
+        "rotation_too_low", motion.place.line,
         fmt::format("rotary axes with unknown positions move while Z is at {} mm, but Z must be at least at {} mm",
                     fixed_apart(motion.from.z_mm, safe_mm, 3), shortest(safe_mm)),
         motion.from.z_mm, safe_mm);

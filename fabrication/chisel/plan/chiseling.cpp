@@ -141,10 +141,10 @@ void check_v_in_poses(const Job& job, const Machine& machine, const std::array<C
     const Angle second = Angle::from_rad(std::atan2(along_first.z(), along_first.y()));
     const double covered_deg = first.deg() + second.deg();
     if (covered_deg < 90.0 + error_deg)
-      throw InputError(where,
-                       fmt::format("{}the cuts along facets {} and {} would leave a fin of {} degrees between them, "
-                                   "but no fin is allowed: increase tool.wedge_deg, or reduce the slope of the base",
-                                   stance.who(), k + 1, (k + 1) % 3 + 1, fixed(90.0 + error_deg - covered_deg, 3)));
+      throw InputError(
+          where, fmt::format("{}the cuts along facets {} and {} would leave a fin of {} degrees between them, "
+                             "but no fin is allowed: increase tool.wedge_deg, or reduce the slope of the substrate",
+                             stance.who(), k + 1, (k + 1) % 3 + 1, fixed(90.0 + error_deg - covered_deg, 3)));
   }
   check_fins_in_poses();
   double most_turned = 0.0;

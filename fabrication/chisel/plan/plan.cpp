@@ -45,9 +45,9 @@ std::vector<Stage> choose_stages(Plan& plan, const PlanOptions& options) {
   if (!options.before.empty()) {
     const auto first = std::find_if(plan.stages.begin(), plan.stages.end(),
                                     [&](const Stage& stage) { return is_named(stage, options.before); });
-    if (first == plan.stages.end()) refuse_phase(plan, Field{"standing"}, options.before);
+    if (first == plan.stages.end()) refuse_phase(plan, Field{"next_stage"}, options.before);
     if (first == plan.stages.begin())
-      throw InputError(Field{"standing"}, "must not be the first stage, because nothing has been cut before it");
+      throw InputError(Field{"next_stage"}, "must not be the first stage, because nothing has been cut before it");
     plan.stages.erase(first, plan.stages.end());
   }
   if (options.phase == "all") return {};

@@ -121,7 +121,7 @@ double left_of_roughing_mm(const Job& job, double across_mm, int cut, int cuts, 
   if (least_mm == 0.0 || taken_mm <= -dip_mm || share * taken_mm - dip_mm >= least_mm) return left_mm;
   const double shared_mm = cut < cuts ? 0.5 * (taken_mm + depth_mm) : taken_mm;
   if (share * shared_mm - dip_mm < least_mm)
-    throw InputError(job.where("process.least_chip_um"),
+    throw InputError(job.where("process.min_chip_um"),
                      fmt::format("must be at most {}, the chip thickness of the first roughing cut, got {}",
                                  fixed(1e3 * (share * shared_mm - dip_mm), 3), shortest(*job.process.least_chip_um)));
   return across_mm - shared_mm;

@@ -303,11 +303,12 @@ const Table kJobTables[] = {
      .child = children<&Job::zones>,
      .presence = Presence::list,
      .when = kOfVTools},
-    {.name = "base",
+    {.name = "substrate",
      .meaning = "Surface on which the elements are placed, instead of the plane z = 0.",
      .rows = geometry::substrate_rows().first(geometry::substrate_rows().size() - 1),
      .child = kBase,
-     .presence = Presence::optional},
+     .presence = Presence::optional,
+     .former = "base"},
     {.name = "tool", .meaning = "Diamond tool.", .rows = kToolRows, .tables = kToolTables, .child = child<&Job::tool>},
     process_table("process", child<&Job::process>)};
 // Checks that involve several keys.
@@ -376,7 +377,7 @@ void check_zones(const Job& job, const Refuse& refuse) {
   for (const auto& [key, is_given] : {std::pair("array.x_offset_mm", array.x_offset_mm != 0.0),
                                       {"array.y_offset_mm", array.y_offset_mm != 0.0},
                                       {"array.pattern", !array.pattern.empty()},
-                                      {"base.kind", job.substrate.has_value()}})
+                                      {"substrate.kind", job.substrate.has_value()}})
     if (is_given) refuse(key, "not allowed together with [[zone]]");
   std::size_t elements = 0;
   for (const CutZone& zone : job.zones) elements += zone.apexes_mm.size();
@@ -439,7 +440,7 @@ void check_array_on_substrate(const Job& job, const Refuse& refuse) {
   const std::string_view key = geometry::substrate_shape_key(*job.substrate);
   const ArrayLayout& array = job.array;
   if (job.workpiece.kind == WorkpieceKind::direct)
-    refuse(key, "workpiece.kind must be \"mould\" for elements on a base, got \"direct\"");
+    refuse(key, "workpiece.kind must be \"mould\" for elements on a substrate, got \"direct\"");
   if (array.arrangement == Arrangement::single) refuse(key, "not allowed for arrangement = \"single\"");
   if (array.x_offset_mm != 0.0 || array.y_offset_mm != 0.0)
     refuse(key, "not allowed together with array.x_offset_mm and y_offset_mm");
@@ -490,14 +491,14 @@ void check_stops(const Job& job, const Refuse& refuse) {
 constexpr Words kMachineKeys = {"machine"};
 constexpr Words kWorkpieceKeys = {"workpiece.kind", "element.kind"};
 constexpr Words kChipKeys = {"tool.edge_chips", "tool.width_mm"};
-constexpr Words kArrayOnSubstrateKeys = {"base.kind",         "workpiece.kind",    "array.arrangement",
+constexpr Words kArrayOnSubstrateKeys = {"substrate.kind",    "workpiece.kind",    "array.arrangement",
                                          "array.x_offset_mm", "array.y_offset_mm", "array.pattern"};
 constexpr Words kArrayKeys = {"array.x_length_mm", "array.y_length_mm"};
 constexpr Words kPatternKeys = {"array.pattern"};
 constexpr Words kZoneKeys = {"zone", "array.arrangement", "array.x_offset_mm", "array.y_offset_mm", "array.pattern"};
 constexpr Words kSquareKeys = {"element.base_mm", "element.width_mm"};
 constexpr Words kToolKeys = {"tool.width_mm", "tool.wedge_deg", "tool.clearance_deg", "tool.side_clearance_deg"};
-constexpr Words kSubstrateKeys = {"base.kind"};
+constexpr Words kSubstrateKeys = {"substrate.kind"};
 constexpr Words kStopKeys = {"process.stop_before_finishing", "strategy"};
 constexpr Rule kJobRules[] = {
     Check{kMachineKeys, "The name of the machine must not be empty.", check_by<check_machine>},
@@ -505,13 +506,14 @@ constexpr Rule kJobRules[] = {
     Check{kChipKeys, "At most 100 chips are allowed. They must be within the edge and must not overlap.",
           check_by<check_chips>},
     Check{kArrayOnSubstrateKeys,
-          "A `[base]` is allowed only for moulds, and only for arrays without margins and pattern. It is not allowed "
-          "for the arrangement `single`.",
+          "A `[substrate]` is allowed only for moulds, and only for arrays without margins and pattern. It is not "
+          "allowed for the arrangement `single`.",
           check_by<check_array_on_substrate>},
-    Check{kZoneKeys,
-          "With zones, margins, a pattern, a base and the arrangement `single` are not allowed. The elements of all "
-          "zones, at most 2,000,000 in total, must be within the lengths of the array and must not overlap.",
-          check_by<check_zones>},
+    Check{
+        kZoneKeys,
+        "With zones, margins, a pattern, a substrate and the arrangement `single` are not allowed. The elements of all "
+        "zones, at most 2,000,000 in total, must be within the lengths of the array and must not overlap.",
+        check_by<check_zones>},
     Check{kArrayKeys, "At least one element must fit between the margins, and at most 2,000,000 elements are allowed.",
           check_by<check_room>},
     Check{kSquareKeys, "In the arrangement `checker`, `base_mm` and `width_mm` must be equal.", check_by<check_square>},
@@ -525,7 +527,7 @@ constexpr Rule kJobRules[] = {
     Check{kStopKeys, "`stop_before_finishing` needs a strategy with finishing cuts: `two-step` or `dmc`.",
           check_by<check_stops>},
     Check{kSubstrateKeys,
-          "At least one whole element must fit on the base, and the tool must be able to move out of the cuts.",
+          "At least one whole element must fit on the substrate, and the tool must be able to move out of the cuts.",
           check_by<check_substrate>}};
 
 const Format kJobFormat = {"job",

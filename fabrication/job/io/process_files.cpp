@@ -12,6 +12,7 @@
 #include "core/named_file.h"
 #include "core/number_format.h"
 #include "core/schema/access.h"
+#include "core/schema/conditions.h"
 #include "core/schema/reader.h"
 #include "fabrication/job/io/given_access.h"
 
@@ -73,10 +74,13 @@ constexpr schema::Row kRows[] = {
     {"rotary_clearance_mm", Number{kShortLength}, 5.0,
      "Minimum height of the tool, during a rotary move, above all points that the rotating blank can reach.",
      access<&Process::rotary_clearance_mm>},
-    {"least_chip_um", Number{kDepth}, kNone,
-     "Minimum chip thickness. If the chip of a cut is thinner along its whole length, the edge rubs instead of "
-     "cutting. The value is at most half of the depth of cut, both in roughing and in finishing.",
-     access_given<&Process::least_chip_um>},
+    schema::renamed(
+        "least_chip_um",
+        schema::Row{
+            "min_chip_um", Number{kDepth}, kNone,
+            "Minimum chip thickness. If the chip of a cut is thinner along its whole length, the edge rubs instead of "
+            "cutting. The value is at most half of the depth of cut, both in roughing and in finishing.",
+            access_given<&Process::least_chip_um>}),
     {"stop_every_min", Number{kMinutes}, kNone,
      "Maximum run time of a program from its beginning, or from a stop, to the next stop. At a stop, the operator "
      "inspects the part and the edge, and touches off again.",
@@ -117,9 +121,9 @@ std::string rubbing_depth(const Process& p) {
 }
 
 constexpr std::string_view kPloughKeys[] = {"plough_length_mm"};
-constexpr std::string_view kLeastChipKeys[] = {"least_chip_um"};
+constexpr std::string_view kLeastChipKeys[] = {"min_chip_um"};
 constexpr schema::Rule kRules[] = {
-    schema::Check{kLeastChipKeys, "`least_chip_um` is at most half of `roughing_depth_um` and of `finishing_depth_um`.",
+    schema::Check{kLeastChipKeys, "`min_chip_um` is at most half of `roughing_depth_um` and of `finishing_depth_um`.",
                   schema::check_by<rubbing_depth>},
     schema::Check{kPloughKeys,
                   "A plough is at least as long as the depth of cut in roughing, unless `shortest_plough` is true.",

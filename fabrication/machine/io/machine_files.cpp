@@ -226,8 +226,9 @@ constexpr auto kHullRows =
 constexpr auto kHullRules = source_rules<Points>(value_check<flat_hull>("The points must not lie in one plane."));
 constexpr ValueTable kHull = {kHullRows, kHullRules};
 
+/// \param former name of the table in former versions; empty if it has not been renamed
 constexpr Table value(std::string_view name, const ValueTable& type, Child child, std::string_view meaning,
-                      std::string_view otherwise = {}) {
+                      std::string_view otherwise = {}, std::string_view former = {}) {
   return {.name = name,
           .meaning = meaning,
           .rows = type.rows,
@@ -236,7 +237,8 @@ constexpr Table value(std::string_view name, const ValueTable& type, Child child
           .presence = otherwise.empty() ? Presence::always : Presence::optional,
           .layout = Layout::in_line,
           .shape = kSourcedShape,
-          .otherwise = otherwise};
+          .otherwise = otherwise,
+          .former = former};
 }
 
 /// Access to a member that is written to a file only if it differs from its default.
@@ -321,11 +323,11 @@ constexpr Table kMountTables[] = {
           "Displacement, along X, Y and Z, of the tool reference point from its nominal position. For a tilting head, "
           "it is the displacement at B = 0.",
           "0"),
-    value("turn_deg", kMountTurn, child<&ToolMount::turn_deg>,
+    value("rotation_deg", kMountTurn, child<&ToolMount::turn_deg>,
           "Orientation of the mounted tool: a rotation vector by the right-hand rule. The tool is touched off after "
           "mounting, so the rotation does not move its reference point. A rotation about X changes the clearance, one "
           "about Y tilts the edge, and one about Z rotates the edge away from X.",
-          "0")};
+          "0", "turn_deg")};
 
 bool is_mounted_askew(const Machine& m) {
   return m.mount.offset_mm.value != Vec3::Zero() || m.mount.turn_deg.value != Vec3::Zero();

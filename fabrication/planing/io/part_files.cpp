@@ -50,16 +50,19 @@ constexpr double kLeastMovesMm[] = {13.0, 13.0, 6.0};
 constexpr double kTravelsMm[] = {350.0, 1500.0, 400.0};
 constexpr Row kMillRows[] = {
     {"fast_feed_mm_per_min", kFeed, kRequired, "Feed of all moves."},
-    {"frame_s", Number{{.low = 0.0, .high = 60.0}}, 0.0,
-     "Time that each frame (block) of a program takes in addition to its move."},
+    renamed("frame_s", Row{"block_s", Number{{.low = 0.0, .high = 60.0}}, 0.0,
+                           "Time that each block of a program takes in addition to its move."}),
     {"grid_mm", Number{{.low = 1e-3, .high = 1.0}}, 0.01, "Step of the grid of the machine's positions."},
-    {"least_move_mm", Numbers{3, {.low = 0.0, .high = 1e3}}, kLeastMovesMm,
-     "Minimum lengths of moves in fast feed, `[x, y, z]`. X is across the zones, Y is along them, and Z is up."},
+    renamed("least_move_mm",
+            Row{"min_move_mm", Numbers{3, {.low = 0.0, .high = 1e3}}, kLeastMovesMm,
+                "Minimum lengths of moves in fast feed, `[x, y, z]`. X is across the zones, Y is along them, and Z is "
+                "up."}),
     {"travel_mm", Numbers{3, {.low = 0.1, .high = 1e4}}, kTravelsMm,
      "Travel of the axes, `[x, y, z]`. X is across the zones, Y is along them, and Z is up. `retrace plane` reports "
      "the travel that the part requires."},
-    {"most_hours", Number{{.low = 0.01, .high = 1000.0}}, 8.0, "Maximum run time of one program."},
-    {"run_out_mm", kLength, 20.0, "Distance beyond the part at which strokes begin and end."},
+    renamed("most_hours",
+            Row{"max_hours", Number{{.low = 0.01, .high = 1000.0}}, 8.0, "Maximum run time of one program."}),
+    renamed("run_out_mm", Row{"overrun_mm", kLength, 20.0, "Distance beyond the part at which strokes begin and end."}),
     {"clear_mm", kLength, 14.0,
      "Height, above the blank, of moves without cutting. It is at least the minimum move of Z."}};
 constexpr std::string_view kSpindleText =
@@ -89,10 +92,10 @@ constexpr Table kTables[] = {
     {.name = "lathe", .meaning = "Lathe on which the lens is turned.", .rows = kLatheRows, .when = kTurnedOnly}};
 PlaningMill mill_of(const Document& file) {
   const auto number = [&](std::string_view key) { return file.number(path_in("mill", key)); };
-  const std::vector<double> least = file.numbers("mill.least_move_mm");
+  const std::vector<double> least = file.numbers("mill.min_move_mm");
   const std::vector<double> travel = file.numbers("mill.travel_mm");
   return {number("fast_feed_mm_per_min"),
-          number("frame_s"),
+          number("block_s"),
           number("grid_mm"),
           least[0],
           least[1],
@@ -100,8 +103,8 @@ PlaningMill mill_of(const Document& file) {
           travel[0],
           travel[1],
           travel[2],
-          number("most_hours"),
-          number("run_out_mm"),
+          number("max_hours"),
+          number("overrun_mm"),
           number("clear_mm")};
 }
 
@@ -139,7 +142,7 @@ constexpr std::string_view kStop = "lathe.spindle_stop";
 
 void check_clearance(const Document& file) {
   if (!file.has("mill")) return;
-  const double least_mm = file.numbers("mill.least_move_mm")[2];
+  const double least_mm = file.numbers("mill.min_move_mm")[2];
   const double clear_mm = file.number("mill.clear_mm");
   if (clear_mm < least_mm)
     file.fail("mill.clear_mm", fmt::format("must be at least the minimum move of Z ({}), got {}", shortest(least_mm),
@@ -206,7 +209,7 @@ void check_zones(const Document& file) {
                           shortest(part.lathe->nose_radius_mm)));
 }
 
-constexpr Words kClearKeys = {"mill.clear_mm", "mill.least_move_mm"};
+constexpr Words kClearKeys = {"mill.clear_mm", "mill.min_move_mm"};
 constexpr Words kSpindleKeys = {kStart, kStop, "lathe.has_unchecked_lines"};
 constexpr Words kSizeKeys = {"tolerance.form_mm", "mill.grid_mm", "element.width_mm"};
 constexpr Words kZoneKeys = {"element.focal_length_mm", "element.width_mm", "lathe.nose_radius_mm"};

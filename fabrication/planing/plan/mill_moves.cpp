@@ -77,7 +77,7 @@ bool MillMoves::ends_in_time() const {
 void MillMoves::require_in_time() const {
   if (!ends_in_time())
     throw InputError(fmt::format(
-        "a single cut, or a single depth of all cuts, takes longer than {} hours, the most_hours of a program",
+        "a single cut, or a single depth of all cuts, takes longer than {} hours, the max_hours of a program",
         shortest(part_.mill->most_hours)));
 }
 

@@ -129,7 +129,7 @@ TurnedPart parse_turned_part(std::string_view text, const std::string& source_na
   TurnedPart part{file.text_if("title"),
                   std::move(surface),
                   tool,
-                  file.flag("tool.find_least_skew"),
+                  file.flag("tool.find_min_skew"),
                   path,
                   read_machine(file),
                   file.number("inspect.form_tolerance_nm"),

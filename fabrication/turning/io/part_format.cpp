@@ -20,7 +20,7 @@ constexpr Kind kPositive = Number{{.low = 0.0, .low_included = false, .high = 1e
 constexpr Words kSamplings = {"angle", "arc"};
 constexpr Words kServos = {"slow", "fast"};
 
-constexpr Condition kNoLeastSkew[] = {without("find_least_skew")};
+constexpr Condition kNoLeastSkew[] = {without("find_min_skew")};
 constexpr Row kToolRows[] = {
     {"nose_radius_mm", Number{{.low = 1e-4, .high = 100.0}}, kRequired, "Radius of the tool's round nose."},
     {"clearance_deg", Number{{.low = 0.0, .low_included = false, .high = 60.0}}, kRequired,
@@ -35,9 +35,10 @@ constexpr Row kToolRows[] = {
      "needed. In a spiral, the tool is displaced along Y to obtain the skew; in a raster, the part is rotated to C = "
      "-skew.",
      kNoLeastSkew},
-    {"find_least_skew", Flag{}, false,
-     "Whether the skew is determined by the program: the skew closest to 0, within +-60 degrees, at which the tool "
-     "clears the surface."}};
+    renamed("find_least_skew",
+            Row{"find_min_skew", Flag{}, false,
+                "Whether the skew is determined by the program: the skew closest to 0, within +-60 degrees, at which "
+                "the tool clears the surface."})};
 
 using geometry::kRasterOnly;
 using geometry::kSpiralOnly;

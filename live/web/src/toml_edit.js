@@ -1,5 +1,6 @@
 // Changes values in the text of a design in place, so that comments and order are kept. Only lines "key = value" below
-// a "[table]" are supported. For other forms, the engine writes a new text.
+// a "[table]" are supported. For other forms, the engine writes a new text. It also does so for texts with former names
+// of tables or keys, because a line with the current name next to them would be an error.
 
 function headerOf(line) {
   const found = /^\s*\[([A-Za-z0-9_.-]+)\]\s*(#.*)?\r?$/.exec(line);
@@ -87,8 +88,18 @@ function changed(lines, path, value) {
   return [...lines.slice(0, place), `${key} = ${textOf(value)}`, ...lines.slice(place)];
 }
 
+// Former names of the design format (`former` in studies/design/io and geometry/io) that a text may contain.
+const FORMER_TABLES = "base|front";
+const FORMER_KEYS = "elements|turned|share|dust_forward_share|height_map_level_axis|map_level_axis|level|down";
+const FORMER = new RegExp(
+  `^\\s*(\\[\\s*["']?(${FORMER_TABLES})["']?\\s*[\\].]|["']?(${FORMER_TABLES})["']?\\s*[.=]|` +
+    `(["']?\\w+["']?\\s*\\.\\s*)?["']?(${FORMER_KEYS})["']?\\s*=)`,
+  "m",
+);
+
 /** Returns the text with the new values, or null if this is not possible line by line. */
 export function edited(toml, changes) {
+  if (FORMER.test(toml)) return null;
   let lines = toml.split("\n");
   for (const [path, value] of Object.entries(changes)) {
     if (value !== null && typeof value === "object" && !Array.isArray(value)) return null;

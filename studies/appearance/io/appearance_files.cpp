@@ -25,7 +25,7 @@ Json error_json(const AppearanceError& error) {
   return {{"geometries", error.geometries},
           {"median", error.median},
           {"of_95_percent", error.of_95_percent},
-          {"greatest", error.greatest},
+          {"max", error.greatest},
           {"floor", kErrorFloor}};
 }
 
@@ -39,9 +39,9 @@ Json request_json(const AppearanceResult& result) {
   return {{"illuminant", "D65"},
           {"source_arcmin", request.source_arcmin},
           {"receiver_arcmin", request.receiver_arcmin},
-          {"most_entrance_deg", request.entrance_deg},
+          {"max_entrance_deg", request.entrance_deg},
           {"window_deg", request.window_deg},
-          {"error_asked", request.error}};
+          {"error_requested", request.error}};
 }
 
 std::string table_text(const AppearanceResult& result, const std::string& values_name) {
@@ -67,7 +67,7 @@ std::string table_text(const AppearanceResult& result, const std::string& values
                      {"azimuth_deg", range_json(cell.azimuth)},
                      {"directions", cell.directions}});
   json["cells"] = cells;
-  return result_text("retrace.material/1", std::move(json), result.warnings);
+  return result_text("retrace.material/2", std::move(json), result.warnings);
 }
 
 /// Returns the values of all grids as CSV, direction by direction and row by row.
@@ -148,7 +148,7 @@ std::string appearance_json(const AppearanceResult& result, const AppearanceText
   if (text.error) json["error_of_lobes"] = error_json(*text.error);
   json["elapsed_s"] = result.elapsed_s;
   json["design"] = to_json(result.design);
-  return result_text("retrace.export/1", json, result.warnings);
+  return result_text("retrace.export/2", json, result.warnings);
 }
 
 std::string appearance_table(const AppearanceResult& result, const AppearanceText& text) {

@@ -29,7 +29,7 @@ struct AppearanceText {
 /// \pre result.complete
 AppearanceText appearance_text(const AppearanceResult& result, AppearanceFormat format, const std::string& values_name);
 
-/// Returns the document `retrace.export/1` of a material.
+/// Returns the document `retrace.export/2` of a material.
 std::string appearance_json(const AppearanceResult& result, const AppearanceText& text, const std::string& file);
 
 /// Returns the main values of a material as a table for the terminal.

@@ -34,14 +34,14 @@ void put(Json& json, const Calibration& result) {
   json["machine"] = result.machine.name;
   json["used"] = result.parts.measurements.size();
   json["empty"] = result.parts.empty_rows;
-  json["freedom"] = result.freedom;
+  json["degrees_of_freedom"] = result.freedom;
   json["scatter"] = scatter(result);
   json["quantities"] = Json::array();
   for (const CalibratedQuantity& q : result.quantities)
     json["quantities"].push_back({{"quantity", q.quantity->key},
-                                  {"words", q.quantity->words},
+                                  {"description", q.quantity->words},
                                   {"unit", q.quantity->unit()},
-                                  {"told", q.is_told},
+                                  {"observable", q.is_told},
                                   {"value", q.value},
                                   {"uncertainty", q.uncertainty}});
   json["covariance"] = Json::array();
@@ -50,7 +50,7 @@ void put(Json& json, const Calibration& result) {
     for (Eigen::Index l = 0; l < result.covariance.cols(); ++l) row.push_back(result.covariance(k, l));
     json["covariance"].push_back(std::move(row));
   }
-  json["untold"] = result.untold;
+  json["unobservable"] = result.untold;
   json["outliers"] = Json::array();
   for (const Outlier& outlier : result.outliers)
     json["outliers"].push_back({{"line", outlier.measurement.line},
@@ -98,7 +98,7 @@ void put_rests(Json& json, const Correction& result) {
   for (const FacetMark& mark : result.marks)
     json["marks"].push_back({{"direction", mark.is_along_cut ? "cut" : "edge"},
                              {"of_edge", mark.is_of_edge},
-                             {"place_um", mark.place_um},
+                             {"position_um", mark.place_um},
                              {"height_nm", mark.height_nm},
                              {"width_um", mark.width_um},
                              {"shown", mark.shown},
@@ -112,7 +112,7 @@ std::string calibration_json(const Calibration& result) {
   json["measurements"] = result.parts.file;
   json["jobs"] = result.parts.jobs;
   put(json, result);
-  return result_text("retrace.calibration/1", std::move(json), result.warnings);
+  return result_text("retrace.calibration/2", std::move(json), result.warnings);
 }
 
 std::string calibration_table(const Calibration& result) {
@@ -129,7 +129,7 @@ std::string correction_json(const Correction& result) {
     const RegisteredMap& map = result.registered[k];
     const geometry::Vec3& at = map.part_from_map.translation_mm;
     json["maps"].push_back({{"file", result.maps[k].file},
-                            {"middle_mm", {at.x(), at.y(), at.z()}},
+                            {"centre_mm", {at.x(), at.y(), at.z()}},
                             {"rms_nm", map.rms_nm},
                             {"facets", map.figures.size() / 3},
                             {"face", map.face.has_value()}});
@@ -141,7 +141,7 @@ std::string correction_json(const Correction& result) {
   json["before"] = outlook(result.before);
   json["after"] = outlook(result.after);
   put_rests(json, result);
-  return result_text("retrace.correction/1", std::move(json), result.calibration.warnings);
+  return result_text("retrace.correction/2", std::move(json), result.calibration.warnings);
 }
 
 std::string correction_table(const Correction& result) {
@@ -197,20 +197,20 @@ std::string test_cuts_json(const TestCuts& cuts) {
     json["jobs"].push_back({{"job", cuts.parts.jobs[k]},
                             {"elements", cuts.jobs[k].elements},
                             {"time_s", cuts.parts.plans[k].plan.time.total_s()}});
-  json["figures"] = cuts.parts.measurements.size();
+  json["measurement_count"] = cuts.parts.measurements.size();
   json["quantities"] = Json::array();
   for (const PlannedQuantity& q : cuts.quantities) {
     Json needs = Json::array();
     for (const std::size_t part : q.needs) needs.push_back(cuts.parts.jobs[part]);
     json["quantities"].push_back({{"quantity", q.quantity->key},
-                                  {"words", q.quantity->words},
+                                  {"description", q.quantity->words},
                                   {"unit", q.quantity->unit()},
-                                  {"told", q.is_told},
+                                  {"observable", q.is_told},
                                   {"uncertainty", q.uncertainty},
                                   {"needs", std::move(needs)}});
   }
-  json["untold"] = cuts.untold;
-  return result_text("retrace.test_cuts/1", std::move(json), {});
+  json["unobservable"] = cuts.untold;
+  return result_text("retrace.test_cuts/2", std::move(json), {});
 }
 
 std::string test_cuts_table(const TestCuts& cuts) {

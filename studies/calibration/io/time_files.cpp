@@ -218,16 +218,16 @@ std::string time_calibration_json(const TimeCalibration& result) {
   json["machine"] = result.machine.name;
   json["used"] = result.programs.rows.size();
   json["empty"] = result.programs.empty_rows;
-  json["freedom"] = result.freedom;
+  json["degrees_of_freedom"] = result.freedom;
   json["scatter"] = result.scatter;
   json["quantities"] = Json::array();
   for (std::size_t k = 0; k < kTimeQuantities; ++k)
     json["quantities"].push_back({{"quantity", kTimeQuantityWords[k].key},
-                                  {"words", kTimeQuantityWords[k].words},
-                                  {"told", result.quantities[k].is_told},
+                                  {"description", kTimeQuantityWords[k].words},
+                                  {"observable", result.quantities[k].is_told},
                                   {"value", result.quantities[k].value},
                                   {"uncertainty", result.quantities[k].uncertainty}});
-  json["untold"] = result.untold;
+  json["unobservable"] = result.untold;
   json["rows"] = Json::array();
   for (std::size_t k = 0; k < result.programs.rows.size(); ++k) {
     const TimedMoves& row = result.programs.rows[k];
@@ -238,7 +238,7 @@ std::string time_calibration_json(const TimeCalibration& result) {
                             {"after_s", row.on_s(result.machine)},
                             {"residual", result.residuals[k]}});
   }
-  return result_text("retrace.time_calibration/1", std::move(json), result.warnings);
+  return result_text("retrace.time_calibration/2", std::move(json), result.warnings);
 }
 
 std::string time_calibration_table(const TimeCalibration& result) {

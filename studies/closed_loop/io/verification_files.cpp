@@ -47,7 +47,7 @@ std::string verification_json(const VerificationRun& run, double elapsed_s) {
                      {"root_residual_nm_max", r.root_residual_nm_max},
                      {"root_residual_nm_predicted", r.root_residual_nm_predicted},
                      {"chip_um_max", r.chip_um_max},
-                     {"chip_share_max", r.chip_share_max},
+                     {"chip_ratio_max", r.chip_share_max},
                      {"root_radius_um", r.root_radius_um},
                      {"root_chamfer_um", r.root_chamfer_um},
                      {"root_ridge_um", r.root_ridge_um},
@@ -67,7 +67,7 @@ std::string verification_json(const VerificationRun& run, double elapsed_s) {
                      {"time_rotary_s", r.time.rotary_s},
                      {"time_dwell_s", r.time.dwell_s},
                      {"elapsed_s", elapsed_s}};
-  return result_text("retrace.verification/1", json, run.warnings);
+  return result_text("retrace.verification/2", json, run.warnings);
 }
 
 std::string verification_table(const VerificationRun& run) {

@@ -8,7 +8,7 @@
 
 namespace retrace::studies {
 
-/// Returns the document `retrace.verification/1`.
+/// Returns the document `retrace.verification/2`.
 std::string verification_json(const VerificationRun& run, double elapsed_s);
 
 /// Returns a short table for the terminal.

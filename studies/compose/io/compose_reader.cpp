@@ -20,15 +20,15 @@ std::vector<std::string> quantities_of(const Study& study, const std::string& na
   std::vector<std::string> found;
   for (const auto& quantity : study.quantities)
     if (quantity->name() == name || quantity->name().starts_with(name + ".")) found.push_back(quantity->name());
-  if (found.empty()) checked_quantity(study, name, study.document->where("compose.maximize"));
+  if (found.empty()) found.push_back(checked_quantity(study, name, study.document->where("compose.maximize")));
   return found;
 }
 
 /// Checks that the quantity adds up: its value for a mixture of cells must be the area-weighted mean of its values for
 /// the cells.
-/// \return `name`
-std::string checked_mean(const Study& study, const std::string& name, const InputLocation& where) {
-  checked_quantity(study, name, where);
+/// \return name of the quantity, as returned by checked_quantity()
+std::string checked_mean(const Study& study, const std::string& given, const InputLocation& where) {
+  const std::string name = checked_quantity(study, given, where);
   const auto found = std::ranges::find_if(study.quantities, [&](const auto& q) { return q->name() == name; });
   if (!(*found)->adds_up())
     throw InputError(where,
@@ -58,13 +58,14 @@ bool are_all_margins(const Study& study, const std::vector<std::string>& goals) 
 
 void check_shares(const Document& document, const ComposeRequest& request) {
   if (request.least_share > request.most_share)
-    document.fail("compose.least_share", fmt::format("must be <= most_share ({}), got {}", shortest(request.most_share),
-                                                     shortest(request.least_share)));
+    document.fail("compose.min_area_fraction",
+                  fmt::format("must be <= max_area_fraction ({}), got {}", shortest(request.most_share),
+                              shortest(request.least_share)));
   if (request.most_zones && static_cast<double>(*request.most_zones) * request.most_share < 1.0 - 1e-12)
     document.fail(
-        "compose.most_share",
+        "compose.max_area_fraction",
         fmt::format(
-            "must be >= 1 / most_zones (most_zones = {}), because otherwise the zones cannot fill the part, got {}",
+            "must be >= 1 / max_zones (max_zones = {}), because otherwise the zones cannot fill the part, got {}",
             *request.most_zones, shortest(request.most_share)));
 }
 
@@ -94,14 +95,14 @@ std::optional<ErrorSpread> read_errors(const Document& document, const Study& st
   const auto zones = document.number_if("compose.zone_sigma_arcmin");
   const char* const key = zones ? "compose.zone_sigma_arcmin" : "compose.cell_sigma_arcmin";
   if (!cells && !zones) {
-    if (document.has("compose.worst_share"))
-      document.fail("compose.worst_share",
+    if (document.has("compose.worst_fraction"))
+      document.fail("compose.worst_fraction",
                     "needs cell_sigma_arcmin or zone_sigma_arcmin, because all parts are equal without angle errors");
     return std::nullopt;
   }
   if (angles_of(study, some_values(study)) == 0)
     document.fail(key, "not allowed: the cells have no angles between facets");
-  ErrorSpread spread{cells.value_or(0.0), zones.value_or(0.0), {}, document.number_if("compose.worst_share")};
+  ErrorSpread spread{cells.value_or(0.0), zones.value_or(0.0), {}, document.number_if("compose.worst_fraction")};
   spread.parts = static_cast<std::size_t>(document.number("compose.parts"));
   return spread;
 }
@@ -119,11 +120,11 @@ ComposeRequest read_compose(const Study& study) {
   request.of_part = read_constraints(study, ConstraintOver::part);
   for (const Constraint& constraint : request.of_part)
     checked_mean(study, constraint.quantity, document.where("constraint"));
-  request.least_goal = document.number_if("compose.least");
+  request.least_goal = document.number_if("compose.min_goal");
   if (!request.least_goal && are_all_margins(study, request.goals)) request.least_goal = 0.0;
-  request.least_share = document.number("compose.least_share");
-  request.most_share = document.number("compose.most_share");
-  if (const auto most = document.number_if("compose.most_zones")) request.most_zones = static_cast<std::size_t>(*most);
+  request.least_share = document.number("compose.min_area_fraction");
+  request.most_share = document.number("compose.max_area_fraction");
+  if (const auto most = document.number_if("compose.max_zones")) request.most_zones = static_cast<std::size_t>(*most);
   check_shares(document, request);
   if (document.has("compose.price"))
     for (const auto& [name, price] : document.named("compose.price"))
@@ -133,12 +134,12 @@ ComposeRequest read_compose(const Study& study) {
     if (document.named("compose.front").size() != 1) document.fail("compose.front", "must name one quantity");
     const auto& [name, sense] = *document.named("compose.front").begin();
     request.front = FrontAxis{checked_mean(study, name, document.where("compose.front." + name)),
-                              std::get<std::string>(sense) == "most"};
+                              std::get<std::string>(sense) == "max"};
   }
   request.scan = static_cast<std::size_t>(document.number("compose.scan"));
   request.rounds = static_cast<std::size_t>(document.number("compose.rounds"));
   request.starts = static_cast<std::size_t>(document.number("compose.starts"));
-  request.looks = static_cast<int>(document.number("compose.looks"));
+  request.looks = static_cast<int>(document.number("compose.evaluations_per_start"));
   request.errors = read_errors(document, study);
   return request;
 }

@@ -26,7 +26,7 @@ Json cell_json(const Study& study, const FamilyCell& cell) {
 
 Json zones_json(const Study& study, const std::vector<Zone>& zones) {
   Json all = Json::array();
-  for (const Zone& zone : zones) all.push_back({{"share", zone.share}, {"cell", cell_json(study, zone.cell)}});
+  for (const Zone& zone : zones) all.push_back({{"area_fraction", zone.share}, {"cell", cell_json(study, zone.cell)}});
   return all;
 }
 
@@ -63,7 +63,7 @@ std::string_view proof_word(Proof proof) {
 void add_part(const Study& study, const ComposeRequest& request, const Composition& composition, Json& json) {
   const PartOfZones& part = *composition.best;
   json["zones"] = zones_json(study, part.zones);
-  json["least"] = part.mixture.least;
+  json["goal_min"] = part.mixture.least;
   json["merit"] = part.mixture.merit;
   json["goals"] = goals_json(study, request, part);
   Json means = Json::array();
@@ -78,8 +78,8 @@ void add_part(const Study& study, const ComposeRequest& request, const Compositi
   json["any_number_of_zones"] = composition.unlimited;
   Json by_zones = Json::array();
   for (const PartOfZones& of : composition.by_zones)
-    by_zones.push_back({{"most_zones", of.most_zones},
-                        {"least", of.mixture.least},
+    by_zones.push_back({{"max_zones", of.most_zones},
+                        {"goal_min", of.mixture.least},
                         {"merit", of.mixture.merit},
                         {"zones", zones_json(study, of.zones)}});
   json["by_number_of_zones"] = by_zones;
@@ -89,7 +89,8 @@ void add_part(const Study& study, const ComposeRequest& request, const Compositi
   if (!request.front) return;
   Json front = Json::array();
   for (const FrontPart& at : composition.front)
-    front.push_back({{request.front->quantity, at.mean}, {"least", at.least}, {"zones", zones_json(study, at.zones)}});
+    front.push_back(
+        {{request.front->quantity, at.mean}, {"goal_min", at.least}, {"zones", zones_json(study, at.zones)}});
   json["front"] = front;
 }
 
@@ -102,14 +103,14 @@ std::string composition_json(const Study& study, const ComposeRequest& request, 
   if (composition.best) add_part(study, request, composition, json);
   if (const std::string why = why_not_reached(study, request, composition); !why.empty()) json["not_reached"] = why;
   if (composition.single)
-    json["best_of_one_cell"] = {{"least", *std::ranges::min_element(composition.single->mixed.goals)},
+    json["best_of_one_cell"] = {{"goal_min", *std::ranges::min_element(composition.single->mixed.goals)},
                                 {"cell", cell_json(study, *composition.single)}};
   json["catalogue"] = composition.catalogue.size();
   json["failed"] = composition.failed;
   json["evaluations"] = composition.evaluations;
   json["seed"] = study.seed;
   json["elapsed_s"] = elapsed_s;
-  return result_text("retrace.composition/1", json, {}, composition.complete);
+  return result_text("retrace.composition/2", json, {}, composition.complete);
 }
 
 std::string composition_csv(const Study& study, const ComposeRequest& request, const Composition& composition) {

@@ -8,7 +8,7 @@
 
 namespace retrace::studies {
 
-/// Returns the result as a document of the format `retrace.composition/1`.
+/// Returns the result as a document of the format `retrace.composition/2`.
 std::string composition_json(const Study& study, const ComposeRequest& request, const Composition& composition,
                              double elapsed_s);
 

@@ -21,7 +21,7 @@ double least_of_most(const PartYield& yield) {
 nlohmann::ordered_json yield_json(const PartYield& yield) {
   nlohmann::ordered_json json = {{"parts", yield.leasts.size()}};
   if (yield.good) json["good"] = *yield.good;
-  json["least_of_95_percent"] = least_of_most(yield);
+  json["goal_min_of_95_percent"] = least_of_most(yield);
   if (yield.mean_of_worst) json["mean_of_worst"] = *yield.mean_of_worst;
   return json;
 }
@@ -46,15 +46,15 @@ nlohmann::ordered_json error_effects_json(const ComposeRequest& request, const E
                                           const nlohmann::ordered_json& for_worst) {
   nlohmann::ordered_json json = {{"cell_sigma_arcmin", request.errors->cell_sigma_arcmin},
                                  {"zone_sigma_arcmin", request.errors->zone_sigma_arcmin},
-                                 {"least", *std::ranges::min_element(effects.goals)},
+                                 {"goal_min", *std::ranges::min_element(effects.goals)},
                                  {"goals", effects.goals},
                                  {"slopes_per_arcmin", effects.slopes},
                                  {"yield", yield_json(effects.yield)}};
   if (effects.for_worst) {
-    json["worst_share"] = *request.errors->worst_share;
+    json["worst_fraction"] = *request.errors->worst_share;
     json["best_for_worst"] = {{"zones", for_worst}, {"yield", yield_json(effects.for_worst->yield)}};
   }
-  json["missed_by"] = effects.missed_by;
+  json["approximation_error_max"] = effects.missed_by;
   return json;
 }
 

@@ -175,7 +175,7 @@ std::string zoned_design_text(const Study& study, const std::vector<Zone>& zones
   for (std::size_t k = 0; k < zones.size(); ++k) {
     const PointValues& values = zones[k].cell.values;
     text += "\n[[zone]]\n";
-    text += regions.empty() ? fmt::format("share = {}\n", shortest(shares[k])) : regions_text(regions[k]);
+    text += regions.empty() ? fmt::format("area_fraction = {}\n", shortest(shares[k])) : regions_text(regions[k]);
     const double turn_deg = make_candidate(study, values).analysis().rotation_deg;
     if (turn_deg != 0.0) text += fmt::format("rotation_deg = {}\n", shortest(turn_deg));
     text += changes_text(study, values);

@@ -101,7 +101,7 @@ void set_array(Document& document, const ElementArray& elements) {
 }
 
 void set_substrate(Document& document, const Substrate& substrate) {
-  Keys keys(document, "base");
+  Keys keys(document, "substrate");
   keys.set_choice("kind", substrate.shape.index());
   std::visit(Overloaded{[&](const PlaneSubstrate& plane) {
                           keys.set("incline_deg", plane.incline_deg);
@@ -114,7 +114,7 @@ void set_substrate(Document& document, const Substrate& substrate) {
                         [&](const SphereSubstrate& sphere) { keys.set("radius_mm", sphere.radius_mm); },
                         [&](const FormulaSubstrate& formula) { keys.set_word("sag_mm", formula.sag_mm->text); }},
              substrate.shape);
-  keys.set_word("elements", substrate.element_axes == ElementAxes::normal ? "normal" : "parallel");
+  keys.set_word("element_axes", substrate.element_axes == ElementAxes::normal ? "normal" : "parallel");
 }
 
 void set_balls(Document& document, const raytrace::BallLayer& balls) {
@@ -198,10 +198,10 @@ void set_shape(Document& document, const Design& design) {
 
 void set_entrance(Document& document, const Design& design) {
   const EntranceFile& entrance = *design.entrance;
-  Keys keys(document, "front");
-  keys.set_word(entrance.is_mesh ? "mesh" : "turned", entrance.name);
+  Keys keys(document, "entrance_surface");
+  keys.set_word(entrance.is_mesh ? "mesh" : "turned_part", entrance.name);
   if (entrance.is_mesh) {
-    keys.set("scale", mesh_scale(design, "front"));
+    keys.set("scale", mesh_scale(design, "entrance_surface"));
     keys.set_choice("mesh_side", entrance.mesh_bottom);
   }
   if (entrance.centre_mm) keys.set("centre_mm", list_of(*entrance.centre_mm));
@@ -236,7 +236,7 @@ void set_wet_back(Document& document, const WetElements& wet) {
   keys.set("index", wet.index);
   std::visit(
       Overloaded{[&](const geometry::RandomShare& random) {
-                   keys.set("share", random.share);
+                   keys.set("fraction", random.share);
                    keys.set("seed", static_cast<double>(random.seed));
                  },
                  [&](const geometry::Rectangle& r) {
@@ -286,7 +286,7 @@ void set_entrance_face(Document& document, const EntranceState& face) {
   keys.set("water_index", face.water_index);
   set_share("drop_coverage", face.drop_coverage, "drop_contact_angle_deg", face.drop_contact_angle_deg);
   set_share("dust_coverage", face.dust_coverage, "dust_albedo", face.dust_albedo);
-  set_share("dust_coverage", face.dust_coverage, "dust_forward_share", face.dust_forward_share);
+  set_share("dust_coverage", face.dust_coverage, "dust_forward_fraction", face.dust_forward_share);
   set_share("scratch_coverage", face.scratch_coverage, "scratch_spread_deg", face.scratch_spread_deg);
   if (face.scratch_coverage > 0.0 && face.scratch_azimuth_deg)
     keys.set("scratch_azimuth_deg", *face.scratch_azimuth_deg);
@@ -372,7 +372,7 @@ void set_texture(Keys& keys, const Surface& surface) {
                  },
                  [&](const HeightMapTexture& t) {
                    keys.set_word("height_map", t.name);
-                   keys.set_choice("height_map_level_axis", t.level_axis);
+                   keys.set_choice("height_map_horizontal_axis", t.level_axis);
                    keys.set_choice("height_map_form", t.form_degree - 1);
                  }},
       surface.texture);
@@ -410,14 +410,14 @@ void set_form(Document& document, const FormOfFacets& form) {
   if (form.sink_um != 0.0) keys.set("sink_um", form.sink_um);
   if (form.map) {
     keys.set_word("map", form.map->name);
-    keys.set_choice("map_level_axis", form.map->level_axis);
+    keys.set_choice("map_horizontal_axis", form.map->level_axis);
     keys.set("map_degree", static_cast<double>(form.map->degree));
   }
   for (std::size_t i = 0; i < form.terms.size(); ++i) {
     document.set("form.terms", {});
     Keys entry(document, schema::path_of_entry("form.terms", i));
-    entry.set("level", static_cast<double>(form.terms[i].level));
-    entry.set("down", static_cast<double>(form.terms[i].down));
+    entry.set("x_power", static_cast<double>(form.terms[i].level));
+    entry.set("y_power", static_cast<double>(form.terms[i].down));
     entry.set("height_um", form.terms[i].height_um);
   }
 }

@@ -27,7 +27,7 @@ constexpr Condition kScratchesOnly[] = {without("part.mesh", kOfAMesh), without(
 const Table kSurfaceTables[] = {
     {.name = "scratches",
      .meaning = "Scratches on the facets of prisms: V-shaped grooves that run up a facet from the root to the rim. At "
-                "most 200 are allowed, and none on a `[base]`. Scratches on the same facet must not overlap. In a "
+                "most 200 are allowed, and none on a `[substrate]`. Scratches on the same facet must not overlap. In a "
                 "`checker` array, scratches are rotated with their elements.",
      .rows = scratch_rows(),
      .presence = Presence::list,
@@ -43,7 +43,7 @@ const Table kFormTables[] = {
      .rows = form_term_rows(),
      .presence = Presence::list,
      .layout = Layout::in_line,
-     .shape = "a list of tables with level, down and height_um"}};
+     .shape = "a list of tables with x_power, y_power and height_um"}};
 
 constexpr std::string_view kLayerIndex[] = {"material", "refractive_index"};
 constexpr Rule kLayerRules[] = {OneOf{kLayerIndex, "must have either material or refractive_index"}};
@@ -70,19 +70,20 @@ const Table kCoatingTables[] = {{.name = "facets",
 constexpr Condition kWithZones[] = {kNoMesh,
                                     kNoPlate,
                                     kTableOfNoBall,
-                                    without("base", "not allowed together with [base]"),
+                                    without("substrate", "not allowed together with [substrate]"),
                                     without("wet_back", "not allowed together with [wet_back]"),
                                     without("form", "not allowed together with [form]"),
                                     without("array.mask", "not allowed together with array.mask"),
                                     without("part.facets", "not allowed together with facets in [part]")};
-constexpr std::string_view kWhereAreZones[] = {"share",   "rectangles_mm", "polygon_mm", "rows",
-                                               "columns", "mask",          "rest"};
-constexpr Rule kZoneRules[] = {OneOf{kWhereAreZones,
-                                     "must have one of share, rectangles_mm, polygon_mm, rows, columns, mask and rest, "
-                                     "which determine its region or its elements"}};
-constexpr std::string_view kWhichAreWet[] = {"share", "rectangle_mm", "disc_mm", "half_plane"};
-constexpr Rule kWetBackRules[] = {
-    OneOf{kWhichAreWet, "must have one of share, rectangle_mm, disc_mm and half_plane, which select the wet elements"}};
+constexpr std::string_view kWhereAreZones[] = {"area_fraction", "rectangles_mm", "polygon_mm", "rows",
+                                               "columns",       "mask",          "rest"};
+constexpr Rule kZoneRules[] = {
+    OneOf{kWhereAreZones,
+          "must have one of area_fraction, rectangles_mm, polygon_mm, rows, columns, mask and rest, "
+          "which determine its region or its elements"}};
+constexpr std::string_view kWhichAreWet[] = {"fraction", "rectangle_mm", "disc_mm", "half_plane"};
+constexpr Rule kWetBackRules[] = {OneOf{
+    kWhichAreWet, "must have one of fraction, rectangle_mm, disc_mm and half_plane, which select the wet elements"}};
 const Table kEntranceFaceTables[] = {
     {.name = "layers",
      .meaning = "Layers that are much thicker than the coherence length of the light, such as hard coats, in order "
@@ -106,11 +107,12 @@ const Table kTables[] = {
      .rows = array_rows(),
      .presence = Presence::implied,
      .when = kWithElements},
-    {.name = "base",
+    {.name = "substrate",
      .meaning = "Surface on which the elements of a finite array are placed, instead of the plane z = 0.",
      .rows = geometry::substrate_rows(),
      .presence = Presence::optional,
-     .when = kWithPlanes},
+     .when = kWithPlanes,
+     .former = "base"},
     {.name = "zone",
      .meaning = "Region of a finite part, or set of its elements, with elements that differ from those of other zones. "
                 "The zones cover the whole part.",
@@ -123,11 +125,12 @@ const Table kTables[] = {
      .rows = part_rows(),
      .presence = Presence::optional,
      .when = kPartTable},
-    {.name = "front",
+    {.name = "entrance_surface",
      .meaning = "Curved surface through which light enters, instead of the plane z = thickness_mm.",
      .rows = entrance_rows(),
      .presence = Presence::optional,
-     .when = kEntranceTable},
+     .when = kEntranceTable,
+     .former = "front"},
     {.name = "body",
      .meaning = "Plate and material of the part, and the medium behind its retro facets.",
      .rows = body_rows(),

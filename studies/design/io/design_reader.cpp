@@ -84,7 +84,7 @@ FacetTexture read_texture(const Document& document) {
                       document.number("surface.abg_g")};
   if (model == "height_map")
     return HeightMapTexture{document.text("surface.height_map"), document.file("surface.height_map"),
-                            document.choice<HeightMapAxis>("surface.height_map_level_axis"),
+                            document.choice<HeightMapAxis>("surface.height_map_horizontal_axis"),
                             static_cast<int>(document.index("surface.height_map_form")) + 1};
   return read_heights(document, model);
 }
@@ -117,13 +117,13 @@ FormOfFacets read_form(const Document& document) {
   form.sink_um = document.number("form.sink_um");
   for (std::size_t i = 0; i < document.count("form.terms"); ++i) {
     const std::string entry = schema::path_of_entry("form.terms", i);
-    const FormTerm term{static_cast<int>(document.number(entry + ".level")),
-                        static_cast<int>(document.number(entry + ".down")), document.number(entry + ".height_um")};
+    const FormTerm term{static_cast<int>(document.number(entry + ".x_power")),
+                        static_cast<int>(document.number(entry + ".y_power")), document.number(entry + ".height_um")};
     if (term.height_um != 0.0) form.terms.push_back(term);
   }
   if (document.has("form.map"))
     form.map = {document.text("form.map"), document.file("form.map"),
-                document.choice<HeightMapAxis>("form.map_level_axis"),
+                document.choice<HeightMapAxis>("form.map_horizontal_axis"),
                 static_cast<int>(document.number("form.map_degree"))};
   return form;
 }
@@ -142,7 +142,7 @@ EntranceState read_entrance_face(const Document& document) {
   face.drop_contact_angle_deg = document.number_if("entrance.drop_contact_angle_deg");
   face.dust_coverage = document.number("entrance.dust_coverage");
   face.dust_albedo = document.number_if("entrance.dust_albedo");
-  face.dust_forward_share = document.number_if("entrance.dust_forward_share");
+  face.dust_forward_share = document.number_if("entrance.dust_forward_fraction");
   face.scratch_coverage = document.number("entrance.scratch_coverage");
   face.scratch_spread_deg = document.number_if("entrance.scratch_spread_deg");
   face.scratch_azimuth_deg = document.number_if("entrance.scratch_azimuth_deg");
@@ -200,16 +200,16 @@ std::vector<double> read_acceptance(const Document& document) {
   return angles_deg;
 }
 
-/// Reads the curved entrance face. Returns nothing if the document has no table [front].
+/// Reads the curved entrance face. Returns nothing if the document has no table [entrance_surface].
 std::optional<EntranceFile> read_entrance(const Document& document) {
-  if (!document.has("front")) return std::nullopt;
+  if (!document.has("entrance_surface")) return std::nullopt;
   EntranceFile entrance;
-  entrance.is_mesh = document.has("front.mesh");
-  const std::string_view key = entrance.is_mesh ? "front.mesh" : "front.turned";
+  entrance.is_mesh = document.has("entrance_surface.mesh");
+  const std::string_view key = entrance.is_mesh ? "entrance_surface.mesh" : "entrance_surface.turned_part";
   entrance.file = document.file(key);
   entrance.name = document.text(key);
-  entrance.mesh_bottom = entrance.is_mesh && document.text("front.mesh_side") == "bottom";
-  if (document.has("front.centre_mm")) entrance.centre_mm = pair_of(document, "front.centre_mm");
+  entrance.mesh_bottom = entrance.is_mesh && document.text("entrance_surface.mesh_side") == "bottom";
+  if (document.has("entrance_surface.centre_mm")) entrance.centre_mm = pair_of(document, "entrance_surface.centre_mm");
   return entrance;
 }
 
@@ -235,7 +235,7 @@ std::string read_material(const Document& document) {
 std::optional<WetElements> read_wet_back(const Document& document) {
   if (!document.has("wet_back")) return std::nullopt;
   WetElements wet{document.number("wet_back.index"), {}};
-  if (const auto share = document.number_if("wet_back.share")) {
+  if (const auto share = document.number_if("wet_back.fraction")) {
     wet.where = geometry::RandomShare{*share, static_cast<std::uint32_t>(document.number("wet_back.seed"))};
   } else if (document.has("wet_back.rectangle_mm")) {
     const std::vector<double> r = document.numbers("wet_back.rectangle_mm");
@@ -355,7 +355,7 @@ std::optional<GlassCatalogueFile> from_anywhere(const std::optional<GlassCatalog
 }
 
 std::string_view Design::entrance_key() const {
-  return entrance && entrance->is_mesh ? "front.mesh" : "front.turned";
+  return entrance && entrance->is_mesh ? "entrance_surface.mesh" : "entrance_surface.turned_part";
 }
 
 const ArrayMask* Design::mask() const {
@@ -385,7 +385,7 @@ void check_taken(const Design& design, const Takes& takes) {
   std::visit(Overloaded{[&](const ElementArray& array) {
                           if (array.part.substrate && !takes.substrates)
                             throw InputError(design.where(geometry::substrate_shape_key(*array.part.substrate)),
-                                             what + " does not support a [base], only elements on a plane");
+                                             what + " does not support a [substrate], only elements on a plane");
                         },
                         [&](const PartMesh&) { refuse_solid("part.mesh", "mesh"); },
                         [&](const Plate&) { refuse_solid("part.plate_mm", "plate"); },
@@ -400,7 +400,7 @@ void check_taken(const Design& design, const Takes& takes) {
              design.shape);
   if (design.entrance && !takes.entrances)
     throw InputError(design.where(design.entrance_key()),
-                     what + " does not support a [front], only a plane entrance face");
+                     what + " does not support an [entrance_surface], only a plane entrance face");
   if (design.wet_back && !takes.wet_backs)
     throw InputError(design.where("wet_back.index"),
                      what + " does not support a [wet_back], only the same medium behind all elements");
@@ -422,9 +422,15 @@ Design with(const Design& design, std::span<const std::string> overrides) {
 
 /// Keys whose values are names of files, in the order in which the stores of studies list the files of a design. The
 /// order determines the identity of a study, so that new keys must be appended at the end.
-constexpr std::array<std::string_view, 9> kFilesOfStores = {"part.mesh",   "array.mask",     "surface.height_map",
-                                                            "part.facets", "light.spectrum", "front.turned",
-                                                            "front.mesh",  "body.catalogue", "form.map"};
+constexpr std::array<std::string_view, 9> kFilesOfStores = {"part.mesh",
+                                                            "array.mask",
+                                                            "surface.height_map",
+                                                            "part.facets",
+                                                            "light.spectrum",
+                                                            "entrance_surface.turned_part",
+                                                            "entrance_surface.mesh",
+                                                            "body.catalogue",
+                                                            "form.map"};
 
 std::vector<NamedFile> files_named(std::string_view text, const std::string& source_name,
                                    std::span<const std::string> overrides) {

@@ -112,8 +112,8 @@ void check_room(const Document& document, const PartSpec& part) {
 }
 
 void check_array_on_substrate(const Document& document, const PartSpec& part) {
-  constexpr std::string_view key = "base.kind";
-  if (!document.has("base")) return;
+  constexpr std::string_view key = "substrate.kind";
+  if (!document.has("substrate")) return;
   if (part.array.extent == Extent::infinite) document.fail(key, "not allowed for extent = \"infinite\": give lengths");
   if (part.array.arrangement == Arrangement::single) document.fail(key, "not allowed for arrangement = \"single\"");
   if (part.array.x_offset_mm > 0.0 || part.array.y_offset_mm > 0.0)
@@ -222,7 +222,7 @@ void check_scratch(const Document& document, const PartSpec& part, std::size_t i
 
 void check_scratches(const Document& document, const PartSpec& part) {
   if (!document.has(kScratches)) return;
-  if (part.substrate) document.fail(kScratches, "not allowed together with [base]");
+  if (part.substrate) document.fail(kScratches, "not allowed together with [substrate]");
   if (part.scratches.size() > kMostScratches)
     document.fail(kScratches, fmt::format("must be at most {}, got {}", kMostScratches, part.scratches.size()));
   for (std::size_t i = 0; i < part.scratches.size(); ++i) check_scratch(document, part, i);
@@ -259,7 +259,8 @@ void check_angles(const Document& document, const PartSpec& part) {
 }
 
 void check_mask(const Document& document, const PartSpec& part) {
-  if (document.has("array.mask") && part.substrate) document.fail("array.mask", "not allowed together with [base]");
+  if (document.has("array.mask") && part.substrate)
+    document.fail("array.mask", "not allowed together with [substrate]");
 }
 
 /// Refuses the combination of individual facet planes with keys that rotate or deform all facets.
@@ -267,7 +268,7 @@ void check_facet_planes(const Document& document, const PartSpec& part) {
   constexpr std::string_view key = "part.facets";
   if (!document.has(key)) return;
   if (part.array.extent == Extent::infinite) document.fail(key, "only allowed for finite arrays");
-  if (part.substrate) document.fail(key, "not allowed together with [base]");
+  if (part.substrate) document.fail(key, "not allowed together with [substrate]");
   if (!(part.angle_errors == AngleErrors{}) || part.random_tilts.sigma_arcmin > 0.0)
     document.fail(key, "not allowed together with angle errors in [surface], because the planes contain these errors");
 }
@@ -278,7 +279,7 @@ void check_substrate_of_part(const Document& document, const PartSpec& part) {
   const bool has_gaps = part.array.x_gap_mm > 0.0 || part.array.y_gap_mm > 0.0;
   const bool is_plane = std::holds_alternative<PlaneSubstrate>(part.substrate->shape);
   if (part.edges.rounds_rims() && part.substrate->element_axes == ElementAxes::normal && (has_gaps || !is_plane))
-    document.fail(key, "rounded or chamfered rims need elements = \"parallel\", or a plane base and no gaps");
+    document.fail(key, "rounded or chamfered rims need element_axes = \"parallel\", or a plane substrate and no gaps");
   try {
     geometry::check_substrate(part);
   } catch (const InputError& error) {
@@ -307,9 +308,11 @@ void check_bowl(const Document& document) {
 }
 
 void check_entrance(const Document& document) {
-  if (!document.has("front")) return;
-  const std::string_view key = document.has("front.mesh") ? "front.mesh" : "front.turned";
-  if (!document.has(key)) document.fail(key, "missing: give the file of a turned part, or an STL file with front.mesh");
+  if (!document.has("entrance_surface")) return;
+  const std::string_view key =
+      document.has("entrance_surface.mesh") ? "entrance_surface.mesh" : "entrance_surface.turned_part";
+  if (!document.has(key))
+    document.fail(key, "missing: give the file of a turned part, or an STL file with entrance_surface.mesh");
   if (has_elements(document) && document.text("array.extent") == "infinite")
     document.fail(key, "not allowed for extent = \"infinite\": give lengths");
 }
@@ -324,20 +327,20 @@ void check_form(const Document& document) {
   if (count > most_terms) document.fail(kFormTerms, fmt::format("must be at most {}, got {}", most_terms, count));
   for (std::size_t i = 0; i < count; ++i) {
     const std::string entry = schema::path_of_entry(kFormTerms, i);
-    const double degree = document.number(entry + ".level") + document.number(entry + ".down");
+    const double degree = document.number(entry + ".x_power") + document.number(entry + ".y_power");
     if (degree > most_degree)
-      document.fail(
-          entry + ".down",
-          fmt::format("must be <= {} for level = {}, got {}", shortest(most_degree - document.number(entry + ".level")),
-                      shortest(document.number(entry + ".level")), shortest(document.number(entry + ".down"))));
+      document.fail(entry + ".y_power", fmt::format("must be <= {} for x_power = {}, got {}",
+                                                    shortest(most_degree - document.number(entry + ".x_power")),
+                                                    shortest(document.number(entry + ".x_power")),
+                                                    shortest(document.number(entry + ".y_power"))));
   }
 }
 
 constexpr schema::Words kSquareKeys = {"element.base_mm", "element.width_mm"};
 constexpr schema::Words kRoomKeys = {"array.x_length_mm", "array.y_length_mm", "array.x_offset_mm",
                                      "array.y_offset_mm"};
-constexpr schema::Words kArrayOnSubstrateKeys = {"base.kind", "array.extent", "array.arrangement", "array.x_offset_mm",
-                                                 "array.y_offset_mm"};
+constexpr schema::Words kArrayOnSubstrateKeys = {"substrate.kind", "array.extent", "array.arrangement",
+                                                 "array.x_offset_mm", "array.y_offset_mm"};
 constexpr schema::Words kDihedralKeys = {kDihedralError};
 constexpr schema::Words kTiltKeys = {kFacetTilt};
 constexpr schema::Words kRandomKeys = {kRandomTilt, "array.extent"};
@@ -347,10 +350,10 @@ constexpr schema::Words kRimKeys = {"surface.rim_radius_um", "surface.rim_chamfe
 constexpr schema::Words kScratchKeys = {kScratches, "element.width_mm"};
 constexpr schema::Words kAngleKeys = {"element.apex_angle_deg", "element.cant_deg", kDihedralError, kFacetTilt,
                                       kRandomTilt};
-constexpr schema::Words kMaskKeys = {"array.mask", "base.kind"};
-constexpr schema::Words kFacetsKeys = {"part.facets",  "array.extent", "base.kind",
+constexpr schema::Words kMaskKeys = {"array.mask", "substrate.kind"};
+constexpr schema::Words kFacetsKeys = {"part.facets",  "array.extent", "substrate.kind",
                                        kDihedralError, kFacetTilt,     kRandomTilt};
-constexpr schema::Words kSubstrateKeys = {"base.kind", "base.elements", "surface.rim_radius_um",
+constexpr schema::Words kSubstrateKeys = {"substrate.kind", "substrate.element_axes", "surface.rim_radius_um",
                                           "surface.rim_chamfer_um"};
 constexpr schema::Words kThicknessKeys = {"body.thickness_mm"};
 constexpr schema::Words kFormKeys = {kFormTerms};
@@ -366,7 +369,7 @@ constexpr schema::Words kSpectrumKeys = {"light.spectrum"};
 constexpr schema::Words kStokesKeys = {"light.polarisation"};
 constexpr schema::Words kMirrorKeys = {"element.mirror_offset_mm", "body.facet_coating", "idealisation.facets"};
 constexpr schema::Words kWetBackKeys = {"wet_back.rectangle_mm", "wet_back.disc_mm", "array.extent",
-                                        "array.arrangement", "base.kind"};
+                                        "array.arrangement", "substrate.kind"};
 constexpr schema::Words kLayerKeys = {kFacetLayers, kEntranceLayers};
 constexpr schema::Words kCoatingKeys = {kFacetLayers,          kEntranceLayers,         "body.facet_coating",
                                         "idealisation.facets", "idealisation.entrance", "element.kind"};
@@ -376,7 +379,7 @@ constexpr schema::Words kEntranceFaceKeys = {"entrance.layers",
                                              "entrance.drop_contact_angle_deg",
                                              "entrance.dust_coverage",
                                              "entrance.dust_albedo",
-                                             "entrance.dust_forward_share",
+                                             "entrance.dust_forward_fraction",
                                              "entrance.scratch_coverage",
                                              "entrance.scratch_spread_deg",
                                              "entrance.haze",
@@ -384,10 +387,10 @@ constexpr schema::Words kEntranceFaceKeys = {"entrance.layers",
                                              "entrance.roughness_sq_nm",
                                              "entrance.correlation_length_um",
                                              "idealisation.entrance",
-                                             "front.turned",
-                                             "front.mesh"};
+                                             "entrance_surface.turned_part",
+                                             "entrance_surface.mesh"};
 constexpr schema::Words kZoneKeys = {"zone", "array.extent", "array.x_offset_mm", "array.y_offset_mm"};
-constexpr schema::Words kEntranceKeys = {"front.turned", "front.mesh", "array.extent"};
+constexpr schema::Words kEntranceKeys = {"entrance_surface.turned_part", "entrance_surface.mesh", "array.extent"};
 
 using schema::check_by;
 constexpr schema::Rule kRules[] = {
@@ -397,9 +400,10 @@ constexpr schema::Rule kRules[] = {
         kRoomKeys,
         "At least one element of a finite array must fit between its margins, and at most 1e8 elements are allowed.",
         check_by<of_array<check_room>>},
-    schema::Check{kArrayOnSubstrateKeys,
-                  "A `[base]` is allowed only for finite arrays without margins, and not for the arrangement `single`.",
-                  check_by<of_array<check_array_on_substrate>>},
+    schema::Check{
+        kArrayOnSubstrateKeys,
+        "A `[substrate]` is allowed only for finite arrays without margins, and not for the arrangement `single`.",
+        check_by<of_array<check_array_on_substrate>>},
     schema::Check{kDihedralKeys,
                   "`dihedral_error_arcmin` is one number for prisms. For cube corners, it is one number for all "
                   "dihedral edges, or a list of three numbers.",
@@ -424,23 +428,24 @@ constexpr schema::Rule kRules[] = {
         check_by<of_part<check_land>>},
     schema::Check{kScratchKeys,
                   "At most 200 scratches are allowed. A scratch must be completely on its facet, and scratches on the "
-                  "same facet must not overlap. None are allowed on a `[base]`.",
+                  "same facet must not overlap. None are allowed on a `[substrate]`.",
                   check_by<of_part<check_scratches>>},
     schema::Check{kAngleKeys,
                   "The apex angle of prisms, including `dihedral_error_arcmin` and `facet_tilt_arcmin`, must be 60 to "
                   "120 degrees. The slope of the facets of canted cube corners, including these errors and six "
                   "standard deviations of the random tilts, must be at most 88 degrees.",
                   check_by<of_part<check_angles>>},
-    schema::Check{kMaskKeys, "A mask is not allowed on a `[base]`.", check_by<of_part<check_mask>>},
+    schema::Check{kMaskKeys, "A mask is not allowed on a `[substrate]`.", check_by<of_part<check_mask>>},
     schema::Check{kFacetsKeys,
-                  "Tables of planes (`[part]` `facets`) are allowed only for finite arrays without `[base]` and "
+                  "Tables of planes (`[part]` `facets`) are allowed only for finite arrays without `[substrate]` and "
                   "without angle errors in `[surface]`.",
                   check_by<of_part<check_facet_planes>>},
-    schema::Check{kSubstrateKeys,
-                  "The radius of curvature of a `[base]` must be at least the width of an element. The slope of the "
-                  "facets on the base must be at most 88 degrees. Rounded or chamfered rims need `elements` = "
-                  "`\"parallel\"`, or a plane base and no gaps.",
-                  check_by<of_part<check_substrate_of_part>>},
+    schema::Check{
+        kSubstrateKeys,
+        "The radius of curvature of a `[substrate]` must be at least the width of an element. The slope of "
+        "the facets on the substrate must be at most 88 degrees. Rounded or chamfered rims need `element_axes` = "
+        "`\"parallel\"`, or a plane substrate and no gaps.",
+        check_by<of_part<check_substrate_of_part>>},
     schema::Check{
         kThicknessKeys,
         "The plate of an array must be so thick that it covers rims that are raised by angle errors or a cant.",
@@ -474,8 +479,8 @@ constexpr schema::Rule kRules[] = {
     schema::Check{kStokesKeys, "The degree of polarisation is at most 1: q^2 + u^2 + v^2 <= i^2.",
                   check_by<check_stokes>},
     schema::Check{kWetBackKeys,
-                  "A `[wet_back]` is allowed only for finite arrays without a `[base]`, and not for the arrangement "
-                  "`single`. The two lengths of its rectangle and the radius of its disc must be above 0.",
+                  "A `[wet_back]` is allowed only for finite arrays without a `[substrate]`, and not for the "
+                  "arrangement `single`. The two lengths of its rectangle and the radius of its disc must be above 0.",
                   check_by<check_wet_back>},
     schema::Check{kLayerKeys,
                   "A face may have at most 200 layers. Layers without a thickness are opaque. At most one opaque layer "
@@ -485,12 +490,13 @@ constexpr schema::Rule kRules[] = {
                   "Layers are allowed only on faces that are not idealised and have no other coating. Layers behind "
                   "balls must form a mirror.",
                   check_by<check_coating>},
-    schema::Check{kEntranceFaceKeys,
-                  "If the coverage of drops, dust or scratches, or the haze, is above 0, the keys that describe it are "
-                  "required. Drops, dust and scratches together cover at most the whole face. The haze is at most the "
-                  "fraction of its lobe beyond 2.5 degrees. A rough face must not have thick layers or a film. A "
-                  "lossless face allows none of these keys. With a `[front]`, only layers and the film are allowed.",
-                  check_by<check_entrance_face>},
+    schema::Check{
+        kEntranceFaceKeys,
+        "If the coverage of drops, dust or scratches, or the haze, is above 0, the keys that describe it are required. "
+        "Drops, dust and scratches together cover at most the whole face. The haze is at most the fraction of its lobe "
+        "beyond 2.5 degrees. A rough face must not have thick layers or a film. A lossless face allows none of these "
+        "keys. With an `[entrance_surface]`, only layers and the film are allowed.",
+        check_by<check_entrance_face>},
     schema::Check{
         kMirrorKeys,
         "A mirror at a distance behind balls (`mirror_offset_mm` > 0) must be aluminium, an opaque layer or ideal.",
@@ -501,7 +507,8 @@ constexpr schema::Rule kRules[] = {
                   "Zones must cover every point of a finite part without margins exactly once. All zones together have "
                   "at most 1000 regions and 1e5 elements. The arrangement of a zone must not be `single` or `pins`.",
                   check_by<check_zones>},
-    schema::Check{kEntranceKeys, "A `[front]` needs one file, and the part must be finite.", check_by<check_entrance>}};
+    schema::Check{kEntranceKeys, "An `[entrance_surface]` needs one file, and the part must be finite.",
+                  check_by<check_entrance>}};
 
 }  // namespace
 

@@ -64,7 +64,7 @@ void check_entrance_face(const Document& document) {
     document.fail(kThickLayers, fmt::format("must have at most {} layers, got {}", kMostThickLayers, count));
   require_beside(document, "drop_coverage", "drop_contact_angle_deg");
   require_beside(document, "dust_coverage", "dust_albedo");
-  require_beside(document, "dust_coverage", "dust_forward_share");
+  require_beside(document, "dust_coverage", "dust_forward_fraction");
   require_beside(document, "scratch_coverage", "scratch_spread_deg");
   require_beside(document, "haze", "haze_spread_deg");
   const double spots = document.number("entrance.drop_coverage") + document.number("entrance.dust_coverage") +
@@ -75,9 +75,10 @@ void check_entrance_face(const Document& document) {
                               shortest(spots)));
   check_haze(document);
   check_roughness_of_face(document);
-  if (const std::string_view key = scattering_key(document); document.has("front") && !key.empty())
-    document.fail(key,
-                  "must be 0 together with a [front]: curved entrance faces support only layers and film_coverage");
+  if (const std::string_view key = scattering_key(document); document.has("entrance_surface") && !key.empty())
+    document.fail(
+        key,
+        "must be 0 together with an [entrance_surface]: curved entrance faces support only layers and film_coverage");
 }
 
 }  // namespace retrace::studies

@@ -23,9 +23,9 @@ constexpr Row kEntranceFaceRows[] = {
     {"dust_albedo", Number{kShare}, kNone,
      "Fraction of the light falling on the dust that the dust scatters, with a Lambertian distribution. The dust "
      "absorbs the remaining light. It is required together with `dust_coverage`."},
-    {"dust_forward_share", Number{kShare}, kNone,
-     "Fraction of the scattered light that dust scatters forward, to the other side of the dust. It is required "
-     "together with `dust_coverage`."},
+    renamed("dust_forward_share", Row{"dust_forward_fraction", Number{kShare}, kNone,
+                                      "Fraction of the scattered light that dust scatters forward, to the other side "
+                                      "of the dust. It is required together with `dust_coverage`."}),
     {"scratch_coverage", Number{kShare}, 0.0, "Fraction of the entrance face that is covered by fine scratches."},
     {"scratch_spread_deg", Number{kSpreadDeg}, kNone,
      "Angle in air, perpendicular to a scratch, at which the Gaussian lobe of the deflected light falls to 1/e. It is "

@@ -15,7 +15,7 @@ namespace retrace::studies {
 void check_names_no_file(const Design& design, std::string_view why);
 
 /// Returns the factor that converts the unit of a design's STL file to mm.
-/// \param table name of the TOML table that names the STL file: "part" or "front"
+/// \param table name of the TOML table that names the STL file: "part" or "entrance_surface"
 double mesh_scale(const Design& design, std::string_view table);
 
 }  // namespace retrace::studies

@@ -109,7 +109,7 @@ void check_wet_back(const Document& document) {
                   "equal: give lengths");
   if (document.text("array.arrangement") == "single")
     document.fail(key, "[wet_back] is not allowed for arrangement = \"single\": give body.back_index");
-  if (document.has("base")) document.fail(key, "[wet_back] is not allowed together with [base]");
+  if (document.has("substrate")) document.fail(key, "[wet_back] is not allowed together with [substrate]");
   const auto given = [&](std::string_view list) { return fmt::format("{}", fmt::join(document.numbers(list), ", ")); };
   if (document.has("wet_back.rectangle_mm")) {
     const std::vector<double> r = document.numbers("wet_back.rectangle_mm");

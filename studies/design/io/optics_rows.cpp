@@ -38,8 +38,8 @@ constexpr Condition kIndexOfMaterial[] = {
 
 constexpr Row kBodyRows[] = {
     {"thickness_mm", kSize, kRequired,
-     "Thickness of the plate between the entrance face and the nominal rims of the elements. With a `[front]`, it is "
-     "the height of the origin of the front's file above the nominal rims.",
+     "Thickness of the plate between the entrance face and the nominal rims of the elements. With an "
+     "`[entrance_surface]`, it is the height of the origin of the surface's file above the nominal rims.",
      kThicknessOfOthers},
     {"thickness_mm", kSize, kNone,
      "Thickness of the plate. If this key is given, it must equal the thickness of the mesh.", kThicknessOfMesh},
@@ -68,15 +68,16 @@ constexpr Row kBodyRows[] = {
      "Refractive index, relative to air, of the medium behind the retro facets, such as water (1.333) or glue. The "
      "medium at the entrance face and at the sides of the part is always air."}};
 
-constexpr Condition kWithShare[] = {beside("share")};
+constexpr Condition kWithShare[] = {beside("fraction")};
 constexpr NumberRange kPlaceInPart{.low = -1e6, .high = 1e6};
 
 constexpr Row kWetBackRows[] = {
     {"index", Number{{.low = 1.0, .high = 3.0}}, kRequired,
      "Refractive index, relative to air, of the medium behind the selected elements, such as water (1.333). The medium "
      "behind all other elements is that of `body.back_index`."},
-    {"share", Number{{.low = 0.0, .high = 1.0}}, kNone,
-     "Probability that an element is selected. The choice depends on a hash of its row, its column and `seed`."},
+    renamed("share", Row{"fraction", Number{{.low = 0.0, .high = 1.0}}, kNone,
+                         "Probability that an element is selected. The choice depends on a hash of its row, its column "
+                         "and `seed`."}),
     {"seed", Whole{{.low = 0.0, .high = 4294967295.0}}, 1.0, "Seed of the random choice of elements.", kWithShare},
     {"rectangle_mm", Numbers{4, kPlaceInPart, "places, x and y of two corners"}, kNone,
      "`[x_min, y_min, x_max, y_max]`: rectangle in the part frame. Elements whose centroid is inside the rectangle are "
@@ -178,10 +179,10 @@ constexpr Row kSurfaceRows[] = {
      "Measured height map, in a format that `retrace metrology` reads. It has at least 8 x 8 and at most 4,194,304 "
      "points.",
      kMapOnly},
-    {"height_map_level_axis", Word{kAxes}, "x",
-     "Axis of the map that is horizontal on a facet. On a prism, the horizontal direction is parallel to the roof "
-     "edge.",
-     kMapOnly},
+    renamed("height_map_level_axis", Row{"height_map_horizontal_axis", Word{kAxes}, "x",
+                                         "Axis of the map that is horizontal on a facet. On a prism, the horizontal "
+                                         "direction is parallel to the roof edge.",
+                                         kMapOnly}),
     {"height_map_form", Word{kForms}, "plane",
      "Form that is subtracted from the map: its best-fit plane or polynomial of the given degree.", kMapOnly},
     {"slope_distribution", Word{kSlopeDistributions}, "beckmann", "Distribution of the slopes of the microfacets.",
@@ -236,12 +237,14 @@ constexpr Row kFormRows[] = {
      "Measured height map of a facet, in a format that `retrace metrology` reads. The centre of the map is placed at "
      "the centroid of the facet. A polynomial is fitted to the heights. The best-fit plane of the polynomial over the "
      "facet is subtracted."},
-    {"map_level_axis", Word{kAxes}, "x", "Axis of the map that is horizontal on a facet.", kWithFormMap},
+    renamed("map_level_axis", Row{"map_horizontal_axis", Word{kAxes}, "x",
+                                  "Axis of the map that is horizontal on a facet.", kWithFormMap}),
     {"map_degree", Whole{{.low = 2.0, .high = 8.0}}, 4.0, "Degree of the polynomial that is fitted to the map.",
      kWithFormMap}};
 constexpr Row kFormTermRows[] = {
-    {"level", Whole{kPower}, kRequired, "Power of the horizontal coordinate of the facet."},
-    {"down", Whole{kPower}, kRequired, "Power of the coordinate down the facet; the sum of both powers is at most 8."},
+    renamed("level", Row{"x_power", Whole{kPower}, kRequired, "Power of the horizontal coordinate of the facet."}),
+    renamed("down", Row{"y_power", Whole{kPower}, kRequired,
+                        "Power of the coordinate down the facet; the sum of both powers is at most 8."}),
     {"height_um", Number{kFormHeight}, kRequired,
      "Coefficient: height of the term, positive out of the body, where both coordinates equal the radius of the "
      "facet."}};

@@ -89,8 +89,8 @@ PartSpec read_array(const Document& document) {
 
 PartSpec read_part(const Document& document) {
   PartSpec part = read_array(document);
-  if (document.has("base"))
-    schema::fill(document, {.name = "base", .meaning = {}, .rows = geometry::substrate_rows()}, "base",
+  if (document.has("substrate"))
+    schema::fill(document, {.name = "substrate", .meaning = {}, .rows = geometry::substrate_rows()}, "substrate",
                  &part.substrate.emplace());
   read_angle_errors(document, part);
   read_edges(document, part.edges);

@@ -82,7 +82,8 @@ constexpr Row kArrayRows[] = {
      "`base_mm` must equal `width_mm`.",
      kOfPrisms},
     {"arrangement", Word{geometry::kHexagonalArrangements}, "honeycomb",
-     "Arrangement of the elements. `\"pins\"`: a honeycomb of cells that are the ends of parallel pins; see [base].",
+     "Arrangement of the elements. `\"pins\"`: a honeycomb of cells that are the ends of parallel pins; see "
+     "[substrate].",
      kOfHexagons},
     {"arrangement", Word{geometry::kTriangularArrangements}, "triangular", geometry::kArrangementMeaning, kOfTriangles},
     {"arrangement", Word{kBallArrangements}, "packed",
@@ -145,10 +146,10 @@ constexpr Condition kTurnedOnly[] = {
 constexpr Condition kSideOnly[] = {beside("mesh")};
 
 constexpr Row kEntranceRows[] = {
-    {"turned", File{"a turned part"}, kNone,
-     "File of a turned part (turning_file.md). The entrance surface is its exact surface, not an approximation by "
-     "triangles. The material is below the surface.",
-     kTurnedOnly},
+    renamed("turned", Row{"turned_part", File{"a turned part"}, kNone,
+                          "File of a turned part (turning_file.md). The entrance surface is its exact surface, not an "
+                          "approximation by triangles. The material is below the surface.",
+                          kTurnedOnly}),
     {"mesh", File{"an STL file"}, kNone, "STL mesh of the entrance surface, binary or ASCII."},
     {"scale", kSize, 1.0, kScaleMeaning, kSideOnly},
     {"mesh_side", Word{kSides}, "top",
@@ -162,14 +163,15 @@ constexpr Row kEntranceRows[] = {
 constexpr NumberRange kLines{.low = 1.0, .high = 1e6};
 constexpr Condition kBesideLines[] = {without("mask", "only allowed together with rows or columns"),
                                       without("rest", "only allowed together with rows or columns"),
-                                      without("share", "only allowed together with rows or columns"),
+                                      without("area_fraction", "only allowed together with rows or columns"),
                                       without("rectangles_mm", "only allowed together with rows or columns"),
                                       without("polygon_mm", "only allowed together with rows or columns")};
 constexpr Condition kBesideMask[] = {beside("mask")};
 constexpr Row kZoneRows[] = {
-    {"share", Number{{.low = 0.0, .low_included = false, .high = 1.0}}, kNone,
-     "Fraction of the part's area. The zone is a stripe over the whole length of the part along y. The stripes are "
-     "placed side by side along x, in the order of the file. Their fractions must add up to 1 within 1e-6."},
+    renamed("share", Row{"area_fraction", Number{{.low = 0.0, .low_included = false, .high = 1.0}}, kNone,
+                         "Fraction of the part's area. The zone is a stripe over the whole length of the part along y. "
+                         "The stripes are placed side by side along x, in the order of the file. Their fractions must "
+                         "add up to 1 within 1e-6."}),
     {"rectangles_mm", NumberRows{4, kPlace, 1, 1000, "rectangles"}, kNone,
      "`[[x_from, y_from, x_to, y_to], ...]`: rectangles in the plan of the part. Each rectangle has its own array."},
     {"polygon_mm", NumberRows{2, kPlace, 3, 100, "points"}, kNone,

@@ -20,7 +20,7 @@ namespace {
 using geometry::Polygon, geometry::Vec2, schema::Document;
 
 constexpr std::string_view kZone = "zone";
-constexpr std::array<std::string_view, 3> kRegions = {"share", "rectangles_mm", "polygon_mm"};
+constexpr std::array<std::string_view, 3> kRegions = {"area_fraction", "rectangles_mm", "polygon_mm"};
 /// Maximum number of elements of a part with zones. The limit keeps memory small, because the back of such a part is
 /// stored without using the periodicity of its arrays.
 constexpr double kMostElements = 1e5;
@@ -117,19 +117,19 @@ Document document_of_zone(const Document& document, std::size_t zone, const std:
 void lay_out_stripes(const Document& document, geometry::ZonedSpec& spec) {
   double sum = 0.0;
   for (std::size_t k = 0; k < spec.zones.size(); ++k) {
-    const std::string key = entry_of(k) + ".share";
+    const std::string key = entry_of(k) + ".area_fraction";
     if (!document.has(key))
       document.fail(entry_of(k),
-                    "must have share, because other zones have it: either all zones have a share, or none");
+                    "must have area_fraction, because other zones have it: either all zones have it, or none");
     sum += document.number(key);
   }
   if (std::abs(sum - 1.0) > kShareRounding)
-    document.fail(entry_of(spec.zones.size() - 1) + ".share",
-                  fmt::format("the shares of all zones must add up to 1, got {}", shortest(sum)));
+    document.fail(entry_of(spec.zones.size() - 1) + ".area_fraction",
+                  fmt::format("the values of area_fraction of all zones must add up to 1, got {}", shortest(sum)));
   double from_mm = 0.0;
   double share = 0.0;
   for (std::size_t k = 0; k < spec.zones.size(); ++k) {
-    share += document.number(entry_of(k) + ".share");
+    share += document.number(entry_of(k) + ".area_fraction");
     const double to_mm = k + 1 == spec.zones.size() ? spec.size_mm.x() : share / sum * spec.size_mm.x();
     spec.zones[k].regions = {geometry::to_polygon({{from_mm, 0.0}, {to_mm, spec.size_mm.y()}})};
     from_mm = to_mm;
@@ -163,7 +163,7 @@ Polygon polygon_of(const Document& document, const std::string& key) {
 }
 
 void read_regions(const Document& document, geometry::ZonedSpec& spec) {
-  const auto has_share = [&](std::size_t k) { return document.has(entry_of(k) + ".share"); };
+  const auto has_share = [&](std::size_t k) { return document.has(entry_of(k) + ".area_fraction"); };
   std::size_t regions = 0;
   for (std::size_t k = 0; k < spec.zones.size(); ++k) {
     if (has_share(k)) return lay_out_stripes(document, spec);

@@ -53,12 +53,12 @@ Json poses_json(const FabricationResult& result) {
   Json poses = Json::array();
   for (const fabrication::CuttingPose& pose : result.plan.poses) {
     poses.push_back({{"facet", pose.facet.facet},
-                     {"turned", pose.facet.rotated},
+                     {"rotated", pose.facet.rotated},
                      {tilt_key(result.machine), pose.rounded.a_deg},
                      {"c_deg", pose.rounded.c_deg},
                      {"root_tilt_arcmin", 60.0 * pose.root_tilt.deg()},
                      {"lift_nm", 1e6 * pose.section.lift_mm}});
-    if (result.job.substrate) poses.back()["tilt"] = pose.orientation + 1;
+    if (result.job.substrate) poses.back()["orientation"] = pose.orientation + 1;
     if (!result.job.zones.empty()) poses.back()["zone"] = pose.facet.zone + 1;
   }
   return poses;
@@ -156,7 +156,7 @@ std::string fabrication_json(const FabricationResult& result, const Json& setup)
   // A V-shaped tool cuts in both directions with its leading edge and always has the same rake.
   if (!cuts_prisms(result.job)) json.erase("plough_rake_deg");
   if (!setup.is_null()) json["setup"] = setup;
-  return result_text("retrace.fabrication/1", json, result.warnings);
+  return result_text("retrace.fabrication/2", json, result.warnings);
 }
 
 std::string stages_csv(const FabricationResult& result) {

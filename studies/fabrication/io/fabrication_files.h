@@ -14,7 +14,7 @@ namespace retrace::studies {
 std::string job_json(const MadeJob& made);
 std::string job_table(const MadeJob& made);
 
-/// These functions return the result of `retrace fabricate` as JSON (retrace.fabrication/1), as CSV with one line for
+/// These functions return the result of `retrace fabricate` as JSON (retrace.fabrication/2), as CSV with one line for
 /// each stage, and as a table.
 /// \param setup value of the key `setup`; the key is omitted if it is null
 std::string fabrication_json(const FabricationResult& result, const nlohmann::ordered_json& setup = nullptr);

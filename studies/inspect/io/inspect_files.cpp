@@ -17,7 +17,7 @@ namespace {
 
 std::string total_reflection(const Inspection& i) {
   if (i.entrance) return "not computed: a curved entrance surface refracts light into many directions";
-  if (i.substrate) return "not computed: elements on a base have different orientations";
+  if (i.substrate) return "not computed: elements on a substrate have different orientations";
   if (!i.design.needs_total_reflection()) return "not needed: the facets are metal or mirrors";
   if (i.coating.facets && i.coating.facets->stack.absorbs()) return "none: the layers on the facets absorb light";
   if (!i.tir_limit_deg) return "none at normal incidence";
@@ -50,7 +50,7 @@ nlohmann::ordered_json substrate_json(const SubstrateReport& substrate) {
                                  {"highest_step_mm", substrate.walls.highest_mm},
                                  {"pocket_walls_mm2", substrate.walls.area_mm2},
                                  {"pocket_projected_mm2", substrate.walls.projected_mm2}};
-  if (std::isfinite(least_radius_mm)) json["least_radius_mm"] = least_radius_mm;
+  if (std::isfinite(least_radius_mm)) json["min_radius_mm"] = least_radius_mm;
   return json;
 }
 
@@ -99,12 +99,12 @@ nlohmann::ordered_json coating_json(const CoatingReport& face) {
 void add_entrance_state(const Inspection& i, nlohmann::ordered_json& json) {
   if (!i.entrance_state) return;
   const auto& [clean_share, reflectance, transmittance, absorptance, specular, haze_share, dust] = *i.entrance_state;
-  json["entrance"] = {{"clean_share", clean_share},
+  json["entrance"] = {{"clean_fraction", clean_share},
                       {"reflectance", reflectance},
                       {"transmittance", transmittance},
                       {"absorptance", absorptance},
                       {"specular_transmittance", specular}};
-  if (haze_share > 0.0) json["entrance"]["haze_share"] = haze_share;
+  if (haze_share > 0.0) json["entrance"]["haze_fraction"] = haze_share;
   if (i.design.surface.entrance.dust_coverage > 0.0) json["entrance"]["dust_cd_per_lx_m2"] = dust;
 }
 
@@ -201,13 +201,13 @@ std::string substrate_text(const Inspection& i) {
   if (!i.substrate) return {};
   const auto& [area_mm2, lowest_mm, highest_mm, steepest_deg, least_radius_mm] = i.substrate->measures;
   const std::string radius = std::isfinite(least_radius_mm) ? fixed(least_radius_mm, 4) + " mm" : "plane";
-  return fmt::format("  base                {} mm2, {} mm high, slopes up to {} degrees\n", fixed(area_mm2, 4),
+  return fmt::format("  substrate           {} mm2, {} mm high, slopes up to {} degrees\n", fixed(area_mm2, 4),
                      fixed(highest_mm - lowest_mm, 4), fixed_visible(steepest_deg, 2)) +
          fmt::format("  minimum radius      {}; an element is {} mm wide\n", radius,
                      fixed(i.substrate->element_mm, 4)) +
          fmt::format(
              "  between elements    steps up to {} mm; area of the walls {} mm2, projected along the normal of the "
-             "base {} mm2\n",
+             "substrate {} mm2\n",
              fixed(i.substrate->walls.highest_mm, 6), fixed(i.substrate->walls.area_mm2, 4),
              fixed(i.substrate->walls.projected_mm2, 4));
 }
@@ -224,22 +224,22 @@ nlohmann::ordered_json common_json(const Inspection& i) {
           {"element_depth_mm", i.element_depth_mm},
           {"facet_area_mm2", i.facet_area_mm2},
           {"entrance_area_mm2", i.entrance_area_mm2},
-          {"full_element_share", i.full_element_share},
+          {"full_element_area_fraction", i.full_element_share},
           {"refractive_index", i.refractive_index}};
 }
 
 std::string ball_json(const Inspection& i) {
   const BallFigures& balls = *i.balls;
   nlohmann::ordered_json json = common_json(i);
-  json["packing_share"] = balls.packing_share;
+  json["packing_fraction"] = balls.packing_share;
   json["mirror_half_angle_deg"] = balls.mirror_half_angle_deg;
   json["paraxial_error"] = balls.paraxial_error;
   json["largest_return_error_deg"] = balls.largest_return_error_deg;
-  json["share_within_acceptance"] = balls.share_within_acceptance;
+  json["fraction_within_acceptance"] = balls.share_within_acceptance;
   if (balls.focal_offset_mm) json["focal_offset_mm"] = *balls.focal_offset_mm;
   if (i.design.light.spectrum()) json["spectrum"] = spectrum_json(i.light);
   add_coating(i, json);
-  return result_text("retrace.inspect/1", json, i.warnings);
+  return result_text("retrace.inspect/2", json, i.warnings);
 }
 
 /// Returns the lines on the zones of a part: their sizes, elements and the distance that light travels across zones.
@@ -271,10 +271,10 @@ nlohmann::ordered_json zones_json(const ZonesReport& report) {
     json["zones"].push_back({{"area_mm2", zone.elements.area_mm2},
                              {"elements_full", zone.elements.full},
                              {"elements_partial", zone.elements.partial}});
-    if (zone.wander_mm) json["zones"].back()["wander_mm"] = *zone.wander_mm;
+    if (zone.wander_mm) json["zones"].back()["lateral_shift_mm"] = *zone.wander_mm;
   }
   for (const ZoneCrossing& crossing : report.crossings)
-    json["meets_two_zones"].push_back({{"incidence_deg", crossing.incidence_deg}, {"share", crossing.share}});
+    json["meets_two_zones"].push_back({{"incidence_deg", crossing.incidence_deg}, {"fraction", crossing.share}});
   return json;
 }
 
@@ -285,10 +285,10 @@ std::string inspect_json(const Inspection& i) {
   nlohmann::ordered_json json = common_json(i);
   if (i.zones) json.update(zones_json(*i.zones));
   if (i.design.zoned()) {
-    json.erase("full_element_share");
+    json.erase("full_element_area_fraction");
   } else if (!i.design.elements()) {
     // The number of elements in a mesh is not known.
-    for (const char* key : {"elements_full", "elements_partial", "full_element_share"}) json.erase(key);
+    for (const char* key : {"elements_full", "elements_partial", "full_element_area_fraction"}) json.erase(key);
   }
   if (!i.design.elements()) json["thickness_mm"] = i.thickness_mm;
   if (i.design.light.spectrum()) json["spectrum"] = spectrum_json(i.light);
@@ -296,13 +296,13 @@ std::string inspect_json(const Inspection& i) {
   add_entrance_state(i, json);
   if (i.tir_limit_deg) json["tir_limit_deg"] = *i.tir_limit_deg;
   if (i.tir_limit_azimuth_deg) json["tir_limit_azimuth_deg"] = *i.tir_limit_azimuth_deg;
-  if (i.design.elements()) json["dead_zone_share"] = i.dead_zone_share;
-  if (i.substrate) json["base"] = substrate_json(*i.substrate);
+  if (i.design.elements()) json["dead_zone_fraction"] = i.dead_zone_share;
+  if (i.substrate) json["substrate"] = substrate_json(*i.substrate);
   if (i.wet_back) json["wet_back"] = wet_back_json(i);
-  if (i.entrance) json["front"] = entrance_json(*i.entrance);
+  if (i.entrance) json["entrance_surface"] = entrance_json(*i.entrance);
   if (i.form) json["form"] = form_json(*i.form);
   json["boundary"] = i.boundary;
-  return result_text("retrace.inspect/1", json, i.warnings);
+  return result_text("retrace.inspect/2", json, i.warnings);
 }
 
 namespace {

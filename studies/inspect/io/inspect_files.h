@@ -8,7 +8,7 @@
 
 namespace retrace::studies {
 
-/// Returns the properties as a document of the format `retrace.inspect/1`.
+/// Returns the properties as a document of the format `retrace.inspect/2`.
 std::string inspect_json(const Inspection& inspection);
 
 /// Returns the properties as lines for the terminal.

@@ -29,7 +29,7 @@ Objective read_objective(const Document& document, const Study& study) {
   return objective;
 }
 
-std::vector<FrontAxis> read_entrance(const Document& document, const Study& study, const Objective& objective) {
+std::vector<FrontAxis> read_front_axes(const Document& document, const Study& study, const Objective& objective) {
   const std::string key = "optimize.front";
   std::vector<FrontAxis> front;
   if (!document.has(key)) {
@@ -38,7 +38,7 @@ std::vector<FrontAxis> read_entrance(const Document& document, const Study& stud
   }
   for (const auto& [name, sense] : document.named(key))
     front.push_back(
-        {checked_quantity(study, name, document.where(key + "." + name)), std::get<std::string>(sense) == "most"});
+        {checked_quantity(study, name, document.where(key + "." + name)), std::get<std::string>(sense) == "max"});
   return front;
 }
 
@@ -75,7 +75,7 @@ OptimiseRequest read_optimise(const Study& study) {
   check_parameters(study);
   OptimiseRequest request;
   request.objective = read_objective(document, study);
-  request.front = read_entrance(document, study, request.objective);
+  request.front = read_front_axes(document, study, request.objective);
   request.scan = static_cast<std::size_t>(document.number("optimize.scan"));
   request.bands_of = read_band_keys(document, study);
   constexpr double percent = 100.0;

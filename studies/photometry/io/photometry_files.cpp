@@ -200,7 +200,7 @@ std::string photometry_json(const PhotometryResult& result) {
                {"engine_requested", raytrace::engine_name(asked.engine)},
                {"diffraction", result.has_diffraction},
                {"design", to_json(result.design)},
-               {"programme", programme_json(result)},
+               {"test_plan", programme_json(result)},
                {"area_cm2", asked.area_cm2},
                {"area_limits", areas_json(asked)},
                {"light", light_name(asked.light)},
@@ -220,7 +220,7 @@ std::string photometry_json(const PhotometryResult& result) {
   json["changes"] = Json::array();
   if (result.change) json["changes"].push_back(change_json(*result.change));
   json["elapsed_s"] = result.elapsed_s;
-  return result_text("retrace.photometry/1", json, result.warnings, result.complete);
+  return result_text("retrace.photometry/2", json, result.warnings, result.complete);
 }
 
 std::string photometry_csv(const PhotometryResult& result) {

@@ -8,7 +8,7 @@
 
 namespace retrace::studies {
 
-/// Returns the result as JSON with the schema retrace.photometry/1.
+/// Returns the result as JSON with the schema retrace.photometry/2.
 std::string photometry_json(const PhotometryResult& result);
 
 /// Returns the readings as CSV, with one line for each test point.

@@ -20,8 +20,8 @@ namespace {
 using namespace fabrication;
 using Json = nlohmann::ordered_json;
 
-/// Published machining times per frame (single move), in s, for the lens of E. D. Bulatov, S. A. Gridin and A. A.
-/// Danilenko. The two programs of this lens have about 2500 frames in 5 h and 3500 frames in 8 h.
+/// Published machining times per block (single move), in s, for the lens of E. D. Bulatov, S. A. Gridin and A. A.
+/// Danilenko. The two programs of this lens have about 2500 blocks in 5 h and 3500 blocks in 8 h.
 constexpr double kPublishedSecondsPerFrame[] = {7.2, 8.2};
 
 double per_frame(double time_s, std::int64_t frames) {
@@ -87,9 +87,9 @@ double form_error_mm(const PlanedPart& part, const PlaningCheck& check) {
 
 /// Adds the data that are computed from a program's text.
 void add_run(const PlaningCheck& check, std::size_t program, Json& json) {
-  json["frames"] = check.frames[program];
+  json["blocks"] = check.frames[program];
   json["hours"] = check.time_s[program] / 3600.0;
-  json["seconds_per_frame"] = per_frame(check.time_s[program], check.frames[program]);
+  json["seconds_per_block"] = per_frame(check.time_s[program], check.frames[program]);
 }
 
 Json programs_json(const PlaningResult& result) {
@@ -110,7 +110,7 @@ void add_machine(const PlanedPart& part, const PlaningCheck& check, const Planin
     json["tool_flank_deg"] = flank_deg(check.flank_slope);
     if (plan != nullptr) json["quantum_mm"] = plan->quantum_mm;
     json["form_error_mm_max"] = form_error_mm(part, check);
-    json["standing_mm_max"] = check.standing_mm_max;
+    json["excess_mm_max"] = check.standing_mm_max;
     json["gouge_mm_max"] = check.gouge_mm_max;
     json["off_grid_nm_max"] = check.off_grid_nm_max;
     json["shortest_move_mm"] = {check.shortest_x_mm, check.shortest_y_mm, check.shortest_z_mm};
@@ -145,15 +145,15 @@ std::string planing_json(const PlaningResult& result) {
   json["zones"] = zones_json(result);
   json["programs"] = programs_json(result);
   json["runs"] = result.plan.runs;
-  json["frames"] = result.plan.runs * totals.frames;
+  json["blocks"] = result.plan.runs * totals.frames;
   json["hours"] = result.plan.runs * totals.time_s / 3600.0;
-  json["seconds_per_frame"] = per_frame(totals.time_s, totals.frames);
-  if (result.part.mill) json["published_seconds_per_frame"] = kPublishedSecondsPerFrame;
-  return result_text("retrace.planing/1", json, result.warnings);
+  json["seconds_per_block"] = per_frame(totals.time_s, totals.frames);
+  if (result.part.mill) json["published_seconds_per_block"] = kPublishedSecondsPerFrame;
+  return result_text("retrace.planing/2", json, result.warnings);
 }
 
 std::string planing_csv(const PlaningResult& result) {
-  CsvWriter csv("x_mm,design_mm,left_mm");
+  CsvWriter csv("x_mm,design_mm,machined_mm");
   for (const ProfileSample& s : result.check.profile)
     csv.row(fixed(s.x_mm, 6), fixed(s.design_mm, 6), fixed(s.left_mm, 6));
   return csv.text();
@@ -162,13 +162,13 @@ std::string planing_csv(const PlaningResult& result) {
 std::string planing_table(const PlaningResult& result) {
   std::string text;
   if (!result.part.title.empty()) text += printable(result.part.title) + "\n";
-  text += "program                 cuts  frames   hours  s/frame\n";
+  text += "program                 cuts  blocks   hours  s/block\n";
   for (std::size_t k = 0; k < result.programs.size(); ++k)
     text += fmt::format("{:<22} {:>5} {:>7} {:>7} {:>8}\n", printable(result.programs[k].name, std::string::npos),
                         result.plan.programs[k].cuts, result.check.frames[k], fixed(result.check.time_s[k] / 3600.0, 2),
                         fixed(per_frame(result.check.time_s[k], result.check.frames[k]), 2));
   const Totals totals = totals_of(result.check);
-  text += fmt::format("total of {} run{} of each program: {} frames, {} hours\n", result.plan.runs,
+  text += fmt::format("total of {} run{} of each program: {} blocks, {} hours\n", result.plan.runs,
                       result.plan.runs > 1 ? "s" : "", result.plan.runs * totals.frames,
                       fixed(result.plan.runs * totals.time_s / 3600.0, 2));
   text += fmt::format("form error {} mm, tolerance {} mm", fixed(form_error_mm(result.part, result.check), 4),
@@ -202,10 +202,10 @@ std::string verification_json(const PlaningVerification& run, double elapsed_s) 
   json["tolerance_mm"] = run.part.tolerance_mm;
   add_machine(run.part, check, nullptr, json);
   const Totals totals = totals_of(check);
-  json["frames"] = totals.frames;
+  json["blocks"] = totals.frames;
   json["time_s"] = totals.time_s;
   json["elapsed_s"] = elapsed_s;
-  return result_text("retrace.verification/1", json, {});
+  return result_text("retrace.verification/2", json, {});
 }
 
 std::string verification_table(const PlaningVerification& run) {
@@ -222,7 +222,7 @@ std::string verification_table(const PlaningVerification& run) {
   row("form error", in_mm(form_error_mm(run.part, check)));
   row("tolerance", shortest(run.part.tolerance_mm) + " mm");
   if (run.part.lathe) row("largest depth of a pass", in_mm(check.chip_mm_max));
-  row("frames", std::to_string(totals.frames));
+  row("blocks", std::to_string(totals.frames));
   row("time", fixed(totals.time_s / 3600.0, 2) + " h");
   return text + findings_table(check.findings);
 }

@@ -7,6 +7,7 @@
 
 #include "core/message_text.h"
 #include "core/number_format.h"
+#include "studies/quantity/io/study_format.h"
 
 namespace retrace::studies {
 namespace {
@@ -22,6 +23,8 @@ std::vector<std::string_view> names_of(const Study& study) {
 std::string checked_quantity(const Study& study, const std::string& name, const InputLocation& where) {
   const std::vector<std::string_view> names = names_of(study);
   if (std::find(names.begin(), names.end(), name) != names.end()) return name;
+  for (const std::string_view each : names)
+    if (current_kind(each) == current_kind(name)) return std::string(each);
   const std::string_view meant = closest(name, names);
   throw InputError(where,
                    fmt::format("must be a quantity of the study ({}), got {}{}", alternatives(names), in_quotes(name),

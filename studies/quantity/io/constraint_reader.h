@@ -23,8 +23,9 @@ enum class ConstraintOver { cell, part };
 /// \throw InputError for invalid keys
 std::vector<Constraint> read_constraints(const Study& study, ConstraintOver over);
 
-/// Checks that the study has a quantity with this name.
-/// \return `name`
+/// Checks that the study has a quantity with this name. The name of a quantity is by default its kind. If the kind has
+/// a former word, both words are allowed as the name.
+/// \return name of the quantity, which is `name` or the other word of this kind
 /// \throw InputError if there is no such quantity
 std::string checked_quantity(const Study& study, const std::string& name, const InputLocation& where);
 

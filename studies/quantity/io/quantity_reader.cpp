@@ -181,7 +181,7 @@ bool is_name(const std::string& text) {
 
 Quantities read_quantity(const Document& document, const std::string& at, std::vector<NamedFile>& files) {
   const std::string kind = document.text(at + ".kind");
-  const std::string name = optional_text(document, at + ".name").value_or(kind);
+  const std::string name = optional_text(document, at + ".name").value_or(document.text_as_written(at + ".kind"));
   if (!is_name(name))
     document.fail(
         at + ".name",

@@ -69,7 +69,7 @@ constexpr Words kKinds = {"rre",
                           "facet_area_mm2",
                           "effective_area_mm2",
                           "entrance_area_mm2",
-                          "full_element_share",
+                          "full_element_area_fraction",
                           "tir_limit_deg",
                           "tool_fit_mm",
                           "machining_time_h",
@@ -77,13 +77,15 @@ constexpr Words kKinds = {"rre",
                           "area_rate_mm2_per_h",
                           "process_sa_nm",
                           "root_radius_um"};
+constexpr FormerWord kFormerKinds[] = {{"full_element_share", "full_element_area_fraction"}};
 constexpr Words kShares = {"rre", "ledger", "far_field"};
 constexpr Words kLedger = {"ledger"};
 constexpr Words kFarField = {"far_field"};
 constexpr Words kInCone = {"rre", "ledger"};
 constexpr Words kPhotometry = {"photometry"};
 constexpr Words kWeightings = {"uniform", "solid_angle"};
-constexpr Words kReductions = {"mean", "least", "each"};
+constexpr Words kReductions = {"mean", "min", "each"};
+constexpr FormerWord kFormerReductions[] = {{"least", "min"}};
 constexpr Words kFigures = {"margin", "r_i_mcd_per_lx", "r_a"};
 constexpr Words kPoints = {"worst", "each", "each_reading"};
 constexpr Words kLights = {"a", "d65", "design"};
@@ -102,15 +104,15 @@ constexpr std::string_view kAngles =
     "`count` equal intervals.";
 
 constexpr Row kQuantityRows[] = {
-    {"kind", Word{kKinds}, kRequired, "Kind of quantity."},
+    {"kind", Word{.words = kKinds, .former = kFormerKinds}, kRequired, "Kind of quantity."},
     {"name", Text{}, Computed{"the kind"},
      "Name of the quantity's column in results. It is needed if several quantities have the same kind."},
     {"incidence_deg", NumberOrNumbers{kIncidence}, kOfAnalysis, kAngles, kOfShares},
     {"incidence_deg", kMiddlesOfParts, kNone, kAngles, kOfShares},
     {"azimuth_deg", NumberOrNumbers{{}}, kOfAnalysis, kAngles, kOfShares},
     {"azimuth_deg", kMiddlesOfParts, kNone, kAngles, kOfShares},
-    {"over_directions", Word{kReductions}, "mean",
-     "Method by which the values of several directions are combined. `\"mean\"`: weighted mean. `\"least\"`: minimum "
+    {"over_directions", Word{.words = kReductions, .former = kFormerReductions}, "mean",
+     "Method by which the values of several directions are combined. `\"mean\"`: weighted mean. `\"min\"`: minimum "
      "over all directions. `\"each\"`: one quantity for each direction, named `NAME.1`, `NAME.2`, ...",
      kOfShares},
     {"weighting", Word{kWeightings}, "uniform",
@@ -246,7 +248,9 @@ constexpr Row kSweepRows[] = {
      "hypercube. `\"monte_carlo\"`: independent random points."},
     {"samples", Whole{{.low = 1.0, .high = 1'000'000.0}}, kRequired, "Number of points.", kOfSampled}};
 
-constexpr Words kSense = {"most", "least"};
+constexpr Words kSenses = {"max", "min"};
+constexpr FormerWord kFormerSenses[] = {{"most", "max"}, {"least", "min"}};
+constexpr Word kSense{.words = kSenses, .former = kFormerSenses};
 constexpr std::string_view kQuantityOrWeights = "a quantity or a table of weights";
 constexpr std::string_view kObjective =
     "Objective: a quantity, or a table of weights such as `{rre = 1, machining_time_h = -0.001}`. With a table, the "
@@ -256,9 +260,9 @@ constexpr Row kOptimiseRows[] = {
     {"maximize", ByName{Number{}, {}, kQuantityOrWeights}, kNone, kObjective},
     {"minimize", Text{kQuantityOrWeights}, kNone, kObjective},
     {"minimize", ByName{Number{}, {}, kQuantityOrWeights}, kNone, kObjective},
-    {"front", ByName{Word{kSense}, {}, "a table such as {rre = \"most\", machining_time_h = \"least\"}"},
+    {"front", ByName{kSense, {}, "a table such as {rre = \"max\", machining_time_h = \"min\"}"},
      Computed{"the quantities of the objective"},
-     "Axes of the Pareto front: quantities, and whether large values (`\"most\"`) or small values (`\"least\"`) are "
+     "Axes of the Pareto front: quantities, and whether large values (`\"max\"`) or small values (`\"min\"`) are "
      "better."},
     {"scan", Whole{{.low = 3.0, .high = 100'000.0}}, 65.0,
      "Number of designs in the first scan, for each combination of discrete values. For one continuous parameter, the "
@@ -281,8 +285,8 @@ constexpr Row kToleranceRows[] = {
     {"indices", Word{kIndices}, "sobol",
      "Sensitivity indices. `\"sobol\"`: Sobol indices, which show how much each parameter contributes to the spread."},
     {"confidence_percent", Number{{.low = 50.0, .high = 99.99}}, 95.0, "Confidence level of all intervals."},
-    {"least_yield_percent", Number{kPercent}, kNone,
-     "Minimum yield. If the yield is below it, the command ends with exit code 1."}};
+    renamed("least_yield_percent", Row{"min_yield_percent", Number{kPercent}, kNone,
+                                       "Minimum yield. If the yield is below it, the command ends with exit code 1."})};
 
 constexpr Words kOver = {"cell", "part"};
 constexpr Row kConstraintRows[] = {
@@ -298,20 +302,21 @@ constexpr Row kComposeRows[] = {
      "Goals: the quantities whose minimum is maximised. A name also selects the quantities with this name and numbers: "
      "`\"margin\"` selects `margin.1`, `margin.1.1`, ... Each goal must be a mean over the area, and not the minimum "
      "of several points, rotations or directions."},
-    {"least", Number{}, Computed{"0 if all goals are margins"},
-     "Value that the minimum of all goals must reach. If the best part does not reach it, the command ends with exit "
-     "code 1."},
-    {"most_zones", Whole{{.low = 1.0, .high = 100.0}}, kNone,
-     "Maximum number of zones. Each zone has one kind of cell."},
-    {"least_share", Number{{.low = 0.0, .high = 1.0}}, 0.0, "Minimum fraction of the area for each zone of the part."},
-    {"most_share", Number{{.low = 0.0, .low_included = false, .high = 1.0}}, 1.0,
-     "Maximum fraction of the area for each zone."},
+    renamed("least", Row{"min_goal", Number{}, Computed{"0 if all goals are margins"},
+                         "Value that the minimum of all goals must reach. If the best part does not reach it, the "
+                         "command ends with exit code 1."}),
+    renamed("most_zones", Row{"max_zones", Whole{{.low = 1.0, .high = 100.0}}, kNone,
+                              "Maximum number of zones. Each zone has one kind of cell."}),
+    renamed("least_share", Row{"min_area_fraction", Number{{.low = 0.0, .high = 1.0}}, 0.0,
+                               "Minimum fraction of the area for each zone of the part."}),
+    renamed("most_share", Row{"max_area_fraction", Number{{.low = 0.0, .low_included = false, .high = 1.0}}, 1.0,
+                              "Maximum fraction of the area for each zone."}),
     {"price", ByName{Number{}, {}, "a table of prices such as {machining_time_h = 0.01}"}, kNone,
      "Prices of quantities. The merit of a part is the minimum of all goals, minus the price for each unit of the "
      "quantity's mean over the part."},
-    {"front", ByName{Word{kSense}, {}, "a table of one quantity, such as {machining_time_h = \"least\"}"}, kNone,
-     "Quantity whose mean over the part is one axis of the Pareto front, and whether large values (`\"most\"`) or "
-     "small values (`\"least\"`) are better. The minimum of all goals is the other axis."},
+    {"front", ByName{kSense, {}, "a table of one quantity, such as {machining_time_h = \"min\"}"}, kNone,
+     "Quantity whose mean over the part is one axis of the Pareto front, and whether large values (`\"max\"`) or small "
+     "values (`\"min\"`) are better. The minimum of all goals is the other axis."},
     {"scan", Whole{{.low = 3.0, .high = 100'000.0}}, 65.0,
      "Number of cells in the first scan, for each combination of discrete values. The cells are chosen in the same way "
      "as the designs of `scan` in [optimize]."},
@@ -319,8 +324,8 @@ constexpr Row kComposeRows[] = {
      "Maximum number of searches for further cells with dual prices."},
     {"starts", Whole{{.low = 1.0, .high = 100.0}}, 3.0,
      "Number of cells from which each search with dual prices starts."},
-    {"looks", Whole{{.low = 1.0, .high = 10'000.0}}, 20.0,
-     "Maximum number of cells that are evaluated from each start."},
+    renamed("looks", Row{"evaluations_per_start", Whole{{.low = 1.0, .high = 10'000.0}}, 20.0,
+                         "Maximum number of cells that are evaluated from each start."}),
     {"cell_sigma_arcmin", Number{{.low = 0.0, .high = 60.0}}, kNone,
      "Standard deviation, from cell to cell, of the error of each angle between facets. These errors average out over "
      "a zone."},
@@ -330,9 +335,10 @@ constexpr Row kComposeRows[] = {
      "are reported."},
     {"parts", Whole{{.low = 16.0, .high = 16'384.0}}, 1024.0,
      "Number of random parts with angle errors from which the yield is computed."},
-    {"worst_share", Number{{.low = 0.0, .low_included = false, .high = 1.0}}, kNone,
-     "Fraction of the random parts that counts as the worst, such as 0.05 for one in twenty. In addition to the best "
-     "part, a part is reported that is optimized for these worst random parts."}};
+    renamed("worst_share",
+            Row{"worst_fraction", Number{{.low = 0.0, .low_included = false, .high = 1.0}}, kNone,
+                "Fraction of the random parts that counts as the worst, such as 0.05 for one in twenty. In addition to "
+                "the best part, a part is reported that is optimized for these worst random parts."})};
 
 constexpr Row kRootRows[] = {{"title", Text{}, kNone, "Title of the study in results."},
                              {"design", File{"a design file"}, kNone,
@@ -392,6 +398,12 @@ const Format kFormat = {"study",
 
 const Format& study_format() {
   return kFormat;
+}
+
+std::string_view current_kind(std::string_view kind) {
+  for (const FormerWord& word : kFormerKinds)
+    if (word.former == kind) return word.current;
+  return kind;
 }
 
 }  // namespace retrace::studies

@@ -2,6 +2,8 @@
 
 // Format of study files, as one row for each key. The readers and the documentation use these rows.
 
+#include <string_view>
+
 #include "core/schema/schema.h"
 
 namespace retrace::studies {
@@ -12,5 +14,9 @@ inline constexpr std::size_t kFirstPlainKind = 4;
 
 /// Returns the keys of study files: parameters, quantities, analysis and machining.
 const schema::Format& study_format();
+
+/// Returns the current word for a word of the key `kind` of a quantity in former versions. Returns any other text
+/// unchanged.
+std::string_view current_kind(std::string_view kind);
 
 }  // namespace retrace::studies

@@ -177,7 +177,7 @@ Json summary_of(const RrePoint& at, const Footprint& footprint) {
   Json summary = direction_and_cone_of(at);
   summary["entrance_area_mm2"] = footprint.entrance_area_mm2;
   summary["active_area_mm2"] = footprint.active_area_mm2;
-  summary["active_share"] = footprint.active_share();
+  summary["active_fraction"] = footprint.active_share();
   summary["rre_shown"] = footprint.rre_shown();
   summary["rre"] = at.rre;
   return summary;
@@ -195,7 +195,7 @@ std::string footprint_json(const RreResult& result) {
       json["features"].push_back(feature_of(light.at, region));
     json["regions"].push_back(summary_of(light.at, *light.footprint));
   }
-  return result_text("retrace.footprint/1", json, result.warnings, result.complete);
+  return result_text("retrace.footprint/2", json, result.warnings, result.complete);
 }
 
 namespace {

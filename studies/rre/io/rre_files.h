@@ -21,7 +21,7 @@ std::string rre_table(const RreResult& result);
 /// none were requested.
 std::string derivative_table(const RreResult& result);
 
-/// Returns the active regions of every direction as a document of the format `retrace.footprint/1`. It is a GeoJSON
+/// Returns the active regions of every direction as a document of the format `retrace.footprint/2`. It is a GeoJSON
 /// feature collection in mm.
 /// \pre a footprint was requested
 std::string footprint_json(const RreResult& result);

@@ -25,7 +25,7 @@ Json blank_json(const FabricationResult& result, const BlankSetup& blank) {
                {"array_y_mm", blank.array_mm.y()},
                {"deepest_mm", blank.deepest_mm}};
   if (!blank.base.empty()) {
-    json["base"] = blank.base;
+    json["substrate"] = blank.base;
     json["stock_mm"] = blank.stock_mm;
   }
   if (!blank.zones.empty()) json["zones"] = blank.zones;
@@ -45,7 +45,7 @@ Json tool_json(const FabricationResult& result, const ToolSetup& tool) {
   if (!tool.plough_rake_deg) json["nose_angle_deg"] = t.nose_angle_deg;
   if (tool.free_length_mm) json["free_length_mm"] = *tool.free_length_mm;
   json["mount_offset_mm"] = point_json(result.machine.mount.offset_mm.value);
-  json["mount_turn_deg"] = point_json(result.machine.mount.turn_deg.value);
+  json["mount_rotation_deg"] = point_json(result.machine.mount.turn_deg.value);
   return json;
 }
 
@@ -65,7 +65,7 @@ Json checks_json(const FabricationResult& result, const std::vector<StageCheck>&
     rows.push_back({{"stage", check.stage},
                     {"program", result.program_file(check.program)},
                     {"ends_s", check.ends_s},
-                    {"left_um", check.left_um}});
+                    {"remaining_um", check.left_um}});
     if (check.root_depth_mm > 0.0) rows.back()["root_depth_mm"] = check.root_depth_mm;
   }
   return rows;
@@ -90,13 +90,14 @@ Json sensitivities_json(const FabricationResult& result, const SetupSheet& sheet
     Json facets = Json::array();
     for (std::size_t k = 0; k < row.facets.size(); ++k)
       facets.push_back({{"facet", sheet.sensitivities.kinds[k].facet + 1},
-                        {"turned", sheet.sensitivities.kinds[k].rotated},
+                        {"rotated", sheet.sensitivities.kinds[k].rotated},
                         {"distance_nm", row.facets[k].distance_nm},
                         {"up_arcmin", row.facets[k].up_arcmin},
                         {"along_arcmin", row.facets[k].along_arcmin},
                         {"farthest_nm", row.facets[k].farthest_nm}});
-    Json json = {{"quantity", row.quantity->key}, {"words", row.quantity->words}, {"unit", row.quantity->unit()},
-                 {"facets", std::move(facets)},   {"chip_nm", row.chip_nm},       {"root_left_nm", row.root_left_nm},
+    Json json = {{"quantity", row.quantity->key}, {"description", row.quantity->words},
+                 {"unit", row.quantity->unit()},  {"facets", std::move(facets)},
+                 {"chip_nm", row.chip_nm},        {"root_residual_nm", row.root_left_nm},
                  {"root_cut_nm", row.root_cut_nm}};
     if (result.machine.tilt == Tilt::table) json["wall_nm"] = row.wall_nm;
     if (const PartLight* const change = sheet.change_of_light(*row.quantity, result.machine.tilt)) {

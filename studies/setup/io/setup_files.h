@@ -8,7 +8,7 @@
 
 namespace retrace::studies {
 
-/// Returns the object `setup` of the document `retrace.fabrication/1`.
+/// Returns the object `setup` of the document `retrace.fabrication/2`.
 nlohmann::ordered_json setup_json(const FabricationResult& result, const SetupSheet& sheet);
 
 }  // namespace retrace::studies

@@ -92,7 +92,7 @@ std::string solid_json(const Solid& solid, const std::string& file) {
                {"upper_mm", vector_json(solid.upper_mm)},
                {"triangles", solid.mesh.triangles.size()},
                {"is_manifold", solid.is_manifold}});
-  return result_text("retrace.export/1", json, solid.warnings);
+  return result_text("retrace.export/2", json, solid.warnings);
 }
 
 std::string solid_table(const Solid& solid) {

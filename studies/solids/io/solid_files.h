@@ -19,7 +19,7 @@ SolidFormat solid_format(const std::string& file);
 /// \throw InputError for glTF if the solid is too large, or if its material has no refractive index
 std::string solid_text(const Solid& solid, SolidFormat format);
 
-/// Returns the document `retrace.export/1`.
+/// Returns the document `retrace.export/2`.
 /// \param file name of the written file; empty if there is none
 std::string solid_json(const Solid& solid, const std::string& file);
 

@@ -30,8 +30,8 @@ Json quantity_json(const Study& study, const QuantityTolerance& quantity) {
     const compute::Spread& spread = *quantity.spread;
     json["mean"] = estimate_json(spread.mean_interval);
     json["standard_deviation"] = spread.deviation;
-    json["least"] = spread.least;
-    json["most"] = spread.most;
+    json["min"] = spread.least;
+    json["max"] = spread.most;
   }
   json["percentiles"] = Json::array();
   for (const auto& [share, value] : quantity.percentiles)
@@ -107,7 +107,7 @@ std::string tolerance_json(const SweepResult& swept, const ToleranceRequest& req
   json["parts"] = result.parts;
   json["failed"] = result.failed;
   if (result.yield) json["yield"] = estimate_json(*result.yield);
-  if (request.least_yield) json["least_yield"] = *request.least_yield;
+  if (request.least_yield) json["min_yield"] = *request.least_yield;
   if (request.least_yield) json["verdict"] = result.is_enough ? "pass" : "fail";
   json["limits"] = Json::array();
   for (const LimitYield& limit : result.limits)
@@ -117,7 +117,7 @@ std::string tolerance_json(const SweepResult& swept, const ToleranceRequest& req
     json["quantities"].push_back(quantity_json(study, quantity));
   json["seed"] = study.seed;
   json["elapsed_s"] = swept.elapsed_s;
-  return result_text("retrace.tolerance/1", json, swept.warnings, swept.complete);
+  return result_text("retrace.tolerance/2", json, swept.warnings, swept.complete);
 }
 
 std::string tolerance_text(const Study& study, const ToleranceRequest& request, const ToleranceResult& result) {

@@ -8,7 +8,7 @@
 
 namespace retrace::studies {
 
-/// Returns the result as a document of the format `retrace.tolerance/1`.
+/// Returns the result as a document of the format `retrace.tolerance/2`.
 /// \param swept computed points, with their warnings
 std::string tolerance_json(const SweepResult& swept, const ToleranceRequest& request, const ToleranceResult& result);
 

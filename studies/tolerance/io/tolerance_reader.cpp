@@ -42,9 +42,9 @@ ToleranceRequest read_tolerance(const Study& study) {
   request.indices = document.text("tolerance.indices") == "sobol";
   request.confidence = kOfPercent * document.number("tolerance.confidence_percent");
   request.constraints = read_constraints(study);
-  if (const auto least = document.number_if("tolerance.least_yield_percent")) {
+  if (const auto least = document.number_if("tolerance.min_yield_percent")) {
     if (request.constraints.empty())
-      document.fail("tolerance.least_yield_percent", "needs one or more tables [[constraint]]");
+      document.fail("tolerance.min_yield_percent", "needs one or more tables [[constraint]]");
     request.least_yield = kOfPercent * *least;
   }
   check_size(study, request);

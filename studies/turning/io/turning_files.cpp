@@ -37,7 +37,7 @@ Json tool_json(const TurningResult& r) {
           {"clearance_at_y_mm", r.clearance.clearance_at_mm.y()},
           {"rake_deg", tool.rake_deg},
           {"skew_deg", tool.skew_deg},
-          {"skew_is_least", r.part.skew_is_least}};
+          {"skew_is_min", r.part.skew_is_least}};
 }
 
 /// Adds the results of the checks to a document: the contact between tool and surface along the blocks of the program,
@@ -54,7 +54,7 @@ void add_judged(const turning::TurnedPart& part, const turning::TurningCheck& ch
   json["form_error_nm"] = i.form_error_nm;
   json["interference_nm"] = i.interference_nm;
   json["scallop_nm"] = i.scallop_nm;
-  json["scallop_most_nm"] = i.scallop_most_nm;
+  json["scallop_nm_max"] = i.scallop_most_nm;
   json["scallop_ratio_low"] = i.scallop_ratio_low;
   json["scallop_ratio_high"] = i.scallop_ratio_high;
   json["rms_nm"] = i.rms_nm;
@@ -112,7 +112,7 @@ std::string turning_json(const TurningResult& r) {
   json["programs"] = std::move(programs);
   if (r.cubics) json["cubics"] = cubics_json(r);
   json["verification"] = verification_of(r);
-  return result_text("retrace.turning/1", json, r.part.warnings);
+  return result_text("retrace.turning/2", json, r.part.warnings);
 }
 
 std::string turning_path_csv(const TurningResult& r) {
@@ -198,7 +198,7 @@ std::string verification_json(const TurningVerification& run, double elapsed_s) 
   json["c_acceleration_deg_per_s2_max"] = motion.c_acceleration_deg_per_s2;
   json["time_s"] = motion.time_s;
   json["elapsed_s"] = elapsed_s;
-  return result_text("retrace.verification/1", json, run.part.warnings);
+  return result_text("retrace.verification/2", json, run.part.warnings);
 }
 
 std::string verification_table(const TurningVerification& run) {

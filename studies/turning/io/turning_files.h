@@ -8,7 +8,7 @@
 
 namespace retrace::studies {
 
-/// Returns the document `retrace.turning/1`.
+/// Returns the document `retrace.turning/2`.
 std::string turning_json(const TurningResult& result);
 
 /// Returns the tool path with the motion of Z as CSV. The points are thinned out to at most 50,000 rows. The columns
@@ -21,7 +21,7 @@ std::string turning_cusps_csv(const TurningResult& result);
 /// Returns the result as a table for the terminal.
 std::string turning_table(const TurningResult& result);
 
-/// Returns the document `retrace.verification/1` of a turned part (docs/commands/verify.md).
+/// Returns the document `retrace.verification/2` of a turned part (docs/commands/verify.md).
 std::string verification_json(const TurningVerification& run, double elapsed_s);
 std::string verification_table(const TurningVerification& run);
 

@@ -38,7 +38,7 @@ constexpr const char* kLeftOut =
     "angle of the fixture and the\n"
     "  period of the waviness are not published, and the ratio depends on both "
     "([theory/photometry.md](theory/photometry.md)).\n"
-    "- 7.2 and 8.2 seconds per frame of a planed lens (Bulatov et al.): focal length, wavelength, feed and tolerance "
+    "- 7.2 and 8.2 seconds per block of a planed lens (Bulatov et al.): focal length, wavelength, feed and tolerance "
     "are not published\n"
     "  ([theory/planing.md](theory/planing.md)).\n";
 

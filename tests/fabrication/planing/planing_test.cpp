@@ -250,15 +250,15 @@ TEST(Planing, TheExampleIsMadeInTwoHalves) {
   EXPECT_TRUE(result.check.passes());
   EXPECT_EQ(result.plan.runs, 2);
   const auto json = nlohmann::json::parse(studies::planing_json(result));
-  EXPECT_EQ(json["schema"], "retrace.planing/1");
+  EXPECT_EQ(json["schema"], "retrace.planing/2");
   EXPECT_EQ(json["verdict"], "pass");
   EXPECT_LE(json["form_error_mm_max"].get<double>(), 0.2);
-  EXPECT_EQ(json["published_seconds_per_frame"], nlohmann::json({7.2, 8.2}));
+  EXPECT_EQ(json["published_seconds_per_block"], nlohmann::json({7.2, 8.2}));
   for (const auto& program : json["programs"]) EXPECT_LE(program["hours"].get<double>(), 8.0);
   // Inner zones are too flat for one cut at each depth. Outer zones are steep enough.
   EXPECT_EQ(json["zones"].front()["method"], "one_after_another");
   EXPECT_EQ(json["zones"].back()["method"], "by_depths");
-  EXPECT_NEAR(json["seconds_per_frame"].get<double>() * json["frames"].get<double>(),
+  EXPECT_NEAR(json["seconds_per_block"].get<double>() * json["blocks"].get<double>(),
               3600.0 * json["hours"].get<double>(), 1e-6 * 3600.0 * json["hours"].get<double>());
 }
 

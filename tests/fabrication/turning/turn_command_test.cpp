@@ -33,7 +33,7 @@ class Turn : public ::testing::Test {
 
 TEST_F(Turn, WritesProgramsInAllDialectsAndInspectsThem) {
   const Json json = turned(kPart);
-  EXPECT_EQ(json["schema"], "retrace.turning/1");
+  EXPECT_EQ(json["schema"], "retrace.turning/2");
   EXPECT_EQ(json["points"], 60 * 900 + 1);
   EXPECT_NEAR(json["time_s"].get<double>(), 60.0, 1e-6);
   EXPECT_EQ(json["verification"]["verdict"], "pass");
@@ -104,7 +104,7 @@ TEST_F(Turn, AFastServoSharesTheStroke) {
 TEST_F(Turn, FindsTheLeastSkew) {
   const Json json = turned(kHead +
                            "[base]\nkind = \"formula\"\nformula = \"sqrt(1-x^2)-1\"\n[tool]\nnose_radius_mm = "
-                           "0.1\nclearance_deg = 12\nfind_least_skew = true\n[path]\nradius_mm = 0.766\nfeed_um = "
+                           "0.1\nclearance_deg = 12\nfind_min_skew = true\n[path]\nradius_mm = 0.766\nfeed_um = "
                            "50\nspindle_rpm = 60\nsampling = \"arc\"\narc_um = 4\n");
   EXPECT_NEAR(json["tool"]["skew_deg"].get<double>(), -27.2, 0.05);
   EXPECT_LE(json["tool"]["clearance_needed_deg"].get<double>(), 12.0);
@@ -115,7 +115,7 @@ TEST_F(Turn, FindsTheLeastSkewOfARaster) {
   // clearance angle of the tool.
   const Json json = turned(kHead +
                            "[base]\nkind = \"formula\"\nformula = \"0.325*y\"\n[tool]\nnose_radius_mm = "
-                           "0.1\nclearance_deg = 12\nfind_least_skew = true\n[path]\nstrategy = \"raster\"\nsize_mm = "
+                           "0.1\nclearance_deg = 12\nfind_min_skew = true\n[path]\nstrategy = \"raster\"\nsize_mm = "
                            "[0.4, 0.4]\nfeed_um = 20\narc_um = 4\ncutting_mm_per_min = 60\n");
   const double slope = std::atan(0.325);
   const double skew = std::acos(std::sin(12.0 * std::numbers::pi / 180.0) / std::sin(slope)) * 180.0 / std::numbers::pi;
@@ -162,13 +162,13 @@ TEST_F(Turn, BadInputEndsWithOneLineAndWritesNothing) {
       {boundary("kind = \"circle\"\nradius_mm = -1\n"), "part.toml:7: boundary.radius_mm"},
       {kHead + kBase + "[extrapolation]\norder = 2\n" + rest, "part.toml:5: extrapolation"},
       {boundary("kind = \"circle\"\nradius_mm = 1\n[extrapolation]\norder = 0\n"), "part.toml:9: extrapolation.order"},
-      {lenslets(cap + "\"circle\"\nboundary_radius_mm = 0.1\ninner_share = 1\nouter_share = 0.9\n"),
-       "part.toml:13: lenslets.outer_share"},
-      {lenslets(cap + "\"intersection\"\nsearch_mm = 0.01\ninner_share = 0.8\nouter_share = 1.1\n"),
+      {lenslets(cap + "\"circle\"\nboundary_radius_mm = 0.1\ninner_radius_ratio = 1\nouter_radius_ratio = 0.9\n"),
+       "part.toml:13: lenslets.outer_radius_ratio"},
+      {lenslets(cap + "\"intersection\"\nsearch_mm = 0.01\ninner_radius_ratio = 0.8\nouter_radius_ratio = 1.1\n"),
        "part.toml:10: lenslets.boundary"},
       {lenslets(
            "positions_mm = [[0.1, 0.1], [0.2, 0.1]]\nkind = \"plane\"\nboundary = \"circle\"\nboundary_radius_mm = "
-           "0.1\ninner_share = 0.8\nouter_share = 1.1\n"),
+           "0.1\ninner_radius_ratio = 0.8\nouter_radius_ratio = 1.1\n"),
        "part.toml:5: lenslets"},
       {kHead + kBase + kTool + "[path]\nradius_mm = 1\nspindle_rpm = 60\n", "part.toml:8: path"},
       {kHead + kBase + kTool + "[path]\nradius_mm = 1\nfeed_um = 1\nscallop_nm = 3\nspindle_rpm = 60\n",
@@ -177,7 +177,7 @@ TEST_F(Turn, BadInputEndsWithOneLineAndWritesNothing) {
        "part.toml:14: path.servo"},
       {kHead + kBase + "[tool]\nnose_radius_mm = 0\nclearance_deg = 15\n" + kPath, "part.toml:6: tool.nose_radius_mm"},
       {kHead + "[base]\nkind = \"formula\"\nformula = \"sqrt(1-x^2)-1\"\n[tool]\nnose_radius_mm = 0.1\nclearance_deg = "
-               "0.3\nfind_least_skew = true\n[path]\nradius_mm = 0.8\nfeed_um = 10\nspindle_rpm = 60\n",
+               "0.3\nfind_min_skew = true\n[path]\nradius_mm = 0.8\nfeed_um = 10\nspindle_rpm = 60\n",
        "part.toml:7: tool.clearance_deg"},
       {kHead + "[base]\nkind = \"plane\"\n" + kTool +
            "[path]\nstrategy = \"raster\"\nsize_mm = [1, 1]\nfeed_um = 10\narc_um = "

@@ -137,7 +137,8 @@ TEST(Report, ShowsBasesAndScratches) {
       "[element]\nkind = \"rtp\"\nbase_mm = 1\nwidth_mm = 1\n[array]\nx_length_mm = 4\ny_length_mm = 4\n"
       "[body]\nthickness_mm = 1\nrefractive_index = 1.5\n";
   folder.write("flat.toml", array);
-  folder.write("inclined.toml", array + "[base]\nkind = \"plane\"\nincline_deg = 20\nelements = \"parallel\"\n");
+  folder.write("inclined.toml",
+               array + "[substrate]\nkind = \"plane\"\nincline_deg = 20\nelement_axes = \"parallel\"\n");
   folder.write("scratched.toml",
                array + "[surface]\nscratches = [{facet = \"-x\", position_um = 0, width_um = 20, depth_um = 5}]\n");
   std::map<std::string, double> lowest;
@@ -221,8 +222,8 @@ TEST(Report, ReadsNoFileThatOnlyADocumentNames) {
                                    {"part", "mesh", "/dev/zero"},
                                    {"part", "facets", "secret"},
                                    {"array", "mask", "secret"},
-                                   {"front", "mesh", "secret"},
-                                   {"front", "turned", "secret"},
+                                   {"entrance_surface", "mesh", "secret"},
+                                   {"entrance_surface", "turned_part", "secret"},
                                    {"body", "catalogue", "secret.yml"},
                                    {"light", "spectrum", "secret.csv"}};
   for (const auto& [table, key, file] : cases) {

@@ -1,5 +1,5 @@
 retrace_test(studies_tests
-  SOURCES report/page/page_test.cpp report/page/same_plots_test.cpp
+  SOURCES report/page/former_names_test.cpp report/page/page_test.cpp report/page/same_plots_test.cpp
   LIBRARIES retrace::report_page retrace::report_studies)
 retrace_test(command_tests
   SOURCES report/page/explore_command_test.cpp report/page/report_command_test.cpp

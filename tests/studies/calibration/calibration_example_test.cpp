@@ -59,11 +59,15 @@ const Errors kHidden = {{"c_x_um", 0.6},
                         {"tool_x_um", 0.5},
                         {"tool_y_um", -0.6},
                         {"tool_z_um", 0.3},
-                        {"tool_turn_x_arcsec", 40.0},
-                        {"tool_turn_y_arcsec", -25.0},
-                        {"tool_turn_z_arcsec", 55.0}};
-const Errors kChange = {{"c_lean_y_arcsec", 12.0}, {"tool_x_um", 0.2},           {"tool_y_um", 0.5},
-                        {"tool_z_um", -0.2},       {"tool_turn_y_arcsec", 10.0}, {"tool_turn_z_arcsec", -30.0}};
+                        {"tool_rotation_x_arcsec", 40.0},
+                        {"tool_rotation_y_arcsec", -25.0},
+                        {"tool_rotation_z_arcsec", 55.0}};
+const Errors kChange = {{"c_lean_y_arcsec", 12.0},
+                        {"tool_x_um", 0.2},
+                        {"tool_y_um", 0.5},
+                        {"tool_z_um", -0.2},
+                        {"tool_rotation_y_arcsec", 10.0},
+                        {"tool_rotation_z_arcsec", -30.0}};
 /// The other tool is chipped.
 constexpr double kChipUm = 120.0;
 constexpr double kChipWidthUm = 26.0;

@@ -101,7 +101,7 @@ std::vector<std::string> told(const Calibration& found) {
 TEST(Calibration, SaysWhatFacetsDoNotTell) {
   std::mt19937 bits(1);
   const Calibration found = calibrate(measured_on(test_cuts().plans.front().machine, bits));
-  EXPECT_EQ(told(found), (std::vector<std::string>{"c_lean_y_arcsec", "a_z_um", "tool_turn_z_arcsec"}));
+  EXPECT_EQ(told(found), (std::vector<std::string>{"c_lean_y_arcsec", "a_z_um", "tool_rotation_z_arcsec"}));
 }
 
 /// For quantities that can be determined, the 95 % intervals contain the true values in 90 to 99 % of the cases. The
@@ -198,7 +198,7 @@ std::string refusal_of(const MeasuredParts& parts) {
 /// so that the table is refused.
 TEST(Calibration, RefusesAWrongSignOfAllThatWasMeasuredOfAFacet) {
   const Machine& ideal = test_cuts().plans.front().machine;
-  const Machine real = with_error(ideal, *setup_quantity(Tilt::table, "tool_turn_z_arcsec"), 60.0);
+  const Machine real = with_error(ideal, *setup_quantity(Tilt::table, "tool_rotation_z_arcsec"), 60.0);
   for (std::uint32_t seed = 1; seed <= 5; ++seed) {
     std::mt19937 bits(seed);
     MeasuredParts parts = measured_on(real, bits);

@@ -65,7 +65,7 @@ TEST(Correction, IntervalsHoldWhatIsHidden) {
       told.push_back(q.quantity->key);
       within[q.quantity->key] += std::abs(q.value - machine.hidden[k]) < 1.96 * q.uncertainty ? 1U : 0U;
     }
-    EXPECT_EQ(told, (std::vector<std::string_view>{"c_lean_y_arcsec", "tool_turn_z_arcsec"})) << seed;
+    EXPECT_EQ(told, (std::vector<std::string_view>{"c_lean_y_arcsec", "tool_rotation_z_arcsec"})) << seed;
   }
   for (const auto& [key, count] : within) {
     EXPECT_NEAR(static_cast<double>(count), 0.95 * kMachines, 2.58 * std::sqrt(0.95 * 0.05 * kMachines)) << key;

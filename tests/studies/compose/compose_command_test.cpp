@@ -40,7 +40,7 @@ Arguments compose(const Arguments& more = {}) {
 
 TEST(ComposeCommand, WritesZonesThatMakeThePart) {
   const TemporaryFolder folder;
-  folder.write("study.toml", study("most_zones = 3\nrounds = 1\nzone_sigma_arcmin = 1\nparts = 64\n"));
+  folder.write("study.toml", study("max_zones = 3\nrounds = 1\nzone_sigma_arcmin = 1\nparts = 64\n"));
   const Outcome outcome = retrace(folder, compose());
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("least with at most 1 zone: "), std::string::npos) << outcome.out;
@@ -59,7 +59,7 @@ TEST(ComposeCommand, WritesZonesThatMakeThePart) {
       const Json traced =
           retrace_json(folder, {"rre", "out/zone_" + std::to_string(z + 1) + ".toml", "--engine", "exact", "--cutoff",
                                 "1e-2", "--incidence", "35", "--azimuth=" + std::to_string(azimuth_deg)});
-      part += zones[z].at("share").get<double>() * traced.at("points").at(0).at("rre").get<double>();
+      part += zones[z].at("area_fraction").get<double>() * traced.at("points").at(0).at("rre").get<double>();
     }
     EXPECT_NEAR(part, json.at("goals").at(goal).at("value").get<double>(), 1e-5);
   }
@@ -67,7 +67,7 @@ TEST(ComposeCommand, WritesZonesThatMakeThePart) {
 
 TEST(ComposeCommand, WritesThePartOfZones) {
   const TemporaryFolder folder;
-  folder.write("study.toml", study("most_zones = 2\nrounds = 0\n"));
+  folder.write("study.toml", study("max_zones = 2\nrounds = 0\n"));
   const Outcome outcome = retrace(folder, compose({"--design", "part.toml", "--layout", "rows", "--x-length-mm", "90",
                                                    "--y-length-mm", "180", "--quiet"}));
   ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -76,15 +76,15 @@ TEST(ComposeCommand, WritesThePartOfZones) {
   const Json inspected = retrace_json(folder, {"inspect", "part.toml"});
   ASSERT_EQ(inspected.at("zones").size(), 2U);
   for (std::size_t z = 0; z < 2; ++z)
-    EXPECT_NEAR(inspected.at("zones").at(z).at("area_mm2").get<double>(), 16200.0 * zones[z].at("share").get<double>(),
-                1e-6);
+    EXPECT_NEAR(inspected.at("zones").at(z).at("area_mm2").get<double>(),
+                16200.0 * zones[z].at("area_fraction").get<double>(), 1e-6);
   // Each zone has at least two rows. The narrower rows are eight elements high.
   EXPECT_GE(inspected.at("design").at("zone").at(0).at("rectangles_mm").size(), 2U);
 }
 
 /// Returns a study whose parameter is the dihedral error instead of the cant.
 std::string study_of_errors() {
-  std::string text = study("most_zones = 2\nrounds = 0\n");
+  std::string text = study("max_zones = 2\nrounds = 0\n");
   for (const auto& [from, to] :
        {std::pair("element.cant_deg", "surface.dihedral_error_arcmin"), {"to = 12", "to = 20"}})
     text.replace(text.find(from), std::string(from).size(), to);
@@ -122,7 +122,7 @@ TEST(ComposeCommand, RefusesJobsThatMeanNothing) {
 
 TEST(ComposeCommand, RefusesPartsOfZonesThatMeanNothing) {
   const TemporaryFolder folder;
-  folder.write("study.toml", study("most_zones = 2\nrounds = 0\n"));
+  folder.write("study.toml", study("max_zones = 2\nrounds = 0\n"));
   const auto refused = [&](const Arguments& more) {
     const Outcome outcome = retrace(folder, compose(more));
     return refused_at(outcome);
@@ -148,36 +148,36 @@ TEST(ComposeCommand, RefusesPartsOfZonesThatMeanNothing) {
 
 TEST(ComposeCommand, GoesOnWithItsStore) {
   const TemporaryFolder folder;
-  folder.write("study.toml", study("most_zones = 1\nrounds = 0\n"));
+  folder.write("study.toml", study("max_zones = 1\nrounds = 0\n"));
   ASSERT_EQ(retrace(folder, compose()).code, 0);
   const Json first = folder.json("out/composition.json");
   EXPECT_EQ(retrace(folder, compose()).code, 2) << "an existing store needs a word";
   // A study that differs only in the rules for the mixture of zones uses all stored cells.
-  folder.write("study.toml", study("most_zones = 2\nrounds = 0\n"));
+  folder.write("study.toml", study("max_zones = 2\nrounds = 0\n"));
   ASSERT_EQ(retrace(folder, compose({"--resume"})).code, 0);
   const Json second = folder.json("out/composition.json");
   EXPECT_EQ(second.at("evaluations"), first.at("evaluations"));
-  EXPECT_GE(second.at("least").get<double>(), first.at("least").get<double>());
-  EXPECT_EQ(second.at("by_number_of_zones").at(0).at("least"), first.at("least"));
+  EXPECT_GE(second.at("goal_min").get<double>(), first.at("goal_min").get<double>());
+  EXPECT_EQ(second.at("by_number_of_zones").at(0).at("goal_min"), first.at("goal_min"));
 }
 
 TEST(ComposeCommand, WritesTheZonesForTheWorst) {
   const TemporaryFolder folder;
   folder.write("study.toml",
-               study("most_zones = 2\nrounds = 0\nzone_sigma_arcmin = 1\nparts = 64\nworst_share = 0.1\n"));
+               study("max_zones = 2\nrounds = 0\nzone_sigma_arcmin = 1\nparts = 64\nworst_fraction = 0.1\n"));
   ASSERT_EQ(retrace(folder, compose({"--for-worst"})).code, 0);
   const Json zones = folder.json("out/composition.json").at("errors_of_angle").at("best_for_worst").at("zones");
   ASSERT_GE(zones.size(), 1U);
-  const double share = zones.at(0).at("share");
+  const double share = zones.at(0).at("area_fraction");
   EXPECT_NE(folder.read("out/zone_1.toml").find(fmt::format(": {} of the area", share)), std::string::npos);
   EXPECT_EQ(std::ranges::count(folder.names(), "out/zone_2.toml"), zones.size() > 1 ? 1 : 0);
-  folder.write("study.toml", study("most_zones = 2\nrounds = 0\n"));
+  folder.write("study.toml", study("max_zones = 2\nrounds = 0\n"));
   EXPECT_EQ(refused_at(retrace(folder, compose({"--for-worst", "--overwrite"}))), "--for-worst");
 }
 
 TEST(ComposeCommand, SaysNoAndWhy) {
   const TemporaryFolder folder;
-  folder.write("study.toml", study("least = 0.99\nrounds = 0\n"));
+  folder.write("study.toml", study("min_goal = 0.99\nrounds = 0\n"));
   const Outcome outcome = retrace(folder, compose({"--quiet"}));
   EXPECT_EQ(refused_at(outcome, 1), "");
   EXPECT_TRUE(folder.json("out/composition.json").contains("not_reached"));
@@ -191,10 +191,10 @@ TEST(ComposeCommand, RefusesWhatMeansNothing) {
     EXPECT_EQ(refused_at(outcome), place);
     EXPECT_EQ(folder.names(), std::vector<std::string>{"study.toml"});
   };
-  refused(study("least_share = 0.7\nmost_share = 0.6\n"), "study.toml:24: compose.least_share");
-  refused(study("most_zones = 0\n"), "study.toml:24: compose.most_zones");
-  refused(study("most_share = 2\n"), "study.toml:24: compose.most_share");
-  refused(study("worst_share = 0.1\n"), "study.toml:24: compose.worst_share");
+  refused(study("min_area_fraction = 0.7\nmax_area_fraction = 0.6\n"), "study.toml:24: compose.min_area_fraction");
+  refused(study("max_zones = 0\n"), "study.toml:24: compose.max_zones");
+  refused(study("max_area_fraction = 2\n"), "study.toml:24: compose.max_area_fraction");
+  refused(study("worst_fraction = 0.1\n"), "study.toml:24: compose.worst_fraction");
   refused(study("price = {hours = 1}\n"), "study.toml:24: compose.price.hours");
 }
 
@@ -209,7 +209,7 @@ TEST(ComposeCommand, CellsAreOfOneKindOfElement) {
 
 TEST(ComposeCommand, EndsSoonWhenItIsInterrupted) {
   const TemporaryFolder folder;
-  folder.write("study.toml", study("rounds = 100\nstarts = 100\nlooks = 10000\n", "1e-6"));
+  folder.write("study.toml", study("rounds = 100\nstarts = 100\nevaluations_per_start = 10000\n", "1e-6"));
   Child child(folder.path(), with({RETRACE_PROGRAM}, compose({"--quiet"})));
   const auto deadline = std::chrono::steady_clock::now() + patient(60);
   while (stored_points(folder.path() / "out/composition.sqlite").size() < 5) {

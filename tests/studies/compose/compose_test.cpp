@@ -72,7 +72,7 @@ TEST(Compose, OfTwoLobesHasTheSharesAndPricesOfTheClosedForm) {
 
 TEST(Compose, IsNeverWorseThanThreeZonesOnAGrid) {
   const Composition composition =
-      composed(analytic_study(std::string(kMaximize) + "most_zones = 3\n", kThreePoints)).composition;
+      composed(analytic_study(std::string(kMaximize) + "max_zones = 3\n", kThreePoints)).composition;
   ASSERT_TRUE(composition.best.has_value());
   EXPECT_LE(composition.best->zones.size(), 3U);
   std::vector<std::array<double, 3>> cells;
@@ -112,7 +112,7 @@ TEST(Compose, WithOneZoneFindsWhatOptimiseFinds) {
                                                                                                 lobe_at(1.9)(x, y));
                                                                               }}};
   const Study study =
-      analytic_study("[optimize]\nmaximize = \"least\"\n[compose]\nmaximize = \"g\"\nmost_zones = 1\n", functions);
+      analytic_study("[optimize]\nmaximize = \"least\"\n[compose]\nmaximize = \"g\"\nmax_zones = 1\n", functions);
   compute::ResultStore store("", optimise_layout(study), compute::IfExists::refuse);
   const Optimum optimum = optimise(study, read_optimise(study), store, nullptr, nullptr);
   const Composition composition = composed(study).composition;
@@ -132,7 +132,7 @@ TEST(Compose, HoldsConstraintsOverCellsAndThePart) {
   functions.emplace_back("thickness", [](double x, double) { return x; });
   functions.emplace_back("index", [](double, double y) { return y; });
   const Composition composition =
-      composed(analytic_study("[compose]\nmaximize = \"g\"\nleast_share = 0.1\nmost_share = 0.5\n"
+      composed(analytic_study("[compose]\nmaximize = \"g\"\nmin_area_fraction = 0.1\nmax_area_fraction = 0.5\n"
                               "[[constraint]]\nquantity = \"index\"\nmax = 2\n"
                               "[[constraint]]\nquantity = \"thickness\"\nmax = 1.5\nover = \"part\"\n",
                               functions))
@@ -154,7 +154,7 @@ TEST(Compose, PaysWhatIsAskedAndDrawsTheFront) {
   functions.emplace_back("hours", [](double, double y) { return y; });
   const auto with_price = [&](const std::string& price) {
     return composed(analytic_study(
-                        "[compose]\nmaximize = \"g\"\nfront = {hours = \"least\"}\nprice = {hours = " + price + "}\n",
+                        "[compose]\nmaximize = \"g\"\nfront = {hours = \"min\"}\nprice = {hours = " + price + "}\n",
                         functions))
         .composition;
   };
@@ -174,7 +174,7 @@ TEST(Compose, PaysWhatIsAskedAndDrawsTheFront) {
 
 TEST(Compose, SaysWhatOneZoneMoreIsWorth) {
   const Composition composition =
-      composed(analytic_study(std::string(kMaximize) + "most_zones = 2\n", kThreePoints)).composition;
+      composed(analytic_study(std::string(kMaximize) + "max_zones = 2\n", kThreePoints)).composition;
   ASSERT_TRUE(composition.best.has_value());
   ASSERT_EQ(composition.by_zones.size(), 3U);
   for (std::size_t k = 1; k < 3; ++k)
@@ -200,7 +200,7 @@ TEST(Compose, GoesOnWithWhatTheStoreHas) {
 }
 
 TEST(Compose, IsTheSameWhateverAKilledRunLeft) {
-  const Study study = analytic_study(std::string(kMaximize) + "most_zones = 2\nscan = 17\n", kThreePoints);
+  const Study study = analytic_study(std::string(kMaximize) + "max_zones = 2\nscan = 17\n", kThreePoints);
   const ComposeRequest request = read_compose(study);
   compute::ResultStore whole("", compose_layout(study), compute::IfExists::refuse);
   const std::string expected = composition_json(study, request, compose(study, request, whole, nullptr, nullptr), 0.0);
@@ -225,8 +225,8 @@ TEST(Compose, IsTheSameWhateverOtherRunsLeft) {
     for (const Zone& zone : composition.best->zones) zones.emplace_back(number(zone.cell.values[0]), zone.share);
     return zones;
   };
-  const Study other = analytic_study(std::string(kMaximize) + "most_zones = 3\nscan = 33\n", kThreePoints);
-  const Study study = analytic_study(std::string(kMaximize) + "most_zones = 2\nscan = 17\n", kThreePoints);
+  const Study other = analytic_study(std::string(kMaximize) + "max_zones = 3\nscan = 33\n", kThreePoints);
+  const Study study = analytic_study(std::string(kMaximize) + "max_zones = 2\nscan = 17\n", kThreePoints);
   compute::ResultStore store("", compose_layout(other), compute::IfExists::refuse);
   compose(other, read_compose(other), store, nullptr, nullptr);
   const Composition after = compose(study, read_compose(study), store, nullptr, nullptr);
@@ -236,7 +236,7 @@ TEST(Compose, IsTheSameWhateverOtherRunsLeft) {
 }
 
 TEST(Compose, ReportsTheBoundsThatExcludeAllMixtures) {
-  const Composed low = composed(analytic_study(std::string(kMaximize) + "least = 5\n", kThreePoints));
+  const Composed low = composed(analytic_study(std::string(kMaximize) + "min_goal = 5\n", kThreePoints));
   ASSERT_TRUE(low.composition.best);
   const Mixture& mixture = low.composition.best->mixture;
   EXPECT_LT(mixture.least, *low.request.least_goal);
@@ -255,9 +255,9 @@ TEST(Compose, ReportsTheBoundsThatExcludeAllMixtures) {
 TEST(Compose, DocumentsHoldWhatWasFound) {
   const Composed made = composed(analytic_study(kMaximize, kThreePoints));
   const auto json = nlohmann::json::parse(composition_json(made.study, made.request, made.composition, 1.0));
-  EXPECT_EQ(json.at("schema"), "retrace.composition/1");
+  EXPECT_EQ(json.at("schema"), "retrace.composition/2");
   double shares = 0.0, prices = 0.0;
-  for (const auto& zone : json.at("zones")) shares += zone.at("share").get<double>();
+  for (const auto& zone : json.at("zones")) shares += zone.at("area_fraction").get<double>();
   for (const auto& goal : json.at("goals")) {
     prices += goal.at("price").get<double>();
     double given = 0.0;
@@ -286,20 +286,34 @@ TEST(Compose, ReadsItsExample) {
   EXPECT_NO_THROW(read_compose(read_study(file, {})));
 }
 
+TEST(Compose, ReadsFormerNamesOfItsKeys) {
+  const ComposeRequest request = read_compose(analytic_study(
+      "[compose]\nmaximize = \"g\"\nleast = 0.3\nmost_zones = 3\nleast_share = 0.1\nmost_share = 0.6\nlooks = 7\n"
+      "front = {\"g.1\" = \"least\"}\n",
+      kThreePoints));
+  EXPECT_EQ(request.least_goal, 0.3);
+  EXPECT_EQ(request.most_zones, 3U);
+  EXPECT_EQ(request.least_share, 0.1);
+  EXPECT_EQ(request.most_share, 0.6);
+  EXPECT_EQ(request.looks, 7);
+  ASSERT_TRUE(request.front.has_value());
+  EXPECT_FALSE(request.front->largest);
+}
+
 TEST(Compose, RefusesWhatMeansNothing) {
   EXPECT_EQ(refusal(""), "examples/studies/study.toml: compose");
   EXPECT_EQ(refusal("[compose]\nmaximize = \"h\"\n"), "examples/studies/study.toml:22: compose.maximize");
   EXPECT_EQ(refusal("[compose]\nmaximize = [\"g\", \"g.1\"]\n"), "examples/studies/study.toml:22: compose.maximize");
-  EXPECT_EQ(refusal("[compose]\nmaximize = \"g\"\nleast_share = 0.6\nmost_share = 0.5\n"),
-            "examples/studies/study.toml:23: compose.least_share");
-  EXPECT_EQ(refusal("[compose]\nmaximize = \"g\"\nmost_zones = 2\nmost_share = 0.4\n"),
-            "examples/studies/study.toml:24: compose.most_share");
+  EXPECT_EQ(refusal("[compose]\nmaximize = \"g\"\nmin_area_fraction = 0.6\nmax_area_fraction = 0.5\n"),
+            "examples/studies/study.toml:23: compose.min_area_fraction");
+  EXPECT_EQ(refusal("[compose]\nmaximize = \"g\"\nmax_zones = 2\nmax_area_fraction = 0.4\n"),
+            "examples/studies/study.toml:24: compose.max_area_fraction");
   EXPECT_EQ(refusal("[compose]\nmaximize = \"g\"\nprice = {h = 1}\n"),
             "examples/studies/study.toml:23: compose.price.h");
-  EXPECT_EQ(refusal("[compose]\nmaximize = \"g\"\nfront = {g = \"most\", h = \"least\"}\n"),
+  EXPECT_EQ(refusal("[compose]\nmaximize = \"g\"\nfront = {g = \"max\", h = \"min\"}\n"),
             "examples/studies/study.toml:23: compose.front");
-  EXPECT_EQ(refusal("[compose]\nmaximize = \"g\"\nleast_share = 2\n"),
-            "examples/studies/study.toml:23: compose.least_share");
+  EXPECT_EQ(refusal("[compose]\nmaximize = \"g\"\nmin_area_fraction = 2\n"),
+            "examples/studies/study.toml:23: compose.min_area_fraction");
   EXPECT_EQ(refusal(kMaximize,
                     "[[parameter]]\nkey = \"body.thickness_mm\"\ndistribution = \"normal\"\nmean = 1\nsigma = 0.1\n"),
             "examples/studies/study.toml:2: parameter[1]");

@@ -169,7 +169,7 @@ TEST(ComposeErrors, AreThoseOfTheClosedForm) {
   // The best cell has an angle error of 1 arcmin. If its zone has a further error e in arcmin, the minimum goal is
   // 2 - |e| / 2 - e^2, minus the variance of the errors from cell to cell.
   const Study study = study_of_peaks(
-      "least = 1.5\nmost_zones = 1\ncell_sigma_arcmin = 0.3\nzone_sigma_arcmin = 0.4\nparts = 4096\nworst_share = "
+      "min_goal = 1.5\nmax_zones = 1\ncell_sigma_arcmin = 0.3\nzone_sigma_arcmin = 0.4\nparts = 4096\nworst_fraction = "
       "0.1\n");
   compute::ResultStore store("", compose_layout(study), compute::IfExists::refuse);
   const ComposeRequest request = read_compose(study);
@@ -224,9 +224,10 @@ TEST(ComposeErrors, RefuseWhatMeansNothing) {
     }
     return {};
   };
-  EXPECT_EQ(refusal("worst_share = 0.1\n"), "examples/studies/study.toml:13: compose.worst_share");
+  EXPECT_EQ(refusal("worst_fraction = 0.1\n"), "examples/studies/study.toml:13: compose.worst_fraction");
   EXPECT_EQ(refusal("zone_sigma_arcmin = -1\n"), "examples/studies/study.toml:13: compose.zone_sigma_arcmin");
-  EXPECT_EQ(refusal("zone_sigma_arcmin = 1\nworst_share = 0\n"), "examples/studies/study.toml:14: compose.worst_share");
+  EXPECT_EQ(refusal("zone_sigma_arcmin = 1\nworst_fraction = 0\n"),
+            "examples/studies/study.toml:14: compose.worst_fraction");
   EXPECT_EQ(refusal("parts = 3\n"), "examples/studies/study.toml:13: compose.parts");
   EXPECT_EQ(refusal("zone_sigma_arcmin = 0\n"), "");
 }

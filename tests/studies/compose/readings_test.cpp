@@ -67,7 +67,7 @@ TEST(Readings, OfRreAreItsDirections) {
   const auto rre = [&](const std::string& name, const std::string& over) {
     return "[[quantity]]\nkind = \"rre\"\nname = \"" + name + "\"\nover_directions = \"" + over + "\"\n" + window;
   };
-  const auto values = measured(reflector("0", rre("each", "each") + rre("mean", "mean") + rre("least", "least")));
+  const auto values = measured(reflector("0", rre("each", "each") + rre("mean", "mean") + rre("least", "min")));
   double sum = 0.0;
   for (int k = 1; k <= 4; ++k) sum += values.at("each." + std::to_string(k));
   EXPECT_NEAR(sum / 4.0, values.at("mean"), 1e-4);
@@ -94,7 +94,7 @@ TEST(Readings, LeastsAreNoGoalsOfMixtures) {
   for (const std::string& quantity :
        {photometry("g", ""), photometry("g", "points = \"each\"\n"),
         std::string(
-            "[[quantity]]\nkind = \"rre\"\nname = \"g\"\nover_directions = \"least\"\nincidence_deg = [0, 9]\n")}) {
+            "[[quantity]]\nkind = \"rre\"\nname = \"g\"\nover_directions = \"min\"\nincidence_deg = [0, 9]\n")}) {
     const Study study =
         parse_study(reflector("0", quantity + "[compose]\nmaximize = \"g\"\n"), test::kStudies + "study.toml");
     try {

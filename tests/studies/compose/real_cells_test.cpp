@@ -69,7 +69,7 @@ struct Composed {
 /// Returns a composition of up to three zones. It is computed only once, because the computation takes long.
 const Composed& three_zones() {
   static const Composed result = [] {
-    Study study = study_of_corners("[compose]\nmaximize = \"g\"\nmost_zones = 3\n");
+    Study study = study_of_corners("[compose]\nmaximize = \"g\"\nmax_zones = 3\n");
     Composition composition = composed(study);
     return Composed{std::move(study), std::move(composition)};
   }();
@@ -97,14 +97,14 @@ TEST(RealCells, AreNeverWorseThanThreeZonesOnAGrid) {
 }
 
 TEST(RealCells, OfOneZoneAreWhatOptimiseFinds) {
-  const std::string one = "[compose]\nmaximize = \"g\"\nmost_zones = 1\nrounds = 0\n";
+  const std::string one = "[compose]\nmaximize = \"g\"\nmax_zones = 1\nrounds = 0\n";
   const Study study = study_of_corners(one);
   const Composition composition = composed(study);
   ASSERT_TRUE(composition.best && composition.single);
   ASSERT_EQ(composition.best->zones.size(), 1U);
   // `optimize` maximizes a single quantity, which is defined as the minimum RRE of the same directions.
   const Study least = study_of_corners(
-      "[[quantity]]\nkind = \"rre\"\nname = \"least\"\nover_directions = \"least\"\nincidence_deg = 35\n"
+      "[[quantity]]\nkind = \"rre\"\nname = \"least\"\nover_directions = \"min\"\nincidence_deg = 35\n"
       "azimuth_deg = [0, 60, 120, 210]\n[optimize]\nmaximize = \"least\"\n");
   compute::ResultStore store("", optimise_layout(least), compute::IfExists::refuse);
   const Optimum optimum = optimise(least, read_optimise(least), store, nullptr, nullptr);

@@ -70,7 +70,7 @@ TEST(SetupSheet, RootsAreWhatTheVerifierFinds) {
     EXPECT_NEAR(amount > 0.0 ? left_nm : cut_nm, row.root_left_nm, 0.03 * row.root_left_nm);
   }
   // A tilted edge has one higher end and one lower end.
-  const Sensitivity& level = row_of(sheet, "tool_turn_y_arcsec");
+  const Sensitivity& level = row_of(sheet, "tool_rotation_y_arcsec");
   const double end_nm = 0.25e6 * std::numbers::pi / 648000.0;
   EXPECT_NEAR(level.root_left_nm, end_nm, 1e-6);
   EXPECT_NEAR(level.root_cut_nm, end_nm, 1e-6);
@@ -83,7 +83,7 @@ TEST(SetupSheet, WallsAreWhatTheVerifierFinds) {
   const SetupSheet sheet = setup_sheet(result, false);
   for (const auto& [key, amount] : {std::pair{"z_lean_x_arcsec", 200.0},
                                     {"y_lean_x_arcsec", 200.0},
-                                    {"tool_turn_y_arcsec", 200.0},
+                                    {"tool_rotation_y_arcsec", 200.0},
                                     {"tool_x_um", 1.0}}) {
     const Sensitivity& row = row_of(sheet, key);
     EXPECT_GT(row.wall_nm, 1.0) << key;
@@ -151,7 +151,7 @@ TEST(SetupSheet, LightChangesWhereFacetsMove) {
   // The base is 500 um. With an error of 1 um, the rims of facet 2 are 1 um higher than the rims of the neighbours.
   EXPECT_LT(centre.rre.front(), -1e-3);
   EXPECT_GT(centre.rre.front(), -1e-2);
-  const PartLight& clearance = *sheet.change_of_light(*row_of(sheet, "tool_turn_x_arcsec").quantity, Tilt::table);
+  const PartLight& clearance = *sheet.change_of_light(*row_of(sheet, "tool_rotation_x_arcsec").quantity, Tilt::table);
   EXPECT_EQ(clearance.rre.front(), 0.0);
   EXPECT_EQ(clearance.r_a, 0.0);
 }

@@ -37,7 +37,7 @@ TEST(Export, SaysVolumesOfElementArrayAndMould) {
                "[body]\nthickness_mm = 1\n");
   const auto volume = [&](const std::string& what) {
     const Json json = retrace_json(folder, {"export", "d.toml", "--what", what});
-    EXPECT_EQ(json.at("schema"), "retrace.export/1");
+    EXPECT_EQ(json.at("schema"), "retrace.export/2");
     EXPECT_EQ(json.at("what"), what);
     EXPECT_TRUE(json.at("is_manifold"));
     return json.at("volume_mm3").get<double>();

@@ -149,10 +149,9 @@ TEST(Optimise, ReachesAnOptimumOnAConstraint) {
 }
 
 TEST(Optimise, TheFrontHasNoDominatedPoint) {
-  const Study study =
-      analytic_study("[optimize]\nmaximize = {f = 1, g = -0.5}\nfront = {f = \"most\", g = \"least\"}\n",
-                     {{"f", [](double x, double y) { return x + std::sin(3.0 * y); }},
-                      {"g", [](double x, double y) { return x * y; }}});
+  const Study study = analytic_study("[optimize]\nmaximize = {f = 1, g = -0.5}\nfront = {f = \"max\", g = \"min\"}\n",
+                                     {{"f", [](double x, double y) { return x + std::sin(3.0 * y); }},
+                                      {"g", [](double x, double y) { return x * y; }}});
   const Optimum optimum = optimum_of(study);
   ASSERT_GE(optimum.front.size(), 3U);
   const auto f = [](const Variant& v) { return *v.outputs[0].value; };
@@ -161,6 +160,38 @@ TEST(Optimise, TheFrontHasNoDominatedPoint) {
     for (const Variant& b : optimum.front) EXPECT_FALSE(f(a) >= f(b) && g(a) <= g(b) && (f(a) > f(b) || g(a) < g(b)));
   // The maximum of a weighted sum is on the Pareto front.
   for (const Variant& v : optimum.front) EXPECT_GE(*optimum.best->objective, f(v) - 0.5 * g(v) - 1e-5);
+}
+
+TEST(Optimise, FormerWordsOfTheFrontKeepTheirMeaning) {
+  for (const char* const front : {"{f = \"max\", g = \"min\"}", "{f = \"most\", g = \"least\"}"}) {
+    const std::vector<FrontAxis> axes =
+        read_optimise(
+            analytic_study(std::string("[optimize]\nmaximize = \"f\"\nfront = ") + front + "\n",
+                           {{"f", [](double x, double) { return x; }}, {"g", [](double, double y) { return y; }}}))
+            .front;
+    ASSERT_EQ(axes.size(), 2U) << front;
+    EXPECT_EQ(axes[0].quantity, "f");
+    EXPECT_TRUE(axes[0].largest) << front;
+    EXPECT_FALSE(axes[1].largest) << front;
+  }
+}
+
+TEST(Optimise, FormerKindsAreNamesOfQuantities) {
+  const std::string former = "full_element_share";
+  const std::string current = "full_element_area_fraction";
+  for (const std::string& kind : {former, current})
+    for (const std::string& name : {former, current}) {
+      const Study study = parse_study(
+          "design = \"../rtp_brick_1mm.toml\"\n[[parameter]]\nkey = \"body.thickness_mm\"\nfrom = 1\nto = 3\n"
+          "[[quantity]]\nkind = \"" +
+              kind + "\"\n[optimize]\nmaximize = \"" + name + "\"\n[[constraint]]\nquantity = \"" + name +
+              "\"\nmin = 0.1\n",
+          kStudies + "study.toml");
+      EXPECT_EQ(study.quantities.at(0)->name(), kind);  // the name of the column is that of the file
+      const OptimiseRequest request = read_optimise(study);
+      EXPECT_EQ(request.objective.weights.at(0).first, kind) << name;
+      EXPECT_EQ(request.constraints.at(0).quantity, kind) << name;
+    }
 }
 
 TEST(Optimise, DiscreteAndContinuousTogether) {

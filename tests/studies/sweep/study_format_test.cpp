@@ -72,7 +72,7 @@ TEST(StudyFormat, EveryFormOfAValueReadsBackTheSame) {
       "[[parameter]]\nkey = \"x.y\"\ndistribution = \"triangular\"\nfrom = 1\nto = 3\nmode = 2\n"
       "[[quantity]]\nkind = \"rre\"\nincidence_deg = {from = 0, to = 60, count = 8}\nazimuth_deg = [0, 90]\n"
       "[[quantity]]\nkind = \"photometry\"\nname = \"p\"\nstandard = \"r150\"\narea_cm2 = 30\npoints = 3\n"
-      "[optimize]\nmaximize = {rre = 1, \"p.1\" = -0.5}\nfront = {rre = \"most\", \"p.1\" = \"least\"}\n"
+      "[optimize]\nmaximize = {rre = 1, \"p.1\" = -0.5}\nfront = {rre = \"max\", \"p.1\" = \"min\"}\n"
       "[[constraint]]\nquantity = \"rre\"\nmin = 0.5\n"
       "[machining]\nstrategy = \"unidirectional\"\n");
 }

@@ -104,7 +104,7 @@ TEST(Sweep, WindowsAreMeansAndLeastsOfTheirDirections) {
   ASSERT_NE(at_2, at_6);
   EXPECT_NEAR(value("incidence_deg = [2, 6]\n"), 0.5 * (at_2 + at_6), 1e-12);
   EXPECT_NEAR(value("incidence_deg = {from = 0, to = 8, count = 2}\n"), 0.5 * (at_2 + at_6), 1e-12);
-  EXPECT_EQ(value("incidence_deg = [2, 6]\nover_directions = \"least\"\n"), std::min(at_2, at_6));
+  EXPECT_EQ(value("incidence_deg = [2, 6]\nover_directions = \"min\"\n"), std::min(at_2, at_6));
   // A rotation of the part by 30 degrees has the same effect as a rotation of the light by -30 degrees.
   const std::string oblique = "incidence_deg = 20\nazimuth_deg = ";
   const double at_minus_20 = value(oblique + "-20\n");

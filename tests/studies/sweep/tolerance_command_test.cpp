@@ -27,7 +27,7 @@ TEST(ToleranceCommand, WritesSpreadYieldAndContributors) {
   const TemporaryFolder folder;
   folder.write("study.toml", tolerance_study(kLimit + "[tolerance]\nsamples = 32\n"));
   const Json json = retrace_json(folder, {"tolerance", "study.toml", "-o", "out", "--quiet"});
-  EXPECT_EQ(json["schema"], "retrace.tolerance/1");
+  EXPECT_EQ(json["schema"], "retrace.tolerance/2");
   EXPECT_EQ(json["points_in_all"], 1 + 32 * 4);
   EXPECT_EQ(json["parts"], 64);
   EXPECT_EQ(json["failed"], 0);
@@ -83,7 +83,7 @@ TEST(ToleranceCommand, SaysNoIfTheYieldIsTooLow) {
   const auto code = [&](const std::string& percent) {
     folder.write("study.toml", tolerance_study(kLimit +
                                                "[tolerance]\nsamples = 32\nindices = \"none\"\n"
-                                               "least_yield_percent = " +
+                                               "min_yield_percent = " +
                                                percent + "\n"));
     const Outcome outcome = retrace(folder, {"tolerance", "study.toml"});
     EXPECT_NE(outcome.out.find("yield:  "), std::string::npos) << outcome.out;

@@ -171,7 +171,7 @@ TEST(Tolerance, TheYieldThatIsAskedForDecides) {
     StudyRun run(
         analytic_study(kNormals,
                        "[[constraint]]\nquantity = \"f\"\nmin = 10\n[tolerance]\nsamples = 64\nindices = \"none\"\n"
-                       "least_yield_percent = " +
+                       "min_yield_percent = " +
                            percent + "\n",
                        [](double x, double, double) { return x; }));
     run.compute();
@@ -190,7 +190,7 @@ TEST(Tolerance, OnlyWhatMattersContributesToRre) {
                       parameter("body.thickness_mm", "distribution = \"uniform\"\nfrom = 1\nto = 3") +
                       parameter("body.refractive_index", "distribution = \"normal\"\nmean = 1.49\nsigma = 0.01") +
                       "[[quantity]]\nkind = \"rre\"\n[[quantity]]\nkind = "
-                      "\"full_element_share\"\n[analysis]\nengine = \"exact\"\n[tolerance]\nsamples = 32\n",
+                      "\"full_element_area_fraction\"\n[analysis]\nengine = \"exact\"\n[tolerance]\nsamples = 32\n",
                   kFolder + "study.toml"));
   run.compute();
   const QuantityTolerance& rre = run.result.quantities.at(0);
@@ -273,7 +273,7 @@ TEST(Tolerance, WhatIsWrongIsSaidWithItsLine) {
   EXPECT_EQ(keys("[tolerance]\nsampling = \"random\"\n"), "examples/study.toml:21: tolerance.sampling");
   EXPECT_EQ(keys("[tolerance]\nindices = \"yes\"\n"), "examples/study.toml:21: tolerance.indices");
   EXPECT_EQ(keys("[tolerance]\nconfidence_percent = 100\n"), "examples/study.toml:21: tolerance.confidence_percent");
-  EXPECT_EQ(keys("[tolerance]\nleast_yield_percent = 90\n"), "examples/study.toml:21: tolerance.least_yield_percent");
+  EXPECT_EQ(keys("[tolerance]\nmin_yield_percent = 90\n"), "examples/study.toml:21: tolerance.min_yield_percent");
   EXPECT_EQ(keys("[tolerance]\nsample = 3\n"), "examples/study.toml:21: tolerance.sample");
   EXPECT_EQ(keys("[tolerance]\nsamples = 1000000\nindices = \"none\"\n"), "");
   EXPECT_EQ(keys("[tolerance]\nsamples = 1000000\nindices = \"sobol\"\n"), "");

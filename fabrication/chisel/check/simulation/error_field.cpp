@@ -83,7 +83,8 @@ ElementField field_of(const DesignElement& element, const Vec3& half, std::span<
 ErrorField error_field(const Job& job, const Machine& machine, const std::vector<NcProgram>& programs,
                        std::size_t pixels) {
   if (job.substrate)
-    throw InputError(job.where("base"), "an error map is available only for flat arrays, not for elements on a base");
+    throw InputError(job.where("substrate"),
+                     "an error map is available only for flat arrays, not for elements on a substrate");
   check_on_machine(job, machine);
   const Workpiece3d workpiece = workpiece_of(job, machine);
   FindingList findings;

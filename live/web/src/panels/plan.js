@@ -176,8 +176,8 @@ export class PlanPanel {
       return;
     }
     if (!spot) {
-      const { active_share } = answer.footprint;
-      this.caption.textContent = `Light returns from ${percent(active_share, 1)} of the face. Select a spot to follow its ray.`;
+      const { active_fraction } = answer.footprint;
+      this.caption.textContent = `Light returns from ${percent(active_fraction, 1)} of the face. Select a spot to follow its ray.`;
       return;
     }
     const hit = this.regions.find(({ outline }) => contains(outline, spot));
