@@ -197,7 +197,7 @@ TEST_F(Entrance, InspectTellsAndDrawsIt) {
   folder_.write("design.toml", kPlate + kFront + kBody);
   const Outcome outcome = retrace(folder_, {"inspect", "design.toml", "-o", "out"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find("front               lens.toml, z = "), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("entrance surface    lens.toml, z = "), std::string::npos) << outcome.out;
   const Json json = folder_.json("out/inspect.json");
   EXPECT_NEAR(json["entrance_surface"]["highest_mm"].get<double>(), 1.2, 1e-12);
   EXPECT_NEAR(json["entrance_surface"]["lowest_mm"].get<double>(), 1.2 - 3.0 + std::sqrt(9.0 - 0.25 - 0.16), 1e-12);

@@ -212,7 +212,7 @@ TEST(Coating, InspectionTellsTheStack) {
             std::string::npos)
       << text;
   EXPECT_NE(text.find("entrance face       MgF2 99.8 nm, from the body outwards"), std::string::npos) << text;
-  EXPECT_NE(text.find("total reflection    none: layers on the facets absorb"), std::string::npos) << text;
+  EXPECT_NE(text.find("total reflection    none: the layers on the facets absorb light"), std::string::npos) << text;
   EXPECT_NE(inspect_text(inspect(read(kCoated), library())).find("total reflection    up to "), std::string::npos);
   const auto json = nlohmann::json::parse(inspect_json(seen));
   EXPECT_EQ(json["coating"]["facets"]["layers"].size(), 2U);

@@ -175,8 +175,8 @@ TEST(EntranceState, InspectionTellsTheFace) {
   const double rho = 0.1 * (0.2 + 0.6 * 0.6 * mean / (1.0 - 0.2 * mean));
   EXPECT_NEAR(dry.entrance_state->dust_cd_per_lx_m2, rho / std::numbers::pi, 1e-7);
   const std::string text = inspect_text(dry);
-  EXPECT_NE(text.find("  entrance state      90.000 % under no drop"), std::string::npos) << text;
-  EXPECT_NE(text.find("dust sends back"), std::string::npos) << text;
+  EXPECT_NE(text.find("  entrance state      90.000 % free of drops"), std::string::npos) << text;
+  EXPECT_NE(text.find("dust returns"), std::string::npos) << text;
   const auto json = nlohmann::json::parse(inspect_json(inspect(read(kFilthy), library())));
   EXPECT_NEAR(json["entrance"]["clean_fraction"].get<double>(), 0.65, 1e-12);
   EXPECT_GT(json["entrance"]["absorptance"].get<double>(), 0.0);

@@ -210,7 +210,7 @@ TEST(FormOfDesign, InspectTellsIt) {
   };
   EXPECT_NE(
       told("[form]\nsink_um = 0.1\n")
-          .find("form of facets      -0.0333 to 0.0667 um from their planes, rms 0.0211 um, slopes to 0.924 mrad\n"),
+          .find("form of facets      -0.0333 to 0.0667 um from their planes, rms 0.0211 um, slopes up to 0.924 mrad\n"),
       std::string::npos);
   EXPECT_EQ(told("").find("form of facets"), std::string::npos);
   EXPECT_NE(inspect_json(inspect(parse_design(kCubes + "[form]\nsink_um = 0.1\n", "d.toml"), library))

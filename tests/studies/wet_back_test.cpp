@@ -109,7 +109,7 @@ TEST(WetBackDesign, InspectionTellsWhichElementsAreWet) {
   EXPECT_EQ(some.wet_back->of_all, some.elements_full + some.elements_partial);
   const std::string text = inspect_text(some);
   EXPECT_NE(text.find("wet back            " + std::to_string(some.wet_back->elements) +
-                      " of 410 elements, 1.333 behind them: x 0 to 5, y 0 to 2 mm\n"),
+                      " of 410 elements, index 1.333 behind their facets: x 0 to 5, y 0 to 2 mm\n"),
             std::string::npos)
       << text;
   const auto json = nlohmann::json::parse(inspect_json(some));

@@ -353,7 +353,7 @@ TEST(ZonedDesign, AreInspectedAndExported) {
   EXPECT_EQ(json["design"]["zone"][1]["set"].size(), 4U);
   const std::string text = inspect_text(inspection);
   EXPECT_NE(text.find("  zone 1              50.000 %, "), std::string::npos) << text;
-  EXPECT_NE(text.find("; turned by 10\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("; rotated by 10 degrees\n"), std::string::npos) << text;
   EXPECT_NE(text.find("; element.kind='rtp'; "), std::string::npos) << text;
   const Solid solid = make_solid(design, {});
   EXPECT_TRUE(solid.is_manifold);

@@ -128,7 +128,7 @@ TEST(DesignPicture, IsAPicture) {
       "thickness_mm = 2\n",
       "d.toml");
   const studies::DesignView view = studies::view_of(design);
-  EXPECT_EQ(view.remarks.front(), "a piece of the array");
+  EXPECT_EQ(view.remarks.front(), "a few elements of the array");
   const std::string png = report::view_png(view);
   PngSource source{&png};
   cairo_surface_t* const surface = cairo_image_surface_create_from_png_stream(

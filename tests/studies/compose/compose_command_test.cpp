@@ -43,7 +43,7 @@ TEST(ComposeCommand, WritesZonesThatMakeThePart) {
   folder.write("study.toml", study("max_zones = 3\nrounds = 1\nzone_sigma_arcmin = 1\nparts = 64\n"));
   const Outcome outcome = retrace(folder, compose());
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find("least with at most 1 zone: "), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("minimum with at most 1 zone: "), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("from zone to zone: "), std::string::npos) << outcome.out;
   const Json json = folder.json("out/composition.json");
   const Json& zones = json.at("zones");
