@@ -86,7 +86,7 @@ void check_place(const geometry::Part& part, const raytrace::CameraScene& scene,
   const bool bad = scene.film ? is_behind(*scene.film, part.thickness_mm, place) : is_inside(part, place);
   if (bad)
     throw InputError(field, fmt::format("the {} must be outside the {}, got {} mm", what,
-                                        scene.film ? "body, in front of its face" : "part", text_of(place)));
+                                        scene.film ? "body, in front of the entrance face" : "part", text_of(place)));
   if (place == scene.view.target_mm) throw InputError(field, "must differ from the point that the camera looks at");
 }
 

@@ -55,7 +55,7 @@ std::string choice(const std::vector<std::string>& there_are, const std::optiona
   }
   if (!asked) {
     if (there_are.size() == 1) return there_are.front();
-    throw InputError(field, fmt::format("is required for {}: {}", printable(of_what),
+    throw InputError(field, fmt::format("is required for {}: one of {}", printable(of_what),
                                         printable(fmt::format("{}", fmt::join(there_are, ", ")), 400)));
   }
   if (holds(there_are, *asked)) return *asked;

@@ -30,8 +30,8 @@ void check(const RreSettings& request) {
   raytrace::EngineFacts facts;
   facts.needs_plain_sampling = request.needs_plain_sampling();
   if (raytrace::why_not(request.engine, facts))
-    throw InputError(Field{"sampling"},
-                     fmt::format("plain needs {} montecarlo or embree, got {}", engine, engine_name(request.engine)));
+    throw InputError(Field{"sampling"}, fmt::format("plain sampling needs {} montecarlo or embree, got {}", engine,
+                                                    engine_name(request.engine)));
   for (const Field result : exact_results(request))
     if (!raytrace::may_be_exact(request.engine) || !may_follow_beams(request))
       throw InputError(result, fmt::format("needs {} exact", engine));

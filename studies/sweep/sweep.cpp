@@ -41,7 +41,7 @@ std::uint64_t grid_size(const Study& study) {
     size *= parameter.values.size();
     if (size > Sweep::most_points)
       throw InputError(parameter.location,
-                       fmt::format("the grid has more than {} points with this parameter", Sweep::most_points));
+                       fmt::format("with this parameter, the grid has more than {} points", Sweep::most_points));
   }
   return size;
 }
@@ -50,9 +50,10 @@ std::uint64_t zipped_size(const Study& study) {
   const std::size_t size = study.parameters.front().values.size();
   for (const Parameter& parameter : study.parameters)
     if (parameter.values.size() != size)
-      throw InputError(parameter.location,
-                       fmt::format("zipped parameters must have as many values as the first, {}, got {}", size,
-                                   parameter.values.size()));
+      throw InputError(
+          parameter.location,
+          fmt::format("zipped parameters must have the same number of values as the first parameter, {}, got {}", size,
+                      parameter.values.size()));
   return size;
 }
 
@@ -314,7 +315,7 @@ SweepResult collect(const Sweep& sweep, const compute::ResultStore& store, bool 
   const auto first = std::find_if(result.points.begin(), result.points.end(), failed);
   if (first != result.points.end())
     result.warnings.push_back(
-        {"points_failed", fmt::format("{} of {} points failed, the first of them point {}: {}",
+        {"points_failed", fmt::format("{} of {} points failed; the first failed point is {}: {}",
                                       std::count_if(result.points.begin(), result.points.end(), failed),
                                       result.points.size(), first->point, first->reason)});
   for (const compute::StoredPoint& point : result.points)

@@ -131,7 +131,8 @@ ComposeRequest read_compose(const Study& study) {
       request.price.emplace_back(checked_mean(study, name, document.where("compose.price." + name)),
                                  std::get<double>(price));
   if (document.has("compose.front")) {
-    if (document.named("compose.front").size() != 1) document.fail("compose.front", "must name one quantity");
+    if (document.named("compose.front").size() != 1)
+      document.fail("compose.front", "must contain exactly one quantity");
     const auto& [name, sense] = *document.named("compose.front").begin();
     request.front = FrontAxis{checked_mean(study, name, document.where("compose.front." + name)),
                               std::get<std::string>(sense) == "max"};

@@ -105,10 +105,9 @@ void check_room(const Document& document, const PartSpec& part) {
   const double y_free_mm = part.array.y_length_mm - 2.0 * part.array.y_offset_mm + part.array.y_gap_mm;
   const double count = x_free_mm * y_free_mm / footprint.cell_area_mm2;
   if (!(count <= kMostElements * (1.0 + kRelativeTolerance)))
-    document.fail("array.x_length_mm",
-                  fmt::format("the array would have {:.6g} elements, at most {:.0f} are allowed; make it "
-                              "smaller or its elements larger",
-                              count, kMostElements));
+    document.fail("array.x_length_mm", fmt::format("the array would have {:.6g} elements, but at most {:.0f} are "
+                                                   "allowed: make the array smaller or its elements larger",
+                                                   count, kMostElements));
 }
 
 void check_array_on_substrate(const Document& document, const PartSpec& part) {
@@ -303,7 +302,7 @@ void check_bowl(const Document& document) {
   const auto given_deg = document.number_if("element.mirror_half_angle_deg");
   if (given_deg && *given_deg > most_deg + 1e-9)
     document.fail("element.mirror_half_angle_deg",
-                  fmt::format("must be <= {} degrees, at which neighbouring bowls touch, got {}",
+                  fmt::format("must be <= {} degrees, the angle at which neighbouring bowls touch, got {}",
                               fixed_apart(most_deg, *given_deg, 6), shortest(*given_deg)));
 }
 

@@ -79,7 +79,7 @@ constexpr Row kWetBackRows[] = {
                          "Probability that an element is selected. The choice depends on a hash of its row, its column "
                          "and `seed`."}),
     {"seed", Whole{{.low = 0.0, .high = 4294967295.0}}, 1.0, "Seed of the random choice of elements.", kWithShare},
-    {"rectangle_mm", Numbers{4, kPlaceInPart, "places, x and y of two corners"}, kNone,
+    {"rectangle_mm", Numbers{4, kPlaceInPart, "coordinates, x and y of two corners"}, kNone,
      "`[x_min, y_min, x_max, y_max]`: rectangle in the part frame. Elements whose centroid is inside the rectangle are "
      "selected."},
     {"disc_mm", Numbers{3, kPlaceInPart, "lengths, x and y of the centre and the radius"}, kNone,

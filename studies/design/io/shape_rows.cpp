@@ -157,7 +157,7 @@ constexpr Row kEntranceRows[] = {
      "triangles that face -z, with reversed orientation. `\"bottom\"` is needed for `machined.stl` of `retrace turn`, "
      "which is the counterpart that is moulded in the turned surface.",
      kSideOnly},
-    {"centre_mm", Numbers{2, kPlace, "places, x and y"}, Computed{"the centre of the part"},
+    {"centre_mm", Numbers{2, kPlace, "coordinates, x and y"}, Computed{"the centre of the part"},
      "`[x, y]`: position of the origin of the file in the part frame."}};
 
 constexpr NumberRange kLines{.low = 1.0, .high = 1e6};
