@@ -349,7 +349,7 @@ std::string inspect_text(const Inspection& i) {
   text += fmt::format("  elements            {} full, {} partial{}\n", i.elements_full, i.elements_partial, per_period);
   text += fmt::format("  element depth       {} mm\n", fixed(i.element_depth_mm, 6));
   text += fmt::format("  entrance area       {} mm2{}\n", fixed(i.entrance_area_mm2, 4), per_period);
-  text += fmt::format("  full elements       {} % of the entrance area\n", fixed(100.0 * i.full_element_share, 3));
+  text += fmt::format("  full elements       {} % of the area\n", fixed(100.0 * i.full_element_share, 3));
   text += fmt::format("  retro facet area    {} mm2{}\n", fixed(i.facet_area_mm2, 4), per_period);
   text += substrate_text(i);
   text += entrance_text(i);

@@ -95,8 +95,7 @@ void RayCsvSource::read_names() {
   const auto all_or_none = [&](std::size_t first, std::size_t last) {
     for (std::size_t k = first; k <= last; ++k)
       if (has(k) != has(first))
-        fail("", fmt::format("the columns {1} to {2} must all be given, or none of them", kNames[first], kNames[first],
-                             kNames[last]));
+        fail("", fmt::format("the columns {} to {} must all be given, or none of them", kNames[first], kNames[last]));
   };
   all_or_none(kS1, kAxisZ);
   info_.has_radiant = has(kPower);
