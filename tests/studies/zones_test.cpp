@@ -265,8 +265,8 @@ RreResult rre(const Design& design, Engine engine, double incidence_deg, std::op
   return RreStudy({design}, request).run();
 }
 
-// Whole prisms are on both sides of the border between the zones. Light along the normal goes from one facet to the
-// other facet of the same prism.
+// Whole prisms are on both sides of the border between the zones. Light along the normal passes from one facet of a
+// prism to its other facet.
 TEST(ZonedDesign, PrismsTurnedInAZoneReturnWhatTheyDoAlone) {
   const std::string lengths = "x_length_mm = 8; y_length_mm = 4";
   const Design plain = parse_design(design_of(kRtp, lengths), "d.toml");
@@ -281,8 +281,8 @@ TEST(ZonedDesign, PrismsTurnedInAZoneReturnWhatTheyDoAlone) {
 }
 
 // A part has two zones of equal size with different cube corners, and light is at oblique incidence. The exact engine
-// and the engine embree agree on its RRE. This RRE is nearly the mean of the RREs of two parts that consist of only one
-// of the zones each. The difference arises at the borders.
+// and Embree agree on its RRE. This RRE is nearly the mean of the RREs of two parts, each with the cube corners of one
+// zone. The difference arises at the borders.
 TEST(ZonedDesign, TheSumOfZonesIsThePartAsFarAsTheyAreWide) {
   const std::string set = "set = [\"element.cant_deg=8\", \"element.cant_azimuth_deg=40\"]\n";
   const std::string one = "[[zone]]\nshare = 1\n";

@@ -189,7 +189,7 @@ double area_of(const std::vector<Vec2>& outline) {
 }
 
 TEST(DesignDrawing, SectionsHaveTheirAreas) {
-  // The section is a rectangle with a right triangle below it.
+  // The section consists of a rectangle and a right triangle below it.
   const Drawn prism = drawn(prisms("arrangement = \"single\"\n"));
   EXPECT_NEAR(area_of(prism.drawing.section->view.outline_mm), 0.5 * 1.2 + 0.25 * 0.25, 1e-6);
   // The section rises from the apex at -2 d to 0 on one side, and along the dihedral edge to -d on the other side, with
