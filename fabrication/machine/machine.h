@@ -79,7 +79,7 @@ enum class Carrier {
 struct MachineBody {
   std::string name;
   Carrier carrier = Carrier::workpiece;
-  Sourced<std::vector<geometry::Vec3>> points_mm;  ///< at least 4, not in one plane
+  Sourced<std::vector<geometry::Vec3>> points_mm;  ///< at least four points, which are not in one plane
 };
 
 /// Deviation of the mounted tool from its nominal position and orientation, as determined by a set-up or a calibration.

@@ -44,8 +44,8 @@ struct PlaningMill {
 enum class SpindleDirection { clockwise, counterclockwise };
 inline constexpr std::string_view kSpindleDirectionWords[] = {"clockwise", "counterclockwise"};
 
-/// Lathe: X is the radius, and Z is along the axis. Both axes can move at the same time. Positions are those of the
-/// lowest point of the nose.
+/// Lathe: X is the radius, and Z is along the axis. Both axes can move at the same time. Positions refer to the lowest
+/// point of the nose.
 struct PlaningLathe {
   double feed_mm_per_min = 0.0;
   double depth_of_cut_mm = 1.0;  ///< maximum depth of cut of a pass

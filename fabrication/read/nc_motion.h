@@ -68,8 +68,8 @@ class NcSink {
   virtual void dwell(double seconds, const NcPlace& place, const AxisPositions& position) = 0;
   /// Called if a block sets spindle, mist, exact stop or bits of nc_said, before the move of this block.
   virtual void state(const NcSettings&, const NcPlace&) {}
-  /// Called if the program stops for the operator, after the move of this block. The settings are those before the
-  /// stop. After an unconditional stop, spindle and mist are unknown, and all settings must be repeated.
+  /// Called if the program stops for the operator, after the move of this block. The passed settings are the settings
+  /// before the stop. After an unconditional stop, spindle and mist are unknown, and all settings must be repeated.
   virtual void stop(NcStop, const NcSettings&, const NcPlace&) {}
 };
 
@@ -90,10 +90,12 @@ inline constexpr std::int64_t kMostNcBlocks = 50'000'000;
 
 /// Executes a program: calls, modal settings, absolute and incremental positions. A cubic move has positions,
 /// velocities and a time. Each of its axes follows a cubic polynomial, which the sink receives as straight segments.
-/// \throw InputError naming file and line for a linear move in inverse time mode without F > 0, for axes that move
-///        before G0 or G1, for an incremental word of an axis with unknown position, or for subroutines that call each
-///        other endlessly. It is also thrown for a cubic move that takes no time, omits a moving axis, or does not end
-///        at rest
+/// \throw InputError naming file and line in the following cases:
+/// - a linear move in inverse time mode has no F > 0,
+/// - axes move before G0 or G1,
+/// - an axis with unknown position has an incremental word,
+/// - subroutines call each other without end,
+/// - a cubic move takes no time, omits a moving axis, or does not end at rest
 NcEnd run_nc(const NcProgram& program, NcSink& sink);
 
 }  // namespace retrace::fabrication

@@ -151,7 +151,7 @@ struct NcProgram {
   /// Line after which the operator stopped the program when it was executed for the first time. It is 0 if the program
   /// ran to its end.
   std::int32_t stop_line = 0;
-  /// Description of what is missing if the file is incomplete; empty if it is complete.
+  /// Description of the missing part if the file is incomplete; empty if the file is complete.
   std::optional<std::string> truncated;
 
   /// Adds a cubic move to a block.

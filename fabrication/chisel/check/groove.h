@@ -23,8 +23,8 @@ struct DesignFacet {
   geometry::Vec3 normal = geometry::Vec3::UnitZ();  ///< unit normal, outward from the material
   double offset_mm = 0.0;
   geometry::Vec3 up_slope = geometry::Vec3::UnitZ();  ///< unit vector in the facet, from the root towards the rim
-  /// Unit vector across the facet: parallel to the root of a prism, or from the first dihedral edge of the facet
-  /// towards the second one in a cube corner.
+  /// Unit vector across the facet. Prism: parallel to the root. Cube corner: from the first dihedral edge of the facet
+  /// towards its second dihedral edge.
   geometry::Vec3 along = geometry::Vec3::UnitX();
 
   /// Returns the signed distance of a point from the facet plane; negative inside the material.
@@ -56,8 +56,8 @@ struct DesignElement {
   }
 };
 
-/// Groove of a prism. The normal of the first facet points towards -y_w (rotated element: -x_w), the normal of the
-/// second one towards +y_w (+x_w).
+/// Groove of a prism. The normal of the first facet points towards -y_w, and the normal of the second facet towards
+/// +y_w. In a rotated element, they point towards -x_w and +x_w.
 struct PrismGroove : DesignElement {
   geometry::Vec3 root_direction = geometry::Vec3::UnitX();
   double half_width_mm = 0.0;  ///< half of the length along the root
@@ -95,15 +95,15 @@ inline const DesignElement& common(const Groove& groove) {
 }
 /// Returns half of the longer side of a prism's aperture, or the radius of a cube corner's aperture.
 double half_size_mm(const Groove& groove);
-/// Returns the corners of a facet.
+/// Returns the corners of a facet, in the workpiece frame.
 std::vector<geometry::Vec3> facet_corners(const Groove& groove, std::size_t facet);
-/// Returns the mean of the corners of a facet.
+/// Returns the mean of the corners of a facet, in the workpiece frame.
 geometry::Vec3 facet_middle(const Groove& groove, std::size_t facet);
 
-/// Returns the groove of a prism.
+/// Returns the groove of a prism as designed, in the workpiece frame.
 /// \param stock_mm height of the blank's face above the element's rims
 PrismGroove groove_of(const CutElement& element, const geometry::RtpElement& size, double stock_mm = 0.0);
-/// Returns the cavity of a cube corner.
+/// Returns the cavity of a cube corner as designed, in the workpiece frame.
 /// \pre `size` is a cube corner
 CubeCavity cavity_of(const CutElement& element, const geometry::Element& size, const geometry::AngleErrors& errors = {},
                      double stock_mm = 0.0);

@@ -32,9 +32,9 @@ inline double edge_dip_mm(const Section& section) {
   return 4.0 * section.lift_mm + 2.0 * static_cast<double>(section.step_nm) / kNanometresPerMm;
 }
 
-/// Returns the thickness, along the facet's normal, that roughing must still remove after cut `cut` of `cuts`. All cuts
-/// have the full depth except the first one. If the first chip would be thinner than the minimum chip, the thickness of
-/// the first two cuts is divided equally between them.
+/// Returns the thickness, along the facet's normal, that roughing must still remove after cut `cut` of `cuts`. The
+/// first cut removes the remainder of the thickness, and all later cuts have the full depth. If the first chip would be
+/// thinner than the minimum chip, the thickness of the first two cuts is divided equally between them.
 /// \param across_mm total thickness that all cuts remove
 /// \param share maximum chip thickness of the first cut, divided by its depth
 /// \param dip_mm edge_dip_mm()

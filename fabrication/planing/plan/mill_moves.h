@@ -31,7 +31,7 @@ class MillMoves {
   void go_home();
   /// Makes moves that must be in one program. If the present program would exceed its time limit with them, they become
   /// the first moves of the next program.
-  /// \throw InputError if these moves alone exceed the time limit
+  /// \throw InputError if these moves exceed the time limit even in a program without other moves
   template <class Moves>
   void together(const Moves& moves) {
     const Mark before = mark();
