@@ -232,7 +232,7 @@ def keywords(fields: list[dict]) -> list[str]:
 
 
 def expanded(text: str, requests: dict[str, list[dict]]) -> str:
-    """Replaces the lines of a Python file that stand for the fields of a request."""
+    """Replaces the marked lines of a Python file by the fields of a request."""
     lines = []
     for line in text.splitlines():
         in_signature = re.fullmatch(r"    (\*\*fields: object,  )?# generated: keywords of the request (\w+)", line)
