@@ -301,8 +301,8 @@ TEST(ZonedDesign, TheSumOfZonesIsThePartAsFarAsTheyAreWide) {
 }
 
 // If all columns have equal elements, the part equals the array. In the other designs, every second column is rotated
-// by 180 degrees. If such a part has an odd number of columns, a rotation of the part by 180 degrees about its center
-// has the same effect as an exchange of rotated and unrotated columns.
+// by 180 degrees. A rotation of a part with an odd number of columns by 180 degrees about its center then exchanges
+// rotated and unrotated columns.
 TEST(ZonedDesign, ColumnsInTurnAreTheArrayAndTurnWithIt) {
   const std::string lengths = "x_length_mm = 20; y_length_mm = 20";
   const std::string canted = "; cant_deg = 8; cant_azimuth_deg = 40";

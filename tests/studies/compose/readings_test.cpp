@@ -72,8 +72,8 @@ TEST(Readings, OfRreAreItsDirections) {
   for (int k = 1; k <= 4; ++k) sum += values.at("each." + std::to_string(k));
   EXPECT_NEAR(sum / 4.0, values.at("mean"), 1e-4);
   EXPECT_NEAR(least(values, "each."), values.at("least"), 1e-4);
-  // On a part that is rotated by 10 degrees, light with an azimuth of 50 degrees has the same effect as light with an
-  // azimuth of 40 degrees on an unrotated part.
+  // A rotation of the part by 10 degrees has the same effect as a rotation of the light by -10 degrees, from an azimuth
+  // of 50 to 40 degrees.
   const auto turned = measured(reflector("10", "[[quantity]]\nkind = \"rre\"\nincidence_deg = 20\nazimuth_deg = 50\n"));
   const auto asked = measured(reflector("0", "[[quantity]]\nkind = \"rre\"\nincidence_deg = 20\nazimuth_deg = 40\n"));
   EXPECT_EQ(turned, asked);
