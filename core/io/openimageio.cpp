@@ -13,7 +13,7 @@
 namespace retrace {
 namespace {
 
-/// Throws an error.
+/// Throws std::runtime_error with a message of OpenImageIO, or with a default message if it is empty.
 /// \param why message of OpenImageIO, which may be empty
 [[noreturn]] void fail(const std::string& why) {
   throw std::runtime_error(why.empty() ? "it ends early or is damaged" : why);
