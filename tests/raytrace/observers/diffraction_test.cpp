@@ -100,7 +100,7 @@ TEST(PolygonTransform, IsSmoothWhereItsSeriesBegins) {
 }
 
 /// Fields that are computed in SIMD lanes equal single transforms, from the center of the pattern to far outside. If
-/// two groups share a polygon, its transform is computed only once, whichever corner its list starts with.
+/// two groups share a polygon, its transform is computed only one time, whichever corner its list starts with.
 TEST(ApertureField, AgreesWithSingleTransforms) {
   constexpr double kWavelength_mm = 550e-6;
   JonesMatrix amplitude;

@@ -137,8 +137,8 @@ std::vector<Triple> read_by_example(const TemporaryFolder& folder, const std::ve
   return told;
 }
 
-/// Results for cube corners of 0.5 mm that several tests use. They are computed only once, because this takes several
-/// seconds.
+/// Results for cube corners of 0.5 mm that several tests use. They are computed only one time, because this takes
+/// several seconds.
 struct SmallCubes {
   SmallCubes() {
     folder.write("d.toml", cubes("0.5"));

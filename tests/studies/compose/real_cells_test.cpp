@@ -66,7 +66,7 @@ struct Composed {
   Composition composition;
 };
 
-/// Returns a composition of up to three zones. It is computed only once, because the computation takes long.
+/// Returns a composition of up to three zones. It is computed only one time, because the computation takes long.
 const Composed& three_zones() {
   static const Composed result = [] {
     Study study = study_of_corners("[compose]\nmaximize = \"g\"\nmost_zones = 3\n");

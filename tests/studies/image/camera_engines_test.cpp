@@ -1,4 +1,4 @@
-// Tests of the engines of the camera: the cell engine, which traces paths in groups, gives the same images as Embree,
+// Tests of the engines of the camera: the cell engine, which traces paths in groups, gives the same pictures as Embree,
 // which traces paths one by one.
 #include <gtest/gtest.h>
 
@@ -96,7 +96,7 @@ TEST(CameraEngines, SeeTheSamePixelByPixel) {
   }
 }
 
-/// In both engines, paths start at the same points. In uniform light, images therefore differ only by the random
+/// In both engines, paths start at the same points. In uniform light, pictures therefore differ only by the random
 /// choices of the paths.
 TEST(CameraEngines, SeeEvenLightAlike) {
   for (Case& c : cases()) {
@@ -118,7 +118,7 @@ TEST(CameraEngines, GiveTheSameOnAnyNumberOfThreads) {
   EXPECT_EQ(images[0].part_means, images[1].part_means);
 }
 
-/// Several processes divide the passes of an image among them, and each process computes its passes in a different
+/// Several processes divide the passes of a picture among them, and each process computes its passes in a different
 /// order.
 TEST(CameraEngines, PassesAreTheSameInAnyOrder) {
   const Case c = cases()[0];

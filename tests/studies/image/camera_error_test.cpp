@@ -48,8 +48,8 @@ std::vector<CameraImage> pictures_of(const Part& part, const CameraScene& scene,
   return images;
 }
 
-/// Returns the mean square of the deviations of a pixel, each divided by the standard error that its image reports. The
-/// expected value is 1 if the reported errors are correct.
+/// Returns the mean square of the deviations of a pixel, each divided by the standard error that its picture reports.
+/// The expected value is 1 if the reported errors are correct.
 double z_variance(const std::vector<CameraImage>& images, std::size_t pixel) {
   double mean = 0.0;
   for (const CameraImage& image : images) mean += image.luminance[pixel] / kSeeds;
@@ -69,8 +69,8 @@ double variance_bound(std::size_t pixels) {
   return boost::math::quantile(boost::math::complement(distribution, sidak_level(pixels))) / (kSeeds - 1.0);
 }
 
-/// Images of a part with cut elements are computed with different seeds. In every pixel, the spread of the images is at
-/// most as large as the reported errors predict.
+/// Pictures of a part with cut elements are computed with different seeds. In every pixel, the spread of the pictures
+/// is at most as large as the reported errors predict.
 TEST(CameraError, HoldsAtBorders) {
   const Part part = build_part(finite(RtpElement{2.0, 2.0}, Arrangement::offset, 6.0, 6.0, 2.0));
   const std::vector<CameraImage> images = pictures_of(part, border_scene(part), 48);

@@ -1,4 +1,4 @@
-// Tests of camera images of parts with rough facets and of parts with masks.
+// Tests of camera pictures of parts with rough facets and of parts with masks.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -85,7 +85,7 @@ TEST(RoughCamera, SeesWhatIsSentForwards) {
   }
 }
 
-/// The elements of an array are arranged in the shape of an L. The image is bright at these elements and dark
+/// The elements of an array are arranged in the shape of an L. The picture is bright at these elements and dark
 /// everywhere else.
 TEST(MaskCamera, ShowsTheElementsThatAreThere) {
   const PartSpec spec = finite(RtpElement{1.0, 1.0}, Arrangement::aligned, 4.0, 4.0, 1.0);

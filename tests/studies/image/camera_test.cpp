@@ -1,4 +1,4 @@
-// Tests of camera images: uniform light, closed forms, coefficients of retroreflection, footprints and convergence.
+// Tests of camera pictures: uniform light, closed forms, coefficients of retroreflection, footprints and convergence.
 #include "raytrace/observers/camera.h"
 
 #include <gtest/gtest.h>
@@ -216,8 +216,8 @@ double rms_difference(const CameraImage& a, const CameraImage& b) {
   return std::sqrt(sum / static_cast<double>(a.luminance.size()));
 }
 
-/// The difference between two images of the same scene equals the difference that their standard errors predict. It is
-/// halved if the number of passes is quadrupled.
+/// The difference between two pictures of the same scene equals the difference that their standard errors predict. It
+/// is halved if the number of passes is quadrupled.
 TEST(Camera, ConvergesWithTheRootOfThePasses) {
   const Part part = cubes(2.0);
   const CameraScene scene = noisy_scene(part);
@@ -258,7 +258,7 @@ TEST(Camera, CylinderIsPlaneWhereItIsTouched) {
   const double turn_deg = 15.0;
   CameraScene bent = far_scene(part, 0.1, 0.0, 0.0, 20.0, 20.0);
   bent.film = Film{200.0, 40.0, radius};
-  // The image shows a narrow region around the point at which the normal is rotated towards +x by `turn_deg`.
+  // The picture shows a narrow region around the point at which the normal is rotated towards +x by `turn_deg`.
   const double phi = turn_deg * pi / 180.0;
   const Vec3 shift(radius * std::sin(phi), 0.0, radius * (std::cos(phi) - 1.0));
   bent.view.target_mm += shift;
@@ -297,7 +297,7 @@ struct ReferencePixel {
   double std_error = 0.0;
 };
 
-/// Returns the pixels of the stored image row by row. If the file is missing, the test fails.
+/// Returns the pixels of the stored picture row by row. If the file is missing, the test fails.
 std::vector<ReferencePixel> stored_reference() {
   std::ifstream file(std::string(RETRACE_SOURCE_DIR) + "/tests/studies/image/camera_reference.csv");
   EXPECT_TRUE(file.good()) << "the reference is missing";
@@ -314,7 +314,8 @@ std::vector<ReferencePixel> stored_reference() {
 
 /// Returns a scene with a sheet of cube corners on a cylinder. Each pixel shows several cube corners. With smaller
 /// pixels, only one of thousands of paths of some pixels would reach the lamp, and error estimates would be unreliable
-/// until such a path occurs. If RETRACE_WRITE_REFERENCE=FILE is set, the test writes the reference image to this file.
+/// until such a path occurs. If RETRACE_WRITE_REFERENCE=FILE is set, the test writes the reference picture to this
+/// file.
 CameraScene reference_scene(const Part& part) {
   CameraScene scene = far_scene(part, 0.1, 5.0, 12.0, 40.0, 5.0);
   scene.surroundings = {1.0, 0.2};
@@ -322,9 +323,9 @@ CameraScene reference_scene(const Part& part) {
   return scene;
 }
 
-/// The image is compared with a reference image with many passes and another seed. The differences of single pixels and
-/// the sum of their squares must agree with the standard errors of both images. The other tests show that the image is
-/// correct.
+/// The picture is compared with a reference picture with many passes and another seed. The differences of single pixels
+/// and the sum of their squares must agree with the standard errors of both pictures. The other tests show that the
+/// picture is correct.
 TEST(Camera, PictureAgreesWithItsReference) {
   const Part part = cubes();
   if (const char* file = std::getenv("RETRACE_WRITE_REFERENCE")) {

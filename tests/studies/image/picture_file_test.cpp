@@ -1,4 +1,4 @@
-// Tests of image files, which OpenImageIO reads back, and of colour scales and tone curves, which are compared with
+// Tests of picture files, which OpenImageIO reads back, and of colour scales and tone curves, which are compared with
 // their definitions.
 #include "report/io/picture_file.h"
 

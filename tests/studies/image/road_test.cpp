@@ -130,7 +130,7 @@ TEST(Road, CoefficientsAreThoseOfTheFarField) {
   EXPECT_NEAR(reflector_of(row).r_a[row.lamp], expected, 1e-5 * expected);
 }
 
-/// In the image, the reflectors have the positions and sizes of a pinhole projection.
+/// In the picture, the reflectors have the positions and sizes of a pinhole projection.
 TEST(Road, ReflectorsAreDrawnWhereTheyAre) {
   RoadScene scene;
   scene.columns = 900;
