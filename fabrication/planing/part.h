@@ -15,7 +15,7 @@ namespace retrace::fabrication {
 /// hyperbola. Widths are across the zones of a cylindrical lens, or along the radius of a round lens. All lengths are
 /// positive, and the index is above 1.
 struct ZoneLens {
-  double focal_length_mm = 0.0;  ///< distance of the focus from the center of the stepped face
+  double focal_length_mm = 0.0;  ///< distance of the focus from the centre of the stepped face
   double wavelength_mm = 0.0;    ///< wavelength in air
   double refractive_index = 0.0;
   double half_width_mm = 0.0;

@@ -27,7 +27,7 @@ double standing_mm(std::span<const ConvexPiece> pieces, const Vec2& foot, const 
 
 /// Returns the point of a cross-section that a chisel's cutting edge reaches at the deeper end of a move, in
 /// coordinates of the section.
-/// \param tip position of the center of the cutting edge at the deeper end of the move, in the workpiece frame
+/// \param tip position of the centre of the cutting edge at the deeper end of the move, in the workpiece frame
 Vec2 deepest_place(const SectionPlane& plane, const ToolWedge& wedge, const RigidMotion& back, const Vec3& tip) {
   const Vec3 edge = back.direction(wedge.edge);
   const double across = plane.normal.dot(edge);

@@ -41,7 +41,7 @@ struct DesignElement {
   double depth_mm = 0.0;  ///< depth of the root or apex below the rims
   double stock_mm = 0.0;  ///< height of the face above the rims
 
-  geometry::Vec3 root_mm = geometry::Vec3::Zero();  ///< center of the root line, or the apex
+  geometry::Vec3 root_mm = geometry::Vec3::Zero();  ///< centre of the root line, or the apex
   std::vector<DesignFacet> facets;                  ///< two facets of a prism, or three facets of a cube corner
   /// Length of a facet from the root to the rim. Cube corner: length of a dihedral edge from the apex to the plane of
   /// the rims, without angle errors.
@@ -63,7 +63,7 @@ struct PrismGroove : DesignElement {
   double half_width_mm = 0.0;  ///< half of the length along the root
   double half_base_mm = 0.0;   ///< half of the length across the root
 
-  /// Returns the coordinate of a point along the root, measured from the center of the root.
+  /// Returns the coordinate of a point along the root, measured from the centre of the root.
   double along_mm(const geometry::Vec3& p) const { return root_direction.dot(p - root_mm); }
 };
 
@@ -72,7 +72,7 @@ struct CubeCavity : DesignElement {
   /// Unit vectors along the three dihedral edges, from the apex. The first edge points towards -y_w (rotated element:
   /// +y_w).
   std::array<geometry::Vec3, 3> edges = {geometry::Vec3::UnitZ(), geometry::Vec3::UnitZ(), geometry::Vec3::UnitZ()};
-  double radius_mm = 0.0;     ///< radius of the aperture, from its center to its corners
+  double radius_mm = 0.0;     ///< radius of the aperture, from its centre to its corners
   bool is_hexagonal = false;  ///< true: hexagonal aperture, which is smaller than the triangular cavity
   /// Distance along the axis between the nominal apex and the apex of a layer, per mm of material that the layer leaves
   /// on each facet.

@@ -56,7 +56,7 @@ void check_axis(const Job& job, const Machine& machine, char axis, Nanometres lo
 }
 
 /// Warms up the machine: X and Y move back and forth, one after the other, over most of their travel. Then moves to the
-/// center of the array.
+/// centre of the array.
 void warm_up(const Machine& machine, ProgramDraft& program) {
   if (machine.warm_up_s.value <= 0.0) return;
   constexpr double kOfTravel = 0.9;

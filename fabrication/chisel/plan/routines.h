@@ -7,7 +7,7 @@
 
 namespace retrace::fabrication {
 
-/// Subroutine and its start point, relative to the center of the root or to the apex.
+/// Subroutine and its start point, relative to the centre of the root or to the apex.
 struct Routine {
   Subroutine subroutine;
   Place start = Place::Zero();
@@ -68,7 +68,7 @@ Routine unidirectional_routine(const Job& job, const Section& section);
 /// \param left_mm thickness that remains on wall and floor
 Routine plunge_routine(const Job& job, const Section& section, double left_mm, double feed_mm_per_min);
 
-/// Returns the parallel passes for an element of width `width_mm`, as offsets of their centers along the root.
+/// Returns the parallel passes for an element of width `width_mm`, as offsets of their centres along the root.
 std::vector<double> pass_offsets_mm(double width_mm, double tool_width_mm);
 
 }  // namespace retrace::fabrication

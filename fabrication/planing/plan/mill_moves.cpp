@@ -69,7 +69,7 @@ double MillMoves::time_of(std::int64_t steps) const {
 }
 
 bool MillMoves::ends_in_time() const {
-  // The time includes the moves back to the center: Z, and X with a detour of twice its minimum move.
+  // The time includes the moves back to the centre: Z, and X with a detour of twice its minimum move.
   const double home_s = time_of(state_.place[kZ] - home_[kZ]) + time_of(state_.place[kX]) + time_of(2 * least_[kX]);
   return state_.at.time_s + home_s <= 3600.0 * part_.mill->most_hours;
 }

@@ -105,7 +105,7 @@ class EdgeProbe {
     stand.angle_within_rad = angle;
   }
 
-  /// Returns the angle at the center of that part of the arc which is inside the region. In plan, the arc is
+  /// Returns the angle, on the arc, of the centre of the part of the arc that is inside the region. In plan, the arc is
   /// approximated by a straight line. This is exact for tools without rake.
   double inner_angle(const Pose& at) const {
     const Vec2 tip = place(at, 0.0);
