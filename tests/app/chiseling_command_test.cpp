@@ -6,7 +6,7 @@
 
 #include "tests/app/program.h"
 
-// Tests of cube corners: from a design to NC text, and back to a part that is traced.
+// Tests of jobs for cube corners: from a design to NC text, and back to a machined part that is traced.
 
 namespace retrace::test::chiseling_command_test {
 namespace {

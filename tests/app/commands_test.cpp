@@ -129,9 +129,9 @@ TEST(Inspect, SaysHowUnlikeErrorsCloseTheBoundary) {
             "closed, touches itself along edges (checked on a smaller array of the same elements)");
 }
 
-/// Smallest angle of incidence at which a facet of a canted cube corner no longer reflects totally, and its azimuth.
-/// Before canting, the dihedral edges are at the azimuths 0, 120 and 240 degrees. first_loss() searches all directions
-/// on a fine grid.
+/// Smallest angle of incidence at which a facet of a canted cube corner loses total reflection, and its azimuth. Before
+/// canting, the dihedral edges are at the azimuths 0, 120 and 240 degrees. first_loss() searches all directions on a
+/// fine grid.
 struct FirstLoss {
   double incidence_deg = 90.0;
   double azimuth_deg = 0.0;

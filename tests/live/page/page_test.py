@@ -298,7 +298,7 @@ class PageWorks(LiveCase):
                 for text in texts:
                     self.open(ODD + text + "\n")
                     self.wait(lambda d, colour=colour: self.colour() == colour)
-        self.choose("Colour", "white")  # by hand
+        self.choose("Colour", "white")  # the user chooses a colour
         self.open(ODD + body("amber") + "\n")
         self.rest()
         self.assertEqual(self.colour(), "white")

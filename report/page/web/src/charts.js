@@ -4,7 +4,7 @@ import { colour } from "./theme.js";
 
 const WIDTHS = [2, 2, 2, 2, 2, 2, 2];
 
-/** Returns all x values of all series in ascending order, and the y values of each series, with null for missing ones. */
+/** Returns all x values of all series, ascending, and the y values of each series with null for missing values. */
 export function aligned(series) {
   const xs = [...new Set(series.flatMap((s) => s.x))].sort((a, b) => a - b);
   const place = new Map(xs.map((x, i) => [x, i]));
