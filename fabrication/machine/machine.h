@@ -237,7 +237,7 @@ PlungePose solve_plunge_pose(const Machine& machine, const geometry::Vec3& facet
 /// Axis whose position is outside of its limits.
 struct LimitExcess {
   char axis = 'X';
-  double position = 0.0;  ///< mm or degrees
+  double position = 0.0;  ///< position of the axis, in mm or degrees
   Interval limits;
 };
 /// Returns all axes whose position is outside of the limits, in the order X, Y, Z, A or B, C.

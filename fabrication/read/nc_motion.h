@@ -34,7 +34,7 @@ struct NcMotion {
   bool goes_on = false;       ///< true for each segment of a cubic move except its last one
   std::uint8_t shortest = 0;  ///< bit i: axis i takes the shortest path to an angle of 0 to 360 degrees
   std::uint8_t absolute = 0;  ///< bit i: axis i has an absolute position in the program
-  std::uint8_t decimals = 0;  ///< NcBlock::decimals
+  std::uint8_t decimals = 0;  ///< maximum number of decimals of the axis words (NcBlock::decimals)
   /// Maximum rounding error of each axis of `to`, in mm or degrees: half of the last decimal of its word.
   std::array<double, kNcAxes> rounding{};
   double rate_rounding = 0.0;  ///< maximum relative error of path_speed_per_min() due to rounded numbers
@@ -54,7 +54,7 @@ struct NcSettings {
   std::optional<double> feed_time_s;
   std::optional<bool> exact_stop;
   std::optional<double> blend_mm;  ///< path tolerance of blending; empty if the program does not give it
-  std::uint16_t said = 0;          ///< bits of nc_said
+  std::uint16_t said = 0;          ///< bits of nc_said for the settings that the program has made
   std::optional<NcSpindle> spindle;
   std::optional<double> spindle_rpm;
   std::optional<bool> mist_on;

@@ -71,7 +71,7 @@ inline constexpr std::uint16_t kFineStop = 1U << 7U;           ///< exact stops 
 inline constexpr std::uint16_t kFeedAxes = 1U << 8U;           ///< feeds apply to X, Y and Z together
 // Bits of settings whose values are stored in NcBlock and NcSettings.
 inline constexpr std::uint16_t kUnit = 1U << 9U;
-inline constexpr std::uint16_t kDistance = 1U << 10U;  ///< absolute or incremental
+inline constexpr std::uint16_t kDistance = 1U << 10U;  ///< choice of absolute or incremental positions
 inline constexpr std::uint16_t kFeedTime = 1U << 11U;
 inline constexpr std::uint16_t kExactStop = 1U << 12U;
 // Bits of settings that only some controls have.

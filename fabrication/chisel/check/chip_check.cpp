@@ -66,7 +66,7 @@ ChipCheck::ChipCheck(const Workpiece3d& workpiece, std::size_t element, Standing
 /// remove parts of these layers. Near the rim, the layers extend beyond the blank. The lines keep clear of both
 /// regions.
 void ChipCheck::add_lines() {
-  constexpr double kClearOfRoot = 6.0;  // in finishing allowances
+  constexpr double kClearOfRoot = 6.0;  // distance from the root, relative to the allowance plus the uncut strip
   const double least_mm = kClearOfRoot * (allowance_mm_ + workpiece_.prediction(element_).root_mm);
   const std::vector<StandingSection>& sections = material_.sections();
   for (std::size_t s = 0; s < sections.size(); ++s) {

@@ -121,7 +121,7 @@ std::vector<Knot> knots_in(const std::string& text, NcDialect dialect, const Kno
       for (const char c : line.substr(3))
         if (const auto axis = place(c); axis != std::string::npos) {
           knot.at[axis] = n[k++];
-          knot.speed[axis] = n[k++] / 60.0;  // Coord[1].FeedTime=60000
+          knot.speed[axis] = n[k++] / 60.0;  // Coord[1].FeedTime=60000: speeds are per minute
         }
     } else if (dialect == NcDialect::a3200 && line.starts_with("PVT X")) {
       const std::vector<double> n = numbers_in(line);
