@@ -109,9 +109,9 @@ TEST(AngleErrors, ApexOfACubeCornerStaysInPlace) {
   }
 }
 
-// If all three dihedral angles have the same error, light that is reflected by all three facets leaves in a direction
-// that differs from the direction to its source by 4 sqrt(2/3) times this error (Chandler, J. Opt. Soc. Am. 50, 1203
-// (1960)).
+// Light that is reflected by all three facets leaves approximately towards its source. If all three dihedral angles
+// have the same error, the deviation from this direction is 4 sqrt(2/3) times the error (Chandler, J. Opt. Soc. Am. 50,
+// 1203 (1960)).
 TEST(AngleErrors, EqualDihedralErrorsDeviateTheSixBeamsAlike) {
   const double error = 0.5 * kArcmin;
   const std::vector<Vec3> normals = normals_of(hexagonal_cube_cell({1.0}, {{0.5, 0.5, 0.5}, {}}, Vec2::Zero()));

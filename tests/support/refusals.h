@@ -20,12 +20,12 @@ namespace retrace {
 /// variable RETRACE_WRITE_GOLDEN is set, a missing line is added to the file.
 void record_message(std::string_view message);
 
-/// Records a message and returns its beginning `file:line: key`, without the parts that it lacks.
+/// Records a message and returns its beginning `file:line: key`. Parts that the message does not contain are omitted.
 std::string recorded_place_of(std::string_view message);
 
-/// Returns `file:line: key` of an error without the parts that are unknown, or "refused" if all are. Returns "failed"
-/// for an error that is no InputError. `TMP` replaces the path of a temporary folder. Expects the exit code of the
-/// type.
+/// Returns `file:line: key` of an error. Unknown parts are omitted; if all are unknown, returns "refused". Returns
+/// "failed" for an error that is not an InputError. `TMP` replaces the path of a temporary folder. Expects that the
+/// error has the exit code of its type.
 std::string place_of(const Error& error);
 
 /// Records the message of an error and returns place_of(error).
