@@ -1,5 +1,5 @@
-"""Writes the generated files of the Python package, from the program's JSON Schemas and descriptions of
-requests.
+"""Writes the generated files of the Python package, from the program's JSON Schemas and descriptions
+of requests.
 
     python3 print_package.py PROGRAM FOLDER SOURCES...
 

@@ -147,7 +147,7 @@ class Columns(Mapping[str, Any]):
         return html_table(self.rows)
 
     def flat(self, prefix: str = "") -> dict[str, Any]:
-        """Returns all columns. Those of inner tables are named table_key."""
+        """Returns all columns. A column of an inner table is named table_key."""
         flat: dict[str, Any] = {}
         for name in self._names:
             column = self[name]

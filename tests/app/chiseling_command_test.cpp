@@ -142,8 +142,8 @@ TEST(ReachablePart, IsAllButTheApexAndIsTraced) {
     const double whole = rre("d.toml");
     const double part = rre("part.toml");
     EXPECT_LT(part, whole);
-    // Light that meets the core is lost, on its way in or out. The core covers 3 (0.2 / 2)^2 / sqrt(3) of each cell in
-    // plan.
+    // Light that meets the core is lost, both incident and returning light. The core covers 3 (0.2 / 2)^2 / sqrt(3) of
+    // each cell in plan.
     EXPECT_GT(part, 0.4 * whole);
   }
 }

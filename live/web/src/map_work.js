@@ -1,5 +1,5 @@
 // Computes RRE over all directions on rings of constant incidence, from coarse to fine. The number of points increases
-// with the radius of the ring. Of directions that are equivalent by symmetry, only one is traced.
+// with the radius of the ring. If directions are equivalent by symmetry, only one of them is traced.
 import { directionOf, nameOf } from "./directions.js";
 import { AT_ONCE } from "./target_errors.js";
 
