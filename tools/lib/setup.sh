@@ -126,9 +126,10 @@ need_packages() {
   fi
 }
 
-# configure FOLDER PRESET... - configures a build folder with the first preset. If the folder is already configured with
-# any of these presets, nothing is done. The presets of a folder differ only in the targets that are built in addition
-# to the program, so a change of the preset recompiles nothing. Ninja itself detects changed CMakeLists.
+# configure FOLDER PRESET... - configures a build folder with the first preset, or with the preset from this list that
+# the folder has already. Nothing is done if the folder is up to date. The presets of a folder differ only in the
+# targets that are built in addition to the program, so a change of the preset recompiles nothing. Ninja itself detects
+# changed CMakeLists.
 configure() {
   local folder=$root/$1 preset presets known
   shift
