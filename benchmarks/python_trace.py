@@ -1,6 +1,6 @@
 """Measures the processor time of a million rays through a part on one thread. `retrace.trace`, with arrays as input and
-output, is compared with `retrace rays`, which uses an emitter of the same light and writes the rays that leave to a
-TM-25 file. The two are run in pairs, one after the other.
+output, is compared with `retrace rays`. The latter uses an emitter of the same light and writes the rays that leave to
+a TM-25 file. Each repetition runs both, and the result is the median ratio of their times.
 
     PYTHONPATH=build/release/python python3 benchmarks/python_trace.py build/release/bin/retrace
 """

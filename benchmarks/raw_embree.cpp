@@ -114,7 +114,7 @@ RTCRayHit query_of(const SurfaceRay& ray) {
   return query;
 }
 
-/// Fills lane k of a packet. P is RTCRayHit8 or RTCRayHit16.
+/// Writes a ray to lane k of a packet. P is RTCRayHit8 or RTCRayHit16.
 template <class P>
 void load(P& packet, unsigned k, const SurfaceRay& ray) {
   packet.ray.org_x[k] = static_cast<float>(ray.origin.x());

@@ -92,7 +92,8 @@ void exact_points(benchmark::State& state) {
 }
 BENCHMARK(exact_points)->Arg(1)->Arg(0)->ArgName("threads")->UseRealTime()->Unit(benchmark::kMillisecond);
 
-/// Measures the time of a sweep on one thread, relative to the time of its points only. Each point takes 10 ms.
+/// Measures the elapsed time of a sweep on one thread, relative to the total time of its points. Each point takes 10
+/// ms.
 void store_overhead(benchmark::State& state) {
   constexpr int points = 200;
   const studies::Sweep sweep = sleeping_sweep(points);

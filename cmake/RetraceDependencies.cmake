@@ -1,5 +1,5 @@
-# Every library retrace uses comes from the system; nothing is downloaded. Versions are minimums.
-# docs/dependencies.md says what each one is for.
+# All libraries that retrace uses are installed on the system; nothing is downloaded. The versions are minimum versions.
+# docs/dependencies.md describes the purpose of each library.
 
 find_package(PkgConfig REQUIRED)
 find_package(Threads REQUIRED)
@@ -38,17 +38,19 @@ if(RETRACE_WITH_PYTHON)
   find_package(pybind11 2.10 CONFIG REQUIRED)
 endif()
 if(RETRACE_WITH_OPENIMAGEIO)
-  # Its own CMake package asks for OpenEXR's and others', which reading pictures does not need.
+  # The CMake package of OpenImageIO requires OpenEXR and other packages, which are not needed to read pictures.
   pkg_check_modules(OPENIMAGEIO REQUIRED IMPORTED_TARGET OpenImageIO>=2.4)
 endif()
 
 if(RETRACE_WITH_OPENCASCADE)
-  # No version: its package takes only the very one that it has; 7.6 is what is asked for.
+  # find_package is called without a version because the package accepts only its exact version. At least version 7.6 is
+  # required.
   find_package(OpenCASCADE CONFIG REQUIRED)
   if(OpenCASCADE_VERSION VERSION_LESS 7.6)
     message(FATAL_ERROR "OpenCASCADE 7.6 or later is needed, found ${OpenCASCADE_VERSION}")
   endif()
-  # Its targets name no include folder; as a system one, because its headers warn. STEP has another name from 7.8 on.
+  # The targets of OpenCASCADE do not set an include folder. It is added as a system folder because its headers cause
+  # warnings. The STEP library has another name since version 7.8.
   add_library(RetraceOpenCASCADE INTERFACE)
   target_include_directories(RetraceOpenCASCADE SYSTEM INTERFACE "${OpenCASCADE_INCLUDE_DIR}")
   if(TARGET TKDESTEP)
@@ -62,7 +64,7 @@ endif()
 if(RETRACE_BUILD_TESTS)
   find_package(GTest 1.12 CONFIG REQUIRED)
   find_package(rapidcheck CONFIG REQUIRED)
-  # Gwyddion's own pkg-config file asks for its graphical parts as well, which are not wanted here.
+  # Gwyddion's pkg-config file also requires its graphical libraries, which are not needed here.
   pkg_check_modules(GOBJECT REQUIRED IMPORTED_TARGET gobject-2.0)
   find_path(RETRACE_GWYDDION_INCLUDE_DIR libprocess/datafield.h PATH_SUFFIXES gwyddion REQUIRED)
   find_library(RETRACE_GWYPROCESS_LIBRARY gwyprocess2 REQUIRED)

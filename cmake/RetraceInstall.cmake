@@ -1,13 +1,15 @@
-# What is installed, and where the program finds its data before it is: share/retrace beside bin/, in both places.
+# Defines which files are installed. The program finds its data in share/retrace next to bin/, both in the build folder
+# and after installation.
 
 file(MAKE_DIRECTORY "${PROJECT_BINARY_DIR}/share")
 file(CREATE_LINK "${PROJECT_SOURCE_DIR}/data" "${PROJECT_BINARY_DIR}/share/retrace" SYMBOLIC)
 
 install(TARGETS retrace RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
-# Not CMAKE_INSTALL_DATADIR, which may be moved: the program looks for this folder relative to itself.
+# CMAKE_INSTALL_DATADIR is not used because users may change it, but the program searches for this folder relative to
+# its own position.
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/data/" DESTINATION share/retrace)
 
-# The manual page and completion for shells are what the program prints of itself.
+# The program prints its own manual page and its shell completions, which are installed.
 set(printed "${PROJECT_BINARY_DIR}/printed")
 file(MAKE_DIRECTORY "${printed}")
 file(GLOB named CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/data/machines/*" "${PROJECT_SOURCE_DIR}/data/processes/*")
@@ -20,7 +22,7 @@ add_custom_command(
   DEPENDS retrace ${named} "${PROJECT_SOURCE_DIR}/data/photometry_limits.csv"
   COMMENT "Printing the manual page and completion" VERBATIM)
 
-# Schemas of files for editors, where `retrace init --editor` finds them: share/retrace_schemas beside bin/.
+# JSON schemas for editors. `retrace init --editor` searches for them in share/retrace_schemas next to bin/.
 set(schemas "${PROJECT_BINARY_DIR}/share/retrace_schemas")
 file(MAKE_DIRECTORY "${schemas}")
 set(schema_files "")

@@ -1,6 +1,6 @@
 #pragma once
 
-// Infinity as a double, under one short name.
+// Defines a short name for infinity as a double.
 
 #include <limits>
 

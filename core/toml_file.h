@@ -148,8 +148,9 @@ std::optional<std::string_view> unset_key(std::string_view override_text);
 /// override quote the override instead of the name of the file.
 /// \param names former names, which are replaced in the text and in the overrides. The list is applied in its order,
 /// so that a table comes before the keys that it contains.
-/// \throw InputError if the text is not TOML, is longer than `most_bytes`, or has keys that nest too deeply, if an
-/// override is neither KEY=VALUE nor KEY=, or if a table contains both a name and its former name
+/// \throw InputError if the text is not TOML, is longer than `most_bytes`, or has keys that nest too deeply
+/// \throw InputError if an override is neither KEY=VALUE nor KEY=
+/// \throw InputError if a table contains both a name and its former name
 TomlTable parse_toml(std::string_view text, const std::string& source_name, std::size_t most_bytes = kMostTextBytes,
                      std::span<const std::string> overrides = {}, std::span<const FormerName> names = {});
 

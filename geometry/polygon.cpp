@@ -10,7 +10,7 @@
 namespace retrace::geometry {
 namespace {
 
-/// Clips a polygon at a border line.
+/// Clips a convex polygon at a border line: one step of the Sutherland-Hodgman algorithm (Comm. ACM 17, 32, 1974).
 /// \param beyond returns the distance of a point beyond the border, mm
 /// \param settle moves an intersection point exactly onto the border, to remove rounding errors
 template <class Beyond, class Settle>

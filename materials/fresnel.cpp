@@ -39,7 +39,7 @@ FresnelCoefficients fresnel(double index_ratio, double cos_incidence) {
 
 FresnelCoefficients fresnel_metal(std::complex<double> index_ratio, double cos_incidence) {
   const double ci = std::clamp(cos_incidence, 0.0, 1.0);
-  // Of the two square roots, choose the one for which the wave decays into the metal.
+  // The square root has two values. The value for which the wave decays into the metal is chosen.
   std::complex<double> ct = std::sqrt(1.0 - index_ratio * index_ratio * (1.0 - ci * ci));
   if ((ct / index_ratio).imag() < 0.0) ct = -ct;
   FresnelCoefficients f;

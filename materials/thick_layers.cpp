@@ -54,7 +54,8 @@ struct Met {
 };
 
 /// Adds the next face to `met`, which contains the faces in front of it. The medium between them transmits the fraction
-/// `kept` of the power. All multiple reflections between `met` and the new face are included.
+/// `kept` of the power. All multiple reflections between `met` and the new face are included. Their contributions form
+/// a geometric series, which is summed in closed form.
 void add(Met& met, double kept, const Met& face) {
   for (std::size_t k = 0; k < 3; ++k) {
     const Complex between = kept * kept * met.behind.reflected[k] * face.ahead.reflected[k];

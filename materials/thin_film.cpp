@@ -19,8 +19,8 @@ Complex mean_exponential(Complex z, Complex exponential) {
   return sum;
 }
 
-/// Returns the normal component of the wave vector, in units of the wave number in air. Of the two square roots, the
-/// wave that decays or propagates forward is chosen.
+/// Returns the normal component of the wave vector, in units of the wave number in air. It is a square root, which has
+/// two values. The value for which the wave decays or propagates forward is returned.
 Complex normal_component(Complex index, double tangential2) {
   const Complex w = std::sqrt(index * index - tangential2);
   return w.imag() < 0.0 ? -w : w;

@@ -1,5 +1,5 @@
-"""Writes the generated files of the Python package, from the program's JSON Schemas and descriptions of
-requests.
+"""Writes the generated files of the Python package, from the program's JSON Schemas and descriptions
+of requests.
 
     python3 print_package.py PROGRAM FOLDER SOURCES...
 
@@ -232,7 +232,7 @@ def keywords(fields: list[dict]) -> list[str]:
 
 
 def expanded(text: str, requests: dict[str, list[dict]]) -> str:
-    """Replaces the lines of a Python file that stand for the fields of a request."""
+    """Replaces the marked lines of a Python file by the fields of a request."""
     lines = []
     for line in text.splitlines():
         in_signature = re.fullmatch(r"    (\*\*fields: object,  )?# generated: keywords of the request (\w+)", line)

@@ -114,7 +114,7 @@ std::optional<double> rough_length_um(const Autocorrelation& r, int dimensions) 
   if (dimensions == 1) return x;
   const std::optional<double> y = correlation_length_um(r, Axis::y);
   // Along a lay (preferred direction of the texture), heights may be correlated over the whole map. The correlation
-  // length along this axis is then undefined, and only that along the other axis is used.
+  // length along this axis is then undefined, and only the length along the other axis is used.
   if (!x || !y) return x ? x : y;
   return std::sqrt(*x * *y);
 }

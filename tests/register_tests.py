@@ -1,10 +1,10 @@
-"""Writes the tests of one test program as a list that ctest includes. Suites are named FOLDER/SUITE after the folder of
-their source.
+"""Writes the tests of one test program to a list that ctest includes. A suite is named FOLDER/SUITE, where FOLDER is
+the folder of its source.
 
     python3 register_tests.py PROGRAM LIST.cmake plain|sanitized
 
-The tests of a suite share one start of the program, because starting it takes longer than most tests do: it links
-hundreds of libraries. Long suites are split into parts, FOLDER/SUITE:2 and so on, which run in parallel.
+The tests of a suite run in one process. Starting a process for each test would take longer than most tests, because the
+program links hundreds of libraries. Long suites are split into parts (FOLDER/SUITE:2 and so on), which run in parallel.
 """
 
 import json
@@ -15,10 +15,11 @@ import sys
 import tempfile
 
 MAX_TESTS = 12
-# Processor seconds of the expensive suites. ctest starts the most expensive ones first, so that no long suite remains
+# Processor seconds of the expensive suites. ctest starts the most expensive suites first, so that no long suite is left
 # when all others have ended. Only the order matters. `tools/test_costs` writes the file.
 COSTS = json.loads(pathlib.Path(__file__).with_name("costs.json").read_text(encoding="utf-8"))
-# Suites whose parameters are registered separately, as FOLDER/SUITE/PARAMETER: documents, which take a minute or more.
+# Suites whose parameters are registered separately, as FOLDER/SUITE/PARAMETER. The parameters are documents, which take
+# a minute or more.
 SPLIT_BY_PARAMETER = {"app/Docs/Pages", "app/Docs/Tutorials"}
 # Names of tests that get the label `slow`: tests that run under MPI, tests of an installation, and the tutorial on
 # clusters.
@@ -41,7 +42,7 @@ def suites_of(program):
 
 
 def parts_of(suite, tests):
-    """Yields the name and the tests of every part of a suite that ctest runs by itself."""
+    """Yields the name and the tests of every part of a suite. ctest runs each part in a separate process."""
     if suite in SPLIT_BY_PARAMETER:
         for test in tests:
             yield f"{suite}/{test.rpartition('/')[2]}", [test]

@@ -6,8 +6,8 @@
 
 namespace retrace::compute {
 
-/// Result of a least-squares estimate. Let A be the derivatives of the observations with respect to the unknowns x, B
-/// those with respect to the nuisance unknowns y, and r the observations. All three are divided by the standard
+/// Result of a least-squares estimate. Let r be the observations. Let A be their derivatives with respect to the
+/// unknowns x, and B their derivatives with respect to the nuisance unknowns y. r, A and B are divided by the standard
 /// uncertainties of the observations. The estimate is the x of minimum norm for which |r - A x - B y| is minimal over x
 /// and y. A linear combination of unknowns is observable if the observations determine it with a sufficiently small
 /// uncertainty.

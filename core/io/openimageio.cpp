@@ -13,8 +13,8 @@
 namespace retrace {
 namespace {
 
-/// Throws an error.
-/// \param why message of OpenImageIO, which may be empty
+/// Throws std::runtime_error.
+/// \param why message of OpenImageIO; if it is empty, a default message is used
 [[noreturn]] void fail(const std::string& why) {
   throw std::runtime_error(why.empty() ? "it ends early or is damaged" : why);
 }

@@ -23,7 +23,7 @@ struct Partials : std::conditional_t<Order == 2, SecondPartials, NoSecondPartial
   double y = 0.0;
 
   Partials() = default;
-  Partials(double v, double by_x = 0.0, double by_y = 0.0) : value(v), x(by_x), y(by_y) {}  // NOLINT: also a constant
+  Partials(double v, double by_x = 0.0, double by_y = 0.0) : value(v), x(by_x), y(by_y) {}  // NOLINT: for constants
   Partials(double v, double by_x, double by_y, double by_xx, double by_xy, double by_yy) requires(Order == 2)
       : SecondPartials{by_xx, by_xy, by_yy}, value(v), x(by_x), y(by_y) {}
 

@@ -95,7 +95,7 @@ class Names {
   Document& document_;
 };
 
-// Values.
+// Second step of reading: class Values reads and checks the values of the recorded keys.
 
 template <class Type>
 Value value_of(std::optional<Type> given) {
@@ -345,7 +345,7 @@ class Values {
   Document& document_;
 };
 
-// Objects.
+// Third step of reading: the values are stored in C++ objects, and rules on combinations of values are checked.
 
 /// Returns the key that a message about a rule refers to: the first key of the rule that was given, or its first key.
 std::string_view blamed(const Check& rule, const Document& document, const std::string& path) {

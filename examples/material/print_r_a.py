@@ -1,9 +1,9 @@
-"""Prints R_A in cd/(lx m2) of linear red, green and blue for observation, presentation, entrance and orientation angles.
+"""Prints R_A in cd/(lx m2) for linear red, green and blue.
 
     python3 print_r_a.py material.json ALPHA GAMMA BETA OMEGA
 
-in degrees, of a table that `retrace export DESIGN material.json` writes; without angles it reads them from lines of
-standard input.
+material.json is a table that `retrace export DESIGN material.json` writes. The angles are in degrees: observation,
+presentation, entrance and orientation angle. Without angles, they are read from the lines of standard input.
 """
 
 import sys
@@ -12,12 +12,12 @@ from math import asin, atan2, cos, radians, sin
 from read_material import r_a, read
 
 
-def directions(alpha, gamma, beta, omega):  # of CIE 54.2, in degrees: to the source and to the observer
+def directions(alpha, gamma, beta, omega):  # unit vectors to the source and to the observer (CIE 54.2), from degrees
     alpha, gamma, beta, omega = map(radians, (alpha, gamma, beta, omega))
     beta1, beta2 = atan2(sin(beta) * cos(gamma), cos(beta)), asin(sin(beta) * sin(gamma))
     epsilon = omega - radians(90) + atan2(sin(beta1), cos(beta1) * sin(beta2))
 
-    def in_part(v):  # by the transpose of R_x(-beta1) R_y(beta2) R_z(epsilon)
+    def in_part(v):  # multiplies by the transpose of R_x(-beta1) R_y(beta2) R_z(epsilon)
         x, y, z = v[0], v[1] * cos(beta1) - v[2] * sin(beta1), v[1] * sin(beta1) + v[2] * cos(beta1)
         x, z = x * cos(beta2) - z * sin(beta2), x * sin(beta2) + z * cos(beta2)
         return x * cos(epsilon) + y * sin(epsilon), -x * sin(epsilon) + y * cos(epsilon), z

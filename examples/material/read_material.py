@@ -1,4 +1,4 @@
-"""Reads a table that `retrace export DESIGN material.json` writes (docs/theory/appearance.md), with Python's own modules."""
+"""Reads a table that `retrace export DESIGN material.json` writes (docs/theory/appearance.md), without packages."""
 import csv, json
 from math import atan2, degrees, hypot
 from pathlib import Path
@@ -12,11 +12,11 @@ def read(file):
     return table | {"r_a": [rows[k : k + grid] for k in range(0, len(rows), grid)]}
 
 
-def cubic(x):  # weights of the values at 0, 1, 2 and 3
+def cubic(x):  # weights of the values at 0, 1, 2 and 3 (Lagrange interpolation)
     return [(x - 1) * (x - 2) * (x - 3) / -6, x * (x - 2) * (x - 3) / 2, x * (x - 1) * (x - 3) / -2, x * (x - 1) * (x - 2) / 6]
 
 
-def r_a(table, source, observer):  # unit vectors of the part frame; None outside the table
+def r_a(table, source, observer):  # source, observer: unit vectors in the part frame; returns None outside the table
     signs = [-1 if table["mirror_" + axis] and source[k] < 0 else 1 for k, axis in enumerate("xy")]
     x, y = (signs[k] * source[k] for k in (0, 1))
     n, half = table["columns"], table["half_width"]

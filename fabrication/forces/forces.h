@@ -68,7 +68,7 @@ ForceModel calibrate(const std::vector<MeasuredForce>& table);
 struct CutConditions {
   /// Unidirectional or bidirectional; two_step, which combines both, is not allowed.
   Strategy strategy = Strategy::unidirectional;
-  int facet = 1;  ///< bidirectional: 1 or 2
+  int facet = 1;  ///< plunged facet of a bidirectional cut: 1 or 2
   Configuration configuration = Configuration::isolated;
   double depth_of_cut_um = 5.0;
   double width_mm = 1.0;

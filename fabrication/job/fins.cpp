@@ -55,14 +55,14 @@ double peak_mm(const std::array<CutBoundary, 3>& boundaries) {
 }  // namespace
 
 double rounded_along_mm(double step_mm) {
-  // A position is the sum of a start point and a relative move. Each is rounded with an error of at most the space
-  // diagonal of a cube with the side of one increment.
+  // A position is the sum of a start point and a relative move. The rounding error of each of these two vectors is at
+  // most the space diagonal of a cube with the side of one increment.
   return 2.0 * std::numbers::sqrt3 * step_mm;
 }
 
 double rounded_across_mm(double step_mm) {
-  // A position is the sum of a start point and a relative move. Along the facet's normal, each is rounded with an error
-  // of at most half an increment.
+  // A position is the sum of a start point and a relative move. Along the facet's normal, the rounding error of each of
+  // these two vectors is at most half an increment.
   return step_mm;
 }
 

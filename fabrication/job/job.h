@@ -46,7 +46,7 @@ struct Workpiece {
 /// this position.
 struct EdgeChip {
   double position_um =
-      0.0;                ///< position of the chip's center along the edge, from the edge's center towards machine +X
+      0.0;                ///< position of the chip's centre along the edge, from the edge's centre towards machine +X
   double width_um = 0.0;  ///< width of the chip along the edge; > 0
   double depth_um = 0.0;  ///< depth normal to the clearance face; > 0, at most half the width
 };
@@ -152,16 +152,16 @@ struct Job {
   InputLocation where(std::string_view key) const;
 };
 
-/// Element that is cut, in the workpiece frame: x_w = y_part, y_w = -x_part, origin at the center of the array's extent
+/// Element that is cut, in the workpiece frame: x_w = y_part, y_w = -x_part, origin at the centre of the array's extent
 /// on the blank's face.
 struct CutElement {
-  /// Center of the aperture, in the workpiece frame. For elements whose axes are normal to a substrate: position on the
+  /// Centre of the aperture, in the workpiece frame. For elements whose axes are normal to a substrate: position on the
   /// unrolled substrate.
   geometry::Vec2 centre_mm = geometry::Vec2::Zero();
   std::int32_t row = 0;     ///< row index, from 0 at y = 0
   std::int32_t column = 0;  ///< column index, from 0 at x = 0
   bool rotated = false;  ///< true: rotated about z, a prism by 90 degrees (roof edge along y_w), a cube corner by 180
-  geometry::Vec3 foot_mm = geometry::Vec3::Zero();  ///< point of the blank's face above the root's center or the apex
+  geometry::Vec3 foot_mm = geometry::Vec3::Zero();  ///< point of the blank's face above the root's centre or the apex
   /// Rotation from an element on a flat blank to this element. Its third column is the element's axis.
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
   /// Number of the orientation. Elements with equal `turn` have equal numbers. In a job with zones, all elements of a

@@ -14,8 +14,8 @@ namespace {
 
 constexpr std::size_t kLongestLine = 200;
 
-/// Pattern of a program line that neither moves an axis nor waits. # stands for a whole number, ~ for a number and @
-/// for the name of an axis. Blanks are ignored.
+/// Pattern of a program line that neither moves an axis nor waits. The placeholders are # for a whole number, ~ for a
+/// number and @ for the name of an axis. Blanks are ignored.
 struct LineForm {
   std::string_view dialect;
   LineUse use;

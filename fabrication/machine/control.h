@@ -22,7 +22,7 @@ inline constexpr std::string_view kIncrementSystemWords[] = {"B", "C", "D", "E"}
 
 /// Control of a machine. Each dialect uses only some of these properties.
 struct Control {
-  IncrementSystem increment_system = IncrementSystem::e;  ///< Fanuc only
+  IncrementSystem increment_system = IncrementSystem::e;  ///< Fanuc: resolution of positions
   bool has_rotation = false;      ///< Fanuc: the control can rotate coordinates (G68 on, G69 off)
   bool has_mirror = false;        ///< Fanuc: the control can mirror coordinates (G51.1 on, G50.1 off)
   std::string modulo_axes = "C";  ///< Sinumerik: letters of the modulo axes, whose positions are 0 to 360 degrees

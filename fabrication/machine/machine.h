@@ -79,7 +79,7 @@ enum class Carrier {
 struct MachineBody {
   std::string name;
   Carrier carrier = Carrier::workpiece;
-  Sourced<std::vector<geometry::Vec3>> points_mm;  ///< at least 4, not in one plane
+  Sourced<std::vector<geometry::Vec3>> points_mm;  ///< at least four points, which are not in one plane
 };
 
 /// Deviation of the mounted tool from its nominal position and orientation, as determined by a set-up or a calibration.
@@ -237,7 +237,7 @@ PlungePose solve_plunge_pose(const Machine& machine, const geometry::Vec3& facet
 /// Axis whose position is outside of its limits.
 struct LimitExcess {
   char axis = 'X';
-  double position = 0.0;  ///< mm or degrees
+  double position = 0.0;  ///< position of the axis, in mm or degrees
   Interval limits;
 };
 /// Returns all axes whose position is outside of the limits, in the order X, Y, Z, A or B, C.

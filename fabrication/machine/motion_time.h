@@ -32,7 +32,8 @@ double rest_to_rest_s(double distance, const MotionLimits& limits);
 
 /// Returns the time, in s, of a rapid move, without settling. If Control::rapids_are_straight is false, each axis moves
 /// at its own speed, and the result is the time of the slowest axis. Otherwise, all axes start and end together on a
-/// straight line. The speed, acceleration and jerk along this line are then each limited by the most limiting axis.
+/// straight line. The speed along this line is then limited by the axis that permits the lowest speed. The same rule
+/// applies to acceleration and jerk.
 double rapid_motion_s(const Machine& machine, const AxisTravel& by);
 
 /// Returns the time, in s, of a move at a feed, without settling. All axes start and end together on a straight line.

@@ -27,10 +27,10 @@ enum class SetupPart {
 /// or arcsec. The reference frame is defined by X, by the plane of X and Z, and by C at 0. A rotation or displacement
 /// of this whole frame is not an error of the machine, but belongs to the pose of the blank.
 struct SetupQuantity {
-  std::string_view key;    ///< with its unit: "c_x_um"
-  std::string_view words;  ///< "centre of C along X"
+  std::string_view key;    ///< key in files, with its unit, such as "c_x_um"
+  std::string_view words;  ///< description in messages, such as "centre of C along X"
   SetupPart part = SetupPart::c_point;
-  int axis = 0;  ///< 0, 1, 2: displacement along, or rotation about, X, Y, Z
+  int axis = 0;  ///< 0, 1, 2: axis X, Y, Z of the displacement or rotation
 
   bool is_angle() const {
     return part != SetupPart::c_point && part != SetupPart::tilt_point && part != SetupPart::tool_offset;

@@ -16,7 +16,7 @@ namespace retrace::fabrication {
 /// hyperbola. Widths are across the zones of a cylindrical lens, or along the radius of a round lens. All lengths are
 /// positive, and the index is above 1.
 struct ZoneLens {
-  double focal_length_mm = 0.0;  ///< distance of the focus from the center of the stepped face
+  double focal_length_mm = 0.0;  ///< distance of the focus from the centre of the stepped face
   double wavelength_mm = 0.0;    ///< wavelength in air
   double refractive_index = 0.0;
   double half_width_mm = 0.0;
@@ -45,8 +45,8 @@ struct PlaningMill {
 enum class SpindleDirection { clockwise, counterclockwise };
 inline constexpr std::string_view kSpindleDirectionWords[] = {"clockwise", "counterclockwise"};
 
-/// Lathe: X is the radius, and Z is along the axis. Both axes can move at the same time. Positions are those of the
-/// lowest point of the nose.
+/// Lathe: X is the radius, and Z is along the axis. Both axes can move at the same time. Positions refer to the lowest
+/// point of the nose.
 struct PlaningLathe {
   double feed_mm_per_min = 0.0;
   double depth_of_cut_mm = 1.0;  ///< maximum depth of cut of a pass

@@ -8,7 +8,7 @@
 namespace retrace::fabrication {
 namespace {
 
-/// Statement of AeroBasic that is alone in its line and has the effect of a G code.
+/// AeroBasic statement that must be the only text of its line and has the effect of a G code.
 struct A3200Statement {
   std::string_view words;
   void (*effect)(NcBlock&) = nullptr;

@@ -32,8 +32,8 @@ NcProgram parse_a3200(NcLines lines, const NcTexts& texts);
 /// codes. (help.aerotech.com/automation1)
 NcProgram parse_automation1(NcLines lines, const NcTexts& texts);
 
-/// Calls `read` for a line. If the line is the last one and has no line end, an InputError is stored in
-/// NcProgram::truncated instead of being thrown, because the file may be truncated in this line.
+/// Calls `read` for a line. If the last line has no line end, the file may be truncated in this line. An InputError
+/// about this line is therefore not thrown, but stored in NcProgram::truncated.
 template <class Read>
 void read_line_that_may_be_cut(const NcLines& lines, NcProgram& program, Read read) {
   if (!lines.is_open_end()) {

@@ -10,7 +10,7 @@ namespace {
 
 using namespace nc_effects;
 
-/// G codes and their groups in the operator's manual: G code system B of lathes, and the G codes of machining centers.
+/// G codes and their groups in the operator's manual: G code system B of lathes, and the G codes of machining centres.
 constexpr NcCode kFanucCodes[] = {
     {0, 1, kRapid},
     {1, 1, kLinear},

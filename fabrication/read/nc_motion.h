@@ -34,7 +34,7 @@ struct NcMotion {
   bool goes_on = false;       ///< true for each segment of a cubic move except its last one
   std::uint8_t shortest = 0;  ///< bit i: axis i takes the shortest path to an angle of 0 to 360 degrees
   std::uint8_t absolute = 0;  ///< bit i: axis i has an absolute position in the program
-  std::uint8_t decimals = 0;  ///< NcBlock::decimals
+  std::uint8_t decimals = 0;  ///< maximum number of decimals of the axis words (NcBlock::decimals)
   /// Maximum rounding error of each axis of `to`, in mm or degrees: half of the last decimal of its word.
   std::array<double, kNcAxes> rounding{};
   double rate_rounding = 0.0;  ///< maximum relative error of path_speed_per_min() due to rounded numbers
@@ -54,7 +54,7 @@ struct NcSettings {
   std::optional<double> feed_time_s;
   std::optional<bool> exact_stop;
   std::optional<double> blend_mm;  ///< path tolerance of blending; empty if the program does not give it
-  std::uint16_t said = 0;          ///< bits of nc_said
+  std::uint16_t said = 0;          ///< bits of nc_said for the settings that the program has made
   std::optional<NcSpindle> spindle;
   std::optional<double> spindle_rpm;
   std::optional<bool> mist_on;
@@ -68,8 +68,8 @@ class NcSink {
   virtual void dwell(double seconds, const NcPlace& place, const AxisPositions& position) = 0;
   /// Called if a block sets spindle, mist, exact stop or bits of nc_said, before the move of this block.
   virtual void state(const NcSettings&, const NcPlace&) {}
-  /// Called if the program stops for the operator, after the move of this block. The settings are those before the
-  /// stop. After an unconditional stop, spindle and mist are unknown, and all settings must be repeated.
+  /// Called if the program stops for the operator, after the move of this block. The passed settings are the settings
+  /// before the stop. After an unconditional stop, spindle and mist are unknown, and all settings must be repeated.
   virtual void stop(NcStop, const NcSettings&, const NcPlace&) {}
 };
 
@@ -90,10 +90,12 @@ inline constexpr std::int64_t kMostNcBlocks = 50'000'000;
 
 /// Executes a program: calls, modal settings, absolute and incremental positions. A cubic move has positions,
 /// velocities and a time. Each of its axes follows a cubic polynomial, which the sink receives as straight segments.
-/// \throw InputError naming file and line for a linear move in inverse time mode without F > 0, for axes that move
-///        before G0 or G1, for an incremental word of an axis with unknown position, or for subroutines that call each
-///        other endlessly. It is also thrown for a cubic move that takes no time, omits a moving axis, or does not end
-///        at rest
+/// \throw InputError naming file and line in the following cases:
+/// - a linear move in inverse time mode has no F > 0,
+/// - axes move before G0 or G1,
+/// - an axis with unknown position has an incremental word,
+/// - subroutines call each other without end,
+/// - a cubic move takes no time, omits a moving axis, or does not end at rest
 NcEnd run_nc(const NcProgram& program, NcSink& sink);
 
 }  // namespace retrace::fabrication

@@ -71,7 +71,7 @@ inline constexpr std::uint16_t kFineStop = 1U << 7U;           ///< exact stops 
 inline constexpr std::uint16_t kFeedAxes = 1U << 8U;           ///< feeds apply to X, Y and Z together
 // Bits of settings whose values are stored in NcBlock and NcSettings.
 inline constexpr std::uint16_t kUnit = 1U << 9U;
-inline constexpr std::uint16_t kDistance = 1U << 10U;  ///< absolute or incremental
+inline constexpr std::uint16_t kDistance = 1U << 10U;  ///< choice of absolute or incremental positions
 inline constexpr std::uint16_t kFeedTime = 1U << 11U;
 inline constexpr std::uint16_t kExactStop = 1U << 12U;
 // Bits of settings that only some controls have.
@@ -151,7 +151,7 @@ struct NcProgram {
   /// Line after which the operator stopped the program when it was executed for the first time. It is 0 if the program
   /// ran to its end.
   std::int32_t stop_line = 0;
-  /// Description of what is missing if the file is incomplete; empty if it is complete.
+  /// Description of the missing part if the file is incomplete; empty if the file is complete.
   std::optional<std::string> truncated;
 
   /// Adds a cubic move to a block.

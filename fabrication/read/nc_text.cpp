@@ -23,8 +23,8 @@ bool is_control(char c) {
   return (static_cast<unsigned char>(c) < 0x20 && c != '\t') || c == 0x7f;
 }
 
-/// M codes. The numbers of their modal groups are above those of the G codes. M8 (flood coolant) has no effect on the
-/// mist.
+/// M codes. The numbers of their modal groups are larger than the group numbers of all G codes. M8 (flood coolant) has
+/// no effect on the mist.
 constexpr NcCode kMCodes[] = {{0, 28, [](NcBlock& b) { b.stop = NcStop::always; }},
                               {1, 28, [](NcBlock& b) { b.stop = NcStop::optional; }},
                               {2, 28, [](NcBlock& b) { b.ends = true; }},

@@ -19,7 +19,7 @@ struct FinishFigures {
   double rq_of_paper_nm = 0.0;     ///< f^2 / (24 r): Sohn, Naples, eq. 4, which is the mean height of the cusps
 };
 
-/// Computes the surface finish. The center of the nose moves on a parallel curve of the surface. Points of contact are
+/// Computes the surface finish. The centre of the nose moves on a parallel curve of the surface. Points of contact are
 /// therefore f / (1 - r k) apart, and r is replaced by r (1 - r k).
 /// \param feed_mm distance f between positions of the nose, along the slope of the surface
 /// \param curvature_per_mm curvature k of the surface across the cuts, positive in a valley

@@ -47,7 +47,7 @@ struct AxisLimits {
   std::optional<double> jerk_mm_per_s3;
 };
 struct TurningMachine {
-  std::array<AxisLimits, 3> axes;  ///< X, Y, Z
+  std::array<AxisLimits, 3> axes;  ///< limits of X, Y and Z
   std::optional<double> spindle_rpm;
   std::optional<double> c_acceleration_deg_per_s2;
   std::optional<double> blocks_per_s;  ///< maximum number of blocks that the control executes per second

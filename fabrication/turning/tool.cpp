@@ -57,7 +57,7 @@ ToolFrame tool_frame(const TurningTool& tool) {
 
 Contact contact_of(const ToolFrame& frame, const Vec3& normal) {
   const double along = std::clamp(normal.dot(frame.rake_normal), -1.0, 1.0);
-  // At the point of contact, the direction from the center of the nose is opposite to the component of the normal in
+  // At the point of contact, the direction from the centre of the nose is opposite to the component of the normal in
   // the rake face.
   const double angle = std::atan2(-normal.dot(frame.across), normal.dot(frame.up));
   return {std::asin(along) / kDegree, angle / kDegree};

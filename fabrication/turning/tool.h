@@ -35,7 +35,7 @@ Warnings tool_warnings(const TurningTool& tool);
 struct ToolFrame {
   geometry::Vec3 rake_normal;  ///< vector t: normal out of the rake face, in the direction of the cut
   geometry::Vec3 across;       ///< vector s: direction along the edge at its lowest point
-  geometry::Vec3 up;           ///< vector u: direction from the lowest point to the nose's center, in the rake face
+  geometry::Vec3 up;           ///< vector u: direction from the lowest point to the nose's centre, in the rake face
 };
 ToolFrame tool_frame(const TurningTool& tool);
 

@@ -271,8 +271,8 @@ Cell land_cell(const Rectangle& rectangle, const PartSpec& spec, Eigen::Index ax
   const Cell element = element_cell(spec.element, spec.angle_errors);
   const EdgeShape edges = without_negligible(spec.edges, size_of(element.outline));
   std::vector<CellFacet> planes;
-  // On the lower side of the land, the second facet of a prism rises to it. On the upper side, the first facet of the
-  // next prism rises to it.
+  // The land is between two prisms. The second facet of one prism ends at the lower side of the land, and the first
+  // facet of the next prism ends at the upper side.
   for (const bool from_below : {true, false}) {
     if (!edges.rounds_rims() || !(from_below ? lower : upper)) continue;
     const double steepness = element.facets[from_below ? 1 : 0].plane.slope.norm();

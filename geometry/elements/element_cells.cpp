@@ -65,9 +65,9 @@ std::array<Vec2, 3> upright_cube_slopes(const AngleErrors& errors) {
     const Eigen::Index before = (k + 2) % 3;
     products(before, k) = products(k, before) = std::sin(rad_from_arcmin(errors.dihedral_error_arcmin[index]));
   }
-  // Of all unit normals with these scalar products, choose those that are nearest to the nominal normals. This is the
-  // inverse of symmetric orthogonalisation (Loewdin, J. Chem. Phys. 18, 365 (1950)). It rotates the two facets of an
-  // edge by equal angles.
+  // Many sets of unit normals have these scalar products. The set that is nearest to the nominal normals is chosen.
+  // This is the inverse of symmetric orthogonalisation (Loewdin, J. Chem. Phys. 18, 365 (1950)). It rotates the two
+  // facets of an edge by equal angles.
   normals *= Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(products).operatorSqrt();
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec3 normal = normals.col(static_cast<Eigen::Index>(k));

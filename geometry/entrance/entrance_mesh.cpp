@@ -25,7 +25,8 @@ constexpr double kSingleRounding = 1e-6;
 
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// Returns the portion of a polygon on the left of the line through a and b. The corners may have different heights.
+/// Returns the portion of a convex polygon on the left of the line through a and b. The corners may have different
+/// heights. This is one step of the Sutherland-Hodgman algorithm (Comm. ACM 17, 32, 1974).
 std::vector<Vec3> cut(const std::vector<Vec3>& polygon, const Vec2& a, const Vec2& b) {
   const Vec2 inward = Vec2(a.y() - b.y(), b.x() - a.x()).normalized();
   const auto depth = [&](const Vec3& p) { return inward.dot(p.head<2>() - a); };

@@ -33,7 +33,8 @@ Vec3 twice_area(const std::vector<Vec3>& vertices, const MeshTriangle& t) {
   return (vertices[t[1]] - vertices[t[0]]).cross(vertices[t[2]] - vertices[t[0]]);
 }
 
-/// Fits a plane to points by least squares. Only sums over the points are stored.
+/// Fits a plane to points by total least squares: the normal is the eigenvector of the scatter matrix with the smallest
+/// eigenvalue. Only sums over the points are stored, so that points can be added one by one.
 class PlaneFit {
  public:
   explicit PlaneFit(const Vec3& origin) : origin_(origin) {}
@@ -115,6 +116,7 @@ std::vector<MeshTriangle> neighbours_of(const std::vector<MeshTriangle>& triangl
   return neighbours;
 }
 
+/// Groups triangles into plane regions by region growing, as plane_regions() describes.
 class RegionGrower {
  public:
   RegionGrower(const std::vector<Vec3>& vertices, const std::vector<MeshTriangle>& triangles, double rounding_mm)

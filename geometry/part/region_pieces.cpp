@@ -181,7 +181,7 @@ class VertexRemover {
 
   /// Returns the vertices around v in the triangles of a region, counter-clockwise. Returns nothing if these triangles
   /// do not form a single fan.
-  /// \param is_open true if v lies on the region's border
+  /// \param is_open true if v is on the region's border
   std::optional<Ring> ring_round(std::uint32_t v, std::uint32_t region, bool is_open) const {
     std::map<std::uint32_t, std::uint32_t> next;
     std::map<std::uint32_t, std::uint32_t> previous;

@@ -13,9 +13,9 @@ namespace retrace::geometry {
 
 /// Adds the patches, placements and counts of a finite array to a part whose specification and size are set. The
 /// surface has exactly one height at each (x, y). In plan, each cell ends at the polygon through its corners, and
-/// vertical walls connect neighbours of different height. \param planes individual facet planes of elements; null: all
-/// elements are as specified \param elements_per_patch maximum number of elements in a single patch; larger arrays are
-/// built from shared blocks
+/// vertical walls connect neighbours of different height.
+/// \param planes individual facet planes of elements; null: all elements are as specified
+/// \param elements_per_patch maximum number of elements in a single patch; larger arrays are built from shared blocks
 ///     with at most this number
 /// \throw InputError if elements on a substrate do not cover the part
 void add_array(Part& part, const ArraySheet& sheet, const FacetPlanes* planes, const Vec2& origin_mm,

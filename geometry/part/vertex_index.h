@@ -10,7 +10,8 @@
 
 namespace retrace::geometry {
 
-/// Merges points of the plane: points that are nearer than the tolerance get the same number.
+/// Merges points of the plane: points that are nearer than the tolerance get the same number. Neighbours are searched
+/// in a grid of square cells, which are stored in a hash table.
 class VertexIndex {
  public:
   /// \param cell_mm size of the search grid, of the order of the distance between neighbours

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["Design"]
 
 _DEEPEST = 16  # maximum depth of nested lists and dicts
-_IN_MEMORY = "Design(...)"  # stands for a file in messages of the library
+_IN_MEMORY = "Design(...)"  # replaces the file name in messages of the library
 
 
 def _key(name: object) -> str:
@@ -96,7 +96,7 @@ def toml_text(tables: Mapping[str, object]) -> str:
 
 
 def overrides_of(changes: Mapping[str, object]) -> list[str]:
-    """Returns the changes as arguments of --set: key=value, or key= if the value is None."""
+    """Returns the changes as arguments of --set: "key=value", or "key=" if the value is None."""
     if not isinstance(changes, Mapping):
         raise refuse("changes", 'a dict such as {"element.base_mm": 0.5}', changes)
     for key in changes:

@@ -20,7 +20,7 @@ from ._results import Columns, Result, html_table, write_file
 
 __all__ = ["Fabrication", "Job", "Verification", "fabricate", "job", "verify"]
 
-_IN_MEMORY = "job.toml"  # stands for the file of a job that is in memory
+_IN_MEMORY = "job.toml"  # replaces the file name of a job that is in memory
 
 
 class Job(Result):

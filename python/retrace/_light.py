@@ -107,7 +107,7 @@ class Footprint(Result):
 
     @property
     def holes(self) -> list[list[Array]]:
-        """Holes in each region, as arrays like those of the outlines."""
+        """Holes in each region: (n, 2) arrays of x and y in mm, like the outlines."""
         return [
             [frozen(ring) for ring in feature["geometry"]["coordinates"][1:]]
             for feature in self._features

@@ -9,7 +9,7 @@ from ._arguments import checked, flag, number, number_list, pairs, path, refuse,
 
 _P = ParamSpec("_P")
 _R = TypeVar("_R")
-_MOST = 2**53  # the largest whole number that a double can count to
+_MOST = 2**53  # largest whole number below which a double represents all whole numbers
 
 
 class Field(NamedTuple):

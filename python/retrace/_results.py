@@ -204,7 +204,7 @@ class Columns(Mapping[str, Any]):
         return html_table(self.rows)
 
     def flat(self, prefix: str = "") -> dict[str, Any]:
-        """Returns all columns. Those of inner tables are named table_key."""
+        """Returns all columns. A column of an inner table is named table_key."""
         flat: dict[str, Any] = {}
         for name in self._names:
             column = self[name]
@@ -291,12 +291,12 @@ class Drawing:
 
     @property
     def is_there(self) -> bool:
-        """Whether the drawing is available. After unpickling, only drawings made before are."""
+        """True if the drawing is available. After unpickling, only drawings made before are."""
         return self._source is not None or self._svg is not None
 
     @property
     def is_made(self) -> bool:
-        """Whether the drawing was already made."""
+        """True if the drawing was already made."""
         return self._svg is not None
 
     def _repr_svg_(self) -> str | None:
@@ -431,7 +431,7 @@ class Result:
         )
 
     def __eq__(self, other: object) -> bool:
-        """Whether two results are equal, except for their computing times."""
+        """Returns true if two results are equal, except for their computing times."""
         if not isinstance(other, type(self)):
             return NotImplemented
         return _ELAPSED.sub("", self.json) == _ELAPSED.sub("", other.json)

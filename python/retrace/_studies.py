@@ -258,7 +258,7 @@ def _request(
 
 
 def _from_file(study: object, parameters: object) -> bool:
-    """Whether the argument is a study file; otherwise it is a design."""
+    """Returns true if the argument is a study file; otherwise it is a design."""
     is_name = isinstance(study, str) or hasattr(study, "__fspath__")
     if parameters is None and not is_name:
         raise InputError(f"are required with a design, a dict such as {_KEY}", key="parameters")

@@ -18,8 +18,8 @@ namespace retrace::raytrace {
 double return_error_rad(double height, double index, double spacer_index, double mirror_radius_over_radius);
 
 /// Returns the derivative of the return error at height 0. This is the paraxial power 2 (1 - 2 / n + (1 - R / rho) /
-/// m), with the indices n of the ball and m of the spacer, and the radii R of the ball and rho of the mirror. If it is
-/// 0, light near the axis leaves parallel to the axis.
+/// m). n is the index of the ball and m that of the spacer; R is the radius of the ball and rho that of the mirror. If
+/// the power is 0, light near the axis leaves parallel to the axis.
 double paraxial_error(double index, double spacer_index, double mirror_radius_over_radius);
 
 /// Returns the distance of the mirror from the ball, divided by the radius of the ball, for which the mirror is at the

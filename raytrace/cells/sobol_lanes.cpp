@@ -6,7 +6,7 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raytrace/cells/sobol_lanes.cpp"
-#include <hwy/foreach_target.h>  // compiles this file once for every instruction set
+#include <hwy/foreach_target.h>  // compiles this file one time for every instruction set
 // Must be included after foreach_target.h.
 #include "raytrace/cells/ray_lanes_inl.h"
 

@@ -75,8 +75,8 @@ BeamWalk::End BeamWalk::run(std::uint64_t most_work, const Cancellation* cancel)
 /// Returns true if the trace may stop. With a falling cut-off, this is the case if the power of the beams not yet
 /// traced (the open power) is at most the goal. Until BeamPolicy::spare_work has been done, the finest goal is used
 /// instead. The function can be called at any time, because the open power never increases. For the finest goals, the
-/// sum of the power of pending beams is too inaccurate, and the trace stops when the queue is empty and the power below
-/// the cut-off is at most the goal. With the other approaches, the trace stops when the queue is empty.
+/// sum of the power of pending beams is too inaccurate. The trace then stops when the queue is empty and the power
+/// below the cut-off is at most the goal. With the other approaches, the trace stops when the queue is empty.
 bool BeamWalk::may_stop() const {
   const BeamPolicy& policy = scene_.policy;
   if (approach_ != Approach::falling) return !queue_.has_pending();

@@ -2,7 +2,7 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "raytrace/observers/field_lanes.cpp"
-#include <hwy/foreach_target.h>  // compiles this file once for every instruction set
+#include <hwy/foreach_target.h>  // compiles this file one time for every instruction set
 // Must be included after foreach_target.h.
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>

@@ -12,7 +12,7 @@
 
 namespace retrace::raytrace {
 
-/// What happens to light at an interface.
+/// Events on a path at an interface.
 enum class PathEvent {
   enters,            ///< through the entrance face from outside
   total_reflection,  ///< at a facet, a wall, a side or the entrance face

@@ -79,7 +79,7 @@ Eigen::MatrixXd spread_of_untold(const std::vector<CutPart>& parts, const Measur
 /// Estimates the observable combinations by Gauss-Newton steps, which start at the nominal machine. Unobservable
 /// combinations are not varied. They change the measurements only by second-order terms, and these must not be mistaken
 /// for observations. The poses of the parts are estimated as well, because they can be as large as the errors of the
-/// machine, and measurements from height maps depend on products of both.
+/// machine. Measurements from height maps depend on products of poses and errors.
 compute::LeastSquaresEstimate fit(const std::vector<CutPart>& parts, const MeasuredParts& measured) {
   const Machine& nominal = measured.plans.front().machine;
   std::vector<PartPose> poses(parts.size());

@@ -6,9 +6,9 @@
 // A facet is a rectangle or a triangle in any orientation to the grid of its height map. Its residual heights are
 // therefore resampled on a grid along the two directions of its cut: x along the cutting edge, from the centre of the
 // edge, and y up the facet, in the direction in which the edge moved. Effects of the edge depend only on x, and effects
-// in time depend only on y. Waves along x are those of the edge itself, waves along y come from a drive or a spindle,
-// and a chip of the edge leaves a ridge along y at the same x on each facet. Each grid is evaluated with the methods of
-// `retrace metrology`. Features that facets have in common are reported one time.
+// in time depend only on y. Waves along x are those of the edge itself, and waves along y come from a drive or a
+// spindle. A chip of the edge leaves a ridge along y at the same x on each facet. Each grid is evaluated with the
+// methods of `retrace metrology`. Features that facets have in common are reported one time.
 
 #include <map>
 #include <optional>

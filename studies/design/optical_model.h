@@ -45,8 +45,9 @@ struct OpticalModel {
 enum class Entrances { plane, any };
 
 /// Builds the part, finds the material and selects the wavelengths of the light.
-/// \throw InputError that names file and line, for an unknown material, an invalid spectrum, a wavelength without an
-///        index, for balls, which have no geometry::Part, and for a curved entrance face unless `entrances` is any
+/// \throw InputError that names file and line. It is thrown for an unknown material, an invalid spectrum, and a
+///        wavelength without an index. It is also thrown for balls, which have no geometry::Part, and for a curved
+///        entrance face unless `entrances` is any.
 OpticalModel make_model(const Design& design, const materials::MaterialLibrary& library,
                         Entrances entrances = Entrances::plane);
 

@@ -1,7 +1,7 @@
 #pragma once
 
 // Evaluates the designs of all stages of a search: first scan, refinement and neighbours of the best design. Each
-// design is computed only once; results in the store are used again.
+// design is computed only one time; results in the store are used again.
 
 #include <map>
 #include <set>

@@ -102,7 +102,7 @@ bool same_geometry(const TestPoint& a, const TestPoint& b) {
   return a.observation_deg == b.observation_deg && a.v_deg == b.v_deg && a.h_deg == b.h_deg;
 }
 
-/// Adds a boundary of the colour. All boundaries must have one geometry, because the colour is measured only once.
+/// Adds a boundary of the colour. All boundaries must have one geometry, because the colour is measured only one time.
 void add_boundary(const LimitTable& table, const ColourBoundary& boundary, TestProgramme& programme) {
   const auto geometry = [](const ColourBoundary& b) {
     return std::tie(b.observation_deg, b.v_deg, b.v_beside_deg, b.h_deg);

@@ -117,9 +117,9 @@ class Photometer {
     /// Fewer resampled beams represent the weak beams. Such values may guide a search, but must not be shown to the
     /// user.
     guide,
-    /// Preliminary values that are shown with their errors. In addition to `guide`, the cut-off power of beams is
-    /// higher, and the search structures of the part may use at most half of their memory budget, because another
-    /// photometer measures the part at the same time.
+    /// Preliminary values that are shown with their errors. As with `guide`, fewer resampled beams are used. The
+    /// cut-off power of beams is also higher. Another photometer measures the part at the same time, so that the search
+    /// structures of the part may use at most half of their memory budget.
     first_answer
   };
   void set_effort(Effort effort) { effort_ = effort; }

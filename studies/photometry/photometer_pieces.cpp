@@ -63,7 +63,7 @@ constexpr double kLeastBeamsOfCell = 10.0;
 }
 
 /// Memory that a far field needs while its beams are collected. A beam that represents several equal elements is
-/// counted once for each element.
+/// counted one time for each element.
 class FarFieldMemory {
  public:
   /// Adds the memory of a returned beam.

@@ -59,7 +59,7 @@ struct PhotometrySettings {
   bool pictures = false;  ///< true: maps and curves are computed
   /// True: the power in directions inside and outside of the window (see window_deg) is integrated. This check is slow.
   bool window_power = false;
-  bool advice = true;   ///< true: if the design fails, a change with which it passes is searched for
+  bool advice = true;   ///< true: if the design fails, the study searches for a change with which it passes
   bool colour = false;  ///< true: the chromaticity of the returned light is computed; not for the design's own light
 };
 

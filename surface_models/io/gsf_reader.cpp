@@ -1,5 +1,6 @@
-// Gwyddion Simple Field 1.0: http://gwyddion.net/documentation/user-guide-en/gsf.html. Header lines "key = value", one
-// to four zero bytes up to a multiple of four, then 32-bit floats row by row. Lengths are in units without prefix.
+// Reads files in the format Gwyddion Simple Field 1.0 (http://gwyddion.net/documentation/user-guide-en/gsf.html). A
+// file begins with header lines "key = value". One to four zero bytes fill up the header to a multiple of four bytes.
+// The heights follow as 32-bit floats, row by row. Lengths are in units without prefix.
 
 #include <cmath>
 #include <map>

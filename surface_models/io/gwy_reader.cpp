@@ -1,7 +1,7 @@
-// Gwyddion's native format: http://gwyddion.net/documentation/user-guide-en/gwyfile-format.html. "GWYP", then one
-// object: its type, the number of its bytes, and its components: name, one letter for the type, value. Channel N is the
-// object
-// "/N/data" of the outermost one.
+// Reads files in Gwyddion's native format (http://gwyddion.net/documentation/user-guide-en/gwyfile-format.html). A file
+// consists of the letters "GWYP" and one object. An object consists of its type, the number of its bytes, and its
+// components. A component consists of its name, one letter for its type, and its value. Channel N is the component
+// "/N/data" of the outermost object.
 
 #include <cmath>
 #include <map>

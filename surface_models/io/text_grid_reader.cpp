@@ -91,11 +91,11 @@ class TextReader {
     return !is_missing_word(text.substr(0, text.find_first_of(" \t,;")));
   }
 
-  // ---- header
+  // ---- Reading of the header
 
   void read_header_line(std::string_view text, bool is_comment) {
     const std::size_t colon = text.find_first_of(":=");
-    if (is_comment && colon == std::string_view::npos) return;  // words for people
+    if (is_comment && colon == std::string_view::npos) return;  // a comment for people, which contains no key
     const std::size_t blank = text.find_first_of(" \t");
     const std::size_t end = colon != std::string_view::npos ? colon : blank;
     const std::string key = lower_case(trimmed(text.substr(0, end)));
@@ -172,7 +172,7 @@ class TextReader {
     source_.fail(lines_.number(), "columns: must be xyz or xz, got " + in_quotes(value));
   }
 
-  // ---- heights
+  // ---- Reading of heights in the form of a matrix
 
   void read_values(std::string_view line) {
     std::size_t count = 0;
@@ -252,7 +252,7 @@ class TextReader {
     --columns_;
   }
 
-  // ---- lists of points
+  // ---- Reading of lists of points
 
   /// Evenly spaced values of a coordinate.
   struct Grid {

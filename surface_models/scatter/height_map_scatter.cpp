@@ -71,7 +71,8 @@ std::vector<double> variance_shares(const HeightMap& levelled) {
   return shares;
 }
 
-/// Returns the gradients of a levelled map, computed from central differences over a distance of at least `base_um`.
+/// Returns the gradients of a levelled map (its mean plane was subtracted), computed from central differences over a
+/// distance of at least `base_um`.
 std::vector<Vec2> gradients(const HeightMap& map, double base_um) {
   const auto half_base = [&](double pixel_um, std::size_t points) {
     const auto steps = static_cast<std::size_t>(std::ceil(0.5 * base_um / pixel_um));

@@ -98,8 +98,8 @@ TEST(BadInput, WrongFilesOfSpectraAreRefusedWithFileLineAndColumn) {
       {"wavelength_nm,power\n400,1\n500,nan\n", "lamp.csv:3: power: "},
       {"wavelength_nm,power\n400,1\n500,-1\n", "lamp.csv:3: power: "},
       {"wavelength_nm,power\n500,1\n400,1\n", "lamp.csv:3: wavelength_nm: "},
-      {"wavelength_nm,power\n400,0\n500,0\n", ""},   // the file is sound, but all of it is dark
-      {"wavelength_nm,power\n900,1\n1000,1\n", ""},  // or unseen
+      {"wavelength_nm,power\n400,0\n500,0\n", ""},   // a valid file without any light
+      {"wavelength_nm,power\n900,1\n1000,1\n", ""},  // a valid file with only invisible light
   };
   for (const auto& [text, at] : cases)
     for (const std::string command : {"rre", "inspect"}) {
@@ -163,8 +163,8 @@ TEST(BadInput, FilesThatCannotBeReadAreRefused) {
   }
 }
 
-/// If a design or an option names a file that does not exist, the message begins with the position of the name. The
-/// position is file, line and key, or the option.
+/// If a design or an option names a file that does not exist, the message begins with the position of the name: file,
+/// line and key, or the option.
 TEST(BadInput, MissingFilesAreReportedWithWhatNamesThem) {
   const TemporaryFolder folder;
   folder.write("d.toml", design_with(0, "") + "[part]\nfacets = \"none.toml\"\n");

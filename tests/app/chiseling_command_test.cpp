@@ -6,7 +6,7 @@
 
 #include "tests/app/program.h"
 
-// Tests of cube corners: from a design to NC text, and back to a part that is traced.
+// Tests of jobs for cube corners: from a design to NC text, and back to a machined part that is traced.
 
 namespace retrace::test::chiseling_command_test {
 namespace {
@@ -142,8 +142,8 @@ TEST(ReachablePart, IsAllButTheApexAndIsTraced) {
     const double whole = rre("d.toml");
     const double part = rre("part.toml");
     EXPECT_LT(part, whole);
-    // Light that meets the core is lost, on its way in or out. The core covers 3 (0.2 / 2)^2 / sqrt(3) of each cell in
-    // plan.
+    // Light that meets the core is lost, both incident and returning light. The core covers 3 (0.2 / 2)^2 / sqrt(3) of
+    // each cell in plan.
     EXPECT_GT(part, 0.4 * whole);
   }
 }

@@ -75,8 +75,8 @@ TEST(Inspect, ReportsTheFractionThatARootTakesOfPrisms) {
 // Rounded edges of radius r make strips of the aperture ineffective. The roots are the edges between two facets. Each
 // of the three roots has the length a sqrt(2/3), where a is the edge length of the cube, and a strip r / sqrt(2) wide
 // on either side. The rims are the edges between two elements. The strips along the six rims of a hexagon are r /
-// sqrt(2) wide. Those along the three rims of a triangle are sqrt(2/3) r wide. The overlap of strips is of second order
-// in r.
+// sqrt(2) wide. The strips along the three rims of a triangle are sqrt(2/3) r wide. The overlap of strips is of second
+// order in r.
 TEST(Inspect, TellsWhatEdgesTakeOfCubeCorners) {
   const auto share = [](const std::string& kind, const std::string& key, double radius_um) {
     return inspect(infinite_cubes(kind, 1.5) + "[surface]\n" + key + " = " +
@@ -129,9 +129,9 @@ TEST(Inspect, SaysHowUnlikeErrorsCloseTheBoundary) {
             "closed, touches itself along edges (checked on a smaller array of the same elements)");
 }
 
-/// Smallest angle of incidence at which a facet of a canted cube corner no longer reflects totally, and its azimuth.
-/// Before canting, the dihedral edges are at the azimuths 0, 120 and 240 degrees. first_loss() searches all directions
-/// on a fine grid.
+/// Smallest angle of incidence at which a facet of a canted cube corner loses total reflection, and its azimuth. Before
+/// canting, the dihedral edges are at the azimuths 0, 120 and 240 degrees. first_loss() searches all directions on a
+/// fine grid.
 struct FirstLoss {
   double incidence_deg = 90.0;
   double azimuth_deg = 0.0;

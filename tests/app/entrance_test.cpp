@@ -38,7 +38,7 @@ class Entrance : public ::testing::Test {
     return retrace_json(folder_, all);
   }
 
-  /// Returns the place `file:line: key` at which a design is refused.
+  /// Returns the position `file:line: key` of the error for which a design is refused.
   std::string refusal(const std::string& design, Arguments command = {"rre", "design.toml", "-o", "out"}) {
     folder_.write("design.toml", design);
     const auto before = folder_.names();
@@ -209,7 +209,7 @@ TEST_F(Entrance, InspectTellsAndDrawsIt) {
                                                        "out/inspect.json"}));
 }
 
-// A report must not draw a plane entrance face in place of the curved one that was traced.
+// A report must not draw a plane entrance face instead of the curved entrance surface that was traced.
 TEST_F(Entrance, ReportSaysThatItIsNotShown) {
   folder_.write("lens.toml", turned(kCap));
   rre(kPlate + kFront + kBody, {"--samples", "64", "-o", "out"});

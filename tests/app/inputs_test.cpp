@@ -231,7 +231,7 @@ TEST(Inputs, WhatExamplesReadIsNotOverwritten) {
   std::size_t others = 0;
   for (const std::string& name : folder.names()) {
     if (fs::path(name).extension() != ".toml") continue;
-    if (folder.read(name).find("schema = \"retrace.machine/1\"") != std::string::npos) continue;  // jobs name it
+    if (folder.read(name).find("schema = \"retrace.machine/1\"") != std::string::npos) continue;  // read with jobs
     std::set<std::string> named;
     add_named(folder.path(), name, named);
     const Arguments command = command_of(folder.read(name), name);

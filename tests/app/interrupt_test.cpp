@@ -91,7 +91,7 @@ INSTANTIATE_TEST_SUITE_P(
                 {"photometry", kReflector, "--threads=1", "--standard=r150", "--class=IA", "--colour=red",
                  "--area-cm2=1e-3", "--rotation=0,20,40,60", "--quiet"},
                 SIGINT,
-                2.0},  // the table, a third of the work, is finished by then
+                2.0},  // the table is finished by then, which is a third of the work
         LongRun{"image_detector",
                 {"image", example("rtp_brick_2mm.toml"), "--detector", "--threads=1", "--engine=montecarlo",
                  "--samples=1000000000", "-o", "i"}},

@@ -144,8 +144,8 @@ TEST(MemoryBudget, PhotometryOfAMillionElementsGoesOnWithRays) {
   EXPECT_NE(exact.err.find("--memory-gib"), std::string::npos) << exact.err;
 }
 
-// The header of a binary STL file contains the number of its triangles. One file has the length that follows from this
-// number, and the other file is shorter.
+// The header of a binary STL file contains the number of its triangles. The length of the first file matches this
+// number. The second file is shorter.
 TEST(MemoryBudget, MeshesOfTooManyTrianglesAreRefusedBeforeTheyAreRead) {
   const TemporaryFolder folder;
   folder.write("mesh.toml", "[body]\nrefractive_index = 1.49\n[part]\nmesh = \"part.stl\"\n");

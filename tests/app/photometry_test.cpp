@@ -238,8 +238,8 @@ TEST(Photometry, ItsOutputReplacesNoInput) {
   EXPECT_EQ(refused_at(outcome), "--json");
 }
 
-// A change of the observation angle alone changes the ratio of the two samples over a wide range. This range contains
-// the published ratio of 5.6 : 10 (docs/theory/photometry.md).
+// The ratio of the two samples varies over a wide range with the observation angle. This range contains the published
+// ratio of 5.6 : 10 (docs/theory/photometry.md).
 TEST(LuminanceFixture, RatioOfThePublishedSamplesDependsOnTheObservationAngle) {
   const TemporaryFolder folder;
   const std::string examples = RETRACE_SOURCE_DIR "/examples/luminance_fixture/";

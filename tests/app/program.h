@@ -107,8 +107,9 @@ Outcome retrace(const TemporaryFolder& folder, Arguments arguments, const std::s
 /// Runs retrace and returns the JSON document that `--json -` prints. The exit code of the run must be 0.
 Json retrace_json(const TemporaryFolder& folder, Arguments arguments, const std::string& input = {});
 
-/// Returns `file:line: key` of the message of a refused run, without the parts that the message lacks. Expects the exit
-/// code, nothing on standard output, and one line on standard error, which is recorded in tests/messages.txt.
+/// Returns `file:line: key` of the message of a refused run. Parts that the message does not contain are omitted.
+/// Expects the exit code, nothing on standard output, and one line on standard error, which is recorded in
+/// tests/messages.txt.
 std::string refused_at(const Outcome& outcome, int code = 2);
 
 /// Returns the warnings of a run, and records them in tests/messages.txt.

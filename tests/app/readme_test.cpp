@@ -18,8 +18,8 @@
 // Runs every command that README.md, docs/*.md, docs/commands/*.md and docs/tutorials/*.md show, exactly as the page
 // shows it. Each page is a separate test, so that pages run in parallel. A test runs in a temporary folder with the
 // layout of the project. In this folder, tools/run and retrace are the program, and examples/ is a link to the
-// examples. Tests of tutorials also write the files that the reader is told to save. They compare the output that a
-// tutorial shows with the output of the program.
+// examples. Tests of tutorials also write the files that the tutorial asks the reader to save. They compare the output
+// that a tutorial shows with the output of the program.
 
 namespace retrace::test::readme_test {
 namespace {

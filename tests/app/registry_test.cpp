@@ -5,7 +5,8 @@
 #include "tests/app/program.h"
 
 // Tests that every command of the program is in its help, its manual, the table in docs/commands.md and the completion
-// of each shell, and has a page in docs/commands/. The tests run the completion scripts in their shells.
+// of each shell. Every command must also have a page in docs/commands/. The tests run the completion scripts in their
+// shells.
 
 namespace retrace::test::registry_test {
 namespace {
@@ -232,7 +233,7 @@ TEST(Documentation, HasAPageWithAllOptionsOfEachCommand) {
   }
 }
 
-// Runs several fast commands. The formats that they write must be those that the registry contains.
+// Runs several fast commands. The registry must contain the formats that they write.
 TEST(Registry, NamesTheFormatsThatAreWritten) {
   const TemporaryFolder folder;
   const Json manual = retrace_json(folder, {"manual"});

@@ -14,7 +14,7 @@ const char* const kExample = "fabrication/prisms_on_cylinder.toml";
 class SubstrateJob : public ::testing::Test {
  protected:
   /// Expects that the arguments are refused with exit code 2 and one line, and that nothing is written. Returns the
-  /// place.
+  /// position in the message.
   std::string refusal(const Arguments& arguments) {
     const auto before = folder_.names();
     const Outcome refused = retrace(folder_, arguments);

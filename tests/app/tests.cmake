@@ -1,4 +1,5 @@
-# The program as users meet it: run as a child process, judged by what it prints, writes and returns.
+# Tests of the program from the user's point of view: it runs as a child process, and its output, files and exit code
+# are checked.
 retrace_test(command_tests
   SOURCES
     app/bad_input_test.cpp

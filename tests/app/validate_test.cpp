@@ -6,8 +6,8 @@
 
 #include "tests/app/program.h"
 
-// Tests of `retrace validate`: all expected values are met, the page of the documentation contains the numbers that the
-// command writes, and the JSON document has the structure that docs/commands/validate.md describes.
+// Tests of `retrace validate`: all expected values are met, and the page of the documentation contains the numbers that
+// the command writes. The JSON document has the structure that docs/commands/validate.md describes.
 
 namespace retrace::test::validate_test {
 namespace {

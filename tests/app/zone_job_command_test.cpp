@@ -125,8 +125,8 @@ TEST_F(ZoneJobCommand, WhatCannotBeCutIsRefusedAndNothingWritten) {
   }
 }
 
-/// An edited job is cut as edited. `--as-machined` writes the edited angle errors. It refuses a job whose zones have
-/// another size or rotation than those of the design.
+/// A job file that the user has edited is cut as edited. `--as-machined` writes the edited angle errors. It refuses a
+/// job whose zones have another size or rotation than the zones of the design.
 TEST_F(ZoneJobCommand, EditedJobsComeBackAsTheyAreCut) {
   folder_.write("design.toml", zoned_design("hexagonal_icc"));
   ASSERT_EQ(job().code, 0);

@@ -5,7 +5,7 @@
 #include <Eigen/LU>
 #include <random>
 
-// Least squares against normal equations, and what observations cannot tell.
+// Tests of least squares: comparison with the normal equations, and unknowns that the observations do not determine.
 
 namespace retrace::compute::least_squares_test {
 namespace {
@@ -18,7 +18,8 @@ MatrixXd random_matrix(Index rows, Index columns, std::uint32_t seed) {
   return MatrixXd::NullaryExpr(rows, columns, [&] { return normal(bits); });
 }
 
-/// Nuisance unknowns are unknowns that nobody asks for: the normal equations of all together say the same.
+/// The estimate must equal the solution of the normal equations for all unknowns, including the nuisance unknowns. A
+/// nuisance unknown is fitted, but its value is not returned.
 TEST(Estimate, IsThatOfTheNormalEquations) {
   for (std::uint32_t seed = 1; seed <= 20; ++seed) {
     const MatrixXd a = random_matrix(12, 4, seed);
@@ -38,7 +39,8 @@ TEST(Estimate, IsThatOfTheNormalEquations) {
   }
 }
 
-/// Two unknowns that only show as their sum, and a third that only shows with a nuisance unknown.
+/// The observations depend only on the sum of the first two unknowns. They depend on the third unknown only in
+/// combination with a nuisance unknown. These three unknowns are therefore not observable.
 TEST(Estimate, SaysWhatIsNotTold) {
   MatrixXd a(4, 4);
   a << 1, 1, 0, 0, 2, 2, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0;

@@ -16,7 +16,8 @@ namespace {
 
 using Function = std::function<double(const std::vector<double>&)>;
 
-/// The design of a function of `parameters` shares of the unit interval.
+/// Returns the values of a function at the sample points of the scheme of Saltelli et al. (SaltelliRow). The function
+/// has `parameters` arguments, each from 0 to 1.
 std::vector<SaltelliRow> rows_of(const Function& f, std::size_t parameters, std::uint64_t rows, UnitSamples::Kind kind,
                                  std::uint32_t seed) {
   const UnitSamples samples(kind, 2 * parameters, rows, seed);
@@ -48,11 +49,12 @@ void expect_estimate(const IntervalEstimate& estimate, double exact, double tole
   EXPECT_GE(estimate.high + tolerance, exact);
 }
 
-/// Of a sum of independent terms each has its share of the variance, alone as with others.
+/// For a sum of independent terms, the first-order index and the total index of each term both equal its fraction of
+/// the variance.
 TEST(SobolIndices, OfAnAdditiveModelAreTheSharesOfItsVariance) {
   const std::vector<double> c = {3.0, 2.0, 1.0, 0.0};
   const Function f = [&](const std::vector<double>& u) {
-    double sum = 100.0;  // an offset changes nothing
+    double sum = 100.0;  // a constant offset, which must not affect the indices
     for (std::size_t k = 0; k < c.size(); ++k) sum += c[k] * normal(u[k]);
     return sum;
   };
@@ -67,7 +69,8 @@ TEST(SobolIndices, OfAnAdditiveModelAreTheSharesOfItsVariance) {
   EXPECT_EQ(indices[3].first_order.value, 0.0);
 }
 
-/// Ishigami and Homma (1990), sin x + a sin^2 y + b z^4 sin x with a = 7 and b = 0.1 over -pi..pi: closed forms.
+/// The function of Ishigami and Homma (1990) is sin x + a sin^2 y + b z^4 sin x with a = 7, b = 0.1 and arguments from
+/// -pi to pi. Its indices are known in closed form.
 TEST(SobolIndices, OfTheIshigamiFunctionAreItsClosedForms) {
   constexpr double pi = std::numbers::pi;
   constexpr double a = 7.0;
@@ -93,7 +96,8 @@ TEST(SobolIndices, OfTheIshigamiFunctionAreItsClosedForms) {
   expect_estimate(indices[2].total, v13 / v, 0.01);
 }
 
-/// Two centred factors of a product do nothing alone and everything together.
+/// A product of two independent factors with mean 0 varies only by interaction: the first-order indices are 0, and the
+/// total indices are 1.
 TEST(SobolIndices, OfAProductAreAllInteraction) {
   const Function f = [](const std::vector<double>& u) { return normal(u[0]) * normal(u[1]); };
   const auto indices = sobol_indices(rows_of(f, 2, 8192, UnitSamples::Kind::sobol, 3), 0.95, 1);
@@ -103,7 +107,8 @@ TEST(SobolIndices, OfAProductAreAllInteraction) {
   }
 }
 
-/// Intervals hold the truth as often as they say: of 300 studies of 200 rows nine in ten, within what chance allows.
+/// Confidence intervals of 90 % must contain the true value in about 90 % of 300 studies with 200 rows each. The limits
+/// of 84 % and 96 % allow for random variation.
 TEST(SobolIndices, IntervalsHoldTheTruthAsOftenAsTheySay) {
   const Function f = [](const std::vector<double>& u) { return 2.0 * normal(u[0]) + normal(u[1]); };
   constexpr int studies = 300;
@@ -140,7 +145,7 @@ TEST(Yield, IntervalsAreThoseOfClopperAndPearson) {
   EXPECT_NEAR(yield_of(8, 10, 0.95).high, 0.9748, 1e-4);
 }
 
-/// Whatever the true yield, at least so many of all outcomes have intervals that hold it.
+/// For every true yield, the probability that the 95 % interval contains the true yield must be at least 95 %.
 TEST(Yield, IntervalsHoldTheTruthAtLeastAsOftenAsTheySay) {
   constexpr std::size_t parts = 30;
   for (const double truth : {0.01, 0.2, 0.5, 0.83, 0.99}) {
@@ -161,7 +166,7 @@ TEST(Spread, OfFiveValues) {
   EXPECT_NEAR(spread.deviation, std::sqrt(2.5), 1e-12);
   EXPECT_EQ(spread.least, 1.0);
   EXPECT_EQ(spread.most, 5.0);
-  // Student's t of four degrees of freedom at 97.5 %, from tables: 2.7764.
+  // According to tables, the 97.5 % quantile of Student's t distribution with four degrees of freedom is 2.7764.
   EXPECT_NEAR(spread.mean_interval.high - 3.0, 2.7764 * std::sqrt(2.5 / 5.0), 1e-4);
   EXPECT_NEAR(3.0 - spread.mean_interval.low, 2.7764 * std::sqrt(2.5 / 5.0), 1e-4);
   EXPECT_EQ(spread_of({7.0}, 0.95).deviation, 0.0);

@@ -67,7 +67,7 @@ TEST(FormerNames, CauseOneWarningEachWithTheirLine) {
 }
 
 TEST(FormerNames, AreReplacedInOverrides) {
-  // Whichever names the file and the override use, the override wins.
+  // The override takes precedence, whether the file and the override use the former or the current name.
   for (const std::string& text : {std::string(kCurrent), std::string(kFormer)})
     for (const char* const name : {"length_mm", "long_mm"}) {
       const Document document = read(text, {std::string(name) + "=7"});

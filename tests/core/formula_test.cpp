@@ -151,7 +151,7 @@ TEST(Formula, TakesLongOnes) {
   EXPECT_DOUBLE_EQ(at(formula(nested), 1.0, 0.5).value, 151.0);
 }
 
-// Computed with a logarithm, the power would be undefined for a negative base.
+// A high integer power of a negative constant must not be computed with a logarithm, which is undefined there.
 TEST(Formula, HighWholePowersOfNegativeConstants) {
   EXPECT_DOUBLE_EQ(at(formula("(-2)^66*x"), 1.0, 0.0).value, std::ldexp(1.0, 66));
 }

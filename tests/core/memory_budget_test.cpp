@@ -37,8 +37,9 @@ void raise(std::atomic<std::uint64_t>& most, std::uint64_t value) {
   }
 }
 
-// Each of 64 tasks fits into the quarter of the budget that one trace may use. Eight parallel tasks do not fit into the
-// half that all traces share. All tasks must nevertheless be completed, with any number of threads.
+// Each of 64 tasks needs less than a quarter of the budget, which is the limit of one trace and also the common limit
+// of parallel traces. Eight parallel tasks exceed the common limit, so some of them are aborted and repeated. All tasks
+// must nevertheless be completed, with any number of threads.
 TEST(MemoryBudget, WorkThatDoesNotFitSideBySideIsDoneAllTheSame) {
   const Budget budget(400 * kMiB);
   for (const unsigned threads : {1U, 8U}) {
@@ -59,7 +60,8 @@ TEST(MemoryBudget, WorkThatDoesNotFitSideBySideIsDoneAllTheSame) {
       });
     });
     EXPECT_EQ(done, std::vector<int>(64, 1)) << threads;
-    // Each thread may have added one step and one unreported change of 1 MiB.
+    // Parallel tasks use up to a quarter of the budget, and one repeated task another quarter: 200 MiB together. In
+    // addition, each thread may have added one step and one unreported change of 1 MiB each.
     EXPECT_LE(most.load(), (200 + 2 * 8) * kMiB) << threads;
     EXPECT_GE(most.load(), 90 * kMiB) << threads;
   }

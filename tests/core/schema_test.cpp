@@ -114,7 +114,7 @@ Thing read(const std::string& text) {
 
 const std::string kLeast = "schema = 'retrace.thing/1'\nname = 'a'\nsize_mm = 2\nis_open = false\n";
 
-/// Returns the message for a minimal file with further lines. The first of these is line 5.
+/// Returns the error message for a minimal file to which the lines `more` are added. The first added line is line 5.
 std::string refusal(const std::string& more, const std::string& least = kLeast) {
   return refusal_of([&] { read(least + more); }, "accepted");
 }

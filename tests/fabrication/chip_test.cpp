@@ -126,7 +126,7 @@ RC_GTEST_PROP(Chips, HalfSpacesOfASweepHoldItsLines, ()) {
   RC_ASSERT(std::abs(std::min(span->high, 1e3) - high) < 1e-6);
 }
 
-/// If a tip moves one depth of cut beyond the facet that it is not cutting, its rake face, at 53 degrees to the wall,
+/// A tip moves one depth of cut beyond the facet that it is not cutting. Its rake face, at 53 degrees to the wall, then
 /// removes tan 53 degrees times this depth.
 TEST(Chips, ThickestOfRightProgramsIsThatOfTheRakeFace) {
   const double slope = std::tan(53.0 * M_PI / 180.0);

@@ -17,8 +17,8 @@
 #include "tests/support/refusals.h"
 
 // Tests, in every dialect, of programs on a control whose state is unknown at the start: an earlier program, a manual
-// input or a reset may have changed it. The verifier must notice if any word of the preparation is missing. If a state
-// is changed in the middle of a program, the verifier must report it at the next cut.
+// input or a reset may have changed it. The verifier must notice if any word of the preparation is missing. If a later
+// line changes a state, the verifier must report this at the next cut.
 
 namespace retrace::fabrication::test::control_state_test {
 namespace {
@@ -80,8 +80,8 @@ class ControlState : public ::testing::TestWithParam<NcDialect> {
     while (!lines_[i].starts_with(rapid)) ++i;
     return i;
   }
-  /// Returns true for lines after the preparation, including those of subroutines, before which other lines can be
-  /// inserted.
+  /// Returns true for lines before which other lines can be inserted. They are lines after the preparation, including
+  /// lines of subroutines.
   bool is_step(std::size_t i) const {
     return lines_[i].starts_with(is_pmac() ? "rapid " : "G0 ") || is_feed(lines_[i]) || lines_[i] == dwell_line();
   }
@@ -344,8 +344,8 @@ TEST_P(ControlState, TurnsKeepTheirClearance) {
   EXPECT_GE(found, 1);
 }
 
-/// A tilted edge leaves a strip at the root. The verifier must report a strip that is higher than the finishing plunge
-/// of this root should leave: the plunge ends 20 nm (for Fanuc 100 nm) too high.
+/// A tilted edge leaves a strip at the root. The test ends one finishing plunge 20 nm (for Fanuc 100 nm) too high. The
+/// verifier must report that the strip at this root is then higher than the plunge should leave.
 TEST_P(ControlState, RootsAreThoseOfTheirPlunge) {
   const std::string feed = fmt::format(" F{:.3f}", job_.process.finishing_feed_mm_per_min);
   int tried = 0;

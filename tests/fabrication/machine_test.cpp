@@ -114,13 +114,14 @@ TEST(MachineFile, EveryShippedValueSaysWhereItComesFrom) {
   EXPECT_EQ(shipped("ideal").a.direction.basis, Basis::assumed);
 }
 
-/// Returns the error message for a machine file in which `from` is replaced by `to`.
+/// Returns file, line and key of the error for a machine file in which `from` is replaced by `to`, and records the
+/// message of this error.
 std::string refusal(const std::string& from, const std::string& to) {
   const std::string text = read_file(std::string(RETRACE_SOURCE_DIR) + "/data/machines/paper.toml");
   return refusal_of([&] { parse_machine(with_replaced(text, from, to), "m.toml"); }, "accepted");
 }
 
-/// Returns the place of the refusal like refusal(), without recording the message.
+/// Returns file, line and key of the error like refusal(), but does not record the message.
 std::string unrecorded_refusal(const std::string& from, const std::string& to) {
   const std::string text = read_file(std::string(RETRACE_SOURCE_DIR) + "/data/machines/paper.toml");
   return unrecorded_refusal_of([&] { parse_machine(with_replaced(text, from, to), "m.toml"); }, "accepted");

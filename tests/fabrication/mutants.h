@@ -89,7 +89,7 @@ inline std::vector<Mutant> mutants_of(const std::string& text, const std::vector
 struct PlainMove {
   bool is_rapid = true;
   bool is_timed = false;                ///< true if G93 is active
-  bool is_stop = true;                  ///< G61
+  bool is_stop = true;                  ///< true if exact stop (G61) is active
   double feed = 0.0;                    ///< feed word as written
   double at[4] = {0.0, 0.0, 0.0, 0.0};  ///< positions of X, Y, Z and C after the move
   double from[4] = {0.0, 0.0, 0.0, 0.0};

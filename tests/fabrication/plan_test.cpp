@@ -417,8 +417,8 @@ RC_GTEST_PROP(Positions, DoNotDrift, ()) {
     const CuttingPose& pose = plan.poses[stage.pose];
     const geometry::Vec2 centre = plan.elements[static_cast<std::size_t>(visit.element)].centre_mm;
     const AxisPositions root = inverse(m, Vec3(centre.x(), centre.y(), -pose.section.depth_mm), pose.rounded);
-    // The start of a routine relative to its element is the same for all elements, except for rounding at both
-    // elements.
+    // The start of a routine relative to its element is equal for all elements, except for the rounding errors of two
+    // positions.
     const Visit first = visits_of(plan).front();
     if (visit.subroutine != first.subroutine) continue;
     const geometry::Vec2 centre0 = plan.elements[static_cast<std::size_t>(first.element)].centre_mm;

@@ -134,8 +134,9 @@ RC_GTEST_PROP(Setup, ChangesArePlanesOfMachinesThatDiffer, ()) {
     RC_ASSERT(((more.normal - less.normal) / (2.0 * kStep) - change.normal).norm() < 2e-11);
     const Vec3 over = plane.point_mm + Vec3(within(1.0), within(1.0), within(1.0));
     const double height = (more.height_mm(over, outward) - less.height_mm(over, outward)) / (2.0 * kStep);
-    // The height over a plane is proportional to one over the cosine between normal and direction. The third
-    // derivative, which determines the error of the differences, is proportional to the fourth power of this factor.
+    // The height over a plane is proportional to one over the cosine of the angle between the normal and the direction.
+    // The third derivative, which determines the error of the differences, is proportional to the fourth power of this
+    // factor.
     const double facing = std::pow(plane.normal.dot(outward), 2);
     RC_ASSERT(std::abs(height - change.height_mm(plane, over, outward)) < 2e-10 / facing * (1.0 + 1e-2 / facing));
   }

@@ -190,8 +190,8 @@ TEST_P(Stops, ElementsAreInspectedBeforeTheyAreFinished) {
   }
 }
 
-/// A program fails verification if any line of a stop is missing. The tested lines are those from the last cut before
-/// the stop to the first cut after it.
+/// A program fails verification if any line of a stop is missing. The tested lines begin with the last cut before the
+/// stop and end with the first cut after it.
 TEST_P(Stops, EveryLineOfAStopIsMissed) {
   for (Case c : cases()) {
     const Machine machine = machine_of(c, 5.0);
@@ -351,7 +351,7 @@ TEST(LengthOfCut, IsThatOfTheClosedForm) {
 }
 
 /// The first cut of a facet takes the remainder of the depth. If this remainder is thinner than the minimum chip
-/// thickness, the first two cuts share their depth. No cut of a correct program is therefore too thin.
+/// thickness, the first two cuts remove equal thicknesses. No cut of a correct program is therefore too thin.
 RC_GTEST_PROP(LeastChip, NoCutOfARightProgramRubs, ()) {
   Job job = square_job(1);
   job.strategy = *rc::gen::element(Strategy::unidirectional, Strategy::bidirectional, Strategy::two_step);

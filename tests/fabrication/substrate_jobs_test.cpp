@@ -28,7 +28,7 @@
 #include "tests/support/refusals.h"
 
 // Tests of jobs with elements on inclined, curved and freeform substrates. The positions of the elements are compared
-// with those of the part for ray tracing. Programs are read back and simulated.
+// with their positions in the part for ray tracing. Programs are read back and simulated.
 
 namespace retrace::fabrication::test::substrate_jobs_test {
 namespace {
@@ -71,7 +71,8 @@ std::vector<Named> jobs() {
   return all;
 }
 
-/// The positions and the facet planes of the elements of a job equal those of the part for ray tracing.
+/// The positions and the facet planes of the elements of a job equal the positions and facet planes in the part for ray
+/// tracing.
 TEST(OnSubstrate, ElementsStandWhereThePartHasThem) {
   for (const Named& named : jobs()) {
     SCOPED_TRACE(named.what);

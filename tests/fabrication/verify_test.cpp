@@ -382,8 +382,8 @@ TEST_F(Faults, StartOfFacet2UsedAtC0) {
 }
 
 TEST_F(Faults, AxisVectorScaledByOnePercent) {
-  // Program of a planner that does not normalise the directions of the axes: Rodrigues' formula then rotates and
-  // stretches.
+  // Plan the program with directions of the axes that are not normalised. Rodrigues' formula then stretches in addition
+  // to the rotation.
   Machine spoilt = machine("paper");
   spoilt.a.direction.value *= 1.01;
   std::string text;

@@ -1,5 +1,5 @@
-// For any table of planes, the reader either returns planes close to those of the design or throws an InputError of one
-// line. Planes that it returns can be written and read back.
+// For any table of planes, the reader either returns planes close to the planes of the design or throws an InputError
+// of one line. Planes that the reader returns can be written and read back.
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // For any limits file, the reader either returns limits that satisfy its postconditions or throws an InputError of one
-// line. The same holds for every test plan that can be selected from the file.
+// line. Selecting a test plan from the file has one of these two results, too.
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // For any table of measurements, the reader either returns measurements that satisfy its postconditions or throws an
-// InputError of one line. The same holds for the calibration from these measurements.
+// InputError of one line. A calibration from these measurements has one of these two results, too.
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,6 @@
-// The first two bytes of an input select a field of a request, and the rest is its text as on the command line. For any
-// text, the field either has a value whose own text gives the same value again, or an InputError of one line is thrown.
+// The first two bytes of an input select a field of a request. The rest is the text of the field as on the command
+// line. Any text either gives a value or causes an InputError of one line. The value is converted to text again, and
+// this text must give the same value.
 
 #include <algorithm>
 #include <cstddef>

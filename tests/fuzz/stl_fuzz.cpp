@@ -1,5 +1,5 @@
-// For any STL file, the reader either returns a mesh or throws an InputError of one line. The same holds for making a
-// part from the mesh.
+// For any STL file, the reader either returns a mesh or throws an InputError of one line. A mesh either becomes a part
+// or causes an InputError of one line.
 
 #include <algorithm>
 #include <cstddef>

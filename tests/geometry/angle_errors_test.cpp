@@ -13,13 +13,14 @@
 #include "geometry/part/part.h"
 #include "tests/geometry/part_checks.h"
 
-// Dihedral errors and facet tilts: the angles that are built, and that the part stays a solid with them.
+// Tests of dihedral errors and facet tilts: the facets have the requested angles, and the part is a closed solid.
 
 namespace retrace::geometry::angle_errors_test {
 namespace {
 
 constexpr double kArcmin = std::numbers::pi / 180.0 / 60.0;
-const double kInclination = std::atan(std::numbers::sqrt2);  ///< of a nominal cube corner's facets
+/// Slope angle of the facets of a nominal cube corner, rad.
+const double kInclination = std::atan(std::numbers::sqrt2);
 
 PartSpec single(const Element& element, const AngleErrors& errors) {
   PartSpec spec;
@@ -30,7 +31,7 @@ PartSpec single(const Element& element, const AngleErrors& errors) {
   return spec;
 }
 
-/// Normals of a cell's facets, out of the part.
+/// Returns the normals of a cell's facets, which point out of the part.
 std::vector<Vec3> normals_of(const Cell& cell) {
   std::vector<Vec3> normals;
   for (const CellFacet& facet : cell.facets)
@@ -38,7 +39,7 @@ std::vector<Vec3> normals_of(const Cell& cell) {
   return normals;
 }
 
-/// The angle that two facets include, in the part.
+/// Returns the angle in the material between two facets with the outward normals `a` and `b`.
 double included_rad(const Vec3& a, const Vec3& b) {
   return std::numbers::pi - std::atan2(a.cross(b).norm(), a.dot(b));
 }
@@ -65,7 +66,7 @@ TEST(AngleErrors, CubeCornersIncludeTheDihedralAnglesAskedFor) {
         const Vec3& before = normals[(k + 2) % 3];
         const double expected = 0.5 * std::numbers::pi + errors.dihedral_error_arcmin[k] * kArcmin;
         EXPECT_NEAR(included_rad(before, normals[k]), expected, 1e-12);
-        // Edge k, seen from the apex outward, runs over 120 k degrees.
+        // Seen from the apex outward, the projection of edge k has the azimuth 120 k degrees.
         const Vec3 edge = before.cross(normals[k]).normalized();
         EXPECT_GT(edge.z(), 0.0);
         const double angle = 2.0 * std::numbers::pi / 3.0 * static_cast<double>(k) + (rotated ? std::numbers::pi : 0.0);
@@ -75,7 +76,7 @@ TEST(AngleErrors, CubeCornersIncludeTheDihedralAnglesAskedFor) {
   }
 }
 
-// The facets of the edge turn by half the error each, in opposite directions; the third stays.
+// The two facets of the edge rotate in opposite directions, each by half of the error. The third facet does not move.
 TEST(AngleErrors, DihedralErrorIsSplitEvenly) {
   const double error = 10.0 * kArcmin;
   const std::vector<Vec3> nominal = normals_of(triangular_cube_cell({1.0}, {}, Vec2::Zero()));
@@ -108,8 +109,9 @@ TEST(AngleErrors, ApexOfACubeCornerStaysInPlace) {
   }
 }
 
-// Light that three facets reflect in turn leaves at 4 sqrt(2/3) times the error from where it came if all three
-// dihedral angles have it (Chandler, J. Opt. Soc. Am. 50, 1203 (1960)).
+// Light that is reflected by all three facets leaves approximately towards its source. If all three dihedral angles
+// have the same error, the deviation from this direction is 4 sqrt(2/3) times the error (Chandler, J. Opt. Soc. Am. 50,
+// 1203 (1960)).
 TEST(AngleErrors, EqualDihedralErrorsDeviateTheSixBeamsAlike) {
   const double error = 0.5 * kArcmin;
   const std::vector<Vec3> normals = normals_of(hexagonal_cube_cell({1.0}, {{0.5, 0.5, 0.5}, {}}, Vec2::Zero()));
@@ -139,7 +141,7 @@ TEST(AngleErrors, FacetTiltsOfAPrismAddUpToItsApexError) {
   };
   const std::vector<Vec3> tilted = normals({{6.0, 0.0, 0.0}, {9.0, -2.0, 0.0}});
   EXPECT_NEAR(included_rad(tilted[0], tilted[1]), (91.0 * 60.0 + 6.0 + 9.0 - 2.0) * kArcmin, 1e-12);
-  // The facet towards -x stands at half the apex angle and its own tilt to the vertical.
+  // The angle between the facet towards -x and the vertical is half of the apex angle plus the tilt of this facet.
   EXPECT_NEAR(std::acos(-tilted[0].x()), (91.0 * 30.0 + 3.0 + 9.0) * kArcmin, 1e-12);
   EXPECT_NEAR(std::acos(tilted[1].x()), (91.0 * 30.0 + 3.0 - 2.0) * kArcmin, 1e-12);
   const std::vector<Vec3> symmetric = normals({{}, {4.0, 4.0, 0.0}});
@@ -152,7 +154,7 @@ TEST(AngleErrors, AntisymmetricTiltsOfAPrismTurnItAboutItsRoot) {
   const Cell cell = rtp_cell({0.5, 0.4, 90.0}, errors, Vec2::Zero());
   EXPECT_NEAR(element_depth_mm(RtpElement{0.5, 0.4, 90.0}, errors), 0.25, 1e-15);
   for (const CellFacet& facet : cell.facets) EXPECT_NEAR(facet.plane.at({0.25, 0.0}), -0.25, 1e-15);
-  // The steeper facet rises above z = 0, the flatter one stays as far below to first order.
+  // The steeper facet rises above z = 0. To first order, the other facet ends below z = 0 by the same distance.
   const double lift = 0.25 / std::tan(0.25 * std::numbers::pi - 5.0 * kArcmin) - 0.25;
   EXPECT_NEAR(cell.facets[0].plane.at({0.0, 0.0}), lift, 1e-15);
   EXPECT_NEAR(cell.facets[1].plane.at({0.5, 0.0}), -lift, 2.0 * lift * lift / 0.25);
@@ -248,8 +250,8 @@ void expect_volume(const Part& part, const BoundaryMesh& mesh) {
   EXPECT_NEAR(volume, part.entrance_area_mm2 * part.thickness_mm + volume_below(part), 1e-9);
 }
 
-// Where six triangles meet, unlike errors put every second pair of opposite ones lower: the part touches itself there
-// along vertical lines, closed all the same.
+// Six triangles meet at a point. With unequal errors, their heights at this point alternate between high and low. The
+// part then touches itself along the vertical line through the point, but its boundary is still closed.
 TEST(AngleErrors, TriangularArraysOfUnlikeErrorsTouchThemselves) {
   for (const AngleErrors& errors : kErrors) {
     if (alike(errors.dihedral_error_arcmin) && alike(errors.facet_tilt_arcmin)) continue;
@@ -262,7 +264,7 @@ TEST(AngleErrors, TriangularArraysOfUnlikeErrorsTouchThemselves) {
   }
 }
 
-/// Edges that are not passed as often in one direction as in the other.
+/// Returns the edges that the triangles traverse more often in one direction than in the opposite direction.
 std::vector<std::pair<std::uint32_t, std::uint32_t>> open_edges(
     const std::vector<std::array<std::uint32_t, 3>>& triangles) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> balance;
@@ -299,7 +301,7 @@ TEST(AngleErrors, InfiniteSurfacesHaveNoGaps) {
 }
 
 }  // namespace
-/// Inclinations of all facets, in arc minutes from 45 degrees.
+/// Returns the tilt of each facet: 45 degrees minus its slope angle, in arc minutes.
 std::vector<double> tilts_of(const Part& part) {
   std::vector<double> tilts;
   for (const SurfacePatch& patch : part.patches)
@@ -318,7 +320,7 @@ PartSpec random_prisms(double sigma_arcmin, std::uint32_t seed) {
   return spec;
 }
 
-// 400 prisms of 2 facets: the standard deviation of 800 tilts is known to 2.5 %.
+// 400 prisms have 800 facets. The standard deviation of 800 tilts has a relative standard error of 2.5 %.
 TEST(RandomTilts, HaveTheDeviationAskedFor) {
   const std::vector<double> tilts = tilts_of(build_part(random_prisms(2.0, 1)));
   ASSERT_GE(tilts.size(), 800U);
@@ -339,7 +341,8 @@ TEST(RandomTilts, DependOnTheSeedAlone) {
   EXPECT_NE(tilts_of(build_part(random_prisms(2.0, 2))), first);
 }
 
-// Where four cells meet, opposite ones may be the lower: the part may touch itself there.
+// Four cells meet at a point. Two opposite cells may be lower at this point than the other two. The part then touches
+// itself along the vertical line through the point, so the boundary is closed but may not be a manifold.
 TEST(RandomTilts, ArraysAreClosed) {
   std::vector<PartSpec> specs(4, random_prisms(5.0, 3));
   specs[1].array.arrangement = Arrangement::offset;

@@ -15,7 +15,7 @@ using namespace jets;
 
 const InputLocation kHere{"part.toml", 9, "boundary.points_mm"};
 
-/// Uneven sites and values of a wavy curve.
+/// Sets `sites` to unevenly spaced angles and `values` to the radii of a wavy curve at these angles.
 void wavy(int count, std::vector<double>& sites, std::vector<double>& values) {
   for (int i = 0; i < count; ++i) {
     sites.push_back(kTurn * (i + 0.3 * std::sin(2.1 * i)) / count - 1.0);
@@ -29,7 +29,8 @@ double falling_factorial(int n, int k) {
   return f;
 }
 
-/// The k-th derivative of a piece at a distance from its knot.
+/// Returns the k-th derivative of a polynomial piece of a spline.
+/// \param at distance from the knot at which the piece begins
 double derivative_of(const double* piece, int degree, int k, double at) {
   double sum = 0.0;
   for (int i = degree; i >= k; --i) sum = sum * at + falling_factorial(i, k) * piece[i];
@@ -129,7 +130,7 @@ TEST(Boundary, RefusesCurvesThatAreNotOne) {
   std::vector<Vec2> eight;
   std::vector<Vec2> twice;
   std::vector<Vec2> dented = ellipse_points(30, Vec2::Zero());
-  dented[4] = {2.0, 0.1};  // the angle turns back
+  dented[4] = {2.0, 0.1};  // the angle about the centre decreases here
   for (int i = 0; i < 40; ++i) {
     const double t = kTurn * i / 40.0;
     eight.push_back({std::sin(t), std::sin(2.0 * t) + 1e-3});
@@ -153,7 +154,7 @@ TEST(Boundary, RefusesCurvesThatAreNotOne) {
 }
 
 TEST(Boundary, OfTwoSurfacesThatMeet) {
-  // A sphere of radius 2 whose centre lies 1 below the plane meets it in a circle of radius sqrt(3).
+  // A sphere of radius 2, whose centre is 1 below a plane, intersects the plane in a circle of radius sqrt(3).
   const auto difference = [](double x, double y) { return std::sqrt(4.0 - x * x - y * y) - 1.0; };
   const Boundary circle = boundary_of_intersection({0.0, 0.0}, difference, 1.9, {}, kHere);
   const Boundary shifted = boundary_of_intersection({0.3, 0.0}, difference, 1.7 + 0.35, {3, 360}, kHere);
@@ -169,7 +170,7 @@ TEST(Boundary, RectangleWithRoundCorners) {
   const Boundary rectangle = rectangle_boundary({0, 0}, 4.0, 2.0, 0.5, {3, 720}, kHere);
   EXPECT_NEAR(rectangle.radius_mm.evaluate(0.0), 2.0, 1e-6);
   EXPECT_NEAR(rectangle.radius_mm.evaluate(0.5 * std::numbers::pi), 1.0, 1e-6);
-  // The corner's circle about (1.5, 0.5), on the ray through its middle.
+  // The rounded corner is an arc about (1.5, 0.5). The radius is tested in the direction of this centre.
   const double angle = std::atan2(0.5, 1.5);
   EXPECT_NEAR(rectangle.radius_mm.evaluate(angle), std::hypot(1.5, 0.5) + 0.5, 1e-4);
 }

@@ -12,7 +12,7 @@
 #include "tests/geometry/part_checks.h"
 #include "tests/support/refusals.h"
 
-// Canted cube corners: which way they lean, and that the part stays a solid.
+// Tests of canted cube corners: the axis has the requested inclination and azimuth, and the part is a closed solid.
 
 namespace retrace::geometry::cant_test {
 namespace {
@@ -30,7 +30,8 @@ std::vector<Cant> cants() {
   return {{1e-3, 10.0}, {5.0, 0.0}, {12.0, 60.0}, {20.0, -135.0}, {30.0, 0.0}, {30.0, 180.0}, {30.0, 77.0}};
 }
 
-// The inward normals of a cube are its edges; the axis is the direction at equal angles to all three.
+// The inward normals of the facets are parallel to the edges of the cube. The axis of the cube has equal angles to all
+// three normals.
 TEST(Cant, TurnsTheAxisTowardsItsAzimuthAndKeepsTheCubeRight) {
   for (const Cant& cant : cants()) {
     const Vec3 axis(std::sin(cant.deg * kDeg) * std::cos(cant.azimuth_deg * kDeg),
@@ -48,7 +49,8 @@ TEST(Cant, TurnsTheAxisTowardsItsAzimuthAndKeepsTheCubeRight) {
   }
 }
 
-// The cube turns as one about its apex: no twist about its own axis.
+// The cube rotates as a rigid body about a horizontal line through its apex. It does not rotate about its own axis. No
+// facet normal therefore rotates by more than the cant.
 TEST(Cant, TurnsTheFacetsByTheShortestWay) {
   const Cant cant{20.0, 35.0};
   const std::vector<Vec3> upright = inward_normals(hexagonal_cube_cell({1.0}, {}, Vec2::Zero()));
@@ -67,7 +69,8 @@ TEST(Cant, ApexStaysInPlace) {
         EXPECT_NEAR(facet.plane.at(Vec2::Zero()), -element_depth_mm(element), 1e-14);
 }
 
-// Facets tile the outline, and where they meet their planes do: the surface is the highest of the three planes.
+// The facets cover the outline without gaps or overlaps. At each point, the surface is the highest of the three planes,
+// so there are no steps between facets.
 TEST(Cant, FacetsFillTheOutlineAndMeetWithoutSteps) {
   for (const Cant& cant : cants())
     for (const Element& element : {Element(HexagonalCube{1.3, cant}), Element(TriangularCube{1.3, cant})}) {
@@ -93,7 +96,7 @@ TEST(Cant, TopIsTheHighestRimOfThePart) {
   }
 }
 
-// Whoever builds a part without reading a design is told as well.
+// build_part() itself makes this check, so that it also applies to parts that are not read from a design file.
 TEST(Cant, RimsMayNotReachTheEntranceFace) {
   PartSpec spec;
   spec.element = HexagonalCube{1.0, {20.0, 35.0}};
@@ -141,7 +144,8 @@ TEST(Cant, PartsAreSolids) {
   }
 }
 
-// Where six cells meet, opposite ones may be the lower: the part may touch itself along a vertical line there.
+// Six cells meet at a point, and their heights at this point may alternate between high and low. The part then touches
+// itself along the vertical line through the point, so only closedness is tested.
 TEST(Cant, TriangularArraysAreClosed) {
   for (const Cant& cant : cants()) {
     PartSpec spec;

@@ -29,7 +29,7 @@ class Draws {
   std::uint32_t count_ = 0;
 };
 
-/// Returns a polygon whose corners lie on an ellipse in counter-clockwise order, with a random position and shape.
+/// Returns a polygon whose corners are on an ellipse in counter-clockwise order, with a random position and shape.
 Polygon convex_polygon(Draws& draw) {
   Polygon polygon;
   const Vec2 centre(20.0 * draw() - 10.0, 20.0 * draw() - 10.0);
@@ -99,7 +99,7 @@ TEST(Centroid, IsAdditive) {
   }
 }
 
-// A polygon without area has the centroid of its border. No centroid lies outside the bounding box of the corners.
+// A polygon without area has the centroid of its border. No centroid is outside the bounding box of the corners.
 TEST(Centroid, DegeneratePolygons) {
   EXPECT_EQ(centroid_of({{1, 2}}), Vec2(1, 2));
   EXPECT_EQ(centroid_of({{1, 2}, {1, 2}, {1, 2}}), Vec2(1, 2));

@@ -1,5 +1,6 @@
-// Meshes as entrance surfaces: sheets at random pass; holes, overlaps, corners on sides, steps, upright, overhanging
-// and turned triangles are refused where they are, those too whose areas add up to the outline's.
+// Tests of meshes as entrance surfaces. Random sheets without faults are accepted. Holes, overlaps, corners on sides
+// and steps are refused with their position, and so are vertical, overhanging and reversed triangles. A mesh with
+// faults is also refused if the total area of its triangles equals the area of the outline.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +18,8 @@ namespace {
 
 using Corners = std::array<std::uint32_t, 3>;
 
-/// A sheet of 2 n^2 triangles over the square of side n about the place (n / 2, n / 2), with bumps and crooked sides.
+/// Mesh of 2 n^2 triangles over the square from (0, 0) to (n, n), where n is the parameter `cells`. Its vertices are
+/// displaced at random along x, y and z.
 class Sheet {
  public:
   Sheet(std::uint32_t cells, std::mt19937& random) : cells_(cells) {
@@ -33,7 +35,7 @@ class Sheet {
     std::shuffle(mesh.triangles.begin(), mesh.triangles.end(), random);
   }
 
-  /// As a file has them: in single precision.
+  /// Adds a vertex, rounded to single precision as in mesh files. Returns its index.
   std::uint32_t add(const Vec3& p) {
     mesh.vertices.push_back(p.cast<float>().cast<double>());
     return static_cast<std::uint32_t>(mesh.vertices.size() - 1);
@@ -41,7 +43,7 @@ class Sheet {
   Vec3 middle(const Corners& t) const {
     return (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3.0;
   }
-  /// The number of one at least two cells inside.
+  /// Returns the index of a random triangle whose centroid is at least two cells away from the border of the sheet.
   std::size_t inner(std::mt19937& random) const {
     for (;;) {
       const std::size_t k = random() % mesh.triangles.size();
@@ -120,7 +122,7 @@ TEST(EntranceMesh, HolesAreRefused) {
   }
 }
 
-// The area is right: what is missing here lies twice there.
+// A hole and an overlap of equal area cancel in the total area. Both must nevertheless be found.
 TEST(EntranceMesh, HolesBesideOverlapsOfTheSameAreaAreRefused) {
   std::mt19937 random(3);
   for (int k = 0; k < 50; ++k) {
@@ -128,7 +130,7 @@ TEST(EntranceMesh, HolesBesideOverlapsOfTheSameAreaAreRefused) {
     Corners& t = sheet.mesh.triangles[sheet.inner(random)];
     const Vec2 place = sheet.middle(t).head<2>();
     const Vec3 along = sheet.mesh.vertices[t[1]] - sheet.mesh.vertices[t[0]];
-    // One corner of one triangle, along the side that it faces: the area in plan stays.
+    // One corner is moved parallel to the opposite side, which keeps the area of the triangle in plan.
     t[2] = sheet.add(sheet.mesh.vertices[t[2]] + 0.3 * along);
     expect_gap(cover(sheet.mesh), {TilingFault::hole, TilingFault::overlap}, place);
   }
@@ -183,7 +185,9 @@ TEST(EntranceMesh, TrianglesTurnedOverAreRefused) {
   }
 }
 
-/// Two levels that meet at x = 1, with or without a wall between.
+/// Returns two horizontal rectangles at the heights 0 and 0.5 mm, which meet at x = 1 mm.
+/// \param overhang_mm distance by which the upper rectangle extends over the lower one
+/// \param with_wall true if a wall connects the two rectangles
 TriangleMesh stepped(double overhang_mm, bool with_wall) {
   TriangleMesh mesh;
   const double upper = 1.0 - overhang_mm;
@@ -232,7 +236,7 @@ TEST(EntranceMesh, TrianglesWithoutAreaAreRefused) {
   expect_gap(cover(mesh, outline), {TilingFault::no_area}, {1.0, 1.0}, 1.0);
 }
 
-// What lies beside the outline is nobody's entrance surface.
+// Triangles outside the outline are not part of the entrance surface, so their faults are ignored.
 TEST(EntranceMesh, FaultsOutsideTheOutlineDoNotMatter) {
   std::mt19937 random(6);
   const Polygon outline = to_polygon({Vec2(3.0, 3.0), Vec2(5.0, 5.0)});

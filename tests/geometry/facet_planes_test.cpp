@@ -11,7 +11,8 @@
 #include "geometry/check/boundary_check.h"
 #include "geometry/part/closed_boundary.h"
 
-// Prisms with planes of their own: nominal ones are the nominal part, turned ones meet where their planes do.
+// Tests of elements with individual facet planes. Nominal planes give the nominal part. Rotated facets meet at the
+// intersection of their planes.
 
 namespace retrace::geometry::facet_planes_test {
 namespace {
@@ -28,10 +29,11 @@ PartSpec prisms(Arrangement arrangement) {
   return spec;
 }
 
-/// How the facets of a prism are turned: the root sinks towards one gable, or turns in plan.
+/// Rotation of the facets of a prism. `root_sinks`: the root descends towards one gable (end of the prism).
+/// `root_turns`: the root is rotated about the vertical.
 enum class Twist { root_sinks, root_turns };
 
-/// The planes of a prism, nominal but for slopes along the root.
+/// Returns the planes of a prism. They are nominal except for a slope along the root, whose angle is `twist_rad`.
 ElementPlanes planes_at(const Vec2& centre, bool rotated = false, double twist_rad = 0.0,
                         Twist twist = Twist::root_sinks) {
   ElementPlanes element;
@@ -76,8 +78,8 @@ TEST(FacetPlanes, TurnedFacetsStayClosedAndMeetWhereTheirPlanesDo) {
       const BoundaryReport report = check_boundary(closed_boundary(part));
       EXPECT_TRUE(report.is_closed) << arcmin << " " << radius_mm;
       if (radius_mm > 0.0) continue;
-      // Both planes fall towards a gable, a quarter of a millimetre from the middle; turned in plan, the root stays
-      // level.
+      // With `root_sinks`, both planes descend towards a gable, which is 0.25 mm from the centre of the prism. With
+      // `root_turns`, the root stays horizontal.
       const double sinks_mm = twist == Twist::root_sinks ? 0.25 * std::tan(arcmin * kArcmin) : 0.0;
       EXPECT_NEAR(part.element_depth_mm, 0.25 + sinks_mm, 1e-12) << arcmin;
     }
@@ -112,7 +114,7 @@ PartSpec cubes(const Element& element, Arrangement arrangement) {
   return spec;
 }
 
-/// Facet k of a cube corner with its apex at `centre`, told there.
+/// Returns the nominal facet planes of a cube corner with its apex at `centre`.
 ElementPlanes cube_at(const Element& element, const Vec2& centre, bool rotated = false) {
   ElementPlanes planes;
   planes.centre_mm = centre;
@@ -128,7 +130,7 @@ TEST(FacetPlanes, NominalPlanesOfCubeCornersAreTheNominalPart) {
   for (const Element& element : {hexagon, triangle}) {
     const bool is_hexagonal = std::holds_alternative<HexagonalCube>(element);
     const PartSpec spec = cubes(element, is_hexagonal ? Arrangement::honeycomb : Arrangement::triangular);
-    // The cells of the lattice, from the one in the middle, that the array holds whole.
+    // Planes of all cells of the lattice that are completely within the array. The lattice is centred in the array.
     std::vector<ElementPlanes> planes;
     const double row_mm = 0.25 * std::numbers::sqrt3;
     for (int row = -5; row <= 5; ++row)
@@ -155,7 +157,8 @@ TEST(FacetPlanes, NominalPlanesOfCubeCornersAreTheNominalPart) {
   }
 }
 
-/// One hexagonal cube corner by a triangular cavity: a^3 within its hexagon and a^3 / 3 beyond it, in six flares.
+/// A hexagonal cube corner with the edge length a is machined as a triangular cavity. The volume of the cavity is a^3
+/// within the hexagon. Outside the hexagon it has six flares with the total volume a^3 / 3.
 TEST(FacetPlanes, FlaresOfOneCavityTakeAThirdOfACube) {
   const Element element = HexagonalCube{1.0, {}};
   const PartSpec spec = cubes(element, Arrangement::honeycomb);
@@ -180,12 +183,13 @@ TEST(FacetPlanes, FlaresOfOneCavityTakeAThirdOfACube) {
   EXPECT_TRUE(report.ok());
   const double a = std::sqrt(3.0 / 8.0);
   EXPECT_NEAR(report.volume_mm3, 4.0 * 4.0 * 0.5 + a * a * a * 4.0 / 3.0, 1e-9);
-  // Three squares, and half a square for either pair of flares.
+  // The area consists of the three square facets of the cube and six flares, each of which has the area of half a
+  // square.
   EXPECT_NEAR(part.retro_facet_area_mm2, 3.0 * a * a + 6.0 * 0.5 * a * a, 1e-9);
 }
 
-/// What a chisel with an edge of 0.2 leaves over an apex is a corner of a cube with edges of 0.2 / sqrt(2), and a
-/// pyramid on the triangle of side 0.2 above it.
+/// A chisel with an edge of 0.2 mm leaves material over an apex. This material consists of a corner of a cube with
+/// edges of 0.2 / sqrt(2) mm and of a pyramid above it, whose base is an equilateral triangle with sides of 0.2 mm.
 TEST(FacetPlanes, CapsLeaveACoreOverTheApex) {
   const double width = 0.2;
   const double rake = 53.0 * std::numbers::pi / 180.0;
@@ -198,7 +202,8 @@ TEST(FacetPlanes, CapsLeaveACoreOverTheApex) {
     const Vec2 centre = -bounding_box(element_cell(element).outline).lower;
     ElementPlanes planes = cube_at(element, centre);
     for (std::size_t k = 0; k < 3; ++k) {
-      // Through the level line half the edge up the facet, and the point on the axis.
+      // The plane of the cap contains two features: a horizontal line on the facet, half the chisel's edge up the facet
+      // from the apex, and the point on the axis at the height `core` above the apex.
       const double plan = 0.5 * width / std::numbers::sqrt3;
       const double azimuth = std::numbers::pi / 3.0 * (2.0 * static_cast<double>(k) + 1.0);
       const double slope = (std::numbers::sqrt2 * plan - core) / plan;

@@ -9,7 +9,7 @@
 #include "core/angle.h"
 #include "tests/support/refusals.h"
 
-// Extrapolation, blending and lenslets: orders of continuity, values, and closed forms.
+// Tests of extrapolation, blends and lenslets: orders of continuity, values, and closed forms.
 
 namespace retrace::geometry::freeform_surface_test {
 namespace {
@@ -18,7 +18,7 @@ using namespace jets;
 
 const InputLocation kHere{"part.toml", 3, "lenslets"};
 
-/// A polynomial of degree 6 that grows quickly, as in Fig. 8 of Naples and Yi.
+/// Returns a polynomial of degree 6 that increases quickly, similar to Fig. 8 of Naples and Yi.
 Sag steep_polynomial() {
   Sag sag;
   sag.formula = parse_formula("0.05*x^6-0.03*x^3*y^3+0.04*y^5-0.1*x^2*y+0.08*x*y+0.02*x", sag_variables(), kHere);
@@ -30,7 +30,8 @@ Boundary wavy_boundary(Vec2 centre, double radius, int degree = 3) {
   return boundary_from_radius(centre, r, {degree, 40}, kHere);
 }
 
-/// The surface along a line from the place at that radius and angle, outwards.
+/// Returns the height of a surface along a radial line as a series in the distance from the point at the radius `r` and
+/// the angle `angle`. The distance increases outward.
 template <class Evaluate>
 Series<double> along_radius(const Evaluate& evaluate, Vec2 centre, double angle, double r, int order) {
   const double c = std::cos(angle);
@@ -54,7 +55,7 @@ TEST(Extrapolation, HasTheOrderItIsAskedFor) {
       for (int k = 0; k <= n; ++k) EXPECT_NEAR(outside[k], inside[k], 1e-8) << "order " << k << " of " << n;
       jump = std::max(jump, std::abs(outside[n + 1] - inside[n + 1]));
     }
-    // The base is a polynomial of degree 6: beyond that there is nothing left to jump.
+    // The base is a polynomial of degree 6. Its derivatives of higher order are 0, so they cannot jump.
     if (n < 6)
       EXPECT_GT(jump, 1e-2) << n;
     else
@@ -71,7 +72,8 @@ TEST(Extrapolation, DifferenceQuotientsAreTheExactDerivatives) {
     const double angle = 0.8;
     const double edge = extrapolation.boundary.radius_mm.evaluate(angle);
     const Series<double> exact = along_radius(base, centre, angle, edge, n + 1);
-    // Differences of order n of a polynomial of degree n are n! c_n h^n, whatever h; those of order n + 1 are 0.
+    // For a polynomial of degree n with the leading coefficient c_n, the finite differences of order n are n! c_n h^n
+    // for any step h, and the differences of order n + 1 are 0.
     const double h = 0.05;
     std::vector<double> z;
     for (int j = 0; j <= n + 1; ++j)
@@ -105,7 +107,10 @@ TEST(Extrapolation, IsTheDesignWithin) {
   EXPECT_EQ(surface.zone_at(1.3, 0.0), Zone::extrapolation);
 }
 
-/// Third derivative in azimuth on either side of every knot of the boundary, at a radius outside: the largest jump.
+/// Returns the largest jump, over all knots of the boundary, of a derivative of the surface with respect to the
+/// azimuth. The derivative is taken at a radius outside the boundary.
+/// \param degree degree of the boundary's spline
+/// \param order order of the derivative
 double azimuth_jump(int degree, int order) {
   const Boundary boundary = wavy_boundary({0, 0}, 1.0, degree);
   const FreeformSurface surface(steep_polynomial(), Extrapolation{boundary, 4}, {}, kHere);
@@ -113,7 +118,7 @@ double azimuth_jump(int degree, int order) {
   for (const double knot : boundary.radius_mm.knots_rad()) {
     double side[2];
     for (int i = 0; i < 2; ++i) {
-      // The circle of radius 1.4 through the knot, as a series in the angle.
+      // Angle along the circle of radius 1.4, as a series about the angle of the knot.
       const Series<double> angle = line_series(knot + (i == 0 ? -1e-9 : 1e-9), 1.0, order);
       side[i] = surface.evaluate(1.4 * cos(angle), 1.4 * sin(angle))[order];
     }
@@ -131,7 +136,7 @@ TEST(Extrapolation, IsAsSmoothInAzimuthAsItsBoundary) {
 }
 
 TEST(Blend, SolvesTheHermiteSystem) {
-  // Eq. 5 of Naples and Yi, centred and scaled, solved as a system.
+  // Reference: the system of linear equations of Naples and Yi, eq. 5, for a centred and scaled variable.
   for (int d = 0; d <= kMostBlendOrder; ++d) {
     const int size = 2 * d + 2;
     const double r1 = 0.7;
@@ -163,7 +168,7 @@ TEST(Blend, SolvesTheHermiteSystem) {
   }
 }
 
-/// One tilted lenslet on a curved base.
+/// Returns a curved base with one lenslet, which is tilted unless `tilted` is false. `d` is the order of the blend.
 FreeformSurface lens_on_base(int d, bool tilted = true) {
   Sag base;
   base.asphere.curvature_per_mm = -0.08;
@@ -231,7 +236,7 @@ TEST(Blend, StaysBetweenItsBoundaries) {
 }
 
 TEST(Blend, ReachesAnExtrapolatedBase) {
-  // One lenslet across the base's boundary, one beyond it.
+  // The first lenslet extends across the boundary of the base, and the second lenslet is outside this boundary.
   const Extrapolation extrapolation{wavy_boundary({0.1, -0.05}, 1.0, 5), 4};
   const FreeformSurface bare(steep_polynomial(), extrapolation, {}, kHere);
   std::vector<Lenslet> lenslets(2);

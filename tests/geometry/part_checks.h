@@ -7,7 +7,8 @@
 
 namespace retrace::geometry {
 
-/// What lies below z = 0 less what of the plate the surface takes above it.
+/// Returns the volume of the material below z = 0 minus the volume of the space above z = 0 that the back surface cuts
+/// out of the plate.
 inline double volume_below(const Part& part) {
   double below = 0.0;
   for (const SurfacePatch& patch : part.patches) {
@@ -15,7 +16,7 @@ inline double volume_below(const Part& part) {
       const Vec3& a = patch.vertices[t[0]];
       const Vec2 ab = (patch.vertices[t[1]] - a).head<2>();
       const Vec2 ac = (patch.vertices[t[2]] - a).head<2>();
-      // Clockwise in plan, as it is seen from below.
+      // The triangles are counter-clockwise as seen from below, and therefore clockwise in plan.
       const double plan_area = 0.5 * (ab.y() * ac.x() - ab.x() * ac.y());
       below -= plan_area * (a.z() + patch.vertices[t[1]].z() + patch.vertices[t[2]].z()) / 3.0;
     }
@@ -23,7 +24,8 @@ inline double volume_below(const Part& part) {
   return below;
 }
 
-/// The boundary of a finite part of one patch is closed and holds the volume that its surface encloses.
+/// Expects that the boundary of a finite part with a single patch is closed and encloses the volume that follows from
+/// its back surface.
 inline void expect_valid(const PartSpec& spec) {
   const Part part = build_part(spec);
   const BoundaryReport report = check_boundary(closed_boundary(part));

@@ -95,7 +95,7 @@ TEST(Part, DepthsOfTheContract) {
   EXPECT_NEAR(element_depth_mm(RtpElement{0.5, 0.5, 90.0}), 0.25, 1e-15);
 }
 
-// One dihedral edge, seen from the apex, runs over +x: the facet opposite to it faces -x.
+// Seen from the apex, one dihedral edge projects onto +x. The facet opposite to this edge faces -x.
 TEST(Part, CubeCornerOrientation) {
   PartSpec spec;
   spec.element = TriangularCube{1.0};
@@ -107,7 +107,8 @@ TEST(Part, CubeCornerOrientation) {
   EXPECT_NEAR(opposite.y(), 0.0, 1e-14);
 }
 
-// Interior pieces are shared: a large array has few distinct ones, and none of its area is missing.
+// Equal portions of an array share a patch. A large array therefore has few distinct patches. None of its area is
+// missing.
 TEST(Part, LargeArraysShareTheirPieces) {
   const Part rtp = build_part(rtp_array(0.451, 0.451, 222 * 0.451, Arrangement::offset));
   EXPECT_EQ(rtp.elements_full, 222 * 222 - 111);

@@ -7,7 +7,7 @@
 
 #include "core/math/jets.h"
 
-// Sags against closed forms and difference quotients.
+// Tests of sags: values are compared with closed forms, and derivatives with difference quotients.
 
 namespace retrace::geometry::sag_test {
 namespace {
@@ -20,7 +20,7 @@ Series<double> line(double x, double slope, int order = kMostOrder) {
   return line_series(x, slope, order);
 }
 
-/// Gradient by Gradient and second derivative by Series against central differences of values.
+/// Compares the gradient (type Gradient) and the second derivative along a line (type Series) with central differences.
 void expect_derivatives(const Sag& sag, double x, double y) {
   const double h = 1e-4;
   const Gradient z = sag.evaluate(Gradient(x, 1.0, 0.0), Gradient(y, 0.0, 1.0));
@@ -34,7 +34,7 @@ void expect_derivatives(const Sag& sag, double x, double y) {
   const double second =
       (sag.evaluate(x + h * c, y + h * s) - 2 * sag.evaluate(x, y) + sag.evaluate(x - h * c, y - h * s)) / (h * h);
   EXPECT_NEAR(2.0 * along[2], second, 1e-5);
-  // The whole series stands for the function around.
+  // The complete series must approximate the sag at a nearby point.
   const double t = 1e-2;
   EXPECT_NEAR(horner(along.c.data(), along.order + 1, t), sag.evaluate(x + t * c, y + t * s), 1e-14);
 }

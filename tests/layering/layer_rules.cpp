@@ -229,7 +229,7 @@ class NameReader {
     if (is_qualifier || (last_ == "namespace" && last_but_one_ == "using")) source_.namespaces.emplace(word, line);
     if (std::isupper(static_cast<unsigned char>(word[0])) != 0) source_.names.emplace(word, line);
     if (keys.contains(word)) {
-      // In `enum class`, the first word is the one that may start the line.
+      // In `enum class`, the keyword `enum` is the word that may be the first word of the line.
       if (last_ != "enum") key_starts_line_ = starts_line;
       key_ = last_ == "friend" || last_ == "using" ? "" : word;
     } else if (!key_.empty() && !is_qualifier && !word.starts_with("RETRACE_")) {

@@ -21,7 +21,7 @@ struct Rules {
 };
 
 /// Reads the rules from a JSON file.
-/// \throw std::runtime_error if a folder or room is not listed after all that it may include
+/// \throw std::runtime_error if a folder or room is listed before one that it may include
 Rules read_rules(const std::filesystem::path& file);
 
 /// An include, or the use of a type or namespace, that violates the order of folders and rooms.

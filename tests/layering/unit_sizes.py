@@ -1,8 +1,10 @@
-"""Names the translation units for which the compiler reads most lines, and fails if one reads more than LIMIT.
+"""Lists the translation units for which the compiler reads the most lines. Fails if a unit has more than LIMIT lines.
 
-Reading headers is two thirds of the time that a build takes. Lines are those of all files that a unit was made of, each
-counted once, as the compiler itself listed them for Ninja: what `g++ -E` prints without blank lines and comments is
-about half of it. Usage: unit_sizes.py BUILD_FOLDER
+    unit_sizes.py BUILD_FOLDER
+
+Reading headers takes two thirds of the time of a build. The size of a unit is the total number of lines of all source
+files and headers from which it was built. Each file is counted once. The compiler reports these files to Ninja, which
+stores their names. The output of `g++ -E` without blank lines and comments has about half as many lines.
 """
 import functools
 import os
@@ -19,12 +21,12 @@ def lines_in(path):
     try:
         with open(path, "rb") as file:
             return sum(1 for _ in file)
-    except FileNotFoundError:  # of an older build
+    except FileNotFoundError:  # an older build has used this file, which no longer exists
         return 0
 
 
 def units(build_folder):
-    """Yields (object file, files it was made of)."""
+    """Yields each object file with the list of the source files and headers from which it was built."""
     listed = subprocess.run(["ninja", "-C", build_folder, "-t", "deps"], capture_output=True, text=True, check=True)
     for block in listed.stdout.split("\n\n"):
         head, *files = block.strip().split("\n")

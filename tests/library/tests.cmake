@@ -1,4 +1,4 @@
-# Linked as those outside are: with the shared library, and none of the parts that it is made of.
+# This test is linked like a program of a user: only with the shared library, without the static libraries.
 retrace_test(library_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/library_test.cpp app/program.cpp support/refusals.cpp
   LIBRARIES retrace::retrace nlohmann_json::nlohmann_json)

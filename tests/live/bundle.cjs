@@ -1,5 +1,5 @@
-// The checked-in engine of the live page under Node.js: a request a line of standard input, an answer a line of standard
-// output, as the native program retrace_live.
+// Runs the checked-in engine of the live page under Node.js. Like the native program retrace_live, it reads one request
+// per line from standard input and writes one answer per line to standard output.
 //     node bundle.cjs FOLDER
 const { readFileSync } = require("node:fs");
 const { join, resolve } = require("node:path");

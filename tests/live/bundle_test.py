@@ -1,5 +1,5 @@
-"""The checked-in engine of the live page says what the native one says: data/live_page/engine.* under Node.js and in Chromium
-against retrace_live, which is built of the same sources.
+"""Compares the checked-in engine of the live page with the native engine. The answers of data/live_page/engine.* under
+Node.js and in Chromium must match the answers of retrace_live, which is built from the same sources.
 
     python3 bundle_test.py SOURCE RETRACE_LIVE
 """
@@ -21,10 +21,12 @@ from browser import browser  # noqa: E402
 
 SOURCE = NATIVE = None
 
-# Of shares of power, and of lengths in mm: two libraries of mathematical functions differ in the last digit.
+# Tolerances of fractions of power, and of lengths in mm. Results differ in the last digit because the native engine and
+# the browser use different libraries of mathematical functions.
 SAME = 1e-11
 SAME_MM = 1e-9
-# Where bodies swallow what is reflected often, all beams are followed to their end: which are given up may hang on a last digit.
+# Absorption limits the number of beams, so that all beams can be traced to their end. Without absorption, a difference
+# in the last digit may change which beams are truncated.
 ABSORBING = {"body.absorption_per_mm": 3}
 NEARLY_ALL = 1e-11
 
@@ -54,7 +56,7 @@ acceptance_half_angle_deg = [0.5, 5]
 
 
 def efficiency_at(footprint, at):
-    """Of the region that holds a place; 0 between them."""
+    """Returns the efficiency of the region that contains a position, or 0 outside all regions."""
     for region in footprint["regions"]:
         corners = list(zip(region["outline"][::2], region["outline"][1::2]))
         if all((x2 - x1) * (at[1] - y1) >= (y2 - y1) * (at[0] - x1)
@@ -64,7 +66,7 @@ def efficiency_at(footprint, at):
 
 
 class Answers:
-    """An engine that answers line by line."""
+    """Engine that runs as a child process and answers line by line."""
 
     def __init__(self, *command):
         self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
@@ -82,7 +84,7 @@ class Answers:
 
 
 class InChromium:
-    """The engine in a browser."""
+    """Engine that runs in a browser."""
 
     START = """
     const [packed, done] = arguments;
@@ -122,7 +124,7 @@ class Bundle(unittest.TestCase):
         cls.addClassCleanup(cls.chromium.close)
 
     def same(self, a, b, where=""):
-        """The same JSON but for the last digits of numbers."""
+        """Expects equal JSON values. Numbers may differ within the tolerances."""
         if isinstance(a, bool) or not isinstance(a, (int, float, list, dict)):
             self.assertEqual(a, b, where)
         elif isinstance(a, dict):
@@ -138,7 +140,8 @@ class Bundle(unittest.TestCase):
             self.assertAlmostEqual(a, b, delta=(SAME_MM if is_length else SAME) * max(1.0, abs(a)), msg=where)
 
     def both(self, **request):
-        """What both say, which is the same. The browser's bundle says it with the same bytes as Node.js's."""
+        """Expects equal answers of all engines and returns the answer. The answers in the browser and under Node.js
+        must have the same bytes."""
         text = json.dumps(request)
         told = self.bundle.text(text)
         self.assertEqual(self.chromium.text(text), told)
@@ -179,7 +182,8 @@ class Bundle(unittest.TestCase):
         self.assertEqual(points, 200)
 
     def same_direction(self, **request):
-        """The same light. How a footprint is cut into convex regions is not: rounding decides it where edges meet."""
+        """Expects equal light for one direction. Footprints are compared at random points, because their division into
+        convex regions depends on rounding where edges meet."""
         native, bundle = (engine.ask(**request) for engine in (self.native, self.bundle))
         footprints = [answer.pop("footprint") for answer in (native, bundle)]
         spots = [answer["far_field"].pop("spots") for answer in (native, bundle)]

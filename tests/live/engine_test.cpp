@@ -148,7 +148,7 @@ TEST(LiveEngine, RefusesChangesThatMakeNoDesign) {
   EXPECT_EQ(refused({{"element.kind", "rtp"}}), "design.toml: element.base_mm");
   EXPECT_EQ(refused({{"element.apertur_mm", 1}}), "design.toml: element.apertur_mm");
   EXPECT_EQ(refused({{"element.aperture_mm", nullptr}}), "design.toml: element.aperture_mm");
-  // A design that cannot be built is refused as well.
+  // A design from which no part can be built is also refused.
   EXPECT_EQ(refused({{"element.cant_deg", 10}, {"body.thickness_mm", 1e-6}}), "design.toml: body.thickness_mm");
 }
 

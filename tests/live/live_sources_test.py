@@ -1,4 +1,4 @@
-"""A change of comments does not ask for a new engine of the live page, a change of code does.
+"""Tests that the engine of the live page must be rebuilt after a change of code, but not after a change of comments.
 
     python3 live_sources_test.py SOURCE
 """

@@ -11,7 +11,8 @@ add_test(NAME live/modules_test COMMAND "${RETRACE_PYTHON}" -B live/modules_test
          WORKING_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}")
 add_test(NAME live/toml_edit_test COMMAND "${RETRACE_NODE}" live/toml_edit_test.mjs "${PROJECT_SOURCE_DIR}"
          WORKING_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}")
-# Whether the engine is that of the sources matters to who can make it anew.
+# Tests whether the engine matches the sources. The test exists only with emscripten, which is needed to rebuild the
+# engine.
 find_program(RETRACE_EMXX em++)
 if(RETRACE_EMXX)
   add_test(NAME live/sources_test COMMAND "${PROJECT_SOURCE_DIR}/tools/live_page" --check)

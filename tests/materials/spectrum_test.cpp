@@ -191,7 +191,7 @@ TEST(Spectrum, LinesAreKeptAndWeighted) {
   EXPECT_EQ(traced_spectrum(radiant).weights, radiant.weights);
 }
 
-// The centroid of a lamp with constant power is at the middle of its range, even if only two samples describe the
+// The centroid of a lamp with constant power is at the centre of its range, even if only two samples describe the
 // lamp.
 TEST(Spectrum, FewSamplesDescribeASmoothLamp) {
   const Spectrum flat = resolved_spectrum({{400.3, 699.7}, {2.0, 2.0}}, nullptr);

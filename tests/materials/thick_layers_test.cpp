@@ -96,7 +96,7 @@ TEST(ThickLayers, PowerThatWalksFromFaceToFace) {
             const FresnelCoefficients f = fresnel(indices[k] / indices[to], cosines[k]);
             return std::norm(is_s ? f.r_s : f.r_p);
           };
-          const double first = step == 0 ? 1.0 : kept;  // light that starts at its face
+          const double first = step == 0 ? 1.0 : kept;  // light has no path in a layer before the first step
           if (k > 0) {
             next_up[k] += reflectance(k - 1) * first * down[k];
             next_down[k - 1] += (1.0 - reflectance(k - 1)) * first * down[k];

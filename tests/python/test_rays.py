@@ -120,7 +120,7 @@ class Trace(unittest.TestCase):
                 arguments = {"origins": origins, "directions": directions, **changes}
                 with self.assertRaises(rt.InputError) as caught:
                     rt.trace(BRICKS, **arguments)
-                if key != "axes":  # errors in axes have no key
+                if key != "axes":  # the library reports errors in axes without a key
                     self.assertEqual(caught.exception.key, key)
 
 

@@ -1,5 +1,5 @@
-"""Tests that program, library and package answer a wrong request alike: the same field, the same
-allowed values and the same given value."""
+"""Tests that program, library and package refuse a wrong request with the same message: the field,
+the allowed values and the given value."""
 
 import pathlib
 import random
@@ -96,7 +96,7 @@ class Requests(unittest.TestCase):
 
     def test_every_request_is_tested(self):
         names = {request["name"] for request in program.requests()}
-        self.assertEqual(set(CALLS), names - {"roughness"})  # which only the program has
+        self.assertEqual(set(CALLS), names - {"roughness"})  # roughness exists only in the program
         self.assertEqual(names, set(FIELDS))
 
     def test_an_empty_list_is_a_default(self):

@@ -1,5 +1,5 @@
-"""Tests of sweeps, tolerances, optima, surfaces, pictures and pages: documents as from the program,
-and additions of Python."""
+"""Tests of sweeps, tolerances, optima, surfaces, pictures and pages. Documents equal those of the
+program. Functions that exist only in Python are also tested."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-# The package for Python, from the build folder, with Debian's packages.
+# Tests of the Python package in the build folder, with Debian's Python packages.
 if(NOT RETRACE_WITH_PYTHON)
   return()
 endif()

@@ -275,7 +275,7 @@ TEST(RayTracer, NeitherThreadsNorPiecesMatter) {
 }
 
 // Files contain positions in single precision. A ray that starts on a face, within rounding errors, must hit this face
-// once.
+// one time.
 TEST(RayTracer, RaysThatBeginOnAFaceMeetItOnce) {
   const Part part = build_part(single(RtpElement{0.5, 0.5, 90.0}, 0.3));
   RayTracer tracer(part, nullptr, 0.5, every_branch(), 1);

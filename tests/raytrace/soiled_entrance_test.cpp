@@ -216,8 +216,8 @@ TEST(SoiledEntrance, ScratchesThrowLightAcross) {
   }
 }
 
-// Dust on a face: the returned fraction is rho = c (a b + (a f)^2 R / (1 - a b R)), where R is the mean reflectance of
-// the face for Lambertian light. The fraction c a f (1 - R) / (1 - a b R) enters the part at any angle of incidence.
+// Dust on a face returns the fraction rho = c (a b + (a f)^2 R / (1 - a b R)) of the light. R is the mean reflectance
+// of the face for Lambertian light. The fraction c a f (1 - R) / (1 - a b R) enters the part at any angle of incidence.
 // Both are proportional to the coverage c.
 TEST(SoiledEntrance, DustInClosedForm) {
   const double face = diffuse_reflectance();

@@ -58,7 +58,7 @@ std::vector<Question> questions() {
       {"finite cubes", build_part(finite_cubes), from(15, 40)}};
 }
 
-/// Equal elements may be traced only once, which must not change the result.
+/// Equal elements may be traced only one time, which must not change the result.
 TEST(StochasticBeams, AgreeWithBeamsAndBookAllPower) {
   Optics optics = pmma();
   optics.absorption_per_mm = 0.01;

@@ -38,7 +38,7 @@ std::vector<double> outside(const NumberRange& range, bool is_whole) {
   return numbers;
 }
 
-/// Values that a kind does not allow.
+/// Returns values that a kind does not allow.
 std::vector<Value> wrong_values(const schema::Kind& kind) {
   std::vector<Value> wrong;
   const auto add = [&](const std::vector<double>& numbers, std::size_t count) {
@@ -158,7 +158,7 @@ TEST(Requests, ResetRestoresEveryDefault) {
   });
 }
 
-// An empty list has no type of its entries.
+// An empty list of numbers may be assigned to a field that is a list of any type.
 TEST(Requests, EmptyListsAreOfEveryType) {
   RreRequest request;
   request.incidence_spans_deg = {{0.0, 1.0}};

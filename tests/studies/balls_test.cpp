@@ -168,8 +168,8 @@ PhotometrySettings request_of(double receiver_deg) {
 }
 
 TEST(BallStudies, CoefficientOfAWideReceiverIsItsShareOfThePower) {
-  // A receiver with a diameter of 1 degree around the source receives the light that returns within half a degree. Its
-  // R_A is this power divided by the solid angle.
+  // A receiver with a diameter of 1 degree around the source receives the light that returns within half a degree. R_A
+  // is the power of this light divided by the solid angle of the receiver.
   const Design design = balls();
   const PhotometryResult result = PhotometryStudy(design, request_of(1.0)).run();
   EXPECT_EQ(result.engine, "balls");

@@ -87,7 +87,7 @@ class Shares : public Progress {
   std::vector<double> shares;
 };
 
-// The readings alone take the progress to 1 if they are all that is requested. Otherwise a part of it is left for the
+// If only readings are requested, they take the progress to 1. Otherwise a part of the progress is reserved for the
 // colour and for the search for a change with which the design passes.
 TEST(PhotometricFirstAnswer, ProgressCoversEveryStage) {
   PhotometrySettings request = request_by(Engine::automatic);

@@ -323,7 +323,7 @@ TEST(Photometry, DyeTakesItsShareOfTheFlux) {
   }
 }
 
-// Monte Carlo with the same apertures of source and receiver agrees with the exact engine within its standard error.
+// Monte Carlo agrees with the exact engine for equal apertures of source and receiver, within its standard error.
 TEST(Photometry, MonteCarloAgreesWithTheExactEngine) {
   const Design design = design_of(honeycomb(4.0));
   PhotometrySettings request = request_of(r150("IA", "red"));

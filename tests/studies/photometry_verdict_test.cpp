@@ -132,9 +132,8 @@ TEST(PhotometryVerdict, RoughPartsShowTheirSpecularShareAndWhatTheyScatter) {
   const double phase = 4.0 * pi * kPmma * sq_nm * std::sqrt(1.0 / 3.0) / smooth.light.wavelength_nm();
   const double specular = std::exp(-3.0 * phase * phase);
   EXPECT_GT(after.points[0].r_a, specular * before.points[0].r_a);
-  // For Gaussian heights with a correlation length of 20 um, the maximum of the scattered lobe is at most (1 -
-  // specular) pi l^2 cos t / w^2 per steradian. This follows from docs/theory/scatter.md, without diffraction at the
-  // edges.
+  // For Gaussian heights with a correlation length of 20 um, the scattered lobe has a maximum of at most (1 - specular)
+  // pi l^2 cos t / w^2 per steradian. This follows from docs/theory/scatter.md, without diffraction at the edges.
   const double middle_per_sr = (1.0 - specular) * pi * std::pow(20e-3 / (1e-6 * smooth.light.wavelength_nm()), 2.0);
   EXPECT_LT(after.points[0].r_a, specular * before.points[0].r_a + 2.0 * middle_per_sr);
 }

@@ -149,8 +149,8 @@ double efficiency_at(const Footprint& footprint, const geometry::Vec2& at) {
   return 0.0;
 }
 
-// Equal elements are traced only once, but shown at all their positions. For an infinite part, these are all positions
-// within a period.
+// Equal elements are traced only one time, but shown at all their positions. For an infinite part, these are all
+// positions within a period.
 TEST(Footprint, OfElementsFollowedOnceIsThatOfAll) {
   using Elements = raytrace::BeamTracer::Elements;
   const std::vector<geometry::PartSpec> specs = {

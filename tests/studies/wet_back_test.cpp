@@ -88,7 +88,7 @@ TEST(WetBackDesign, PartlyWetBacksAreTracedByRays) {
   const Design design = read("index = 1.333\nhalf_plane = [5, 5, 0]");
   const RreResult result = rre(design);
   for (const RrePoint& point : result.points) EXPECT_EQ(point.engine, "embree");
-  // Of 20 columns of elements, half return light like dry elements, and half like wet ones. Near the border, this is
+  // Half of the 20 columns of elements return light like dry elements, and half like wet ones. Near the border, this is
   // only approximate, because rows are shifted.
   const double dry = rre(set({})).points[0].rre, wet = rre(set({"body.back_index=1.333"})).points[0].rre;
   EXPECT_NEAR(result.points[0].rre, 0.5 * (dry + wet), 0.03 * (dry - wet));

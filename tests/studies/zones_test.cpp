@@ -266,8 +266,8 @@ RreResult rre(const Design& design, Engine engine, double incidence_deg, std::op
   return RreStudy({design}, request).run();
 }
 
-// Whole prisms are on both sides of the border between the zones. Light along the normal goes from one facet to the
-// other facet of the same prism.
+// Whole prisms are on both sides of the border between the zones. Light along the normal passes from one facet of a
+// prism to its other facet.
 TEST(ZonedDesign, PrismsTurnedInAZoneReturnWhatTheyDoAlone) {
   const std::string lengths = "x_length_mm = 8; y_length_mm = 4";
   const Design plain = parse_design(design_of(kRtp, lengths), "d.toml");
@@ -283,8 +283,8 @@ TEST(ZonedDesign, PrismsTurnedInAZoneReturnWhatTheyDoAlone) {
 }
 
 // A part has two zones of equal size with different cube corners, and light is at oblique incidence. The exact engine
-// and the engine embree agree on its RRE. This RRE is nearly the mean of the RREs of two parts that consist of only one
-// of the zones each. The difference arises at the borders.
+// and Embree agree on its RRE. This RRE is nearly the mean of the RREs of two parts, each with the cube corners of one
+// zone. The difference arises at the borders.
 TEST(ZonedDesign, TheSumOfZonesIsThePartAsFarAsTheyAreWide) {
   const std::string set = "set = [\"element.cant_deg=8\", \"element.cant_azimuth_deg=40\"]\n";
   const std::string one = "[[zone]]\narea_fraction = 1\n";
@@ -303,8 +303,8 @@ TEST(ZonedDesign, TheSumOfZonesIsThePartAsFarAsTheyAreWide) {
 }
 
 // If all columns have equal elements, the part equals the array. In the other designs, every second column is rotated
-// by 180 degrees. If such a part has an odd number of columns, a rotation of the part by 180 degrees about its center
-// has the same effect as an exchange of rotated and unrotated columns.
+// by 180 degrees. A rotation of a part with an odd number of columns by 180 degrees about its center then exchanges
+// rotated and unrotated columns.
 TEST(ZonedDesign, ColumnsInTurnAreTheArrayAndTurnWithIt) {
   const std::string lengths = "x_length_mm = 20; y_length_mm = 20";
   const std::string canted = "; cant_deg = 8; cant_azimuth_deg = 40";

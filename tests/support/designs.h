@@ -7,6 +7,8 @@
 #include "raytrace/paths/monte_carlo.h"
 #include "tests/support/part_specs.h"
 
+// Parts, optics and films that many tests use.
+
 namespace retrace::testing {
 
 /// Refractive index of PMMA in the closed forms of the array-size study.

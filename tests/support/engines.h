@@ -14,6 +14,8 @@
 #include "tests/support/reference_tracer.h"
 #include "tests/support/statistics.h"
 
+// Checks that the engines (beams, stochastic beams, rays and the reference tracer) give equal results for a part.
+
 namespace retrace::testing {
 
 /// Expects that beams, stochastic beams and rays give the same efficiency for PMMA at 3 degrees of incidence. The

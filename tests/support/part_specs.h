@@ -2,6 +2,8 @@
 
 #include "geometry/elements/part_spec.h"
 
+// Specifications of finite and infinite parts for tests.
+
 namespace retrace::testing {
 
 inline geometry::PartSpec finite(geometry::Element element, geometry::Arrangement arrangement, double x_mm, double y_mm,

@@ -10,6 +10,8 @@
 #include "raytrace/light/light.h"
 #include "raytrace/light/optics.h"
 
+// Slow reference tracer, which is independent of the tracers of the program.
+
 namespace retrace::testing {
 
 struct ReferenceResult {

@@ -10,7 +10,8 @@
 #include "core/error.h"
 #include "core/warning.h"
 
-// Tests assert where an input is refused, not the wording. Each wording is a line of tests/messages.txt.
+// Functions for tests of error messages. A test checks the position at which an input is refused, but not the wording
+// of the message. The wordings of all messages are recorded in tests/messages.txt, one message per line.
 
 namespace retrace {
 
@@ -19,12 +20,12 @@ namespace retrace {
 /// variable RETRACE_WRITE_GOLDEN is set, a missing line is added to the file.
 void record_message(std::string_view message);
 
-/// Records a message and returns its beginning `file:line: key`, without the parts that it lacks.
+/// Records a message and returns its beginning `file:line: key`. Parts that the message does not contain are omitted.
 std::string recorded_place_of(std::string_view message);
 
-/// Returns `file:line: key` of an error without the parts that are unknown, or "refused" if all are. Returns "failed"
-/// for an error that is no InputError. `TMP` replaces the path of a temporary folder. Expects the exit code of the
-/// type.
+/// Returns `file:line: key` of an error. Unknown parts are omitted; if all are unknown, returns "refused". Returns
+/// "failed" for an error that is not an InputError. `TMP` replaces the path of a temporary folder. Expects that the
+/// error has the exit code of its type.
 std::string place_of(const Error& error);
 
 /// Records the message of an error and returns place_of(error).
@@ -60,13 +61,13 @@ std::string refusal_of(const Read& read, const std::string& taken = "") {
   return taken;
 }
 
-/// Expects `refused` to return the second text of each pair for the first.
+/// Expects that `refused`, called with the first text of a pair, returns the second text, for all pairs.
 template <class Refused>
 void expect_refusals(const Refused& refused, const std::vector<std::pair<std::string, std::string>>& cases) {
   for (const auto& [given, place] : cases) EXPECT_EQ(refused(given), place) << given;
 }
 
-/// A text with the first `from` in it replaced.
+/// Returns the text with the first occurrence of `from` replaced by `to`. Expects that there is one.
 inline std::string with_replaced(std::string text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << "no " << from;

@@ -8,6 +8,8 @@
 #include "core/random.h"
 #include "surface_models/height_map.h"
 
+// Height maps with known statistics: white noise, Gaussian roughness, waves and planes.
+
 namespace retrace::testing {
 
 /// Returns independent Gaussian heights of variance 1 on a grid with a spacing of 1 um.

@@ -290,7 +290,7 @@ Losses losses_by_gratings(double index_from, double index_to, double incidence_d
 // has a loss.
 TEST(FirstOrder, ReflectedAndTransmittedLightShareTheLoss) {
   struct Split {
-    double length_um, incidence_deg, within_s, within_p;  ///< of R's part
+    double length_um, incidence_deg, within_s, within_p;  ///< maximum relative errors of the loss of R, for s and p
   };
   for (const auto& [length_um, incidence_deg, within_s, within_p] :
        {Split{5.0, 20.0, 0.01, 0.01}, Split{5.0, 36.0, 0.01, 0.02}, Split{1.0, 20.0, 0.01, 0.01},

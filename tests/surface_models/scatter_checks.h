@@ -15,6 +15,8 @@
 #include "surface_models/scatter/slope_distribution.h"
 #include "tests/support/statistics.h"
 
+// Events, height maps and statistical checks for tests of scatter models.
+
 namespace retrace::testing::scatter_checks {
 
 using namespace surface_models;

@@ -14,10 +14,10 @@ namespace {
 using namespace scatter_checks;
 
 const std::vector<Roughness>& roughnesses() {
-  static const std::vector<Roughness> all = {{20.0, 2.0, 0.0, 0.0},    // as a diamond cuts: narrow lobe
-                                             {60.0, 0.6, 0.0, 0.0},    // wide, diffracted several times
-                                             {10.0, 0.15, 0.0, 0.0},   // cut by the horizon
-                                             {15.0, 1.0, 40.0, 20.0},  // with waviness that diffracts
+  static const std::vector<Roughness> all = {{20.0, 2.0, 0.0, 0.0},    // facet cut by diamond: narrow lobe
+                                             {60.0, 0.6, 0.0, 0.0},    // wide lobe; light is diffracted several times
+                                             {10.0, 0.15, 0.0, 0.0},   // lobe cut by the horizon
+                                             {15.0, 1.0, 40.0, 20.0},  // waviness that diffracts
                                              {0.0, 0.0, 60.0, 15.0}};
   return all;
 }
@@ -192,7 +192,7 @@ TEST(HarveyShack, DensityIsTheTransformOfTheSurfaceTransferFunction) {
 
 TEST(HarveyShack, IsReciprocalBeforeScaling) {
   for (const Roughness& r : roughnesses()) {
-    if (r.correlation_length_um == 0.15) continue;  // shorter than what the claim holds for
+    if (r.correlation_length_um == 0.15) continue;  // too short for reciprocity
     const HarveyShack model(r);
     for (const double a : {0.1, 0.35, 0.6})
       for (const double b : {0.05, 0.4, 0.63}) {

@@ -27,12 +27,12 @@ TEST(Spectrum, AlongALineHoldsTheVariance) {
 
 TEST(Spectrum, OfGaussianRoughnessIsTheClosedForm) {
   constexpr double kSq = 12.0;
-  constexpr double kLength = 4.0;  // um
+  constexpr double kLength = 4.0;  // correlation length, um
   const HeightMap map = testing::gaussian_surface(1024, 1024, kSq, kLength, 4);
   const Spectrum radial = radial_spectrum(map);
   const Spectrum along = line_spectrum(map, Axis::x);
   const double length_mm = kLength * 1e-3;
-  // Sums over bands, in which single bins' fluctuations average out.
+  // Densities are summed over bands of frequencies, because the densities of single bins fluctuate randomly.
   for (const double f : {20.0, 40.0, 80.0, 120.0}) {
     double measured = 0.0;
     double expected = 0.0;
@@ -130,7 +130,7 @@ TEST(Scratches, AreCountedWithPlaceDepthAndWidth) {
     for (std::size_t row = 80; row < 83; ++row) map.at(column, row) -= 25.0;
     map.at(column, 200) += 15.0;
   }
-  testing::add_wave(map, 10.0, 0.0, 1.0 / 150.0);  // what the filter leaves of waviness does not hide it
+  testing::add_wave(map, 10.0, 0.0, 1.0 / 150.0);  // a long wave, like remaining waviness
   const std::vector<Scratch> along = find_scratches(map, Axis::x, 20.0);
   ASSERT_EQ(along.size(), 2U);
   EXPECT_NEAR(along[0].position_um, 81.0, 1.0);
@@ -144,7 +144,7 @@ TEST(Scratches, AreCountedWithPlaceDepthAndWidth) {
 TEST(Scratches, AreNeitherPitsNorFeedMarksNorChance) {
   HeightMap map = testing::gaussian_surface(400, 300, 2.0, 2.0, 11);
   EXPECT_TRUE(find_scratches(map, Axis::x, 20.0).empty());
-  for (std::size_t column = 10; column < 60; ++column) map.at(column, 100) -= 300.0;  // deep, but short
+  for (std::size_t column = 10; column < 60; ++column) map.at(column, 100) -= 300.0;  // a deep but short scratch
   EXPECT_TRUE(find_scratches(map, Axis::x, 20.0).empty());
   HeightMap marks = testing::gaussian_surface(400, 300, 2.0, 2.0, 12);
   testing::add_wave(marks, 10.0, 0.0, 0.1);

@@ -8,7 +8,7 @@ retrace_test(raytrace_tests
     ${CMAKE_CURRENT_LIST_DIR}/texture_model_test.cpp
   LIBRARIES retrace::texture)
 
-# Gwyddion's libraries as a second opinion.
+# This test compares results with those of Gwyddion's libraries.
 retrace_test(gwyddion_test
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/gwyddion_test.cpp
   LIBRARIES retrace::texture "${RETRACE_GWYPROCESS_LIBRARY}" "${RETRACE_GWYDDION_LIBRARY}" PkgConfig::GOBJECT)

@@ -1,12 +1,13 @@
 # shellcheck shell=bash
-# A bare Debian 12 in a folder, for scripts that show what happens on a system that has nothing else. To be sourced after
-# setup.sh, by root.
+# Functions for a bare Debian 12 in a folder (chroot), for scripts that test a system without other software. Source
+# this file after setup.sh, as root.
 
 bare=
 bare_log=
 
-# make_bare FOLDER - which must not exist, and is removed when the script ends. $MIRROR where debootstrap's own mirror is
-# not reachable. What happens inside is written to FOLDER.log.
+# make_bare FOLDER - installs a bare Debian 12 in FOLDER. FOLDER must not exist, and is removed when the script ends.
+# $MIRROR is the address of a mirror for debootstrap; it is needed if the default mirror is not reachable. The output of
+# commands is written to FOLDER.log.
 make_bare() {
   bare=$1
   bare_log=$bare.log
@@ -18,10 +19,10 @@ make_bare() {
   debootstrap --variant=minbase bookworm "$bare" ${MIRROR:+"$MIRROR"} >"$bare_log" 2>&1 ||
     give_up "debootstrap failed, see $bare_log"
   cp /etc/resolv.conf "$bare/etc/"
-  # A mirror or proxy of apt's own settings is wanted inside as well.
+  # The mirror and proxy settings of apt on this system also apply to the bare system.
   cp -r /etc/apt/. "$bare/etc/apt/"
   mount -t proc proc "$bare/proc"
-  # Tests of what is drawn on a terminal open one.
+  # Tests of terminal output open a pseudo-terminal.
   mount -t devpts -o newinstance,ptmxmode=0666 devpts "$bare/dev/pts"
   ln -sf pts/ptmx "$bare/dev/ptmx"
 }
@@ -34,7 +35,7 @@ remove_bare() {
   rm -rf --one-file-system "$bare"
 }
 
-# in_bare COMMAND... - in it, with nothing of this environment.
+# in_bare COMMAND... - runs a command in the bare system, with a minimal environment instead of the current one.
 in_bare() {
   chroot "$bare" /usr/bin/env -i HOME=/root PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin TERM=dumb "$@"
 }

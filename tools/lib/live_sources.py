@@ -1,10 +1,11 @@
-"""Which sources the checked-in engine of the live page was made of, and whether it still is that of the sources.
+"""Records the sources of the checked-in engine of the live page, and checks whether the engine is up to date.
 
     python3 live_sources.py record SOURCE BUILD    after a build by emscripten: writes data/live_page/engine.*
     python3 live_sources.py check SOURCE           exit code 1 and a line for each file that has changed
 
-Every file that the compiler read goes in, and every file that controls the build. Of the root's CMakeLists.txt only the
-version counts, and of C++ files only the code: comments and white space may change without a new engine.
+The record contains every file that the compiler read and every file that controls the build. For the CMakeLists.txt of
+the root, only the version is compared. For C++ files, only the code is compared: comments and white space may change
+without a new engine.
 """
 
 import hashlib
@@ -32,7 +33,7 @@ LITERAL_OR_COMMENT = re.compile(
 
 
 def code_of(text):
-    """The words, signs and literals of a C++ file, without comments."""
+    """Returns the words, signs and literals of a C++ file, without comments."""
     code = []
     end = 0
     for found in LITERAL_OR_COMMENT.finditer(text):
@@ -54,7 +55,7 @@ def version_of(source):
 
 
 def compiled(source, build):
-    """What the compiler read of the tree, by the dependencies that it told ninja."""
+    """Returns the files of the repository that the compiler read, according to ninja's record of dependencies."""
     told = subprocess.run(["ninja", "-C", build, "-t", "deps"], check=True, capture_output=True, text=True).stdout
     files = set()
     for line in told.splitlines():
@@ -68,7 +69,8 @@ def compiled(source, build):
 
 
 def list_of(source, file):
-    """The CMakeLists.txt that says how a file is compiled: of its folder or of the next above that has one."""
+    """Returns the CMakeLists.txt that controls how a file is compiled: in its folder or in the nearest folder above
+    it."""
     folder = next(folder for folder in file.parents if (source / folder / "CMakeLists.txt").is_file())
     return (folder / "CMakeLists.txt").as_posix()
 
@@ -83,7 +85,7 @@ def sources_of(source, build):
 def record(source, build):
     data = source / "data/live_page"
     wasm = (build / "live/engine/engine.wasm").read_bytes()
-    # Every page carries it, so that the 5 % that zopfli saves over gzip are worth ten seconds.
+    # Every page contains this file. Saving 5 % compared with gzip is therefore worth the ten seconds that zopfli takes.
     packed = subprocess.run(["zopfli", "-c", build / "live/engine/engine.wasm"], check=True, capture_output=True).stdout
     files = {name: hash_of_source(source / name) for name in sources_of(source, build)}
     script = (build / "live/engine/engine.js").read_text().replace("</script", "<\\/script")
@@ -98,7 +100,7 @@ def record(source, build):
 
 
 def changes(source):
-    """What is not as it was when the engine was made, each in words."""
+    """Yields a sentence for each difference between the sources and the record of the engine."""
     data = source / "data/live_page"
     made = json.loads((data / "engine.sources.json").read_text())
     packed = hash_of((data / "engine.wasm.gz").read_bytes())

@@ -1,18 +1,20 @@
 # shellcheck shell=bash
-# What the scripts of tools/ share: finding packages, configuring, building. To be sourced; the caller has set `root`
-# to the repository's folder. Everything said here goes to standard error: standard output belongs to the program.
+# Functions that the scripts of tools/ share: finding packages, configuring and building. Before a script sources this
+# file, it sets `root` to the folder of the repository. All messages are written to standard error, because standard
+# output belongs to the program.
 
 : "${root:?set by the script that sources this}"
 
 say() { printf '%s: %s\n' "${0##*/}" "$*" >&2; }
 
-# As the program itself: 1 is an answer of no, 3 that something could not be done.
+# Prints a message and exits with code 3 (failure), as retrace does. Exit code 1 means that a check had a negative
+# result.
 give_up() {
   say "$*"
   exit 3
 }
 
-# listed_packages SECTION... - the lines of those sections of packages.txt, without comments.
+# listed_packages SECTION... - prints the lines of these sections of packages.txt, without comments.
 listed_packages() {
   local section='' line
   while IFS= read -r line; do
@@ -26,14 +28,14 @@ listed_packages() {
   done <"$root/tools/packages.txt"
 }
 
-# missing_packages SECTION... - one a line. A single dpkg-query call, so that asking costs nothing.
+# missing_packages SECTION... - prints the missing packages, one per line. A single call of dpkg-query keeps this fast.
 missing_packages() {
   local package command wanted=()
   while IFS='| ' read -r package command; do
     [[ -n $command ]] && command -v "$command" >/dev/null || wanted+=("$package")
   done < <(listed_packages "$@")
   ((${#wanted[@]})) || return 0
-  # An unknown package is an error to dpkg-query and missing to us.
+  # For an unknown package, dpkg-query fails. Such a package counts as missing.
   local installed
   installed=$(dpkg-query --show --showformat='${Package} ${db:Status-Status}\n' "${wanted[@]}" 2>/dev/null || true)
   for package in "${wanted[@]}"; do
@@ -41,13 +43,14 @@ missing_packages() {
   done
 }
 
-# os KEY - a value of /etc/os-release; RETRACE_OS_RELEASE names another file, for tests.
+# os KEY - prints a value of /etc/os-release. For tests, RETRACE_OS_RELEASE can name another file.
 os() {
   # shellcheck source=/dev/null
   (. "${RETRACE_OS_RELEASE:-/etc/os-release}" 2>/dev/null && printf '%s' "${!1-}")
 }
 
-# is_debian - and one whose packages are new enough, as those of testing are, which has no number. Ends where they are not.
+# is_debian - returns true for Debian. Exits if this Debian is older than version 12. Debian testing has no version
+# number and is accepted.
 is_debian() {
   command -v dpkg-query >/dev/null || return 1
   [[ $(os ID) == debian ]] || return 1
@@ -57,7 +60,7 @@ is_debian() {
     give_up "$(os PRETTY_NAME) is too old: use Debian 12 or later, or a container of it (docs/install.md)"
 }
 
-# need_cmake - ends where there is one that is too old. Without any it is among the packages.
+# need_cmake - exits if the installed CMake is too old. If there is no CMake, it is installed with the other packages.
 need_cmake() {
   local place wanted found
   place=$(command -v cmake) || return 0
@@ -69,7 +72,7 @@ need_cmake() {
 
 is_root() { [[ $(id -u) == 0 ]]; }
 
-# as_root COMMAND... - through sudo unless we are root already.
+# as_root COMMAND... - runs a command through sudo, or directly if the user is root.
 as_root() {
   if is_root; then "$@"; else sudo "$@"; fi
 }
@@ -84,8 +87,8 @@ apt_update() {
   as_root apt-get update -o DPkg::Lock::Timeout=300 >&2
 }
 
-# need_packages MAY_INSTALL SECTION... - sees to it that they are there; MAY_INSTALL is yes or no. What is in the way is found
-# before anything is installed.
+# need_packages MAY_INSTALL SECTION... - installs missing packages if MAY_INSTALL is yes, and exits if it is no. All
+# obstacles are reported before anything is installed.
 need_packages() {
   local may_install=$1
   shift
@@ -105,7 +108,7 @@ need_packages() {
   command -v apt-get >/dev/null || give_up "missing packages, and no apt-get to install them: ${missing[*]}"
   if ! is_root; then
     command -v sudo >/dev/null || give_up "missing packages, and neither root nor sudo to install them; ask for:  $command"
-    # Without a terminal sudo could only wait for a password that never comes.
+    # Without a terminal, sudo would wait forever for a password.
     [[ -t 0 ]] || sudo --non-interactive true 2>/dev/null ||
       give_up "missing packages, and sudo wants a password; install them with:  sudo $command"
   fi
@@ -117,15 +120,16 @@ need_packages() {
     apt_update || give_up "$no_lists"
     apt_install "${missing[@]}" || give_up "$not_installed"
   elif ! apt_install "${missing[@]}"; then
-    # Old lists name versions that the mirror no longer holds.
+    # Outdated package lists contain versions that the mirror does not have anymore.
     apt_update || give_up "$no_lists"
     apt_install "${missing[@]}" || give_up "$not_installed"
   fi
 }
 
-# configure FOLDER PRESET... - with the first of these presets or of the others, if one is there already: the presets of
-# a folder differ only in what is built besides the program, so that changing over compiles nothing again. Ninja itself
-# notices changed CMakeLists.
+# configure FOLDER PRESET... - configures a build folder with the first preset, or with the preset from this list that
+# the folder has already. Nothing is done if the folder is up to date. The presets of a folder differ only in the
+# targets that are built in addition to the program, so a change of the preset recompiles nothing. Ninja itself detects
+# changed CMakeLists.
 configure() {
   local folder=$root/$1 preset presets known
   shift
@@ -140,7 +144,7 @@ configure() {
   local is_new=
   [[ -e $folder ]] || is_new=yes
   rm -f "$folder/.configured"
-  # The cache of a checkout that was moved is of no use.
+  # CMake's cache contains absolute paths and is invalid after the checkout was moved.
   local fresh=()
   [[ ! -f $folder/CMakeCache.txt || $known == "$root "* ]] || fresh=(--fresh)
   if ! (cd "$root" && cmake --preset "$preset" "${fresh[@]}") >&2; then
@@ -153,7 +157,8 @@ configure() {
   printf '%s\n' "$root $presets $preset" >"$folder/.configured"
 }
 
-# build FOLDER [TARGET...] - with all cores. FOLDER is relative to the repository. Silent when there is nothing to do.
+# build FOLDER [TARGET...] - builds with all cores. FOLDER is relative to the repository. Prints nothing if everything
+# is up to date.
 build() {
   local folder=$root/$1
   shift

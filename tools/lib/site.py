@@ -1,10 +1,10 @@
-"""Gathers the pages of the site, has mkdocs build them, and checks what it built. Called by tools/site.
+"""Collects the pages of the website, builds them with mkdocs and checks the result. Called by tools/site.
 
     python3 site.py SOURCE PROGRAM BUILD
 
-Pages stand in BUILD/site_pages as they do in the repository, so that links between them hold. Files that a page links to
-and that are not pages - examples, data, sources - become pages that show them. Every example gets a page with a picture
-that PROGRAM makes of it. The site is BUILD/site.
+Pages have the same relative paths in BUILD/site_pages as in the repository, so that links between them stay valid. If
+a page links to a file that is not a page (an example, data or a source), a page with the contents of this file is
+created. Every example has a page with a picture, which PROGRAM draws. The site is written to BUILD/site.
 """
 
 import html
@@ -25,10 +25,10 @@ PAGES, SITE, PICTURES = BUILD / "site_pages", BUILD / "site", BUILD / "site_pict
 NOTEBOOKS = BUILD / "site_notebooks"
 PICTURE_ENDINGS = (".png", ".svg")
 LANGUAGES = {".toml": "toml", ".h": "cpp", ".cpp": "cpp", ".py": "python", ".slurm": "sh", ".cff": "yaml"}
-MOST_LINES = 200  # of a file that is shown
+MOST_LINES = 200  # maximum number of lines of a file that are shown
 
-# What the navigation has, in its order; pages that are not there are left out. A pattern takes the pages that no other
-# line names. A dictionary within a section is a second level of the navigation.
+# Sections of the navigation, in order. Missing pages are omitted. A pattern matches the pages that no other line names.
+# A dictionary within a section is a second level of the navigation.
 SECTIONS = {
     "Start": ["README.md", "docs/install.md"],
     "Tutorials": ["docs/tutorials/first_curve.md", "docs/tutorials/regulation.md", "docs/tutorials/nc_program.md",
@@ -70,7 +70,8 @@ for (const formula of document.querySelectorAll(".formula"))
   katex.render(formula.textContent, formula, {displayMode: true});
 """
 
-# Opened from a disk, a page may neither read the index of the search nor start its worker from a file: both are in a script.
+# Pages that are opened from disk cannot read the search index or start the search worker from a file. Both are
+# therefore contained in a script.
 MAIN = """\
 {% extends "base.html" %}
 {% block extrahead %}
@@ -105,7 +106,7 @@ TEXT_OF_LINK = re.compile(r"\[([^\[\]]*)\]\(<nowhere>\)")
 
 
 def outside_of_blocks(text, change):
-    """Changes the lines of a page that stand in no fenced block. `change` has the line and the one before it."""
+    """Changes the lines of a page outside fenced blocks. `change` is called with the line and the previous line."""
     lines, in_block, before = [], False, ""
     for line in text.split("\n"):
         if FENCE.match(line):
@@ -118,7 +119,7 @@ def outside_of_blocks(text, change):
 
 
 def pipes_in_tables(line, _):
-    """A bar within code within a table is written as \\|, which only some readers of Markdown take back."""
+    """Escapes bars in code within tables as HTML, because only some Markdown readers support the notation \\|."""
     if not line.startswith("|"):
         return line
     return re.sub(r"`([^`]*\\\|[^`]*)`", lambda found: "<code>" + html.escape(found.group(1).replace("\\|", "|")).replace(
@@ -126,7 +127,7 @@ def pipes_in_tables(line, _):
 
 
 def set_formulas(page, text):
-    """Puts formulas of KaTeX in place of the lines that docs/theory/formulas.toml has them for."""
+    """Replaces lines by KaTeX formulas, as listed in docs/theory/formulas.toml."""
     name = pathlib.PurePath(page)
     formulas = tomllib.loads((SOURCE / "docs/theory/formulas.toml").read_text()).get(name.stem, {})
     if str(name.parent) != "docs/theory":
@@ -148,7 +149,7 @@ def copy_katex():
 
 
 def list_needs_blank():
-    """Lists begin after a blank line: readers of Markdown differ in whether they may do without."""
+    """Returns a function that inserts a blank line before each list, because some Markdown readers require one."""
     state = {"in_list": False}
 
     def change(line, before):
@@ -164,7 +165,7 @@ def list_needs_blank():
 
 
 def shown_file(path):
-    """A page that shows a file of the repository."""
+    """Returns a page with the contents of a file of the repository."""
     text = (SOURCE / path).read_text(errors="replace").rstrip("\n").split("\n")
     cut = f"\n\nThe first {MOST_LINES} of its {len(text)} lines." if len(text) > MOST_LINES else ""
     language = LANGUAGES.get(path.suffix, "text")
@@ -172,7 +173,7 @@ def shown_file(path):
 
 
 class Pages:
-    """Pages of the site by their path in the repository, and what they link to."""
+    """Collects the pages of the site by their path in the repository, and the files to which they link."""
 
     def __init__(self):
         self.waiting, self.known = [], set()
@@ -183,7 +184,7 @@ class Pages:
             self.waiting.append(page)
 
     def target(self, page, link):
-        """What a link becomes, None for a folder without a page."""
+        """Returns the new target of a link, or None for a folder without a page."""
         if re.match(r"[a-z]+:|#", link):
             return link
         path, _, anchor = link.partition("#")
@@ -218,7 +219,7 @@ class Pages:
         while self.waiting:
             page = self.waiting.pop()
             if not (SOURCE / page).exists():
-                continue  # a page that was made, not copied
+                continue  # the page was generated, not copied
             text = outside_of_blocks((SOURCE / page).read_text(), list_needs_blank())
             text = outside_of_blocks(outside_of_blocks(text, pipes_in_tables), lambda line, _: self.links(page, line))
             text = set_formulas(page, text)
@@ -236,7 +237,7 @@ def value_of(text, key):
 
 
 def question(file, text):
-    """The command that draws an example, and the pictures that are liked best."""
+    """Returns the command that draws an example, and the preferred pictures of its output, the best first."""
     schema = value_of(text, "schema")
     if schema == "retrace.design/1":
         if 'kind = "ball"' in text:
@@ -255,7 +256,8 @@ def question(file, text):
 
 
 def picture(file, text, name):
-    """Draws an example, unless that has been done since it and the program changed. Returns the picture's file."""
+    """Draws an example unless its picture is newer than the example and the program. Returns the file of the
+    picture."""
     command, liked = question(file, text)
     if command is None:
         return None
@@ -299,7 +301,7 @@ def example_pages():
 
 
 def notebook_pages():
-    """Notebooks as they come out when they are run, unless that has been done since they and the package changed."""
+    """Runs the notebooks and writes their pages. A notebook is run only if it or the package is newer than its page."""
     package = PROGRAM.parent.parent / "python"
     newest_of_package = max((file.stat().st_mtime for file in (package / "retrace").iterdir()), default=0)
     for file in sorted((SOURCE / "examples/notebooks").glob("*.ipynb")):
@@ -328,14 +330,14 @@ FRONT = """\
 
 
 def front_page():
-    """The live page, which the site begins with."""
+    """Creates the live page, which is the start of the site."""
     made = run(PROGRAM, "explore", "--quiet", "--out", PAGES / "explore.html")
     if made.returncode != 0:
         faults.append(f"explore.html: {made.stderr.strip()}")
 
 
 def document_page():
-    """Which JSON documents there are, from what the program says of itself."""
+    """Creates the page that lists all JSON documents, from the output of the program."""
     manual = json.loads(run(PROGRAM, "manual", "--json", "-").stdout)
     formats = json.loads(run(PROGRAM, "schema", "--json", "-").stdout)["formats"]
     lines = ["# JSON documents", "", "What commands write with `--json` and into their output folders. Each document names "
@@ -388,7 +390,7 @@ def navigation():
 
 
 class Page(html.parser.HTMLParser):
-    """What a page links to, what it loads, and where it may be linked to."""
+    """Links, loaded files and anchors of an HTML page."""
 
     def __init__(self, file):
         super().__init__()

@@ -27,7 +27,7 @@ double standing_mm(std::span<const ConvexPiece> pieces, const Vec2& foot, const 
 
 /// Returns the point of a cross-section that a chisel's cutting edge reaches at the deeper end of a move, in
 /// coordinates of the section.
-/// \param tip position of the center of the cutting edge at the deeper end of the move, in the workpiece frame
+/// \param tip position of the centre of the cutting edge at the deeper end of the move, in the workpiece frame
 Vec2 deepest_place(const SectionPlane& plane, const ToolWedge& wedge, const RigidMotion& back, const Vec3& tip) {
   const Vec3 edge = back.direction(wedge.edge);
   const double across = plane.normal.dot(edge);
@@ -66,7 +66,7 @@ ChipCheck::ChipCheck(const Workpiece3d& workpiece, std::size_t element, Standing
 /// remove parts of these layers. Near the rim, the layers extend beyond the blank. The lines keep clear of both
 /// regions.
 void ChipCheck::add_lines() {
-  constexpr double kClearOfRoot = 6.0;  // in finishing allowances
+  constexpr double kClearOfRoot = 6.0;  // distance from the root, relative to the allowance plus the uncut strip
   const double least_mm = kClearOfRoot * (allowance_mm_ + workpiece_.prediction(element_).root_mm);
   const std::vector<StandingSection>& sections = material_.sections();
   for (std::size_t s = 0; s < sections.size(); ++s) {

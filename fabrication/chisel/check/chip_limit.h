@@ -23,7 +23,7 @@ class ChipLimit {
   /// \param from_tip_mm distance, along the path of the tool, from the deepest position of the tip to the measuring
   ///        line. For a V-shaped tool, the distance is measured in the cross-section
   /// \param beside_mm distance from the nearer end of the tip's path to the cross-section that contains the measuring
-  /// line
+  ///        line
   double at(double from_tip_mm, double beside_mm) const;
   /// Returns the distances from the tip, in mm, at which the limit has a kink or a jump.
   const std::array<double, 2>& bends_mm() const { return bends_mm_; }

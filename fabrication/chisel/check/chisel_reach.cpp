@@ -67,7 +67,7 @@ class Cutter {
   /// Adds plunges down facet `k`, with a horizontal cutting edge. Each plunge ends where an end of the cutting edge
   /// reaches a dihedral edge.
   void plunge(std::size_t k) {
-    constexpr int kPasses = 1201;  // odd, so that one pass is at the center
+    constexpr int kPasses = 1201;  // odd, so that one pass is at the centre
     const DesignFacet& facet = cavity_.facets[k];
     // In the frame of the tool, the facet is the plane y = 0. Its outward normal is -y, and its upward direction is z.
     RigidMotion pose;

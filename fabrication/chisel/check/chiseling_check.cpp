@@ -49,7 +49,8 @@ void ChiselingCheck::open(const CutMove& move) {
   const Vec3 tip = move.back.point(move.sweep.to_mm);
   for (std::size_t f = 0; f < 3; ++f) {
     cut.tip_mm[f] = cavity.facets[f].height_mm(tip);
-    // The facet that is cut is the one whose normal is most nearly opposite to the normal of the clearance face.
+    // Use the facet whose normal is most nearly opposite to the normal of the clearance face. This is the facet that is
+    // cut.
     const double towards = cavity.facets[f].normal.dot(clearance_face);
     if (towards >= best) continue;
     best = towards;

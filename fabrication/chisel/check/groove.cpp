@@ -19,7 +19,7 @@ using geometry::Vec3;
 namespace {
 
 /// Moves an element from its local frame to its position and orientation on the blank. The local frame is that of an
-/// element on a flat blank, with the origin at the center of its aperture.
+/// element on a flat blank, with the origin at the centre of its aperture.
 void stand(DesignElement& design, const CutElement& element, double stock_mm) {
   design.zone = element.zone;
   design.axis = element.turn.col(2);

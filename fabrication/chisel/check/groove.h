@@ -23,8 +23,8 @@ struct DesignFacet {
   geometry::Vec3 normal = geometry::Vec3::UnitZ();  ///< unit normal, outward from the material
   double offset_mm = 0.0;
   geometry::Vec3 up_slope = geometry::Vec3::UnitZ();  ///< unit vector in the facet, from the root towards the rim
-  /// Unit vector across the facet: parallel to the root of a prism, or from the first dihedral edge of the facet
-  /// towards the second one in a cube corner.
+  /// Unit vector across the facet. Prism: parallel to the root. Cube corner: from the first dihedral edge of the facet
+  /// towards its second dihedral edge.
   geometry::Vec3 along = geometry::Vec3::UnitX();
 
   /// Returns the signed distance of a point from the facet plane; negative inside the material.
@@ -41,7 +41,7 @@ struct DesignElement {
   double depth_mm = 0.0;  ///< depth of the root or apex below the rims
   double stock_mm = 0.0;  ///< height of the face above the rims
 
-  geometry::Vec3 root_mm = geometry::Vec3::Zero();  ///< center of the root line, or the apex
+  geometry::Vec3 root_mm = geometry::Vec3::Zero();  ///< centre of the root line, or the apex
   std::vector<DesignFacet> facets;                  ///< two facets of a prism, or three facets of a cube corner
   /// Length of a facet from the root to the rim. Cube corner: length of a dihedral edge from the apex to the plane of
   /// the rims, without angle errors.
@@ -56,14 +56,14 @@ struct DesignElement {
   }
 };
 
-/// Groove of a prism. The normal of the first facet points towards -y_w (rotated element: -x_w), the normal of the
-/// second one towards +y_w (+x_w).
+/// Groove of a prism. The normal of the first facet points towards -y_w, and the normal of the second facet towards
+/// +y_w. In a rotated element, they point towards -x_w and +x_w.
 struct PrismGroove : DesignElement {
   geometry::Vec3 root_direction = geometry::Vec3::UnitX();
   double half_width_mm = 0.0;  ///< half of the length along the root
   double half_base_mm = 0.0;   ///< half of the length across the root
 
-  /// Returns the coordinate of a point along the root, measured from the center of the root.
+  /// Returns the coordinate of a point along the root, measured from the centre of the root.
   double along_mm(const geometry::Vec3& p) const { return root_direction.dot(p - root_mm); }
 };
 
@@ -72,7 +72,7 @@ struct CubeCavity : DesignElement {
   /// Unit vectors along the three dihedral edges, from the apex. The first edge points towards -y_w (rotated element:
   /// +y_w).
   std::array<geometry::Vec3, 3> edges = {geometry::Vec3::UnitZ(), geometry::Vec3::UnitZ(), geometry::Vec3::UnitZ()};
-  double radius_mm = 0.0;     ///< radius of the aperture, from its center to its corners
+  double radius_mm = 0.0;     ///< radius of the aperture, from its centre to its corners
   bool is_hexagonal = false;  ///< true: hexagonal aperture, which is smaller than the triangular cavity
   /// Distance along the axis between the nominal apex and the apex of a layer, per mm of material that the layer leaves
   /// on each facet.
@@ -95,15 +95,15 @@ inline const DesignElement& common(const Groove& groove) {
 }
 /// Returns half of the longer side of a prism's aperture, or the radius of a cube corner's aperture.
 double half_size_mm(const Groove& groove);
-/// Returns the corners of a facet.
+/// Returns the corners of a facet, in the workpiece frame.
 std::vector<geometry::Vec3> facet_corners(const Groove& groove, std::size_t facet);
-/// Returns the mean of the corners of a facet.
+/// Returns the mean of the corners of a facet, in the workpiece frame.
 geometry::Vec3 facet_middle(const Groove& groove, std::size_t facet);
 
-/// Returns the groove of a prism.
+/// Returns the groove of a prism as designed, in the workpiece frame.
 /// \param stock_mm height of the blank's face above the element's rims
 PrismGroove groove_of(const CutElement& element, const geometry::RtpElement& size, double stock_mm = 0.0);
-/// Returns the cavity of a cube corner.
+/// Returns the cavity of a cube corner as designed, in the workpiece frame.
 /// \pre `size` is a cube corner
 CubeCavity cavity_of(const CutElement& element, const geometry::Element& size, const geometry::AngleErrors& errors = {},
                      double stock_mm = 0.0);

@@ -75,8 +75,8 @@ Prediction predict(const Machine& machine, const PrismGroove& groove, const Tool
     const RigidMotion motion = machine_from_workpiece(machine, prediction.poses[f].pose);
     prediction.wall_mm =
         std::max(prediction.wall_mm, wall_overcut_mm(groove, wedge, prediction.pass_normal, motion, length_mm));
-    // The edge remains horizontal while it ploughs the other facet. It is tilted relative to this facet, because the
-    // normal of the facet has a component along the edge.
+    // The edge remains horizontal while it ploughs the other facet. It is tilted relative to the other facet, because
+    // the normal of this facet has a component along the edge.
     const std::size_t other = 1 - f;
     const DesignFacet& ploughed = groove.facets[other];
     const Vec3 root = motion.direction(groove.root_direction);

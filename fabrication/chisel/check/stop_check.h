@@ -10,8 +10,9 @@
 
 namespace retrace::fabrication {
 
-/// Checks programs from stop to stop: cuts before the end of the warm-up, cuts beyond the tool life of the edge, cuts
-/// too long after the last stop, and finishing without inspection of the roughed element.
+/// Checks programs from stop to stop. Adds findings for cuts before the end of the warm-up, for cuts beyond the tool
+/// life of the edge, and for cuts too long after the last stop. Also adds a finding if an element is finished without
+/// an inspection after its roughing.
 class StopCheck {
  public:
   /// \pre all arguments outlive this object

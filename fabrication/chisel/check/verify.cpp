@@ -173,9 +173,10 @@ double design_volume_mm3(const Job& job, std::size_t zone) {
   return volume_mm3;
 }
 
-/// Returns the volume that triangular cavities remove outside of the hexagons of their elements. It is (M - N) a^3 / 6,
-/// where a is the edge length of the cubes, N the number of cut elements, and M the number of distinct hexagon corners
-/// at their dihedral edges (docs/theory/micro_chiseling.md). On a substrate, the formula applies to the unrolled array.
+/// Returns the volume that triangular cavities remove outside of the hexagons of their elements. It is (M - N) a^3 / 6
+/// (docs/theory/micro_chiseling.md). Here, a is the edge length of the cubes, and N is the number of cut elements. M is
+/// the number of distinct hexagon corners at their dihedral edges. On a substrate, the formula applies to the unrolled
+/// array.
 double border_overcut_mm3(const Workpiece3d& workpiece, const std::vector<ElementResult>& elements) {
   std::set<std::pair<std::int64_t, std::int64_t>> corners;
   std::int64_t cut = 0;
@@ -331,8 +332,8 @@ MeasuredElements measured(const Workpiece3d& workpiece, const ProgramCheck& chec
   return all;
 }
 
-/// Adds the maximum chip thicknesses to the result. Also adds the findings about chips, except for those of the first
-/// `standing` programs.
+/// Adds the maximum chip thicknesses to the result. Also adds the findings about chips, except for findings of the
+/// first `standing` programs.
 void add_chips(const std::vector<ChipFigures>& chips, const std::vector<NcProgram>& programs, std::size_t standing,
                FindingList& findings, Verification& result) {
   for (const ChipFigures& figures : chips) {

@@ -17,7 +17,7 @@ namespace retrace::fabrication {
 class CutRuns {
  public:
   /// Returns the number of the run that a move belongs to, from 0. Returns nothing for rapid moves, for rotary moves,
-  /// and as long as a position is not known.
+  /// and for moves before the positions of X, Y and Z are known.
   std::optional<std::size_t> of(const NcMotion& motion);
   /// Ends the present run at the end of a program.
   void end() { is_open_ = false; }

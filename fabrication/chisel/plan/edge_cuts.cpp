@@ -54,7 +54,8 @@ class Collector {
     const std::size_t stage = stages_.at(routine.title);
     const CuttingPose& pose = plan_.poses[plan_.stages[stage].pose];
     // The last plunge produces the plunged facet, and the plough after it produces the other facet. If the plough is
-    // divided into two moves, only the first one is along the facet. A V-shaped tool makes one cut down and one cut up.
+    // divided into two moves, only its first move is along the facet. A V-shaped tool makes one cut down and one cut
+    // up.
     std::array<std::optional<FacetEdgeCut>, 2> last;
     Place at = visit.start;
     for (const Step& step : routine.steps) {

@@ -13,7 +13,7 @@ namespace retrace::fabrication {
 /// Cut along a facet of an element.
 struct FacetEdgeCut {
   std::size_t element = 0;
-  std::size_t facet = 0;  ///< from 0
+  std::size_t facet = 0;  ///< index of the facet, from 0
   std::size_t stage = 0;  ///< index in Plan::stages
   bool is_ploughed = false;
   bool ends_at_root = false;  ///< true if the tip is at the root or the apex at the end of the cut

@@ -12,7 +12,7 @@ namespace retrace::fabrication {
 /// Properties of the cutting process of one job.
 struct ProcessFacts {
   int cuts_per_facet = 0;                ///< number of roughing cuts per facet
-  std::vector<double> passes_mm;         ///< offsets of the centers of parallel passes, along the root
+  std::vector<double> passes_mm;         ///< offsets of the centres of parallel passes, along the root
   std::string array_title;               ///< title of the program if the job has none
   std::vector<std::string> description;  ///< lines of text for the header: elements, their orientation, and the tool
 };

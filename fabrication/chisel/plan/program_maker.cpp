@@ -56,7 +56,7 @@ void check_axis(const Job& job, const Machine& machine, char axis, Nanometres lo
 }
 
 /// Warms up the machine: X and Y move back and forth, one after the other, over most of their travel. Then moves to the
-/// center of the array.
+/// centre of the array.
 void warm_up(const Machine& machine, ProgramDraft& program) {
   if (machine.warm_up_s.value <= 0.0) return;
   constexpr double kOfTravel = 0.9;
@@ -267,7 +267,7 @@ class ProgramMaker {
     return use;
   }
 
-  /// Returns true if the current program has no room for another visit.
+  /// Returns true if another visit would exceed the maximum number of subroutines or the maximum run time of a program.
   bool is_full(const Stage& stage) const {
     // Numbers of subroutines have at most four digits.
     constexpr std::size_t kMostSubroutines = 9000;
@@ -334,7 +334,8 @@ class ProgramMaker {
   const std::vector<RoutineStart>& starts_;
   Plan& plan_;
   /// True if elements are on a substrate or in zones. Each zone, and each tilt of elements on a substrate, then has
-  /// separate poses and subroutines. There can be many subroutines, so each program contains only those that it calls.
+  /// separate poses and subroutines. There can be many subroutines, so each program contains only the subroutines that
+  /// it calls.
   bool has_kinds_;
   ClearWay way_;
   StageOrders orders_;

@@ -7,7 +7,7 @@
 
 namespace retrace::fabrication {
 
-/// Subroutine and its start point, relative to the center of the root or to the apex.
+/// Subroutine and its start point, relative to the centre of the root or to the apex.
 struct Routine {
   Subroutine subroutine;
   Place start = Place::Zero();
@@ -32,9 +32,9 @@ inline double edge_dip_mm(const Section& section) {
   return 4.0 * section.lift_mm + 2.0 * static_cast<double>(section.step_nm) / kNanometresPerMm;
 }
 
-/// Returns the thickness, along the facet's normal, that roughing must still remove after cut `cut` of `cuts`. All cuts
-/// have the full depth except the first one. If the first chip would be thinner than the minimum chip, the thickness of
-/// the first two cuts is divided equally between them.
+/// Returns the thickness, along the facet's normal, that roughing must still remove after cut `cut` of `cuts`. The
+/// first cut removes the remainder of the thickness, and all later cuts have the full depth. If the first chip would be
+/// thinner than the minimum chip, the thickness of the first two cuts is divided equally between them.
 /// \param across_mm total thickness that all cuts remove
 /// \param share maximum chip thickness of the first cut, divided by its depth
 /// \param dip_mm edge_dip_mm()
@@ -68,7 +68,7 @@ Routine unidirectional_routine(const Job& job, const Section& section);
 /// \param left_mm thickness that remains on wall and floor
 Routine plunge_routine(const Job& job, const Section& section, double left_mm, double feed_mm_per_min);
 
-/// Returns the parallel passes for an element of width `width_mm`, as offsets of their centers along the root.
+/// Returns the parallel passes for an element of width `width_mm`, as offsets of their centres along the root.
 std::vector<double> pass_offsets_mm(double width_mm, double tool_width_mm);
 
 }  // namespace retrace::fabrication

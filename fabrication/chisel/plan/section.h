@@ -23,7 +23,7 @@ struct FacetChoice {
   std::size_t zone = 0;  ///< index of the zone in the job; 0 without zones
 };
 
-/// Cross-section of an element in a pose, perpendicular to the root at its center. Coordinates are positions of the Y
+/// Cross-section of an element in a pose, perpendicular to the root at its centre. Coordinates are positions of the Y
 /// and Z axes relative to the root. The wall is the facet that is plunged, and the floor is the other facet.
 struct Section {
   double wall_y = -1.0;            ///< change of Y, in mm, per mm of material that is left on the wall

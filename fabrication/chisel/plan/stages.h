@@ -11,7 +11,7 @@
 
 namespace retrace::fabrication {
 
-/// Start point of a subroutine, relative to the center of the root or to the apex, and the extent of its moves.
+/// Start point of a subroutine, relative to the centre of the root or to the apex, and the extent of its moves.
 struct RoutineStart {
   Place start = Place::Zero();
   Reach reach;

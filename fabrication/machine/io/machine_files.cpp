@@ -36,7 +36,7 @@ constexpr double kLeastDeterminant = 0.5;
 
 /// Minimum length of a vector that is accepted as a direction. Shorter vectors are refused.
 constexpr double kLeastLength = 1e-6;
-/// Maximum deviation of a direction's length from 1. A direction with a larger deviation is normalized when it is read.
+/// Maximum deviation of a direction's length from 1. A direction with a larger deviation is normalised when it is read.
 /// A direction that was written with length 1 is therefore read back unchanged.
 constexpr double kUnitTolerance = 1e-15;
 constexpr double kLeastVolumeMm3 = 1e-6;

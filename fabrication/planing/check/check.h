@@ -30,7 +30,7 @@ struct PlaningCheck {
   double shortest_x_mm = 0.0;        ///< shortest move of X; 0 if X does not move
   double shortest_y_mm = 0.0;
   double shortest_z_mm = 0.0;
-  std::vector<ProfileSample> profile;  ///< mill
+  std::vector<ProfileSample> profile;  ///< mill: profile of the machined surface
   /// Lathe: maximum distance between the surface after the last pass and the surface that an exact path of the nose
   /// would produce.
   double path_distance_mm_max = 0.0;

@@ -15,8 +15,8 @@
 
 namespace retrace::fabrication {
 
-/// Receives the moves of a lathe's programs and cuts a model of the blank. Positions are those of the lowest point of
-/// the nose.
+/// Receives the moves of a lathe's programs and cuts a model of the blank. Positions refer to the lowest point of the
+/// nose.
 class LatheCheck : public NcSink {
  public:
   LatheCheck(const PlanedPart& part, FindingList& findings, PlaningCheck& result);
@@ -56,8 +56,8 @@ class LatheCheck : public NcSink {
   std::vector<std::string> programs_;
   std::vector<Source> sources_;
   StandingSection standing_;
-  std::vector<double> before_run_;               ///< heights
-  std::vector<std::vector<SectionPoint>> runs_;  ///< feed moves between two rapid moves
+  std::vector<double> before_run_;               ///< heights of the section before the present run of feed moves
+  std::vector<std::vector<SectionPoint>> runs_;  ///< completed runs of feed moves between rapid moves
   std::vector<SectionPoint> run_;
 };
 

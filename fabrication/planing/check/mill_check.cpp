@@ -155,9 +155,9 @@ void MillCheck::measure_at(double x_mm, double left_mm, const Stroke* stroke) {
 void MillCheck::measure() {
   std::sort(strokes_.begin(), strokes_.end(), [](const Stroke& a, const Stroke& b) { return a.x_mm < b.x_mm; });
   // Evaluate the surface on both sides of each grid point, from the largest to the smallest x. The surface at x is cut
-  // by the flank of one of the strokes at or beyond x: the stroke with the greatest value of depth - slope * x. All
-  // strokes are at grid points, and most material remains just outside of a stroke. The evaluated points are therefore
-  // at the distance kBeside, in mm, from the grid points.
+  // by the flank of one of the strokes at or beyond x. It is the stroke with the greatest value of d - slope * p, where
+  // p is the position and d the depth of the stroke. All strokes are at grid points, and most material remains just
+  // outside of a stroke. The evaluated points are therefore at the distance kBeside, in mm, from the grid points.
   constexpr double kBeside = 1e-9;
   const double grid = part_.mill->grid_mm;
   const double slope = result_.flank_slope;

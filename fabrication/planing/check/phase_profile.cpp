@@ -27,7 +27,7 @@ double root_between(const F& f, double low, double high) {
 
 PhaseProfile::PhaseProfile(const ZoneLens& lens)
     : lens_(lens), deepest_mm_(lens.wavelength_mm / (lens.refractive_index - 1.0)) {
-  // At the maximum depth, the optical path increases with the distance from the center. There is a wall wherever the
+  // At the maximum depth, the optical path increases with the distance from the centre. There is a wall wherever the
   // path difference is a whole number of wavelengths.
   const auto at_the_deepest = [&](double x) { return waves(x, deepest_mm_); };
   const double last = at_the_deepest(lens.half_width_mm);

@@ -9,7 +9,7 @@
 
 namespace retrace::fabrication {
 
-/// Vertical wall between two zones. Its deep side is towards the center of the lens.
+/// Vertical wall between two zones. Its deep side is towards the centre of the lens.
 struct Wall {
   double x_mm = 0.0;
   double inner_depth_mm = 0.0;
@@ -17,7 +17,7 @@ struct Wall {
 };
 
 /// Required depth of a zone lens. The depth follows from the condition that light from the focus becomes parallel to
-/// the axis: the optical path through the profile exceeds the path through the center by a whole number of wavelengths.
+/// the axis: the optical path through the profile exceeds the path through the centre by a whole number of wavelengths.
 /// The depth is at most wavelength / (index - 1). Every depth is computed as the root of this condition. The planner's
 /// formulas are not used.
 class PhaseProfile {
@@ -25,7 +25,7 @@ class PhaseProfile {
   /// \pre the lens has zones for which ZoneProfile can be constructed
   explicit PhaseProfile(const ZoneLens& lens);
 
-  /// Returns the depth at a distance from the center.
+  /// Returns the depth at a distance from the centre.
   /// \pre 0 <= x <= half width
   double depth_mm(double x_mm) const;
   /// Returns the slope of the depth within a zone.
@@ -35,7 +35,7 @@ class PhaseProfile {
   const std::vector<Wall>& walls() const { return walls_; }
 
  private:
-  /// Returns the difference between the optical path through a point and the path through the center, in wavelengths.
+  /// Returns the difference between the optical path through a point and the path through the centre, in wavelengths.
   double waves(double x_mm, double depth_mm) const;
   double depth_of_order_mm(double x_mm, double order) const;
 

@@ -25,7 +25,7 @@ std::vector<double> with_fillets(std::vector<double> places, const SectionLine& 
     const double middle = dz > 0.0 ? centres[i - 1].x_mm : centres[i].x_mm;
     const double side = dz > 0.0 ? nose_mm : -nose_mm;
     for (int k = 1; k < kFillet; ++k) places.push_back(middle + side * std::sin(0.5 * std::numbers::pi * k / kFillet));
-    // The nose is a disc. While its center moves along the segment, it produces a line that is tangent to the discs at
+    // The nose is a disc. While its centre moves along the segment, it produces a line that is tangent to the discs at
     // both end points of the segment. Add positions at the two ends of this line, and at one side of each disc.
     const double from = centres[i - 1].x_mm + nose_mm * dz / std::hypot(dx, dz);
     for (const double end : {from, from + dx, centres[i - 1].x_mm + side, centres[i].x_mm + side}) {
@@ -83,7 +83,7 @@ SectionLine left_by_nose(const SectionLine& centres, double nose_mm, const std::
 }
 
 SectionLine lowest_centres(const SectionLine& section, double nose_mm, const std::vector<double>& places_mm) {
-  // If the center of the nose is above the upper envelope of circles about the points of the section, the nose does not
+  // If the centre of the nose is above the upper envelope of circles about the points of the section, the nose does not
   // cut into the section. This upper envelope is the negative of the lower envelope of circles about the negated
   // section.
   return negated(left_by_nose(negated(section), nose_mm, places_mm));

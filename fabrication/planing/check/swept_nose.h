@@ -15,14 +15,14 @@ struct SectionPoint {
 /// Line of points whose x does not decrease. A vertical segment is given by both of its ends.
 using SectionLine = std::vector<SectionPoint>;
 
-/// Returns the surface that a round nose produces while its center moves along a line.
-/// \param centres path of the center; x does not decrease
+/// Returns the surface that a round nose produces while its centre moves along a line.
+/// \param centres path of the centre; x does not decrease
 /// \param places_mm positions of the points of the result, ascending. Positions at vertical walls that the nose
 ///        produces are added
 /// \pre nose_mm > 0
 SectionLine left_by_nose(const SectionLine& centres, double nose_mm, const std::vector<double>& places_mm);
 
-/// Returns the lowest positions of the nose's center at which the nose does not cut into a section.
+/// Returns the lowest positions of the nose's centre at which the nose does not cut into a section.
 /// \pre as for left_by_nose()
 SectionLine lowest_centres(const SectionLine& section, double nose_mm, const std::vector<double>& places_mm);
 

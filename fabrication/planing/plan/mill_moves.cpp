@@ -36,7 +36,7 @@ void MillMoves::begin() {
   const double nm = kNanometresPerMm * part_.mill->grid_mm;
   state_.at.program.header = {"one half of the lens: turn the part by 180 degrees and run it again",
                               "begins where the axes stand at its first three words"};
-  // The first moves only state the positions at which the machine was set to zero, so the axes do not move.
+  // The first moves only give the positions at which the machine was set to zero, so the axes do not move.
   state_.at.program.has_mist = false;
   for (const Axis axis : {kZ, kX, kY}) {
     Move here;
@@ -69,7 +69,7 @@ double MillMoves::time_of(std::int64_t steps) const {
 }
 
 bool MillMoves::ends_in_time() const {
-  // The time includes the moves back to the center: Z, and X with a detour of twice its minimum move.
+  // The time includes the moves back to the centre: Z, and X with a detour of twice its minimum move.
   const double home_s = time_of(state_.place[kZ] - home_[kZ]) + time_of(state_.place[kX]) + time_of(2 * least_[kX]);
   return state_.at.time_s + home_s <= 3600.0 * part_.mill->most_hours;
 }

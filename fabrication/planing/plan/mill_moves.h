@@ -27,11 +27,11 @@ class MillMoves {
   void across_to(std::int64_t x);
   /// Moves along the zones and back.
   void stroke();
-  /// Moves up, and then back to the center of the lens.
+  /// Moves up, and then back to the centre of the lens.
   void go_home();
   /// Makes moves that must be in one program. If the present program would exceed its time limit with them, they become
   /// the first moves of the next program.
-  /// \throw InputError if these moves alone exceed the time limit
+  /// \throw InputError if these moves exceed the time limit even in a program without other moves
   template <class Moves>
   void together(const Moves& moves) {
     const Mark before = mark();

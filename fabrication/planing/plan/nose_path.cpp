@@ -7,7 +7,7 @@
 namespace retrace::fabrication {
 namespace {
 
-/// Returns the center of the nose that touches the surface of a zone at a point.
+/// Returns the centre of the nose that touches the surface of a zone at a point.
 ProfilePoint middle_over(const ZoneProfile& profile, std::size_t zone, double x_mm, double nose_mm) {
   const double slope = profile.slope_in_zone(zone, x_mm);
   const double length = std::sqrt(1.0 + slope * slope);

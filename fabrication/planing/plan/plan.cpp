@@ -119,8 +119,8 @@ PlaningPlan plan_mill(const PlanedPart& part) {
   const ZoneProfile profile(part.lens);
   const double grid = part.mill->grid_mm;
   const ZoneCutter cutter(profile, grid, part.tolerance_mm);
-  // Try all depth increments that are smaller than the tolerance. Use the one with the fewest moves, or the largest one
-  // among those with equal numbers of moves.
+  // Try all depth increments that are smaller than the tolerance. Use the increment with the fewest moves. If several
+  // increments need this number of moves, use the largest of these increments.
   std::optional<PlaningPlan> best;
   const auto most = static_cast<std::int64_t>(std::ceil(part.tolerance_mm / grid - 1e-9)) - 1;
   for (std::int64_t quantum = std::max<std::int64_t>(1, most); quantum >= 1; --quantum) {

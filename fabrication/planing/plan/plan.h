@@ -17,7 +17,7 @@ namespace retrace::fabrication {
 struct PlannedProgram {
   Program program;
   std::string set;          ///< "odd zones", "even zones", "inner zones"; "passes" of a lathe
-  std::int64_t frames = 0;  ///< moves
+  std::int64_t frames = 0;  ///< number of moves
   std::int64_t cuts = 0;    ///< number of strokes (mill) or chords (lathe)
   double time_s = 0.0;
 };
@@ -29,15 +29,15 @@ struct PlaningPlan {
   double quantum_mm = 0.0;           ///< depth increment of the cuts of the first method
   std::vector<ZoneCut> cuts;         ///< mill: cuts, sorted by zone and outwards
   std::vector<bool> by_depths;       ///< for each zone: true if the first method is used
-  Chords chords;                     ///< lathe
+  Chords chords;                     ///< lathe: chords with which the programs approximate the profile
   Chords longest;                    ///< lathe: result of longest_chords(), for comparison
   std::vector<ProfilePoint> points;  ///< lathe: points that the chords connect
-  std::int64_t passes = 0;           ///< lathe
+  std::int64_t passes = 0;           ///< lathe: number of passes
   std::vector<PlannedProgram> programs;
   int runs = 1;  ///< number of runs of every program: 2 for a milled lens, which is made in two halves
 
-  std::int64_t frames() const;  ///< total of all programs, for one run
-  double time_s() const;        ///< total of all programs, for one run
+  std::int64_t frames() const;  ///< total number of moves of all programs, for one run
+  double time_s() const;        ///< total time of all programs, for one run
 };
 
 /// Plans the programs of a part.

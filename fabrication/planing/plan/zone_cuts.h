@@ -14,12 +14,12 @@ namespace retrace::fabrication {
 /// Position of the tool's tip in one stroke along the zones, on the machine's grid.
 struct ZoneCut {
   std::size_t zone = 0;
-  std::int64_t x = 0;      ///< position in steps of the grid, from the center of the lens
+  std::int64_t x = 0;      ///< position in steps of the grid, from the centre of the lens
   std::int64_t depth = 0;  ///< depth in steps of the grid, below the face; >= 0
 };
 
 /// Returns the slope of the flank of the tool. The tool has a pointed edge. It is vertical towards the outside of the
-/// lens. Towards the center, its flank is as steep as the maximum slope of the profile, rounded up to half a degree. It
+/// lens. Towards the centre, its flank is as steep as the maximum slope of the profile, rounded up to half a degree. It
 /// therefore never cuts below the profile.
 double flank_slope_of(const ZoneProfile& profile);
 

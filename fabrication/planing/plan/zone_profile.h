@@ -16,7 +16,7 @@ struct Zone {
 };
 
 /// Depth of a zone lens below the face of its blank (docs/theory/planing.md). In zone k, the optical path from the
-/// focus through the lens exceeds the path through the center by k wavelengths.
+/// focus through the lens exceeds the path through the centre by k wavelengths.
 class ZoneProfile {
  public:
   /// Computes the zones of a lens.
@@ -37,7 +37,7 @@ class ZoneProfile {
   /// Returns the slope of the depth in a zone. It increases outwards.
   double slope_in_zone(std::size_t zone, double x_mm) const;
   /// Returns the position at which the formula of a zone gives a depth.
-  /// \pre the depth is not less than the depth of this formula at the center
+  /// \pre the depth is not less than the depth of this formula at the centre
   double place_in_zone_mm(std::size_t zone, double depth_mm) const;
   double steepest_slope() const;
 

@@ -12,9 +12,11 @@ struct CoverageFigures {
   bool is_whole = true;      ///< true if no part of the region is left uncut
 };
 
-/// Checks the order and the distance of the cuts. Adds findings for blocks that do not move forward (`direction`), for
-/// cuts that are farther than the feed from the previous cut (`feed_step`), for cuts that are not on the line of the
-/// tool's skew (`skew`), and for parts of the region without cuts (`uncut`).
+/// Checks the order and the distance of the cuts. The kinds of findings are:
+/// - `direction`: a block does not move forward,
+/// - `feed_step`: a cut is farther than the feed from the previous cut,
+/// - `skew`: a cut is not on the line that the tool's skew determines,
+/// - `uncut`: a part of the region has no cuts
 CoverageFigures check_coverage(const TurnedPart& part, const TurningCuts& cuts, FindingList& findings);
 
 }  // namespace retrace::fabrication::turning

@@ -105,7 +105,7 @@ void Envelope::cross_turning(const CutPass& pass, const Index& index, double x_m
   const double start = pass.c_rad.front();
   for (std::size_t t = 0; t < index.turn.size(); ++t) {
     const Turn& turn = index.turn[t];
-    // The edge can pass over the point on the tool's side of the spindle. Near the center, it can also pass over it on
+    // The edge can pass over the point on the tool's side of the spindle. Near the centre, it can also pass over it on
     // the opposite side.
     for (const bool beyond : {false, true}) {
       const double y = pass.y_mm[turn.first];

@@ -20,8 +20,8 @@ using jets::Series;
 
 using geometry::Vec2;
 constexpr int kGoldenSteps = 40;
-/// Minimum distance from the center, as a multiple of the feed per turn, at which the closed forms for cusps are valid.
-/// Closer to the center, the direction of the cut changes too much along a cusp.
+/// Minimum distance from the centre, as a multiple of the feed per turn, at which the closed forms for cusps are valid.
+/// Closer to the centre, the direction of the cut changes too much along a cusp.
 constexpr double kCentreFeeds = 20.0;
 
 /// Returns the predicted height of cusps along the surface normal. In the plane across the cuts, both the nose and the

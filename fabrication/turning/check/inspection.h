@@ -11,8 +11,8 @@
 
 namespace retrace::fabrication::turning {
 
-/// Width of the margins at the rim and at the center that are not inspected, as a multiple of the feed. Cuts at the rim
-/// have a neighbour on one side only. At the center, the tool hardly moves over the part.
+/// Width of the margins at the rim and at the centre that are not inspected, as a multiple of the feed. Cuts at the rim
+/// have a neighbour on one side only. At the centre, the tool hardly moves over the part.
 inline constexpr double kRimFeeds = 4.0;
 
 /// Region of the part that is inspected: a circle or a rectangle. A margin at the rim is excluded.

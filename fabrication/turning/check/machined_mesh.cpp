@@ -20,7 +20,7 @@ std::uint32_t rays_of(int rings) {
   return static_cast<std::uint32_t>(std::max(12L, std::lround(std::numbers::pi * rings)));
 }
 
-/// Returns the center and the intersections of circles and rays, circle by circle, with the heights of the machined
+/// Returns the centre and the intersections of circles and rays, circle by circle, with the heights of the machined
 /// surface.
 std::vector<Vec3> back_of(const Envelope& envelope, const FreeformSurface& design, const InspectedRegion& region,
                           int rings) {

@@ -10,7 +10,7 @@ namespace retrace::fabrication::turning {
 
 /// Returns a closed mesh of the part that is moulded in the turned surface, with outward normals. The back of the part
 /// is the machined surface, at the intersections of circles and rays about the spindle's axis. The entrance face is a
-/// horizontal plane above it. Within 4 feeds of the center, the height of the design is used, because the edge hardly
+/// horizontal plane above it. Within 4 feeds of the centre, the height of the design is used, because the edge hardly
 /// moves over the part there.
 /// \param rings number of circles, at least 2; the largest one is 4 feeds inside of the rim
 /// \param thickness_mm distance from the highest point of the back to the entrance face; > 0

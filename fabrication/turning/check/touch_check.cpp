@@ -105,7 +105,7 @@ class EdgeProbe {
     stand.angle_within_rad = angle;
   }
 
-  /// Returns the angle at the center of that part of the arc which is inside the region. In plan, the arc is
+  /// Returns the angle, on the arc, of the centre of the part of the arc that is inside the region. In plan, the arc is
   /// approximated by a straight line. This is exact for tools without rake.
   double inner_angle(const Pose& at) const {
     const Vec2 tip = place(at, 0.0);
@@ -159,8 +159,8 @@ class EdgeProbe {
     }
     for (std::size_t k = 0; k < z.size(); ++k) {
       const bool is_top = (k == 0 || z[k] >= z[k - 1]) && (k + 1 == z.size() || z[k] >= z[k + 1]);
-      // The maximum between the neighbouring samples is estimated as at most z[k] plus the difference to the
-      // neighbours. Narrow features of the surface may exceed this estimate.
+      // Estimate of the maximum between the neighbouring samples: z[k] plus the larger difference to a neighbour.
+      // Narrow features of the surface may exceed this estimate.
       if (!is_top) continue;
       const double below = std::max(k > 0 ? z[k] - z[k - 1] : 0.0, k + 1 < z.size() ? z[k] - z[k + 1] : 0.0);
       if (z[k] + below < stand.touches_mm) continue;
@@ -205,7 +205,7 @@ class EdgeProbe {
   }
 
   /// Returns the position of the maximum of the parabola through three points.
-  /// \pre the point in the middle is higher than the two others
+  /// \pre the point at b is higher than the points at a and c
   static double vertex(double a, double b, double c, double za, double zb, double zc) {
     const double left = (b - a) * (zb - zc);
     const double right = (b - c) * (zb - za);

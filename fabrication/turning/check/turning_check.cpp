@@ -33,8 +33,8 @@ void check_free_moves(const TurnedPart& part, const TurningCuts& cuts, const Tou
 }
 
 /// Returns the maximum deviation of a blended path from the corners between moves. If one move decelerates uniformly
-/// while the next move accelerates uniformly, the blend is a parabola. It extends at most from the center of one move
-/// to the center of the next move. Its distance from the corner is then a quarter of the corner's height above the
+/// while the next move accelerates uniformly, the blend is a parabola. It extends at most from the centre of one move
+/// to the centre of the next move. Its distance from the corner is then a quarter of the corner's height above the
 /// chord between its neighbours. C is converted to the path length at the tool.
 double widest_blend_mm(const std::vector<CutPass>& passes) {
   using Place = Eigen::Vector4d;

@@ -19,7 +19,7 @@ struct TurningCheck {
   CoverageFigures coverage;
   std::size_t points = 0;  ///< number of points of all cuts
   /// Maximum deviation from the path due to blending. It is the tolerance that the programs allow, or the deviation of
-  /// parabolas between the centers of the moves, whichever is smaller. It is added to the form error.
+  /// parabolas between the centres of the moves, whichever is smaller. It is added to the form error.
   double blend_nm = 0.0;
   std::size_t passes = 0;
   /// Machined surface. Empty if it cannot be computed, because cuts do not move forward or leave parts of the region

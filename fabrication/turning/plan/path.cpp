@@ -117,7 +117,7 @@ void spin_up_and_down(Pass& pass, double spindle_rpm, double acceleration_deg_pe
     pass[i].seconds = times.time_s(pass[i].c_deg) - times.time_s(pass[i - 1].c_deg);
 }
 
-/// Divides Z of a spiral between slide and servo. The slide follows the mean over one turn centered at each point, and
+/// Divides Z of a spiral between slide and servo. The slide follows the mean over one turn centred at each point, and
 /// the servo adds the difference. In the first and the last half turn, the slide moves linearly.
 void share_with_servo(Pass& pass, int points_per_turn) {
   const std::size_t count = pass.size();

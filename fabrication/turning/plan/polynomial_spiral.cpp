@@ -14,7 +14,7 @@ using geometry::kMostPolynomialDegree;
 using geometry::Sag;
 using geometry::XyPolynomial;
 
-/// Surface along the radial line at one angle: coefficients of the powers of the distance from the center. Also the
+/// Surface along the radial line at one angle: coefficients of the powers of the distance from the centre. Also the
 /// lateral position, on the nose, of the point of contact in the previous turn.
 struct RadialPolynomial {
   std::array<double, kMostPolynomialDegree + 1> c{};
@@ -37,7 +37,7 @@ RadialPolynomial radial_polynomial(const Sag& sag, double angle, int degree) {
   return line;
 }
 
-/// Returns an upper bound of the absolute second derivative within a distance of the center.
+/// Returns an upper bound of the absolute second derivative within a distance of the centre.
 double steepest_bend(const RadialPolynomial& line, int degree, double reach_mm) {
   double sum = 0.0;
   for (int k = 2; k <= degree; ++k)

@@ -49,7 +49,7 @@ class SpinTimes {
 };
 
 /// Returns the angle of the spindle, in turns, between neighbouring points of the straight path at a radius. There are
-/// at least 24 points per turn, because equal arc lengths would give too few points near the center.
+/// at least 24 points per turn, because equal arc lengths would give too few points near the centre.
 double turns_between_points(const PathOptions& options, double radius_mm);
 
 }  // namespace retrace::fabrication::turning

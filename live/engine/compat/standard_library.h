@@ -1,7 +1,7 @@
 #pragma once
 
-// Range algorithms that are missing in the standard library of emscripten 3.1.6. Only those that the engine's sources
-// use are defined. The file is included before each source file (cmake/RetraceLivePage.cmake).
+// Range algorithms that are missing in the standard library of emscripten 3.1.6. Only the algorithms that the engine's
+// sources use are defined. The file is included before each source file (cmake/RetraceLivePage.cmake).
 
 #include <algorithm>
 #include <cstddef>

@@ -1,5 +1,5 @@
-// Replaces the reader of measured height maps by a function that reports an error. The live page has no files besides
-// the design.
+// Replaces the reader of measured height maps by a function that reports an error. The design is the only file that the
+// live page can read.
 #include "live/engine/stand_ins/absent.h"
 #include "surface_models/io/height_map_reader.h"
 

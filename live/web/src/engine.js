@@ -1,10 +1,10 @@
 // Manages the engine's workers and the order of their jobs.
 //
 // A lane is a source of jobs, such as the curve or the map. A lane has at most one running job, which is sent to the
-// worker with the fewest jobs. When the job is done, the lane is asked for its next job. A worker alternates between jobs
-// with many directions, in steps of about 10 ms, and continues with them while the page draws. The job for the current
-// direction runs before all others. Jobs that take seconds have a separate worker, which is terminated when its answer is
-// not needed.
+// worker with the fewest jobs. When the job is done, the next job is requested from the lane. A worker alternates
+// between jobs with many directions, in steps of about 10 ms, and continues with them while the page draws. The job for
+// the current direction runs before all others. Jobs that take seconds have a separate worker, which is terminated when
+// its answer is not needed.
 
 function bytesOf(base64) {
   return Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));

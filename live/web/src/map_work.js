@@ -1,13 +1,13 @@
 // Computes RRE over all directions on rings of constant incidence, from coarse to fine. The number of points increases
-// with the radius of the ring. Of directions that are equivalent by symmetry, only one is traced.
+// with the radius of the ring. If directions are equivalent by symmetry, only one of them is traced.
 import { directionOf, nameOf } from "./directions.js";
 import { AT_ONCE } from "./target_errors.js";
 
 const PIECE_S = 0.004;
 const RING_STEPS_DEG = [20, 10, 5, 2.5];
-// during changes, a map is completed up to this index in RING_STEPS_DEG before the next map begins
+// During changes, a map is completed up to this index in RING_STEPS_DEG before the next map begins.
 const WHILE_MOVING = 1;
-const PATIENCE_MS = 700; // after this time, any complete ring step is sufficient
+const PATIENCE_MS = 700; // time after which any complete ring step is sufficient
 const PLACES = 6; // number of points of the first ring; ring k has k times this number
 
 export class MapPass {

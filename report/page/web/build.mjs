@@ -8,7 +8,7 @@ import { build } from "esbuild";
 const here = dirname(fileURLToPath(import.meta.url));
 const out = join(here, "../../../data/report_page");
 
-/** What the bundle is made of, in an order of its own: a test computes the same. */
+/** Returns a hash of the bundle's source files, sorted by name. A test computes the same hash. */
 function sourceHash() {
   const files = ["build.mjs", "package.json", "package-lock.json", ...readdirSync(join(here, "src")).map((f) => `src/${f}`)];
   const hash = createHash("sha256");
@@ -28,7 +28,7 @@ const common = { bundle: true, minify: true, legalComments: "none", write: false
 const script = await build({ ...common, entryPoints: [join(here, "src/main.js")], format: "iife" });
 const style = await build({ ...common, entryPoints: [join(here, "src/page.css")] });
 const head = `/* sources ${sourceHash()} - made by tools/report_page; licences: LICENCES.txt */\n`;
-// "</script" in a text of the bundle would end the element it stands in.
+// "</script" in a text of the bundle would end the HTML element that contains the bundle.
 writeFileSync(join(out, "page.js"), head + script.outputFiles[0].text.replaceAll("</script", "<\\/script"));
 writeFileSync(join(out, "page.css"), head + style.outputFiles[0].text);
 writeFileSync(join(out, "LICENCES.txt"),

@@ -1,4 +1,5 @@
-// Tests of the files of planed and turned parts: what is read, and what is refused with one line.
+// Tests of the files of planed and turned parts: the values of accepted files, and the one-line messages for refused
+// files.
 
 #include <gtest/gtest.h>
 

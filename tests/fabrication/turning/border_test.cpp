@@ -114,8 +114,8 @@ TEST(TurningBorder, ARaisedFirstLineOfARasterIsFound) {
     for (const Finding& f : found) told_nm = std::max(told_nm, f.kind == "excess" ? f.value : 0.0);
     const std::vector<double> border = plan.border_nm(high, 200);
     EXPECT_NEAR(told_nm, *std::max_element(border.begin(), border.end()), 1.0) << by_mm;
-    // The second line of the raster is 10 um away. On it, the nose of the tool is 80.4 nm above the surface at the
-    // border. The second line therefore limits the excess. Words are rounded to 1 nm.
+    // The second line of the raster is 10 um away. When the tool is on this line, its nose is 80.4 nm above the surface
+    // at the border. The second line therefore limits the excess. Words are rounded to 1 nm.
     EXPECT_NEAR(told_nm, 80.4, 1.5) << by_mm;
   }
   EXPECT_TRUE(plan.findings(plan.raised(first, 1e-5)).empty()) << "less than the tolerance";

@@ -60,7 +60,7 @@ struct Plane {
 
   /// Returns the height of the lowest point of the nose at the spindle angle c. It is the height of the plane plus r
   /// (sqrt(1 + s^2) - 1), where s is the slope along the edge. With the additional height, the nose touches the plane
-  /// beside its lowest point and does not gouge.
+  /// at a point next to its lowest point and does not gouge.
   double height_mm(double x_mm, double y_mm, double c_deg) const {
     const double c = c_deg * kRad;
     const double px = x_mm * std::cos(c) + y_mm * std::sin(c);
@@ -121,7 +121,7 @@ std::vector<Knot> knots_in(const std::string& text, NcDialect dialect, const Kno
       for (const char c : line.substr(3))
         if (const auto axis = place(c); axis != std::string::npos) {
           knot.at[axis] = n[k++];
-          knot.speed[axis] = n[k++] / 60.0;  // Coord[1].FeedTime=60000
+          knot.speed[axis] = n[k++] / 60.0;  // Coord[1].FeedTime=60000: speeds are per minute
         }
     } else if (dialect == NcDialect::a3200 && line.starts_with("PVT X")) {
       const std::vector<double> n = numbers_in(line);

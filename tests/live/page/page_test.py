@@ -298,7 +298,7 @@ class PageWorks(LiveCase):
                 for text in texts:
                     self.open(ODD + text + "\n")
                     self.wait(lambda d, colour=colour: self.colour() == colour)
-        self.choose("Colour", "white")  # by hand
+        self.choose("Colour", "white")  # the user chooses a colour
         self.open(ODD + body("amber") + "\n")
         self.rest()
         self.assertEqual(self.colour(), "white")
@@ -378,7 +378,8 @@ class PageIsQuick(LiveCase):
     """
 
     def drag(self, kind, steps, wait_ms):
-        """Moves a slider by `steps` steps, at most one each `wait_ms`. Returns the response and frame times in ms."""
+        """Moves a slider by `steps` steps with at least `wait_ms` between two steps. Returns the response and frame
+        times in ms."""
         self.script(self.DRAG, *SLIDERS[kind], steps, wait_ms)
         self.wait(lambda d: self.session("isDue") is not None and self.script("return window.dragged"))
         return self.session("measure.latencies_ms"), self.script("return window.frames_ms")

@@ -100,7 +100,7 @@ TEST(PolygonTransform, IsSmoothWhereItsSeriesBegins) {
 }
 
 /// Fields that are computed in SIMD lanes equal single transforms, from the center of the pattern to far outside. If
-/// two groups share a polygon, its transform is computed only once, whichever corner its list starts with.
+/// two groups share a polygon, its transform is computed only one time, whichever corner its list starts with.
 TEST(ApertureField, AgreesWithSingleTransforms) {
   constexpr double kWavelength_mm = 550e-6;
   JonesMatrix amplitude;
@@ -239,9 +239,9 @@ TEST(Diffraction, WeakBeamsAreDiffractedIfTheyAreFew) {
 }
 
 // The entrance face of a finite part diffracts like an aperture. For unit incident power, the intensity in the
-// direction of the reflection is R A cos(theta) / w^2, with the reflectance R, the area A, the angle of incidence
-// theta and the wavelength w. For a rectangle, the intensity falls like sinc^2 in a plane parallel to a side. The
-// total power of the pattern is R.
+// direction of the reflection is R A cos(theta) / w^2. R is the reflectance, A the area, theta the angle of incidence
+// and w the wavelength. For a rectangle, the intensity falls like sinc^2 in a plane parallel to a side. The total power
+// of the pattern is R.
 TEST(Diffraction, EntranceFaceOfAFinitePartIsAnAperture) {
   constexpr double kWave = 550e-6;
   const double base = 0.3;

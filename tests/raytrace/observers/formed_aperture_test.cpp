@@ -99,9 +99,9 @@ Complex fresnel_mean(double c, double a) {
   return sum;
 }
 
-// The form of the facets lengthens both paths through a prism by P (2 x^2 + y^2), where x is the distance across the
-// roof edge from the centroid of a facet, in plan. The field on the axis is therefore a product of two Fresnel
-// integrals. For small heights, the relative intensity is 1 less the variance of the phase (Marechal).
+// The form of the facets lengthens both paths through a prism by P (2 x^2 + y^2). In plan, x is the distance across the
+// roof edge from the centroid of a facet. The field on the axis is therefore a product of two Fresnel integrals. For
+// small heights, the relative intensity is 1 less the variance of the phase (Marechal).
 TEST(FormedAperture, SunkPrismHasTheProductOfTwoFresnelIntegrals) {
   constexpr double kBase = 0.5, kWidth = 0.4;
   const double radius2 = kBase * kBase / 8.0 + kWidth * kWidth / 4.0;

@@ -189,11 +189,11 @@ double area_of(const std::vector<Vec2>& outline) {
 }
 
 TEST(DesignDrawing, SectionsHaveTheirAreas) {
-  // The section is a rectangle with a right triangle below it.
+  // The section consists of a rectangle and a right triangle below it.
   const Drawn prism = drawn(prisms("arrangement = \"single\"\n"));
   EXPECT_NEAR(area_of(prism.drawing.section->view.outline_mm), 0.5 * 1.2 + 0.25 * 0.25, 1e-6);
-  // The section rises from the apex at -2 d to 0 on one side, and along the dihedral edge to -d on the other side, with
-  // d = aperture / sqrt 8.
+  // With d = aperture / sqrt 8, the section rises from the apex at -2 d to 0 on one side. On the other side, it rises
+  // along the dihedral edge to -d.
   const Drawn cube = drawn(cubes("hexagonal_icc", "arrangement = \"single\"\n"));
   const double d = 1.0 / std::numbers::sqrt2;
   EXPECT_NEAR(area_of(cube.drawing.section->view.outline_mm), 2.0 * 1.2 + d + 1.5 * d, 1e-6);

@@ -1,4 +1,4 @@
-"""A browser without a screen and without a network, and what tests of pages ask of it."""
+"""Headless browser without a network, and functions for tests of pages."""
 
 import os
 import pathlib
@@ -13,9 +13,9 @@ from selenium.webdriver.common.by import By
 from selenium.webdriver.support.ui import WebDriverWait
 
 BLUR_PX = 3
-DIFFERENT = 24  # of 255, after blurring
-MOST_DIFFERENT = 0.02  # of the pixels
-# As Chromium does where there is no graphics card: WebGL by the processor, and pages put together without it.
+DIFFERENT = 24  # minimum difference of pixels that counts, from 0 to 255, after blurring
+MOST_DIFFERENT = 0.02  # maximum fraction of pixels that may differ
+# Settings of Chromium without a graphics card: WebGL and compositing run on the processor.
 SOFTWARE_WEBGL = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-gpu-compositing")
 
 
@@ -40,17 +40,18 @@ def save_small(picture, file):
 
 
 def share_that_differs(picture, wanted):
-    """Of the pixels, after blurring both."""
+    """Returns the fraction of pixels that differ after both pictures are blurred."""
     blurred = [p.filter(ImageFilter.GaussianBlur(BLUR_PX)) for p in (picture, wanted)]
     difference = ImageChops.difference(*blurred).convert("L").point(lambda v: 255 if v > DIFFERENT else 0)
     return difference.histogram()[255] / (picture.size[0] * picture.size[1])
 
 
 class BrowserCase(unittest.TestCase):
-    """Each class has a folder and a browser; a test fails if the console has errors."""
+    """Base class of tests with a browser. Each test class has its own folder and browser. A test fails if the console
+    shows errors."""
 
     webgl = SOFTWARE_WEBGL
-    keep = False  # write screenshots anew instead of comparing with them
+    keep = False  # True: write new screenshots instead of comparing with the old ones
 
     @classmethod
     def setUpClass(cls):
@@ -61,12 +62,12 @@ class BrowserCase(unittest.TestCase):
 
     @classmethod
     def resize(cls, width, height):
-        """The page itself, without the window's border, which takes some of its size."""
+        """Sets the size of the page itself. The size of a window would include its border."""
         cls.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
                                    {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False})
 
     def paper(self, name):
-        """Light or dark, as the system would say; nothing leaves it open."""
+        """Sets the preference of the system for a light or dark theme. None removes the preference."""
         features = [{"name": "prefers-color-scheme", "value": name}] if name else []
         self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": features})
 
@@ -80,7 +81,8 @@ class BrowserCase(unittest.TestCase):
         return self.driver.find_element(By.CSS_SELECTOR, selector)
 
     def texts(self, selector):
-        """What is read in each of them, all at one moment: the page may draw them anew between two questions."""
+        """Returns the texts of all matching elements. They are read in one call, because the page may redraw the
+        elements between two calls."""
         return self.driver.execute_script(
             "return [...document.querySelectorAll(arguments[0])].map(e => e.innerText.trim())", selector)
 
@@ -88,14 +90,14 @@ class BrowserCase(unittest.TestCase):
         return self.texts(selector)[0]
 
     def downloads_to(self, name):
-        """A folder of that name for what the page saves."""
+        """Returns a new folder with this name, to which the page saves its files."""
         target = pathlib.Path(self.folder.name) / name
         target.mkdir(exist_ok=True)
         self.driver.execute_cdp_cmd("Browser.setDownloadBehavior", {"behavior": "allow", "downloadPath": str(target)})
         return target
 
     def compare(self, file):
-        """The page as it is seen against a kept picture; a missing one is a fault."""
+        """Compares a screenshot of the page with a stored picture. A missing picture is an error."""
         taken = pathlib.Path(self.folder.name) / file.name
         self.driver.save_screenshot(str(taken))
         picture = Image.open(taken).convert("RGB")

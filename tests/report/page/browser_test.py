@@ -68,7 +68,7 @@ class PageWorks(PageCase):
         ActionChains(self.driver).move_to_element(over).perform()
         at = self.wait(lambda d: figure.get_attribute("data-at"))
         incidence, rre = map(float, at.split())
-        self.assertEqual(incidence, 0.0)  # the middle of -40 to 40
+        self.assertEqual(incidence, 0.0)  # the centre of the range from -40 to 40
         self.assertTrue(10 < rre <= 100)
         before = figure.get_attribute("data-zoom")
         ActionChains(self.driver).move_to_element_with_offset(over, -150, 0).click_and_hold() \
@@ -82,7 +82,7 @@ class PageWorks(PageCase):
         area = figure.find_element(By.CSS_SELECTOR, ".path")
         view = lambda: list(map(float, figure.get_attribute("data-view").split()))
         whole = view()
-        self.assertTrue(whole[2] > 1.0)  # the section of a prism of 1 mm and the way to the next cut
+        self.assertTrue(whole[2] > 1.0)  # the width of the section: a prism of 1 mm and the motion to the next cut
         self.driver.execute_script("arguments[0].scrollIntoView({block: 'center'})", area)
         area.send_keys("++")
         self.assertAlmostEqual(view()[2], 0.49 * whole[2], places=9)
@@ -178,7 +178,7 @@ class PageWithoutWebgl(PageCase):
     webgl = ("--disable-3d-apis",)
 
     def tearDown(self):
-        pass  # three.js says on the console that there is no WebGL
+        pass  # three.js reports on the console that WebGL is missing
 
     def test_the_view_is_a_still_drawing(self):
         view = self.one("#scene")

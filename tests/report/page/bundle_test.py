@@ -1,5 +1,5 @@
-"""The checked-in bundles of the pages are those of their sources: data/report_page against report/page/web, and
-data/live_page against live/web and what it takes from there.
+"""Tests that the checked-in bundles of the pages are up to date: data/report_page with the sources in report/page/web,
+and data/live_page with the sources in live/web and the shared sources in report/page/web.
 
     python3 bundle_test.py SOURCE
 """
@@ -18,7 +18,10 @@ def files_of(folder):
 
 
 def source_hash(names):
-    """As the build.mjs of both have it. \param names of the files, and what each is called there"""
+    """Returns the hash of source files, computed in the same way as in both build.mjs.
+
+    \\param names names of the files in the hash, and the files
+    """
     total = hashlib.sha256()
     for name, file in sorted(names.items()):
         total.update(f"{name}\n".encode() + file.read_bytes())

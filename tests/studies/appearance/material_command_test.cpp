@@ -137,8 +137,8 @@ std::vector<Triple> read_by_example(const TemporaryFolder& folder, const std::ve
   return told;
 }
 
-/// Results for cube corners of 0.5 mm that several tests use. They are computed only once, because this takes several
-/// seconds.
+/// Results for cube corners of 0.5 mm that several tests use. They are computed only one time, because this takes
+/// several seconds.
 struct SmallCubes {
   SmallCubes() {
     folder.write("d.toml", cubes("0.5"));
@@ -334,7 +334,7 @@ TEST(Material, EveryFormatKeepsThePower) {
   ASSERT_EQ(retrace(folder, export_of("m.xml", "0.6", "0.1", "3")).code, 0);
   const RadianceFile bsdf(folder.read("m.xml"));
   EXPECT_NEAR(bsdf.reflected(to_source), rre, 0.01 * rre);
-  // The light returns to the source and nowhere else.
+  // The light returns to the source and to no other direction.
   const double projected_sr = kPi * bsdf.least_leaf() * bsdf.least_leaf();
   double about = 0.0;
   for (int j = -4; j <= 4; ++j)

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// Shirley and Chiu's map of the unit disc to the unit square, by the angle round the disc.
+/// Maps the unit disc to the unit square by the concentric map of Shirley and Chiu.
 std::array<double, 2> square_of(double x, double y) {
   const double radius = std::hypot(x, y);
   double angle = std::atan2(y, x);
@@ -61,7 +61,8 @@ Triple direction(double angle_deg, double azimuth_deg) {
 RadianceFile::RadianceFile(const std::string& xml) {
   EXPECT_EQ(between(xml, "<IncidentDataStructure>", "<"), "TensorTree4");
   EXPECT_EQ(between(xml, "<AngleBasis>", "<"), "LBNL/Shirley-Chiu");
-  // WINDOW's back is the side that Radiance has its normal on.
+  // "Back" is the direction in the format of WINDOW (LBNL). In Radiance, it is the side to which the surface normal
+  // points.
   EXPECT_EQ(between(xml, "<WavelengthDataDirection>", "<"), "Reflection Back");
   const std::string data = between(xml, "<ScatteringData>", "<");
   std::size_t at = 0;
@@ -75,7 +76,7 @@ RadianceFile::RadianceFile(const std::string& xml) {
   least_leaf_ = std::ldexp(1.0, -depth(root_));
 }
 
-/// `{value}`, or `{` 16 branches `}`.
+/// Parses a node, which is either `{value}`, or `{` followed by 16 branches and `}`.
 RadianceFile::Node RadianceFile::parse(const std::string& text, std::size_t& at) {
   const auto next = [&] {
     at = text.find_first_not_of(" \n", at);

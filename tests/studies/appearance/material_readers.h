@@ -6,24 +6,26 @@
 #include <string>
 #include <vector>
 
-// Readers of what `retrace export` writes of a material, by the formats' own rules: nothing here is retrace's.
+// Readers of the material files that `retrace export` writes. They follow the specifications of the formats and share
+// no code with the writers.
 
 namespace retrace::test {
 
 using Triple = std::array<double, 3>;
 
-/// A direction of an angle from +z and an azimuth, in degrees.
+/// Returns the unit vector with an angle from +z and an azimuth, both in degrees.
 Triple direction(double angle_deg, double azimuth_deg);
 
-/// A BSDF file of Radiance whose tree has rank 4, looked up as Radiance does.
+/// A BSDF file of Radiance with a tensor tree of rank 4. Values are looked up in the same way as in Radiance.
 class RadianceFile {
  public:
   explicit RadianceFile(const std::string& xml);
-  /// The side of a leaf, over the unit square.
+  /// Side of the smallest leaf of the tree, as a fraction of the side of the unit square.
   double least_leaf() const { return least_leaf_; }
-  /// BRDF of light from one direction in another.
+  /// Returns the BRDF for light from the direction `in` that is reflected into the direction `out`.
   double brdf(const Triple& in, const Triple& out) const;
-  /// Share of light from a direction that goes anywhere: leaves times their projected solid angle.
+  /// Returns the fraction of light from the direction `in` that is reflected into all directions. It is the sum of the
+  /// values of the leaves, each multiplied by the projected solid angle of the leaf.
   double reflected(const Triple& in) const;
 
  private:
@@ -38,11 +40,11 @@ class RadianceFile {
   double least_leaf_ = 1.0;
 };
 
-/// The function of a shader with lobes, by its constants.
+/// Evaluates the function of an exported GLSL shader, a sum of lobes, from the constants in its text.
 class GlslFile {
  public:
   explicit GlslFile(const std::string& text);
-  /// Luminous BRDF.
+  /// Returns the luminance of the BRDF, computed from linear red, green and blue with the weights of sRGB.
   double brdf(Triple to_source, Triple to_observer) const;
 
  private:

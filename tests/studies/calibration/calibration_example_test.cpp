@@ -28,9 +28,10 @@
 #include "studies/fabrication/job_maker.h"
 #include "tests/support/seen_parts.h"
 
-// The measurements of examples/calibration, which docs/tutorials/test_cuts.md works with: programs that the verifier
-// carries out on a machine with hidden errors, figures and a height map with noise. RETRACE_WRITE_EXAMPLES=1 writes
-// them anew, to be looked at before they are committed; docs/tutorials/test_cuts.md then shows other numbers.
+// Tests of the measurements in examples/calibration, which docs/tutorials/test_cuts.md uses. The verifier carries out
+// programs on a machine with hidden errors. The resulting values and a height map have noise. If
+// RETRACE_WRITE_EXAMPLES=1 is set, the test writes the files again. They must be reviewed before they are committed,
+// and the numbers in docs/tutorials/test_cuts.md must be updated.
 
 namespace retrace::studies::calibration_example_test {
 namespace {
@@ -43,8 +44,9 @@ const std::string kFolder = RETRACE_SOURCE_DIR "/examples/calibration/";
 
 using Errors = std::map<std::string_view, double>;
 
-/// By setup_quantities(), um and arcsec: when the test cuts are made, and what has changed when the part is cut with
-/// another tool on a warm machine.
+/// Errors of the machine by the keys of setup_quantities(), in um and arcsec. kHidden contains the errors when the test
+/// cuts are made. kChange contains the changes of these errors until the part is cut, with another tool and on a warm
+/// machine.
 const Errors kHidden = {{"c_x_um", 0.6},
                         {"c_y_um", -0.7},
                         {"a_y_um", 0.4},
@@ -68,7 +70,7 @@ const Errors kChange = {{"c_lean_y_arcsec", 12.0},
                         {"tool_z_um", -0.2},
                         {"tool_rotation_y_arcsec", 10.0},
                         {"tool_rotation_z_arcsec", -30.0}};
-/// The other tool is chipped.
+/// Mark of the chipped edge of the other tool: its distance from the center of the edge, its width and its depth.
 constexpr double kChipUm = 120.0;
 constexpr double kChipWidthUm = 26.0;
 constexpr double kChipDepthNm = 80.0;
@@ -120,14 +122,15 @@ JobRequest request() {
   return request;
 }
 
-/// Three normal numbers, the last of them drawn first: compilers disagree on the order in which arguments are drawn.
+/// Returns three numbers with a normal distribution. Each number is drawn in a separate statement, the last component
+/// first. If the numbers were drawn in the arguments of one call, their order would depend on the compiler.
 Vec3 normal_vector(std::normal_distribution<double>& normal, std::mt19937& bits) {
   Vec3 drawn;
   for (Eigen::Index k = 3; k-- > 0;) drawn[k] = normal(bits);
   return drawn;
 }
 
-/// Fills the table of test cuts in with what is measured of them.
+/// Simulates the measurements of the test cuts and fills their table with the values.
 void measure(Example& example, const Design& design, std::mt19937& bits) {
   std::normal_distribution<double> normal;
   TestCuts cuts = plan_test_cuts(design, request());
@@ -166,7 +169,7 @@ void measure(Example& example, const Design& design, std::mt19937& bits) {
   example.calibrated = calibrate(std::move(cuts.parts));
 }
 
-/// The part that programs for the calibrated machine cut later, seen from above.
+/// Simulates a height map of the part that the programs for the calibrated machine cut later.
 void look(Example& example, const Design& design, std::mt19937& bits) {
   FabricationResult plan = test::planned(job_text(make_job(design, request()).job));
   plan.machine = example.calibrated.machine;
@@ -209,7 +212,8 @@ const Example& example() {
   return made;
 }
 
-/// The same words; numbers to a unit of their last place, which rounding on another processor may change.
+/// Returns true if both texts have the same words and numbers. Numbers may differ by one unit of their last digit,
+/// because rounding may differ between processors.
 bool is_same(const std::string& a, const std::string& b, double last_place) {
   const auto words_of = [](std::string text) {
     std::ranges::replace(text, ',', ' ');
@@ -233,8 +237,9 @@ TEST(CalibrationExample, FilesAreWhatIsMade) {
   }
 }
 
-/// The figures that test cuts are planned with show some parts along X by their tilts alone: where a part lies must not
-/// take the place of how high the axes are. Intervals of each quantity, over 100 machines.
+/// The planned measurements contain no distances of facets for some of the parts, so that the positions of these parts
+/// along X are unknown. An unknown position must not be mistaken for an error in the height of an axis. The test counts
+/// the 95 % intervals of each quantity that contain the true error, over 100 machines.
 TEST(CalibrationExample, TestCutsFindWhatIsHidden) {
   constexpr std::uint32_t kMachines = 100;
   const TestCuts cuts = plan_test_cuts(read_design(kFolder + "part.toml"), request());
@@ -261,11 +266,12 @@ TEST(CalibrationExample, TestCutsFindWhatIsHidden) {
     }
   }
   EXPECT_EQ(within.size(), 9U);
-  // Of a share of 95 % this and more in 99 of 100 cases.
+  // With a probability of 95 % for each machine, at least 89 of 100 intervals contain the true value in 99 of 100
+  // cases.
   for (const auto& [key, count] : within) EXPECT_GE(count, 89U) << key;
 }
 
-/// What the tutorial ends with: what was found is what was hidden.
+/// At the end of the tutorial, the determined errors of the machine are the hidden errors.
 TEST(CalibrationExample, WhatIsHiddenIsFound) {
   const auto expect_found = [](const Calibration& found, const std::vector<double>& errors) {
     std::size_t told = 0;
@@ -279,7 +285,8 @@ TEST(CalibrationExample, WhatIsHiddenIsFound) {
   };
   const Example& made = example();
   EXPECT_GE(expect_found(made.calibrated, hidden()), 8U);
-  // Of the machine that was found before, the rest.
+  // The calibrated machine already contains the errors that the test cuts have determined. The correction must find the
+  // remaining errors.
   std::vector<double> rest = hidden_later();
   for (std::size_t k = 0; k < rest.size(); ++k) rest[k] -= made.calibrated.quantities[k].value;
   EXPECT_GE(expect_found(made.corrected.calibration, rest), 2U);

@@ -149,8 +149,8 @@ double largest_tilt_arcsec(const FabricationResult& plan, const Machine& real) {
   return (all - turns * turns.colPivHouseholderQr().solve(all)).cwiseAbs().maxCoeff();
 }
 
-/// The first programs are planned for the nominal machine, the second for the calibrated machine. The facets of the
-/// second part have tilts of at most a twentieth of the tilts of the first part, or of 2 arcsec if that is larger.
+/// The first programs are planned for the nominal machine, the second for the calibrated machine. The tilts of the
+/// second part's facets must be at most a twentieth of those of the first part, or at most 2 arcsec.
 TEST(Calibration, TheSecondCutIsRight) {
   for (std::uint32_t seed = 1; seed <= 10; ++seed) {
     std::mt19937 bits(seed);
@@ -172,7 +172,7 @@ TEST(Calibration, NamesWhatTheOthersContradict) {
   ASSERT_EQ(found.outliers.size(), 1U);
   EXPECT_EQ(found.outliers[0].measurement.line, parts.measurements[10].line);
   EXPECT_GT(found.outliers[0].deviations, 20.0);
-  // If a third of the measurements is wrong, the calibration cannot find out which ones.
+  // If a third of the measurements are wrong, the calibration cannot determine which ones.
   std::normal_distribution<double> normal;
   for (std::size_t k = 0; k < parts.measurements.size(); k += 3)
     parts.measurements[k].value += 1e4 * normal(bits) * parts.measurements[k].uncertainty;

@@ -38,7 +38,7 @@ struct FoundMachine {
   Correction found;
 };
 
-/// Returns the machine for a seed. Each machine is computed only once for all tests of this file.
+/// Returns the machine for a seed. Each machine is computed only one time for all tests of this file.
 const FoundMachine& found_machine(std::uint32_t seed) {
   static std::map<std::uint32_t, FoundMachine> all;
   if (const auto known = all.find(seed); known != all.end()) return known->second;

@@ -209,7 +209,7 @@ TEST(Compose, IsTheSameWhateverAKilledRunLeft) {
   std::mt19937 random(30);
   for (int kill = 0; kill < 20; ++kill) {
     // Up to eight points are computed in parallel. If a run is killed, the store may lack some of the last eight points
-    // that it began.
+    // that the run started.
     const std::size_t begun = random() % points.size();
     compute::ResultStore left("", compose_layout(study), compute::IfExists::refuse);
     for (std::size_t k = 0; k < begun; ++k)

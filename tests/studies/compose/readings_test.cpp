@@ -1,5 +1,5 @@
-// Quantities of single readings and directions, which mixtures add up, against those that are the least or the mean of
-// them.
+// Tests of quantities that are single readings or single directions, whose values can be added for mixtures. They are
+// compared with quantities that are the minimum or the mean of several readings or directions.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ namespace {
 
 using namespace studies;
 
-/// What the quantities of a study come to at the first of its points.
+/// Returns the values of a study's quantities at its first point.
 std::map<std::string, double> measured(const std::string& text) {
   const Study study = parse_study(text, test::kStudies + "study.toml");
   const Candidate candidate = make_candidate(study, some_values(study));
@@ -52,7 +52,7 @@ TEST(Readings, OfAPointHaveItsValueAsTheirLeast) {
   for (int point = 1; point <= 14; ++point)
     EXPECT_EQ(least(values, "r." + std::to_string(point) + "."), values.at("p." + std::to_string(point))) << point;
   EXPECT_EQ(least(values, "r."), values.at("w"));
-  // Two of the points are measured at V = 5 and -5; each at two turns of the part.
+  // Two of the points are measured at V = 5 and V = -5. Each geometry is measured at two rotations of the part.
   EXPECT_EQ(std::ranges::count_if(values, [](const auto& v) { return v.first.starts_with("r."); }), 12 * 2 + 2 * 4);
 }
 
@@ -72,7 +72,8 @@ TEST(Readings, OfRreAreItsDirections) {
   for (int k = 1; k <= 4; ++k) sum += values.at("each." + std::to_string(k));
   EXPECT_NEAR(sum / 4.0, values.at("mean"), 1e-4);
   EXPECT_NEAR(least(values, "each."), values.at("least"), 1e-4);
-  // A part turned by 10 degrees sees light from 50 degrees as one that is not turned sees it from 40.
+  // A rotation of the part by 10 degrees has the same effect as a rotation of the light by -10 degrees, from an azimuth
+  // of 50 to 40 degrees.
   const auto turned = measured(reflector("10", "[[quantity]]\nkind = \"rre\"\nincidence_deg = 20\nazimuth_deg = 50\n"));
   const auto asked = measured(reflector("0", "[[quantity]]\nkind = \"rre\"\nincidence_deg = 20\nazimuth_deg = 40\n"));
   EXPECT_EQ(turned, asked);

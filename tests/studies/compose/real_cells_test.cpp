@@ -66,7 +66,7 @@ struct Composed {
   Composition composition;
 };
 
-/// Returns a composition of up to three zones. It is computed only once, because the computation takes long.
+/// Returns a composition of up to three zones. It is computed only one time, because the computation takes long.
 const Composed& three_zones() {
   static const Composed result = [] {
     Study study = study_of_corners("[compose]\nmaximize = \"g\"\nmax_zones = 3\n");
@@ -152,8 +152,8 @@ TEST(RealCells, AreWrittenAsOnePartOfZones) {
   }
 }
 
-// If the part is traced as a whole, its RRE is the mean of the RRE of infinite arrays, one for each zone, weighted by
-// the areas of the zones. Borders cause a small difference.
+// If the part is traced as a whole, its RRE is a mean over the zones, weighted by their areas. The value of each zone
+// is the RRE of an infinite array of its cells. Borders cause a small difference.
 TEST(RealCells, TracedAsOnePartAreTheSumOfZones) {
   const Study& study = three_zones().study;
   const Composition& composition = three_zones().composition;

@@ -1,4 +1,5 @@
-// Paths of a camera that are followed together see what they see one by one.
+// Tests of the engines of the camera: the cell engine, which traces paths in groups, gives the same pictures as Embree,
+// which traces paths one by one.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -23,7 +24,8 @@ struct Case {
   std::vector<WeighedOptics> light;
 };
 
-/// Near enough that every pixel looks from another direction; with light from everywhere.
+/// Returns a scene with a camera that is so near that the viewing direction differs from pixel to pixel. Light comes
+/// from all directions.
 CameraScene near_scene(const Part& part, double width_mm) {
   const PhotometricDirections towards = directions_of(
       geometry_from({Angle::from_deg(8.0), Angle::from_deg(-12.0)}, Angle::from_deg(0.5), Angle::from_deg(0.0)));
@@ -60,7 +62,7 @@ std::vector<Case> cases() {
       {{dyed, 1.0}}, 12.0);
   add("sheet of triangles", build_part(infinite(TriangularCube{1.0}, Arrangement::triangular, 1.0)), 24.0,
       {{pmma(), 1.0}});
-  // Elements as large as several pixels: places of cells must be those of the part.
+  // Each element covers several pixels, so that the test detects cells at wrong positions.
   add("large prisms", build_part(infinite(RtpElement{6.0, 5.0}, Arrangement::aligned, 2.0)), 22.0, {{pmma(), 1.0}});
   return all;
 }
@@ -94,7 +96,8 @@ TEST(CameraEngines, SeeTheSamePixelByPixel) {
   }
 }
 
-/// Paths start at the same points whoever follows them, so that pictures of even light agree but for choices.
+/// In both engines, paths start at the same points. In uniform light, pictures therefore differ only by the random
+/// choices of the paths.
 TEST(CameraEngines, SeeEvenLightAlike) {
   for (Case& c : cases()) {
     if (c.light.front().optics.absorption_per_mm > 0.0) continue;
@@ -115,7 +118,8 @@ TEST(CameraEngines, GiveTheSameOnAnyNumberOfThreads) {
   EXPECT_EQ(images[0].part_means, images[1].part_means);
 }
 
-/// Several processes share the passes of a picture, each in an order of its own.
+/// Several processes divide the passes of a picture among them, and each process computes its passes in a different
+/// order.
 TEST(CameraEngines, PassesAreTheSameInAnyOrder) {
   const Case c = cases()[0];
   const auto tracer = [&] { return CameraTracer(c.part, c.light, c.scene, kCameraPolicy, 1); };

@@ -1,4 +1,4 @@
-// What the errors of single pixels are worth, at borders and where bright paths are rare.
+// Tests of the standard errors of single pixels, at borders and where paths to bright light are rare.
 #include <gtest/gtest.h>
 
 #include <boost/math/distributions/chi_squared.hpp>
@@ -19,7 +19,8 @@ using namespace raytrace;
 constexpr std::size_t kSide = 16;  ///< pixels
 constexpr std::uint32_t kSeeds = 16;
 
-/// Bricks with cut elements and upright sides, some of whose pixels see the lamp in a few of a thousand paths.
+/// Returns a scene for parts with cut elements and vertical sides. In some pixels, only a few of a thousand paths reach
+/// the lamp.
 CameraScene border_scene(const Part& part) {
   const PhotometricGeometry geometry =
       geometry_from({Angle::from_deg(5.0), Angle::from_deg(5.0)}, Angle::from_deg(0.2), Angle::from_deg(0.0));
@@ -47,26 +48,29 @@ std::vector<CameraImage> pictures_of(const Part& part, const CameraScene& scene,
   return images;
 }
 
-/// Mean square of a pixel's deviations over the error that its picture claims; 1 where errors are right.
+/// Returns the mean square of the deviations of a pixel, each divided by the standard error that its picture reports.
+/// The expected value is 1 if the reported errors are correct.
 double z_variance(const std::vector<CameraImage>& images, std::size_t pixel) {
   double mean = 0.0;
   for (const CameraImage& image : images) mean += image.luminance[pixel] / kSeeds;
   double sum = 0.0;
   for (const CameraImage& image : images) {
-    // Sums of equal values differ in their last digits.
+    // Sums of equal values may differ by rounding errors.
     const double error = std::hypot(image.std_error(pixel), 1e-9 * mean);
     sum += std::pow((image.luminance[pixel] - mean) / error, 2.0);
   }
   return sum / (kSeeds - 1.0);
 }
 
-/// Largest mean square of normal deviations that one of so many pixels may show (family error 1 %).
+/// Returns the upper limit of this mean square, for normally distributed deviations, that none of `pixels` pixels
+/// exceeds with a probability of 99 %.
 double variance_bound(std::size_t pixels) {
   const boost::math::chi_squared distribution(kSeeds - 1.0);
   return boost::math::quantile(boost::math::complement(distribution, sidak_level(pixels))) / (kSeeds - 1.0);
 }
 
-/// Independent pictures of a part with cut elements differ by no more than they say, pixel by pixel.
+/// Pictures of a part with cut elements are computed with different seeds. In every pixel, the spread of the pictures
+/// is at most as large as the reported errors predict.
 TEST(CameraError, HoldsAtBorders) {
   const Part part = build_part(finite(RtpElement{2.0, 2.0}, Arrangement::offset, 6.0, 6.0, 2.0));
   const std::vector<CameraImage> images = pictures_of(part, border_scene(part), 48);
@@ -80,7 +84,7 @@ TEST(CameraError, HoldsAtBorders) {
   EXPECT_GT(partly, 20U) << "there must be pixels on the border";
 }
 
-/// Where all pixels are alike the errors are right, not only large enough.
+/// If all pixels are statistically equal, the reported errors are not only large enough but correct.
 TEST(CameraError, IsRightWithinAnArray) {
   PartSpec spec = infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 1.0);
   spec.angle_errors.dihedral_error_arcmin.fill(2.0);
@@ -95,12 +99,13 @@ TEST(CameraError, IsRightWithinAnArray) {
     sum += variance / (kSide * kSide);
     EXPECT_LT(variance, variance_bound(kSide * kSide));
   }
-  // The larger of two estimates of one variance is a little too large.
+  // The standard error follows from the larger of two estimates of the same variance. It is therefore slightly too
+  // large on average.
   EXPECT_GT(sum, 0.8);
   EXPECT_LT(sum, 1.1);
 }
 
-/// A pixel that shows nothing of the part is known exactly, whatever is beside it.
+/// A pixel that does not show the part has the standard error 0, even if its neighbours show the part.
 TEST(CameraError, OfThePlainBackgroundIsNone) {
   const Part part = build_part(single(RtpElement{2.0, 2.0}, 1.0));
   const std::vector<CameraImage> images = pictures_of(part, border_scene(part), 2);

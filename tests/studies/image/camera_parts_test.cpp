@@ -1,4 +1,4 @@
-// Cameras before parts that are not plain arrays: rough facets, masks.
+// Tests of camera pictures of parts with rough facets and of parts with masks.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -35,7 +35,7 @@ struct RoughCase {
   double h_deg;
 };
 
-/// Light followed forwards, from the source to the receiver's disc: R_A with its error.
+/// Returns R_A and its standard error, from light that is traced forwards: from the source to the disc of the receiver.
 studies::PhotometricPoint forwards(const Design& design, const RoughCase& c, double disc_arcmin) {
   studies::PhotometrySettings request;
   request.programme.points.push_back({c.alpha_deg, c.v_deg, c.h_deg, 1.0, studies::PhotometricUnit::cd_per_lx_per_m2,
@@ -51,11 +51,12 @@ studies::PhotometricPoint forwards(const Design& design, const RoughCase& c, dou
   return studies::PhotometryStudy(design, request).run().points.front();
 }
 
-/// Backwards, from the receiver to the source, by the same models of scattering: where these are reciprocal the mean
-/// luminance is R_A E / cos nu.
+/// The camera traces light backwards, from the receiver to the source, with the same scatter models. If the models are
+/// reciprocal, the mean luminance is R_A E / cos nu.
 TEST(RoughCamera, SeesWhatIsSentForwards) {
-  // Beside the specular return of discs of half a degree: within it, efficiencies that fall with the angle of incidence
-  // make a difference of the order of the discs' radii, with smooth facets as well.
+  // The receiver is outside of the specular return of the discs of half a degree. Inside of it, the efficiency depends
+  // on the angle of incidence. The two methods would then differ by an amount of the order of the radii of the discs,
+  // even with smooth facets.
   const studies::HarveyShackTexture rough = {.roughness_sq_nm = 25.0, .correlation_length_um = 12.0};
   const studies::MicrofacetTexture wavy = {.waviness_sq_nm = 30.0, .waviness_length_um = 60.0};
   for (const RoughCase& c :
@@ -84,7 +85,8 @@ TEST(RoughCamera, SeesWhatIsSentForwards) {
   }
 }
 
-/// An array with a gap in the shape of an L: bright where there are elements, and only there.
+/// The elements of an array are arranged in the shape of an L. The picture is bright at these elements and dark
+/// everywhere else.
 TEST(MaskCamera, ShowsTheElementsThatAreThere) {
   const PartSpec spec = finite(RtpElement{1.0, 1.0}, Arrangement::aligned, 4.0, 4.0, 1.0);
   const auto is_there = [](int column, int row) { return column == 1 || (row == 0 && column < 3); };
@@ -112,7 +114,8 @@ TEST(MaskCamera, ShowsTheElementsThatAreThere) {
   for (std::size_t k = 0; k < image.luminance.size(); ++k) {
     const int column = static_cast<int>(k % 16) / 4;
     const int row = 3 - static_cast<int>(k / 16) / 4;
-    // Flat back between the elements mirrors as well: at normal incidence it is dark only where it lets light through.
+    // The flat back between the elements is also a mirror. At normal incidence, it is dark only where light passes
+    // through it.
     if (is_there(column, row)) {
       EXPECT_NEAR(image.luminance[k], full, 1e-3 * full) << column << ' ' << row;
     } else {

@@ -1,4 +1,4 @@
-// What cameras see: uniform light, closed forms, coefficients of retroreflection, footprints, convergence.
+// Tests of camera pictures: uniform light, closed forms, coefficients of retroreflection, footprints and convergence.
 #include "raytrace/observers/camera.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,8 @@ using std::numbers::pi;
 
 constexpr double kArcmin = pi / 180.0 / 60.0;
 
-/// Camera and lamp 1 km away, where all of a part is seen from one direction.
+/// Returns a scene with camera and lamp at a distance of 1 km, so that the viewing direction is the same for the whole
+/// part.
 CameraScene far_scene(const Part& part, double alpha_deg, double v_deg, double h_deg, double lamp_arcmin,
                       double pupil_arcmin) {
   const PhotometricGeometry geometry =
@@ -59,7 +60,7 @@ Part cubes(double error_arcmin = 0.0) {
   return build_part(spec);
 }
 
-/// A part that takes no light, in light that is the same from everywhere, cannot be seen.
+/// In light with equal luminance from all directions, a part that does not absorb light is invisible.
 TEST(Camera, PartIsInvisibleInUniformLight) {
   const Part brick = build_part(finite(RtpElement{2.0, 2.0}, Arrangement::offset, 6.0, 6.0, 2.0));
   const Part cube = build_part(single(HexagonalCube{3.0}, 1.0));
@@ -80,7 +81,8 @@ TEST(Camera, PartIsInvisibleInUniformLight) {
     }
 }
 
-/// One whose layers take light is as much darker as it takes of light that comes from the camera.
+/// A part with absorbing layers is darker. The missing fraction of the luminance is the fraction of the light from the
+/// camera that the part absorbs.
 TEST(Camera, LayersThatAbsorbAreDark) {
   const Part part = cubes();
   Optics optics = pmma();
@@ -98,8 +100,8 @@ TEST(Camera, LayersThatAbsorbAreDark) {
               student_bound(1, 64) * image.part_error() + 7.0 * ledger[Account::truncated] + 1e-4);
 }
 
-/// All light comes back along itself: every ray of the pupil ends on the lamp, whose disc is the larger, and sees the
-/// luminance E / Omega.
+/// All light returns exactly to its source. The disc of the lamp is larger than the pupil, so that every ray from the
+/// pupil ends on the lamp. Its luminance is E / Omega.
 TEST(Camera, PerfectArrayShowsTheLamp) {
   const Part part = cubes();
   const double omega = pi * std::pow(6.0 * kArcmin, 2.0);
@@ -111,7 +113,8 @@ TEST(Camera, PerfectArrayShowsTheLamp) {
   }
 }
 
-/// L = R_A E / cos nu, with R_A of the photometer for the same discs; without its diffraction.
+/// The expected mean luminance is L = R_A E / cos nu. R_A is computed by the photometer for the same discs, without
+/// diffraction.
 TEST(Camera, MeanLuminanceIsThatOfThePhotometer) {
   struct Case {
     double error_arcmin, alpha_deg, v_deg, h_deg, lamp_arcmin, pupil_arcmin;
@@ -133,28 +136,28 @@ TEST(Camera, MeanLuminanceIsThatOfThePhotometer) {
     const double r_a = studies::PhotometryStudy(design, request).run().points.front().r_a;
 
     CameraRequest camera;
-    camera.distance_m = 1e5;  // what the face mirrors goes back to the lamp from all of it
+    camera.distance_m = 1e5;  // so distant that the whole entrance face reflects light back to the lamp
     camera.observation_deg = c.alpha_deg;
     camera.v_deg = c.v_deg;
     camera.h_deg = c.h_deg;
     camera.lamp_arcmin = c.lamp_arcmin;
     camera.pupil_arcmin = c.pupil_arcmin;
     camera.columns = camera.rows = 32;
-    // Many periods, so that it does not matter which part of one the border cuts off.
+    // The sheet has so many periods that cut periods at its border have a negligible effect.
     camera.film_mm = {500.0, 500.0};
     camera.field_mm = 400.0;
     camera.passes = 64;
     const studies::CameraResult seen = studies::CameraStudy(design, camera).run();
     const double expected = r_a * camera.illuminance_lx / std::cos(seen.viewing_deg * pi / 180.0);
     ASSERT_GT(expected, 0.0);
-    // 1e-3: what the beams of the photometer leave behind.
+    // The photometer truncates weak beams, which changes its value by up to 1e-3.
     EXPECT_NEAR(seen.image.part_mean(), expected, student_bound(4, 64) * seen.image.part_error() + 1e-3 * expected)
         << c.error_arcmin << ' ' << c.alpha_deg << ' ' << c.v_deg << ' ' << c.h_deg;
     EXPECT_LT(seen.image.part_error(), 0.03 * expected);
   }
 }
 
-/// The closed average over both discs, and points drawn in each.
+/// The mean over both discs is computed in closed form and by sampling points of each disc.
 TEST(Camera, DiscsAveragedAndSampledAgree) {
   const Part part = cubes(2.0);
   CameraScene scene = far_scene(part, 0.2, 5.0, 5.0, 20.0, 15.0);
@@ -166,7 +169,7 @@ TEST(Camera, DiscsAveragedAndSampledAgree) {
   EXPECT_LT(sampled.part_error(), 0.03 * sampled.part_mean());
 }
 
-/// At alpha = 0 a place of the face is bright if and only if light that enters there comes back.
+/// At alpha = 0, a point of the entrance face is bright if and only if light that enters there returns.
 TEST(Camera, IsBrightWhereTheFootprintIs) {
   const Part part = build_part(single(TriangularCube{4.0}, 1.0));
   const Rectangle bounds = bounding_box(part.outline);
@@ -174,7 +177,7 @@ TEST(Camera, IsBrightWhereTheFootprintIs) {
   scene.view.width_mm = bounds.size().x();
   scene.view.columns = 60;
   scene.view.rows = static_cast<std::size_t>(std::lround(60.0 * bounds.size().y() / bounds.size().x()));
-  // The pixels of the camera, about the middle of the face.
+  // The detector has the same pixels as the camera, around the center of the entrance face.
   const Vec2 middle = 0.5 * (bounds.lower + bounds.upper);
   const Vec2 half = 0.5 * scene.view.width_mm / 60.0 * Vec2(60.0, static_cast<double>(scene.view.rows));
   const DetectorSetting setting{{{middle - half, middle + half}, scene.view.columns, scene.view.rows},
@@ -213,7 +216,8 @@ double rms_difference(const CameraImage& a, const CameraImage& b) {
   return std::sqrt(sum / static_cast<double>(a.luminance.size()));
 }
 
-/// Two pictures of the same differ by half as much after four times the passes, and by as much as they say.
+/// The difference between two pictures of the same scene equals the difference that their standard errors predict. It
+/// is halved if the number of passes is quadrupled.
 TEST(Camera, ConvergesWithTheRootOfThePasses) {
   const Part part = cubes(2.0);
   const CameraScene scene = noisy_scene(part);
@@ -246,20 +250,21 @@ TEST(Camera, GivesTheSameBytesWithAnyNumberOfThreads) {
   EXPECT_NE(one.luminance, pictured(part, pmma(), scene, 4, 2).luminance);
 }
 
-/// A sheet on a cylinder shows at each place what a plane one shows that is turned as the cylinder is there.
+/// A sheet around a cylinder is compared with a plane sheet that is rotated like the tangent plane of the cylinder. At
+/// the point of contact, both sheets have the same luminance.
 TEST(Camera, CylinderIsPlaneWhereItIsTouched) {
   const Part part = cubes(1.0);
   const double radius = 100.0;
   const double turn_deg = 15.0;
   CameraScene bent = far_scene(part, 0.1, 0.0, 0.0, 20.0, 20.0);
   bent.film = Film{200.0, 40.0, radius};
-  // A narrow picture of the place whose normal is turned towards +x.
+  // The picture shows a narrow region around the point at which the normal is rotated towards +x by `turn_deg`.
   const double phi = turn_deg * pi / 180.0;
   const Vec3 shift(radius * std::sin(phi), 0.0, radius * (std::cos(phi) - 1.0));
   bent.view.target_mm += shift;
   bent.view.width_mm = 2.0;
   const CameraImage on_cylinder = pictured(part, pmma(), bent, 64);
-  // Seen from the sheet's own frame, light then comes from its -x side.
+  // In the frame of the plane sheet, light then comes from the -x side.
   CameraScene plane = far_scene(part, 0.1, 0.0, -turn_deg, 20.0, 20.0);
   plane.view.width_mm = 2.0;
   const CameraImage on_plane = pictured(part, pmma(), plane, 64, 5);
@@ -292,7 +297,7 @@ struct ReferencePixel {
   double std_error = 0.0;
 };
 
-/// Row by row; a file that is missing or short fails the test.
+/// Returns the pixels of the stored picture row by row. If the file is missing, the test fails.
 std::vector<ReferencePixel> stored_reference() {
   std::ifstream file(std::string(RETRACE_SOURCE_DIR) + "/tests/studies/image/camera_reference.csv");
   EXPECT_TRUE(file.good()) << "the reference is missing";
@@ -307,9 +312,10 @@ std::vector<ReferencePixel> stored_reference() {
   return pixels;
 }
 
-/// A sheet of cube corners on a cylinder, several of them to a pixel - where pixels are finer, some show their light in
-/// one path of thousands, which no error estimate knows of before it comes. RETRACE_WRITE_REFERENCE=FILE writes it
-/// anew.
+/// Returns a scene with a sheet of cube corners on a cylinder. Each pixel shows several cube corners. With smaller
+/// pixels, only one of thousands of paths of some pixels would reach the lamp, and error estimates would be unreliable
+/// until such a path occurs. If RETRACE_WRITE_REFERENCE=FILE is set, the test writes the reference picture to this
+/// file.
 CameraScene reference_scene(const Part& part) {
   CameraScene scene = far_scene(part, 0.1, 5.0, 12.0, 40.0, 5.0);
   scene.surroundings = {1.0, 0.2};
@@ -317,8 +323,9 @@ CameraScene reference_scene(const Part& part) {
   return scene;
 }
 
-/// Against a picture made with many passes and another seed: every pixel within the errors of both, and their squares
-/// together. That the picture is the right one is what the other tests are for.
+/// The picture is compared with a reference picture with many passes and another seed. The differences of single pixels
+/// and the sum of their squares must agree with the standard errors of both pictures. The other tests show that the
+/// picture is correct.
 TEST(Camera, PictureAgreesWithItsReference) {
   const Part part = cubes();
   if (const char* file = std::getenv("RETRACE_WRITE_REFERENCE")) {
@@ -337,7 +344,7 @@ TEST(Camera, PictureAgreesWithItsReference) {
   double count = 0.0;
   double most = 0.0;
   for (std::size_t k = 0; k < reference.size(); ++k) {
-    // Where all paths see the same there is no spread to compare with.
+    // The added constant is necessary because the standard errors are 0 if all paths have the same luminance.
     const double error = std::hypot(reference[k].std_error, image.std_error(k)) + 1e-6;
     const double z = (image.luminance[k] - reference[k].mean) / error;
     squares += z * z;

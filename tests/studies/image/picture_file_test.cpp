@@ -1,4 +1,5 @@
-// Files of pictures: read back by OpenImageIO; colours and tone curves by their definitions.
+// Tests of picture files, which OpenImageIO reads back, and of colour scales and tone curves, which are compared with
+// their definitions.
 #include "report/io/picture_file.h"
 
 #include <OpenImageIO/filesystem.h>
@@ -53,7 +54,8 @@ TEST(PictureFile, GivesTheSameBytesAgain) {
 TEST(ColourScale, BrightnessRisesEvenlyFromBlackToWhite) {
   for (const double end : cubehelix(0.0)) EXPECT_EQ(end, 0.0);
   for (const double end : cubehelix(1.0)) EXPECT_EQ(end, 1.0);
-  // Green 2011: the perceived intensity 0.30 R + 0.59 G + 0.11 B is the share itself.
+  // Green (2011) defines the perceived intensity as 0.30 R + 0.59 G + 0.11 B. It must equal the argument of the colour
+  // scale.
   for (int k = 0; k <= 100; ++k) {
     const auto [r, g, b] = cubehelix(0.01 * k);
     EXPECT_NEAR(0.30 * r + 0.59 * g + 0.11 * b, 0.01 * k, 0.012) << k;
@@ -70,7 +72,7 @@ TEST(ToneMapped, KeepsTheOrderAndTheMiddleAtItsKey) {
   EXPECT_LE(shown[98], 1.0);
   EXPECT_EQ(shown[99], 1.0) << "the brightest burns out";
   EXPECT_EQ(tone_mapped({0.0, 0.0}), (std::vector<double>{0.0, 0.0}));
-  // An even picture is shown as the key, squeezed by its own white: x (1 + x / x^2) / (1 + x) = 1.
+  // All values x are equal and therefore also the white point of the tone curve: x (1 + x / x^2) / (1 + x) = 1.
   for (const double value : tone_mapped({5.0, 5.0})) EXPECT_DOUBLE_EQ(value, 1.0);
   EXPECT_EQ(srgb_byte(0.0), 0);
   EXPECT_EQ(srgb_byte(2.0), 255);

@@ -1,4 +1,4 @@
-// Coverage of pixels by polygons.
+// Tests of the area that a polygon covers in each pixel of a grid.
 #include "raytrace/observers/pixel_grid.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ double sum_of(const std::vector<double>& values) {
   return sum;
 }
 
-/// A convex polygon on a circle with random corners.
+/// Returns a convex quadrilateral with random corners on a circle.
 Polygon random_polygon(std::uint32_t number, const Vec2& centre, double radius) {
   const auto words = philox({7, 1}, number, 0);
   std::vector<double> turns;
@@ -65,9 +65,10 @@ TEST(PixelGrid, AreasOfAPolygonAddUpToIt) {
 
 TEST(PixelGrid, CoverageMeetsItsClosedForm) {
   const PixelGrid grid({{0.0, 0.0}, {2.0, 2.0}}, 2, 2);
-  // A triangle with legs of 1.5: halves and corners of pixels.
+  // The triangle has legs of 1.5. It covers pixel 2 except for one corner, and triangles with legs of 0.5 in the pixels
+  // 0 and 3.
   const std::vector<double> areas = covered(grid, {{0.0, 0.0}, {1.5, 0.0}, {0.0, 1.5}});
-  EXPECT_DOUBLE_EQ(areas[2], 1.0 - 0.125);  // lower left, less the corner beyond x + y = 1.5
+  EXPECT_DOUBLE_EQ(areas[2], 1.0 - 0.125);  // lower left pixel, without the corner beyond x + y = 1.5
   EXPECT_DOUBLE_EQ(areas[0], 0.125);
   EXPECT_DOUBLE_EQ(areas[3], 0.125);
   EXPECT_DOUBLE_EQ(areas[1], 0.0);

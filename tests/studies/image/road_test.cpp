@@ -1,4 +1,5 @@
-// The night road: where things are, at which angles they are seen, and what the far field gives them.
+// Tests of the road at night: positions of objects, angles, illuminances, and coefficients of retroreflection from the
+// far field.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -17,15 +18,15 @@ using namespace geometry;
 using namespace studies;
 using std::numbers::pi;
 
-/// One reflector in the light of one lamp. Worked out apart from the program, from the heights and distances of
-/// RoadScene: the reflector at (-+0.72, 0.6, 0), the lamps at (-+0.6, 0.65, D), the eye at (-0.35, 1.2, D + 1.8) m.
+/// Expected values for one reflector and one lamp, computed independently from the heights and distances of RoadScene.
+/// Reflectors are at (-+0.72, 0.6, 0), lamps at (-+0.6, 0.65, D), and the eye is at (-0.35, 1.2, D + 1.8), in m.
 struct RoadRow {
   double distance_m;
-  std::size_t reflector;  ///< 0: left
+  std::size_t reflector;  ///< 0: left, 1: right
   std::size_t lamp;
   double observation_deg;
-  double illuminance_lx;  ///< of 10,000 cd
-  double viewing_deg;     ///< between the eye and the reflector's normal
+  double illuminance_lx;  ///< illuminance from a lamp of 10,000 cd
+  double viewing_deg;     ///< angle between the direction to the eye and the normal of the reflector
 };
 constexpr std::array<RoadRow, 12> kRows = {{{10, 0, 0, 2.847349387, 99.983102856, 3.418687},
                                             {10, 0, 1, 6.294526744, 98.285024606, 3.418687},
@@ -40,7 +41,7 @@ constexpr std::array<RoadRow, 12> kRows = {{{10, 0, 0, 2.847349387, 99.983102856
                                             {100, 1, 0, 0.345299745, 0.999825540, 0.690411},
                                             {100, 1, 1, 0.616489872, 0.999998310, 0.690411}}};
 
-/// Small prisms, whose diffraction sends some light everywhere.
+/// Returns a design with prisms that are so small that diffraction sends light in all directions.
 Design design() {
   Design d;
   d.part() = infinite(RtpElement{0.1, 0.1}, Arrangement::aligned, 0.5);
@@ -68,7 +69,7 @@ TEST(Road, AnglesAndIlluminancesAreThoseOfThePlaces) {
   }
 }
 
-/// Both lamps add up: L = sum of R_A E / cos nu.
+/// The luminance is the sum over both lamps: L = sum of R_A E / cos nu.
 TEST(Road, LuminanceIsThatOfBothLamps) {
   for (std::size_t k = 0; k < kRows.size(); k += 2) {
     const RoadReflector& reflector = reflector_of(kRows[k]);
@@ -80,8 +81,8 @@ TEST(Road, LuminanceIsThatOfBothLamps) {
   }
 }
 
-/// A goniometer that has lamp and eye where they are: found by trial, so that nothing of the road's own geometry is
-/// used. The part is turned about its normal, which is z, and the lamp with it seen from the goniometer.
+/// Returns the geometry of a goniometer with the given directions to lamp and eye. The angle epsilon is found by trying
+/// values, so that the test uses no code of the road. The part is rotated about its normal, which is z.
 raytrace::PhotometricGeometry goniometer(double observation_deg, const Vec3& to_lamp, const Vec3& to_eye) {
   const auto at = [&](double deg) {
     const double a = deg * pi / 180.0;
@@ -104,7 +105,8 @@ raytrace::PhotometricGeometry goniometer(double observation_deg, const Vec3& to_
   return at(best);
 }
 
-/// R_A is what a photometer finds that is set up by hand for the left reflector and the right lamp.
+/// The photometer is set up by hand for the left reflector and the right lamp. Its R_A must equal the value of the
+/// road.
 TEST(Road, CoefficientsAreThoseOfTheFarField) {
   const double distance_m = 30.0;
   const Vec3 to_lamp = Vec3(0.6 + 0.72, 0.05, distance_m).normalized();
@@ -128,19 +130,19 @@ TEST(Road, CoefficientsAreThoseOfTheFarField) {
   EXPECT_NEAR(reflector_of(row).r_a[row.lamp], expected, 1e-5 * expected);
 }
 
-/// In the picture the reflectors lie where a pinhole would show them, and are as large.
+/// In the picture, the reflectors have the positions and sizes of a pinhole projection.
 TEST(Road, ReflectorsAreDrawnWhereTheyAre) {
   RoadScene scene;
   scene.columns = 900;
   scene.rows = 700;
-  // Fields in which the reflectors are many pixels wide.
+  // The field of view is chosen such that the reflectors are many pixels wide.
   for (const auto& [distance_m, field_deg] : {std::pair{10.0, 9.0}, {30.0, 3.2}, {100.0, 1.0}}) {
     scene.field_deg = field_deg;
     RoadView view;
     view.distance_m = distance_m;
     view.reflectors[0].luminance = view.reflectors[1].luminance = 1e5;
     draw_road(scene, view);
-    // The camera looks level at the middle of the car, its pixels stand upright.
+    // The camera is aimed horizontally at the center of the car, and its columns are vertical.
     const Vec3 eye(-0.35, 1.2, distance_m + 1.8);
     const Vec3 forward = Vec3(0.35, 0.0, -eye.z()).normalized();
     const Vec3 right(-forward.z(), 0.0, forward.x());
@@ -153,14 +155,14 @@ TEST(Road, ReflectorsAreDrawnWhereTheyAre) {
       double pixels = 0.0;
       for (std::size_t k = 0; k < view.coloured.size(); ++k) {
         const Vec2 at(static_cast<double>(k % 900) + 0.5, static_cast<double>(k / 900) + 0.5);
-        // The eye's own veil beside them stays below that.
+        // The threshold excludes the veiling glare of the eye around the reflectors.
         const double share = std::min(1.0, view.coloured[k] / 1e5);
         if ((at - expected).norm() > 80.0 || share < 0.03) continue;
         sum += share * at;
         pixels += share;
       }
       EXPECT_NEAR((sum / pixels - expected).norm(), 0.0, 0.1) << distance_m;
-      // The solid angle of 12 cm x 2.5 cm, and that of a pixel so far off the axis.
+      // Solid angles of the reflector of 12 cm x 2.5 cm, and of a pixel in the direction of the reflector.
       const double solid_angle = 0.12 * 0.025 * eye.z() / std::pow(way.norm(), 3.0);
       const double of_pixel = pixel * pixel * std::pow(way.dot(forward) / way.norm(), 3.0);
       EXPECT_NEAR(pixels * of_pixel / solid_angle, 1.0, 0.03) << distance_m;

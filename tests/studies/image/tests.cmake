@@ -6,7 +6,7 @@ if(RETRACE_WITH_OPENIMAGEIO)
   target_link_libraries(studies_tests PRIVATE PkgConfig::OPENIMAGEIO)
 endif()
 
-# The command, as users meet it.
+# Tests of the command from the user's point of view.
 retrace_test(command_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/image_command_test.cpp
   LIBRARIES retrace::core nlohmann_json::nlohmann_json)

@@ -3,7 +3,7 @@ retrace_test(studies_tests
           ${CMAKE_CURRENT_LIST_DIR}/tm25_test.cpp ${CMAKE_CURRENT_LIST_DIR}/ray_csv_test.cpp
   LIBRARIES retrace::rays)
 
-# The command, as users meet it.
+# Tests of the command from the user's point of view.
 retrace_test(command_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/rays_command_test.cpp
   LIBRARIES retrace::core nlohmann_json::nlohmann_json)

@@ -4,7 +4,7 @@ retrace_test(raytrace_tests
 retrace_test(command_tests
   SOURCES studies/solids/export_command_test.cpp studies/solids/mesh_command_test.cpp
   LIBRARIES retrace::core nlohmann_json::nlohmann_json)
-# OpenCASCADE reads back what was written.
+# This test reads the written STEP files with OpenCASCADE.
 if(RETRACE_WITH_OPENCASCADE)
   retrace_test(step_test
     SOURCES studies/solids/step_test.cpp studies/solids/step_reader.cpp

@@ -21,8 +21,8 @@ inline constexpr std::chrono::seconds kMpiLimit = patient(60);
 /// Time, in s, without messages after which a rank is given up.
 inline constexpr int kMpiSilenceS = 3;
 
-/// Returns how many lines of a run by several ranks report why it was refused. mpiexec adds lines of its own, and
-/// interrupts the other ranks as soon as one has ended with an error.
+/// Returns how many lines of a run by several ranks report why it was refused. mpiexec also writes lines, and
+/// interrupts the other ranks as soon as one rank has ended with an error.
 inline std::ptrdiff_t refusals_in(const Outcome& outcome) {
   return std::ranges::count_if(lines_of(outcome.err), [](const std::string& line) {
     return line.starts_with("retrace: ") && !line.starts_with("retrace: interrupted");

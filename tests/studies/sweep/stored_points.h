@@ -17,7 +17,8 @@ inline std::string sweep_study(int points, int samples = 8000) {
          "\n[[quantity]]\nkind = \"rre\"\n[analysis]\nengine = \"cell\"\nsamples = " + std::to_string(samples) + "\n";
 }
 
-/// Returns the computing time of each point in a store, by the number of the point. The store may be in use by a run.
+/// Returns the computing time of each point in a store, by the number of the point. A running command may be using the
+/// store.
 inline std::map<int, double> stored_points(const std::filesystem::path& file) {
   std::map<int, double> points;
   try {

@@ -4,7 +4,7 @@ retrace_test(studies_tests
           ${CMAKE_CURRENT_LIST_DIR}/optimise_test.cpp ${CMAKE_CURRENT_LIST_DIR}/sweep_test.cpp
   LIBRARIES retrace::optimise retrace::sweep retrace::quantity retrace::store SQLiteCpp)
 
-# The program: runs that are killed, interrupted, shared and refused.
+# Tests of the program: killed, interrupted and rejected runs, and runs that share work among processes.
 set(sweep_app_sources sweep_command_test.cpp tolerance_command_test.cpp)
 if(RETRACE_WITH_MPI)
   list(APPEND sweep_app_sources mpi_command_test.cpp mpi_shared_test.cpp)

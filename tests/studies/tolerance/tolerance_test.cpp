@@ -181,9 +181,9 @@ TEST(Tolerance, TheYieldThatIsAskedForDecides) {
   EXPECT_FALSE(is_enough("60"));
 }
 
-/// At normal incidence, the RRE of a flat brick array is s + (1 - s) 2 R / (1 + R), where s is the fraction of the area
-/// with whole elements and R the reflectance of the entrance face. It depends on the index, but not on the thickness of
-/// the plate.
+/// At normal incidence, the RRE of a flat brick array is s + (1 - s) 2 R / (1 + R). Here, s is the fraction of the area
+/// with whole elements, and R is the reflectance of the entrance face. The RRE depends on the index, but not on the
+/// thickness of the plate.
 TEST(Tolerance, OnlyWhatMattersContributesToRre) {
   StudyRun run(
       parse_study("design = \"rtp_brick_1mm.toml\"\n" +

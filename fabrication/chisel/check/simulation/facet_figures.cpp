@@ -26,7 +26,7 @@ constexpr double kMostEndShare = 0.01;
 /// poses and positions.
 constexpr double kRootMargin = 1.05;
 constexpr int kEvenLines = 12;
-/// Maximum distance, in mm, between the centers of two passes that count as one pass. Their ploughed surfaces differ by
+/// Maximum distance, in mm, between the centres of two passes that count as one pass. Their ploughed surfaces differ by
 /// picometres only.
 constexpr double kSamePassMm = 3e-6;
 /// Fraction of the facet's width that is used to fit the plane of the facet. The ends of the facet are excluded.
@@ -38,7 +38,7 @@ constexpr double kReachShare = 4.0;
 /// facets are measured.
 struct Stations {
   std::vector<double> along_mm;         ///< positions of the stations
-  std::vector<double> pass_middles_mm;  ///< center of each pass
+  std::vector<double> pass_middles_mm;  ///< centre of each pass
 };
 
 class Measurer {
@@ -138,7 +138,7 @@ class Measurer {
     burr_height_mm_ = strip_mm_ + end_mm * slope;
   }
 
-  /// Returns the position, along the root line, of the plane in which the center of the edge moves.
+  /// Returns the position, along the root line, of the plane in which the centre of the edge moves.
   double middle_of(const SweptVolume& sweep) const {
     const Vec3& normal = prediction_.pass_normal;
     const RigidMotion& pose = poses_[sweep.pose];
@@ -163,7 +163,7 @@ class Measurer {
     if (stations_.pass_middles_mm.size() > 1) add_stations_of_passes(margin, end);
   }
 
-  /// Adds stations on both sides of every end of a pass, and at the center of each gap between passes. Overlapping
+  /// Adds stations on both sides of every end of a pass, and at the centre of each gap between passes. Overlapping
   /// passes hide each other's errors. The added stations also measure a pass where no other pass cuts, and so reveal a
   /// pass that is missing or too high.
   /// \param margin_mm distance of a station from the end of a pass

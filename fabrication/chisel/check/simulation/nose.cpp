@@ -21,7 +21,7 @@ constexpr double kFurthest = 40.0;
 /// higher do not reach the dihedral edges and are ignored.
 constexpr double kNear = 20.0;
 
-/// Returns the normalized component of a vector that is perpendicular to a unit vector.
+/// Returns the normalised component of a vector that is perpendicular to a unit vector.
 Vec3 across(const Vec3& v, const Vec3& unit) {
   return (v - unit * unit.dot(v)).normalized();
 }
@@ -39,7 +39,7 @@ class Searcher {
     NoseResidue residue;
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3& edge = cavity_.edges[k];
-      // Position of the measurement. For a hexagonal element, it is the center of the dihedral edge.
+      // Position of the measurement. For a hexagonal element, it is the centre of the dihedral edge.
       const Vec3 place = cavity_.root_mm + 0.25 * cavity_.facet_length_mm * edge;
       for (const std::size_t facet : {k, (k + 2) % 3}) {
         const Vec3& normal = cavity_.facets[facet].normal;

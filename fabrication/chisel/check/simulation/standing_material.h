@@ -18,7 +18,7 @@ struct SectionPlane {
   geometry::Vec3 origin_mm = geometry::Vec3::Zero();
   geometry::Vec3 across = geometry::Vec3::UnitX();
   geometry::Vec3 up = geometry::Vec3::UnitZ();
-  geometry::Vec3 normal = geometry::Vec3::UnitY();  ///< across x up
+  geometry::Vec3 normal = geometry::Vec3::UnitY();  ///< unit normal: cross product of `across` and `up`
 
   geometry::Vec2 direction(const geometry::Vec3& d) const { return {across.dot(d), up.dot(d)}; }
   geometry::Vec2 point(const geometry::Vec3& p) const { return direction(p - origin_mm); }

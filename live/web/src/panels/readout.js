@@ -52,7 +52,7 @@ export class Readout {
   constructor(session, ledger) {
     this.session = session;
     this.number = h("output", { class: "number" }, "–");
-    // copy of the value next to the pictures on narrow screens
+    // Copy of the value next to the pictures on narrow screens.
     this.small = h("output", { "aria-hidden": "true" }, "–");
     this.what = h("span", { class: "what" }, "of the light returns");
     this.moving = new Accuracy("moving", "While you change a value: standard error or truncated light of at most 1e-4; 1e-3 if 1e-4 takes too long");

@@ -1,10 +1,10 @@
-// Curves that answer to the pointer and to the keyboard, with uPlot.
+// Interactive charts for pointer and keyboard, drawn with uPlot.
 import uPlot from "uplot";
 import { colour } from "./theme.js";
 
 const WIDTHS = [2, 2, 2, 2, 2, 2, 2];
 
-/** All x of all series, rising; and each series over them, null where it has no value. */
+/** Returns all x values of all series, ascending, and the y values of each series with null for missing values. */
 export function aligned(series) {
   const xs = [...new Set(series.flatMap((s) => s.x))].sort((a, b) => a - b);
   const place = new Map(xs.map((x, i) => [x, i]));
@@ -70,7 +70,7 @@ function optionsOf(chart, width, figure) {
   };
 }
 
-/** Arrow keys walk along the curve, + and - zoom round the place, 0 shows all. */
+/** Adds keys: arrow keys move along the curve, + and - zoom around the current point, 0 shows the complete chart. */
 export function addKeys(plot, figure, spoken) {
   const area = figure.querySelector(".plot");
   let at = 0;

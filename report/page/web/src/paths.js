@@ -1,4 +1,4 @@
-// The way of a tool in a section, to scale: it can be zoomed and moved, and kinds of motion can be hidden.
+// Drawing of a tool path in a section, to scale. The user can zoom, move the drawing, and hide kinds of motion.
 const SVG = "http://www.w3.org/2000/svg";
 
 function boundsOf(path) {
@@ -18,7 +18,7 @@ function shown(value) {
   return String(Number(value.toPrecision(5)));
 }
 
-/** Lines are drawn in mm with y up; the style's colours follow light and dark. */
+/** Creates the lines of one kind of motion in mm, with y upwards. Their colours follow the theme. */
 function linesOf(kind, index) {
   const node = document.createElementNS(SVG, "path");
   node.setAttribute("d", kind.moves.map((m) => `M${m[0]} ${-m[1]}L${m[2]} ${-m[3]}`).join(""));
@@ -101,7 +101,7 @@ function draw(figure, path) {
   area.addEventListener(
     "wheel",
     (event) => {
-      if (!event.ctrlKey) return; // the wheel alone scrolls the page
+      if (!event.ctrlKey) return; // without the Ctrl key, the wheel scrolls the page
       event.preventDefault();
       const box = svg.getBoundingClientRect();
       zoom(event.deltaY < 0 ? 0.85 : 1 / 0.85, (event.clientX - box.left) / box.width, 1 - (event.clientY - box.top) / box.height);

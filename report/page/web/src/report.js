@@ -1,12 +1,12 @@
-// What a report's page adds to its document: charts, the view in three dimensions, downloads and the choice between light
-// and dark. The page works without: tables, figures and findings are in the document.
+// Adds interactive elements to a report: charts, the three-dimensional view, downloads and the choice of a light or
+// dark theme. Tables, figures and findings are part of the document and are also shown without these scripts.
 import { drawCharts } from "./charts.js";
 import { drawPaths } from "./paths.js";
 import { startScene } from "./scene.js";
 import { addDownloads } from "./tables.js";
 import { addThemeSwitch } from "./theme.js";
 
-/** \param more redraws what else is on the page, in other colours */
+/** \param more function that redraws other content of the page after a change of the theme */
 export function startReport(more = () => {}) {
   const data = JSON.parse(document.getElementById("page-data").textContent);
   const redraw = [more];

@@ -1,7 +1,10 @@
-// The part and a few light paths in three dimensions, with the list of paths beside it.
+// Three-dimensional view of the part and of a few light paths, with a list of the paths.
 import { colourOfPath, openView } from "./view.js";
 
-/** Which path is shown, and what happens to its light. */
+/**
+ * Lists the paths to choose from, and the events of the chosen path.
+ * \param chosen function that is called with the index of the chosen path; -1 means all paths
+ */
 function listPaths(scene, chosen) {
   const list = document.getElementById("scene-paths");
   const steps = document.getElementById("scene-steps");
@@ -34,7 +37,7 @@ function listPaths(scene, chosen) {
   if (scene.paths.length > 0) tell(0);
 }
 
-/** \return what draws it again in other colours */
+/** \return function that redraws the view after a change of the theme */
 export function startScene(element, scene) {
   const view = openView(element);
   view.show(scene, scene.paths.length > 0 ? 0 : -1);

@@ -1,9 +1,12 @@
-// The view without WebGL: the same solid and path, seen from one side, as SVG.
+// Replaces the three-dimensional view if WebGL is not available: the solid and the paths from one direction, as SVG.
 import { colour } from "./theme.js";
 
 const SVG = "http://www.w3.org/2000/svg";
 
-/** Seen from the front right, a little from above; y of the drawing points down. */
+/**
+ * Projects a point. The viewing direction is from the front right, slightly from above.
+ * \return x, y (downwards) and depth
+ */
 function seen([x, y, z]) {
   const azimuth = -0.52;
   const height = 0.32;

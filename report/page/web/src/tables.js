@@ -1,4 +1,5 @@
-// Every table can be saved as CSV: its column names with units, and values in full where the table shows fewer digits.
+// Downloads of tables as CSV. The first row contains column names with units. Values have all digits, even if the table
+// shows fewer.
 
 function quoted(text) {
   return /[",\n\r]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;

@@ -1,4 +1,4 @@
-// Light or dark: what the system says, unless the button was pressed.
+// Choice of the light or dark theme. The setting of the system applies until the user presses the button.
 
 const dark = window.matchMedia("(prefers-color-scheme: dark)");
 
@@ -27,7 +27,7 @@ export function addThemeSwitch(changed) {
     tell();
     changed();
   });
-  // Printed pages are light.
+  // Pages are printed in the light theme.
   let before;
   window.addEventListener("beforeprint", () => {
     before = document.documentElement.dataset.theme;

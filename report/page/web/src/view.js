@@ -1,4 +1,4 @@
-// A part and light paths in three dimensions: three.js on WebGL, else the same as a still drawing.
+// Three-dimensional view of a part and light paths, by three.js with WebGL. Without WebGL, it is a still drawing.
 import {
   AmbientLight,
   BufferGeometry,
@@ -29,7 +29,7 @@ import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { drawStill } from "./still.js";
 import { colour } from "./theme.js";
 
-const FIELD_DEG = 32; // of the camera, up and down
+const FIELD_DEG = 32; // vertical field of view of the camera
 
 function boundsOf(points) {
   const low = [Infinity, Infinity, Infinity];
@@ -42,7 +42,7 @@ function boundsOf(points) {
   return { middle: low.map((l, k) => (l + high[k]) / 2), size: Math.hypot(...low.map((l, k) => high[k] - l)) };
 }
 
-/** The name of the colour that a path has of its own, or by its place among all. */
+/** Returns the name of the colour of a path: its own colour, or the colour for its index in the list of paths. */
 export function colourOfPath(path, index) {
   return path.colour || `--curve-${index % 7}`;
 }
@@ -51,7 +51,7 @@ function positions(points) {
   return new Float32BufferAttribute(points.flat(), 3);
 }
 
-/** Faces, edges and lit places of the part; what is drawn anew when the scene changes. */
+/** Faces, edges and illuminated regions of the part. They are rebuilt when the scene changes. */
 class Solid {
   constructor() {
     this.group = new Group();
@@ -74,7 +74,7 @@ class Solid {
     this.scene = scene;
   }
 
-  /** Polygons on the entrance face, each as opaque as its share of light. */
+/** Creates the polygons on the entrance face. The opacity of each polygon is given in the scene. */
   light() {
     const points = [];
     const colours = [];
@@ -99,8 +99,11 @@ class Solid {
   }
 }
 
-/** Rods along paths with arrows in the middle of long pieces, balls where something happens: lines of WebGL are one
- * pixel wide. Each kind is one mesh with many instances, so that a change costs little. */
+/**
+ * Light paths as rods, with arrows near the centre of long segments and balls at events. Rods are used because WebGL
+ * draws lines with a width of only one pixel. All rods, all arrows and all balls are one mesh each, with many instances,
+ * so that changes are fast.
+ */
 class Paths {
   constructor() {
     this.group = new Group();
@@ -145,7 +148,7 @@ class Paths {
         mesh.dispose();
       }
       mesh = new InstancedMesh(this.kinds[kind], this.material, Math.max(32, 2 * wanted.length));
-      mesh.frustumCulled = false; // its bounds are those of the first filling
+      mesh.frustumCulled = false; // three.js computes the bounds only for the first instances
       this.meshes[kind] = mesh;
       this.group.add(mesh);
     }
@@ -159,7 +162,11 @@ class Paths {
   }
 }
 
-/** \param follows whether it is drawn anew many times a second: without a graphics card it then has no smooth edges */
+/**
+ * Creates the renderer.
+ * \param follows true if the scene is redrawn many times per second. Without a graphics card, antialiasing is then
+ *     omitted.
+ */
 function rendererOf(follows) {
   const how = { antialias: true, alpha: true, preserveDrawingBuffer: true };
   if (!follows) return new WebGLRenderer(how);
@@ -187,7 +194,7 @@ function addKeys(element, camera, controls, draw) {
     const turns = { ArrowLeft: [up, -0.12], ArrowRight: [up, 0.12], ArrowUp: [side, -0.12], ArrowDown: [side, 0.12] };
     if (turns[event.key]) {
       const turned = offset.clone().applyAxisAngle(...turns[event.key]);
-      // Over the pole the picture would turn upside down.
+      // A view across the pole would be upside down.
       if (Math.abs(turned.clone().normalize().z) > 0.995) return;
       offset.copy(turned);
     } else if (event.key === "+") offset.multiplyScalar(0.85);
@@ -200,7 +207,7 @@ function addKeys(element, camera, controls, draw) {
   });
 }
 
-/** The paths of a scene that are shown: one, or all where `chosen` is below 0. */
+/** Returns the displayed paths of a scene: the path `chosen`, or all paths if `chosen` is negative. */
 function pathsShown(scene, chosen) {
   return scene.paths
     .map((path, index) => ({ ...path, colour: colourOfPath(path, index) }))
@@ -240,14 +247,14 @@ class WebglView {
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, renderer.domElement);
     this.controls.enableDamping = false;
-    this.controls.enableZoom = false; // the wheel scrolls the page; + and - come nearer
+    this.controls.enableZoom = false; // the wheel scrolls the page; the keys + and - zoom
     this.controls.addEventListener("change", () => this.isFraming || this.render());
     addKeys(element, this.camera, this.controls, () => this.render());
     new ResizeObserver(() => this.fit()).observe(element);
     element.dataset.renderer = "webgl";
   }
 
-  /** The camera goes along with the size of what is shown, and keeps the side from which it looks. */
+/** Adapts the distance of the camera to the size of the scene. The direction of view is kept. */
   frame(bounds) {
     this.isFraming = true;
     const from = this.size
@@ -276,7 +283,7 @@ class WebglView {
     this.draw();
   }
 
-  /** All of it, in the colours of the theme. */
+/** Draws everything in the colours of the theme. */
   draw() {
     if (!this.scene) return;
     this.solid.paint();
@@ -294,7 +301,7 @@ class WebglView {
     const height = Math.max(200, this.element.clientHeight);
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
-    // Upright, it is the width that is to hold the part.
+    // In portrait orientation, the width limits the size of the part, so the field of view is enlarged.
     const half = Math.tan((FIELD_DEG * Math.PI) / 360) / Math.min(1, this.camera.aspect);
     this.camera.fov = (360 / Math.PI) * Math.atan(half);
     this.camera.updateProjectionMatrix();
@@ -302,8 +309,10 @@ class WebglView {
   }
 }
 
-/** \param follows whether what is shown changes many times a second \return what shows scenes in that element: show(scene,
- * path), choose(path), draw() */
+/**
+ * Creates a view in an element, with the functions show(scene, path), choose(path) and draw().
+ * \param follows true if the scene changes many times per second
+ */
 export function openView(element, { follows = false } = {}) {
   const renderer = webglOf(element, follows);
   if (!renderer) return stillView(element);
