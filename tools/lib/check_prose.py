@@ -79,7 +79,7 @@ def faults(path: pathlib.Path):
     if path.suffix == ".py":
         parts += docstrings(text)
     for line, part in parts:
-        plain = re.sub(r"`[^`]*`|\$[^$]*\$|https?://\S+", "x", part)
+        plain = re.sub(r"`[^`]*`|\$[^$]*\$|\]\([^)]*\)|https?://\S+", "x", part)
         if not is_document and (opening := OPENINGS.match(plain)):
             yield line, f'comment begins with "{opening[0]}"'
         for phrase in PHRASES:
