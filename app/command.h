@@ -61,8 +61,8 @@ struct Traits {
   /// Extension of allowed files. "" allows any file, and "/" allows folders. No value means that the argument is not a
   /// file.
   std::optional<std::string> files = {};
-  std::uint64_t least = 0;                      ///< minimum of a whole number
-  std::uint64_t most = std::uint64_t{1} << 36;  ///< maximum of a whole number
+  std::uint64_t min = 0;                       ///< minimum of a whole number
+  std::uint64_t max = std::uint64_t{1} << 36;  ///< maximum of a whole number
   /// True if the argument must be given. A positional argument can also be required by the type of its target variable.
   bool required = false;
   std::string excludes = {};     ///< name of an option that cannot be given together with this option
@@ -77,8 +77,8 @@ Traits one_of(Words words, std::optional<std::string> files = {});
 /// Returns the traits of an argument that is a file.
 /// \param ending extension of the file; "": any file; "/": a folder
 Traits files(const std::string& ending);
-/// Returns the traits of a whole number from `least` to `most`.
-Traits whole(std::uint64_t least, std::uint64_t most = Traits().most);
+/// Returns the traits of a whole number from `min` to `max`.
+Traits integer(std::uint64_t min, std::uint64_t max = Traits().max);
 /// Returns the traits of an option that cannot be given together with `option`.
 Traits not_with(const std::string& option);
 

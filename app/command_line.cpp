@@ -57,7 +57,7 @@ void add_check(CLI::Option& option, const Traits& traits) {
     option.check(real_number());
   else if constexpr (std::is_integral_v<Value> || std::is_same_v<Value, std::optional<std::uint32_t>> ||
                      std::is_same_v<Value, std::optional<std::uint64_t>>)
-    option.check(whole_number(traits.least, traits.most));
+    option.check(whole_number(traits.min, traits.max));
   else if (traits.files)
     option.check(not_empty());
 }
@@ -202,11 +202,11 @@ std::string one_line(const std::string& text) {
 /// Sets the memory budget of the process if --memory-gib is given.
 /// \throw InputError if the value is out of range
 void set_memory_budget(const CommonOptions& common) {
-  constexpr double kLeastGiB = 0.01, kMostGiB = 65536.0;
+  constexpr double kMinGiB = 0.01, kMaxGiB = 65536.0;
   if (!common.memory_gib) return;
-  if (!(*common.memory_gib >= kLeastGiB && *common.memory_gib <= kMostGiB))
-    throw InputError({"", 0, "--memory-gib"}, fmt::format("must be a number from {} to {}, got {}", shortest(kLeastGiB),
-                                                          shortest(kMostGiB), shortest(*common.memory_gib)));
+  if (!(*common.memory_gib >= kMinGiB && *common.memory_gib <= kMaxGiB))
+    throw InputError({"", 0, "--memory-gib"}, fmt::format("must be a number from {} to {}, got {}", shortest(kMinGiB),
+                                                          shortest(kMaxGiB), shortest(*common.memory_gib)));
   set_memory_budget_bytes(static_cast<std::uint64_t>(*common.memory_gib * 0x1p30));
 }
 
@@ -220,7 +220,7 @@ std::vector<std::string> with_current_options(int argc, const char* const* argv)
       for (std::string& word : words) {
         if (word != former && !word.starts_with(former + "=")) continue;
         word.replace(0, former.size(), requests::option_of(row));
-        say(fmt::format("warning: {} is the former name of {}", former, requests::option_of(row)));
+        print_to_stderr(fmt::format("warning: {} is the former name of {}", former, requests::option_of(row)));
       }
     }
   return words;

@@ -4,7 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "core/schema/reader.h"
-#include "studies/design/io/design_format.h"
+#include "design/io/design_format.h"
 
 namespace retrace::app {
 
@@ -31,8 +31,8 @@ Traits files(const std::string& ending) {
   return {.files = ending};
 }
 
-Traits whole(std::uint64_t least, std::uint64_t most) {
-  return {.least = least, .most = most};
+Traits integer(std::uint64_t min, std::uint64_t max) {
+  return {.min = min, .max = max};
 }
 
 Traits not_with(const std::string& option) {
@@ -111,24 +111,25 @@ std::string synopsis(const Command& command) {
 
 std::vector<Argument> common_arguments(CommonOptions& common) {
   const auto keys = [] {
-    Words words = schema::keys_of(studies::design_format());
+    Words words = schema::keys_of(design::design_format());
     for (std::string& word : words) word += '=';
     return words;
   };
-  return {{"--json FILE", "write the result as JSON to FILE, or to standard output if FILE is -", &common.json,
-           files(".json")},
-          {"-o,--out DIR",
-           "write the result's files to folder DIR; with init, job, export and validate, DIR is the file to write",
-           &common.out, files("/")},
-          {"--threads N", "number of threads [all cores that the process may use]", &common.threads, whole(1, 4096)},
-          {"--memory-gib G", "memory budget of beams and elements in GiB; see Memory in docs/commands.md [1]",
-           &common.memory_gib},
-          {"--seed S", "seed of the random numbers", &common.seed, whole(0, std::numeric_limits<std::uint32_t>::max())},
-          {"--set KEY=VALUE", "override a key of the design, such as element.base_mm=0.4; KEY= unsets the key",
-           &common.overrides, one_of(keys)},
-          {"--quiet", "print no progress bar, no note about long runs, no table and no warnings", &common.quiet},
-          {"--version", "show the version and exit", {}},
-          {"-h,--help", "show this help and exit", {}}};
+  return {
+      {"--json FILE", "write the result as JSON to FILE, or to standard output if FILE is -", &common.json,
+       files(".json")},
+      {"-o,--out DIR",
+       "write the result's files to folder DIR; with init, job, export and validate, DIR is the file to write",
+       &common.out, files("/")},
+      {"--threads N", "number of threads [all cores that the process may use]", &common.threads, integer(1, 4096)},
+      {"--memory-gib G", "memory budget of beams and elements in GiB; see Memory in docs/commands.md [1]",
+       &common.memory_gib},
+      {"--seed S", "seed of the random numbers", &common.seed, integer(0, std::numeric_limits<std::uint32_t>::max())},
+      {"--set KEY=VALUE", "override a key of the design, such as element.base_mm=0.4; KEY= unsets the key",
+       &common.overrides, one_of(keys)},
+      {"--quiet", "print no progress bar, no note about long runs, no table and no warnings", &common.quiet},
+      {"--version", "show the version and exit", {}},
+      {"-h,--help", "show this help and exit", {}}};
 }
 
 }  // namespace retrace::app

@@ -42,7 +42,7 @@ std::string name_from(const fs::path& folder, const fs::path& file) {
   return error || followed.empty() ? fs::absolute(file).string() : followed.string();
 }
 
-std::string job_text_at(studies::MadeJob& made, const fs::path& file) {
+std::string job_text_at(studies::GeneratedJob& made, const fs::path& file) {
   const fs::path machine = made.job.machine;
   if (machine.has_extension() && !machine.is_absolute()) made.job.machine = name_from(file.parent_path(), machine);
   if (!file.empty() && !made.design_file.empty()) made.job.design = name_from(file.parent_path(), made.design_file);

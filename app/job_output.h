@@ -40,6 +40,6 @@ std::string name_from(const std::filesystem::path& folder, const std::filesystem
 /// Returns the text of a job file. The paths of the design and of the machine file are made relative to the job file.
 /// \param file path of the job file. If it is empty, the job is printed instead, and the job contains only the name of
 /// the design file, without its folder.
-std::string job_text_at(studies::MadeJob& made, const std::filesystem::path& file);
+std::string job_text_at(studies::GeneratedJob& made, const std::filesystem::path& file);
 
 }  // namespace retrace::app

@@ -25,7 +25,7 @@ ExitCode run(int argc, const char* const* argv) {
 }
 
 int fail(ExitCode code, const std::string& text) {
-  app::say("retrace: " + text);
+  app::print_to_stderr("retrace: " + text);
   return static_cast<int>(code);
 }
 

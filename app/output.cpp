@@ -68,9 +68,9 @@ void print(std::string_view text) {
     throw OutputError("standard output: cannot be written");
 }
 
-std::vector<std::string> files_read(const std::vector<studies::Design>& designs) {
+std::vector<std::string> files_read(const std::vector<design::Design>& designs) {
   std::vector<std::string> files;
-  for (const studies::Design& design : designs) {
+  for (const design::Design& design : designs) {
     files.push_back(design.source);
     for (const fs::path& file : design.files()) files.push_back(file.string());
   }
@@ -124,7 +124,7 @@ ExitCode ResultFiles::write(std::string_view json, std::string_view text, const 
   write_outputs(json, text);
   print_warnings(options_, warnings);
   if (!ending.complete) {
-    say("retrace: interrupted; " + ending.interrupted);
+    print_to_stderr("retrace: interrupted; " + ending.interrupted);
     return ExitCode::interrupted;
   }
   return ending.is_yes ? ExitCode::done : ExitCode::answer_is_no;
@@ -172,7 +172,7 @@ ExitCode write_text(const CommonOptions& common, std::string_view schema, nlohma
   return files.write(result_text(schema, std::move(content), {}), text);
 }
 
-void say(std::string_view text) {
+void print_to_stderr(std::string_view text) {
   std::string line(text);
   // File names may contain line feeds. A message must be one line.
   std::replace(line.begin(), line.end(), '\n', ' ');
@@ -182,7 +182,7 @@ void say(std::string_view text) {
 
 void print_warnings(const CommonOptions& options, const Warnings& warnings) {
   if (options.quiet) return;
-  for (const Warning& warning : warnings) say("warning: " + warning.text);
+  for (const Warning& warning : warnings) print_to_stderr("warning: " + warning.text);
 }
 
 }  // namespace retrace::app

@@ -14,7 +14,7 @@
 
 #include "app/command.h"
 #include "core/warning.h"
-#include "studies/design/design.h"
+#include "design/design.h"
 
 namespace retrace::app {
 
@@ -26,7 +26,7 @@ void print(std::string_view text);
 std::string wrote_line(const std::filesystem::path& file);
 
 /// Returns the files of the designs and all files that the designs refer to.
-std::vector<std::string> files_read(const std::vector<studies::Design>& designs);
+std::vector<std::string> files_read(const std::vector<design::Design>& designs);
 
 /// Returns the options without --out, for commands in which --out is a file instead of a folder.
 CommonOptions without_folder(CommonOptions options);
@@ -134,7 +134,7 @@ ExitCode write_text(const CommonOptions& common, std::string_view schema, nlohma
                     const std::string& text);
 
 /// Writes one line to standard error. Control characters are printed as escapes. Errors of writing are ignored.
-void say(std::string_view text);
+void print_to_stderr(std::string_view text);
 
 /// Writes warnings to standard error, one line each. Does nothing if --quiet is given.
 void print_warnings(const CommonOptions& options, const Warnings& warnings);

@@ -27,9 +27,9 @@ class PointsBar : public studies::SweepObserver {
     const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
     const double rate = elapsed_s > 0.0 ? static_cast<double>(done - begun_with_) / elapsed_s : 0.0;
     remark_ = fmt::format("  {}/{} points, {:.3g}/s, {} failed", done, total, rate, failed);
-    at_share(total > 0 ? static_cast<double>(done) / static_cast<double>(total) : 1.0);
+    at_fraction(total > 0 ? static_cast<double>(done) / static_cast<double>(total) : 1.0);
   }
-  void at_share(double share) override {
+  void at_fraction(double share) override {
     share_ = std::max(share_, share);
     bar_.at(share_, remark_);
   }
@@ -48,7 +48,8 @@ class PointsBar : public studies::SweepObserver {
 ExitCode exit_code_of(const std::vector<compute::StoredPoint>& points, ExitCode code) {
   const auto failed = [](const compute::StoredPoint& point) { return point.failed; };
   if (points.empty() || !std::all_of(points.begin(), points.end(), failed)) return code;
-  say(fmt::format("retrace: every point failed, the first of {}: {}", points.size(), points.front().reason));
+  print_to_stderr(
+      fmt::format("retrace: every point failed, the first of {}: {}", points.size(), points.front().reason));
   return ExitCode::answer_is_no;
 }
 
@@ -69,9 +70,9 @@ ExitCode compute(const StudyOptions& options, const CommonOptions& common, const
   {
     PointsBar bar({command.doing, to_shorten_study(sweep.study(), command.fewer_points)}, common);
     interrupt.run(common.threads, [&](const Cancellation* cancel) {
-      const ShareTasks share = share_among(session, slots(common), cancel);
+      const DistributeTasks share = distribute_among(session, slots(common), cancel);
       complete =
-          share ? studies::share_sweep(sweep, store, &bar, share) : studies::run_sweep(sweep, store, &bar, cancel);
+          share ? studies::distribute_sweep(sweep, store, &bar, share) : studies::run_sweep(sweep, store, &bar, cancel);
     });
   }
   result.emplace(studies::collect(sweep, store, complete));
@@ -80,7 +81,7 @@ ExitCode compute(const StudyOptions& options, const CommonOptions& common, const
   const ExitCode code = command.write(*result, files);
   print_warnings(common, result->warnings);
   if (complete) return exit_code_of(result->points, code);
-  say(fmt::format("retrace: interrupted; finished points: {} of {}", result->points.size(), sweep.size()));
+  print_to_stderr(fmt::format("retrace: interrupted; finished points: {} of {}", result->points.size(), sweep.size()));
   return ExitCode::interrupted;
 }
 

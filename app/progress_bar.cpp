@@ -44,14 +44,14 @@ bool ProgressBar::is_time_to_draw(bool is_end) {
   return true;
 }
 
-void ProgressBar::notice(double share, const std::string& work) {
+void ProgressBar::notice(double fraction, const std::string& work) {
   if (is_quiet_) return;
-  const std::optional<double> remaining_s = run_.notice_s(share, elapsed_s());
+  const std::optional<double> remaining_s = run_.notice_s(fraction, elapsed_s());
   if (!remaining_s) return;
   clear();
   const std::string advice = fmt::format("{}", fmt::join(text_.to_shorten, ", or "));
-  say(fmt::format("note: {} will take about {} longer{}{}", work, duration_text(*remaining_s),
-                  advice.empty() ? "" : "; to shorten it, ", advice));
+  print_to_stderr(fmt::format("note: {} will take about {} longer{}{}", work, duration_text(*remaining_s),
+                              advice.empty() ? "" : "; to shorten it, ", advice));
   if (after_notice_) after_notice_(*remaining_s);
 }
 
@@ -71,22 +71,23 @@ void ProgressBar::write_lines(const std::string& lines) {
   clear();
   for (std::size_t from = 0; from < lines.size();) {
     const std::size_t end = std::min(lines.find('\n', from), lines.size());
-    say(std::string_view(lines).substr(from, end - from));
+    print_to_stderr(std::string_view(lines).substr(from, end - from));
     from = end + 1;
   }
 }
 
-void ProgressBar::at(double share) {
-  at(share, "");
+void ProgressBar::at(double fraction) {
+  at(fraction, "");
 }
 
-void ProgressBar::at(double share, const std::string& remark) {
+void ProgressBar::at(double fraction, const std::string& remark) {
   const std::lock_guard lock(mutex_);
-  notice(share, "this run");
-  remaining_s_ = run_.remaining_s(share, elapsed_s());
-  if (!is_time_to_draw(share >= 1.0)) return;
-  const auto full = static_cast<int>(std::lround(share * kWidth));
-  fmt::print(stderr, "\r\033[K{} [{:=>{}}{:>{}}] {:3.0f} %", text_.doing, "", full, "", kWidth - full, 100.0 * share);
+  notice(fraction, "this run");
+  remaining_s_ = run_.remaining_s(fraction, elapsed_s());
+  if (!is_time_to_draw(fraction >= 1.0)) return;
+  const auto full = static_cast<int>(std::lround(fraction * kWidth));
+  fmt::print(stderr, "\r\033[K{} [{:=>{}}{:>{}}] {:3.0f} %", text_.doing, "", full, "", kWidth - full,
+             100.0 * fraction);
   if (remaining_s_) fmt::print(stderr, "  {:.0f} s left", *remaining_s_);
   fmt::print(stderr, "{}", remark);
   std::fflush(stderr);
@@ -99,14 +100,14 @@ void ProgressBar::count(const std::string& done) {
   std::fflush(stderr);
 }
 
-void ProgressBar::begin_group(double share) {
+void ProgressBar::begin_group(double fraction) {
   const std::lock_guard lock(mutex_);
-  run_.begin_part(share, elapsed_s());
+  run_.begin_part(fraction, elapsed_s());
 }
 
-void ProgressBar::at_group(double share, const std::string& group) {
+void ProgressBar::at_group(double fraction, const std::string& group) {
   const std::lock_guard lock(mutex_);
-  notice(share, group);
+  notice(fraction, group);
 }
 
 }  // namespace retrace::app

@@ -33,18 +33,18 @@ class ProgressBar : public Progress {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  void at(double share) override;
+  void at(double fraction) override;
   /// Shows the finished fraction, followed by the text `remark`.
-  void at(double share, const std::string& remark);
+  void at(double fraction, const std::string& remark);
   /// Shows the progress of a computation of unknown length, for which the fraction is unknown.
   /// \param done text about the finished work, such as "65 designs evaluated"
   void count(const std::string& done);
   /// Starts a group of tasks within a computation of unknown length. The number of tasks in the group is known.
-  /// \param share fraction of the group that was finished in an earlier run
-  void begin_group(double share);
+  /// \param fraction fraction of the group that was finished in an earlier run
+  void begin_group(double fraction);
   /// Reports the finished fraction of the group. The notice about a long run is based on this fraction.
   /// \param group description of the group for the notice, such as "computing the next 65 designs"
-  void at_group(double share, const std::string& group);
+  void at_group(double fraction, const std::string& group);
 
   bool is_quiet() const { return is_quiet_; }
   /// Returns the latest estimate of at() for the remaining time, in seconds. Returns nothing before the first estimate.
@@ -64,7 +64,7 @@ class ProgressBar : public Progress {
   /// Writes the notice about a long run if LongRun::notice_s() requests it.
   /// \param work description of the computation that takes long, such as "this run"
   /// \pre mutex_ is locked
-  void notice(double share, const std::string& work);
+  void notice(double fraction, const std::string& work);
   void clear();
 
   std::mutex mutex_;

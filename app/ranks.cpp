@@ -19,7 +19,8 @@ ExitCode serve(const CommonOptions& common, std::size_t at_a_time, const std::fu
   try {
     const ComputeTask compute = help();
     const OrderlyInterrupt interrupt;
-    interrupt.run(common.threads, [&](const Cancellation* cancel) { session.serve(compute, at_a_time, cancel); });
+    interrupt.run(common.threads,
+                  [&](const Cancellation* cancel) { session.compute_tasks(compute, at_a_time, cancel); });
   } catch (const Error& error) {
     session.leave(error.what());
   }
@@ -44,10 +45,10 @@ ExitCode run_on_ranks(const CommonOptions& common, std::size_t at_a_time,
   ::_exit(static_cast<int>(code));
 }
 
-ShareTasks share_among(compute::MpiSession* session, std::size_t at_a_time, const Cancellation* cancel) {
+DistributeTasks distribute_among(compute::MpiSession* session, std::size_t at_a_time, const Cancellation* cancel) {
   if (session == nullptr) return {};
   return [session, at_a_time, cancel](const ComputeTask& compute, TaskLedger& ledger) {
-    return session->deal(compute, ledger, at_a_time, cancel);
+    return session->distribute_tasks(compute, ledger, at_a_time, cancel);
   };
 }
 

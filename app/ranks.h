@@ -28,7 +28,7 @@ ExitCode run_on_ranks(const CommonOptions& common, std::size_t at_a_time,
                       const std::function<ComputeTask()>& help);
 
 /// Returns the function that distributes tasks over all ranks. The function is empty if `session` is null.
-ShareTasks share_among(compute::MpiSession* session, std::size_t at_a_time, const Cancellation* cancel);
+DistributeTasks distribute_among(compute::MpiSession* session, std::size_t at_a_time, const Cancellation* cancel);
 
 /// Returns the warnings of rank 0 about other ranks, for example about lost ranks. The list is empty if `session` is
 /// null.

@@ -26,7 +26,7 @@ Words to_shorten_point(const studies::Study& study) {
   if (const auto samples = document.number_if("analysis.samples")) {
     advice.push_back(fmt::format("give a smaller analysis.samples (now {:.0f})", *samples));
   } else if (has_rre) {
-    const double error = document.number_if("analysis.target_error").value_or(studies::kUsualTargetError);
+    const double error = document.number_if("analysis.target_error").value_or(studies::kDefaultTargetError);
     advice.push_back(fmt::format("give a larger analysis.target_error (now {})", shortest(error)));
   }
   if (has_photometry) {
@@ -54,17 +54,17 @@ void SearchBar::at(std::uint64_t done, std::uint64_t total, std::uint64_t) {
   at(static_cast<std::size_t>(done));
 }
 
-void SearchBar::at_share(double share) {
-  at_group(share, first_group_);
+void SearchBar::at_fraction(double fraction) {
+  at_group(fraction, first_group_);
 }
 
 void SearchBar::at(std::size_t evaluated) {
   bar_.count(fmt::format("{} {} evaluated", evaluated, of_));
 }
 
-void SearchBar::at_group(double share, std::size_t designs) {
-  if (share == 0.0) bar_.begin_group(0.0);
-  bar_.at_group(share, fmt::format("computing the next {} {}", designs, of_));
+void SearchBar::at_group(double fraction, std::size_t designs) {
+  if (fraction == 0.0) bar_.begin_group(0.0);
+  bar_.at_group(fraction, fmt::format("computing the next {} {}", designs, of_));
 }
 
 }  // namespace retrace::app

@@ -23,9 +23,9 @@ class SearchBar : public studies::OptimiseObserver, public studies::SweepObserve
 
   /// Reports the progress of the first group of designs if several MPI processes compute it together.
   void at(std::uint64_t done, std::uint64_t total, std::uint64_t failed) override;
-  void at_share(double share) override;
+  void at_fraction(double fraction) override;
   void at(std::size_t evaluated) override;
-  void at_group(double share, std::size_t designs) override;
+  void at_group(double fraction, std::size_t designs) override;
 
  private:
   ProgressBar bar_;

@@ -24,9 +24,9 @@ void report(benchmark::State& state, const raytrace::BeamResult& result) {
                                                    benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
-/// Args: element kind (order of endless_scenes()), incidence and azimuth in degrees, -log10 of the truncated power.
+/// Args: element kind (order of infinite_scenes()), incidence and azimuth in degrees, -log10 of the truncated power.
 void beams_of_a_point(benchmark::State& state) {
-  static const std::vector<Scene> scenes = endless_scenes();
+  static const std::vector<Scene> scenes = infinite_scenes();
   const Scene& scene = scenes[static_cast<std::size_t>(state.range(0))];
   const raytrace::BeamTracer tracer(scene.part);
   raytrace::BeamPolicy policy;

@@ -15,9 +15,9 @@ namespace {
 
 using raytrace::MonteCarlo;
 
-/// Args: element kind (order of endless_scenes()), incidence in degrees, engine (0 Embree, 1 cell), threads.
+/// Args: element kind (order of infinite_scenes()), incidence in degrees, engine (0 Embree, 1 cell), threads.
 void endless_paths(benchmark::State& state) {
-  static const std::vector<Scene> scenes = endless_scenes();
+  static const std::vector<Scene> scenes = infinite_scenes();
   const Scene& scene = scenes[static_cast<std::size_t>(state.range(0))];
   const bool is_cell = state.range(2) == 1;
   const MonteCarlo tracer(scene.part, is_cell ? MonteCarlo::Engine::cell : MonteCarlo::Engine::embree);

@@ -14,13 +14,13 @@
 #include "benchmarks/processor_time.h"
 #include "benchmarks/random_designs.h"
 #include "core/error.h"
-#include "studies/design/io/design_reader.h"
+#include "design/io/design_reader.h"
 #include "studies/rre/rre.h"
 
 namespace retrace::benchmarks {
 namespace {
 
-Timed timed_by(const studies::Design& design, studies::RreSettings request, studies::Engine engine, double most_s) {
+Timed timed_by(const design::Design& design, studies::RreSettings request, raytrace::Engine engine, double most_s) {
   request.engine = engine;
   return timed(design, request, most_s);
 }
@@ -41,13 +41,13 @@ std::optional<Comparison> compare(unsigned seed, double target_error) {
   request.azimuth_deg = {random.between(0.0, 90.0)};
   request.target_error = target_error;
   try {
-    const studies::Design design = studies::parse_design(text, fmt::format("design {}", seed));
+    const design::Design design = design::parse_design(text, fmt::format("design {}", seed));
     constexpr double kPatience_s = 60.0;
-    const Timed rays = timed_by(design, request, studies::Engine::montecarlo, kPatience_s);
-    const Timed automatic = timed_by(design, request, studies::Engine::automatic, 2.0 * kPatience_s);
+    const Timed rays = timed_by(design, request, raytrace::Engine::montecarlo, kPatience_s);
+    const Timed automatic = timed_by(design, request, raytrace::Engine::automatic, 2.0 * kPatience_s);
     Timed exact{kPatience_s, false, ""};
     if (text.find("roughness") == std::string::npos)
-      exact = timed_by(design, request, studies::Engine::exact, 1.2 * rays.s + 0.1);
+      exact = timed_by(design, request, raytrace::Engine::exact, 1.2 * rays.s + 0.1);
     const double faster_s = exact.is_complete ? std::min(exact.s, rays.s) : rays.s;
     const Comparison comparison{automatic.s, faster_s};
     if (std::getenv("RETRACE_SHOW_DESIGNS") != nullptr) fmt::print("{}\n", text);

@@ -17,7 +17,7 @@
 #include "benchmarks/processor_time.h"
 #include "benchmarks/random_designs.h"
 #include "core/error.h"
-#include "studies/design/io/design_reader.h"
+#include "design/io/design_reader.h"
 #include "studies/rre/rre.h"
 
 namespace retrace::benchmarks {
@@ -28,8 +28,8 @@ constexpr double kTargetErrorRatio = 0.05;
 // Maximum time for one run of an engine. A design is skipped if a run takes longer.
 constexpr double kMaxTime_s = 5.0;
 
-std::optional<studies::RrePoint> answer(const studies::Design& design, studies::RreSettings request,
-                                        studies::Engine engine) {
+std::optional<studies::RrePoint> answer(const design::Design& design, studies::RreSettings request,
+                                        raytrace::Engine engine) {
   request.engine = engine;
   const Deadline deadline(kMaxTime_s);
   const studies::RreResult found = studies::RreStudy({design}, request).run(nullptr, &deadline.cancellation);
@@ -54,12 +54,12 @@ std::optional<Trial> trial(unsigned seed, double target_error) {
   request.azimuth_deg = {random.between(0.0, 90.0)};
   request.seed = seed;
   try {
-    const studies::Design design = studies::parse_design(text, fmt::format("design {}", seed));
+    const design::Design design = design::parse_design(text, fmt::format("design {}", seed));
     request.target_error = kTargetErrorRatio * target_error;
-    const auto exact = answer(design, request, studies::Engine::exact);
+    const auto exact = answer(design, request, raytrace::Engine::exact);
     if (!exact) return std::nullopt;
     request.target_error = target_error;
-    const auto rays = answer(design, request, studies::Engine::montecarlo);
+    const auto rays = answer(design, request, raytrace::Engine::montecarlo);
     if (!rays) return std::nullopt;
     const double half_truncated = 0.5 * exact->ledger[raytrace::Account::truncated];
     const double difference = rays->rre - exact->rre - half_truncated;

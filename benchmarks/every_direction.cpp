@@ -13,7 +13,7 @@
 
 #include "benchmarks/processor_time.h"
 #include "core/error.h"
-#include "studies/design/io/design_reader.h"
+#include "design/io/design_reader.h"
 #include "studies/rre/rre.h"
 
 namespace retrace::benchmarks {
@@ -50,19 +50,19 @@ std::vector<fs::path> files(const std::string& part_of_name) {
 }
 
 /// Returns a design, or nothing if the file is not a design (but a job, study or machine).
-std::optional<studies::Design> design_of(const fs::path& file) {
+std::optional<design::Design> design_of(const fs::path& file) {
   try {
-    return studies::read_design(file);
+    return design::read_design(file);
   } catch (const InputError&) {
     return std::nullopt;
   }
 }
 
-std::vector<Measured> measure(const studies::Design& given) {
+std::vector<Measured> measure(const design::Design& given) {
   std::vector<Measured> all;
   for (const double back_index : kBackIndices) {
     const std::string behind[] = {fmt::format("body.back_index={}", back_index)};
-    const studies::Design design = studies::with(given, behind);
+    const design::Design design = design::with(given, behind);
     for (const double incidence_deg : kIncidences_deg)
       for (const double azimuth_deg : kAzimuths_deg) {
         if (incidence_deg == 0.0 && azimuth_deg != 0.0) continue;

@@ -30,7 +30,7 @@ raytrace::FarField field_at(const geometry::Part& part, double incidence_deg) {
   raytrace::FarFieldCollector collector(part, light, {});
   raytrace::BeamPolicy policy;
   policy.cutoff = 1e-6;
-  policy.by_cell = true;
+  policy.separate_cells = true;
   raytrace::BeamTracer(part).trace(optics, light, {0.5}, policy, nullptr,
                                    [&](const raytrace::ReturnedBeam& beam) { collector.add(beam); });
   return collector.finish();
@@ -42,9 +42,9 @@ std::int64_t polygons_of(const raytrace::FarField& field) {
   return static_cast<std::int64_t>(count);
 }
 
-/// Args: element kind (order of endless_scenes()), incidence in degrees.
+/// Args: element kind (order of infinite_scenes()), incidence in degrees.
 void far_field_of_an_array(benchmark::State& state) {
-  static const std::vector<Scene> scenes = endless_scenes();
+  static const std::vector<Scene> scenes = infinite_scenes();
   const Scene& scene = scenes[static_cast<std::size_t>(state.range(0))];
   std::int64_t polygons = 0;
   for (auto _ : state) polygons = polygons_of(field_at(scene.part, static_cast<double>(state.range(1))));
@@ -52,10 +52,10 @@ void far_field_of_an_array(benchmark::State& state) {
   state.counters["polygons"] = static_cast<double>(polygons);
 }
 
-/// Args: element kind (order of endless_scenes()), incidence in degrees. Source and receiver have a diameter of 10
+/// Args: element kind (order of infinite_scenes()), incidence in degrees. Source and receiver have a diameter of 10
 /// minutes of arc.
 void intensity_at_a_receiver(benchmark::State& state) {
-  static const std::vector<Scene> scenes = endless_scenes();
+  static const std::vector<Scene> scenes = infinite_scenes();
   const Scene& scene = scenes[static_cast<std::size_t>(state.range(0))];
   const raytrace::FarField field = field_at(scene.part, static_cast<double>(state.range(1)));
   const raytrace::ApertureKernel kernel({Angle::from_deg(10.0 / 60.0), Angle::from_deg(10.0 / 60.0)});

@@ -44,12 +44,12 @@ struct Timed {
 };
 
 /// Measures the time of a request on one thread. The check of the request is not included.
-/// \param most_s time after which the request is cancelled
-inline Timed timed(const studies::Design& design, const studies::RreSettings& request, double most_s) {
+/// \param max_s time after which the request is cancelled
+inline Timed timed(const design::Design& design, const studies::RreSettings& request, double max_s) {
   const studies::RreStudy study({design}, request);
   Timed result;
   run_with_threads(1, [&] {
-    const Deadline deadline(most_s);
+    const Deadline deadline(max_s);
     const std::clock_t start = std::clock();
     const studies::RreResult found = study.run(nullptr, &deadline.cancellation);
     result = {static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, found.complete, found.engine};

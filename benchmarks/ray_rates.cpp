@@ -30,7 +30,7 @@ Scene brick_scene(int n) {
   return scene;
 }
 
-std::vector<Scene> endless_scenes() {
+std::vector<Scene> infinite_scenes() {
   geometry::PartSpec spec;
   spec.array.extent = geometry::Extent::infinite;
   spec.thickness_mm = 1.0;

@@ -20,7 +20,7 @@ Scene brick_scene(int n);
 
 /// Returns infinite arrays of the three element kinds. The cubes have an edge of 1 mm; the plate has a thickness of 1
 /// mm.
-std::vector<Scene> endless_scenes();
+std::vector<Scene> infinite_scenes();
 
 /// Returns rays that hit the surface in order, row by row, at 10 degrees from the normal.
 std::vector<raytrace::SurfaceRay> coherent_rays(const Scene& scene, std::size_t count);

@@ -143,14 +143,14 @@ int run_under_mpi() {
     const ComputeTask compute = [&](std::uint64_t point, const Cancellation* cancel) {
       return studies::compute_shared(sweep, point, cancel);
     };
-    session.serve(compute, 1, nullptr);
+    session.compute_tasks(compute, 1, nullptr);
     session.end();
     return 0;
   }
   TemporaryStore temporary(sweep);
   const auto start = Clock::now();
-  studies::share_sweep(sweep, temporary.store(), nullptr, [&](const ComputeTask& compute, TaskLedger& ledger) {
-    return session.deal(compute, ledger, 1, nullptr);
+  studies::distribute_sweep(sweep, temporary.store(), nullptr, [&](const ComputeTask& compute, TaskLedger& ledger) {
+    return session.distribute_tasks(compute, ledger, 1, nullptr);
   });
   const double elapsed_s = seconds_since(start);
   double points_s = 0.0;

@@ -31,7 +31,7 @@ constexpr double kPlainTargetError = 5e-4;
 
 /// Returns infinite arrays, and a finite array of full cubes of 2.5 mm on 20 x 20 mm.
 std::vector<Scene> scenes_of_all_sizes() {
-  std::vector<Scene> scenes = endless_scenes();
+  std::vector<Scene> scenes = infinite_scenes();
   geometry::PartSpec spec;
   spec.element = geometry::HexagonalCube{2.5};
   spec.array.arrangement = geometry::Arrangement::honeycomb;
@@ -45,7 +45,7 @@ std::vector<Scene> scenes_of_all_sizes() {
 
 double stochastic_error(const geometry::Part& part, const raytrace::Optics& optics, const raytrace::Illumination& light,
                         const raytrace::Sampling& sampling) {
-  const raytrace::BeamTracer tracer(part, raytrace::BeamTracer::Elements::equal_at_once);
+  const raytrace::BeamTracer tracer(part, raytrace::BeamTracer::Elements::instanced);
   std::optional<raytrace::BackSurface> surface;
   std::optional<raytrace::ScatteredLightByRays> scattered;
   if (!optics.is_smooth()) {

@@ -68,7 +68,7 @@ void lenslet_path(benchmark::State& state) {
 /// computed once per path.
 void lenslet_proof(benchmark::State& state) {
   const FreeformSurface surface = lenslet_array();
-  for (auto _ : state) benchmark::DoNotOptimize(TouchMap(surface, tool(), 4.5).touches_once(0.0, 0.0));
+  for (auto _ : state) benchmark::DoNotOptimize(SingleContactMap(surface, tool(), 4.5).has_single_contact(0.0, 0.0));
 }
 
 /// Computes the same points as the benchmark above, but searches the complete arc of the tool at each point.

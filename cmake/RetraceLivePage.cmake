@@ -30,7 +30,7 @@ endforeach()
 target_compile_definitions(fmt::fmt INTERFACE FMT_HEADER_ONLY)
 # Assertions of toml++ on the contents of user files are disabled, as in the native program.
 target_compile_definitions(PkgConfig::TOMLPLUSPLUS INTERFACE NDEBUG)
-foreach(folder IN ITEMS core requests geometry materials surface_models raytrace studies/design studies/rre studies/scene
+foreach(folder IN ITEMS core requests geometry materials surface_models raytrace design studies/rre studies/scene
                         studies/photometry live/engine)
   add_subdirectory(${folder})
 endforeach()

@@ -6,8 +6,8 @@
 
 namespace retrace {
 
-inline constexpr double kTurn = 2.0 * std::numbers::pi;      ///< one full turn, rad
-inline constexpr double kDegree = std::numbers::pi / 180.0;  ///< one degree, rad
+inline constexpr double kTwoPi = 2.0 * std::numbers::pi;        ///< one full turn, rad
+inline constexpr double kRadPerDeg = std::numbers::pi / 180.0;  ///< one degree, rad
 
 /// An angle, stored in radians. Files and commands use degrees; computations use radians.
 class Angle {

@@ -258,9 +258,9 @@ void write_file_atomically(const fs::path& path, std::string_view content) {
 
 /// Implementation of GrowingFile. Collects appended bytes in a buffer, because many calls of append() have only few
 /// bytes.
-class GrowingFile::Hidden {
+class AtomicFileWriter::Impl {
  public:
-  explicit Hidden(fs::path target) : target_(std::move(target)), file_(target_) {}
+  explicit Impl(fs::path target) : target_(std::move(target)), file_(target_) {}
 
   void append(std::string_view bytes) {
     constexpr std::size_t kGathered = std::size_t{1} << 18;
@@ -289,22 +289,22 @@ class GrowingFile::Hidden {
   std::string gathered_;
 };
 
-GrowingFile::GrowingFile(const fs::path& path) {
+AtomicFileWriter::AtomicFileWriter(const fs::path& path) {
   std::error_code ignored;
   if (fs::exists(path, ignored) && !fs::is_regular_file(path, ignored))
     throw OutputError(path.string() + ": cannot be written: it is not a regular file");
-  hidden_ = std::make_unique<Hidden>(followed(path));
+  impl_ = std::make_unique<Impl>(followed(path));
 }
-GrowingFile::~GrowingFile() = default;
+AtomicFileWriter::~AtomicFileWriter() = default;
 
-void GrowingFile::append(std::string_view bytes) {
-  hidden_->append(bytes);
+void AtomicFileWriter::append(std::string_view bytes) {
+  impl_->append(bytes);
 }
-void GrowingFile::overwrite(std::uint64_t offset, std::string_view bytes) {
-  hidden_->overwrite(offset, bytes);
+void AtomicFileWriter::overwrite(std::uint64_t offset, std::string_view bytes) {
+  impl_->overwrite(offset, bytes);
 }
-void GrowingFile::finish() {
-  hidden_->finish();
+void AtomicFileWriter::finish() {
+  impl_->finish();
 }
 
 void make_output_folder(const fs::path& folder) {
@@ -319,29 +319,29 @@ void make_output_folder(const fs::path& folder) {
     throw OutputError(fmt::format("{}: the output folder cannot be written to: {}", folder.string(), reason(errno)));
 }
 
-void require_short_text(std::string_view text, const std::string& name, std::size_t most_bytes) {
-  if (text.size() > most_bytes) refuse_long(name, most_bytes);
+void require_short_text(std::string_view text, const std::string& name, std::size_t max_bytes) {
+  if (text.size() > max_bytes) refuse_long(name, max_bytes);
 }
 
-void require_short_file(const fs::path& path, std::size_t most_bytes) {
+void require_short_file(const fs::path& path, std::size_t max_bytes) {
   std::error_code ignored;
   if (!fs::exists(path, ignored)) return;
   if (!fs::is_regular_file(path, ignored)) refuse_unreadable(path, "it is not a regular file");
-  if (fs::file_size(path, ignored) > most_bytes) refuse_long(path.string(), most_bytes);
+  if (fs::file_size(path, ignored) > max_bytes) refuse_long(path.string(), max_bytes);
 }
 
-std::string read_file(const fs::path& path, std::size_t most_bytes) {
+std::string read_file(const fs::path& path, std::size_t max_bytes) {
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) refuse_unreadable(path, "it is a folder");
-  require_short_file(path, most_bytes);
+  require_short_file(path, max_bytes);
   errno = 0;
   std::ifstream stream(path, std::ios::binary);
   if (!stream) refuse_unreadable(path, reason(errno != 0 ? errno : ENOENT));
-  return read_all(stream, path.string(), most_bytes);
+  return read_all(stream, path.string(), max_bytes);
 }
 
-std::string read_standard_input(std::size_t most_bytes) {
-  return read_all(std::cin, "standard input", most_bytes);
+std::string read_standard_input(std::size_t max_bytes) {
+  return read_all(std::cin, "standard input", max_bytes);
 }
 
 }  // namespace retrace

@@ -18,14 +18,14 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view c
 
 /// Output file of any length that is written in parts. The bytes go to a temporary file, which gets its final name in
 /// finish().
-class GrowingFile {
+class AtomicFileWriter {
  public:
   /// \throw OutputError if the file cannot be written, or if `path` exists and is not a regular file
-  explicit GrowingFile(const std::filesystem::path& path);
-  GrowingFile(const GrowingFile&) = delete;
-  GrowingFile& operator=(const GrowingFile&) = delete;
+  explicit AtomicFileWriter(const std::filesystem::path& path);
+  AtomicFileWriter(const AtomicFileWriter&) = delete;
+  AtomicFileWriter& operator=(const AtomicFileWriter&) = delete;
   /// Removes the temporary file unless finish() was called.
-  ~GrowingFile();
+  ~AtomicFileWriter();
 
   /// \throw OutputError
   void append(std::string_view bytes);
@@ -38,8 +38,8 @@ class GrowingFile {
   void finish();
 
  private:
-  class Hidden;
-  std::unique_ptr<Hidden> hidden_;
+  class Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 /// Creates `folder` and its parents if they do not exist.
@@ -47,25 +47,25 @@ class GrowingFile {
 void make_output_folder(const std::filesystem::path& folder);
 
 /// Maximum size of input files in bytes. Infinite files, such as /dev/zero, are thus refused.
-inline constexpr std::size_t kMostTextBytes = std::size_t{64} << 20;  ///< for jobs, machines, parts and tables
-inline constexpr std::size_t kMostDataBytes = std::size_t{1} << 30;  ///< for meshes, height maps, NC programs, pictures
+inline constexpr std::size_t kMaxTextBytes = std::size_t{64} << 20;  ///< for jobs, machines, parts and tables
+inline constexpr std::size_t kMaxDataBytes = std::size_t{1} << 30;   ///< for meshes, height maps, NC programs, pictures
 
 /// Returns the content of a file.
-/// \throw InputError if the file cannot be read, is a folder, or has more than `most_bytes` bytes
-std::string read_file(const std::filesystem::path& path, std::size_t most_bytes = kMostTextBytes);
+/// \throw InputError if the file cannot be read, is a folder, or has more than `max_bytes` bytes
+std::string read_file(const std::filesystem::path& path, std::size_t max_bytes = kMaxTextBytes);
 
 /// Returns the content of standard input from the current position on.
-/// \throw InputError if standard input cannot be read or has more than `most_bytes` bytes
-std::string read_standard_input(std::size_t most_bytes);
+/// \throw InputError if standard input cannot be read or has more than `max_bytes` bytes
+std::string read_standard_input(std::size_t max_bytes);
 
 /// Checks the size of a file before another library reads the file. Accepts a file that does not exist, because the
 /// library that reads the file reports this error.
-/// \throw InputError if the file is not a regular file or has more than `most_bytes` bytes
-void require_short_file(const std::filesystem::path& path, std::size_t most_bytes);
+/// \throw InputError if the file is not a regular file or has more than `max_bytes` bytes
+void require_short_file(const std::filesystem::path& path, std::size_t max_bytes);
 
 /// Checks the size of a text that was read from a file.
 /// \param name name of the file in messages
-/// \throw InputError if the text has more than `most_bytes` bytes
-void require_short_text(std::string_view text, const std::string& name, std::size_t most_bytes);
+/// \throw InputError if the text has more than `max_bytes` bytes
+void require_short_text(std::string_view text, const std::string& name, std::size_t max_bytes);
 
 }  // namespace retrace

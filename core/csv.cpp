@@ -13,10 +13,10 @@
 
 namespace retrace {
 
-CsvReader::CsvReader(std::string_view text, std::string file, std::size_t most_bytes,
+CsvReader::CsvReader(std::string_view text, std::string file, std::size_t max_bytes,
                      std::span<const std::string_view> columns)
-    : rest_(without_byte_order_mark(text)), file_(std::move(file)) {
-  require_short_text(text, file_, most_bytes);
+    : remainder_(without_byte_order_mark(text)), file_(std::move(file)) {
+  require_short_text(text, file_, max_bytes);
   const std::string wanted =
       columns.empty() ? "a line of column names" : fmt::format("the header {}", fmt::join(columns, ","));
   if (!next_line()) fail("must have " + wanted);
@@ -44,10 +44,10 @@ bool CsvReader::next() {
 
 /// Reads the next line that is neither empty nor a comment, and splits it into values.
 bool CsvReader::next_line() {
-  while (!rest_.empty()) {
-    const std::size_t end = std::min(rest_.find('\n'), rest_.size());
-    const std::string_view line = trimmed(rest_.substr(0, end));
-    rest_.remove_prefix(std::min(end + 1, rest_.size()));
+  while (!remainder_.empty()) {
+    const std::size_t end = std::min(remainder_.find('\n'), remainder_.size());
+    const std::string_view line = trimmed(remainder_.substr(0, end));
+    remainder_.remove_prefix(std::min(end + 1, remainder_.size()));
     ++line_;
     if (line.empty() || line.front() == '#') continue;
     values_ = split(line, ',');

@@ -27,8 +27,8 @@ class CsvReader {
   /// \param text text of the table; it must outlive the reader
   /// \param file name of the file in messages
   /// \param columns required column names; if empty, any names are allowed
-  /// \throw InputError if the column names are invalid or the text is longer than `most_bytes`
-  CsvReader(std::string_view text, std::string file, std::size_t most_bytes,
+  /// \throw InputError if the column names are invalid or the text is longer than `max_bytes`
+  CsvReader(std::string_view text, std::string file, std::size_t max_bytes,
             std::span<const std::string_view> columns = {});
 
   /// Returns the index of the column with the given name, or nothing if there is no such column.
@@ -61,7 +61,7 @@ class CsvReader {
  private:
   bool next_line();
 
-  std::string_view rest_;
+  std::string_view remainder_;
   std::string file_;
   std::vector<std::string_view> columns_;
   std::vector<std::string_view> values_;

@@ -15,9 +15,9 @@ using FileTexts = std::map<std::string, std::string>;
 /// Returns the content of a file, from `texts` if it contains the file, and otherwise from the file system.
 /// \throw InputError like read_file()
 inline std::string text_of_file(const std::string& file, const FileTexts& texts,
-                                std::size_t most_bytes = kMostTextBytes) {
+                                std::size_t max_bytes = kMaxTextBytes) {
   const auto given = texts.find(file);
-  return given == texts.end() ? read_file(file, most_bytes) : given->second;
+  return given == texts.end() ? read_file(file, max_bytes) : given->second;
 }
 
 }  // namespace retrace

@@ -4,22 +4,22 @@
 
 namespace retrace {
 
-std::optional<double> LongRun::remaining_s(double share, double elapsed_s) {
-  if (!first_share_) first_share_ = share;
-  if (!(share > *first_share_)) return std::nullopt;
-  return (elapsed_s - begun_s_) * (1.0 - share) / (share - *first_share_);
+std::optional<double> LongRun::remaining_s(double fraction, double elapsed_s) {
+  if (!first_fraction_) first_fraction_ = fraction;
+  if (!(fraction > *first_fraction_)) return std::nullopt;
+  return (elapsed_s - begun_s_) * (1.0 - fraction) / (fraction - *first_fraction_);
 }
 
-std::optional<double> LongRun::notice_s(double share, double elapsed_s) {
-  const std::optional<double> remaining = remaining_s(share, elapsed_s);
+std::optional<double> LongRun::notice_s(double fraction, double elapsed_s) {
+  const std::optional<double> remaining = remaining_s(fraction, elapsed_s);
   const bool is_long = remaining && elapsed_s - begun_s_ >= kFirstEstimateS && *remaining > kLongS;
-  if (is_noticed_ || !is_long) return std::nullopt;
-  is_noticed_ = true;
+  if (is_user_informed_ || !is_long) return std::nullopt;
+  is_user_informed_ = true;
   return remaining;
 }
 
-void LongRun::begin_part(double share, double elapsed_s) {
-  first_share_ = share;
+void LongRun::begin_part(double fraction, double elapsed_s) {
+  first_fraction_ = fraction;
   begun_s_ = elapsed_s;
 }
 

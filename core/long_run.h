@@ -18,25 +18,25 @@ class LongRun {
 
   /// Returns the estimated remaining time in seconds, or nothing before any progress. Work that was finished before the
   /// first call, for example by an earlier run, does not count as progress.
-  /// \param share fraction of the work that is finished, 0 to 1
+  /// \param fraction fraction of the work that is finished, 0 to 1
   /// \param elapsed_s time since the start of the work, in seconds
-  std::optional<double> remaining_s(double share, double elapsed_s);
+  std::optional<double> remaining_s(double fraction, double elapsed_s);
 
   /// Returns the estimated remaining time in seconds if the user should now be informed of it. Otherwise returns
   /// nothing. The user is informed at most one time: after that, every call returns nothing.
-  /// \param share fraction of the work that is finished, 0 to 1
+  /// \param fraction fraction of the work that is finished, 0 to 1
   /// \param elapsed_s time since the start of the work, in seconds
-  std::optional<double> notice_s(double share, double elapsed_s);
+  std::optional<double> notice_s(double fraction, double elapsed_s);
 
-  /// Starts a new part of the work. In later calls, `share` is the finished fraction of this part only.
-  /// \param share fraction of the part that is already finished
+  /// Starts a new part of the work. In later calls, `fraction` is the finished fraction of this part only.
+  /// \param fraction fraction of the part that is already finished
   /// \param elapsed_s time since the start of the work, in seconds
-  void begin_part(double share, double elapsed_s);
+  void begin_part(double fraction, double elapsed_s);
 
  private:
-  std::optional<double> first_share_;
+  std::optional<double> first_fraction_;
   double begun_s_ = 0.0;  ///< elapsed time at the start of the current part, in seconds
-  bool is_noticed_ = false;
+  bool is_user_informed_ = false;
 };
 
 /// Returns a duration as rounded text, such as "90 s", "12 min", "2.8 h" or "11.6 days".

@@ -74,10 +74,10 @@ void BeamMemory::require_shared() {
     reported_bytes_ = now;
   }
   if (reported_bytes_ > 0 && shared_bytes.load(std::memory_order_relaxed) > beam_memory_bytes())
-    throw SharedMemoryShort{};
+    throw SharedMemoryExceeded{};
 }
 
-std::mutex& lone_trace_mutex() {
+std::mutex& exclusive_trace_mutex() {
   static std::mutex mutex;
   return mutex;
 }

@@ -37,7 +37,7 @@ std::string memory_budget_text();
 
 /// Exception that a trace throws if all traces that run in parallel exceed their common memory limit. The trace may be
 /// within its own limit. The caller can therefore repeat the trace while no other trace runs.
-struct SharedMemoryShort {};
+struct SharedMemoryExceeded {};
 
 /// Scope in which traces of the current thread are subject to the common memory limit of parallel traces.
 class SharedMemoryScope {
@@ -65,7 +65,7 @@ class BeamMemory {
   bool is_exceeded() const;
   /// Checks the common memory limit of parallel traces. Does nothing if this object was created outside of a
   /// SharedMemoryScope.
-  /// \throw SharedMemoryShort if the beams of all traces within a SharedMemoryScope exceed beam_memory_bytes()
+  /// \throw SharedMemoryExceeded if the beams of all traces within a SharedMemoryScope exceed beam_memory_bytes()
   void require_shared();
 
  private:
@@ -76,6 +76,6 @@ class BeamMemory {
 
 /// Returns the mutex that a trace must lock if it runs outside of a SharedMemoryScope while other traces run in
 /// parallel. At most one such trace runs at a time, so its memory is limited to beam_memory_bytes() as well.
-std::mutex& lone_trace_mutex();
+std::mutex& exclusive_trace_mutex();
 
 }  // namespace retrace

@@ -88,7 +88,7 @@ std::string alternatives(std::span<const std::string_view> names) {
   return result;
 }
 
-std::string_view closest(std::string_view given, std::span<const std::string_view> names) {
+std::string_view closest_match(std::string_view given, std::span<const std::string_view> names) {
   // Maximum length of a word in bytes; all known names are shorter, and the limit bounds the computation time.
   constexpr std::size_t longest = 64;
   if (given.empty() || given.size() > longest) return {};

@@ -32,6 +32,6 @@ std::string alternatives(std::span<const std::string_view> names);
 /// Returns the name that is most similar to the misspelled name `given`, for a "did you mean" message. The edit
 /// distance may be at most a third of the length of `given`, but at least 1. Returns an empty text if no name is
 /// similar enough.
-std::string_view closest(std::string_view given, std::span<const std::string_view> names);
+std::string_view closest_match(std::string_view given, std::span<const std::string_view> names);
 
 }  // namespace retrace

@@ -12,7 +12,7 @@ struct Module {
   std::string_view name;      ///< name of the file, without .so
   std::string_view function;  ///< name of the function that the module exports, with C linkage
   /// Beginning of the error message if the module is missing; it states what cannot be done without the module.
-  std::string_view lack;
+  std::string_view missing_message;
   std::string_view library;  ///< name of the library that the module uses
   std::string_view package;  ///< Debian package that contains this library
   bool is_global = false;    ///< true if libraries that `library` loads later need its symbols

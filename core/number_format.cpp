@@ -93,8 +93,8 @@ std::string fixed_visible(double value, int digits) {
 }
 
 std::string fixed_apart(double value, double other, int digits) {
-  constexpr int kMostDigits = 17;
-  for (; digits <= kMostDigits; ++digits) {
+  constexpr int kMaxDigits = 17;
+  for (; digits <= kMaxDigits; ++digits) {
     std::string text = fixed(value, digits);
     const double shown = std::strtod(text.c_str(), nullptr);
     if ((shown < other) == (value < other) && (shown > other) == (value > other))

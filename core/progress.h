@@ -12,15 +12,15 @@ namespace retrace {
 class Cancellation {
  public:
   Cancellation() = default;
-  /// \param whole request to stop a larger computation that includes this one, or null; it must outlive this object
-  explicit Cancellation(const Cancellation* whole) : whole_(whole) {}
+  /// \param parent request to stop a larger computation that includes this one, or null; it must outlive this object
+  explicit Cancellation(const Cancellation* parent) : parent_(parent) {}
   void request() noexcept { requested_.store(true, std::memory_order_relaxed); }
   bool requested() const noexcept {
-    return requested_.load(std::memory_order_relaxed) || (whole_ != nullptr && whole_->requested());
+    return requested_.load(std::memory_order_relaxed) || (parent_ != nullptr && parent_->requested());
   }
 
  private:
-  const Cancellation* whole_ = nullptr;
+  const Cancellation* parent_ = nullptr;
   std::atomic<bool> requested_{false};
 };
 
@@ -35,8 +35,8 @@ class RETRACE_API Progress {
  public:
   virtual ~Progress() = default;
   /// Reports the finished fraction of the work.
-  /// \param share 0 to 1, never smaller than in an earlier call
-  virtual void at(double share) = 0;
+  /// \param fraction 0 to 1, never smaller than in an earlier call
+  virtual void at(double fraction) = 0;
 };
 
 }  // namespace retrace

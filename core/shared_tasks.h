@@ -39,7 +39,7 @@ class TaskLedger {
 /// Function that computes all tasks of a ledger.
 /// \return true if all tasks are finished, false if the work was cancelled
 /// \throw Error
-using ShareTasks = std::function<bool(const ComputeTask& compute, TaskLedger& ledger)>;
+using DistributeTasks = std::function<bool(const ComputeTask& compute, TaskLedger& ledger)>;
 
 /// Converts numbers to bytes, for the result of a task.
 inline std::string bytes_of(const std::vector<double>& numbers) {

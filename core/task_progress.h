@@ -13,16 +13,16 @@ namespace retrace {
 
 /// Reports the progress of one part of a computation as progress of the whole computation. The progress of the part, 0
 /// to 1, is mapped linearly to the range from `from` to `to`.
-class PartOfProgress : public Progress {
+class PartProgress : public Progress {
  public:
   /// \param whole receiver of the progress of the whole computation; if null, nothing is reported
-  PartOfProgress(Progress* whole, double from, double to) : whole_(whole), from_(from), to_(to) {}
-  void at(double share) override {
-    if (whole_ != nullptr) whole_->at(std::lerp(from_, to_, share));
+  PartProgress(Progress* whole, double from, double to) : parent_(whole), from_(from), to_(to) {}
+  void at(double fraction) override {
+    if (parent_ != nullptr) parent_->at(std::lerp(from_, to_, fraction));
   }
 
  private:
-  Progress* whole_;
+  Progress* parent_;
   double from_, to_;
 };
 
@@ -31,15 +31,15 @@ class PartOfProgress : public Progress {
 class AttemptProgress : public Progress {
  public:
   /// \param whole receiver of the reported values; if null, nothing is reported
-  explicit AttemptProgress(Progress* whole) : whole_(whole) {}
-  void at(double share) override {
-    reported_ = std::lerp(begin_, 1.0, share);
-    if (whole_ != nullptr) whole_->at(reported_);
+  explicit AttemptProgress(Progress* whole) : parent_(whole) {}
+  void at(double fraction) override {
+    reported_ = std::lerp(begin_, 1.0, fraction);
+    if (parent_ != nullptr) parent_->at(reported_);
   }
   void begin_again() { begin_ = reported_; }
 
  private:
-  Progress* whole_;
+  Progress* parent_;
   double begin_ = 0.0;     ///< reported value at the start of the current attempt
   double reported_ = 0.0;  ///< last reported value
 };
@@ -50,31 +50,31 @@ class TaskProgress {
  public:
   /// \param whole receiver of the mean progress; if null, nothing is reported
   /// \param count number of tasks, > 0
-  TaskProgress(Progress* whole, std::size_t count) : whole_(whole), count_(static_cast<double>(count)) {}
+  TaskProgress(Progress* whole, std::size_t count) : parent_(whole), count_(static_cast<double>(count)) {}
 
   /// Progress of one task. If the object is destroyed without a call of finish(), the task counts as not started.
   class Task : public Progress {
    public:
     explicit Task(TaskProgress& all) : all_(all) {}
     ~Task() override {
-      if (!is_finished_) all_.change(-share_, 0.0);
+      if (!is_finished_) all_.change(-fraction_, 0.0);
     }
     Task(const Task&) = delete;
     Task& operator=(const Task&) = delete;
 
-    void at(double share) override {
-      if (is_finished_ || !(share > share_)) return;
-      all_.change(share - share_, 0.0);
-      share_ = share;
+    void at(double fraction) override {
+      if (is_finished_ || !(fraction > fraction_)) return;
+      all_.change(fraction - fraction_, 0.0);
+      fraction_ = fraction;
     }
     void finish() {
-      if (!is_finished_) all_.change(-share_, 1.0);
+      if (!is_finished_) all_.change(-fraction_, 1.0);
       is_finished_ = true;
     }
 
    private:
     TaskProgress& all_;
-    double share_ = 0.0;
+    double fraction_ = 0.0;
     bool is_finished_ = false;
   };
 
@@ -87,12 +87,12 @@ class TaskProgress {
     finished_ += finished;
     running_ = finished_ < count_ ? std::max(0.0, running_ + running) : 0.0;
     const double share = std::min(1.0, (finished_ + running_) / count_);
-    if (whole_ == nullptr || !(share > reported_)) return;
+    if (parent_ == nullptr || !(share > reported_)) return;
     reported_ = share;
-    whole_->at(share);
+    parent_->at(share);
   }
 
-  Progress* whole_;
+  Progress* parent_;
   double count_;
   double finished_ = 0.0;
   double running_ = 0.0;   ///< total progress of unfinished tasks, each from 0 to 1

@@ -28,7 +28,7 @@ struct TomlItem {
 };
 
 /// Name that a key, a table or a word of a file format had in former versions of the program.
-struct FormerName {
+struct TomlRename {
   std::string table;    ///< path of the table that contains the key or table, without indices; empty for the root
   std::string former;   ///< former name of the key or table, or former word
   std::string current;  ///< name or word that replaces it
@@ -44,7 +44,7 @@ struct RenamedInput {
 };
 
 /// Returns the path of a key or table with all former names replaced. Paths have no indices.
-std::string current_path(std::string_view path, std::span<const FormerName> names);
+std::string current_path(std::string_view path, std::span<const TomlRename> names);
 
 /// One table of a TOML file. Functions that return values check them and record that their key was requested. A table
 /// that is not in the file is treated as empty. Copies are cheap and share their data. All functions throw InputError
@@ -74,7 +74,7 @@ class TomlTable {
                                                               const NumberRange& range = {});
   /// Returns an integer.
   /// \pre the ends of the range are integers of a magnitude up to 2^53
-  std::optional<long long> whole(std::string_view key, const NumberRange& range);
+  std::optional<long long> integer(std::string_view key, const NumberRange& range);
   std::optional<bool> flag(std::string_view key);
   std::optional<std::string> text(std::string_view key);
   /// Returns a list of one or more texts.
@@ -125,34 +125,34 @@ class TomlTable {
   /// \throw InputError for the first key, in the order of the file, that was not requested and is thus unknown
   void finish() const;
 
-  struct Hidden;  ///< implementation, which uses toml++
-  explicit TomlTable(std::shared_ptr<Hidden> hidden);
+  struct Impl;  ///< implementation, which uses toml++
+  explicit TomlTable(std::shared_ptr<Impl> hidden);
 
  private:
-  std::shared_ptr<Hidden> hidden_;
+  std::shared_ptr<Impl> impl_;
 };
 
 /// Maximum size in bytes of a text whose lines may have any number of dots. In a longer text, the number of dots in a
 /// line is limited. toml++ uses one level of recursion for each level of a tree when it destroys the tree. Two bytes of
 /// a dotted key `a.a.a...` make one level, so 64 KiB of such a key exceed a stack of 8 MiB.
 inline constexpr std::size_t kShortTomlBytes = 16384;
-inline constexpr std::size_t kMostDesignBytes = std::size_t{1} << 20;  ///< designs and studies
+inline constexpr std::size_t kMaxDesignBytes = std::size_t{1} << 20;  ///< designs and studies
 
 /// Returns the key if the override has the form `KEY=`, which removes the key. Otherwise returns nothing.
 std::optional<std::string_view> unset_key(std::string_view override_text);
 
 /// Parses the text of a TOML file and applies overrides to it.
 /// \param source_name name of the file in messages
-/// \param most_bytes maximum length of the text in bytes
+/// \param max_bytes maximum length of the text in bytes
 /// \param overrides texts of the form KEY=VALUE, which set a key, or KEY=, which remove a key. Messages about an
 /// override quote the override instead of the name of the file.
 /// \param names former names, which are replaced in the text and in the overrides. The list is applied in its order,
 /// so that a table comes before the keys that it contains.
-/// \throw InputError if the text is not TOML, is longer than `most_bytes`, or has keys that nest too deeply
+/// \throw InputError if the text is not TOML, is longer than `max_bytes`, or has keys that nest too deeply
 /// \throw InputError if an override is neither KEY=VALUE nor KEY=
 /// \throw InputError if a table contains both a name and its former name
-TomlTable parse_toml(std::string_view text, const std::string& source_name, std::size_t most_bytes = kMostTextBytes,
-                     std::span<const std::string> overrides = {}, std::span<const FormerName> names = {});
+TomlTable parse_toml(std::string_view text, const std::string& source_name, std::size_t max_bytes = kMaxTextBytes,
+                     std::span<const std::string> overrides = {}, std::span<const TomlRename> names = {});
 
 /// Returns `text` as a TOML string in double quotes, with escapes.
 std::string toml_text(std::string_view text);

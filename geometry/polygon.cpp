@@ -128,10 +128,10 @@ double width(const Polygon& polygon) {
   return least;
 }
 
-bool contains(const Polygon& polygon, const Vec2& place) {
+bool contains(const Polygon& polygon, const Vec2& point) {
   for (std::size_t k = 0; k < polygon.size(); ++k) {
     const Vec2 along = polygon[(k + 1) % polygon.size()] - polygon[k];
-    const Vec2 to = place - polygon[k];
+    const Vec2 to = point - polygon[k];
     if (along.x() * to.y() - along.y() * to.x() < 0.0) return false;
   }
   return true;

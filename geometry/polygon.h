@@ -17,7 +17,7 @@ struct Rectangle {
   Vec2 upper = Vec2::Zero();
 
   Vec2 size() const { return upper - lower; }
-  Vec2 middle() const { return 0.5 * (lower + upper); }
+  Vec2 centre() const { return 0.5 * (lower + upper); }
   bool empty() const { return !(upper.x() > lower.x() && upper.y() > lower.y()); }
 };
 
@@ -45,7 +45,7 @@ bool is_convex(const Polygon& polygon, double tolerance_mm);
 double width(const Polygon& polygon);
 
 /// Returns true if a point is inside a convex polygon or on its border.
-bool contains(const Polygon& polygon, const Vec2& place);
+bool contains(const Polygon& polygon, const Vec2& point);
 
 /// Returns true if every vertex is in the rectangle, which is enlarged by `tolerance_mm` on all sides.
 bool contains(const Rectangle& rectangle, const Polygon& polygon, double tolerance_mm);

@@ -5,13 +5,13 @@
 #include <string>
 #include <vector>
 
+#include "design/design.h"
 #include "retrace/design.h"
-#include "studies/design/design.h"
 
 namespace retrace {
 
 struct Design::Content {
-  studies::Design design;
+  design::Design design;
   std::string text;
   std::vector<std::string> overrides;
 };

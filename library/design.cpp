@@ -4,15 +4,15 @@
 
 #include "core/json_text.h"
 #include "core/version.h"
+#include "design/io/design_json.h"
+#include "design/io/design_reader.h"
 #include "library/content.h"
 #include "retrace/running.h"
-#include "studies/design/io/design_json.h"
-#include "studies/design/io/design_reader.h"
 
 namespace retrace {
 namespace {
 
-Design holding(studies::Design design, std::string text, std::vector<std::string> overrides) {
+Design holding(design::Design design, std::string text, std::vector<std::string> overrides) {
   return Design(std::make_shared<const Design::Content>(
       Design::Content{std::move(design), std::move(text), std::move(overrides)}));
 }
@@ -28,17 +28,17 @@ Design::Design(std::shared_ptr<const Content> content) : content_(std::move(cont
 }
 
 Design Design::load(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
-  return parse(studies::read_toml_text(file), file == "-" ? "standard input" : file.string(), overrides);
+  return parse(design::read_toml_text(file), file == "-" ? "standard input" : file.string(), overrides);
 }
 
 Design Design::parse(std::string_view text, const std::string& source, const std::vector<std::string>& overrides) {
-  return holding(studies::parse_design(text, source, overrides), std::string(text), overrides);
+  return holding(design::parse_design(text, source, overrides), std::string(text), overrides);
 }
 
 Design Design::with(const std::vector<std::string>& overrides) const {
   std::vector<std::string> all = content_->overrides;
   all.insert(all.end(), overrides.begin(), overrides.end());
-  return holding(studies::with(content_->design, overrides), content_->text, std::move(all));
+  return holding(design::with(content_->design, overrides), content_->text, std::move(all));
 }
 
 std::string Design::title() const {
@@ -58,7 +58,7 @@ std::vector<std::string> Design::overrides() const {
 }
 
 std::string Design::json() const {
-  return to_text(studies::to_json(content_->design));
+  return to_text(design::to_json(content_->design));
 }
 
 std::vector<std::filesystem::path> Design::files() const {

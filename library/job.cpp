@@ -15,7 +15,7 @@
 namespace retrace {
 
 Job make_job(const Design& design, const JobRequest& request) {
-  const studies::MadeJob made = studies::make_job(design.content().design, request);
+  const studies::GeneratedJob made = studies::make_job(design.content().design, request);
   return {fabrication::job_text(made.job), made.elements,           made.partial_elements, made.warnings,
           studies::job_json(made),         studies::job_table(made)};
 }

@@ -35,13 +35,13 @@ Metrology result_of(studies::MetrologyResult measured) {
 surface_models::HeightMapFile to_file(const HeightMap& heights, const MetrologyRequest& request) {
   const surface_models::HeightMapOptions reading = studies::reading_of(request);
   if (!reading.x_pixel_um) throw InputError(Field{"pixel_um"}, "is required for heights in memory");
-  if (heights.columns < surface_models::kLeastColumns || heights.rows < 1)
+  if (heights.columns < surface_models::kMinColumns || heights.rows < 1)
     throw InputError({"", 0, "heights"},
-                     "must be rows of at least " + std::to_string(surface_models::kLeastColumns) + " numbers");
+                     "must be rows of at least " + std::to_string(surface_models::kMinColumns) + " numbers");
   if (heights.heights_nm.size() != heights.columns * heights.rows)
     throw InputError({"", 0, "heights"}, "must be as many numbers as columns times rows");
-  if (heights.heights_nm.size() > surface_models::kMostPoints)
-    throw InputError({"", 0, "heights"}, "must be at most " + std::to_string(surface_models::kMostPoints) + " numbers");
+  if (heights.heights_nm.size() > surface_models::kMaxPoints)
+    throw InputError({"", 0, "heights"}, "must be at most " + std::to_string(surface_models::kMaxPoints) + " numbers");
   surface_models::HeightMapFile file;
   file.format = "heights in memory";
   file.map = {heights.columns, heights.rows, *reading.x_pixel_um, *reading.y_pixel_um, heights.heights_nm};

@@ -15,9 +15,9 @@ namespace {
 
 PhotometricPoint from_study(const studies::PhotometricPoint& point) {
   PhotometricPoint told;
-  told.observation_deg = point.asked.observation_deg;
+  told.observation_deg = point.test_point.observation_deg;
   told.v_deg = point.v_deg;
-  told.h_deg = point.asked.h_deg;
+  told.h_deg = point.test_point.h_deg;
   told.rotation_deg = point.rotation_deg;
   told.r_i_mcd_per_lx = point.r_i_mcd_per_lx;
   told.r_a = point.r_a;
@@ -30,7 +30,7 @@ PhotometricPoint from_study(const studies::PhotometricPoint& point) {
 }  // namespace
 
 PhotometryResult photometry(const Design& design, const PhotometryRequest& request, const Running& running) {
-  const studies::Design& of_study = design.content().design;
+  const design::Design& of_study = design.content().design;
   const studies::PhotometryStudy study(of_study, studies::resolve(request, of_study.substance.is_coloured()));
   const auto held = std::make_shared<studies::PhotometryResult>();
   studies::PhotometryResult& found = *held;

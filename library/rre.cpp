@@ -32,7 +32,7 @@ RrePoint from_study(const studies::RrePoint& point) {
 }  // namespace
 
 RreResult rre(const std::vector<Design>& designs, const RreRequest& request, const Running& running) {
-  std::vector<studies::Design> of_study;
+  std::vector<design::Design> of_study;
   of_study.reserve(designs.size());
   for (const Design& design : designs) of_study.push_back(design.content().design);
   const studies::RreStudy study(std::move(of_study), studies::resolve(request));

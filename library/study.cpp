@@ -5,10 +5,10 @@
 #include <utility>
 
 #include "core/threads.h"
+#include "design/io/design_reader.h"
 #include "library/drawing_content.h"
 #include "report/results/result_plots.h"
 #include "requests/descriptions.h"
-#include "studies/design/io/design_reader.h"
 #include "studies/optimise/io/optimise_reader.h"
 #include "studies/optimise/io/optimum_files.h"
 #include "studies/quantity/io/study_reader.h"
@@ -43,9 +43,9 @@ class Share : public studies::SweepObserver {
  public:
   explicit Share(Progress* progress) : progress_(progress) {}
   void at(std::uint64_t done, std::uint64_t total, std::uint64_t) override {
-    at_share(total > 0 ? static_cast<double>(done) / static_cast<double>(total) : 1.0);
+    at_fraction(total > 0 ? static_cast<double>(done) / static_cast<double>(total) : 1.0);
   }
-  void at_share(double share) override {
+  void at_fraction(double share) override {
     if (progress_ == nullptr || share < reported_) return;
     reported_ = share;
     progress_->at(share);
@@ -79,7 +79,7 @@ studies::SweepResult carried_out(Swept& held, const StudyRequest& request, const
 }  // namespace
 
 Study Study::load(const std::filesystem::path& file) {
-  return {studies::read_toml_text(file), file == "-" ? "standard input" : file.string(), {}};
+  return {design::read_toml_text(file), file == "-" ? "standard input" : file.string(), {}};
 }
 
 StudyResult sweep(const Study& study, const StudyRequest& request, const Running& running) {

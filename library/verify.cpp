@@ -5,12 +5,12 @@
 
 #include "core/atomic_file.h"
 #include "core/threads.h"
+#include "geometry/io/facet_planes_reader.h"
 #include "library/drawing_content.h"
 #include "report/results/result_plots.h"
 #include "studies/closed_loop/as_machined.h"
 #include "studies/closed_loop/io/verification_files.h"
 #include "studies/closed_loop/verification.h"
-#include "studies/design/io/facet_planes_reader.h"
 
 namespace retrace {
 
@@ -27,7 +27,7 @@ void write_as_machined(studies::VerificationRun& run, const std::filesystem::pat
   append(run.warnings, part.warnings);
   const std::filesystem::path facets = file.parent_path() / (file.stem().string() + "_facets.csv");
   const std::string design = studies::as_machined_toml(run, part, facets.filename().string());
-  if (part.planes) write_file_atomically(facets, studies::facet_planes_text(*part.planes));
+  if (part.planes) write_file_atomically(facets, geometry::facet_planes_text(*part.planes));
   write_file_atomically(file, design);
 }
 

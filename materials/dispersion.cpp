@@ -30,7 +30,7 @@ double index_at(const PowerSeries& d, double w_um) {
 double index_at(const Sellmeier& d, double w_um) {
   double n2 = 1.0;
   for (const auto& term : d.terms) n2 += term.strength * w_um * w_um / (w_um * w_um - term.resonance_um2);
-  return std::sqrt(n2 + sum_of(d.rest, w_um));
+  return std::sqrt(n2 + sum_of(d.power_terms, w_um));
 }
 
 double index_at(const Conrady& d, double w_um) {
@@ -148,7 +148,7 @@ double absorption_per_mm(const Material& material, double wavelength_nm) {
                     material.absorption_per_mm);
 }
 
-std::string doubt_of_nd(const Material& material, double stated_nd) {
+std::string nd_contradiction(const Material& material, double stated_nd) {
   constexpr double d_line_nm = 587.5618;
   constexpr double max_difference = 1e-3;
   if (!(stated_nd > 1.0) || !is_valid_at(material, d_line_nm)) return {};

@@ -35,7 +35,7 @@ struct Sellmeier {
     double resonance_um2 = 0.0;
   };
   std::vector<Term> terms;
-  PowerSeries rest = {};  ///< additional terms, which only some formulas of glass catalogues have
+  PowerSeries power_terms = {};  ///< additional terms, which only some formulas of glass catalogues have
 };
 
 /// n = constant + by_w / w + by_w35 / w^3.5, w in um (Conrady).
@@ -145,7 +145,7 @@ double absorption_per_mm(const Material& material, double wavelength_nm);
 /// Compares the formula's index at the helium d line (587.56 nm) with `stated_nd`, the value that a data file states
 /// next to the formula. Returns a text that describes the contradiction. Returns an empty text if the two values agree
 /// within 1e-3, if `stated_nd` is a placeholder (1 or less), or if the data do not include the d line.
-std::string doubt_of_nd(const Material& material, double stated_nd);
+std::string nd_contradiction(const Material& material, double stated_nd);
 
 /// Returns true if `wavelength_nm` is within the range of the data.
 bool is_valid_at(const Material& material, double wavelength_nm);

@@ -12,7 +12,7 @@ namespace {
 
 /// Fractions of the flux below this value are ignored. They have no visible effect on a mean, but would make the
 /// recurrence ill-conditioned.
-constexpr double kLeastShare = 1e-15;
+constexpr double kMinFraction = 1e-15;
 
 /// Returns the fluxes divided by their sum.
 /// \throw InputError if all `fluxes` are 0
@@ -26,7 +26,7 @@ Spectrum normalised(const std::vector<double>& wavelengths_nm, const std::vector
   Spectrum spectrum;
   for (std::size_t k = 0; k < fluxes.size(); ++k) {
     const double weight = fluxes[k] / largest;
-    if (weight < kLeastShare) continue;
+    if (weight < kMinFraction) continue;
     spectrum.wavelengths_nm.push_back(wavelengths_nm[k]);
     spectrum.weights.push_back(weight);
   }

@@ -48,7 +48,7 @@ FresnelCoefficients coefficients_of(const Powers& powers, double cos_refracted, 
 }
 
 /// Reflection and transmission of one or more faces, for light from both sides.
-struct Met {
+struct FacePowers {
   Powers ahead;   ///< for light in the direction of the incident light
   Powers behind;  ///< for light in the opposite direction
 };
@@ -56,7 +56,7 @@ struct Met {
 /// Adds the next face to `met`, which contains the faces in front of it. The medium between them transmits the fraction
 /// `kept` of the power. All multiple reflections between `met` and the new face are included. Their contributions form
 /// a geometric series, which is summed in closed form.
-void add(Met& met, double kept, const Met& face) {
+void add(FacePowers& met, double kept, const FacePowers& face) {
   for (std::size_t k = 0; k < 3; ++k) {
     const Complex between = kept * kept * met.behind.reflected[k] * face.ahead.reflected[k];
     const Complex sum = 1.0 / (1.0 - between);
@@ -89,13 +89,13 @@ FresnelCoefficients fresnel_thick_layers(const LayerStack& thin, std::span<const
   const auto layer = [&](std::size_t k) -> const ThickLayer& { return thick[outwards ? k : count - 1 - k]; };
   double near = from_index;
   double cosine = std::clamp(cos_incidence, 0.0, 1.0);
-  Met met;
+  FacePowers met;
   for (std::size_t k = 0; k <= count; ++k) {
     const bool is_last = k == count;
     const double far = is_last ? to_index : layer(k).index;
     const bool is_next_to_body = outwards ? k == 0 : is_last;
     const FresnelCoefficients f = face_between(thin, from, is_next_to_body, near, far, cosine);
-    Met face{Powers::of(f), {}};
+    FacePowers face{Powers::of(f), {}};
     if (!f.total_reflection)
       face.behind = Powers::of(face_between(thin, against, is_next_to_body, far, near, f.cos_refracted));
     if (k == 0)
@@ -109,12 +109,12 @@ FresnelCoefficients fresnel_thick_layers(const LayerStack& thin, std::span<const
   return {};  // not reached, because the loop returns at the last face
 }
 
-FresnelCoefficients mixed(const FresnelCoefficients& one, const FresnelCoefficients& other, double share_of_other) {
+FresnelCoefficients mixed(const FresnelCoefficients& one, const FresnelCoefficients& other, double fraction_of_other) {
   Powers sum = Powers::of(one);
   const Powers more = Powers::of(other);
   for (std::size_t k = 0; k < 3; ++k) {
-    sum.reflected[k] += share_of_other * (more.reflected[k] - sum.reflected[k]);
-    sum.transmitted[k] += share_of_other * (more.transmitted[k] - sum.transmitted[k]);
+    sum.reflected[k] += fraction_of_other * (more.reflected[k] - sum.reflected[k]);
+    sum.transmitted[k] += fraction_of_other * (more.transmitted[k] - sum.transmitted[k]);
   }
   return coefficients_of(sum, one.cos_refracted, one.total_reflection);
 }

@@ -29,8 +29,8 @@ FresnelCoefficients fresnel_thick_layers(const LayerStack& thin, std::span<const
 
 /// Returns the coefficients of a face that is a fine mixture of two types of area. Their powers are averaged, not their
 /// amplitudes.
-/// \param share_of_other fraction of the area that has the coefficients `other`
+/// \param fraction_of_other fraction of the area that has the coefficients `other`
 /// \pre both coefficients are for the same media and angle of incidence
-FresnelCoefficients mixed(const FresnelCoefficients& one, const FresnelCoefficients& other, double share_of_other);
+FresnelCoefficients mixed(const FresnelCoefficients& one, const FresnelCoefficients& other, double fraction_of_other);
 
 }  // namespace retrace::materials

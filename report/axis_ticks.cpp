@@ -100,9 +100,9 @@ Range drawable(Range range) {
   return {middle - half, middle + half};
 }
 
-Ticks make_ticks(Range range, int most) {
+Ticks make_ticks(Range range, int max_intervals) {
   range = drawable(range);
-  NiceStep step = nice_step(range.span(), most);
+  NiceStep step = nice_step(range.span(), max_intervals);
   // If the step is larger than the range, there may be no tick in the range.
   if (step.times(1.0) > range.span()) step = step.previous();
   Ticks ticks;
@@ -117,12 +117,12 @@ Ticks make_ticks(Range range, int most) {
   return ticks;
 }
 
-Range rounded_range(Range data, Range with_errors, int most) {
+Range rounded_range(Range data, Range with_errors, int max_intervals) {
   if (data.low == 0.0 && data.high == 0.0) data.high = 1.0;
   data = drawable(data);
   if (data.low >= 0.0 && data.span() > 0.5 * data.high) data.low = 0.0;
   constexpr double error_slack = 0.05;
-  const NiceStep step = nice_step(data.span(), most);
+  const NiceStep step = nice_step(data.span(), max_intervals);
   const double size = step.times(1.0);
   double first = std::floor(data.low / size + kOnTick);
   double last = std::ceil(data.high / size - kOnTick);

@@ -42,16 +42,15 @@ std::optional<Range> extent_of(std::span<const double> values);
 Range drawable(Range range);
 
 /// Returns the ticks within `range`, after the range has been changed by drawable().
-/// \param most approximate maximum number of intervals
+/// \param max_intervals approximate maximum number of intervals
 /// \pre most >= 1
-Ticks make_ticks(Range range, int most);
+Ticks make_ticks(Range range, int max_intervals);
 
-/// Returns an axis range whose ends are ticks. The step of the ticks divides the data into at most about `most`
-/// intervals. If the values are positive and their spread exceeds half of the maximum, the range starts at 0, so that
-/// heights can be compared. Otherwise the range fits the values closely. Error bars that extend beyond the range by
-/// less than a twentieth of a step are ignored.
-/// \param data range of the values
-/// \param with_errors range of the values with their error bars
-Range rounded_range(Range data, Range with_errors, int most);
+/// Returns an axis range whose ends are ticks. The step of the ticks divides the data into at most about
+/// `max_intervals` intervals. If the values are positive and their spread exceeds half of the maximum, the range starts
+/// at 0, so that heights can be compared. Otherwise the range fits the values closely. Error bars that extend beyond
+/// the range by less than a twentieth of a step are ignored. \param data range of the values \param with_errors range
+/// of the values with their error bars
+Range rounded_range(Range data, Range with_errors, int max_intervals);
 
 }  // namespace retrace::report

@@ -111,7 +111,7 @@ std::string printable(std::string_view text) {
   return result;
 }
 
-struct Canvas::Hidden {
+struct Canvas::Impl {
   Format format;
   std::string bytes;
   std::unique_ptr<cairo_surface_t, Release> surface;
@@ -130,10 +130,10 @@ struct Canvas::Hidden {
   }
 };
 
-Canvas::Canvas(Format format, Size size, double scale) : hidden_(std::make_unique<Hidden>()) {
+Canvas::Canvas(Format format, Size size, double scale) : impl_(std::make_unique<Impl>()) {
   if (!(scale > 0.0 && scale <= kLargestScale))
     throw std::invalid_argument(fmt::format("plot scale {}: not in (0, {}]", scale, kLargestScale));
-  Hidden& hidden = *hidden_;
+  Impl& hidden = *impl_;
   hidden.format = format;
   if (format == Format::svg) {
     hidden.surface.reset(cairo_svg_surface_create_for_stream(append, &hidden.bytes, size.width * kPointsPerUnit,
@@ -162,19 +162,19 @@ Canvas::Canvas(Format format, Size size, double scale) : hidden_(std::make_uniqu
 Canvas::~Canvas() = default;
 
 double Canvas::text_width(std::string_view text, Font font) const {
-  hidden_->set(font);
+  impl_->set(font);
   cairo_text_extents_t extents{};
-  cairo_text_extents(hidden_->context.get(), std::string(text).c_str(), &extents);
-  check(cairo_status(hidden_->context.get()));
+  cairo_text_extents(impl_->context.get(), std::string(text).c_str(), &extents);
+  check(cairo_status(impl_->context.get()));
   return extents.x_advance;
 }
 
-std::vector<std::string> Canvas::fitted(std::string_view raw, Font font, double width, int most_lines,
+std::vector<std::string> Canvas::fitted(std::string_view raw, Font font, double width, int max_lines,
                                         Ellipsis ellipsis) const {
   const std::string text = printable(raw);
   std::vector<std::string> lines;
   std::string rest = text.substr(std::min(text.find_first_not_of(' '), text.size()));
-  while (!rest.empty() && static_cast<int>(lines.size()) + 1 < most_lines && text_width(rest, font) > width) {
+  while (!rest.empty() && static_cast<int>(lines.size()) + 1 < max_lines && text_width(rest, font) > width) {
     // Finds the longest part of the text that ends at a space and fits into the line. A word that is longer than a line
     // is shortened below.
     std::size_t best = 0;
@@ -211,13 +211,13 @@ std::vector<std::string> Canvas::fitted(std::string_view raw, Font font, double 
 }
 
 void Canvas::fill_rectangle(Point corner, Size size, Colour colour) {
-  hidden_->set(colour);
-  cairo_rectangle(hidden_->context.get(), corner.x, corner.y, size.width, size.height);
-  cairo_fill(hidden_->context.get());
+  impl_->set(colour);
+  cairo_rectangle(impl_->context.get(), corner.x, corner.y, size.width, size.height);
+  cairo_fill(impl_->context.get());
 }
 
 void Canvas::image(Point corner, Size size, std::size_t columns, const std::vector<Colour>& colours) {
-  cairo_t* const context = hidden_->context.get();
+  cairo_t* const context = impl_->context.get();
   const std::size_t rows = colours.size() / columns;
   const std::unique_ptr<cairo_surface_t, Release> pixels(
       cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(columns), static_cast<int>(rows)));
@@ -240,8 +240,8 @@ void Canvas::image(Point corner, Size size, std::size_t columns, const std::vect
 }
 
 void Canvas::line(const std::vector<Point>& points, const Stroke& stroke) {
-  cairo_t* const context = hidden_->context.get();
-  hidden_->set(stroke.colour);
+  cairo_t* const context = impl_->context.get();
+  impl_->set(stroke.colour);
   cairo_set_line_width(context, stroke.width);
   cairo_set_line_cap(context, stroke.dashes.empty() ? CAIRO_LINE_CAP_ROUND : CAIRO_LINE_CAP_BUTT);
   cairo_set_dash(context, stroke.dashes.data(), static_cast<int>(stroke.dashes.size()), 0.0);
@@ -251,10 +251,10 @@ void Canvas::line(const std::vector<Point>& points, const Stroke& stroke) {
 }
 
 void Canvas::fill(const std::vector<std::vector<Point>>& polygons, Colour colour, double swell, double opacity) {
-  cairo_t* const context = hidden_->context.get();
+  cairo_t* const context = impl_->context.get();
   cairo_set_source_rgba(context, colour.red, colour.green, colour.blue, opacity);
   cairo_new_path(context);
-  for (const auto& polygon : polygons) hidden_->add(polygon);
+  for (const auto& polygon : polygons) impl_->add(polygon);
   if (swell <= 0.0) {
     cairo_fill(context);
     return;
@@ -281,7 +281,7 @@ void Canvas::hatch(const std::vector<Point>& polygon, double spacing, const Stro
 }
 
 void Canvas::marker(Point centre, Marker shape, double radius, Colour colour) {
-  cairo_t* const context = hidden_->context.get();
+  cairo_t* const context = impl_->context.get();
   // The coordinates of the corners below make all shapes appear equally large.
   const auto polygon = [&](const std::vector<Point>& corners) {
     for (const Point corner : corners)
@@ -297,20 +297,20 @@ void Canvas::marker(Point centre, Marker shape, double radius, Colour colour) {
     case Marker::inverted_triangle: polygon({{0.0, 1.3}, {1.15, -0.75}, {-1.15, -0.75}}); break;
   }
   // A thin white border separates markers that overlap.
-  hidden_->set(colour);
+  impl_->set(colour);
   cairo_fill_preserve(context);
-  hidden_->set(Colour{1.0, 1.0, 1.0});
+  impl_->set(Colour{1.0, 1.0, 1.0});
   cairo_set_dash(context, nullptr, 0, 0.0);
   cairo_set_line_width(context, 0.6);
   cairo_stroke(context);
 }
 
 void Canvas::text(Point baseline, std::string_view text, Font font, Colour colour, Align align, bool upwards) {
-  cairo_t* const context = hidden_->context.get();
+  cairo_t* const context = impl_->context.get();
   const std::string shown = printable(text);
   const double width = text_width(shown, font);
   cairo_save(context);
-  hidden_->set(colour);
+  impl_->set(colour);
   cairo_translate(context, baseline.x, baseline.y);
   if (upwards) cairo_rotate(context, -std::numbers::pi / 2.0);
   cairo_move_to(context, align == Align::left ? 0.0 : align == Align::centre ? -0.5 * width : -width, 0.0);
@@ -319,25 +319,25 @@ void Canvas::text(Point baseline, std::string_view text, Font font, Colour colou
 }
 
 void Canvas::clip(Point corner, Size size) {
-  cairo_save(hidden_->context.get());
-  cairo_rectangle(hidden_->context.get(), corner.x, corner.y, size.width, size.height);
-  cairo_clip(hidden_->context.get());
+  cairo_save(impl_->context.get());
+  cairo_rectangle(impl_->context.get(), corner.x, corner.y, size.width, size.height);
+  cairo_clip(impl_->context.get());
 }
 
 void Canvas::clip(const std::vector<Point>& polygon) {
-  cairo_t* const context = hidden_->context.get();
+  cairo_t* const context = impl_->context.get();
   cairo_save(context);
   cairo_new_path(context);
-  hidden_->add(polygon);
+  impl_->add(polygon);
   cairo_clip(context);
 }
 
 void Canvas::end_clip() {
-  cairo_restore(hidden_->context.get());
+  cairo_restore(impl_->context.get());
 }
 
 std::string Canvas::finish() {
-  Hidden& hidden = *hidden_;
+  Impl& hidden = *impl_;
   check(cairo_status(hidden.context.get()));
   cairo_show_page(hidden.context.get());
   if (hidden.format == Format::png)

@@ -59,9 +59,9 @@ class Canvas {
   ~Canvas();
 
   double text_width(std::string_view text, Font font) const;
-  /// Breaks a text at spaces into at most `most_lines` lines of at most `width`. If the text does not fit, the last
+  /// Breaks a text at spaces into at most `max_lines` lines of at most `width`. If the text does not fit, the last
   /// line is shortened with an ellipsis.
-  std::vector<std::string> fitted(std::string_view text, Font font, double width, int most_lines,
+  std::vector<std::string> fitted(std::string_view text, Font font, double width, int max_lines,
                                   Ellipsis ellipsis) const;
 
   void fill_rectangle(Point corner, Size size, Colour colour);
@@ -89,8 +89,8 @@ class Canvas {
   std::string finish();
 
  private:
-  struct Hidden;
-  std::unique_ptr<Hidden> hidden_;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace retrace::report

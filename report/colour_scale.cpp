@@ -7,7 +7,7 @@
 namespace retrace::report {
 namespace {
 
-constexpr double kWhiteShare = 0.999;
+constexpr double kWhiteFraction = 0.999;
 // Luminance, as a fraction of the maximum, below which a pixel counts as dark. Dark pixels are not included in the
 // mean.
 constexpr double kDark = 1e-5;
@@ -21,8 +21,8 @@ double percentile(std::vector<double> values, double share) {
 
 }  // namespace
 
-std::array<double, 3> cubehelix(double share) {
-  const double at = std::clamp(share, 0.0, 1.0);
+std::array<double, 3> cubehelix(double fraction) {
+  const double at = std::clamp(fraction, 0.0, 1.0);
   const double turn = 2.0 * std::numbers::pi * (0.5 / 3.0 + 1.0 - 1.5 * at);
   const double amplitude = 0.5 * at * (1.0 - at);
   const double c = std::cos(turn);
@@ -46,7 +46,7 @@ std::vector<double> tone_mapped(const std::vector<double>& luminance, double key
       logs += std::log(value);
     }
   const double scale = key / std::exp(logs / static_cast<double>(lit.size()));
-  const double white = scale * percentile(lit, kWhiteShare);
+  const double white = scale * percentile(lit, kWhiteFraction);
   for (std::size_t k = 0; k < luminance.size(); ++k) {
     const double x = scale * luminance[k];
     shown[k] = std::min(1.0, x * (1.0 + x / (white * white)) / (1.0 + x));

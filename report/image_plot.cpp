@@ -30,7 +30,7 @@ struct ValueScale {
   double full = 1.0;
   bool is_logarithmic = false;
 
-  double share(double value) const {
+  double fraction(double value) const {
     if (!is_logarithmic) return value / full;
     return value > 0.0 ? 1.0 + std::log10(value / full) / kImageDecades : 0.0;
   }
@@ -68,7 +68,7 @@ void draw_value_bar(Canvas& canvas, const ImagePanel& panel, const ValueScale& s
   for (int k = 0; k < kBarSteps; ++k) colours.push_back(colour_of(1.0 - (k + 0.5) / kBarSteps));
   canvas.image(corner, {kImageBarWidth, height}, 1, colours);
   draw_frame(canvas, corner, {kImageBarWidth, height});
-  const auto y_at = [&](double value) { return corner.y + height * (1.0 - scale.share(value)); };
+  const auto y_at = [&](double value) { return corner.y + height * (1.0 - scale.fraction(value)); };
   const double x = corner.x + kImageBarWidth;
   if (scale.is_logarithmic) {
     const int top = static_cast<int>(std::floor(std::log10(scale.full) + 1e-9));
@@ -101,7 +101,7 @@ void draw(Canvas& canvas, const ImagePanel& panel, Point corner) {
   const ValueScale scale = scale_of(panel);
   std::vector<Colour> colours;
   colours.reserve(panel.values.size());
-  for (const double value : panel.values) colours.push_back(colour_of(scale.share(value)));
+  for (const double value : panel.values) colours.push_back(colour_of(scale.fraction(value)));
   const Point at{corner.x, corner.y + kPanelTop};
   const Size size = picture_size(panel);
   canvas.image(at, size, panel.columns, colours);

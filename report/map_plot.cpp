@@ -36,11 +36,11 @@ constexpr Font kMapLabelFont{13.0, false};
 constexpr Font kMapTickFont{11.0, false};
 
 constexpr double kMapTickLength = 4.0;
-constexpr AxisLook kMapAxis{.font = kMapTickFont,
-                            .tick = kMapTickLength,
-                            .below = kMapTickLength + 3.0 + kMapTickFont.size,
-                            .beside = kMapTickLength + 3.0,
-                            .baseline = 0.36 * kMapTickFont.size};
+constexpr AxisStyle kMapAxis{.font = kMapTickFont,
+                             .tick = kMapTickLength,
+                             .x_label_gap = kMapTickLength + 3.0 + kMapTickFont.size,
+                             .y_label_gap = kMapTickLength + 3.0,
+                             .baseline = 0.36 * kMapTickFont.size};
 constexpr double kPlanLeft = 40.0;  ///< distance of the plan from the left end of its cell, for the labels of the axis
 constexpr double kMapBarWidth = 16.0, kHatchSpacing = 6.0;
 /// Distance by which regions are enlarged. Without it, the background would be visible between the anti-aliased edges
@@ -50,7 +50,7 @@ constexpr double kSwell = 0.15;
 /// over them.
 constexpr double kSurroundings = 0.3, kSurroundingsVeil = 0.62;
 /// Minimum distance of thin lines. Closer lines are not drawn.
-constexpr double kLeastCell = 3.0;
+constexpr double kMinLineDistance = 3.0;
 
 /// Returns the rectangle of the plane that a panel shows.
 Rectangle shown_by(const MapPanel& panel) {
@@ -133,7 +133,7 @@ MapLayout lay_out(const MapPlot& plot, const Canvas& canvas) {
   layout.bar_left = layout.left + grid_width + 14.0;
   layout.figure.width = std::ceil(layout.bar_left + kMapBarWidth + kMapTickLength + 6.0 +
                                   std::max(label_width + 8.0 + kMapLabelFont.size,
-                                           canvas.text_width(plot.rest_label, kMapTickFont) - kMapTickLength) +
+                                           canvas.text_width(plot.hatched_label, kMapTickFont) - kMapTickLength) +
                                   kMargin);
   layout.title = canvas.fitted(plot.title, kTitleFont, layout.figure.width - 2.0 * kMargin, 2, Ellipsis::end);
   layout.top = kMargin + 1.3 * kTitleFont.size * static_cast<double>(layout.title.size()) + 4.0;
@@ -216,7 +216,7 @@ void draw_regions(Canvas& canvas, const MapPanel& panel, const Plan& plan, const
 void draw_lines(Canvas& canvas, const MapPanel& panel, const Plan& plan) {
   const std::size_t count = panel.lines.size() + panel.fine_lines.size();
   const double room = std::sqrt(plan.size().width * plan.size().height / static_cast<double>(count));
-  if (count == 0 || room < kLeastCell) return;
+  if (count == 0 || room < kMinLineDistance) return;
   const double width = std::clamp(0.03 * room, 0.3, 1.0);
   for (const auto& [lines, stroke] : {std::pair{&panel.fine_lines, Stroke{kLine, 0.5 * width, {}}},
                                       std::pair{&panel.lines, Stroke{kLine, width, {}}}})
@@ -314,8 +314,8 @@ void draw_colour_bar(Canvas& canvas, const MapPlot& plot, const MapLayout& layou
   canvas.fill({swatch}, kRest);
   canvas.hatch(swatch, kHatchSpacing, {kHatch, 0.8, {}});
   draw_frame(canvas, {layout.bar_left, top}, {kMapBarWidth, kMapBarWidth}, 0.9);
-  canvas.text({right + 6.0, top + 0.5 * kMapBarWidth + 0.36 * kMapTickFont.size}, plot.rest_label, kMapTickFont, kText,
-              Align::left);
+  canvas.text({right + 6.0, top + 0.5 * kMapBarWidth + 0.36 * kMapTickFont.size}, plot.hatched_label, kMapTickFont,
+              kText, Align::left);
 }
 
 }  // namespace

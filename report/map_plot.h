@@ -35,10 +35,10 @@ struct MapPanel {
 /// ellipsis.
 struct MapPlot {
   std::string title;
-  std::string axis_unit;    ///< unit of the axes; "mm" gives the labels "x (mm)" and "y (mm)"
-  std::string value_label;  ///< label of the colour bar, which starts at 0
-  std::string rest_label;   ///< meaning of hatched areas
-  double full_value = 1.0;  ///< upper end of the colour bar; a lower end is chosen if all values are below half of it
+  std::string axis_unit;      ///< unit of the axes; "mm" gives the labels "x (mm)" and "y (mm)"
+  std::string value_label;    ///< label of the colour bar, which starts at 0
+  std::string hatched_label;  ///< meaning of hatched areas
+  double full_value = 1.0;    ///< upper end of the colour bar; a lower end is chosen if all values are below half of it
   std::vector<MapPanel> panels;
 };
 

@@ -40,13 +40,13 @@ Size mixture_figure(const MixturePlot& plot) {
 void draw_zones(Canvas& canvas, const MixturePlot& plot) {
   double from = 0.0;
   for (std::size_t z = 0; z < plot.zones.size(); ++z) {
-    const double height = kZonePlan * plot.zones[z].share;
+    const double height = kZonePlan * plot.zones[z].area_fraction;
     const double top = kMixtureTop + kZonePlan - from - height;
     canvas.fill_rectangle({kMargin, top}, {kZonePlan, height}, colour_of_zone(z));
     if (height > kMixtureFont.size + 2.0)
       draw_within(canvas, kZonePlan - 8.0, Ellipsis::end,
                   {kMargin + 0.5 * kZonePlan, top + 0.5 * height + kBaseline * kMixtureFont.size},
-                  fmt::format("{:.1f} %", 100.0 * plot.zones[z].share), kMixtureFont, kWhite, Align::centre);
+                  fmt::format("{:.1f} %", 100.0 * plot.zones[z].area_fraction), kMixtureFont, kWhite, Align::centre);
     from += height;
   }
   draw_frame(canvas, {kMargin, kMixtureTop}, {kZonePlan, kZonePlan});
@@ -90,13 +90,13 @@ class GoalMatrix {
     const bool binds = goal.price > 0.0;
     write(goal.label, left_, row, {kMixtureFont.size, binds}, kText, Align::left);
     double all = 0.0;
-    for (const double given : goal.given) all += std::max(0.0, given);
-    for (std::size_t z = 0; z < goal.given.size(); ++z) {
-      const double share = all > 0.0 ? std::max(0.0, goal.given[z]) / all : 0.0;
+    for (const double given : goal.contributions) all += std::max(0.0, given);
+    for (std::size_t z = 0; z < goal.contributions.size(); ++z) {
+      const double share = all > 0.0 ? std::max(0.0, goal.contributions[z]) / all : 0.0;
       const double x = first_column_ + kZoneColumn * static_cast<double>(z);
       canvas_.fill_rectangle({x + 1.0, top_of(row) + 1.0}, {kZoneColumn - 2.0, kGoalRow - 2.0},
                              mixed_with_white(colour_of_zone(z), share));
-      write(fmt::format("{:.3g}", goal.given[z]), x + 0.5 * kZoneColumn, row, kMixtureFont,
+      write(fmt::format("{:.3g}", goal.contributions[z]), x + 0.5 * kZoneColumn, row, kMixtureFont,
             share > kDarkGround ? kWhite : kText, Align::centre);
     }
     write(goal.total, total_ + kTotalWidth - 8.0, row, {kMixtureFont.size, binds}, kText, Align::right);

@@ -13,15 +13,15 @@ namespace retrace::report {
 /// A zone: a stripe of the plan and a column of the matrix.
 struct MixtureZone {
   std::string label;  ///< description of the cells of the zone
-  double share = 0.0;
+  double area_fraction = 0.0;
 };
 
 /// A goal: a row of the matrix.
 struct MixtureGoal {
   std::string label;
-  std::vector<double> given;  ///< contribution of each zone
-  std::string total;          ///< value of the whole part
-  double price = 0.0;         ///< shadow price of the goal; 0 if the goal is not an active constraint
+  std::vector<double> contributions;  ///< contribution of each zone
+  std::string total;                  ///< value of the whole part
+  double price = 0.0;                 ///< shadow price of the goal; 0 if the goal is not an active constraint
 };
 
 /// Plot of a part with zones. Zones are stripes of the plan, from bottom to top. Texts are UTF-8; texts that are too

@@ -15,7 +15,7 @@ constexpr std::array<Colour, 5> kColours = {kBlue, kVermilion, kBluishGreen, kRe
 constexpr Font kPathRemarkFont{11.5, false};
 constexpr Font kPathLabelFont{13.0, false};
 constexpr Font kPathTickFont{11.0, false};
-constexpr AxisLook kPathAxis{.font = kPathTickFont, .below = 17.0, .beside = 7.0, .baseline = 4.0};
+constexpr AxisStyle kPathAxis{.font = kPathTickFont, .x_label_gap = 17.0, .y_label_gap = 7.0, .baseline = 4.0};
 constexpr double kPathPlanWidth = 560.0;
 constexpr double kPathLeft = 74.0;
 constexpr double kPathBelow = 52.0;

@@ -28,33 +28,33 @@ constexpr Font kLegendFont{12.0, false};
 constexpr double kPlotWidth = 620.0;  ///< width of the area inside the axes
 constexpr double kPlotHeight = 370.0;
 constexpr double kTickLength = 5.0;
-constexpr AxisLook kPlotAxis{.font = kTickFont,
-                             .tick = kTickLength,
-                             .below = kTickLength + 5.0 + kTickFont.size,
-                             .beside = kTickLength + 5.0,
-                             .baseline = 0.36 * kTickFont.size,
-                             .width = 1.1};
+constexpr AxisStyle kPlotAxis{.font = kTickFont,
+                              .tick = kTickLength,
+                              .x_label_gap = kTickLength + 5.0 + kTickFont.size,
+                              .y_label_gap = kTickLength + 5.0,
+                              .baseline = 0.36 * kTickFont.size,
+                              .width = 1.1};
 constexpr double kLineSpacing = 1.3;
 constexpr double kLegendRow = 19.0;
 constexpr double kLegendKey = 30.0;  ///< length of the line sample in the legend
 constexpr double kLegendGap = 8.0;
 constexpr double kLegendTextWidth = 360.0;
-constexpr std::size_t kMostLegendEntries = 60;
-constexpr std::size_t kMostMarkers = 45;  ///< maximum number of points of a series with markers; longer series are
-                                          ///< drawn as lines only
-constexpr int kMostXTicks = 9;
-constexpr int kMostYTicks = 7;
+constexpr std::size_t kMaxLegendEntries = 60;
+constexpr std::size_t kMaxMarkers = 45;  ///< maximum number of points of a series with markers; longer series are
+                                         ///< drawn as lines only
+constexpr int kMaxXTicks = 9;
+constexpr int kMaxYTicks = 7;
 /// Minimum half length of an error bar that is drawn. A shorter error bar would be hidden by the marker or the line.
 constexpr double kShortestErrorBar = 1.5;
 
 /// Appearance of a series, which depends on its index in the plot.
-struct Look {
+struct SeriesStyle {
   Colour colour;
   std::vector<double> dashes;
   Marker marker = Marker::circle;
 };
 
-Look look_of(std::size_t index) {
+SeriesStyle look_of(std::size_t index) {
   return {kPalette[index % kPalette.size()], kDashes[index / kPalette.size() % kDashes.size()],
           kMarkers[(index % kPalette.size() + index / kPalette.size()) % kMarkers.size()]};
 }
@@ -70,7 +70,7 @@ std::size_t drawn_points(const Series& series) {
 }
 
 bool has_markers(const Series& series) {
-  return !series.has_line || drawn_points(series) <= kMostMarkers;
+  return !series.has_line || drawn_points(series) <= kMaxMarkers;
 }
 
 /// Returns the ranges of both axes.
@@ -91,7 +91,7 @@ std::pair<Range, Range> axis_ranges(const LinePlot& plot) {
   const Range x = plot.x_range.value_or(extent_of(xs).value_or(Range{0.0, 1.0}));
   if (plot.y_range) return {drawable(x), drawable(*plot.y_range)};
   const Range data = extent_of(ys).value_or(Range{0.0, 1.0});
-  Range y = rounded_range(data, extent_of(with_errors).value_or(data), kMostYTicks);
+  Range y = rounded_range(data, extent_of(with_errors).value_or(data), kMaxYTicks);
   // Axes in percent are limited to the range from 0 to 100.
   if (plot.y_label.find('%') != std::string::npos && data.low >= 0.0 && data.high <= 100.0)
     y = drawable({std::max(y.low, 0.0), std::min(y.high, 100.0)});
@@ -101,7 +101,7 @@ std::pair<Range, Range> axis_ranges(const LinePlot& plot) {
 struct LegendEntry {
   std::string text;
   double width = 0.0;
-  Look look;
+  SeriesStyle look;
   bool is_sample = true;  ///< false: the entry has only text
   bool has_markers = true;
 };
@@ -134,7 +134,7 @@ std::vector<LegendEntry> legend_entries(const LinePlot& plot, const Canvas& canv
   std::size_t left_out = 0;
   for (std::size_t i = 0; i < plot.series.size(); ++i) {
     if (plot.series[i].label.empty()) continue;
-    if (entries.size() == kMostLegendEntries) {
+    if (entries.size() == kMaxLegendEntries) {
       ++left_out;
       continue;
     }
@@ -160,7 +160,7 @@ double widest(const std::vector<std::string>& labels, const Canvas& canvas) {
 
 /// Returns as many ticks as possible without an overlap of their labels.
 Ticks x_ticks_that_fit(Range range, const Canvas& canvas) {
-  for (int most = kMostXTicks;; --most) {
+  for (int most = kMaxXTicks;; --most) {
     Ticks ticks = make_ticks(range, most);
     const double room = ticks.step / range.span() * kPlotWidth;
     if (most == 1 || widest(ticks.labels, canvas) + 10.0 <= room) return ticks;
@@ -172,7 +172,7 @@ Layout lay_out(const LinePlot& plot, const Canvas& canvas) {
   Layout layout;
   const auto [x_range, y_range] = axis_ranges(plot);
   layout.x_ticks = x_ticks_that_fit(x_range, canvas);
-  layout.y_ticks = make_ticks(y_range, kMostYTicks);
+  layout.y_ticks = make_ticks(y_range, kMaxYTicks);
   layout.title = canvas.fitted(plot.title, kTitleFont, kPlotWidth, 2, Ellipsis::end);
   layout.x_label = canvas.fitted(plot.x_label, kLabelFont, kPlotWidth, 2, Ellipsis::end);
   layout.y_label = canvas.fitted(plot.y_label, kLabelFont, kPlotHeight, 2, Ellipsis::end);
@@ -278,7 +278,7 @@ double marker_radius(const Series& series, const Layout& layout) {
   return std::clamp(0.45 * closest, 2.4, 3.8);
 }
 
-void draw_series(Canvas& canvas, const Layout& layout, const Series& series, const Look& look) {
+void draw_series(Canvas& canvas, const Layout& layout, const Series& series, const SeriesStyle& look) {
   const auto place = [&](double x, double y) { return Point{layout.x.at(x), layout.y.at(y)}; };
   // The clip area extends beyond the axes by half of the line width, so that curves on the border are drawn with full
   // width.

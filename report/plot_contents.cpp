@@ -166,8 +166,8 @@ MapPanel footprint_panel(const FootprintValues& footprint) {
     panel.remarks.push_back(panel.title);
     panel.title = footprint.design;
   }
-  panel.remarks.push_back(fmt::format("{} % active, returns {} %", fixed(100.0 * footprint.active_share, 1),
-                                      fixed(100.0 * footprint.rre_shown, 1)));
+  panel.remarks.push_back(fmt::format("{} % active, returns {} %", fixed(100.0 * footprint.active_fraction, 1),
+                                      fixed(100.0 * footprint.rre_contribution, 1)));
   return panel;
 }
 

@@ -82,8 +82,8 @@ struct FootprintValues {
   std::string design;  ///< name of the design; empty if all footprints are of the same design
   double incidence_deg = 0.0;
   std::optional<double> azimuth_deg;  ///< none if the azimuth of all footprints is 0
-  double active_share = 0.0;          ///< fraction of the area of the entrance face that returns light
-  double rre_shown = 0.0;             ///< RRE that the paths through these regions contribute
+  double active_fraction = 0.0;       ///< fraction of the area of the entrance face that returns light
+  double rre_contribution = 0.0;      ///< RRE that the paths through these regions contribute
 };
 
 /// Returns a panel with the texts of a footprint. The panel has no outline and no regions; the caller adds them.

@@ -20,7 +20,7 @@ constexpr double kDisc = 250.0;  ///< diameter
 constexpr Size kPolarCell{290.0, 304.0};
 constexpr double kBarRoom = 96.0;
 constexpr double kPolarBarWidth = 14.0;
-constexpr std::size_t kMostAbreast = 3;
+constexpr std::size_t kMaxPerRow = 3;
 /// Number of decades that the colour scale covers, downwards from the largest value.
 constexpr double kPolarDecades = 4.0;
 
@@ -115,7 +115,7 @@ void draw_bar(Canvas& canvas, Point corner, Range decades, std::string_view labe
 }  // namespace
 
 std::string render(const PolarPlot& plot, PlotFormat format, double scale) {
-  const std::size_t abreast = std::clamp<std::size_t>(plot.panels.size(), 1, kMostAbreast);
+  const std::size_t abreast = std::clamp<std::size_t>(plot.panels.size(), 1, kMaxPerRow);
   const std::size_t rows = std::max<std::size_t>(1, (plot.panels.size() + abreast - 1) / abreast);
   const Size size{2.0 * kMargin + static_cast<double>(abreast) * kPolarCell.width + kBarRoom,
                   2.0 * kMargin + 24.0 + static_cast<double>(rows) * kPolarCell.height};

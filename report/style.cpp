@@ -4,8 +4,8 @@
 
 namespace retrace::report {
 
-Colour colour_at(const ColourScale& scale, double share) {
-  const double at = std::clamp(share, 0.0, 1.0) * static_cast<double>(scale.size() - 1);
+Colour colour_at(const ColourScale& scale, double fraction) {
+  const double at = std::clamp(fraction, 0.0, 1.0) * static_cast<double>(scale.size() - 1);
   const auto k = std::min(static_cast<std::size_t>(at), scale.size() - 2);
   const double t = at - static_cast<double>(k);
   const Colour& a = scale[k];
@@ -37,22 +37,22 @@ void draw_title(Canvas& canvas, Size figure, std::string_view title) {
               title, kTitleFont, kText, Align::centre);
 }
 
-void draw_x_tick(Canvas& canvas, const AxisLook& look, Point at, std::string_view label) {
+void draw_x_tick(Canvas& canvas, const AxisStyle& look, Point at, std::string_view label) {
   canvas.line({at, {at.x, at.y + look.tick}}, {kAxis, look.width, {}});
-  canvas.text({at.x, at.y + look.below}, label, look.font, kText, Align::centre);
+  canvas.text({at.x, at.y + look.x_label_gap}, label, look.font, kText, Align::centre);
 }
 
-void draw_y_tick(Canvas& canvas, const AxisLook& look, Point at, std::string_view label) {
+void draw_y_tick(Canvas& canvas, const AxisStyle& look, Point at, std::string_view label) {
   canvas.line({{at.x - look.tick, at.y}, at}, {kAxis, look.width, {}});
-  canvas.text({at.x - look.beside, at.y + look.baseline}, label, look.font, kText, Align::right);
+  canvas.text({at.x - look.y_label_gap, at.y + look.baseline}, label, look.font, kText, Align::right);
 }
 
-void draw_x_ticks(Canvas& canvas, const AxisLook& look, const AxisScale& scale, const Ticks& ticks, double y) {
+void draw_x_ticks(Canvas& canvas, const AxisStyle& look, const AxisScale& scale, const Ticks& ticks, double y) {
   for (std::size_t k = 0; k < ticks.positions.size(); ++k)
     draw_x_tick(canvas, look, {scale.at(ticks.positions[k]), y}, ticks.labels[k]);
 }
 
-void draw_y_ticks(Canvas& canvas, const AxisLook& look, const AxisScale& scale, const Ticks& ticks, double x) {
+void draw_y_ticks(Canvas& canvas, const AxisStyle& look, const AxisScale& scale, const Ticks& ticks, double x) {
   for (std::size_t k = 0; k < ticks.positions.size(); ++k)
     draw_y_tick(canvas, look, {x, scale.at(ticks.positions[k])}, ticks.labels[k]);
 }

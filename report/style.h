@@ -44,8 +44,8 @@ inline constexpr ColourScale kViridis = {{{0.267, 0.005, 0.329},
                                           {0.993, 0.906, 0.144}}};
 
 /// Returns a colour of a scale.
-/// \param share position on the scale, clamped to 0..1
-Colour colour_at(const ColourScale& scale, double share);
+/// \param fraction position on the scale, clamped to 0..1
+Colour colour_at(const ColourScale& scale, double fraction);
 
 /// Draws a vertical bar with all colours, without a frame.
 void draw_colour_bar(Canvas& canvas, const ColourScale& scale, Point corner, Size size);
@@ -60,20 +60,20 @@ void draw_within(Canvas& canvas, double width, Ellipsis ellipsis, Point baseline
 void draw_title(Canvas& canvas, Size figure, std::string_view title);
 
 /// Dimensions of the ticks of an axis and of their labels.
-struct AxisLook {
+struct AxisStyle {
   Font font;
-  double tick = 4.0;      ///< length of a tick
-  double below = 0.0;     ///< distance from the x axis to the baseline of its labels
-  double beside = 0.0;    ///< distance from the y axis to the end of its labels
-  double baseline = 0.0;  ///< distance of the baseline of a y label below its tick
+  double tick = 4.0;         ///< length of a tick
+  double x_label_gap = 0.0;  ///< distance from the x axis to the baseline of its labels
+  double y_label_gap = 0.0;  ///< distance from the y axis to the end of its labels
+  double baseline = 0.0;     ///< distance of the baseline of a y label below its tick
   double width = 1.0;
 };
 
-void draw_x_tick(Canvas& canvas, const AxisLook& look, Point at, std::string_view label);
-void draw_y_tick(Canvas& canvas, const AxisLook& look, Point at, std::string_view label);
+void draw_x_tick(Canvas& canvas, const AxisStyle& look, Point at, std::string_view label);
+void draw_y_tick(Canvas& canvas, const AxisStyle& look, Point at, std::string_view label);
 /// Draws the ticks of a horizontal axis at the height y.
-void draw_x_ticks(Canvas& canvas, const AxisLook& look, const AxisScale& scale, const Ticks& ticks, double y);
+void draw_x_ticks(Canvas& canvas, const AxisStyle& look, const AxisScale& scale, const Ticks& ticks, double y);
 /// Draws the ticks of a vertical axis at x.
-void draw_y_ticks(Canvas& canvas, const AxisLook& look, const AxisScale& scale, const Ticks& ticks, double x);
+void draw_y_ticks(Canvas& canvas, const AxisStyle& look, const AxisScale& scale, const Ticks& ticks, double x);
 
 }  // namespace retrace::report

@@ -18,10 +18,10 @@ constexpr std::array<Colour, 3> kCurves = {kBlue, kVermilion, kBluishGreen};
 
 constexpr Font kSurfaceLabelFont{12.0, false};
 constexpr Font kSurfaceTickFont{10.5, false};
-constexpr AxisLook kSurfaceAxis{.font = kSurfaceTickFont,
-                                .below = 6.0 + kSurfaceTickFont.size,
-                                .beside = 7.0,
-                                .baseline = 0.36 * kSurfaceTickFont.size};
+constexpr AxisStyle kSurfaceAxis{.font = kSurfaceTickFont,
+                                 .x_label_gap = 6.0 + kSurfaceTickFont.size,
+                                 .y_label_gap = 7.0,
+                                 .baseline = 0.36 * kSurfaceTickFont.size};
 
 constexpr Size kSurfaceCell{430.0, 390.0};  ///< size of a panel with its texts
 constexpr Size kPlotArea{290.0, 290.0};
@@ -29,8 +29,8 @@ constexpr double kSurfaceLeft = 62.0;  ///< distance of the plot area from the l
 constexpr double kTop = 34.0;
 constexpr double kSurfaceBarGap = 12.0;
 constexpr double kSurfaceBarWidth = 14.0;
-constexpr std::size_t kMostPixels = 480;  ///< maximum number of pixels of a grid along an axis; finer grids are
-                                          ///< averaged
+constexpr std::size_t kMaxPixels = 480;  ///< maximum number of pixels of a grid along an axis; finer grids are
+                                         ///< averaged
 /// Distance from the mean, in standard deviations, at which heights reach the end of the colour scale.
 constexpr double kColourReach = 3.0;
 
@@ -53,10 +53,10 @@ Range colour_range(const std::vector<double>& values) {
       {std::max(all.low, mean - kColourReach * deviation), std::min(all.high, mean + kColourReach * deviation)});
 }
 
-/// Returns a grid of at most kMostPixels along each axis, which contains averages of blocks.
+/// Returns a grid of at most kMaxPixels along each axis, which contains averages of blocks.
 GridPanel reduced(const GridPanel& panel) {
-  const std::size_t sx = (panel.columns + kMostPixels - 1) / kMostPixels;
-  const std::size_t sy = (panel.rows + kMostPixels - 1) / kMostPixels;
+  const std::size_t sx = (panel.columns + kMaxPixels - 1) / kMaxPixels;
+  const std::size_t sy = (panel.rows + kMaxPixels - 1) / kMaxPixels;
   GridPanel small = panel;
   small.columns = (panel.columns + sx - 1) / sx;
   small.rows = (panel.rows + sy - 1) / sy;
@@ -187,10 +187,10 @@ std::string power_of_ten(int exponent) {
 }
 
 void draw(Canvas& canvas, const LogPanel& panel, Point cell) {
-  constexpr double kMostDecades = 12.0;
+  constexpr double kMaxDecades = 12.0;
   const Area area{{cell.x + kSurfaceLeft, cell.y + kTop}, {kPlotArea.width + 60.0, kPlotArea.height}};
-  const AxisScale x{decades(panel, true, kMostDecades), area.corner.x, area.right()};
-  const AxisScale y{decades(panel, false, kMostDecades), area.bottom(), area.corner.y};
+  const AxisScale x{decades(panel, true, kMaxDecades), area.corner.x, area.right()};
+  const AxisScale y{decades(panel, false, kMaxDecades), area.bottom(), area.corner.y};
   for (int e = static_cast<int>(std::ceil(x.values.low)); e <= static_cast<int>(std::floor(x.values.high)); ++e) {
     canvas.line({{x.at(e), area.corner.y}, {x.at(e), area.bottom()}}, {kSurfaceGrid, 0.9, {}});
     draw_x_tick(canvas, kSurfaceAxis, {x.at(e), area.bottom()}, power_of_ten(e));

@@ -65,14 +65,14 @@ class KindCheck {
   void operator()(const schema::Number& kind) const {
     if (!is_in(kind.range, taken<double>(kind))) refuse(row_, schema::allowed(kind), shown(value_));
   }
-  void operator()(const schema::Whole& kind) const {
+  void operator()(const schema::Integer& kind) const {
     if (!is_in(kind.range, taken<double>(kind), true)) refuse(row_, schema::allowed(kind), shown(value_));
   }
   void operator()(const schema::Flag& kind) const { taken<bool>(kind); }
   void operator()(const schema::Word& kind) const {
     const auto& word = taken<std::string>(kind);
     if (std::ranges::count(kind.words, std::string_view(word)) > 0) return;
-    const std::string_view meant = closest(word, kind.words);
+    const std::string_view meant = closest_match(word, kind.words);
     refuse(row_, schema::allowed(kind),
            in_quotes(word) + (meant.empty() ? "" : fmt::format("; did you mean {}?", in_quotes(meant))));
   }
@@ -84,20 +84,20 @@ class KindCheck {
   void operator()(const schema::NumberOrNumbers& kind) const {
     const auto& numbers = taken<std::vector<double>>(kind);
     if (numbers.empty() && !kind.may_be_empty) refuse(row_, "at least one number", "none");
-    if (numbers.size() > kind.most)
-      refuse(row_, fmt::format("1 to {} numbers", kind.most), fmt::format("{} numbers", numbers.size()));
-    check_numbers(numbers, kind.range, kind.is_whole);
+    if (numbers.size() > kind.max_count)
+      refuse(row_, fmt::format("1 to {} numbers", kind.max_count), fmt::format("{} numbers", numbers.size()));
+    check_numbers(numbers, kind.range, kind.is_integer);
   }
   void operator()(const schema::Numbers& kind) const {
     const auto& numbers = taken<std::vector<double>>(kind);
     if (numbers.size() != kind.count)
       refuse(row_, schema::allowed(kind), fmt::format("a list of length {}", numbers.size()));
-    check_numbers(numbers, kind.range, kind.is_whole);
+    check_numbers(numbers, kind.range, kind.is_integer);
   }
   void operator()(const schema::NumberRows& kind) const {
     const auto& rows = taken<std::vector<std::vector<double>>>(kind);
-    if (rows.size() < kind.least || rows.size() > kind.most)
-      refuse(row_, fmt::format("{} to {} {}", kind.least, kind.most, kind.what), fmt::format("{}", rows.size()));
+    if (rows.size() < kind.min_rows || rows.size() > kind.max_rows)
+      refuse(row_, fmt::format("{} to {} {}", kind.min_rows, kind.max_rows, kind.what), fmt::format("{}", rows.size()));
     for (const std::vector<double>& numbers : rows) {
       if (numbers.size() != kind.columns) refuse(row_, schema::allowed(kind), shown(value_));
       check_numbers(numbers, kind.range, false);

@@ -13,7 +13,7 @@ using Json = nlohmann::ordered_json;
 
 std::string kind_name(const schema::Kind& kind) {
   return std::visit(
-      Overloaded{[](const schema::Number&) { return "number"; }, [](const schema::Whole&) { return "whole"; },
+      Overloaded{[](const schema::Number&) { return "number"; }, [](const schema::Integer&) { return "whole"; },
                  [](const schema::Flag&) { return "flag"; }, [](const schema::Word&) { return "word"; },
                  [](const schema::File&) { return "file"; }, [](const schema::WordOrFile&) { return "word_or_file"; },
                  [](const schema::NumberOrNumbers&) { return "number_or_numbers"; },
@@ -56,7 +56,7 @@ Json field_json(const Request& request, const Row& row) {
     json["words"] = std::vector<std::string>(word->words.begin(), word->words.end());
   if (const auto* const numbers = std::get_if<schema::Numbers>(&row.kind)) {
     json["count"] = numbers->count;
-    json["is_whole"] = numbers->is_whole;
+    json["is_whole"] = numbers->is_integer;
   }
   if (const std::string_view unit = schema::unit_of(row.name); !unit.empty()) json["unit"] = unit;
   json["meaning"] = row.meaning;

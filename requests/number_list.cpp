@@ -13,7 +13,7 @@
 namespace retrace::requests {
 namespace {
 
-constexpr std::size_t kMostValues = 100000;
+constexpr std::size_t kMaxValues = 100000;
 
 class ListReader {
  public:
@@ -54,8 +54,8 @@ class ListReader {
     const double steps = (stop - start) / step;
     if (steps < 0.0)
       fail(fmt::format("the step of a range must lead from start towards stop, got {}", in_quotes(item)));
-    if (steps > static_cast<double>(kMostValues))
-      fail(fmt::format("a range may have at most {} values, got {}", kMostValues, in_quotes(item)));
+    if (steps > static_cast<double>(kMaxValues))
+      fail(fmt::format("a range may have at most {} values, got {}", kMaxValues, in_quotes(item)));
     // The range includes `stop`, even if rounding errors make start + i * step differ from it slightly.
     const auto last = static_cast<long>(std::floor(steps + 1e-9 * std::max(1.0, steps)));
     for (long i = 0; i <= last; ++i) {
@@ -68,7 +68,7 @@ class ListReader {
   void add(double value) {
     if (value == 0.0) value = 0.0;  // -0 is 0
     if (!seen_.insert(value).second) return;
-    if (values.size() == kMostValues) fail(fmt::format("a list may have at most {} values", kMostValues));
+    if (values.size() == kMaxValues) fail(fmt::format("a list may have at most {} values", kMaxValues));
     values.push_back(value);
   }
 

@@ -70,7 +70,7 @@ std::string joined(const std::vector<double>& numbers, Notation notation) {
 void set_text(const Row& row, void* object, std::string_view text) {
   const Value value =
       std::visit(Overloaded{[&](const schema::Number&) { return Value(number_of(row, text, "a number")); },
-                            [&](const schema::Whole&) { return Value(whole_of(row, text)); },
+                            [&](const schema::Integer&) { return Value(whole_of(row, text)); },
                             [&](const schema::Numbers& kind) { return Value(separated(row, kind, text)); },
                             [&](const schema::NumberOrNumbers&) { return Value(listed(row, text)); },
                             [&](const auto&) { return Value(std::string(text)); }},
@@ -82,7 +82,7 @@ std::string text_of(const Row& row, const void* object) {
   return std::visit(
       Overloaded{
           [&](double number) {
-            return std::holds_alternative<schema::Whole>(row.kind) ? fmt::format("{:.0f}", number) : shortest(number);
+            return std::holds_alternative<schema::Integer>(row.kind) ? fmt::format("{:.0f}", number) : shortest(number);
           },
           [](const std::string& text) { return text; },
           [&](const std::vector<double>& numbers) { return joined(numbers, row.spelling.notation); },

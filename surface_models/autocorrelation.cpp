@@ -35,9 +35,9 @@ void correlate(RealFft& fft) {
 
 }  // namespace
 
-Autocorrelation autocorrelation(const HeightMap& map, double most_um) {
-  Autocorrelation r{lags(map.columns, map.x_pixel_um, most_um),
-                    lags(map.rows, map.y_pixel_um, most_um),
+Autocorrelation autocorrelation(const HeightMap& map, double max_um) {
+  Autocorrelation r{lags(map.columns, map.x_pixel_um, max_um),
+                    lags(map.rows, map.y_pixel_um, max_um),
                     map.x_pixel_um,
                     map.y_pixel_um,
                     {}};

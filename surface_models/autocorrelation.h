@@ -27,8 +27,8 @@ struct Autocorrelation {
 };
 
 /// Returns the autocorrelation of the deviations from the mean height.
-/// \param most_um maximum distance along each axis; limited to half of the map
-Autocorrelation autocorrelation(const HeightMap& map, double most_um);
+/// \param max_um maximum distance along each axis; limited to half of the map
+Autocorrelation autocorrelation(const HeightMap& map, double max_um);
 
 /// Returns the smallest distance along `axis` at which the autocorrelation is 1/e of its value at distance 0,
 /// interpolated between points. Returns nothing if the autocorrelation does not fall to this value, or if the surface

@@ -15,7 +15,7 @@ namespace {
 using Eigen::VectorXd;
 
 constexpr double kNmPerMicrometre = 1e3;
-constexpr double kLeastTurn = 0.5 * std::numbers::pi / 180.0;
+constexpr double kMinEdgeAngle = 0.5 * std::numbers::pi / 180.0;
 
 /// Measured points in um. For a valley, heights are mirrored, so that the edge is always convex.
 struct Points {
@@ -153,7 +153,7 @@ Points measured(const std::vector<double>& heights_nm, double pixel_um) {
     points.x_um.push_back(static_cast<double>(i) * pixel_um);
     points.z_um.push_back(heights_nm[i] / kNmPerMicrometre);
   }
-  if (points.x_um.size() < kLeastEdgePoints)
+  if (points.x_um.size() < kMinEdgePoints)
     throw std::invalid_argument("an edge needs at least 16 measured points across it");
   return points;
 }
@@ -166,7 +166,7 @@ Facets first_facets(const Points& points) {
   Facets f;
   f.left_rad = std::atan(left_slope);
   f.right_rad = std::atan(right_slope);
-  if (std::abs(f.left_rad - f.right_rad) < kLeastTurn)
+  if (std::abs(f.left_rad - f.right_rad) < kMinEdgeAngle)
     throw std::invalid_argument("there is no edge: both ends of the profile have the same slope");
   f.x0_um = (right_z - left_z) / (left_slope - right_slope);
   f.z0_um = left_z + left_slope * f.x0_um;

@@ -22,7 +22,7 @@ struct EdgeFit {
 };
 
 /// Minimum number of measured points in a profile for a fit.
-inline constexpr std::size_t kLeastEdgePoints = 16;
+inline constexpr std::size_t kMinEdgePoints = 16;
 
 /// Fits a circle and a flat to a profile, by least squares in height. Each fit determines the facets and the shape
 /// simultaneously (Levenberg-Marquardt). The edge may be convex or a valley. Each facet must occupy at least a fifth of

@@ -9,10 +9,9 @@
 
 namespace retrace::surface_models {
 
-/// Returns the smallest number >= `least` whose only prime factors are 2, 3, 5 and 7. Transforms of such lengths are
-/// fast.
-/// \pre least >= 1
-std::size_t fast_length(std::size_t least);
+/// Returns the smallest number >= `min_length` whose only prime factors are 2, 3, 5 and 7. Transforms of such lengths
+/// are fast. \pre least >= 1
+std::size_t fast_length(std::size_t min_length);
 
 /// Real field of rows x columns and its transform F(j, k) = sum z(r, c) exp(-2 pi i (j r / rows + k c / columns)). Only
 /// the columns 0..columns / 2 of the transform are stored. FFTW plans are estimated instead of timed, so that equal
@@ -39,10 +38,10 @@ class RealFft {
   void inverse();
 
  private:
-  struct Hidden;
+  struct Impl;
   std::size_t rows_;
   std::size_t columns_;
-  std::unique_ptr<Hidden> hidden_;
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace retrace::surface_models

@@ -8,12 +8,12 @@
 namespace retrace::surface_models {
 
 /// Maximum degree of a polynomial form.
-inline constexpr int kMostFormDegree = 8;
+inline constexpr int kMaxFormDegree = 8;
 
 /// Returns the map minus a polynomial of the total degree `degree` in x and y, or in x only for a profile. The
 /// polynomial is fitted to the measured points by least squares. Degree 1 is the plane (F-operation of ISO 25178-2). If
 /// the points do not determine the polynomial, the solution with the smallest coefficients is used.
-/// \pre 1 <= degree <= kMostFormDegree; the map has a measured point
+/// \pre 1 <= degree <= kMaxFormDegree; the map has a measured point
 HeightMap without_form(const HeightMap& map, int degree);
 
 /// Returns the polynomial that without_form() subtracts. The origin is the centre of the map, x is along its rows and y

@@ -10,7 +10,7 @@ std::size_t measured_points(const HeightMap& map) {
       std::count_if(map.heights_nm.begin(), map.heights_nm.end(), [](double z) { return std::isfinite(z); }));
 }
 
-HeightMap turned_by_quarter(const HeightMap& map) {
+HeightMap rotated_by_90_degrees(const HeightMap& map) {
   HeightMap turned{map.rows, map.columns, map.y_pixel_um, map.x_pixel_um, {}};
   turned.heights_nm.resize(map.heights_nm.size());
   for (std::size_t row = 0; row < turned.rows; ++row)

@@ -33,7 +33,7 @@ struct HeightMap {
 std::size_t measured_points(const HeightMap& map);
 
 /// Returns the map rotated by 90 degrees. The direction +y becomes +x, and +x becomes -y.
-HeightMap turned_by_quarter(const HeightMap& map);
+HeightMap rotated_by_90_degrees(const HeightMap& map);
 
 /// Returns the map without a margin of `x_um` at both ends of its rows and of `y_um` at both ends of its columns. The
 /// margins are rounded up to points. A profile keeps its row.

@@ -13,9 +13,9 @@ constexpr double kSameSide = 0.75;
 constexpr double kDeviations = 5.0;
 /// Ratio of the standard deviation to the median absolute deviation of Gaussian values.
 constexpr double kGaussianMad = 1.4826;
-constexpr std::size_t kLeastLines = 16;
+constexpr std::size_t kMinLines = 16;
 /// Minimum number of lines on each side with which a line is compared.
-constexpr double kLeastBeside = 4.0;
+constexpr double kMinNeighbourLines = 4.0;
 
 /// Grid line of the map: its mean height and the mean heights of its sections. NaN where nothing was measured.
 struct Line {
@@ -79,19 +79,19 @@ std::vector<double> beside(const std::vector<Line>& lines, std::size_t near, std
 
 }  // namespace
 
-std::vector<Scratch> find_scratches(const HeightMap& roughness, Axis along, double beside_um) {
+std::vector<Scratch> find_scratches(const HeightMap& roughness, Axis along, double neighbourhood_um) {
   const std::size_t count = along == Axis::x ? roughness.rows : roughness.columns;
-  if (roughness.is_profile() || count < kLeastLines) return {};
+  if (roughness.is_profile() || count < kMinLines) return {};
   const double pixel_um = along == Axis::x ? roughness.y_pixel_um : roughness.x_pixel_um;
   std::vector<Line> lines;
   for (std::size_t i = 0; i < count; ++i) lines.push_back(line_of(roughness, along, i));
-  const auto far = static_cast<std::size_t>(std::max(kLeastBeside, std::ceil(beside_um / pixel_um)));
+  const auto far = static_cast<std::size_t>(std::max(kMinNeighbourLines, std::ceil(neighbourhood_um / pixel_um)));
   const std::vector<double> middles = beside(lines, far / 2, far);
   const auto depth = [&](std::size_t i) { return middles[i] - lines[i].mean_nm; };
   std::vector<double> deviations;
   for (std::size_t i = 0; i < count; ++i)
     if (std::isfinite(depth(i))) deviations.push_back(std::abs(depth(i)));
-  if (deviations.size() < kLeastLines) return {};
+  if (deviations.size() < kMinLines) return {};
   const double limit = kDeviations * kGaussianMad * median(std::move(deviations));
 
   std::vector<Scratch> scratches;

@@ -25,8 +25,9 @@ struct Scratch {
 /// Regular feed marks increase the standard deviation and are therefore not reported as scratches. They appear as peaks
 /// of the spectrum.
 /// \param roughness a map without form and waviness; a profile has no lines
-/// \param beside_um range of neighbouring lines on each side; wider scratches are not detected, and longer waves have
+/// \param neighbourhood_um range of neighbouring lines on each side; wider scratches are not detected, and longer waves
+/// have
 ///     no effect
-std::vector<Scratch> find_scratches(const HeightMap& roughness, Axis along, double beside_um);
+std::vector<Scratch> find_scratches(const HeightMap& roughness, Axis along, double neighbourhood_um);
 
 }  // namespace retrace::surface_models

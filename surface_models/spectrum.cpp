@@ -11,13 +11,13 @@ namespace retrace::surface_models {
 namespace {
 
 constexpr double kMmPerUm = 1e-3;
-constexpr std::size_t kLeastPoints = 8;
+constexpr std::size_t kMinPoints = 8;
 /// Criteria for a peak: ratio of its density to the median of its surroundings, and height above it in median
 /// deviations. In the spectrum of a single line of noise, the densities have an exponential distribution. They exceed
 /// 35 deviations with a probability of 1 in 2e7. The mean over many lines scatters less, so weaker peaks are detected.
 constexpr double kPeakHeight = 3.0;
 constexpr double kPeakDeviations = 35.0;
-constexpr double kLeastPeakPower = 0.01;
+constexpr double kMinPeakPower = 0.01;
 /// kLobe is the number of bins on each side that the main lobe of a Hann window occupies. kSurroundings is the number
 /// of bins beyond them, on each side, that are the surroundings of a peak.
 constexpr std::size_t kLobe = 2;
@@ -108,7 +108,7 @@ Spectrum line_spectrum(const HeightMap& map, Axis axis) {
   const std::size_t points = along_x ? map.columns : map.rows;
   const std::size_t lines = along_x ? map.rows : map.columns;
   const double pixel_mm = (along_x ? map.x_pixel_um : map.y_pixel_um) * kMmPerUm;
-  if (points < kLeastPoints) return {};
+  if (points < kMinPoints) return {};
 
   const std::vector<double> window = hann(points);
   RealFft fft(1, points);
@@ -135,7 +135,7 @@ Spectrum line_spectrum(const HeightMap& map, Axis axis) {
 }
 
 Spectrum radial_spectrum(const HeightMap& map) {
-  if (std::min(map.columns, map.rows) < kLeastPoints) return {};
+  if (std::min(map.columns, map.rows) < kMinPoints) return {};
   const std::vector<double> wx = hann(map.columns);
   const std::vector<double> wy = hann(map.rows);
   std::vector<double> window;
@@ -196,9 +196,9 @@ std::vector<SpectralPeak> dominant_peaks(const HeightMap& map) {
   std::stable_sort(peaks.begin(), peaks.end(),
                    [](const SpectralPeak& a, const SpectralPeak& b) { return a.sq_nm > b.sq_nm; });
   std::erase_if(peaks, [&](const SpectralPeak& peak) {
-    return peak.sq_nm * peak.sq_nm < kLeastPeakPower * peaks.front().sq_nm * peaks.front().sq_nm;
+    return peak.sq_nm * peak.sq_nm < kMinPeakPower * peaks.front().sq_nm * peaks.front().sq_nm;
   });
-  if (peaks.size() > kMostPeaks) peaks.resize(kMostPeaks);
+  if (peaks.size() > kMaxPeaks) peaks.resize(kMaxPeaks);
   return peaks;
 }
 

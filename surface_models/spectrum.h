@@ -35,7 +35,7 @@ struct SpectralPeak {
 };
 
 /// Maximum number of peaks that dominant_peaks() returns.
-inline constexpr std::size_t kMostPeaks = 8;
+inline constexpr std::size_t kMaxPeaks = 8;
 
 /// Returns the peaks along x and y, strongest first. The density of a peak must be above three times the median of the
 /// densities around it. It must also exceed this median by 35 median deviations, and have at least 1 % of the power of

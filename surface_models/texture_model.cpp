@@ -14,9 +14,9 @@ namespace {
 
 /// Range of the fit in correlation lengths. Beyond it, only the waviness remains.
 constexpr double kFitReach = 3.5;
-constexpr double kLeastFitPoints = 3.0;
+constexpr double kMinFitPoints = 3.0;
 /// Maximum number of distances in a fit. If there are more, every n-th distance is used.
-constexpr std::size_t kMostSamples = 20000;
+constexpr std::size_t kMaxSamples = 20000;
 /// Roughness is set to 0 if the variance of the roughness map is at most this factor times the variance of the waviness
 /// that the filter leaves in the map.
 constexpr double kExplained = 1.2;
@@ -35,18 +35,18 @@ class FilteredGaussian {
 
   /// Returns the autocorrelation of the remaining roughness, for unit variance before the filter.
   double roughness(double distance2_um2) const {
-    return std::exp(-distance2_um2 / l2_) - 2.0 * share(once_) * std::exp(-distance2_um2 / once_) +
-           share(twice_) * std::exp(-distance2_um2 / twice_);
+    return std::exp(-distance2_um2 / l2_) - 2.0 * fraction(once_) * std::exp(-distance2_um2 / once_) +
+           fraction(twice_) * std::exp(-distance2_um2 / twice_);
   }
   /// Returns the variance that passes into the waviness.
-  double waviness() const { return share(twice_); }
+  double waviness() const { return fraction(twice_); }
   /// Returns the mean square gradient of the roughness that passes into the waviness, per um^2.
-  double waviness_gradient() const { return 2.0 * d_ * share(twice_) / twice_; }
+  double waviness_gradient() const { return 2.0 * d_ * fraction(twice_) / twice_; }
   /// Returns the correlation length of the roughness that passes into the waviness.
   double waviness_length_um() const { return std::sqrt(twice_); }
 
  private:
-  double share(double wide) const { return d_ == 1 ? std::sqrt(l2_ / wide) : l2_ / wide; }
+  double fraction(double wide) const { return d_ == 1 ? std::sqrt(l2_ / wide) : l2_ / wide; }
   double l2_;
   double d_;
   double once_ = 0.0;
@@ -72,8 +72,8 @@ std::vector<Sample> samples_within(const Autocorrelation& roughness, const Autoc
       if ((dx == 0 && dy < 0) || x * x + y * y > reach_um * reach_um || !std::isfinite(roughness.at(dx, dy))) continue;
       samples.push_back({x * x + y * y, roughness.at(dx, dy), scale * waviness.at(dx, dy)});
     }
-  if (samples.size() <= kMostSamples) return samples;
-  const std::size_t stride = samples.size() / kMostSamples + 1;
+  if (samples.size() <= kMaxSamples) return samples;
+  const std::size_t stride = samples.size() / kMaxSamples + 1;
   std::vector<Sample> fewer;
   for (std::size_t i = 0; i < samples.size(); i += stride) fewer.push_back(samples[i]);
   return fewer;
@@ -124,7 +124,7 @@ std::optional<double> rough_length_um(const Autocorrelation& r, int dimensions) 
 Fit fit_roughness(const Autocorrelation& roughness, const Autocorrelation& waviness, double first_um, double cutoff_um,
                   int dimensions) {
   const double coarser = dimensions == 1 ? roughness.x_pixel_um : std::max(roughness.x_pixel_um, roughness.y_pixel_um);
-  const double reach = std::max(kFitReach * first_um, kLeastFitPoints * coarser);
+  const double reach = std::max(kFitReach * first_um, kMinFitPoints * coarser);
   const std::vector<Sample> samples = samples_within(roughness, waviness, reach);
   const auto squares = [&](double log_length) {
     return fit_at(std::exp(log_length), samples, cutoff_um, dimensions).squares;

@@ -14,12 +14,12 @@
 #include "app/ranks.h"
 #include "app/shared_arguments.h"
 #include "app/study_bar.h"
+#include "design/io/design_reader.h"
 #include "report/results/result_plots.h"
 #include "requests/row.h"
 #include "studies/compose/io/compose_reader.h"
 #include "studies/compose/io/composition_files.h"
 #include "studies/compose/io/zone_designs.h"
-#include "studies/design/io/design_reader.h"
 #include "studies/fabrication/job_maker.h"
 #include "studies/quantity/io/study_reader.h"
 #include "studies/sweep/shared_sweep.h"
@@ -75,7 +75,7 @@ std::vector<Argument> compose_arguments(ComposeOptions& options) {
 void check_job_of(const ComposeOptions& options, const JobRequest& request) {
   if (options.job.empty()) return;
   if (request.tool_width_mm == 0.0) throw InputError(Field{"tool_width_mm"}, "is required with --job");
-  studies::check_making(request);
+  studies::check_job_request(request);
   studies::check_cuts_zones(request);
 }
 
@@ -91,9 +91,9 @@ studies::ZonedDesignRequest zoned_design_of(const ComposeOptions& options) {
 
 /// Contents of the output files that describe the whole part with its zones.
 struct WholePart {
-  std::string design;                   ///< text of the design file; empty if not requested
-  std::optional<studies::MadeJob> job;  ///< fabrication job; no value if it is not requested
-  bool is_complete = true;              ///< false if a requested file cannot be made
+  std::string design;                        ///< text of the design file; empty if not requested
+  std::optional<studies::GeneratedJob> job;  ///< fabrication job; no value if it is not requested
+  bool is_complete = true;                   ///< false if a requested file cannot be made
 };
 
 /// Returns the design and the fabrication job of the whole part, if they are requested.
@@ -107,7 +107,7 @@ WholePart whole_part_of(const ComposeOptions& options, const JobRequest& making,
   try {
     whole.design = studies::zoned_design_text(study, zones, zoned);
     if (options.job.empty()) return whole;
-    whole.job = studies::make_job(studies::parse_design(whole.design, options.design), making);
+    whole.job = studies::make_job(design::parse_design(whole.design, options.design), making);
     append(warnings, whole.job->warnings);
   } catch (const InputError& error) {
     warnings.push_back(
@@ -125,11 +125,11 @@ ExitCode compose_part(const ComposeOptions& options, const CommonOptions& common
   const studies::Study study = studies::read_study(options.study, common.overrides, common.seed);
   const studies::ComposeRequest request = studies::read_compose(study);
   const OrderlyInterrupt interrupt;
-  if (options.for_worst && !(request.errors && request.errors->worst_share))
+  if (options.for_worst && !(request.errors && request.errors->worst_fraction))
     throw InputError({"", 0, "--for-worst"}, "needs worst_fraction in [compose] of the study");
   studies::Composition composition;
   const auto written_zones = [&] {
-    if (options.for_worst) return studies::zones_for_worst(composition);
+    if (options.for_worst) return studies::robust_zones(composition);
     return composition.best ? composition.best->zones : std::vector<studies::Zone>{};
   };
   std::vector<std::string> inputs = study.files;
@@ -138,7 +138,7 @@ ExitCode compose_part(const ComposeOptions& options, const CommonOptions& common
   ResultFiles files(common, inputs, "composition.json");
   files.add("composition.csv", [&] { return studies::composition_csv(study, request, composition); });
   files.add_drawing("composition", [&] { return report::composition_plot(study, request, composition); });
-  for (std::size_t zone = 0; zone < studies::most_zone_designs(request); ++zone)
+  for (std::size_t zone = 0; zone < studies::max_zone_designs(request); ++zone)
     files.add(fmt::format("zone_{}.toml", zone + 1), [&, zone] { return zone_design(study, written_zones(), zone); });
   const studies::ZonedDesignRequest zoned = zoned_design_of(options);
   if (!options.design.empty()) studies::check_zoned_design(study, zoned);
@@ -154,8 +154,8 @@ ExitCode compose_part(const ComposeOptions& options, const CommonOptions& common
         {"composing", to_shorten_study(study, fmt::format("give a smaller compose.scan (now {})", request.scan))},
         "cells", common);
     interrupt.run(common.threads, [&](const Cancellation* cancel) {
-      if (const ShareTasks share = share_among(session, slots(common), cancel))
-        studies::share_sweep(studies::compose_scan(study, request), store, &bar, share);
+      if (const DistributeTasks share = distribute_among(session, slots(common), cancel))
+        studies::distribute_sweep(studies::compose_scan(study, request), store, &bar, share);
       composition = studies::compose(study, request, store, &bar, cancel);
     });
   }
@@ -170,7 +170,7 @@ ExitCode compose_part(const ComposeOptions& options, const CommonOptions& common
                                     {.complete = composition.complete,
                                      .interrupted = fmt::format("cells evaluated: {}", composition.evaluations),
                                      .is_yes = why_not.empty()});
-  if (code == ExitCode::answer_is_no) say("retrace: no part meets all constraints: " + why_not);
+  if (code == ExitCode::answer_is_no) print_to_stderr("retrace: no part meets all constraints: " + why_not);
   return code == ExitCode::done && !whole.is_complete ? ExitCode::failed : code;
 }
 

@@ -61,8 +61,8 @@ studies::FacetMap place_of(const std::string& text) {
   if (numbers.size() < 2 || numbers.size() > 3) refuse_place(text);
   studies::FacetMap map;
   map.file = text.substr(0, at);
-  map.middle_mm = {numbers[0], numbers[1]};
-  map.turn_deg = numbers.size() == 3 ? numbers[2] : 0.0;
+  map.centre_mm = {numbers[0], numbers[1]};
+  map.rotation_deg = numbers.size() == 3 ? numbers[2] : 0.0;
   return map;
 }
 

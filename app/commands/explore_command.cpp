@@ -9,10 +9,10 @@
 #include "core/json_text.h"
 #include "core/message_text.h"
 #include "core/schema/writer.h"
+#include "design/file_names.h"
+#include "design/io/design_format.h"
+#include "design/io/design_reader.h"
 #include "report/page/live_page.h"
-#include "studies/design/io/design_format.h"
-#include "studies/design/io/design_reader.h"
-#include "studies/design/io/file_names.h"
 
 namespace retrace::app {
 namespace {
@@ -29,13 +29,13 @@ constexpr std::string_view kTitle = "retrace: prism arrays and their light";
 
 /// Returns the design that the page shows first. Its text is the content of the design file, byte for byte, unless
 /// --set changes it.
-report::LiveStart start_of(const studies::Design& design) {
-  studies::check_names_no_file(design, "which a self-contained page cannot read");
+report::LiveStart start_of(const design::Design& design) {
+  design::require_no_files(design, "which a self-contained page cannot read");
   const schema::Document& document = *design.document;
   const bool is_changed = !document.origin().overrides.empty();
   const std::string name =
       design.source == "-" ? "design.toml" : std::filesystem::path(design.source).filename().string();
-  return {is_changed ? schema::document_text(studies::design_format(), document) : document.origin().text, name};
+  return {is_changed ? schema::document_text(design::design_format(), document) : document.origin().text, name};
 }
 
 ExitCode run(const ExploreOptions& options, const CommonOptions& common) {
@@ -43,7 +43,7 @@ ExitCode run(const ExploreOptions& options, const CommonOptions& common) {
   std::string title(kTitle);
   std::vector<std::string> inputs;
   if (options.design) {
-    const studies::Design design = studies::read_design(*options.design, common.overrides);
+    const design::Design design = design::read_design(*options.design, common.overrides);
     start = start_of(design);
     if (!design.title.empty()) title = design.title;
     inputs = files_read({design});

@@ -9,9 +9,9 @@
 #include "app/output.h"
 #include "app/request_options.h"
 #include "app/shared_arguments.h"
+#include "design/io/design_reader.h"
 #include "requests/descriptions.h"
 #include "studies/appearance/io/appearance_files.h"
-#include "studies/design/io/design_reader.h"
 #include "studies/solids/io/solid_files.h"
 #include "studies/solids/solids.h"
 
@@ -54,7 +54,7 @@ void check_options(const ExportOptions& options, bool is_material) {
 /// consists of two files: the values are in a CSV file in the same folder.
 ExitCode run_material(const ExportOptions& options, const CommonOptions& common, const std::string& file,
                       studies::AppearanceFormat format) {
-  const studies::Design design = studies::read_design(options.design, common.overrides);
+  const design::Design design = design::read_design(options.design, common.overrides);
   const auto request = request_of<MaterialRequest>(options.fields, common);
   const std::filesystem::path values = std::filesystem::path(file).replace_extension(".csv");
   studies::AppearanceResult result;
@@ -71,7 +71,7 @@ ExitCode run_material(const ExportOptions& options, const CommonOptions& common,
     result = studies::compute_appearance(design, request, bar, cancel);
   });
   if (!result.complete) {
-    say("retrace: interrupted; nothing was written");
+    print_to_stderr("retrace: interrupted; nothing was written");
     return ExitCode::interrupted;
   }
   text = studies::appearance_text(result, format, values.filename().string());
@@ -94,7 +94,7 @@ ExitCode run(const ExportOptions& options, const CommonOptions& common) {
   if (material) return run_material(options, common, file, *material);
   const auto format = file.empty() ? studies::SolidFormat::stl : studies::solid_format(file);
   const auto request = request_of<SolidRequest>(options.fields, common);
-  const studies::Design design = studies::read_design(options.design, common.overrides);
+  const design::Design design = design::read_design(options.design, common.overrides);
   const studies::Solid solid = studies::make_solid(design, request);
   ResultFiles files(without_folder(common), files_read({design}));
   files.add_named("--out", file, [&] { return studies::solid_text(solid, format); });

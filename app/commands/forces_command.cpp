@@ -18,7 +18,7 @@ std::vector<Argument> arguments(ForcesOptions& options) {
   return {job_argument(options.request.job),
           {"--configuration WORD", "isolated: between walls with friction, or orthogonal: forces at the edge only",
            &options.request.configuration, one_of(words_of(fabrication::kConfigurationWords))},
-          {"--facet N", "of a bidirectional job: 1 or 2", &options.facet, whole(1, 2)},
+          {"--facet N", "of a bidirectional job: 1 or 2", &options.facet, integer(1, 2)},
           {"--plunge-mm L", "length of the plunge [that of the last cut]", &options.plunge_mm}};
 }
 

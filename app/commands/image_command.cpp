@@ -14,10 +14,10 @@
 #include "core/atomic_file.h"
 #include "core/number_format.h"
 #include "core/pictures.h"
+#include "design/io/design_reader.h"
 #include "report/io/picture_file.h"
 #include "report/results/result_plots.h"
 #include "requests/descriptions.h"
-#include "studies/design/io/design_reader.h"
 #include "studies/image/io/image_documents.h"
 #include "studies/photometry/io/standard_reader.h"
 
@@ -72,7 +72,7 @@ Words what_shortens(const DetectorRequest& request) {
   Words advice;
   if (request.engine != "exact")
     advice.push_back(
-        fmt::format("give a smaller --samples (now {})", request.samples.value_or(studies::kUsualDetectorRays)));
+        fmt::format("give a smaller --samples (now {})", request.samples.value_or(studies::kDefaultDetectorRays)));
   if (may_be_exact) advice.emplace_back("give a larger --cutoff");
   return advice;
 }
@@ -84,7 +84,7 @@ Words what_shortens(const CameraRequest& request) {
           "give fewer --pixels"};
 }
 
-ExitCode run_detector(const ImageOptions& options, const CommonOptions& common, studies::Design design) {
+ExitCode run_detector(const ImageOptions& options, const CommonOptions& common, design::Design design) {
   studies::DetectorResult result;
   ResultFiles files(common, files_read({design}), "image.json");
   const auto add = [&](const std::string& name, auto content) {
@@ -130,7 +130,7 @@ class Preview {
 /// Computes the camera picture and writes the results.
 /// \param session MPI session; null if the program does not run under MPI
 ExitCode photograph(const ImageOptions& options, const CommonOptions& common, compute::MpiSession* session) {
-  studies::Design design = studies::read_design(options.design, common.overrides);
+  design::Design design = design::read_design(options.design, common.overrides);
   studies::CameraResult result;
   std::vector<std::string> inputs = files_read({design});
   const auto request = request_of<CameraRequest>(options.fields, common);
@@ -151,7 +151,7 @@ ExitCode photograph(const ImageOptions& options, const CommonOptions& common, co
   interrupt.run(common, {"rendering", what_shortens(request)}, [&](Progress* bar, const Cancellation* cancel) {
     result = study.run(
         bar, cancel, [&](const raytrace::CameraImage& image) { preview(image); },
-        share_among(session, kPassesAtATime, cancel));
+        distribute_among(session, kPassesAtATime, cancel));
   });
   for (const Warning& remark : remarks_of(session)) result.warnings.push_back(remark);
   return files.write(studies::camera_json(result), studies::camera_table(result), result.warnings,
@@ -163,14 +163,14 @@ ExitCode run_camera(const ImageOptions& options, const CommonOptions& common) {
       common, kPassesAtATime, [&](compute::MpiSession* session) { return photograph(options, common, session); },
       [&]() -> ComputeTask {
         const auto study = std::make_shared<const studies::CameraStudy>(
-            studies::read_design(options.design, common.overrides), request_of<CameraRequest>(options.fields, common));
+            design::read_design(options.design, common.overrides), request_of<CameraRequest>(options.fields, common));
         return [study, trace = study->passes()](std::uint64_t pass, const Cancellation* cancel) {
           return trace(pass, cancel);
         };
       });
 }
 
-ExitCode run_road(const ImageOptions& options, const CommonOptions& common, studies::Design design) {
+ExitCode run_road(const ImageOptions& options, const CommonOptions& common, design::Design design) {
   std::vector<std::string> inputs = files_read({design});
   const auto request = request_of<RoadRequest>(options.fields, common);
   if (!request.lamp.empty()) inputs.push_back(request.lamp.string());
@@ -196,7 +196,7 @@ ExitCode run(const ImageOptions& options, const CommonOptions& common) {
   if (static_cast<int>(options.detector) + static_cast<int>(options.camera) + static_cast<int>(options.road) != 1)
     throw InputError("image: one of --detector, --camera and --road is required; see retrace image --help");
   if (options.camera) return run_camera(options, common);
-  studies::Design design = studies::read_design(options.design, common.overrides);
+  design::Design design = design::read_design(options.design, common.overrides);
   return options.detector ? run_detector(options, common, std::move(design))
                           : run_road(options, common, std::move(design));
 }

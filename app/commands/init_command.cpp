@@ -5,9 +5,9 @@
 #include "app/commands.h"
 #include "app/output.h"
 #include "core/data_directory.h"
+#include "design/io/design_format.h"
+#include "design/io/init_templates.h"
 #include "fabrication/planing/io/part_files.h"
-#include "studies/design/io/design_format.h"
-#include "studies/design/io/init_templates.h"
 
 namespace retrace::app {
 namespace {
@@ -19,7 +19,7 @@ struct InitOptions {
 
 std::vector<Argument> arguments(InitOptions& options) {
   const auto kinds = [] {
-    Words words = words_of(studies::design_kinds())();
+    Words words = words_of(design::design_kinds())();
     words.emplace_back("round_zone_lens");
     return words;
   };
@@ -44,12 +44,12 @@ std::string url_of(const std::filesystem::path& file) {
 /// Even Better TOML.
 std::string schema_line(const std::string& kind) {
   const schema::Format& format =
-      kind == "round_zone_lens" ? fabrication::planed_part_format() : studies::design_format();
+      kind == "round_zone_lens" ? fabrication::planed_part_format() : design::design_format();
   return fmt::format("#:schema {}\n", url_of(schema_file(format.name)));
 }
 
 ExitCode run(const InitOptions& options, const CommonOptions& common) {
-  std::string text = studies::design_template(options.kind);
+  std::string text = design::design_template(options.kind);
   if (options.editor) text = schema_line(options.kind) + text;
   // An existing file is never overwritten, because it may be a design on which the user has worked.
   if (!common.out.empty() &&

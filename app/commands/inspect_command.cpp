@@ -1,8 +1,8 @@
 #include "app/commands.h"
 #include "app/output.h"
 #include "app/shared_arguments.h"
+#include "design/io/design_reader.h"
 #include "report/drawing/design_drawings.h"
-#include "studies/design/io/design_reader.h"
 #include "studies/inspect/inspect.h"
 #include "studies/inspect/io/inspect_files.h"
 
@@ -18,7 +18,7 @@ std::vector<Argument> arguments(InspectOptions& options) {
 }
 
 ExitCode run(const InspectOptions& options, const CommonOptions& common) {
-  const studies::Design design = studies::read_design(options.design, common.overrides);
+  const design::Design design = design::read_design(options.design, common.overrides);
   studies::Inspection inspection = studies::inspect(design, materials::MaterialLibrary::shipped());
   report::DesignDrawings drawings;
   ResultFiles files(common, files_read({design}), "inspect.json");

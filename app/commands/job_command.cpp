@@ -5,8 +5,8 @@
 #include "app/output.h"
 #include "app/shared_arguments.h"
 #include "core/error.h"
+#include "design/io/design_reader.h"
 #include "studies/calibration/io/calibration_files.h"
-#include "studies/design/io/design_reader.h"
 #include "studies/fabrication/io/fabrication_files.h"
 #include "studies/fabrication/reachable.h"
 
@@ -38,7 +38,7 @@ std::vector<Argument> arguments(JobOptions& options) {
 }
 
 /// Returns all files that the command reads.
-std::vector<std::string> inputs_of(const JobRequest& request, const studies::Design& design) {
+std::vector<std::string> inputs_of(const JobRequest& request, const design::Design& design) {
   std::vector<std::string> inputs = files_read({design});
   for (const std::string& file : files_of_making(request)) inputs.push_back(file);
   return inputs;
@@ -46,7 +46,7 @@ std::vector<std::string> inputs_of(const JobRequest& request, const studies::Des
 
 /// Writes a design that has the facets that a chisel can cut, in place of ideal cube corners. The output is a design
 /// file, such as part.toml, and the table of its facet planes, such as part_facets.csv.
-ExitCode write_reachable(const JobOptions& options, const CommonOptions& common, const studies::Design& design) {
+ExitCode write_reachable(const JobOptions& options, const CommonOptions& common, const design::Design& design) {
   if (!common.out.empty())
     throw InputError({"", 0, "--out"}, "not allowed together with --reachable, which writes no job");
   const fs::path file = options.reachable;
@@ -61,7 +61,7 @@ ExitCode write_reachable(const JobOptions& options, const CommonOptions& common,
 }
 
 /// Writes jobs of test cuts, and measurements.csv, in which the user enters the measured values.
-ExitCode write_test_cuts(const JobOptions& options, const CommonOptions& common, const studies::Design& design) {
+ExitCode write_test_cuts(const JobOptions& options, const CommonOptions& common, const design::Design& design) {
   if (!common.out.empty())
     throw InputError({"", 0, "--out"}, "not allowed together with --test-cuts, which writes no job for the design");
   const fs::path folder = options.test_cuts;
@@ -78,11 +78,11 @@ ExitCode write_test_cuts(const JobOptions& options, const CommonOptions& common,
 }
 
 ExitCode run(const JobOptions& options, const CommonOptions& common) {
-  const studies::Design design = studies::read_design(options.design, common.overrides);
+  const design::Design design = design::read_design(options.design, common.overrides);
   if (!options.test_cuts.empty()) return write_test_cuts(options, common, design);
   if (!options.reachable.empty()) return write_reachable(options, common, design);
   const JobRequest request = job_request(options, common);
-  studies::MadeJob made = studies::make_job(design, request);
+  studies::GeneratedJob made = studies::make_job(design, request);
   const std::string text = job_text_at(made, common.out);
   TextFiles files(common, inputs_of(request, design));
   return files.write(studies::job_json(made), text, made.warnings, {}, studies::job_table(made));

@@ -153,14 +153,14 @@ Json standard_json(const studies::ShippedStandard& standard, const studies::Limi
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   };
   const auto add_row = [&](const auto& row) {
-    if (row.standard != standard.in_table) return;
+    if (row.standard != standard.table_name) return;
     for (const std::string& name : row.classes) add(classes, name);
     add(colours, row.colour == "clear" ? "white" : row.colour);
   };
   for (const studies::LimitRow& row : table.rows) add_row(row);
   for (const studies::LimitFactor& factor : table.factors) add_row(factor);
   const bool is_complete = std::none_of(table.gaps.begin(), table.gaps.end(),
-                                        [&](const auto& gap) { return gap.standard == standard.in_table; });
+                                        [&](const auto& gap) { return gap.standard == standard.table_name; });
   return {{"name", standard.name},
           {"description", standard.description},
           {"classes", classes},

@@ -33,7 +33,7 @@ std::vector<Argument> arguments(OptimizeOptions& options) {
 
 /// Returns the fabrication job of the chosen design. The tool width is the value of --tool-width-mm. If the option is
 /// not given, it is the value of the key machining.tool_width_mm of the study.
-studies::MadeJob job_of(JobRequest request, const studies::Study& study, const studies::Variant& best) {
+studies::GeneratedJob job_of(JobRequest request, const studies::Study& study, const studies::Variant& best) {
   const studies::Candidate candidate = studies::make_candidate(study, best.values);
   if (request.tool_width_mm == 0.0) {
     const std::optional<double> width_mm = candidate.machining().tool_width_mm;
@@ -60,8 +60,8 @@ void check_making_of(const OptimizeOptions& options, JobRequest request, const s
   // Without --tool-width-mm, the study determines the tool width of each design. These checks only need a positive
   // width.
   if (request.tool_width_mm == 0.0) request.tool_width_mm = 1.0;
-  studies::check_making(request);
-  studies::check_element(studies::make_candidate(study, some_values(study)).design(), request);
+  studies::check_job_request(request);
+  studies::check_element(studies::make_candidate(study, example_values(study)).design(), request);
 }
 
 /// Searches for the best design and writes the results.
@@ -74,7 +74,7 @@ ExitCode look(const OptimizeOptions& options, const CommonOptions& common, compu
   check_making_of(options, making, study);
   const OrderlyInterrupt interrupt;
   studies::Optimum optimum;
-  std::optional<studies::MadeJob> made;
+  std::optional<studies::GeneratedJob> made;
   ResultFiles files(common, inputs_of(options, making, study), "optimum.json");
   files.add("front.csv", [&] { return studies::front_csv(study, optimum); });
   files.add_named("--job", options.job, [&] { return made ? job_text_at(*made, options.job) : ""; });
@@ -86,8 +86,8 @@ ExitCode look(const OptimizeOptions& options, const CommonOptions& common, compu
         {"searching", to_shorten_study(study, fmt::format("give a smaller optimize.scan (now {})", request.scan))},
         "designs", common);
     interrupt.run(common.threads, [&](const Cancellation* cancel) {
-      if (const ShareTasks share = share_among(session, slots(common), cancel))
-        studies::share_sweep(studies::optimise_scan(study, request), store, &bar, share);
+      if (const DistributeTasks share = distribute_among(session, slots(common), cancel))
+        studies::distribute_sweep(studies::optimise_scan(study, request), store, &bar, share);
       optimum = studies::optimise(study, request, store, &bar, cancel);
     });
   }
@@ -96,11 +96,11 @@ ExitCode look(const OptimizeOptions& options, const CommonOptions& common, compu
   Warnings warnings = remarks_of(session);
   const Warnings without_effect = studies::keys_without_effect(study);
   append(warnings, without_effect);
-  if (optimum.ran_out > 0)
+  if (optimum.budget_failures > 0)
     warnings.push_back(
         {"designs_out_of_budget",
          fmt::format("{} of {} designs are not evaluated because a budget ran out; the first message is: {}",
-                     optimum.ran_out, optimum.evaluations, optimum.ran_out_because)});
+                     optimum.budget_failures, optimum.evaluations, optimum.budget_failure_reason)});
   if (made) append(warnings, made->warnings);
   const ExitCode code = files.write(studies::optimum_json(study, request, optimum, elapsed_s),
                                     studies::optimum_text(study, request, optimum), warnings,
@@ -108,8 +108,8 @@ ExitCode look(const OptimizeOptions& options, const CommonOptions& common, compu
                                      .interrupted = fmt::format("designs evaluated: {}", optimum.evaluations),
                                      .is_yes = optimum.best.has_value()});
   if (code != ExitCode::answer_is_no) return code;
-  say("retrace: no feasible design: " + optimum.none_because);
-  return optimum.ran_out > 0 ? ExitCode::failed : code;
+  print_to_stderr("retrace: no feasible design: " + optimum.infeasible_reason);
+  return optimum.budget_failures > 0 ? ExitCode::failed : code;
 }
 
 ExitCode run(const OptimizeOptions& options, const CommonOptions& common) {

@@ -12,9 +12,9 @@
 #include "app/request_options.h"
 #include "app/shared_arguments.h"
 #include "core/data_directory.h"
+#include "design/io/design_reader.h"
 #include "report/results/result_plots.h"
 #include "requests/descriptions.h"
-#include "studies/design/io/design_reader.h"
 #include "studies/photometry/io/limits_reader.h"
 #include "studies/photometry/io/photometry_files.h"
 #include "studies/photometry/io/standard_reader.h"
@@ -71,11 +71,11 @@ void add_files(ResultFiles& files, const studies::PhotometryResult& result) {
 Words what_shortens_photometry(const PhotometryRequest& request, const studies::PhotometryStudy& study,
                                bool has_rotations) {
   Words advice;
-  if (study.follows_beams())
+  if (study.uses_beams())
     advice.push_back(fmt::format("give a larger --cutoff (now {:.3g})", study.cutoff()));
   else
     advice.push_back(
-        fmt::format("give a smaller --samples (now {})", request.samples.value_or(studies::kUsualRaysOfDirection)));
+        fmt::format("give a smaller --samples (now {})", request.samples.value_or(studies::kDefaultRaysPerDirection)));
   if (has_rotations) advice.emplace_back("give fewer rotations (--rotation)");
   return advice;
 }
@@ -95,14 +95,14 @@ std::string first_answer_of(const studies::PhotometryStudy& study, std::optional
 }
 
 ExitCode run(const PhotometryOptions& options, const CommonOptions& common) {
-  const studies::Design design = studies::read_design(options.design, common.overrides);
+  const design::Design design = design::read_design(options.design, common.overrides);
   std::vector<std::string> inputs = files_read({design});
   auto request = request_of<PhotometryRequest>(options.fields, common);
   request.pictures = !common.out.empty();
   const bool is_coloured = design.substance.is_coloured();
   studies::PhotometrySettings settings = studies::resolve(request, is_coloured);
   inputs.push_back(studies::limits_file_of(request.standard).string());
-  const std::filesystem::path dye = studies::dye_file_of(request.dye, is_coloured, settings.programme.colour);
+  const std::filesystem::path dye = studies::dye_file_of(request.dye, is_coloured, settings.test_plan.colour);
   if (!dye.empty()) inputs.push_back(dye.string());
   const bool has_rotations = settings.rotation_deg.size() > 1;
   const studies::PhotometryStudy study(design, std::move(settings));

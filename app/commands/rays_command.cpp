@@ -9,8 +9,8 @@
 #include "app/output.h"
 #include "app/request_options.h"
 #include "app/shared_arguments.h"
+#include "design/io/design_reader.h"
 #include "requests/descriptions.h"
-#include "studies/design/io/design_reader.h"
 #include "studies/rays/io/ray_documents.h"
 #include "studies/rays/io/ray_files.h"
 #include "studies/rays/ray_study.h"
@@ -31,7 +31,7 @@ std::vector<Argument> arguments(RaysOptions& options) {
 }
 
 ExitCode run(const RaysOptions& options, const CommonOptions& common) {
-  studies::Design design = studies::read_design(options.design, common.overrides);
+  design::Design design = design::read_design(options.design, common.overrides);
   auto request = request_of<RaysRequest>(options.fields, common);
   request.out = common.out;
   const studies::RayRequest settings = studies::resolve(request);

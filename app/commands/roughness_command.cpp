@@ -13,9 +13,9 @@
 #include "app/shared_arguments.h"
 #include "core/data_directory.h"
 #include "core/number_format.h"
+#include "design/io/design_reader.h"
 #include "report/results/result_plots.h"
 #include "requests/descriptions.h"
-#include "studies/design/io/design_reader.h"
 #include "studies/roughness/io/facet_table_reader.h"
 #include "studies/roughness/io/roughness_files.h"
 
@@ -54,7 +54,7 @@ std::vector<studies::FacetGroup> facets_in(const std::vector<std::filesystem::pa
 /// Computes all points and writes the results.
 /// \param session MPI session; null if the program does not run under MPI
 ExitCode trace(const RoughnessOptions& options, const CommonOptions& common, compute::MpiSession* session) {
-  const studies::Design design = studies::read_design(options.design, common.overrides);
+  const design::Design design = design::read_design(options.design, common.overrides);
   const std::vector<std::filesystem::path> tables = tables_of(options);
   std::vector<std::string> inputs = files_read({design});
   for (const std::filesystem::path& table : tables) inputs.push_back(table.string());
@@ -71,7 +71,7 @@ ExitCode trace(const RoughnessOptions& options, const CommonOptions& common, com
                                 : fmt::format("give a larger --target-error (now {})", shortest(request.target_error)),
                             "give fewer values (--sa)"};
   interrupt.run(common, {"tracing", to_shorten}, [&](Progress* bar, const Cancellation* cancel) {
-    result = study.run(bar, cancel, share_among(session, slots(common), cancel));
+    result = study.run(bar, cancel, distribute_among(session, slots(common), cancel));
   });
   for (const Warning& remark : remarks_of(session)) result.warnings.push_back(remark);
   return files.write(
@@ -84,8 +84,8 @@ ExitCode run(const RoughnessOptions& options, const CommonOptions& common) {
       common, slots(common), [&](compute::MpiSession* session) { return trace(options, common, session); },
       [&]() -> ComputeTask {
         const auto study = std::make_shared<const studies::RoughnessStudy>(
-            studies::read_design(options.design, common.overrides),
-            request_of<RoughnessRequest>(options.fields, common), facets_in(tables_of(options)));
+            design::read_design(options.design, common.overrides), request_of<RoughnessRequest>(options.fields, common),
+            facets_in(tables_of(options)));
         return
             [study](std::uint64_t point, const Cancellation* cancel) { return study->compute_shared(point, cancel); };
       });

@@ -9,10 +9,10 @@
 #include "app/output.h"
 #include "app/request_options.h"
 #include "core/number_format.h"
+#include "design/io/design_reader.h"
 #include "report/results/result_plots.h"
 #include "requests/descriptions.h"
 #include "requests/number_list.h"
-#include "studies/design/io/design_reader.h"
 #include "studies/rre/io/rre_files.h"
 #include "studies/rre/rre_request.h"
 
@@ -43,20 +43,20 @@ studies::RreSettings settings_of(const RreOptions& options, const CommonOptions&
   return studies::resolve(request);
 }
 
-std::vector<studies::Design> designs_of(const RreOptions& options, const CommonOptions& common) {
+std::vector<design::Design> designs_of(const RreOptions& options, const CommonOptions& common) {
   if (std::count(options.designs.begin(), options.designs.end(), "-") > 1)
     throw InputError("standard input (-) can be given only one time");
-  std::vector<studies::Design> designs;
-  for (const std::string& file : options.designs) designs.push_back(studies::read_design(file, common.overrides));
+  std::vector<design::Design> designs;
+  for (const std::string& file : options.designs) designs.push_back(design::read_design(file, common.overrides));
   return designs;
 }
 
 /// Adds a warning if the drawing of the footprints does not show all directions.
 void warn_of_panels(studies::RreResult& result) {
-  if (result.faces.empty() || result.returned.size() <= report::kMostFootprintPanels) return;
+  if (result.faces.empty() || result.returned.size() <= report::kMaxFootprintPanels) return;
   result.warnings.push_back(
       {"footprints_omitted", fmt::format("footprint.svg and footprint.png show the first {} of {} directions",
-                                         report::kMostFootprintPanels, result.returned.size())});
+                                         report::kMaxFootprintPanels, result.returned.size())});
 }
 
 /// Adds the output files of the command.
@@ -79,9 +79,9 @@ Words what_shortens_rre(const studies::RreSettings& request) {
   Words advice;
   if (request.rays) {
     advice.push_back(fmt::format("give a smaller --samples (now {})", *request.rays));
-  } else if (request.cutoff && request.engine == studies::Engine::exact) {
+  } else if (request.cutoff && request.engine == raytrace::Engine::exact) {
     advice.push_back(fmt::format("give a larger --cutoff (now {})", shortest(*request.cutoff)));
-  } else if (request.engine == studies::Engine::exact && !request.target_error) {
+  } else if (request.engine == raytrace::Engine::exact && !request.target_error) {
     advice.emplace_back("give a --target-error larger than 1e-10");
   } else {
     advice.push_back(fmt::format("give a larger --target-error (now {})", shortest(target_error_of(request))));
@@ -93,7 +93,7 @@ Words what_shortens_rre(const studies::RreSettings& request) {
 
 ExitCode run(const RreOptions& options, const CommonOptions& common) {
   studies::RreSettings request = settings_of(options, common);
-  std::vector<studies::Design> designs = designs_of(options, common);
+  std::vector<design::Design> designs = designs_of(options, common);
   studies::RreResult result;
   ResultFiles files(common, files_read(designs), "rre.json");
   add_files(files, request, result);

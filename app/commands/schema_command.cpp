@@ -8,13 +8,13 @@
 #include "core/json_text.h"
 #include "core/message_text.h"
 #include "core/schema/json_schema.h"
+#include "design/io/design_format.h"
 #include "fabrication/job/io/job_files.h"
 #include "fabrication/job/io/process_files.h"
 #include "fabrication/machine/io/machine_files.h"
 #include "fabrication/planing/io/part_files.h"
 #include "fabrication/turning/io/part_files.h"
 #include "materials/io/material_library.h"
-#include "studies/design/io/design_format.h"
 #include "studies/quantity/io/study_format.h"
 
 namespace retrace::app {
@@ -22,7 +22,7 @@ namespace {
 
 /// Returns the file formats that have a schema, sorted by name.
 std::vector<const schema::Format*> formats() {
-  return {&studies::design_format(),          &fabrication::job_format(),
+  return {&design::design_format(),           &fabrication::job_format(),
           &fabrication::machine_format(),     &materials::materials_format(),
           &fabrication::planed_part_format(), &fabrication::process_format(),
           &studies::study_format(),           &fabrication::turning::turned_part_format()};

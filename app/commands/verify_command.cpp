@@ -15,12 +15,12 @@
 #include "fabrication/check/io/program_files.h"
 #include "fabrication/job/io/job_files.h"
 #include "fabrication/read/nc_program.h"
+#include "geometry/io/facet_planes_reader.h"
 #include "report/results/result_plots.h"
 #include "requests/descriptions.h"
 #include "studies/closed_loop/as_machined.h"
 #include "studies/closed_loop/io/verification_files.h"
 #include "studies/closed_loop/verification.h"
-#include "studies/design/io/facet_planes_reader.h"
 #include "studies/planing/io/planing_files.h"
 #include "studies/planing/planing_study.h"
 #include "studies/turning/io/turning_files.h"
@@ -157,7 +157,7 @@ ExitCode run_job(const VerifyOptions& options, const VerificationRequest& reques
     const studies::AsMachined part = studies::as_machined(run);
     append(run.warnings, part.warnings);
     design = studies::as_machined_toml(run, part, facets_file.filename().string());
-    if (part.planes) facets = studies::facet_planes_text(*part.planes);
+    if (part.planes) facets = geometry::facet_planes_text(*part.planes);
   }
   files.prepare();
   return files.write(studies::verification_json(run, elapsed_s), studies::verification_table(run), run.warnings,

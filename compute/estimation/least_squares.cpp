@@ -10,10 +10,10 @@ namespace {
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 /// An unknown counts as observable if the norm of its components in the unobservable combinations is below this value.
-constexpr double kLeastShare = 1e-3;
+constexpr double kMaxUnobservableNorm = 1e-3;
 /// Absolute value below which a component of a reduced combination is set to 0. The pivot component of each combination
 /// is 1.
-constexpr double kLeastShareInWords = 0.02;
+constexpr double kMinShownComponent = 0.02;
 
 /// Returns orthonormal columns that span the column space of a matrix.
 MatrixXd span_of(const MatrixXd& columns) {
@@ -24,32 +24,32 @@ MatrixXd span_of(const MatrixXd& columns) {
 
 }  // namespace
 
-bool LeastSquaresEstimate::is_told(Index unknown) const {
-  return untold.cols() == 0 || untold.row(unknown).norm() < kLeastShare;
+bool LeastSquaresEstimate::is_observable(Index unknown) const {
+  return unobservable.cols() == 0 || unobservable.row(unknown).norm() < kMaxUnobservableNorm;
 }
 
-LeastSquaresEstimate estimate(const MatrixXd& derivatives, const MatrixXd& of_nuisance, const VectorXd& observations,
-                              double most_uncertain) {
-  const MatrixXd nuisance = span_of(of_nuisance);
+LeastSquaresEstimate estimate(const MatrixXd& derivatives, const MatrixXd& nuisance_derivatives,
+                              const VectorXd& observations, double max_uncertainty) {
+  const MatrixXd nuisance = span_of(nuisance_derivatives);
   const MatrixXd a = derivatives - nuisance * (nuisance.transpose() * derivatives);
   const VectorXd r = observations - nuisance * (nuisance.transpose() * observations);
   const Eigen::JacobiSVD<MatrixXd> svd(a, Eigen::ComputeThinU | Eigen::ComputeFullV);
   Index told = 0;
-  while (told < svd.singularValues().size() && svd.singularValues()[told] * most_uncertain > 1.0) ++told;
+  while (told < svd.singularValues().size() && svd.singularValues()[told] * max_uncertainty > 1.0) ++told;
   const MatrixXd u = svd.matrixU().leftCols(told);
   const VectorXd deviation = svd.singularValues().head(told).cwiseInverse();
   LeastSquaresEstimate result;
-  result.told = svd.matrixV().leftCols(told);
-  result.untold = svd.matrixV().rightCols(svd.matrixV().cols() - told);
-  result.value = result.told * deviation.asDiagonal() * (u.transpose() * r);
-  result.covariance = result.told * deviation.cwiseAbs2().asDiagonal() * result.told.transpose();
+  result.observable = svd.matrixV().leftCols(told);
+  result.unobservable = svd.matrixV().rightCols(svd.matrixV().cols() - told);
+  result.value = result.observable * deviation.asDiagonal() * (u.transpose() * r);
+  result.covariance = result.observable * deviation.cwiseAbs2().asDiagonal() * result.observable.transpose();
   result.residual = r - a * result.value;
   result.leverage = nuisance.rowwise().squaredNorm() + u.rowwise().squaredNorm();
   return result;
 }
 
-MatrixXd reduced_combinations(const MatrixXd& untold) {
-  MatrixXd rows = untold.transpose();
+MatrixXd reduced_combinations(const MatrixXd& combinations) {
+  MatrixXd rows = combinations.transpose();
   // Gauss-Jordan elimination with full pivoting.
   for (Index k = 0; k < rows.rows(); ++k) {
     Index row = 0;
@@ -60,7 +60,7 @@ MatrixXd reduced_combinations(const MatrixXd& untold) {
     for (Index other = 0; other < rows.rows(); ++other)
       if (other != k) rows.row(other) -= rows(other, column) * rows.row(k);
   }
-  return rows.unaryExpr([](double share) { return std::abs(share) < kLeastShareInWords ? 0.0 : share; }).transpose();
+  return rows.unaryExpr([](double share) { return std::abs(share) < kMinShownComponent ? 0.0 : share; }).transpose();
 }
 
 }  // namespace retrace::compute

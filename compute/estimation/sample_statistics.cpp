@@ -15,7 +15,7 @@ namespace {
 constexpr std::uint32_t kResample = 0x53776510U;
 constexpr std::size_t kResamples = 1000;
 /// Maximum number of groups of rows for resampling. If there are more rows, neighbouring rows form groups.
-constexpr std::size_t kMostGroups = 500;
+constexpr std::size_t kMaxGroups = 500;
 
 /// Sums over rows (SaltelliRow) from which the indices are computed. The overall mean is subtracted from all values a
 /// and b, which avoids cancellation.
@@ -71,7 +71,7 @@ double centre_of(const std::vector<SaltelliRow>& rows) {
 
 /// Returns the sums for groups of neighbouring rows.
 std::vector<Sums> grouped(const std::vector<SaltelliRow>& rows, double centre) {
-  const std::size_t groups = std::min(rows.size(), kMostGroups);
+  const std::size_t groups = std::min(rows.size(), kMaxGroups);
   std::vector<Sums> sums(groups, Sums(rows.front().mixed.size()));
   for (std::size_t k = 0; k < rows.size(); ++k) sums[k * groups / rows.size()].add(rows[k], centre);
   return sums;
@@ -124,8 +124,8 @@ Spread spread_of(const std::vector<double>& values, double confidence) {
   const auto n = static_cast<double>(values.size());
   Spread spread;
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
-  spread.least = *least;
-  spread.most = *most;
+  spread.min = *least;
+  spread.max = *most;
   spread.mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
   spread.mean_interval = {spread.mean, spread.mean, spread.mean};
   if (values.size() < 2) return spread;
@@ -138,8 +138,8 @@ Spread spread_of(const std::vector<double>& values, double confidence) {
   return spread;
 }
 
-double percentile(const std::vector<double>& ascending, double share) {
-  const double place = share * static_cast<double>(ascending.size() - 1);
+double percentile(const std::vector<double>& ascending, double fraction) {
+  const double place = fraction * static_cast<double>(ascending.size() - 1);
   const auto below = static_cast<std::size_t>(place);
   if (below + 1 >= ascending.size()) return ascending.back();
   return ascending[below] + (place - static_cast<double>(below)) * (ascending[below + 1] - ascending[below]);

@@ -46,15 +46,15 @@ struct Spread {
   double mean = 0.0;
   IntervalEstimate mean_interval;  ///< confidence interval of the mean, from Student's t distribution
   double deviation = 0.0;          ///< standard deviation; 0 for a single value
-  double least = 0.0, most = 0.0;
+  double min = 0.0, max = 0.0;
 };
 /// Returns the spread of values.
 /// \pre values is not empty
 Spread spread_of(const std::vector<double>& values, double confidence);
 
-/// Returns the value below which the fraction `share` of all values is located, with linear interpolation (type 7 of
+/// Returns the value below which the fraction `fraction` of all values is located, with linear interpolation (type 7 of
 /// Hyndman and Fan 1996).
 /// \pre values is ascending and not empty, 0 <= share <= 1
-double percentile(const std::vector<double>& ascending, double share);
+double percentile(const std::vector<double>& ascending, double fraction);
 
 }  // namespace retrace::compute

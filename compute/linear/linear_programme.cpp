@@ -18,9 +18,9 @@ using Problem = std::unique_ptr<glp_prob, ProblemDeleter>;
 
 /// Returns the GLPK constant for the type of the bounds.
 int type_of(const Bounds& bounds) {
-  const bool has_least = std::isfinite(bounds.least);
-  const bool has_most = std::isfinite(bounds.most);
-  if (has_least && has_most) return bounds.least == bounds.most ? GLP_FX : GLP_DB;
+  const bool has_least = std::isfinite(bounds.lower);
+  const bool has_most = std::isfinite(bounds.upper);
+  if (has_least && has_most) return bounds.lower == bounds.upper ? GLP_FX : GLP_DB;
   if (has_least) return GLP_LO;
   return has_most ? GLP_UP : GLP_FR;
 }
@@ -37,12 +37,12 @@ Problem problem_of(const LinearProgramme& programme) {
   if (!programme.rows().empty()) glp_add_rows(problem.get(), static_cast<int>(programme.rows().size()));
   for (std::size_t k = 0; k < programme.columns().size(); ++k) {
     const LinearProgramme::Column& column = programme.columns()[k];
-    glp_set_col_bnds(problem.get(), number_of(k), type_of(column.bounds), column.bounds.least, column.bounds.most);
+    glp_set_col_bnds(problem.get(), number_of(k), type_of(column.bounds), column.bounds.lower, column.bounds.upper);
     glp_set_obj_coef(problem.get(), number_of(k), column.objective);
   }
   for (std::size_t k = 0; k < programme.rows().size(); ++k) {
     const LinearProgramme::Row& row = programme.rows()[k];
-    glp_set_row_bnds(problem.get(), number_of(k), type_of(row.bounds), row.bounds.least, row.bounds.most);
+    glp_set_row_bnds(problem.get(), number_of(k), type_of(row.bounds), row.bounds.lower, row.bounds.upper);
     std::vector<int> columns = {0};
     std::vector<double> factors = {0.0};
     for (const auto& [column, factor] : row.terms) {
@@ -56,12 +56,12 @@ Problem problem_of(const LinearProgramme& programme) {
 }
 
 /// Turns off the terminal output of GLPK during the lifetime of the object.
-class Silence {
+class OutputSuppressor {
  public:
-  Silence() : before_(glp_term_out(GLP_OFF)) {}
-  ~Silence() { glp_term_out(before_); }
-  Silence(const Silence&) = delete;
-  Silence& operator=(const Silence&) = delete;
+  OutputSuppressor() : before_(glp_term_out(GLP_OFF)) {}
+  ~OutputSuppressor() { glp_term_out(before_); }
+  OutputSuppressor(const OutputSuppressor&) = delete;
+  OutputSuppressor& operator=(const OutputSuppressor&) = delete;
 
  private:
   int before_;
@@ -113,14 +113,14 @@ void take_values(glp_prob* problem, const LinearProgramme& programme, LinearOpti
 std::vector<double> certificate(const LinearProgramme& programme, const Cancellation* cancel) {
   LinearProgramme elastic;
   for (const LinearProgramme::Column& column : programme.columns()) elastic.add_column(column.bounds, 0.0);
-  constexpr Bounds kNotNegative{.least = 0.0};
+  constexpr Bounds kNotNegative{.lower = 0.0};
   double size = 1e-300;
   for (const LinearProgramme::Row& row : programme.rows()) {
     std::vector<LinearProgramme::Term> terms = row.terms;
     terms.emplace_back(elastic.add_column(kNotNegative, -1.0), 1.0);
     terms.emplace_back(elastic.add_column(kNotNegative, -1.0), -1.0);
     elastic.add_row(row.bounds, std::move(terms));
-    for (const double end : {row.bounds.least, row.bounds.most})
+    for (const double end : {row.bounds.lower, row.bounds.upper})
       if (std::isfinite(end)) size = std::max(size, std::abs(end));
   }
   const LinearOptimum least = solve(elastic, cancel);
@@ -145,7 +145,7 @@ std::size_t LinearProgramme::add_row(const Bounds& bounds, std::vector<Term> ter
 }
 
 LinearOptimum solve(const LinearProgramme& programme, const Cancellation* cancel) {
-  const Silence silence;
+  const OutputSuppressor silence;
   const Problem problem = problem_of(programme);
   const int status = run_simplex(problem.get(), cancel);
   LinearOptimum optimum;

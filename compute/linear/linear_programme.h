@@ -14,8 +14,8 @@ namespace retrace::compute {
 
 /// Interval from `least` to `most`. Missing limits are infinite.
 struct Bounds {
-  double least = -std::numeric_limits<double>::infinity();
-  double most = std::numeric_limits<double>::infinity();
+  double lower = -std::numeric_limits<double>::infinity();
+  double upper = std::numeric_limits<double>::infinity();
 };
 
 /// Linear programme. Columns are the unknowns, and rows are weighted sums of the unknowns. Columns and rows have

@@ -11,7 +11,7 @@
 namespace retrace::compute {
 
 /// Message from one rank to another.
-struct Letter {
+struct MpiMessage {
   int rank = 0;  ///< sender
   int tag = 0;
   std::string bytes;
@@ -19,7 +19,7 @@ struct Letter {
 
 /// Sends and receives messages between the ranks of a job. A separate thread makes all MPI calls. It also sends signs
 /// of life: short messages that show that the process is alive. No function of this class waits for MPI without a time
-/// limit, even if another rank dies or MPI cannot be finalized. Parameters named `patience` are maximum waiting times.
+/// limit, even if another rank dies or MPI cannot be finalized. Parameters named `timeout` are maximum waiting times.
 /// Only one thread may read messages; any thread may post them.
 class MpiMailbox {
  public:
@@ -28,7 +28,7 @@ class MpiMailbox {
 
   /// Waits until MPI has started. The start begins when the mailbox is created.
   /// \return true if MPI has started
-  virtual bool wait_for_start(std::chrono::milliseconds patience) = 0;
+  virtual bool wait_for_start(std::chrono::milliseconds timeout) = 0;
 
   /// Returns the rank of this process.
   /// \pre MPI has started. This precondition also applies to all following functions
@@ -38,22 +38,22 @@ class MpiMailbox {
   /// Sends a message without waiting for its transfer.
   /// \param tag must be > 0
   virtual void post(int to, int tag, std::string bytes) = 0;
-  /// Returns the next message, or nothing if none arrives within `patience`.
-  virtual std::optional<Letter> take(std::chrono::microseconds patience) = 0;
+  /// Returns the next message, or nothing if none arrives within `timeout`.
+  virtual std::optional<MpiMessage> take(std::chrono::microseconds timeout) = 0;
   /// Returns the time since the last message or sign of life of a rank.
   virtual std::chrono::duration<double> silence(int rank) const = 0;
   /// Restarts the measurement of the silence of all ranks. Must be called after this process itself was suspended.
-  virtual void forgive_silence() = 0;
+  virtual void reset_silence() = 0;
   /// Stops sending messages to a rank that was given up. Other functions do not wait for messages to this rank.
-  virtual void forget(int rank) = 0;
+  virtual void drop_rank(int rank) = 0;
 
   /// Waits until all posted messages have been sent.
-  /// \return true if they have been sent within `patience`
-  virtual bool flush(std::chrono::milliseconds patience) = 0;
+  /// \return true if they have been sent within `timeout`
+  virtual bool flush(std::chrono::milliseconds timeout) = 0;
   /// Finalizes MPI together with all other ranks.
-  /// \return true if this succeeded within `patience`; otherwise, MPI is not finalized and the process must end with
+  /// \return true if this succeeded within `timeout`; otherwise, MPI is not finalized and the process must end with
   /// _exit()
-  virtual bool close(std::chrono::milliseconds patience) = 0;
+  virtual bool close(std::chrono::milliseconds timeout) = 0;
 };
 
 /// Starts MPI.

@@ -49,8 +49,8 @@ struct MailboxState {
   bool ended = false;
   int rank = 0;
   int size = 1;
-  std::deque<Letter> posted;  ///< messages that wait to be sent; `rank` is the receiver
-  std::deque<Letter> arrived;
+  std::deque<MpiMessage> posted;  ///< messages that wait to be sent; `rank` is the receiver
+  std::deque<MpiMessage> arrived;
   bool sending = false;  ///< true while messages are being sent
   std::set<int> forgotten;
   std::vector<Clock::time_point> heard;
@@ -96,13 +96,13 @@ void MailboxState::send(int to, int tag, std::string bytes) {
 }
 
 bool MailboxState::send_posted() {
-  std::deque<Letter> letters;
+  std::deque<MpiMessage> letters;
   {
     const std::lock_guard lock(mutex);
     letters.swap(posted);
     sending = sending || !letters.empty();
   }
-  for (Letter& letter : letters) send(letter.rank, letter.tag, std::move(letter.bytes));
+  for (MpiMessage& letter : letters) send(letter.rank, letter.tag, std::move(letter.bytes));
   outgoing.remove_if(is_done);
   if (outgoing.empty()) {
     const std::lock_guard lock(mutex);
@@ -229,10 +229,10 @@ class Mailbox final : public MpiMailbox {
     state_->changed.notify_all();
   }
 
-  std::optional<Letter> take(std::chrono::microseconds patience) override {
+  std::optional<MpiMessage> take(std::chrono::microseconds patience) override {
     std::unique_lock lock(state_->mutex);
     if (!state_->changed.wait_for(lock, patience, [this] { return !state_->arrived.empty(); })) return std::nullopt;
-    Letter letter = std::move(state_->arrived.front());
+    MpiMessage letter = std::move(state_->arrived.front());
     state_->arrived.pop_front();
     return letter;
   }
@@ -242,12 +242,12 @@ class Mailbox final : public MpiMailbox {
     return Clock::now() - state_->heard.at(static_cast<std::size_t>(rank));
   }
 
-  void forgive_silence() override {
+  void reset_silence() override {
     const std::lock_guard lock(state_->mutex);
     std::fill(state_->heard.begin(), state_->heard.end(), Clock::now());
   }
 
-  void forget(int rank) override {
+  void drop_rank(int rank) override {
     const std::lock_guard lock(state_->mutex);
     state_->forgotten.insert(rank);
   }

@@ -87,7 +87,7 @@ struct MpiSession::State {
   /// Ignores the silence of other ranks if this process itself was suspended or blocked for more than a second.
   void look() {
     const auto now = Clock::now();
-    if (now - looked_last > std::chrono::seconds(1)) mailbox->forgive_silence();
+    if (now - looked_last > std::chrono::seconds(1)) mailbox->reset_silence();
     looked_last = now;
   }
 
@@ -100,7 +100,7 @@ struct MpiSession::State {
     there.erase(rank);
     at_work.erase(rank);
     lost_ranks = true;
-    mailbox->forget(rank);
+    mailbox->drop_rank(rank);
   }
 
   void end_rank_0();
@@ -113,7 +113,7 @@ void MpiSession::State::end_rank_0() {
   const auto deadline = Clock::now() + kPatience;
   std::set<int> open = there;
   while (!open.empty() && Clock::now() < deadline) {
-    const std::optional<Letter> letter = mailbox->take(kLook);
+    const std::optional<MpiMessage> letter = mailbox->take(kLook);
     if (letter && letter->tag == Tag::leaving && letter->bytes.empty()) open.erase(letter->rank);
   }
   for (const int rank : open) give_up(rank);
@@ -122,7 +122,7 @@ void MpiSession::State::end_rank_0() {
 void MpiSession::State::end_other() {
   while (!may_go) {
     look();
-    const std::optional<Letter> letter = mailbox->take(kLook);
+    const std::optional<MpiMessage> letter = mailbox->take(kLook);
     if (letter && letter->tag == Tag::go) {
       may_go = true;
       lost_ranks = letter->bytes != kAllAreThere;
@@ -185,9 +185,9 @@ std::vector<std::uint64_t> tasks_of(const std::string& bytes) {
 
 /// Assignment of a ledger's tasks to ranks. The thread that deals out tasks and the threads that compute tasks can call
 /// its functions concurrently.
-class Dealer {
+class TaskDistributor {
  public:
-  explicit Dealer(TaskLedger& ledger) : ledger_(ledger) {}
+  explicit TaskDistributor(TaskLedger& ledger) : ledger_(ledger) {}
 
   /// Takes tasks from the ledger and assigns them to a rank.
   std::vector<std::uint64_t> take(int rank, std::size_t wanted) {
@@ -239,9 +239,9 @@ class Dealer {
 
 /// Computes tasks on rank 0, in a second thread in addition to the thread that deals out tasks. Errors are stored until
 /// the dealing thread calls rethrow().
-class OwnShare {
+class LocalWorker {
  public:
-  OwnShare(const ComputeTask& compute, Dealer& dealer, std::size_t slots, const Cancellation* cancel)
+  LocalWorker(const ComputeTask& compute, TaskDistributor& dealer, std::size_t slots, const Cancellation* cancel)
       : thread_([this, &compute, &dealer, slots, cancel] {
           try {
             work(compute, dealer, slots, cancel);
@@ -250,7 +250,7 @@ class OwnShare {
             failed_ = true;
           }
         }) {}
-  ~OwnShare() {
+  ~LocalWorker() {
     stop_ = true;
     thread_.join();
   }
@@ -260,7 +260,7 @@ class OwnShare {
   }
 
  private:
-  void work(const ComputeTask& compute, Dealer& dealer, std::size_t slots, const Cancellation* cancel) {
+  void work(const ComputeTask& compute, TaskDistributor& dealer, std::size_t slots, const Cancellation* cancel) {
     while (!stop_ && !is_cancelled(cancel)) {
       const std::vector<std::uint64_t> tasks = dealer.take(0, slots);
       if (tasks.empty()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -282,9 +282,10 @@ using Waiting = std::map<int, std::size_t>;
 
 }  // namespace
 
-bool MpiSession::deal(const ComputeTask& compute, TaskLedger& ledger, std::size_t slots, const Cancellation* cancel) {
+bool MpiSession::distribute_tasks(const ComputeTask& compute, TaskLedger& ledger, std::size_t slots,
+                                  const Cancellation* cancel) {
   State& state = *state_;
-  Dealer dealer(ledger);
+  TaskDistributor dealer(ledger);
   Waiting waiting;
   const auto leaves = [&](int rank, const std::string& why) {
     dealer.take_back(rank);
@@ -292,7 +293,7 @@ bool MpiSession::deal(const ComputeTask& compute, TaskLedger& ledger, std::size_
     waiting.erase(rank);
     state.remarks.push_back({"rank_lost", fmt::format("rank {} {}; other ranks compute its points", rank, why)});
   };
-  const auto read = [&](const Letter& letter) {
+  const auto read = [&](const MpiMessage& letter) {
     if (!state.there.contains(letter.rank)) return;  // the rank was given up earlier, but it is alive
     if (letter.tag == Tag::ask) waiting[letter.rank] = std::stoul(letter.bytes);
     if (letter.tag == Tag::result)
@@ -317,11 +318,11 @@ bool MpiSession::deal(const ComputeTask& compute, TaskLedger& ledger, std::size_
     }
   };
   {
-    const OwnShare own(compute, dealer, slots, cancel);
+    const LocalWorker own(compute, dealer, slots, cancel);
     while (!is_cancelled(cancel)) {
       own.rethrow();
       state.look();
-      if (const std::optional<Letter> letter = state.mailbox->take(kLook)) read(*letter);
+      if (const std::optional<MpiMessage> letter = state.mailbox->take(kLook)) read(*letter);
       deal_out();
       give_up_silent();
       if (dealer.is_finished()) return true;
@@ -331,18 +332,18 @@ bool MpiSession::deal(const ComputeTask& compute, TaskLedger& ledger, std::size_
   const auto deadline = Clock::now() + kLastCall;
   const auto has_tasks = [&](int rank) { return dealer.has_tasks(rank); };
   while (std::any_of(state.at_work.begin(), state.at_work.end(), has_tasks) && Clock::now() < deadline)
-    if (const std::optional<Letter> letter = state.mailbox->take(kLook)) read(*letter);
+    if (const std::optional<MpiMessage> letter = state.mailbox->take(kLook)) read(*letter);
   return dealer.is_finished();
 }
 
-void MpiSession::serve(const ComputeTask& compute, std::size_t slots, const Cancellation* cancel) {
+void MpiSession::compute_tasks(const ComputeTask& compute, std::size_t slots, const Cancellation* cancel) {
   State& state = *state_;
   const auto ask = [&] { state.mailbox->post(0, Tag::ask, std::to_string(slots)); };
   ask();
   bool is_quick = false;
   while (!is_cancelled(cancel)) {
     state.look();
-    const std::optional<Letter> letter = state.mailbox->take(kLook);
+    const std::optional<MpiMessage> letter = state.mailbox->take(kLook);
     if (!letter && state.is_silent(0)) return;
     if (!letter) continue;
     if (letter->tag == Tag::go) {

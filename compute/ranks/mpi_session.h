@@ -38,14 +38,14 @@ class MpiSession {
   /// \pre deal() has not been called before
   /// \return true if all tasks are finished
   /// \throw Error of the ledger, or of a task that rank 0 computed
-  bool deal(const ComputeTask& compute, TaskLedger& ledger, std::size_t slots, const Cancellation* cancel);
+  bool distribute_tasks(const ComputeTask& compute, TaskLedger& ledger, std::size_t slots, const Cancellation* cancel);
   /// Returns warnings for the user about ranks that were lost or that left early. Only for rank 0.
   Warnings remarks() const;
 
   /// Computes tasks that rank 0 deals out, `slots` at a time, until there are no more tasks. Only for ranks other than
   /// 0.
   /// \throw Error of a task; leave() must then be called
-  void serve(const ComputeTask& compute, std::size_t slots, const Cancellation* cancel);
+  void compute_tasks(const ComputeTask& compute, std::size_t slots, const Cancellation* cancel);
   /// Reports to rank 0 that this rank cannot continue, and why. Only for ranks other than 0.
   void leave(const std::string& why);
 

@@ -17,10 +17,10 @@ class UnitSamples {
     latin_hypercube,  ///< one point in each of `count` equal intervals of every axis (McKay et al. 1979)
     monte_carlo       ///< independent random points
   };
-  /// \pre 1 <= dimensions <= most_dimensions, 1 <= count <= 2^31
+  /// \pre 1 <= dimensions <= max_dimensions, 1 <= count <= 2^31
   UnitSamples(Kind kind, std::size_t dimensions, std::uint64_t count, std::uint32_t seed);
 
-  static constexpr std::size_t most_dimensions = 1000;
+  static constexpr std::size_t max_dimensions = 1000;
 
   /// Returns the coordinates of a point, each in (0, 1).
   std::vector<double> at(std::uint64_t point) const;

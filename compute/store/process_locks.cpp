@@ -11,7 +11,7 @@
 namespace retrace::compute {
 namespace {
 
-constexpr std::int64_t kMostProcesses = 4096;
+constexpr std::int64_t kMaxProcesses = 4096;
 
 struct flock byte_lock(std::int64_t byte) {
   struct flock lock = {};
@@ -32,7 +32,7 @@ ProcessLocks::ProcessLocks(const std::filesystem::path& file)
     throw error;
   };
   if (descriptor_ < 0) fail();
-  for (; own_ < kMostProcesses; ++own_) {
+  for (; own_ < kMaxProcesses; ++own_) {
     struct flock lock = byte_lock(own_);
     // The locks F_OFD_... belong to the open file and not to the process. Therefore, they are not released when another
     // descriptor of the same file is closed.
@@ -48,7 +48,7 @@ ProcessLocks::~ProcessLocks() {
 
 bool ProcessLocks::is_alive(std::int64_t owner) const {
   if (owner == own_) return true;
-  if (owner < 0 || owner >= kMostProcesses) return false;  // the lock file has only kMostProcesses bytes
+  if (owner < 0 || owner >= kMaxProcesses) return false;  // the lock file has only kMaxProcesses bytes
   struct flock lock = byte_lock(owner);
   return ::fcntl(descriptor_, F_OFD_GETLK, &lock) != 0 || lock.l_type != F_UNLCK;
 }

@@ -7,7 +7,7 @@ namespace retrace {
 const PictureFiles& picture_files() {
   static constexpr Module module{.name = "retrace_pictures",
                                  .function = "retrace_picture_files",
-                                 .lack = "pictures cannot be read or written",
+                                 .missing_message = "pictures cannot be read or written",
                                  .library = "OpenImageIO",
                                  .package = "libopenimageio2.4"};
   using Entry = const PictureFiles* (*)();

@@ -18,7 +18,7 @@ namespace {
 
 /// Maximum number of dots in a line. Decimal points are not counted. toml++ destroys a tree recursively, so very long
 /// dotted keys could exceed the stack.
-constexpr std::size_t kMostDotsInALine = 64;
+constexpr std::size_t kMaxDotsPerLine = 64;
 constexpr std::size_t kLongestOverride = 4096;
 constexpr std::string_view kBareKeyCharacters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-.";
 
@@ -43,9 +43,9 @@ void check_nesting(std::string_view text, const std::string& file) {
       ++line;
       dots = 0;
     }
-    if (text[i] == '.' && !is_decimal_point(text, i) && ++dots > kMostDotsInALine)
+    if (text[i] == '.' && !is_decimal_point(text, i) && ++dots > kMaxDotsPerLine)
       throw InputError({file, line, ""},
-                       fmt::format("a line may have at most {} dots outside of numbers", kMostDotsInALine));
+                       fmt::format("a line may have at most {} dots outside of numbers", kMaxDotsPerLine));
   }
 }
 
@@ -176,7 +176,7 @@ void visit_tables(toml::table& table, std::string_view path, const std::string& 
 }
 
 /// Replaces a former name in one table and records the replacement in `source`.
-void replace(const FormerName& name, toml::table& table, const std::string& shown, TomlSource& source) {
+void replace(const TomlRename& name, toml::table& table, const std::string& shown, TomlSource& source) {
   if (name.is_word) {
     for (auto&& [key, node] : table) {
       toml::value<std::string>* const word = node.as_string();
@@ -196,17 +196,17 @@ void replace(const FormerName& name, toml::table& table, const std::string& show
   table.erase(name.former);
 }
 
-void replace_all(std::span<const FormerName> names, toml::table& root, TomlSource& source) {
-  for (const FormerName& name : names)
+void replace_all(std::span<const TomlRename> names, toml::table& root, TomlSource& source) {
+  for (const TomlRename& name : names)
     visit_tables(root, name.table, "",
                  [&](toml::table& table, const std::string& shown) { replace(name, table, shown, source); });
 }
 
 }  // namespace
 
-std::string current_path(std::string_view path, std::span<const FormerName> names) {
+std::string current_path(std::string_view path, std::span<const TomlRename> names) {
   std::string current(path);
-  for (const FormerName& name : names) {
+  for (const TomlRename& name : names) {
     if (name.is_word) continue;
     const std::string former = path_in(name.table, name.former);
     if (current == former || current.starts_with(former + "."))
@@ -216,7 +216,7 @@ std::string current_path(std::string_view path, std::span<const FormerName> name
 }
 
 /// Data of a TomlTable.
-struct TomlTable::Hidden {
+struct TomlTable::Impl {
   std::shared_ptr<const TomlSource> source;
   const toml::table* table = nullptr;        ///< null if the file has no such table
   std::string name;                          ///< path of the table; empty for the root
@@ -249,7 +249,7 @@ struct TomlTable::Hidden {
   }
 
   TomlTable child(const toml::table* inner, std::string inner_name, int inner_line) {
-    auto hidden = std::make_shared<Hidden>();
+    auto hidden = std::make_shared<Impl>();
     hidden->source = source;
     hidden->table = inner;
     hidden->name = std::move(inner_name);
@@ -259,20 +259,20 @@ struct TomlTable::Hidden {
   }
 };
 
-TomlTable::TomlTable(std::shared_ptr<Hidden> hidden) : hidden_(std::move(hidden)) {}
+TomlTable::TomlTable(std::shared_ptr<Impl> hidden) : impl_(std::move(hidden)) {}
 
 bool TomlTable::has(std::string_view key) const {
-  return hidden_->find(key) != nullptr;
+  return impl_->find(key) != nullptr;
 }
 
 InputLocation TomlTable::where() const {
-  return {hidden_->source->file, hidden_->line, hidden_->name};
+  return {impl_->source->file, impl_->line, impl_->name};
 }
 
 InputLocation TomlTable::where(std::string_view key) const {
-  const toml::node* const node = hidden_->find(key);
-  return node != nullptr ? hidden_->location(*node, key)
-                         : InputLocation{hidden_->source->file, hidden_->line, hidden_->full_name(key)};
+  const toml::node* const node = impl_->find(key);
+  return node != nullptr ? impl_->location(*node, key)
+                         : InputLocation{impl_->source->file, impl_->line, impl_->full_name(key)};
 }
 
 void TomlTable::fail(std::string_view key, std::string_view text) const {
@@ -280,8 +280,8 @@ void TomlTable::fail(std::string_view key, std::string_view text) const {
 }
 
 std::optional<double> TomlTable::number(std::string_view key, const NumberRange& range) {
-  const toml::node* const node = hidden_->take(key);
-  return node != nullptr ? std::optional(hidden_->checked(key, *node, range)) : std::nullopt;
+  const toml::node* const node = impl_->take(key);
+  return node != nullptr ? std::optional(impl_->checked(key, *node, range)) : std::nullopt;
 }
 
 double TomlTable::required_number(std::string_view key, const NumberRange& range) {
@@ -291,24 +291,24 @@ double TomlTable::required_number(std::string_view key, const NumberRange& range
 }
 
 std::optional<std::vector<double>> TomlTable::number_or_numbers(std::string_view key, const NumberRange& range) {
-  const toml::node* const node = hidden_->take(key);
+  const toml::node* const node = impl_->take(key);
   if (node == nullptr) return std::nullopt;
   const toml::array* const list = node->as_array();
   if (list == nullptr && !node->is_number())
     fail(key, "must be a number or a list of numbers, got " + shown_node(*node));
-  if (list == nullptr) return std::vector<double>{hidden_->checked(key, *node, range)};
+  if (list == nullptr) return std::vector<double>{impl_->checked(key, *node, range)};
   if (list->empty()) fail(key, "must be a number or a list of at least one number, got an empty list");
   std::vector<double> values;
-  for (const toml::node& item : *list) values.push_back(hidden_->checked(key, item, range));
+  for (const toml::node& item : *list) values.push_back(impl_->checked(key, item, range));
   return values;
 }
 
 std::optional<std::vector<std::vector<double>>> TomlTable::pairs(std::string_view key, std::string_view shape,
                                                                  const NumberRange& first, const NumberRange& second) {
-  const toml::node* const given = hidden_->take(key);
+  const toml::node* const given = impl_->take(key);
   if (given == nullptr) return std::nullopt;
   const auto refuse = [&](const toml::node& node, const std::string& what) -> InputError {
-    return {hidden_->location(node, key), fmt::format("must be a list of {}, {}", shape, what)};
+    return {impl_->location(node, key), fmt::format("must be a list of {}, {}", shape, what)};
   };
   const toml::array* const list = given->as_array();
   if (list == nullptr || list->empty()) throw refuse(*given, "got " + shown_node(*given));
@@ -317,27 +317,27 @@ std::optional<std::vector<std::vector<double>>> TomlTable::pairs(std::string_vie
     const toml::array* const pair = node.as_array();
     if (pair == nullptr) throw refuse(node, "but the list contains " + shown_node(node));
     if (pair->size() != 2) throw refuse(node, fmt::format("but the list contains a list of length {}", pair->size()));
-    pairs.push_back({hidden_->checked(key, *pair->get(0), first), hidden_->checked(key, *pair->get(1), second)});
+    pairs.push_back({impl_->checked(key, *pair->get(0), first), impl_->checked(key, *pair->get(1), second)});
   }
   return pairs;
 }
 
 std::optional<std::vector<double>> TomlTable::numbers(std::string_view key, std::size_t count, const NumberRange& range,
                                                       std::string_view what) {
-  const toml::node* const node = hidden_->take(key);
+  const toml::node* const node = impl_->take(key);
   if (node == nullptr) return std::nullopt;
   const toml::array* const list = node->as_array();
   if (list == nullptr || list->size() != count)
     fail(key, fmt::format("must be a list of {} {}, got {}", count, what,
                           list != nullptr ? fmt::format("a list of length {}", list->size()) : shown_node(*node)));
   std::vector<double> values;
-  for (const toml::node& item : *list) values.push_back(hidden_->checked(key, item, range));
+  for (const toml::node& item : *list) values.push_back(impl_->checked(key, item, range));
   return values;
 }
 
 std::optional<std::vector<std::vector<double>>> TomlTable::number_rows(std::string_view key, std::size_t columns,
                                                                        const NumberRange& range) {
-  const toml::node* const node = hidden_->take(key);
+  const toml::node* const node = impl_->take(key);
   if (node == nullptr) return std::nullopt;
   const std::string allowed = fmt::format("must be a list of lists of {} numbers", columns);
   const toml::array* const list = node->as_array();
@@ -349,12 +349,12 @@ std::optional<std::vector<std::vector<double>>> TomlTable::number_rows(std::stri
       fail(key, fmt::format("{}, but the list contains {}", allowed,
                             row != nullptr ? fmt::format("a list of length {}", row->size()) : shown_node(item)));
     rows.emplace_back();
-    for (const toml::node& value : *row) rows.back().push_back(hidden_->checked(key, value, range));
+    for (const toml::node& value : *row) rows.back().push_back(impl_->checked(key, value, range));
   }
   return rows;
 }
 
-std::optional<long long> TomlTable::whole(std::string_view key, const NumberRange& range) {
+std::optional<long long> TomlTable::integer(std::string_view key, const NumberRange& range) {
   const std::optional<double> value = number(key, range);
   if (!value) return std::nullopt;
   if (*value != std::floor(*value)) fail(key, "must be a whole number, got " + shortest(*value));
@@ -362,28 +362,28 @@ std::optional<long long> TomlTable::whole(std::string_view key, const NumberRang
 }
 
 std::optional<bool> TomlTable::flag(std::string_view key) {
-  const toml::node* const node = hidden_->take(key);
+  const toml::node* const node = impl_->take(key);
   if (node == nullptr) return std::nullopt;
   if (!node->is_boolean()) fail(key, "must be true or false, got " + shown_node(*node));
   return node->as_boolean()->get();
 }
 
 std::optional<std::string> TomlTable::text(std::string_view key) {
-  const toml::node* const node = hidden_->take(key);
+  const toml::node* const node = impl_->take(key);
   if (node == nullptr) return std::nullopt;
   if (!node->is_string()) fail(key, "must be a string, got " + shown_node(*node));
   return node->as_string()->get();
 }
 
 std::optional<std::vector<std::string>> TomlTable::texts(std::string_view key) {
-  const toml::node* const node = hidden_->take(key);
+  const toml::node* const node = impl_->take(key);
   if (node == nullptr) return std::nullopt;
   const toml::array* const list = node->as_array();
   if (list == nullptr || list->empty()) fail(key, "must be a list of one or more strings, got " + shown_node(*node));
   std::vector<std::string> values;
   for (const toml::node& item : *list) {
     if (!item.is_string())
-      throw InputError(hidden_->location(item, key),
+      throw InputError(impl_->location(item, key),
                        "must be a list of strings, but the list contains " + shown_node(item));
     values.push_back(item.as_string()->get());
   }
@@ -392,14 +392,14 @@ std::optional<std::vector<std::string>> TomlTable::texts(std::string_view key) {
 
 std::optional<std::size_t> TomlTable::choice(std::string_view key, std::span<const std::string_view> words,
                                              std::string_view or_else) {
-  const toml::node* const node = hidden_->take(key);
+  const toml::node* const node = impl_->take(key);
   if (node == nullptr) return std::nullopt;
   if (!node->is_string()) fail(key, fmt::format("must be a string{}, got {}", or_else, shown_node(*node)));
   const std::optional<std::string> given = node->as_string()->get();
   const auto found = std::find(words.begin(), words.end(), *given);
   if (found != words.end()) return static_cast<std::size_t>(found - words.begin());
   std::string message = fmt::format("must be {}{}, got {}", alternatives(words), or_else, in_quotes(*given));
-  const std::string_view meant = closest(*given, words);
+  const std::string_view meant = closest_match(*given, words);
   if (!meant.empty() && words.size() > 1) message += fmt::format("; did you mean {}?", in_quotes(meant));
   fail(key, message);
 }
@@ -411,31 +411,31 @@ std::size_t TomlTable::required_choice(std::string_view key, std::span<const std
 }
 
 TomlTable TomlTable::table(std::string_view key) {
-  const toml::node* const node = hidden_->take(key);
-  if (node == nullptr) return hidden_->child(nullptr, hidden_->full_name(key), hidden_->line);
+  const toml::node* const node = impl_->take(key);
+  if (node == nullptr) return impl_->child(nullptr, impl_->full_name(key), impl_->line);
   if (!node->is_table()) fail(key, "must be a table, got " + shown_node(*node));
-  return hidden_->child(node->as_table(), hidden_->full_name(key), hidden_->source->line(*node));
+  return impl_->child(node->as_table(), impl_->full_name(key), impl_->source->line(*node));
 }
 
 std::vector<TomlTable> TomlTable::tables(std::string_view key, std::string_view shape, bool are_numbered) {
-  const toml::node* const node = hidden_->take(key);
+  const toml::node* const node = impl_->take(key);
   if (node == nullptr) return {};
   const toml::array* const list = node->as_array();
   if (list == nullptr) fail(key, fmt::format("must be {}, got {}", shape, shown_node(*node)));
   std::vector<TomlTable> result;
   for (const toml::node& item : *list) {
     if (!item.is_table())
-      throw InputError(hidden_->location(item, key),
+      throw InputError(impl_->location(item, key),
                        fmt::format("must be {}, but the list contains {}", shape, shown_node(item)));
-    std::string name = hidden_->full_name(key);
+    std::string name = impl_->full_name(key);
     if (are_numbered) name += fmt::format("[{}]", result.size() + 1);
-    result.push_back(hidden_->child(item.as_table(), std::move(name), hidden_->source->line(item)));
+    result.push_back(impl_->child(item.as_table(), std::move(name), impl_->source->line(item)));
   }
   return result;
 }
 
 TomlTable::Shape TomlTable::shape_of(std::string_view key) const {
-  const toml::node* const node = hidden_->find(key);
+  const toml::node* const node = impl_->find(key);
   if (node == nullptr) return Shape::nothing;
   if (node->is_string()) return Shape::text;
   if (node->is_number()) return Shape::number;
@@ -444,11 +444,11 @@ TomlTable::Shape TomlTable::shape_of(std::string_view key) const {
 }
 
 std::string TomlTable::shown(std::string_view key) const {
-  return shown_node(*hidden_->find(key));
+  return shown_node(*impl_->find(key));
 }
 
 std::optional<std::vector<TomlItem>> TomlTable::items(std::string_view key) {
-  const toml::node* const node = hidden_->take(key);
+  const toml::node* const node = impl_->take(key);
   if (node == nullptr || !node->is_array()) return std::nullopt;
   std::vector<TomlItem> items;
   for (const toml::node& entry : *node->as_array()) {
@@ -468,27 +468,27 @@ std::optional<std::vector<TomlItem>> TomlTable::items(std::string_view key) {
 std::string TomlTable::as_json(std::string_view key) const {
   toml::table holder;
   if (!has(key)) return {};
-  hidden_->find(key)->visit([&](const auto& value) { holder.insert("value", value); });
+  impl_->find(key)->visit([&](const auto& value) { holder.insert("value", value); });
   return json_text(holder);
 }
 
 std::string TomlTable::as_json() const {
-  return json_text(*hidden_->table);
+  return json_text(*impl_->table);
 }
 
 TomlTable::Position TomlTable::position(std::string_view key) const {
-  const toml::node* const node = hidden_->find(key);
-  return node != nullptr ? hidden_->source->position(*node) : Position{};
+  const toml::node* const node = impl_->find(key);
+  return node != nullptr ? impl_->source->position(*node) : Position{};
 }
 
 const std::vector<RenamedInput>& TomlTable::renamed() const {
-  return hidden_->source->renamed;
+  return impl_->source->renamed;
 }
 
 std::vector<std::string> TomlTable::sorted_names() const {
   std::vector<std::string> names;
-  if (hidden_->table != nullptr)
-    for (auto&& [key, node] : *hidden_->table) names.emplace_back(key.str());
+  if (impl_->table != nullptr)
+    for (auto&& [key, node] : *impl_->table) names.emplace_back(key.str());
   return names;
 }
 
@@ -500,14 +500,14 @@ std::vector<std::string> TomlTable::names() const {
 
 void TomlTable::finish() const {
   for (const std::string& name : names()) {
-    if (hidden_->taken.contains(name)) continue;
-    const std::vector<std::string_view> known(hidden_->taken.begin(), hidden_->taken.end());
-    const std::string_view meant = closest(name, known);
+    if (impl_->taken.contains(name)) continue;
+    const std::vector<std::string_view> known(impl_->taken.begin(), impl_->taken.end());
+    const std::string_view meant = closest_match(name, known);
     fail(name, fmt::format("unknown {}{}", shape_of(name) == Shape::table ? "table" : "key",
                            meant.empty() ? " (allowed: " + fmt::format("{}", fmt::join(known, ", ")) + ")"
                                          : ", did you mean " + in_quotes(meant) + "?"));
   }
-  for (const TomlTable& table : hidden_->handed_out) table.finish();
+  for (const TomlTable& table : impl_->handed_out) table.finish();
 }
 
 std::optional<std::string_view> unset_key(std::string_view override_text) {
@@ -518,11 +518,11 @@ std::optional<std::string_view> unset_key(std::string_view override_text) {
   return key;
 }
 
-TomlTable parse_toml(std::string_view text, const std::string& source_name, std::size_t most_bytes,
-                     std::span<const std::string> overrides, std::span<const FormerName> names) {
+TomlTable parse_toml(std::string_view text, const std::string& source_name, std::size_t max_bytes,
+                     std::span<const std::string> overrides, std::span<const TomlRename> names) {
   auto source = std::make_shared<TomlSource>();
   source->file = printable(source_name, std::string::npos);
-  require_short_text(text, source->file, most_bytes);
+  require_short_text(text, source->file, max_bytes);
   if (text.size() > kShortTomlBytes) check_nesting(text, source->file);
   source->root = parse_file(text, source->file);
   source->paths.push_back(source->root.source().path);
@@ -539,7 +539,7 @@ TomlTable parse_toml(std::string_view text, const std::string& source_name, std:
     replace_all(names, table, *source);
     merge(source->root, table);
   }
-  auto hidden = std::make_shared<TomlTable::Hidden>();
+  auto hidden = std::make_shared<TomlTable::Impl>();
   hidden->table = &source->root;
   hidden->source = std::move(source);
   return TomlTable(std::move(hidden));

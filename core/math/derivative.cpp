@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kRows = 12;
 /// Minimum number of rows before the result is accepted; in fewer rows, entries may agree by chance.
-constexpr int kLeastRows = 4;
+constexpr int kMinRows = 4;
 /// Relative error below which the extrapolation stops.
 constexpr double kGoal = 1e-5;
 
@@ -101,7 +101,7 @@ class Patience {
     constexpr int kIdleRows = 2;
     idle_rows_ = best.error > 0.5 * error_ ? idle_rows_ + 1 : 0;
     error_ = best.error;
-    if (row < kLeastRows) return false;
+    if (row < kMinRows) return false;
     return best.error <= kGoal * std::abs(best.value) || noise > best.error ||
            (best.converged() && idle_rows_ >= kIdleRows);
   }

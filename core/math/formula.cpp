@@ -127,8 +127,8 @@ std::vector<Formula::Node> simplified(std::vector<Formula::Node> nodes, std::siz
 }  // namespace
 
 Formula parse_formula(const std::string& text, const std::vector<std::string>& variables, const InputLocation& where) {
-  if (text.size() > kLongestFormula)
-    throw InputError(where, fmt::format("must have at most {} characters, got {}", kLongestFormula, text.size()));
+  if (text.size() > kMaxFormulaLength)
+    throw InputError(where, fmt::format("must have at most {} characters, got {}", kMaxFormulaLength, text.size()));
   const auto failed_at = [&](std::size_t position, const std::string& reason) {
     return FormulaError(
         where,

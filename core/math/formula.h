@@ -61,7 +61,7 @@ class Formula {
 bool is_binary(Formula::Step step);
 
 /// Maximum length of a formula, in characters.
-inline constexpr std::size_t kLongestFormula = 2000;
+inline constexpr std::size_t kMaxFormulaLength = 2000;
 
 /// Parses a formula. It may contain numbers, pi, the variables, + - * / ^, brackets and the functions sqrt exp log sin
 /// cos tan asin acos atan atan2 sinh cosh tanh abs. Powers have the highest precedence and associate to the right.

@@ -15,7 +15,7 @@
 namespace retrace::jets {
 
 /// Maximum order of the derivatives of a series.
-inline constexpr int kMostOrder = 9;
+inline constexpr int kMaxOrder = 9;
 /// Template argument for a series whose order is known only at run time.
 inline constexpr int kAnyOrder = -1;
 
@@ -40,7 +40,7 @@ struct Length<kAnyOrder> {
 /// is used most, by tool paths and proofs. It is therefore implemented without loops, which keeps it in registers.
 template <class T, int N = kAnyOrder>
 struct Series : Length<N> {
-  std::array<T, static_cast<std::size_t>(N == kAnyOrder ? kMostOrder : N) + 1> c{};  ///< coefficients up to `order`
+  std::array<T, static_cast<std::size_t>(N == kAnyOrder ? kMaxOrder : N) + 1> c{};  ///< coefficients up to `order`
 
   Series() = default;
   explicit Series(int length) : Length<N>(length) {}

@@ -44,22 +44,22 @@ double value_of(const Partials<Order>& a) {
 
 /// Applies f component-wise to both arguments.
 template <int Order, class F>
-Partials<Order> number_by_number(const Partials<Order>& a, const Partials<Order>& b, const F& f) {
+Partials<Order> componentwise(const Partials<Order>& a, const Partials<Order>& b, const F& f) {
   Partials<Order> r(f(a.value, b.value), f(a.x, b.x), f(a.y, b.y));
   if constexpr (Order == 2) static_cast<SecondPartials&>(r) = {f(a.xx, b.xx), f(a.xy, b.xy), f(a.yy, b.yy)};
   return r;
 }
 template <int Order>
 Partials<Order> operator-(const Partials<Order>& a) {
-  return number_by_number(a, a, [](double p, double) { return -p; });
+  return componentwise(a, a, [](double p, double) { return -p; });
 }
 template <int Order>
 Partials<Order> operator+(const Partials<Order>& a, const Partials<Order>& b) {
-  return number_by_number(a, b, [](double p, double q) { return p + q; });
+  return componentwise(a, b, [](double p, double q) { return p + q; });
 }
 template <int Order>
 Partials<Order> operator-(const Partials<Order>& a, const Partials<Order>& b) {
-  return number_by_number(a, b, [](double p, double q) { return p - q; });
+  return componentwise(a, b, [](double p, double q) { return p - q; });
 }
 template <int Order>
 Partials<Order> operator*(const Partials<Order>& a, const Partials<Order>& b) {
@@ -100,7 +100,7 @@ Partials<Order> operator-(double a, const Partials<Order>& b) {
 }
 template <int Order>
 Partials<Order> operator*(const Partials<Order>& a, double b) {
-  return number_by_number(a, a, [b](double p, double) { return p * b; });
+  return componentwise(a, a, [b](double p, double) { return p * b; });
 }
 template <int Order>
 Partials<Order> operator*(double a, const Partials<Order>& b) {

@@ -27,10 +27,10 @@ constexpr Condition is_not(std::string_view key, std::span<const std::string_vie
                            std::string_view refusal = {}) {
   return {key, Condition::Is::none_of, words, refusal};
 }
-constexpr Condition beside(std::string_view key, std::string_view refusal = {}) {
+constexpr Condition is_given(std::string_view key, std::string_view refusal = {}) {
   return {key, Condition::Is::given, {}, refusal};
 }
-constexpr Condition without(std::string_view key, std::string_view refusal = {}) {
+constexpr Condition is_absent(std::string_view key, std::string_view refusal = {}) {
   return {key, Condition::Is::absent, {}, refusal};
 }
 

@@ -19,13 +19,13 @@ Form form_of(const Value& value) {
 /// Returns true if a row (the description of a key) allows the type of the value, or if the value has not been read
 /// yet.
 bool may_have(const Row& row, const Value& value) {
-  return std::holds_alternative<std::monostate>(value) || takes(row.kind, form_of(value));
+  return std::holds_alternative<std::monostate>(value) || accepts(row.kind, form_of(value));
 }
 
 }  // namespace
 
 Document::Document(const Table& table, InputLocation place, fs::path folder)
-    : table_(&table), place_(std::move(place)), folder_(std::move(folder)) {}
+    : table_(&table), location_(std::move(place)), folder_(std::move(folder)) {}
 
 std::size_t Document::count(std::string_view path) const {
   if (table_at(*table_, path)->presence != Presence::list) return has(path) ? 1 : 0;
@@ -100,12 +100,12 @@ std::vector<std::string> Document::keys_of_files() const {
 }
 
 InputLocation Document::where(std::string_view path) const {
-  if (const auto found = given_.find(path); found != given_.end()) return found->second.place;
-  if (path.empty()) return place_;
+  if (const auto found = given_.find(path); found != given_.end()) return found->second.location;
+  if (path.empty()) return location_;
   const std::string_view around = split_path(path).around;
   const auto table = given_.find(around);
-  if (table == given_.end()) return {place_.file, around.empty() ? place_.line : 0, path_in(place_.key, path)};
-  return {place_.file, table->second.place.line, path_in(table->second.place.key, split_path(path).name)};
+  if (table == given_.end()) return {location_.file, around.empty() ? location_.line : 0, path_in(location_.key, path)};
+  return {location_.file, table->second.location.line, path_in(table->second.location.key, split_path(path).name)};
 }
 
 const Row* Document::row(std::string_view path) const {

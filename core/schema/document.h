@@ -75,7 +75,7 @@ class Document {
   std::vector<std::filesystem::path> files() const;
 
   /// Returns the name of the file in messages.
-  const std::string& source() const { return place_.file; }
+  const std::string& source() const { return location_.file; }
   /// Returns the input from which the document was read. It is empty if the document was not read from a text.
   const Origin& origin() const { return origin_; }
   void set_origin(Origin origin) { origin_ = std::move(origin); }
@@ -119,12 +119,12 @@ class Document {
  private:
   struct Given {
     Value value;
-    InputLocation place;
+    InputLocation location;
     std::size_t source = 0;
   };
 
   const Table* table_;
-  InputLocation place_;
+  InputLocation location_;
   std::filesystem::path folder_;
   Origin origin_;
   std::vector<RenamedInput> renamed_;

@@ -24,7 +24,7 @@ Json anything_json(const std::vector<std::string>& texts) {
 
 Json value_json(const Kind& kind, const Value& value) {
   if (std::holds_alternative<Anything>(kind)) return anything_json(std::get<std::vector<std::string>>(value));
-  if (std::holds_alternative<Whole>(kind)) return static_cast<std::int64_t>(std::get<double>(value));
+  if (std::holds_alternative<Integer>(kind)) return static_cast<std::int64_t>(std::get<double>(value));
   return to_json(value);
 }
 
@@ -73,7 +73,7 @@ Json to_json(const Document& document) {
 std::string toml_of_json(const Format& format, const Json& json) {
   std::string keys = fmt::format("schema = {}\n", toml_text(format.id));
   std::string tables;
-  const std::vector<FormerName> names = former_names(format);
+  const std::vector<TomlRename> names = former_names(format);
   if (!json.is_object()) return keys;
   for (const auto& [name, value] : json.items()) {
     const std::string current = current_path(name, names);

@@ -56,11 +56,11 @@ Json named_json(const ByName& named) {
 Json kind_json(const Kind& kind) {
   return std::visit(
       Overloaded{[](const Number& number) {
-                   Json json = number_json(number.sane);
+                   Json json = number_json(number.plausible);
                    const Json range = number_json(number.range);
                    return json.size() > 1 ? json : range;
                  },
-                 [](const Whole& whole) { return number_json(whole.range, "integer"); },
+                 [](const Integer& whole) { return number_json(whole.range, "integer"); },
                  [](const Flag&) {
                    return Json{{"type", "boolean"}};
                  },
@@ -76,7 +76,7 @@ Json kind_json(const Kind& kind) {
                                 {{{"enum", either.words}}, {{"type", "string"}, {"pattern", ends_in(either.ending)}}}}};
                  },
                  [](const NumberOrNumbers& list) {
-                   const Json number = number_json(list.range, list.is_whole ? "integer" : "number");
+                   const Json number = number_json(list.range, list.is_integer ? "integer" : "number");
                    Json items = {{"type", "array"}, {"items", number}, {"minItems", 1}};
                    return Json{{"anyOf", {number, std::move(items)}}};
                  },
@@ -85,15 +85,15 @@ Json kind_json(const Kind& kind) {
                                 {"items", {number_json(pairs.first), number_json(pairs.second)}},
                                 {"minItems", 2},
                                 {"maxItems", 2}};
-                   return Json{{"type", "array"}, {"items", std::move(pair)}, {"minItems", pairs.least}};
+                   return Json{{"type", "array"}, {"items", std::move(pair)}, {"minItems", pairs.min_count}};
                  },
                  [](const Numbers& list) { return list_json(number_json(list.range), list.count, list.count); },
                  [](const Terms& terms) {
                    return Json{{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", terms.count}};
                  },
                  [](const NumberRows& rows) {
-                   return list_json(list_json(number_json(rows.range), rows.columns, rows.columns), rows.least,
-                                    rows.most);
+                   return list_json(list_json(number_json(rows.range), rows.columns, rows.columns), rows.min_rows,
+                                    rows.max_rows);
                  },
                  [](const Texts&) { return texts_json(); },
                  [](const TextOrTexts&) {
@@ -125,10 +125,10 @@ std::string description(std::string_view meaning, std::string_view name) {
 
 Json row_json(const Row& row) {
   Json json = {{"description", description(row.meaning, row.key)}};
-  if (const auto* const computed = std::get_if<Computed>(&row.otherwise))
+  if (const auto* const computed = std::get_if<Computed>(&row.default_spec))
     json["description"] = fmt::format("{} By default: {}.", json["description"].get<std::string>(), computed->sentence);
   json.update(kind_json(row.kind));
-  if (Json value = default_json(row.otherwise); !value.is_null()) json["default"] = std::move(value);
+  if (Json value = default_json(row.default_spec); !value.is_null()) json["default"] = std::move(value);
   return json;
 }
 
@@ -147,7 +147,7 @@ bool holds_by_default(const Condition& condition, const Table& table, std::strin
   using Is = Condition::Is;
   if (condition.is == Is::given || condition.is == Is::absent) return condition.is == Is::absent;
   const auto is_one = [&](const Row& row) {
-    const auto* const word = std::get_if<std::string_view>(&row.otherwise);
+    const auto* const word = std::get_if<std::string_view>(&row.default_spec);
     return row.key == key && word != nullptr && std::ranges::count(condition.words, *word) > 0;
   };
   const auto is_other = [&](const Row& row) { return row.key == key && !is_one(row); };
@@ -251,7 +251,7 @@ std::vector<Property> properties_of(Place& place) {
       Json forms = Json::array({kind_json(last->kind), kind_json(row.kind)});
       properties.back().json = {{"description", properties.back().json["description"]}, {"anyOf", std::move(forms)}};
     } else {
-      properties.push_back({row.key, row_json(row), std::holds_alternative<Required>(row.otherwise), row.when,
+      properties.push_back({row.key, row_json(row), std::holds_alternative<Required>(row.default_spec), row.when,
                             row.zero_is_none, row.former});
     }
     last = &row;

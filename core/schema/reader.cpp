@@ -38,7 +38,7 @@ std::string unknown_name(const Table& table, std::string_view name, bool is_tabl
         return fmt::format("unknown key at the top level; it belongs in the table [{}]", inner.name);
   std::vector<std::string_view> names = names_in(table, !is_table || table.tables.empty());
   if (is_root && !is_table) names.insert(names.begin(), kId);
-  const std::string_view meant = closest(name, names);
+  const std::string_view meant = closest_match(name, names);
   return fmt::format("unknown {}{} (allowed: {})", is_table ? "table" : "key",
                      meant.empty() ? "" : fmt::format(", did you mean {}?", in_quotes(meant)), fmt::join(names, ", "));
 }
@@ -106,13 +106,13 @@ Value number_of(std::optional<double> given) {
 }
 
 Value word_of(const Word& kind, std::string_view key, TomlTable& source) {
-  const auto index = source.choice(key, kind.words, kind.or_else);
+  const auto index = source.choice(key, kind.words, kind.further_allowed);
   return index ? Value(std::string(kind.words[*index])) : Value();
 }
 
 Value number_or_numbers(const NumberOrNumbers& kind, std::string_view key, TomlTable& source) {
   std::vector<double> numbers = *source.number_or_numbers(key, kind.range);
-  const auto is_broken = [&](double number) { return kind.is_whole && number != std::floor(number); };
+  const auto is_broken = [&](double number) { return kind.is_integer && number != std::floor(number); };
   if (const auto broken = std::ranges::find_if(numbers, is_broken); broken != numbers.end())
     source.fail(key, fmt::format("must be {}, got {}", allowed(kind), shortest(*broken)));
   return source.shape_of(key) == Shape::list ? Value(std::move(numbers)) : Value(numbers.front());
@@ -151,8 +151,8 @@ Value word_or_file_of(const WordOrFile& kind, std::string_view key, TomlTable& s
 std::optional<std::vector<std::vector<double>>> number_rows(const NumberRows& kind, std::string_view key,
                                                             TomlTable& source) {
   auto rows = source.number_rows(key, kind.columns, kind.range);
-  if (rows && (rows->size() < kind.least || rows->size() > kind.most))
-    source.fail(key, fmt::format("must be {} to {} {}, got {}", kind.least, kind.most, kind.what, rows->size()));
+  if (rows && (rows->size() < kind.min_rows || rows->size() > kind.max_rows))
+    source.fail(key, fmt::format("must be {} to {} {}, got {}", kind.min_rows, kind.max_rows, kind.what, rows->size()));
   return rows;
 }
 
@@ -207,9 +207,9 @@ Value given(const Kind& kind, std::string_view key, TomlTable& source) {
       Overloaded{
           [&](const Number& number) {
             source.number(key, number.range);
-            return value_of(source.number(key, number.sane));
+            return value_of(source.number(key, number.plausible));
           },
-          [&](const Whole& whole) { return number_of(source.whole(key, whole.range)); },
+          [&](const Integer& whole) { return number_of(source.integer(key, whole.range)); },
           [&](const Flag&) { return value_of(source.flag(key)); },
           [&](const Word& word) { return word_of(word, key, source); },
           [&](const Text&) { return value_of(source.text(key)); }, [&](const File&) { return file_of(key, source); },
@@ -305,14 +305,14 @@ class Values {
       if (row.key != key) continue;
       const bool holds = document_.holds(row.when, around);
       if (!holds && refused == nullptr) refused = &row;
-      if (holds && (served == nullptr || takes(row.kind, form))) served = &row;
+      if (holds && (served == nullptr || accepts(row.kind, form))) served = &row;
     }
     if (served == nullptr) {
       if (document_.has(path)) refuse(path, *refused, source);
     } else if (document_.has(path)) {
       check_word(table, *served, path, source);
       document_.set(path, given(served->kind, key, source), document_.where(path), source.position(key).source);
-    } else if (std::holds_alternative<Required>(served->otherwise)) {
+    } else if (std::holds_alternative<Required>(served->default_spec)) {
       document_.fail(path, "missing, must be " + allowed(served->kind));
     }
   }
@@ -387,12 +387,12 @@ bool has_key_or_table(const Table& root, std::string_view path) {
 }
 
 void add_former_words(const Word& word, const std::string& table, std::string_view key,
-                      std::vector<FormerName>& names) {
+                      std::vector<TomlRename>& names) {
   for (const FormerWord& each : word.former)
     names.push_back({table, std::string(each.former), std::string(each.current), true, std::string(key)});
 }
 
-void add_former_names(const Table& table, const std::string& path, std::vector<FormerName>& names) {
+void add_former_names(const Table& table, const std::string& path, std::vector<TomlRename>& names) {
   for (const Row& row : table.rows) {
     if (!row.former.empty()) names.push_back({path, std::string(row.former), std::string(row.key)});
     if (const Word* const word = std::get_if<Word>(&row.kind)) add_former_words(*word, path, row.key, names);
@@ -408,7 +408,7 @@ void add_former_names(const Table& table, const std::string& path, std::vector<F
 
 /// Checks overrides of the form KEY=, which remove a key. KEY must be a key of the format, but need not be in the file.
 /// \throw InputError for the first override with an unknown key
-void check_unset_keys(const Format& format, std::span<const std::string> overrides, std::span<const FormerName> names) {
+void check_unset_keys(const Format& format, std::span<const std::string> overrides, std::span<const TomlRename> names) {
   for (const std::string& each : overrides)
     if (const auto key = unset_key(each); key && !has_key_or_table(format.root, current_path(*key, names)))
       throw InputError({"--set " + printable(each), 0, ""}, complaint_about_key(format, *key));
@@ -424,10 +424,10 @@ TomlTable checked_root(const Format& format, TomlTable root) {
 }  // namespace
 
 Document read_document(const Format& format, std::string_view text, const std::string& source_name,
-                       std::size_t most_bytes, std::span<const std::string> overrides) {
-  const std::vector<FormerName> names = former_names(format);
+                       std::size_t max_bytes, std::span<const std::string> overrides) {
+  const std::vector<TomlRename> names = former_names(format);
   check_unset_keys(format, overrides, names);
-  const TomlTable root = checked_root(format, parse_toml(text, source_name, most_bytes, overrides, names));
+  const TomlTable root = checked_root(format, parse_toml(text, source_name, max_bytes, overrides, names));
   Document document(format.root, root.where(), std::filesystem::path(source_name).parent_path());
   Names(document).take(format.root, root, "");
   Values(document).read(format.root, root, "");
@@ -439,14 +439,14 @@ Document read_document(const Format& format, std::string_view text, const std::s
 Document with(const Format& format, const Document& document, std::span<const std::string> overrides) {
   std::vector<std::string> all = document.origin().overrides;
   all.insert(all.end(), overrides.begin(), overrides.end());
-  return read_document(format, document.origin().text, document.source(), kMostTextBytes, all);
+  return read_document(format, document.origin().text, document.source(), kMaxTextBytes, all);
 }
 
 Document unchecked_names(const Format& format, std::string_view text, const std::string& source_name,
-                         std::size_t most_bytes, std::span<const std::string> overrides) {
+                         std::size_t max_bytes, std::span<const std::string> overrides) {
   Document document(format.root, {source_name, 0, ""}, std::filesystem::path(source_name).parent_path());
   try {
-    Names(document).take(format.root, parse_toml(text, source_name, most_bytes, overrides, former_names(format)), "");
+    Names(document).take(format.root, parse_toml(text, source_name, max_bytes, overrides, former_names(format)), "");
   } catch (const Error&) {  // the error is ignored here, because read_document() reports it
   }
   return document;
@@ -544,11 +544,11 @@ Warnings renamed_keys(const Document& document) {
   return warnings;
 }
 
-std::vector<FormerName> former_names(const Format& format) {
-  std::vector<FormerName> names;
+std::vector<TomlRename> former_names(const Format& format) {
+  std::vector<TomlRename> names;
   add_former_names(format.root, "", names);
   // The rows of one key have the same former name, so the list may contain equal entries, which are next to each other.
-  const auto repeated = std::ranges::unique(names, [](const FormerName& a, const FormerName& b) {
+  const auto repeated = std::ranges::unique(names, [](const TomlRename& a, const TomlRename& b) {
     return a.table == b.table && a.former == b.former && a.key == b.key;
   });
   names.erase(repeated.begin(), repeated.end());
@@ -570,14 +570,14 @@ std::vector<std::string> keys_of(const Format& format) {
 bool is_number_key(const Format& format, std::string_view path) {
   const auto [around, name] = split_path(path);
   const Table* const table = table_at(format.root, around);
-  const auto is_it = [key = name](const Row& row) { return row.key == key && takes(row.kind, Form::number); };
+  const auto is_it = [key = name](const Row& row) { return row.key == key && accepts(row.kind, Form::number); };
   return table != nullptr && std::ranges::any_of(table->rows, is_it);
 }
 
 std::string complaint_about_key(const Format& format, std::string_view path) {
   const std::vector<std::string> keys = keys_of(format);
   if (std::ranges::count(keys, path) > 0) return {};
-  const std::string_view meant = closest(path, std::vector<std::string_view>(keys.begin(), keys.end()));
+  const std::string_view meant = closest_match(path, std::vector<std::string_view>(keys.begin(), keys.end()));
   return fmt::format("{} is not a key of a {}{}", in_quotes(path), format.name,
                      meant.empty() ? "" : fmt::format(", did you mean {}?", in_quotes(meant)));
 }

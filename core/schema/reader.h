@@ -17,12 +17,12 @@ namespace retrace::schema {
 /// Reads a document and checks it against the format. Every key must be known, must have an allowed value, and must be
 /// meaningful together with the other keys.
 /// \param source_name name of the file in messages; file names in the document are relative to the folder of this file
-/// \param most_bytes maximum length of the text in bytes
+/// \param max_bytes maximum length of the text in bytes
 /// \param overrides texts of the form KEY=VALUE, which set a key, or KEY=, which remove a key
 /// \throw InputError with file, line and key if a value is not allowed; also if the text is not TOML or is longer than
-/// `most_bytes`
+/// `max_bytes`
 Document read_document(const Format& format, std::string_view text, const std::string& source_name,
-                       std::size_t most_bytes = kMostTextBytes, std::span<const std::string> overrides = {});
+                       std::size_t max_bytes = kMaxTextBytes, std::span<const std::string> overrides = {});
 
 /// Reads the text of a document again, with further overrides, and checks the result like read_document().
 /// \throw InputError
@@ -31,7 +31,7 @@ Document with(const Format& format, const Document& document, std::span<const st
 /// Reads a document that may be invalid, without checks of its values. Returns the keys that can be read, with the
 /// values of keys whose value is a text. The result is used to find the files that the document refers to.
 Document unchecked_names(const Format& format, std::string_view text, const std::string& source_name,
-                         std::size_t most_bytes, std::span<const std::string> overrides);
+                         std::size_t max_bytes, std::span<const std::string> overrides);
 
 /// Returns a warning for each key that has no effect because another key takes precedence over it. Keys with their
 /// default value cause no warning.
@@ -40,7 +40,7 @@ Warnings superseded_keys(const Document& document);
 Warnings renamed_keys(const Document& document);
 
 /// Returns the former names of all tables, keys and words of a format, in the order that parse_toml() requires.
-std::vector<FormerName> former_names(const Format& format);
+std::vector<TomlRename> former_names(const Format& format);
 
 /// Reads a document and stores its values in an object.
 /// \param object object of the root table of the format

@@ -40,15 +40,15 @@ std::string_view unit_of(std::string_view name) {
 std::string allowed(const Kind& kind) {
   return std::visit(
       Overloaded{[](const Number& number) { return number.range.text(); },
-                 [](const Whole& whole) { return "a whole number " + whole.range.text(); },
+                 [](const Integer& whole) { return "a whole number " + whole.range.text(); },
                  [](const Flag&) { return std::string("true or false"); },
-                 [](const Word& word) { return alternatives(word.words) + std::string(word.or_else); },
+                 [](const Word& word) { return alternatives(word.words) + std::string(word.further_allowed); },
                  [](const Text& text) { return std::string(text.what); },
                  [](const File& file) { return fmt::format("the name of {}", file.what); },
                  [](const WordOrFile& either) { return std::string(either.allowed); },
                  [](const NumberOrNumbers& list) {
-                   return std::string(list.is_whole ? "a whole number or a list of them"
-                                                    : "a number or a list of numbers");
+                   return std::string(list.is_integer ? "a whole number or a list of them"
+                                                      : "a number or a list of numbers");
                  },
                  [](const Numbers& numbers) { return fmt::format("a list of {} {}", numbers.count, numbers.what); },
                  [](const Terms& terms) { return fmt::format("a list of numbers, {} for each term", terms.count); },
@@ -61,10 +61,10 @@ std::string allowed(const Kind& kind) {
       kind);
 }
 
-bool takes(const Kind& kind, Form form) {
+bool accepts(const Kind& kind, Form form) {
   return std::visit(
       Overloaded{[&](const Flag&) { return form == Form::other; }, [&](const Number&) { return form == Form::number; },
-                 [&](const Whole&) { return form == Form::number; }, [&](const Word&) { return form == Form::text; },
+                 [&](const Integer&) { return form == Form::number; }, [&](const Word&) { return form == Form::text; },
                  [&](const Text&) { return form == Form::text; }, [&](const File&) { return form == Form::text; },
                  [&](const WordOrFile&) { return form == Form::text; },
                  [&](const NumberOrNumbers&) { return form == Form::number || form == Form::list; },
@@ -80,7 +80,7 @@ Value default_value(const Row& row) {
           [](const Computed&) { return Value(); }, [](bool flag) { return Value(flag); },
           [](double number) { return Value(number); }, [](std::string_view text) { return Value(std::string(text)); },
           [](std::span<const double> numbers) { return Value(std::vector<double>(numbers.begin(), numbers.end())); }},
-      row.otherwise);
+      row.default_spec);
 }
 
 SplitPath split_path(std::string_view path) {

@@ -39,11 +39,11 @@ struct Number {
   NumberRange range;
   /// Narrower range of reasonable numbers. Numbers outside of it are also refused, because computations with them would
   /// have too few significant digits. Messages about numbers outside of `range` do not mention this range.
-  NumberRange sane = {};
+  NumberRange plausible = {};
 };
 /// An integer.
 /// \pre the bounds of the range are integers of a magnitude up to 2^53
-struct Whole {
+struct Integer {
   NumberRange range;
 };
 struct Flag {};
@@ -54,7 +54,7 @@ struct FormerWord {
 };
 struct Word {
   std::span<const std::string_view> words;
-  std::string_view or_else = {};  ///< text in messages for other allowed values: " or a list of four numbers"
+  std::string_view further_allowed = {};  ///< text in messages for other allowed values: " or a list of four numbers"
   std::span<const FormerWord> former = {};
 };
 struct Text {
@@ -73,16 +73,17 @@ struct WordOrFile {
 /// A number, or a list of one or more numbers.
 struct NumberOrNumbers {
   NumberRange range;
-  bool is_whole = false;                                       ///< true if all numbers must be integers
-  std::size_t most = std::numeric_limits<std::size_t>::max();  ///< maximum length of the list; only used for requests
-  bool may_be_empty = false;  ///< true if the list may be empty; only used for requests
+  bool is_integer = false;  ///< true if all numbers must be integers
+  std::size_t max_count =
+      std::numeric_limits<std::size_t>::max();  ///< maximum length of the list; only used for requests
+  bool may_be_empty = false;                    ///< true if the list may be empty; only used for requests
 };
 /// A list of exactly `count` numbers.
 struct Numbers {
   std::size_t count;
   NumberRange range;
   std::string_view what = "numbers";  ///< text for the numbers in messages
-  bool is_whole = false;              ///< true if all numbers must be integers; only used for requests
+  bool is_integer = false;            ///< true if all numbers must be integers; only used for requests
 };
 /// A list of one or more terms, each of which consists of `count` numbers.
 struct Terms {
@@ -92,8 +93,8 @@ struct Terms {
 struct NumberRows {
   std::size_t columns;
   NumberRange range;
-  std::size_t least;      ///< minimum number of rows
-  std::size_t most;       ///< maximum number of rows
+  std::size_t min_rows;   ///< minimum number of rows
+  std::size_t max_rows;   ///< maximum number of rows
   std::string_view what;  ///< text for the rows in messages, such as "points"
 };
 /// A list of one or more pairs of numbers.
@@ -102,7 +103,7 @@ struct Pairs {
   NumberRange second;
   std::string_view shape;  ///< text for a pair in messages, such as "[wavelength_nm, power]"
   /// Minimum number of pairs for the JSON Schema; the code that reads the format has its own check.
-  std::size_t least = 1;
+  std::size_t min_count = 1;
 };
 /// A list of one or more texts.
 struct Texts {};
@@ -118,13 +119,13 @@ struct ByName {
   std::span<const std::string_view> names = {};  ///< required names; if empty, the author of the file chooses the names
   std::string_view what = "a table";             ///< text for the allowed values in messages
 };
-using Kind = std::variant<Number, Whole, Flag, Word, Text, File, WordOrFile, NumberOrNumbers, Numbers, Terms,
+using Kind = std::variant<Number, Integer, Flag, Word, Text, File, WordOrFile, NumberOrNumbers, Numbers, Terms,
                           NumberRows, Pairs, Texts, TextOrTexts, Anything, ByName>;
 
 /// TOML type of a value. If a key has several rows, the type can determine the row that applies.
 enum class Form { other, number, text, list, table };
 /// Returns true if a value of the type `form` can be of the kind `kind`.
-bool takes(const Kind& kind, Form form);
+bool accepts(const Kind& kind, Form form);
 
 /// Marks a key that must be given.
 struct Required {};
@@ -157,7 +158,7 @@ using When = std::span<const Condition>;
 struct Row {
   constexpr Row(std::string_view of_key, Kind of_kind, Default by_default, std::string_view sentence, Access by = {},
                 When only_when = {})
-      : key(of_key), kind(of_kind), otherwise(by_default), meaning(sentence), access(by), when(only_when) {}
+      : key(of_key), kind(of_kind), default_spec(by_default), meaning(sentence), access(by), when(only_when) {}
   constexpr Row(std::string_view of_key, Kind of_kind, Default by_default, std::string_view sentence, When only_when,
                 bool may_be_zero = false)
       : Row(of_key, of_kind, by_default, sentence, Access{}, only_when) {
@@ -166,7 +167,7 @@ struct Row {
 
   std::string_view key;
   Kind kind;
-  Default otherwise;
+  Default default_spec;
   std::string_view meaning;  ///< description for the documentation, one sentence
   Access access;
   When when;
@@ -239,8 +240,8 @@ struct Table {
   Child child = {};
   Presence presence = Presence::always;
   Layout layout = Layout::headed;
-  std::string_view shape = {};          ///< text for the required type in messages; empty: "a table" or "tables"
-  std::string_view otherwise = "none";  ///< text for the default of an optional table in the documentation
+  std::string_view shape = {};             ///< text for the required type in messages; empty: "a table" or "tables"
+  std::string_view default_text = "none";  ///< text for the default of an optional table in the documentation
   When when = {};
   bool is_open = false;          ///< true if unknown keys are allowed, because another reader checks them
   std::string_view former = {};  ///< name of the table in former versions of the format, or empty

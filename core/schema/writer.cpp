@@ -113,7 +113,7 @@ class Writer {
 /// empty text or list also counts as no value.
 bool is_left_out(const Row& row, const Value& value) {
   if (value.index() == 0) return true;
-  if (!std::holds_alternative<None>(row.otherwise)) return false;
+  if (!std::holds_alternative<None>(row.default_spec)) return false;
   const auto* const text = std::get_if<std::string>(&value);
   const auto* const texts = std::get_if<std::vector<std::string>>(&value);
   return (text != nullptr && text->empty()) || (texts != nullptr && texts->empty());

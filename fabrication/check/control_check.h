@@ -11,8 +11,8 @@
 #include "fabrication/check/findings.h"
 #include "fabrication/machine/machine.h"
 #include "fabrication/read/nc_motion.h"
-#include "fabrication/read/nc_needs.h"
 #include "fabrication/read/nc_program.h"
+#include "fabrication/read/required_settings.h"
 
 namespace retrace::fabrication {
 
@@ -22,11 +22,11 @@ double rounding_slack(const NcMotion& motion, char axis);
 
 /// State of the spindle that is required while the tool cuts.
 struct SpindleRule {
-  NcSpindle turns = NcSpindle::stopped;
+  NcSpindle state = NcSpindle::stopped;
   /// Required speed; not checked if the spindle is started by a program line that the machine file defines.
   double rpm = 0.0;
 
-  bool is_by_text() const { return turns == NcSpindle::started_by_text; }
+  bool is_by_text() const { return state == NcSpindle::started_by_text; }
 };
 
 /// Requirements of a process on its programs.
@@ -35,7 +35,7 @@ struct ControlRule {
   bool needs_mist = false;  ///< true: the mist must be on during cuts
   bool may_blend = false;   ///< true: blocks need no exact stop
   /// Maximum total time, in s, of consecutive dwells at one position in the material.
-  double most_rest_s = std::numeric_limits<double>::infinity();
+  double max_dwell_s = std::numeric_limits<double>::infinity();
   /// Set of axes, one bit for each axis of kNcAxisLetters (bit 0: the first axis). The positions of these axes must be
   /// known before Z goes below `safe_z_mm`.
   std::uint8_t axes = 0b111;
@@ -55,21 +55,21 @@ class ControlCheck {
   void begin(const NcProgram& program);
   /// Checks a move. Before the first move, the program must contain all required settings, and the first move must move
   /// only Z.
-  void way(const NcSettings& settings, const NcMotion& motion);
+  void move(const NcSettings& settings, const NcMotion& motion);
   /// Checks exact stop, spindle and mist during a move in the material.
-  void cut(const NcSettings& settings, const NcPlace& place);
+  void cut(const NcSettings& settings, const NcLocation& place);
   /// Checks the settings after a block without motion.
   /// \param is_in_material true if the tool is in the material
-  void state(const NcSettings& settings, const NcPlace& place, bool is_in_material);
+  void state(const NcSettings& settings, const NcLocation& place, bool is_in_material);
   /// Checks that a dwell in the material is not too long.
   /// \param seconds duration; infinite if the program waits for the operator
-  void rest(double seconds, const NcPlace& place);
+  void dwell(double seconds, const NcLocation& place);
   /// Checks a stop at which the program waits for the operator. The tool must be at the safe height, the rotary axes
   /// must be at 0, and mist and spindle must be off. The rest of the program is then checked like a new program.
-  void stop(const NcSettings& settings, const AxisPositions& at, const NcPlace& place);
+  void stop(const NcSettings& settings, const AxisPositions& at, const NcLocation& place);
   /// Returns the axes whose position was given since the start of the program or the last stop, as one bit for each
   /// axis of kNcAxisLetters.
-  std::uint8_t known() const { return known_; }
+  std::uint8_t known_axes() const { return known_axes_; }
   void spindle_at_end(const NcEnd& end);
   /// Checks that the machine has the axes that move, and that the axes stay within their limits, have a feed and do not
   /// exceed their speeds.
@@ -80,18 +80,18 @@ class ControlCheck {
 
  private:
   void first_move(const NcSettings& settings, const NcMotion& motion);
-  bool is_within_turn(const LimitExcess& excess) const;
+  bool is_within_full_turn(const LimitExcess& excess) const;
   bool is_too_fast(double speed, double limit, const NcMotion& motion) const;
   void axis_speeds(const Machine& machine, const NcMotion& motion);
-  void has_feed(const NcMotion& motion);
-  void words_of_axes(const NcMotion& motion);
-  void refuse_option(const NcSettings& settings, const NcPlace& place, bool is_there, const NcNeed& option);
-  void spindle(const NcSettings& settings, const NcPlace& place);
+  void require_feed(const NcMotion& motion);
+  void axis_words(const NcMotion& motion);
+  void refuse_option(const NcSettings& settings, const NcLocation& place, bool is_there, const RequiredSetting& option);
+  void spindle(const NcSettings& settings, const NcLocation& place);
   /// Records whether a modal setting is correct now.
   /// \param kind name of the setting
   /// \param holds true if the setting is correct now
   /// \return true if the setting was correct before this call and is wrong now
-  bool turns_wrong(const std::string& kind, bool holds);
+  bool becomes_wrong(const std::string& kind, bool holds);
 
   FindingList& findings_;
   ControlRule rule_;
@@ -100,8 +100,8 @@ class ControlCheck {
   bool has_moved_ = false;  ///< true if an axis has moved since the start of the program or the last stop
   /// Axes whose position was given since the start of the program or the last stop, as one bit for each axis of
   /// kNcAxisLetters.
-  std::uint8_t known_ = 0;
-  double rested_s_ = 0.0;        ///< total dwell time in the material since the last move
+  std::uint8_t known_axes_ = 0;
+  double dwelled_s_ = 0.0;       ///< total dwell time in the material since the last move
   double z_slack_mm_ = 0.0;      ///< tolerance for the rounding of the last Z word
   std::set<std::string> wrong_;  ///< modal settings that are wrong at present
 };

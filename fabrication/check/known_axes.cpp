@@ -15,12 +15,12 @@ char letter_of(std::uint8_t axes) {
 
 void KnownAxes::motion(const NcMotion& motion) {
   if (const auto foreign = static_cast<std::uint8_t>(motion.moved & ~axes_); foreign != 0)
-    findings_.add("axis_unknown", motion.place.line, fmt::format("the machine has no axis {}", letter_of(foreign)));
+    findings_.add("axis_unknown", motion.location.line, fmt::format("the machine has no axis {}", letter_of(foreign)));
   const auto known = static_cast<std::uint8_t>(motion.known & axes_);
   const auto missing = static_cast<std::uint8_t>(axes_ & ~known);
   const bool only_says_where = (motion.moved & known) == 0 && motion.move == NcMove::rapid;
   if (missing != 0 && !only_says_where)
-    findings_.add("unknown_position", motion.place.line,
+    findings_.add("unknown_position", motion.location.line,
                   fmt::format("the tool moves before the program gives a position of {}", letter_of(missing)));
 }
 

@@ -32,9 +32,9 @@ void check_tilt(const Job& job, const Machine& machine) {
 /// Checks that the depths of cut are large compared to the increments of the control. Otherwise, rounded positions
 /// change the chip thickness too much.
 void check_increments(const Job& job, const Machine& machine) {
-  constexpr double kLeastDiagonals = 10.0;
+  constexpr double kMinDiagonals = 10.0;
   const double step_um = 1e-3 * static_cast<double>(machine.increments.linear_nm);
-  const double least_um = kLeastDiagonals * std::numbers::sqrt3 * step_um;
+  const double least_um = kMinDiagonals * std::numbers::sqrt3 * step_um;
   const auto check = [&](const char* key, double depth_um) {
     if (depth_um < least_um)
       throw InputError(

@@ -15,7 +15,7 @@ namespace retrace::fabrication {
 /// Minimum cosine of the angle between a facet and the plane that the edge sweeps in a cut along this facet. It is
 /// about the cosine of 10 degrees. The exact value is not critical: errors of machine axes are only arc minutes, and
 /// facets are at least 60 degrees apart.
-inline constexpr double kAlongFacet = 0.985;
+inline constexpr double kMinCosAlongFacet = 0.985;
 
 /// Checks that a machine can cut a job.
 /// \throw InputError naming file, line and key if the wrong axis tilts, or a feed exceeds the limits of the axes. It is

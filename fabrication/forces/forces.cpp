@@ -172,11 +172,11 @@ std::vector<ForceSample> force_profile(const ForceModel& model, const CutConditi
 
 Warnings force_warnings(const ForceModel& model, const CutConditions& cut) {
   Warnings warnings;
-  if (cut.depth_of_cut_um < kLeastLinearDepthUm)
+  if (cut.depth_of_cut_um < kMinLinearDepthUm)
     warnings.push_back(
         {"depth_below_linear_law", fmt::format("a depth of cut of {} um is below {} um, where the linear force law has "
                                                "not been confirmed by measurements",
-                                               shortest(cut.depth_of_cut_um), shortest(kLeastLinearDepthUm))});
+                                               shortest(cut.depth_of_cut_um), shortest(kMinLinearDepthUm))});
   if (cut.depth_of_cut_um > model.calibrated_to_um)
     warnings.push_back(
         {"depth_beyond_calibration",

@@ -112,6 +112,6 @@ std::vector<ForceSample> force_profile(const ForceModel& model, const CutConditi
 Warnings force_warnings(const ForceModel& model, const CutConditions& cut);
 
 /// Minimum depth of cut, in um, for which measurements confirm the linear model.
-inline constexpr double kLeastLinearDepthUm = 5.0;
+inline constexpr double kMinLinearDepthUm = 5.0;
 
 }  // namespace retrace::fabrication

@@ -109,7 +109,7 @@ std::vector<CutElement> cut_flat(const Job& job) {
 std::vector<CutElement> cut_elements(const Job& job) {
   if (job.substrate) return elements_on_substrate(job);
   std::vector<CutElement> elements = job.zones.empty() ? cut_flat(job) : elements_of_zones(job);
-  for (CutElement& element : elements) element.foot_mm = {element.centre_mm.x(), element.centre_mm.y(), 0.0};
+  for (CutElement& element : elements) element.origin_mm = {element.centre_mm.x(), element.centre_mm.y(), 0.0};
   return elements;
 }
 

@@ -80,7 +80,7 @@ struct Tool {
 inline constexpr double kDmcWedgeDeg = 65.0;
 
 /// Minimum feed. Programs contain feeds with three decimals, so that a smaller feed would be rounded to F0.000.
-inline constexpr double kLeastFeedMmPerMin = 5e-4;
+inline constexpr double kMinFeedMmPerMin = 5e-4;
 
 /// Cutting process: depths of cut, feeds, and optional recommendations of Milliken 2017 (the thesis), which are off by
 /// default.
@@ -103,7 +103,7 @@ struct Process {
   double slow_retract_um = 0.0;
   bool mist = true;                      ///< true: mist during cuts, which removes chips and cools the edge
   double rotary_clearance_mm = 5.0;      ///< clearance above the rotating blank during rotary moves
-  std::optional<double> least_chip_um;   ///< minimum chip thickness, below which the edge rubs; no limit if empty
+  std::optional<double> min_chip_um;     ///< minimum chip thickness, below which the edge rubs; no limit if empty
   std::optional<double> stop_every_min;  ///< maximum run time of a program without a stop; no limit if empty
   bool stop_before_finishing = false;    ///< true: every element is inspected between roughing and finishing
   /// Measured areal roughness Sa of facets after each kind of motion. Source: Milliken 2017 and Hamilton et al. 2017.
@@ -161,9 +161,9 @@ struct CutElement {
   std::int32_t row = 0;     ///< row index, from 0 at y = 0
   std::int32_t column = 0;  ///< column index, from 0 at x = 0
   bool rotated = false;  ///< true: rotated about z, a prism by 90 degrees (roof edge along y_w), a cube corner by 180
-  geometry::Vec3 foot_mm = geometry::Vec3::Zero();  ///< point of the blank's face above the root's centre or the apex
+  geometry::Vec3 origin_mm = geometry::Vec3::Zero();  ///< point of the blank's face above the root's centre or the apex
   /// Rotation from an element on a flat blank to this element. Its third column is the element's axis.
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d workpiece_from_element = Eigen::Matrix3d::Identity();
   /// Number of the orientation. Elements with equal `turn` have equal numbers. In a job with zones, all elements of a
   /// zone have the same number.
   std::int32_t orientation = 0;

@@ -97,19 +97,19 @@ std::vector<CutElement> elements_on_substrate(const Job& job) {
   const double scale = blank_scale(job.workpiece);
   Orientations orientations;
   std::vector<CutElement> elements;
-  for (const geometry::PlacedElement& at : geometry::place(part_on_substrate(job))) {
-    if (at.standing != geometry::Standing::whole) continue;
+  for (const geometry::PlacedElement& at : geometry::place_elements(part_on_substrate(job))) {
+    if (at.border_relation != geometry::BorderRelation::inside) continue;
     CutElement& element = elements.emplace_back();
     element.centre_mm = scale * Vec2(at.on_sheet.centre_mm.y(), -at.on_sheet.centre_mm.x());
     element.row = at.on_sheet.row;
     element.column = at.on_sheet.column;
     element.rotated = at.on_sheet.is_rotated;
-    element.foot_mm = scale * in_workpiece(at.frame.origin);
+    element.origin_mm = scale * in_workpiece(at.frame.origin);
     // x_w is y of the part, and y_w is -x of the part.
-    element.turn.col(0) = in_workpiece(at.frame.along_v);
-    element.turn.col(1) = -in_workpiece(at.frame.along_u);
-    element.turn.col(2) = in_workpiece(at.frame.normal);
-    element.orientation = orientations.number_of(element.turn);
+    element.workpiece_from_element.col(0) = in_workpiece(at.frame.along_v);
+    element.workpiece_from_element.col(1) = -in_workpiece(at.frame.along_u);
+    element.workpiece_from_element.col(2) = in_workpiece(at.frame.normal);
+    element.orientation = orientations.number_of(element.workpiece_from_element);
   }
   return elements;
 }
@@ -119,31 +119,31 @@ double stock_mm(const Job& job, const std::vector<CutElement>& elements, double 
   const BlankFace face(job);
   const geometry::Element element = blank_element(job);
   const std::array<Opening, 2> openings = {opening_of(element, false), opening_of(element, true)};
-  constexpr int kMostRounds = 60;
-  constexpr double kMostDepths = 3.0;
+  constexpr int kMaxRounds = 60;
+  constexpr double kMaxDepths = 3.0;
   constexpr double kSettledMm = 1e-8;
   double stock = 0.0;
   for (const CutElement& cut : elements) {
     const Opening& opening = openings[cut.rotated ? 1 : 0];
     // The higher the face, the wider the opening. At the border of a wider opening, the face may be higher still.
     // Iterate until the height is constant.
-    for (int round = 0; round < kMostRounds; ++round) {
+    for (int round = 0; round < kMaxRounds; ++round) {
       double highest = stock;
       for (std::size_t k = 0; k < opening.grows.size(); ++k) {
         const Vec2 at = (opening.depth_mm + stock + clearance_mm) * opening.grows[k] + opening.stays[k];
-        const Vec3 p = cut.foot_mm + cut.turn * Vec3(at.x(), at.y(), 0.0);
+        const Vec3 p = cut.origin_mm + cut.workpiece_from_element * Vec3(at.x(), at.y(), 0.0);
         // Height of the blank's face above this point, along the axis of the element.
-        const BlankFace::Place under = face.under(p);
-        const double rise = std::max(under.normal.dot(cut.turn.col(2)), 0.05);
+        const BlankFace::Projection under = face.projection_of(p);
+        const double rise = std::max(under.normal.dot(cut.workpiece_from_element.col(2)), 0.05);
         highest = std::max(highest, (clearance_mm - under.height_mm) / rise - clearance_mm);
       }
       const double more = highest - stock;
       stock = highest;
-      if (stock > kMostDepths * opening.depth_mm || round + 1 == kMostRounds)
+      if (stock > kMaxDepths * opening.depth_mm || round + 1 == kMaxRounds)
         throw InputError(
             fmt::format("is too steep for the tool to leave its cuts: next to the element at x = {}, y = {} mm of the "
                         "blank, the substrate is more than {} element depths above the rims",
-                        fixed(cut.foot_mm.x(), 4), fixed(cut.foot_mm.y(), 4), shortest(kMostDepths)));
+                        fixed(cut.origin_mm.x(), 4), fixed(cut.origin_mm.y(), 4), shortest(kMaxDepths)));
       if (more <= kSettledMm) break;
     }
   }
@@ -193,7 +193,7 @@ geometry::Jet BlankFace::jet_at(const Vec3& p) const {
   return jet;
 }
 
-BlankFace::Place BlankFace::under(const Vec3& p) const {
+BlankFace::Projection BlankFace::projection_of(const Vec3& p) const {
   if (!surface_) return {p.z(), Vec3::UnitZ()};
   const geometry::Jet jet = jet_at(p);
   const Vec3 normal = in_workpiece(Vec3(-jet.x, -jet.y, 1.0).normalized());

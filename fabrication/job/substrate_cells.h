@@ -38,15 +38,15 @@ class BlankFace {
  public:
   explicit BlankFace(const Job& job);
 
-  struct Place {
+  struct Projection {
     double height_mm = 0.0;
     geometry::Vec3 normal = geometry::Vec3::UnitZ();
   };
   /// Returns the normal of the face next to a point of the workpiece frame, and the height of the point above the face.
   /// The height is negative inside the blank. Outside of the part, the face is continued along its tangent.
-  Place under(const geometry::Vec3& p) const;
-  double height_mm(const geometry::Vec3& p) const { return under(p).height_mm; }
-  geometry::Vec3 normal_at(const geometry::Vec3& p) const { return under(p).normal; }
+  Projection projection_of(const geometry::Vec3& p) const;
+  double height_mm(const geometry::Vec3& p) const { return projection_of(p).height_mm; }
+  geometry::Vec3 normal_at(const geometry::Vec3& p) const { return projection_of(p).normal; }
   bool is_flat() const { return !surface_.has_value(); }
 
  private:

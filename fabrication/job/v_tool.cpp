@@ -83,13 +83,13 @@ void check_v_tool(const geometry::Element& element, const geometry::AngleErrors&
     refuse("tool.wedge_deg", fmt::format("is too small: with this nose_angle_deg and clearance_deg, the cuts of the "
                                          "three facets leave a peak between them, got {}",
                                          shortest(tool.wedge_deg)));
-  constexpr double kMostRadiusShare = 0.1;
+  constexpr double kMaxRadiusFraction = 0.1;
   const double aperture_mm = geometry::bounding_box(geometry::element_cell(element).outline).upper.x() * 2.0;
-  if (1e-3 * tool.edge_radius_um > kMostRadiusShare * aperture_mm)
+  if (1e-3 * tool.edge_radius_um > kMaxRadiusFraction * aperture_mm)
     refuse("tool.edge_radius_um",
            fmt::format("must be <= {}, a tenth of the element's aperture: the element is smaller than the "
                        "tool's nose, got {}",
-                       fixed_apart(1e3 * kMostRadiusShare * aperture_mm, tool.edge_radius_um, 3),
+                       fixed_apart(1e3 * kMaxRadiusFraction * aperture_mm, tool.edge_radius_um, 3),
                        shortest(tool.edge_radius_um)));
   // While the tip is in the apex, the ends of the cutting edges must be above the face of the blank.
   const double least_mm = std::numbers::sqrt2 * edge_mm * std::tan(rad(0.5 * tool.nose_angle_deg));

@@ -113,7 +113,7 @@ std::vector<CutElement> elements_of_zones(const Job& job) {
       CutElement& element = elements.emplace_back();
       const Vec2 from_middle = apex - middle_mm;
       element.centre_mm = scale * Vec2(from_middle.y(), -from_middle.x());
-      element.turn = turn;
+      element.workpiece_from_element = turn;
       element.zone = z;
       element.orientation = static_cast<std::int32_t>(z);
       const Vec2 back = turn.topLeftCorner<2, 2>().transpose() * from_middle;
@@ -133,7 +133,7 @@ std::vector<CutElement> elements_of_zones(const Job& job) {
   return elements;
 }
 
-std::optional<ZoneMisfit> misfit_of_zones(const Job& job) {
+std::optional<ZoneError> first_zone_error(const Job& job) {
   const geometry::Rectangle part{Vec2::Zero(), {job.array.x_length_mm, job.array.y_length_mm}};
   // Tolerance for rounded positions in files, relative to the radius of an element.
   constexpr double kSameShare = 2e-5;
@@ -144,12 +144,12 @@ std::optional<ZoneMisfit> misfit_of_zones(const Job& job) {
     for (const Vec2& apex : job.zones[z].apexes_mm) {
       const Polygon outline = placed.back().outline_at(apex);
       if (!geometry::contains(part, outline, kSameShare * radius_mm))
-        return ZoneMisfit{z, place_text(apex) + " extends beyond the array's lengths"};
+        return ZoneError{z, place_text(apex) + " extends beyond the array's lengths"};
       for (std::size_t other = 0; other <= z; ++other) {
         const double near_mm = kSameShare * std::min(radius_mm, placed[other].radius_mm());
         if (const Vec2* const met = placed[other].overlapped_by(outline, apex, radius_mm, near_mm))
-          return ZoneMisfit{z, fmt::format("{} overlaps the element at x = {}, y = {} mm of zone {}", place_text(apex),
-                                           shortest(met->x()), shortest(met->y()), other + 1)};
+          return ZoneError{z, fmt::format("{} overlaps the element at x = {}, y = {} mm of zone {}", place_text(apex),
+                                          shortest(met->x()), shortest(met->y()), other + 1)};
       }
       placed.back().add(apex);
     }

@@ -16,12 +16,12 @@ namespace retrace::fabrication {
 std::vector<CutElement> elements_of_zones(const Job& job);
 
 /// Error about an element of a zone at a wrong position.
-struct ZoneMisfit {
+struct ZoneError {
   std::size_t zone = 0;  ///< index of the zone
   std::string text;      ///< error message, which begins with the position of the element
 };
 /// Returns the first element that is not completely inside the array's extent or overlaps another element. Returns
 /// nothing if all elements are placed correctly.
-std::optional<ZoneMisfit> misfit_of_zones(const Job& job);
+std::optional<ZoneError> first_zone_error(const Job& job);
 
 }  // namespace retrace::fabrication

@@ -95,7 +95,7 @@ bool is_flow_code(std::string_view text) {
 
 }  // namespace
 
-std::string unfit_line(std::string_view text) {
+std::string line_error(std::string_view text) {
   const bool is_plain = std::all_of(text.begin(), text.end(), [](char c) { return c >= ' ' && c <= '~'; });
   if (!text.empty() && text.size() <= kLongestLine && is_plain && text.front() != ' ' && text.back() != ' ' &&
       text.find("//") == std::string_view::npos)
@@ -115,7 +115,7 @@ bool is_harmless_line(std::string_view text, LineUse use, std::string_view diale
   });
 }
 
-std::string unknown_line(std::string_view text, LineUse use, std::string_view dialect) {
+std::string line_form_error(std::string_view text, LineUse use, std::string_view dialect) {
   if (is_harmless_line(text, use, dialect)) return "";
   std::vector<std::string_view> forms;
   for (const LineForm& line : kLineForms)

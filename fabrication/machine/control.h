@@ -42,7 +42,7 @@ enum class LineUse : std::uint8_t { output, stop };
 /// Checks the characters of a program line that the machine file defines for a Power PMAC or an Aerotech control.
 /// \return an empty text if the line has 1 to 200 printable ASCII characters, no // and no blanks at its ends;
 ///        otherwise an error message
-std::string unfit_line(std::string_view text);
+std::string line_error(std::string_view text);
 
 /// Returns true if a line neither moves axes nor waits. Such a line sets an output or a variable, or calls an M code of
 /// the machine builder. A line for a stop may also be M0 or M1.
@@ -50,7 +50,7 @@ std::string unfit_line(std::string_view text);
 bool is_harmless_line(std::string_view text, LineUse use, std::string_view dialect = {});
 
 /// Returns an error message with the allowed forms of a line. Returns an empty text if is_harmless_line() is true.
-std::string unknown_line(std::string_view text, LineUse use, std::string_view dialect = {});
+std::string line_form_error(std::string_view text, LineUse use, std::string_view dialect = {});
 
 /// Returns the least increments of a Fanuc increment system.
 Increments increments_of(IncrementSystem system);

@@ -8,7 +8,7 @@ namespace retrace::fabrication {
 using geometry::Vec3;
 
 Eigen::Matrix3d edge_frame(const Machine& machine) {
-  if (machine.tilt == Tilt::head) return tool_turn(machine);
+  if (machine.tilt == Tilt::head) return tool_rotation(machine);
   const Vec3 edge = edge_direction(machine);
   const Vec3 up = plunged_normal(machine).cross(edge);
   Eigen::Matrix3d frame;
@@ -18,12 +18,12 @@ Eigen::Matrix3d edge_frame(const Machine& machine) {
 
 Angle clearance_change(const Machine& machine) {
   const Eigen::Matrix3d frame = edge_frame(machine);
-  const Vec3 up = tool_turn(machine) * machine.z.direction.value;
+  const Vec3 up = tool_rotation(machine) * machine.z.direction.value;
   return Angle::from_rad(std::atan2(-frame.col(1).dot(up), frame.col(2).dot(up)));
 }
 
 Vec3 cutting_edge(const Machine& machine, Angle edge_rise) {
-  const Vec3 level = level_direction(machine);
+  const Vec3 level = horizontal_direction(machine);
   return std::cos(edge_rise.rad()) * level + std::sin(edge_rise.rad()) * level.cross(plunged_normal(machine));
 }
 

@@ -77,24 +77,24 @@ Vec3 machine_point(const Machine& machine, const AxisPositions& axes) {
 }
 
 std::array<double, 3> linear_words(const Machine& machine, const Vec3& machine_point_mm, const RotaryPose& pose) {
-  return words_along(machine, machine_point_mm - machine.mount.offset_mm.value, pose);
+  return axis_change_along(machine, machine_point_mm - machine.mount.offset_mm.value, pose);
 }
 
-std::array<double, 3> words_along(const Machine& machine, const Vec3& direction, const RotaryPose& pose) {
+std::array<double, 3> axis_change_along(const Machine& machine, const Vec3& direction, const RotaryPose& pose) {
   const Vec3 along = machine.tilt == Tilt::table ? direction : Vec3(turn(machine.a, pose.a_deg) * direction);
   const Vec3 words = linear_directions(machine).partialPivLu().solve(along);
   return {words.x(), words.y(), words.z()};
 }
 
-Eigen::Matrix3d tool_turn(const Machine& machine) {
-  const Vec3& turn_deg = machine.mount.turn_deg.value;
+Eigen::Matrix3d tool_rotation(const Machine& machine) {
+  const Vec3& turn_deg = machine.mount.rotation_deg.value;
   const double angle_deg = turn_deg.norm();
   if (angle_deg == 0.0) return Eigen::Matrix3d::Identity();
   return rotation_about(turn_deg / angle_deg, Angle::from_deg(angle_deg));
 }
 
 Vec3 edge_direction(const Machine& machine) {
-  return tool_turn(machine) * machine.x.direction.value;
+  return tool_rotation(machine) * machine.x.direction.value;
 }
 
 ToolPose forward(const Machine& machine, const AxisPositions& axes) {
@@ -111,11 +111,12 @@ AxisPositions inverse(const Machine& machine, const Vec3& reference_mm, const Ro
 
 Vec3 plunged_normal(const Machine& machine) {
   if (machine.tilt == Tilt::table) return edge_direction(machine).cross(machine.z.direction.value).normalized();
-  return tool_turn(machine) * machine.z.direction.value.cross(machine.y.direction.value).normalized();
+  return tool_rotation(machine) * machine.z.direction.value.cross(machine.y.direction.value).normalized();
 }
 
-Vec3 level_direction(const Machine& machine) {
-  return machine.tilt == Tilt::table ? edge_direction(machine) : Vec3(tool_turn(machine) * machine.y.direction.value);
+Vec3 horizontal_direction(const Machine& machine) {
+  return machine.tilt == Tilt::table ? edge_direction(machine)
+                                     : Vec3(tool_rotation(machine) * machine.y.direction.value);
 }
 
 PlungePose solve_plunge_pose(const Machine& machine, const Vec3& facet_normal, const Vec3& root,
@@ -148,7 +149,7 @@ PlungePose solve_plunge_pose(const Machine& machine, const Vec3& facet_normal, c
     const double distance = std::hypot(pose.a_deg - near.a_deg, pose.c_deg - near.c_deg);
     if (best && distance >= best_distance) continue;
     const Vec3 turned_root = machine_from_workpiece(machine, pose).direction(root);
-    best = PlungePose{pose, Angle::from_rad(angle_about(target, level_direction(machine), turned_root))};
+    best = PlungePose{pose, Angle::from_rad(angle_about(target, horizontal_direction(machine), turned_root))};
     best_distance = distance;
   }
   return *best;

@@ -67,7 +67,7 @@ struct RotaryAxis {
 };
 
 /// Part of the machine with which a body moves.
-enum class Carrier {
+enum class KinematicLink {
   workpiece,  ///< moves with the table (A and C); points are in the workpiece frame
   /// Moves with A but not with C; points are in the workpiece frame at A = 0. On a machine with a tilting head, it does
   /// not move.
@@ -78,7 +78,7 @@ enum class Carrier {
 /// Convex body of a machine, for collision checks. It is the convex hull of its points.
 struct MachineBody {
   std::string name;
-  Carrier carrier = Carrier::workpiece;
+  KinematicLink link = KinematicLink::workpiece;
   Sourced<std::vector<geometry::Vec3>> points_mm;  ///< at least four points, which are not in one plane
 };
 
@@ -90,7 +90,7 @@ struct ToolMount {
   /// Rotation vector of the mounted tool about its reference point. The tool is touched off after mounting. A rotation
   /// about X changes the clearance angle, one about Y tilts the edge from the horizontal, and one about Z rotates the
   /// edge away from X.
-  Sourced<geometry::Vec3> turn_deg = {geometry::Vec3::Zero(), Basis::assumed, "the tool is aligned"};
+  Sourced<geometry::Vec3> rotation_deg = {geometry::Vec3::Zero(), Basis::assumed, "the tool is aligned"};
 };
 
 /// Part of the machine that the tilting axis rotates.
@@ -200,10 +200,11 @@ geometry::Vec3 machine_point(const Machine& machine, const AxisPositions& axes);
 std::array<double, 3> linear_words(const Machine& machine, const geometry::Vec3& machine_point_mm,
                                    const RotaryPose& pose = {});
 /// Returns the change of the positions of X, Y and Z for a displacement in the machine frame.
-std::array<double, 3> words_along(const Machine& machine, const geometry::Vec3& direction, const RotaryPose& pose = {});
+std::array<double, 3> axis_change_along(const Machine& machine, const geometry::Vec3& direction,
+                                        const RotaryPose& pose = {});
 
 /// Returns the rotation from the nominal orientation of the tool to its orientation as mounted.
-Eigen::Matrix3d tool_turn(const Machine& machine);
+Eigen::Matrix3d tool_rotation(const Machine& machine);
 /// Returns the unit vector along a chisel's edge, in the machine frame. It is X, apart from the rotation of the mounted
 /// tool.
 geometry::Vec3 edge_direction(const Machine& machine);
@@ -214,13 +215,13 @@ geometry::Vec3 edge_direction(const Machine& machine);
 geometry::Vec3 plunged_normal(const Machine& machine);
 /// Returns the direction, in the machine frame, that the horizontal line of a facet should have during a plunge. It is
 /// the direction of the edge, or Y of the tool on a machine with a tilting head.
-geometry::Vec3 level_direction(const Machine& machine);
+geometry::Vec3 horizontal_direction(const Machine& machine);
 
 /// Rotary pose in which the tool plunges a facet.
 struct PlungePose {
   RotaryPose pose;
-  /// Remaining rotation about the facet's outward normal (right-handed), from level_direction() to the root line. Two
-  /// rotary axes can align the normal, but not the root line as well.
+  /// Remaining rotation about the facet's outward normal (right-handed), from horizontal_direction() to the root line.
+  /// Two rotary axes can align the normal, but not the root line as well.
   Angle root_tilt;
 };
 
@@ -229,7 +230,7 @@ struct PlungePose {
 /// Limits of the axes are not checked.
 /// \param facet_normal unit normal outward from the material, in the workpiece frame
 /// \param root direction of the facet's root, or of another horizontal line of the facet, which should become
-///        level_direction()
+///        horizontal_direction()
 /// \throw InputError if the machine has no such pose
 PlungePose solve_plunge_pose(const Machine& machine, const geometry::Vec3& facet_normal, const geometry::Vec3& root,
                              const RotaryPose& near);

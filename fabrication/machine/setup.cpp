@@ -33,9 +33,9 @@ constexpr SetupQuantity kOfSlides[] = {{"y_lean_x_arcsec", "Y out of square towa
 constexpr SetupQuantity kOfTool[] = {{"tool_x_um", "touch-off of the tool along X", SetupPart::tool_offset, 0},
                                      {"tool_y_um", "touch-off of the tool along Y", SetupPart::tool_offset, 1},
                                      {"tool_z_um", "touch-off of the tool along Z", SetupPart::tool_offset, 2},
-                                     {"tool_rotation_x_arcsec", "tool rotated about X", SetupPart::tool_turn, 0},
-                                     {"tool_rotation_y_arcsec", "tool rotated about Y", SetupPart::tool_turn, 1},
-                                     {"tool_rotation_z_arcsec", "tool rotated about Z", SetupPart::tool_turn, 2}};
+                                     {"tool_rotation_x_arcsec", "tool rotated about X", SetupPart::tool_rotation, 0},
+                                     {"tool_rotation_y_arcsec", "tool rotated about Y", SetupPart::tool_rotation, 1},
+                                     {"tool_rotation_z_arcsec", "tool rotated about Z", SetupPart::tool_rotation, 2}};
 
 constexpr std::size_t kQuantities = std::size(kOfC) + std::size(kOfA) + std::size(kOfSlides) + std::size(kOfTool);
 
@@ -61,9 +61,9 @@ Vec3& value_of(Machine& machine, SetupPart part) {
     case SetupPart::y_direction: return machine.y.direction.value;
     case SetupPart::z_direction: return machine.z.direction.value;
     case SetupPart::tool_offset: return machine.mount.offset_mm.value;
-    case SetupPart::tool_turn: break;
+    case SetupPart::tool_rotation: break;
   }
-  return machine.mount.turn_deg.value;
+  return machine.mount.rotation_deg.value;
 }
 
 bool is_direction(SetupPart part) {
@@ -123,7 +123,7 @@ class CutMotion {
       case SetupPart::y_direction: lean_slide(1, quantity.axis); break;
       case SetupPart::z_direction: lean_slide(2, quantity.axis); break;
       case SetupPart::tool_offset: shift_ = both_.rotation.transpose() * unit; break;
-      case SetupPart::tool_turn: turn_tool(quantity.axis); break;
+      case SetupPart::tool_rotation: turn_tool(quantity.axis); break;
     }
   }
 
@@ -204,11 +204,11 @@ class CutMotion {
     const Vec3 level_change = slide == 1 ? lean : Vec3(Vec3::Zero());
     const Vec3 up_change = level_change.cross(normal) + y.cross(normal_change);
     const double rise = cut_.edge_rise.rad();
-    return tool_turn(machine_) * (std::cos(rise) * level_change + std::sin(rise) * up_change);
+    return tool_rotation(machine_) * (std::cos(rise) * level_change + std::sin(rise) * up_change);
   }
 
   void turn_tool(int axis) {
-    const Vec3 turn_rad = machine_.mount.turn_deg.value * (std::numbers::pi / 180.0);
+    const Vec3 turn_rad = machine_.mount.rotation_deg.value * (std::numbers::pi / 180.0);
     const Vec3 turn = turn_gain(turn_rad) * Vec3::Unit(axis);
     edge_change_ = turn.cross(edge_);
     const bool is_chisel = machine_.tilt == Tilt::table;
@@ -253,7 +253,7 @@ const SetupQuantity* setup_quantity(Tilt tilt, std::string_view key) {
 
 Machine with_error(Machine machine, const SetupQuantity& quantity, double amount) {
   Vec3& value = value_of(machine, quantity.part);
-  const bool is_turn = quantity.part == SetupPart::tool_turn;
+  const bool is_turn = quantity.part == SetupPart::tool_rotation;
   value[quantity.axis] += is_turn ? amount / 3600.0 : amount * quantity.per_unit();
   if (is_direction(quantity.part)) value.normalize();
   return machine;

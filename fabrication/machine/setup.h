@@ -20,15 +20,15 @@ enum class SetupPart {
   y_direction,     ///< squareness of Y
   z_direction,     ///< squareness of Z
   tool_offset,     ///< position of the tool after touching off
-  tool_turn        ///< orientation of the tool
+  tool_rotation    ///< orientation of the tool
 };
 
 /// Quantity of the set-up. Its value is the deviation of the real machine from the machine that programs assume, in um
 /// or arcsec. The reference frame is defined by X, by the plane of X and Z, and by C at 0. A rotation or displacement
 /// of this whole frame is not an error of the machine, but belongs to the pose of the blank.
 struct SetupQuantity {
-  std::string_view key;    ///< key in files, with its unit, such as "c_x_um"
-  std::string_view words;  ///< description in messages, such as "centre of C along X"
+  std::string_view key;          ///< key in files, with its unit, such as "c_x_um"
+  std::string_view description;  ///< description in messages, such as "centre of C along X"
   SetupPart part = SetupPart::c_point;
   int axis = 0;  ///< 0, 1, 2: axis X, Y, Z of the displacement or rotation
 

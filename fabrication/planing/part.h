@@ -29,15 +29,15 @@ struct PlaningMill {
   double fast_feed_mm_per_min = 0.0;
   double frame_s = 0.0;  ///< frame time: additional time that each move takes
   double grid_mm = 0.01;
-  double least_x_mm = 13.0;
-  double least_y_mm = 13.0;
-  double least_z_mm = 6.0;
+  double min_move_x_mm = 13.0;
+  double min_move_y_mm = 13.0;
+  double min_move_z_mm = 6.0;
   double travel_x_mm = 350.0;
   double travel_y_mm = 1500.0;
   double travel_z_mm = 400.0;
-  double most_hours = 8.0;
-  double run_out_mm = 20.0;  ///< distance from the part at which strokes begin and end
-  double clear_mm = 14.0;    ///< height of moves above the blank
+  double max_hours = 8.0;
+  double overrun_mm = 20.0;    ///< distance from the part at which strokes begin and end
+  double clearance_mm = 14.0;  ///< height of moves above the blank
 };
 
 /// Direction of rotation of a spindle: M3 (clockwise) and M4 of ISO 6983-1. Clockwise rotation drives a right-hand
@@ -50,7 +50,7 @@ inline constexpr std::string_view kSpindleDirectionWords[] = {"clockwise", "coun
 struct PlaningLathe {
   double feed_mm_per_min = 0.0;
   double depth_of_cut_mm = 1.0;  ///< maximum depth of cut of a pass
-  double clear_mm = 2.0;
+  double clearance_mm = 2.0;
   double nose_radius_mm = 0.0;  ///< nose radius of the tool
   std::int32_t spindle_rpm = 0;
   SpindleDirection spindle_direction = SpindleDirection::clockwise;

@@ -7,7 +7,7 @@ namespace {
 
 /// RS274/NGC as the interpreter of LinuxCNC reads it (T. Kramer et al., NISTIR 6556, 2000; o-word subroutines of
 /// LinuxCNC).
-constexpr DialectWords kRs274ngc = {
+constexpr DialectFormats kRs274ngc = {
     .dialect = {"rs274ngc", ".ngc", "RS274/NGC as LinuxCNC reads it: the reference"},
     .subroutines_first = true,
     .file_ends = "%\n",
@@ -36,64 +36,66 @@ constexpr DialectWords kRs274ngc = {
 /// of the main program and are executed by REPEAT, so that the file is self-contained. The sign of an absolute position
 /// of a modulo axis determines the direction of rotation, unless DC requests the shortest path (MD30455). Negative
 /// positions cause alarm 16830.
-constexpr DialectWords kSinumerik = {.dialect = {"sinumerik", ".mpf", "Siemens Sinumerik 840D"},
-                                     .subroutines_first = false,
-                                     .file_ends = "",
-                                     .main_begin = "",
-                                     .main_end = "M30\n",
-                                     .needs =
-                                         "Needs: DRF, the basic frame and G500 at zero, for they stay under G54,\n"
-                                         "X as a radius (DIAMOF), rotary axes as modulo axes where words are DC or IC",
-                                     .prepare = "TRAFOOF\nTRANS\nG17 G710 G40 G90 G94\nG54 G60 G601 D0\nM5\n",
-                                     .spindle_start = "S{0} {1}\n",
-                                     .spindle_stop = "M5\n",
-                                     .comment = "; {}\n",
-                                     .message = "MSG(\"{}\")\n",
-                                     .subroutine_begin = "; {1}\nRT{0}:\nG91\n",
-                                     .subroutine_end = "G90\nRE{0}:\n",
-                                     .call = "REPEAT RT{0} RE{0}\n",
-                                     .rapid = "G0",
-                                     .linear = "G1",
-                                     .dwell = "G4 F{0:.3f}\n",
-                                     .path_begin = "G64\nG93\n",
-                                     .path_time = " F{0:.6f}",
-                                     .path_end = "G94\nG60\n",
-                                     .shortest = " {0}=DC({1})",
-                                     .increment = " {0}=IC({1})"};
+constexpr DialectFormats kSinumerik = {
+    .dialect = {"sinumerik", ".mpf", "Siemens Sinumerik 840D"},
+    .subroutines_first = false,
+    .file_ends = "",
+    .main_begin = "",
+    .main_end = "M30\n",
+    .needs =
+        "Needs: DRF, the basic frame and G500 at zero, for they stay under G54,\n"
+        "X as a radius (DIAMOF), rotary axes as modulo axes where words are DC or IC",
+    .prepare = "TRAFOOF\nTRANS\nG17 G710 G40 G90 G94\nG54 G60 G601 D0\nM5\n",
+    .spindle_start = "S{0} {1}\n",
+    .spindle_stop = "M5\n",
+    .comment = "; {}\n",
+    .message = "MSG(\"{}\")\n",
+    .subroutine_begin = "; {1}\nRT{0}:\nG91\n",
+    .subroutine_end = "G90\nRE{0}:\n",
+    .call = "REPEAT RT{0} RE{0}\n",
+    .rapid = "G0",
+    .linear = "G1",
+    .dwell = "G4 F{0:.3f}\n",
+    .path_begin = "G64\nG93\n",
+    .path_time = " F{0:.6f}",
+    .path_end = "G94\nG60\n",
+    .shortest = " {0}=DC({1})",
+    .increment = " {0}=IC({1})"};
 
 /// Fanuc 30i (operator's manual B-63944). The machine file determines the number of decimals. Messages are written as
 /// comments, because #3006 would stop the machine. Program numbers have four digits. In a path, C may exceed the range
 /// of positions, so that paths are incremental. The increments are differences of rounded positions and do not drift.
-constexpr DialectWords kFanuc = {.dialect = {"fanuc", ".nc", "Fanuc, 30i series"},
-                                 .subroutines_first = false,
-                                 .file_ends = "%\n",
-                                 .main_begin = "O0001\n",
-                                 .main_end = "M30\n",
-                                 .needs =
-                                     "Needs: increment system IS-{1}, X as a radius (1006#3), the external work zero "
-                                     "offset at zero,\nrotary axes without roll-over (1008#0 at 0), or with roll-over "
-                                     "along the shortest path (1008#1 at 0)",
-                                 .prepare = "G17 G21 G40 G49 G80 G90 G94\nG54 G61{2}\nM5\n",
-                                 .spindle_start = "G97 S{0} {1}\n",
-                                 .spindle_stop = "M5\n",
-                                 .comment = "({})\n",
-                                 .message = "({})\n",
-                                 .subroutine_begin = "O{0:04}\n({1})\nG91\n",
-                                 .subroutine_end = "G90\nM99\n",
-                                 .call = "M98 P{:04}\n",
-                                 .rapid = "G0",
-                                 .linear = "G1",
-                                 .dwell = "G4 P{1}\n",
-                                 .path_begin = "G64\nG93\nG91\n",
-                                 .path_time = " F{0:.6f}",
-                                 .path_end = "G90\nG94\nG61\n",
-                                 .has_increment_systems = true,
-                                 .has_incremental_paths = true};
+constexpr DialectFormats kFanuc = {
+    .dialect = {"fanuc", ".nc", "Fanuc, 30i series"},
+    .subroutines_first = false,
+    .file_ends = "%\n",
+    .main_begin = "O0001\n",
+    .main_end = "M30\n",
+    .needs =
+        "Needs: increment system IS-{1}, X as a radius (1006#3), the external work zero "
+        "offset at zero,\nrotary axes without roll-over (1008#0 at 0), or with roll-over "
+        "along the shortest path (1008#1 at 0)",
+    .prepare = "G17 G21 G40 G49 G80 G90 G94\nG54 G61{2}\nM5\n",
+    .spindle_start = "G97 S{0} {1}\n",
+    .spindle_stop = "M5\n",
+    .comment = "({})\n",
+    .message = "({})\n",
+    .subroutine_begin = "O{0:04}\n({1})\nG91\n",
+    .subroutine_end = "G90\nM99\n",
+    .call = "M98 P{:04}\n",
+    .rapid = "G0",
+    .linear = "G1",
+    .dwell = "G4 P{1}\n",
+    .path_begin = "G64\nG93\nG91\n",
+    .path_time = " F{0:.6f}",
+    .path_end = "G90\nG94\nG61\n",
+    .has_increment_systems = true,
+    .has_incremental_paths = true};
 
 /// Power PMAC script (Power PMAC user's and software reference manuals): no G codes, explicit settings at the
 /// beginning, dwells in ms. M codes are subprograms of the machine builder, and the control ignores missing ones
 /// silently. The machine file must therefore define the lines for spindle and mist.
-constexpr DialectWords kPmac = {
+constexpr DialectFormats kPmac = {
     .dialect = {"pmac", ".pmc", "Omron (Delta Tau) Power PMAC"},
     .subroutines_first = true,
     .file_ends = "",
@@ -128,7 +130,7 @@ constexpr DialectWords kPmac = {
 /// Aerotech A3200 with its CNC option: G codes and AeroBasic (sources in docs/nc_dialects.md). Blending keeps the speed
 /// between lines without leaving the path. A feed is the speed of all axes together, and so determines the duration of
 /// a line. The machine builder defines the codes for coolant and spindle.
-constexpr DialectWords kA3200 = {
+constexpr DialectFormats kA3200 = {
     .dialect = {"a3200", ".pgm", "Aerotech A3200"},
     .subroutines_first = false,
     .file_ends = "",
@@ -166,7 +168,7 @@ constexpr DialectWords kA3200 = {
 
 /// Aerotech Automation1: AeroScript with published G codes (help.aerotech.com/automation1), and with functions where no
 /// G code is published. Feeds have the same meaning as on the A3200.
-constexpr DialectWords kAutomation1 = {
+constexpr DialectFormats kAutomation1 = {
     .dialect = {"automation1", ".ascript", "Aerotech Automation1"},
     .subroutines_first = false,
     .file_ends = "",
@@ -206,7 +208,7 @@ constexpr std::array kDialects = {kRs274ngc, kSinumerik, kFanuc, kPmac, kA3200, 
 
 }  // namespace
 
-std::span<const DialectWords> dialect_words() {
+std::span<const DialectFormats> dialect_formats() {
   return kDialects;
 }
 

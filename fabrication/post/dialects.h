@@ -12,7 +12,7 @@ namespace retrace::fabrication {
 /// Texts of a dialect, which are complete lines. Texts with {} are formats of the fmt library. The comment of each
 /// format lists its arguments after "Arguments:", from {0} on. "control" means three arguments: {0} the coordinate
 /// system, {1} the letter of the increment system, and {2} additional codes that the control needs.
-struct DialectWords {
+struct DialectFormats {
   Dialect dialect;
   bool subroutines_first = false;  ///< true: subroutines precede the main part of the file; false: they follow it
   std::string_view file_ends;      ///< first and last line of the file
@@ -60,6 +60,6 @@ struct DialectWords {
 };
 
 /// Returns all dialects. The first one is the reference dialect.
-std::span<const DialectWords> dialect_words();
+std::span<const DialectFormats> dialect_formats();
 
 }  // namespace retrace::fabrication

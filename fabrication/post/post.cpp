@@ -57,15 +57,15 @@ void check_line(const OwnLine& line, std::string_view dialect, std::string_view 
   if (may_be_any || !is_unchecked(line, dialect)) return;
   throw InputError(Field{"dialect"},
                    fmt::format("{} {} for {}; any other line needs {}.has_unchecked_lines = true, got {}", line.key,
-                               unknown_line(line.text, line.use, dialect), dialect, table, in_quotes(line.text)));
+                               line_form_error(line.text, line.use, dialect), dialect, table, in_quotes(line.text)));
 }
 
 /// Writes one file. Positions are converted from integers to text without rounding.
 class FileWriter {
  public:
-  FileWriter(const DialectWords& dialect, const Program& program) : dialect_(dialect), program_(program) {
-    for (const Subroutine& subroutine : program.subroutines) reach_.push_back(reach_of(subroutine).end);
-    increments_ = word_increments(dialect.dialect.name, program.control);
+  FileWriter(const DialectFormats& dialect, const Program& program) : dialect_(dialect), program_(program) {
+    for (const Subroutine& subroutine : program.subroutines) reach_.push_back(extent_of(subroutine).end);
+    increments_ = position_increments(dialect.dialect.name, program.control);
   }
 
   std::string run() {
@@ -121,7 +121,7 @@ class FileWriter {
     is_in_path_ = false;
     add_for_control(dialect_.path_end);
   }
-  void operator()(const Visit& visit) {
+  void operator()(const CycleCall& visit) {
     const std::string pass = visit.passes > 1 ? fmt::format(" pass {} of {}", visit.pass, visit.passes) : "";
     add(dialect_.comment, fmt::format("element {}{}", visit.element, pass));
     for (const Move& move : approach(at_, visit)) write(move);
@@ -276,8 +276,8 @@ class FileWriter {
   }
 
   void plain_word(char letter, std::int64_t steps, int decimals) {
-    constexpr std::int64_t kMostSteps = 999'999'999;
-    if (dialect_.has_increment_systems && (steps > kMostSteps || steps < -kMostSteps))
+    constexpr std::int64_t kMaxSteps = 999'999'999;
+    if (dialect_.has_increment_systems && (steps > kMaxSteps || steps < -kMaxSteps))
       refuse(fmt::format("{}{}", letter, number(steps, decimals)));
     fmt::format_to(std::back_inserter(text_), " {}{}", letter, number(steps, decimals));
   }
@@ -317,30 +317,30 @@ class FileWriter {
 
   void feed(double mm_per_min) {
     const long long thousandths = std::llround(mm_per_min * 1e3);
-    if (dialect_.has_increment_systems && thousandths > most_feed_thousandths())
+    if (dialect_.has_increment_systems && thousandths > max_feed_thousandths())
       refuse(fmt::format("F{}.{:03}", thousandths / 1000, thousandths % 1000));
     fmt::format_to(std::back_inserter(text_), " F{}.{:03}", thousandths / 1000, thousandths % 1000);
   }
   /// Returns the maximum feed of the increment system, IS-B to IS-E (parameter 1422), in thousandths of mm/min.
-  long long most_feed_thousandths() const {
+  long long max_feed_thousandths() const {
     constexpr std::array kMost = {999'000'000, 99'999'900, 9'999'990, 999'999};
     return kMost[static_cast<std::size_t>(program_.control.increment_system)];
   }
 
-  const DialectWords& dialect_;
+  const DialectFormats& dialect_;
   const Program& program_;
-  std::vector<Place> reach_;  ///< end of each subroutine, relative to its start
+  std::vector<LinearPosition> reach_;  ///< end of each subroutine, relative to its start
   std::string text_;
-  Words at_{};
+  AxisWords at_{};
   bool mist_on_ = false;
   bool is_in_path_ = false;
   bool is_in_subroutine_ = false;
   Increments increments_;
 };
 
-const DialectWords& words_of(std::string_view dialect) {
+const DialectFormats& words_of(std::string_view dialect) {
   std::vector<std::string_view> names;
-  for (const DialectWords& words : dialect_words()) {
+  for (const DialectFormats& words : dialect_formats()) {
     if (words.dialect.name == dialect) return words;
     names.push_back(words.dialect.name);
   }
@@ -352,7 +352,7 @@ const DialectWords& words_of(std::string_view dialect) {
 std::span<const Dialect> dialects() {
   static const std::vector<Dialect> all = [] {
     std::vector<Dialect> result;
-    for (const DialectWords& words : dialect_words()) result.push_back(words.dialect);
+    for (const DialectFormats& words : dialect_formats()) result.push_back(words.dialect);
     return result;
   }();
   return all;
@@ -372,8 +372,8 @@ std::vector<std::string> control_needs(std::string_view dialect, const Control& 
   return lines;
 }
 
-void check_words(const Program& program, std::string_view dialect) {
-  const DialectWords& words = words_of(dialect);
+void check_supported(const Program& program, std::string_view dialect) {
+  const DialectFormats& words = words_of(dialect);
   if (!words.has_own_texts) return;
   const auto need = [&](const std::string& text, std::string_view what, std::string_view key,
                         std::string_view otherwise) {
@@ -399,11 +399,11 @@ void check_words(const Program& program, std::string_view dialect) {
 }
 
 std::string nc_text(const Program& program, std::string_view dialect) {
-  check_words(program, dialect);
+  check_supported(program, dialect);
   return FileWriter(words_of(dialect), program).run();
 }
 
-Increments word_increments(std::string_view dialect, const Control& control) {
+Increments position_increments(std::string_view dialect, const Control& control) {
   return words_of(dialect).has_increment_systems ? increments_of(control.increment_system) : Increments{};
 }
 
@@ -411,7 +411,7 @@ std::string shortest_axes(std::string_view dialect, const Control& control) {
   return words_of(dialect).shortest.empty() ? "" : control.modulo_axes;
 }
 
-bool takes_cubics(std::string_view dialect) {
+bool supports_cubics(std::string_view dialect) {
   return !words_of(dialect).cubic_move.empty();
 }
 

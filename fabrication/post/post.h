@@ -34,12 +34,12 @@ std::vector<std::string> control_needs(std::string_view dialect, const Control& 
 
 /// Checks that the control supports all items of a program.
 /// \throw InputError naming the key of the machine file if it does not
-void check_words(const Program& program, std::string_view dialect);
+void check_supported(const Program& program, std::string_view dialect);
 
 /// Returns the increments to which a control rounds positions in a dialect. The planner should round positions to these
 /// increments.
 /// \throw InputError for an unknown dialect
-Increments word_increments(std::string_view dialect, const Control& control);
+Increments position_increments(std::string_view dialect, const Control& control);
 
 /// Returns the letters of the rotary axes that take the shortest path to a programmed angle in a dialect.
 /// \throw InputError for an unknown dialect
@@ -47,7 +47,7 @@ std::string shortest_axes(std::string_view dialect, const Control& control);
 
 /// Returns true if a dialect supports paths with velocities at the ends of their moves.
 /// \throw InputError for an unknown dialect
-bool takes_cubics(std::string_view dialect);
+bool supports_cubics(std::string_view dialect);
 
 /// Returns the file extension of a dialect.
 /// \throw InputError for an unknown dialect

@@ -5,7 +5,7 @@
 namespace retrace::fabrication {
 namespace {
 
-Place increments_of(const Move& move) {
+LinearPosition increments_of(const Move& move) {
   return {move.to[kX].value_or(0), move.to[kY].value_or(0), move.to[kZ].value_or(0)};
 }
 
@@ -22,7 +22,7 @@ class Walker {
   void operator()(const Path& path) {
     for (const Move& move : path.moves) tell(move, -1);
   }
-  void operator()(const Visit& visit) {
+  void operator()(const CycleCall& visit) {
     for (const Move& move : approach(at_, visit)) tell(move, visit.element);
     cut(program_.subroutines[visit.subroutine], visit.element);
   }
@@ -46,7 +46,7 @@ class Walker {
       }
       flush();
       Move move = std::get<Move>(step);
-      move.to = linear_words(Place(*at_[kX], *at_[kY], *at_[kZ]) + increments_of(move));
+      move.to = linear_words(LinearPosition(*at_[kX], *at_[kY], *at_[kZ]) + increments_of(move));
       go_to(at_, move.to);
       pending = PlannedMove{move, at_, 0.0, element};
     }
@@ -55,8 +55,8 @@ class Walker {
 
   const Program& program_;
   const std::function<void(const PlannedMove&)>& sink_;
-  static constexpr Words kBeginning = {std::nullopt, std::nullopt, std::nullopt, 0, 0};
-  Words at_ = kBeginning;
+  static constexpr AxisWords kBeginning = {std::nullopt, std::nullopt, std::nullopt, 0, 0};
+  AxisWords at_ = kBeginning;
 };
 
 }  // namespace
@@ -69,24 +69,24 @@ RotaryUnits rotary_units(double deg) {
   return std::llround(deg * kRotaryUnitsPerDeg);
 }
 
-Words linear_words(const Place& place) {
+AxisWords linear_words(const LinearPosition& place) {
   return {place.x(), place.y(), place.z(), std::nullopt, std::nullopt};
 }
 
-Move increment(Motion motion, const Place& by, double feed_mm_per_min) {
+Move increment(Motion motion, const LinearPosition& by, double feed_mm_per_min) {
   Move move{motion, {}, feed_mm_per_min, 0.0};
   for (const Axis axis : {kX, kY, kZ})
     if (by[axis] != 0) move.to[axis] = by[axis];
   return move;
 }
 
-void go_to(Words& at, const Words& to) {
+void go_to(AxisWords& at, const AxisWords& to) {
   for (std::size_t axis = 0; axis < kAxes; ++axis)
     if (to[axis]) at[axis] = to[axis];
 }
 
-Reach reach_of(const Subroutine& subroutine) {
-  Reach reach;
+MoveExtent extent_of(const Subroutine& subroutine) {
+  MoveExtent reach;
   for (const Step& step : subroutine.steps) {
     const auto* const move = std::get_if<Move>(&step);
     if (move == nullptr) continue;
@@ -97,7 +97,7 @@ Reach reach_of(const Subroutine& subroutine) {
   return reach;
 }
 
-std::vector<Move> approach(const Words& from, const Visit& visit) {
+std::vector<Move> approach(const AxisWords& from, const CycleCall& visit) {
   Move across;
   Move along;
   for (const Axis axis : {kX, kY, kZ}) {

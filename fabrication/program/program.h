@@ -40,8 +40,8 @@ inline std::int64_t to_step(double units, std::int64_t step) {
 }
 
 /// X, Y and Z in whole nanometres.
-using Place = Eigen::Matrix<Nanometres, 3, 1>;
-inline geometry::Vec3 millimetres(const Place& place) {
+using LinearPosition = Eigen::Matrix<Nanometres, 3, 1>;
+inline geometry::Vec3 millimetres(const LinearPosition& place) {
   return {millimetres(place.x()), millimetres(place.y()), millimetres(place.z())};
 }
 
@@ -51,12 +51,12 @@ inline constexpr std::size_t kAxes = 5;
 
 /// Positions of a move for each axis: nanometres for X, Y and Z, and rotary units for the tilting axis and C. An axis
 /// without a value does not move.
-using Words = std::array<std::optional<std::int64_t>, kAxes>;
+using AxisWords = std::array<std::optional<std::int64_t>, kAxes>;
 
 /// Returns positions for X, Y and Z only.
-Words linear_words(const Place& place);
+AxisWords linear_words(const LinearPosition& place);
 /// Updates the axis positions `at` by a move. Axes without a position in `to` do not change.
-void go_to(Words& at, const Words& to);
+void go_to(AxisWords& at, const AxisWords& to);
 
 /// Purpose of a move. In a rapid move, the axes move as fast as possible.
 enum class Motion : std::uint8_t { plunge, plough, retract, translate, rapid };
@@ -65,7 +65,7 @@ inline constexpr std::string_view kMotionWords[] = {"plunge", "plough", "retract
 /// Straight move. Its values are positions in the main program and increments in subroutines.
 struct Move {
   Motion motion = Motion::rapid;
-  Words to{};
+  AxisWords to{};
   double feed_mm_per_min = 0.0;  ///< feed of a move that is neither rapid nor timed
   double seconds = 0.0;          ///< duration of a timed move; 0: not timed
 };
@@ -77,7 +77,7 @@ struct Dwell {
 using Step = std::variant<Move, Dwell>;
 
 /// Returns a move of a subroutine, with words only for the axes that move.
-Move increment(Motion motion, const Place& by, double feed_mm_per_min);
+Move increment(Motion motion, const LinearPosition& by, double feed_mm_per_min);
 
 /// Subroutine of cutting moves by increments of X, Y and Z. It is called with the tool at its start point.
 struct Subroutine {
@@ -87,12 +87,12 @@ struct Subroutine {
 };
 
 /// End point and bounding box of a subroutine's moves, relative to its start.
-struct Reach {
-  Place end = Place::Zero();
-  Place low = Place::Zero();
-  Place high = Place::Zero();
+struct MoveExtent {
+  LinearPosition end = LinearPosition::Zero();
+  LinearPosition low = LinearPosition::Zero();
+  LinearPosition high = LinearPosition::Zero();
 };
-Reach reach_of(const Subroutine& subroutine);
+MoveExtent extent_of(const Subroutine& subroutine);
 
 /// Comment in the program text.
 struct Comment {
@@ -103,10 +103,10 @@ struct Message {
   std::string text;
 };
 /// Visit of one element: rapid moves to the start of a subroutine, and its call.
-struct Visit {
+struct CycleCall {
   std::int32_t element = 0;
   std::uint32_t subroutine = 0;  ///< index in Program::subroutines
-  Place start = Place::Zero();
+  LinearPosition start = LinearPosition::Zero();
   int pass = 1;    ///< number of this pass, from 1, in the order of cutting
   int passes = 1;  ///< number of parallel passes that the width of the element requires
 };
@@ -131,7 +131,7 @@ struct Stop {
   std::string text;  ///< message for the operator
 };
 
-using Item = std::variant<Comment, Message, OptionalStop, Stop, Move, Visit, Path>;
+using Item = std::variant<Comment, Message, OptionalStop, Stop, Move, CycleCall, Path>;
 
 /// Rotation of the spindle while a program cuts.
 struct Spindle {
@@ -160,12 +160,12 @@ struct Program {
 
 /// Returns the rapid moves to the start of a visit, with only the positions that change. If Z rises, it moves first. If
 /// it falls, it moves last. There are at most two moves, so that the path stays above an inclined blank.
-std::vector<Move> approach(const Words& from, const Visit& visit);
+std::vector<Move> approach(const AxisWords& from, const CycleCall& visit);
 
 /// Straight move of a program with absolute positions.
 struct PlannedMove {
   Move move;
-  Words at{};                 ///< positions of all axes after the move; empty: not known yet
+  AxisWords at{};             ///< positions of all axes after the move; empty: not known yet
   double dwell_s = 0.0;       ///< dwell time after the move
   std::int32_t element = -1;  ///< element that is visited; -1: none
 

@@ -22,7 +22,7 @@ constexpr A3200Statement kA3200Statements[] = {
     {"SECONDS", kAerotechFeedTime<1>},
     {"VELOCITY ON", nc_effects::kBlending},
     {"VELOCITY OFF", nc_effects::kExactStop},
-    {"WAIT MODE INPOS", nc_effects::kSays<nc_said::kFineStop>},
+    {"WAIT MODE INPOS", nc_effects::kMarks<nc_setting::kFineStop>},
 };
 
 /// Returns the line without its comment, which begins with //, ' or ;.

@@ -19,15 +19,15 @@ inline constexpr NcCode kAerotechCodes[] = {
     {17, 3, nc_effects::kNone},
     {18, 3, nc_effects::kNone},
     {19, 3, nc_effects::kNone},
-    {40, 4, nc_effects::kSays<nc_said::kRadiusOff>},
+    {40, 4, nc_effects::kMarks<nc_setting::kRadiusOff>},
     {75, 5, kAerotechFeedTime<60>},
     {76, 5, kAerotechFeedTime<1>},
     {90, 6, nc_effects::kAbsolute},
     {91, 6, nc_effects::kIncremental},
-    {94, 7, nc_effects::kSays<nc_said::kFeedMode>},
+    {94, 7, nc_effects::kMarks<nc_setting::kFeedMode>},
     {108, 8, nc_effects::kBlending},
     {109, 8, nc_effects::kExactStop},
-    {149, 9, nc_effects::kSays<nc_said::kLengthOff>},
+    {149, 9, nc_effects::kMarks<nc_setting::kLengthOff>},
     // METRIC and ENGLISH of the A3200. For the Automation1, these codes are not documented.
     {70, 10, nc_effects::kInch},
     {71, 10, nc_effects::kMillimetre},
@@ -39,8 +39,8 @@ inline void take_aerotech_word(const NcWord& word, IsoBlock& iso, const NcLines&
   if (word.letter == 'P') return iso.set_dwell(word.number.value);
   const double code = word.number.value;
   const bool is_coolant = word.letter == 'M' && code >= 7 && code <= 9;
-  if (is_coolant) lines.fail_word(word.rest);
-  if (!iso.set(word, kAerotechCodes)) lines.fail_word(word.rest);
+  if (is_coolant) lines.fail_word(word.remainder);
+  if (!iso.set(word, kAerotechCodes)) lines.fail_word(word.remainder);
 }
 
 /// Returns true if `text` is a valid name of a subroutine: letters, digits and underscores, not beginning with a digit.

@@ -21,10 +21,10 @@ constexpr AeroScriptSetting kAeroScriptSettings[] = {
     {"SetupTaskTimeUnits(TimeUnits.Seconds)", kAerotechFeedTime<1>},
     {"SetupTaskTargetMode(TargetMode.Absolute)", nc_effects::kAbsolute},
     {"SetupTaskTargetMode(TargetMode.Incremental)", nc_effects::kIncremental},
-    {"SetupTaskWaitMode(WaitMode.InPosition)", nc_effects::kSays<nc_said::kFineStop>},
+    {"SetupTaskWaitMode(WaitMode.InPosition)", nc_effects::kMarks<nc_setting::kFineStop>},
     {"VelocityBlendingOn()", nc_effects::kBlending},
     {"VelocityBlendingOff()", nc_effects::kExactStop},
-    {"CornerRoundingOff()", nc_effects::kSays<nc_said::kRoundingOff>},
+    {"CornerRoundingOff()", nc_effects::kMarks<nc_setting::kRoundingOff>},
 };
 
 class Automation1Reader {

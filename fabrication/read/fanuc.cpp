@@ -20,13 +20,13 @@ constexpr NcCode kFanucCodes[] = {
     {19, 2, kNone},
     {20, 6, kInch},
     {21, 6, kMillimetre},
-    {40, 7, kSays<nc_said::kRadiusOff>},
-    {49, 8, kSays<nc_said::kLengthOff>},
-    {54, 14, kSays<nc_said::kWorkOffset>},
+    {40, 7, kMarks<nc_setting::kRadiusOff>},
+    {49, 8, kMarks<nc_setting::kLengthOff>},
+    {54, 14, kMarks<nc_setting::kWorkOffset>},
     {61, 15, kExactStop},
     {64, 15, kBlending},
-    {50.1, 18, kSays<nc_said::kMirrorOff>},
-    {69, 16, kSays<nc_said::kRotationOff>},
+    {50.1, 18, kMarks<nc_setting::kMirrorOff>},
+    {69, 16, kMarks<nc_setting::kRotationOff>},
     {80, 9, kNone},
     {90, 3, kAbsolute},
     {91, 3, kIncremental},
@@ -97,7 +97,7 @@ class FanucReader {
 
   void begin_program(std::string_view text) {
     const NcNumber number = take_number(text, lines_);
-    if (!number.is_whole() || number.has_point || !text.empty())
+    if (!number.is_integer() || number.has_point || !text.empty())
       lines_.fail("O must have a whole number and be alone in its line");
     if (table_.is_open()) lines_.fail("a subprogram must end with M99 before another begins");
     close_part();
@@ -127,20 +127,20 @@ class FanucReader {
     } else if (word.letter == 'M' && word.number.value == 99) {
       line.has_return = true;
     } else if (!iso.set(word, kFanucCodes)) {
-      lines_.fail_word(word.rest);
+      lines_.fail_word(word.remainder);
     }
   }
 
   void finish(IsoBlock& iso, Line& line) {
-    if (iso.wants_dwell() && line.p) {
+    if (iso.expects_dwell_time() && line.p) {
       if (line.p_has_point) lines_.fail("P of a dwell is in milliseconds and must not have a decimal point");
       iso.set_dwell(*line.p / 1000.0);
     }
     // The axis words of G50.1 select axes, but do not move them.
-    if ((line.block.says & nc_said::kMirrorOff) != 0) line.block.axes = 0;
+    if ((line.block.settings_made & nc_setting::kMirrorOff) != 0) line.block.axes = 0;
     iso.finish();
     if ((line.has_call || line.has_return) && line.block.axes != 0) lines_.fail("a call or return must not move axes");
-    if (line.p && !iso.wants_dwell() && !line.has_call) lines_.fail("P is not understood here");
+    if (line.p && !iso.expects_dwell_time() && !line.has_call) lines_.fail("P is not understood here");
     if (line.has_call) set_call(line);
     if (line.has_return) set_return(line.block);
     program_.blocks.push_back(line.block);

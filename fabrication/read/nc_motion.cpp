@@ -49,8 +49,8 @@ class Runner {
       const NcBlock& block = program_.blocks[next_++];
       if (block.cubic < 0) expect_standstill(block);
       if (stops_before(block)) return stopped();
-      if (++carried_out_ > kMostNcBlocks)
-        fail(block, fmt::format("the program executes more than {} lines", kMostNcBlocks));
+      if (++carried_out_ > kMaxNcBlocks)
+        fail(block, fmt::format("the program executes more than {} lines", kMaxNcBlocks));
       carry_out(block);
       if (block.call >= 0 && !call(block)) return missing_subroutine(block);
       if (block.returns && !calls_.empty()) go_back();
@@ -88,11 +88,11 @@ class Runner {
   }
 
   static std::uint16_t said_by(const NcBlock& block) {
-    unsigned said = block.says;
-    if (block.unit_mm) said |= nc_said::kUnit;
-    if (block.absolute) said |= nc_said::kDistance;
-    if (block.feed_time_s) said |= nc_said::kFeedTime;
-    if (block.exact_stop == true) said |= nc_said::kExactStop;
+    unsigned said = block.settings_made;
+    if (block.unit_mm) said |= nc_setting::kUnit;
+    if (block.absolute) said |= nc_setting::kDistance;
+    if (block.feed_time_s) said |= nc_setting::kFeedTime;
+    if (block.exact_stop == true) said |= nc_setting::kExactStop;
     return static_cast<std::uint16_t>(said);
   }
 
@@ -125,7 +125,7 @@ class Runner {
 
   bool call(const NcBlock& block) {
     const NcSubroutine& subroutine = program_.subroutines[static_cast<std::size_t>(block.call)];
-    if (!subroutine.is_whole) return false;
+    if (!subroutine.is_complete) return false;
     const std::size_t most = max_nested_calls(program_.dialect);
     if (calls_.size() >= most)
       fail(block,
@@ -140,7 +140,7 @@ class Runner {
     calls_.pop_back();
   }
 
-  NcPlace place_of(const NcBlock& block) const { return {block.line, calls_.empty() ? 0 : calls_.front().line}; }
+  NcLocation place_of(const NcBlock& block) const { return {block.line, calls_.empty() ? 0 : calls_.front().line}; }
 
   void carry_out(const NcBlock& block) {
     take_over(settings_.absolute, block.absolute);
@@ -150,11 +150,12 @@ class Runner {
     // Each block that sets blending or exact stop resets the path tolerance.
     if (block.exact_stop) settings_.blend_mm.reset();
     if (block.blend_mm) settings_.blend_mm = *block.blend_mm * settings_.unit_mm.value_or(1.0);
-    settings_.said = static_cast<std::uint16_t>(settings_.said | said_by(block));
+    settings_.settings_made = static_cast<std::uint16_t>(settings_.settings_made | said_by(block));
     take_over(settings_.spindle, block.spindle);
     take_over(settings_.spindle_rpm, block.spindle_rpm);
     take_over(settings_.mist_on, block.mist_on);
-    if (block.spindle || block.mist_on || block.exact_stop || block.says != 0) sink_.state(settings_, place_of(block));
+    if (block.spindle || block.mist_on || block.exact_stop || block.settings_made != 0)
+      sink_.state(settings_, place_of(block));
     if (block.cancels_move) move_.reset();
     if (block.move) move_ = block.move;
     set_rate(block);
@@ -187,7 +188,7 @@ class Runner {
     sink_.stop(block.stop, settings_, place_of(block));
     if (block.stop != NcStop::always) return;
     // During a stop, the operator may change settings and move axes, so the settings are not known afterwards.
-    settings_.said = 0;
+    settings_.settings_made = 0;
     settings_.spindle.reset();
     settings_.mist_on.reset();
   }
@@ -196,7 +197,7 @@ class Runner {
   NcMotion motion_of(const NcBlock& block, NcMove move) {
     NcMotion motion;
     motion.move = move;
-    motion.place = place_of(block);
+    motion.location = place_of(block);
     motion.shortest = block.shortest;
     motion.decimals = block.decimals;
     ++motions_;
@@ -266,9 +267,9 @@ class Runner {
     const int pieces = pieces_of(from, begin, time_s);
     motion.duration_s = time_s / pieces;
     for (int k = 1; k <= pieces; ++k) {
-      motion.goes_on = k < pieces;
+      motion.is_continued = k < pieces;
       motion.to =
-          axes_of(motion.goes_on ? place_along(from, begin, time_s, static_cast<double>(k) / pieces) : position_);
+          axes_of(motion.is_continued ? place_along(from, begin, time_s, static_cast<double>(k) / pieces) : position_);
       sink_.motion(motion, settings_);
       motion.from = motion.to;
     }
@@ -296,10 +297,10 @@ class Runner {
       const double at_begin = 6.0 * by - time_s * (4.0 * begin[axis] + 2.0 * velocities_[axis]);
       const double at_end = -6.0 * by + time_s * (2.0 * begin[axis] + 4.0 * velocities_[axis]);
       const double bend = std::max(std::abs(at_begin), std::abs(at_end));
-      most = std::max(most, bend / (8.0 * (axis < kFirstRotaryAxis ? kCubicPieceMm : kCubicPieceDeg)));
+      most = std::max(most, bend / (8.0 * (axis < kFirstRotaryAxis ? kCubicToleranceMm : kCubicToleranceDeg)));
     }
-    constexpr double kMostPieces = 4096.0;
-    return static_cast<int>(std::min(kMostPieces, std::ceil(std::sqrt(most))));
+    constexpr double kMaxSegments = 4096.0;
+    return static_cast<int>(std::min(kMaxSegments, std::ceil(std::sqrt(most))));
   }
 
   double default_feed_time_s() const { return program_.dialect == NcDialect::pmac ? 1.0 : 60.0; }

@@ -13,7 +13,7 @@
 namespace retrace::fabrication {
 
 /// Position in a program.
-struct NcPlace {
+struct NcLocation {
   std::int32_t line = 0;       ///< line number
   std::int32_t call_line = 0;  ///< in a subroutine: line of the call in the main program; 0 in the main program
 };
@@ -21,7 +21,7 @@ struct NcPlace {
 /// Straight move of the axes, or one straight segment of a cubic move.
 struct NcMotion {
   NcMove move = NcMove::rapid;
-  NcPlace place;
+  NcLocation location;
   std::uint8_t moved = 0;  ///< bit i: the position of axis i changes
   std::uint8_t known = 0;  ///< bit i: the position of axis i before the move is known; otherwise `from` contains 0
   AxisPositions from;
@@ -31,7 +31,7 @@ struct NcMotion {
   /// Time of a linear move if the program gives the time, or a feed of all axes together (Aerotech). Otherwise 0.
   double duration_s = 0.0;
   bool is_exact_stop = true;  ///< true: the axes stop at the end point
-  bool goes_on = false;       ///< true for each segment of a cubic move except its last one
+  bool is_continued = false;  ///< true for each segment of a cubic move except its last one
   std::uint8_t shortest = 0;  ///< bit i: axis i takes the shortest path to an angle of 0 to 360 degrees
   std::uint8_t absolute = 0;  ///< bit i: axis i has an absolute position in the program
   std::uint8_t decimals = 0;  ///< maximum number of decimals of the axis words (NcBlock::decimals)
@@ -53,8 +53,8 @@ struct NcSettings {
   std::optional<double> unit_mm;
   std::optional<double> feed_time_s;
   std::optional<bool> exact_stop;
-  std::optional<double> blend_mm;  ///< path tolerance of blending; empty if the program does not give it
-  std::uint16_t said = 0;          ///< bits of nc_said for the settings that the program has made
+  std::optional<double> blend_mm;   ///< path tolerance of blending; empty if the program does not give it
+  std::uint16_t settings_made = 0;  ///< bits of nc_setting for the settings that the program has made
   std::optional<NcSpindle> spindle;
   std::optional<double> spindle_rpm;
   std::optional<bool> mist_on;
@@ -65,12 +65,12 @@ class NcSink {
  public:
   virtual ~NcSink() = default;
   virtual void motion(const NcMotion& motion, const NcSettings& settings) = 0;
-  virtual void dwell(double seconds, const NcPlace& place, const AxisPositions& position) = 0;
-  /// Called if a block sets spindle, mist, exact stop or bits of nc_said, before the move of this block.
-  virtual void state(const NcSettings&, const NcPlace&) {}
+  virtual void dwell(double seconds, const NcLocation& place, const AxisPositions& position) = 0;
+  /// Called if a block sets spindle, mist, exact stop or bits of nc_setting, before the move of this block.
+  virtual void state(const NcSettings&, const NcLocation&) {}
   /// Called if the program stops for the operator, after the move of this block. The passed settings are the settings
   /// before the stop. After an unconditional stop, spindle and mist are unknown, and all settings must be repeated.
-  virtual void stop(NcStop, const NcSettings&, const NcPlace&) {}
+  virtual void stop(NcStop, const NcSettings&, const NcLocation&) {}
 };
 
 /// End of a program.
@@ -82,11 +82,11 @@ struct NcEnd {
 };
 
 /// Maximum distance between a cubic move and the straight segments that approximate it, for linear and rotary axes.
-inline constexpr double kCubicPieceMm = 2e-7;
-inline constexpr double kCubicPieceDeg = 2e-7;
+inline constexpr double kCubicToleranceMm = 2e-7;
+inline constexpr double kCubicToleranceDeg = 2e-7;
 
 /// Maximum number of blocks that are executed, including repeated calls of subroutines.
-inline constexpr std::int64_t kMostNcBlocks = 50'000'000;
+inline constexpr std::int64_t kMaxNcBlocks = 50'000'000;
 
 /// Executes a program: calls, modal settings, absolute and incremental positions. A cubic move has positions,
 /// velocities and a time. Each of its axes follows a cubic polynomial, which the sink receives as straight segments.

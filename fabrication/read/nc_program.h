@@ -59,7 +59,7 @@ struct NcTexts {
 enum class NcStop : std::uint8_t { none, optional, always };
 
 /// Bits for the settings that a program has made.
-namespace nc_said {
+namespace nc_setting {
 inline constexpr std::uint16_t kWorkOffset = 1U << 0U;         ///< the first work offset is selected
 inline constexpr std::uint16_t kShiftOff = 1U << 1U;           ///< other zero offsets are cancelled
 inline constexpr std::uint16_t kRadiusOff = 1U << 2U;          ///< compensation of the tool radius is off
@@ -77,7 +77,7 @@ inline constexpr std::uint16_t kExactStop = 1U << 12U;
 // Bits of settings that only some controls have.
 inline constexpr std::uint16_t kFeedMode = 1U << 13U;     ///< feeds are speeds (not inverse time, not per revolution)
 inline constexpr std::uint16_t kRoundingOff = 1U << 14U;  ///< rounding of corners by arcs is off
-}  // namespace nc_said
+}  // namespace nc_setting
 
 /// Returns the maximum rounding error of a number that is written with `decimals` decimals: half of its last decimal.
 double half_decimal(std::uint8_t decimals);
@@ -103,19 +103,19 @@ struct NcBlock {
   /// True: no motion mode is active after this block. Axis words are then an error until a block sets `move`.
   bool cancels_move = false;
   Setting<bool> absolute;
-  Setting<double> unit_mm;      ///< unit of linear positions: 1 or 25.4 mm
-  Setting<double> feed;         ///< F word, in the units of the program
-  bool clears_feed = false;     ///< true: the control discards the feed of earlier blocks
-  double rate_rounding = 0.0;   ///< maximum relative rounding error of `feed` or `move_time_s`
-  Setting<double> feed_time_s;  ///< time unit of a feed in seconds: 60 for mm/min
-  Setting<bool> inverse_time;   ///< true: F is the inverse of the move's duration, in 1/min
-  Setting<double> move_time_s;  ///< duration of this move and of the following moves until the next feed
-  Setting<bool> exact_stop;     ///< false: blocks are blended
-  Setting<double> blend_mm;     ///< maximum deviation from the path in blending
-  std::uint16_t says = 0;       ///< bits of nc_said for settings that have no value of their own in this struct
-  std::uint8_t shortest = 0;    ///< bit i: axis i takes the shortest path to an angle of 0 to 360 degrees
-  std::uint8_t increments = 0;  ///< bit i: the word of axis i is an increment even if positions are absolute
-  std::uint8_t decimals = 0;    ///< maximum number of decimals of the axis words, for dialects that limit it
+  Setting<double> unit_mm;          ///< unit of linear positions: 1 or 25.4 mm
+  Setting<double> feed;             ///< F word, in the units of the program
+  bool clears_feed = false;         ///< true: the control discards the feed of earlier blocks
+  double rate_rounding = 0.0;       ///< maximum relative rounding error of `feed` or `move_time_s`
+  Setting<double> feed_time_s;      ///< time unit of a feed in seconds: 60 for mm/min
+  Setting<bool> inverse_time;       ///< true: F is the inverse of the move's duration, in 1/min
+  Setting<double> move_time_s;      ///< duration of this move and of the following moves until the next feed
+  Setting<bool> exact_stop;         ///< false: blocks are blended
+  Setting<double> blend_mm;         ///< maximum deviation from the path in blending
+  std::uint16_t settings_made = 0;  ///< bits of nc_setting for settings that have no value of their own in this struct
+  std::uint8_t shortest = 0;        ///< bit i: axis i takes the shortest path to an angle of 0 to 360 degrees
+  std::uint8_t increments = 0;      ///< bit i: the word of axis i is an increment even if positions are absolute
+  std::uint8_t decimals = 0;        ///< maximum number of decimals of the axis words, for dialects that limit it
   Setting<NcSpindle> spindle;
   Setting<double> spindle_rpm;  ///< S word
   Setting<bool> mist_on;
@@ -127,14 +127,14 @@ struct NcBlock {
   bool returns = false;
   bool ends = false;
 
-  void say(std::uint16_t what) { says = static_cast<std::uint16_t>(says | what); }
+  void mark_setting(std::uint16_t what) { settings_made = static_cast<std::uint16_t>(settings_made | what); }
 };
 
 struct NcSubroutine {
   std::string name;
-  std::size_t first = 0;  ///< index of the first block
-  std::size_t last = 0;   ///< index after the last block
-  bool is_whole = false;  ///< true if the end of the subroutine was found
+  std::size_t first = 0;     ///< index of the first block
+  std::size_t last = 0;      ///< index after the last block
+  bool is_complete = false;  ///< true if the end of the subroutine was found
 };
 
 /// NC program as read from a file.
@@ -162,7 +162,7 @@ struct NcProgram {
 };
 
 /// Maximum length of a line, and maximum size of a program, in bytes.
-inline constexpr std::size_t kLongestNcLine = 1024;
+inline constexpr std::size_t kMaxNcLineBytes = 1024;
 inline constexpr std::size_t kLongestNcBytes = std::size_t{1} << 30;
 
 /// Reads the text of a program. Words that are not supported are refused and never ignored.

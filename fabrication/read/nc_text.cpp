@@ -87,7 +87,7 @@ bool set_text(std::string_view line, const NcTexts& texts, NcBlock& block) {
 
 }  // namespace
 
-NcLines::NcLines(std::string_view text, const std::string& file) : file_(file), rest_(text) {
+NcLines::NcLines(std::string_view text, const std::string& file) : file_(file), remainder_(text) {
   if (text.find_first_not_of(" \t\r\n") == std::string_view::npos)
     throw InputError({file, 0, ""}, "must be an NC program, but is empty");
   if (text.size() > kLongestNcBytes)
@@ -95,15 +95,15 @@ NcLines::NcLines(std::string_view text, const std::string& file) : file_(file), 
 }
 
 bool NcLines::next(std::string_view& line) {
-  if (rest_.empty()) return false;
+  if (remainder_.empty()) return false;
   ++number_;
   line_ = {};
-  const std::size_t end = rest_.substr(0, kLongestNcLine + 2).find('\n');
-  if (end == std::string_view::npos && rest_.size() > kLongestNcLine)
-    fail(fmt::format("a line may have at most {} characters", kLongestNcLine));
+  const std::size_t end = remainder_.substr(0, kMaxNcLineBytes + 2).find('\n');
+  if (end == std::string_view::npos && remainder_.size() > kMaxNcLineBytes)
+    fail(fmt::format("a line may have at most {} characters", kMaxNcLineBytes));
   ended_by_newline_ = end != std::string_view::npos;
-  line = rest_.substr(0, end);
-  rest_ = ended_by_newline_ ? rest_.substr(end + 1) : std::string_view{};
+  line = remainder_.substr(0, end);
+  remainder_ = ended_by_newline_ ? remainder_.substr(end + 1) : std::string_view{};
   if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
   line_ = line;
   const auto control = std::find_if(line.begin(), line.end(), is_control);
@@ -118,13 +118,13 @@ void NcLines::fail(std::string_view text) const {
   throw InputError({file_, number_, ""}, std::string(text) + block);
 }
 
-void NcLines::fail_word(std::string_view rest) const {
+void NcLines::fail_word(std::string_view remainder) const {
   for (std::size_t i = 0; i < line_.size(); ++i)
-    if (is_same_text(line_.substr(i), rest)) fail(in_quotes(whole_word(line_.substr(i))) + " is not understood");
-  fail(in_quotes(whole_word(rest)) + " is not understood");
+    if (is_same_text(line_.substr(i), remainder)) fail(in_quotes(whole_word(line_.substr(i))) + " is not understood");
+  fail(in_quotes(whole_word(remainder)) + " is not understood");
 }
 
-bool NcNumber::is_whole() const {
+bool NcNumber::is_integer() const {
   return value == std::floor(value) && std::abs(value) < 1e9;
 }
 
@@ -133,7 +133,7 @@ double NcNumber::relative_rounding() const {
 }
 
 void check_line_number(const NcNumber& number, const NcLines& lines) {
-  if (!number.is_whole() || number.value < 0.0 || std::signbit(number.value))
+  if (!number.is_integer() || number.value < 0.0 || std::signbit(number.value))
     lines.fail(fmt::format("a line number must be whole and >= 0, got {}", number.value));
 }
 
@@ -169,11 +169,11 @@ NcNumber take_number(std::string_view& text, const NcLines& lines) {
 
 NcWord take_word(std::string_view& text, const NcLines& lines) {
   NcWord word;
-  word.rest = text;
+  word.remainder = text;
   word.letter = capital(text.front());
-  if (word.letter < 'A' || word.letter > 'Z') lines.fail_word(word.rest);
+  if (word.letter < 'A' || word.letter > 'Z') lines.fail_word(word.remainder);
   text.remove_prefix(1);
-  if (!begins_with_number(text)) lines.fail_word(word.rest);
+  if (!begins_with_number(text)) lines.fail_word(word.remainder);
   word.number = take_number(text, lines);
   return word;
 }
@@ -245,17 +245,17 @@ void IsoBlock::take_group(const NcCode& code, const NcWord& word) {
 
 void IsoBlock::set_g(const NcWord& word, std::span<const NcCode> codes) {
   const NcCode* const code = code_of(codes, word);
-  if (code == nullptr) lines_.fail_word(word.rest);
+  if (code == nullptr) lines_.fail_word(word.remainder);
   take_group(*code, word);
   if (code->effect == nullptr)
-    wants_dwell_ = true;
+    expects_dwell_time_ = true;
   else
     code->effect(block_);
 }
 
 void IsoBlock::set_m(const NcWord& word) {
   const NcCode* const code = code_of(kMCodes, word);
-  if (code == nullptr) lines_.fail_word(word.rest);
+  if (code == nullptr) lines_.fail_word(word.remainder);
   take_group(*code, word);
   code->effect(block_);
 }
@@ -293,9 +293,9 @@ void IsoBlock::set_dwell(double seconds) {
 }
 
 void IsoBlock::finish() {
-  if (wants_dwell_ != block_.dwell_s.has_value())
-    lines_.fail(wants_dwell_ ? "G4 needs a time" : "has a dwell time without G4");
-  if (wants_dwell_ && (block_.axes != 0 || block_.move)) lines_.fail("G4 must be alone in its line");
+  if (expects_dwell_time_ != block_.dwell_s.has_value())
+    lines_.fail(expects_dwell_time_ ? "G4 needs a time" : "has a dwell time without G4");
+  if (expects_dwell_time_ && (block_.axes != 0 || block_.move)) lines_.fail("G4 must be alone in its line");
 }
 
 }  // namespace retrace::fabrication

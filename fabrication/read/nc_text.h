@@ -25,20 +25,20 @@ class NcLines {
   bool next(std::string_view& line);
   std::int32_t number() const { return number_; }
   /// Returns true if the current line is the last one and has no line end. The file may then be truncated in this line.
-  bool is_open_end() const { return rest_.empty() && !ended_by_newline_; }
+  bool is_open_end() const { return remainder_.empty() && !ended_by_newline_; }
   const std::string& file() const { return file_; }
   /// Throws an error about the current line.
   /// \throw InputError with the file, the line number, `text` and the complete line
   [[noreturn]] void fail(std::string_view text) const;
-  /// Throws an error which states that the first word of `rest` is not understood.
-  /// \param rest remainder of the current line without blanks, with marks instead of comments, and perhaps in capitals
-  /// \throw InputError as in fail()
-  [[noreturn]] void fail_word(std::string_view rest) const;
+  /// Throws an error which states that the first word of `remainder` is not understood.
+  /// \param remainder remainder of the current line without blanks, with marks instead of comments, and perhaps in
+  /// capitals \throw InputError as in fail()
+  [[noreturn]] void fail_word(std::string_view remainder) const;
 
  private:
   std::string file_;
   std::string_view line_;  ///< current line
-  std::string_view rest_;
+  std::string_view remainder_;
   std::int32_t number_ = 0;
   bool ended_by_newline_ = true;
 };
@@ -48,7 +48,7 @@ struct NcNumber {
   double value = 0.0;
   bool has_point = false;
   std::uint8_t decimals = 0;
-  bool is_whole() const;
+  bool is_integer() const;
   /// Returns the maximum relative rounding error of the number. It is half of its last decimal divided by the number,
   /// or 0 for the number 0.
   double relative_rounding() const;
@@ -65,7 +65,7 @@ NcNumber take_number(std::string_view& text, const NcLines& lines);
 struct NcWord {
   char letter = ' ';
   NcNumber number;
-  std::string_view rest = {};  ///< remainder of the line, beginning with `letter`
+  std::string_view remainder = {};  ///< remainder of the line, beginning with `letter`
 };
 
 /// Checks a line number (word N).
@@ -111,7 +111,7 @@ inline constexpr auto kLinear = [](NcBlock& b) { b.move = NcMove::linear; };
 inline constexpr auto kInch = [](NcBlock& b) { b.unit_mm = 25.4; };
 inline constexpr auto kMillimetre = [](NcBlock& b) { b.unit_mm = 1.0; };
 template <std::uint16_t what>
-inline constexpr auto kSays = [](NcBlock& b) { b.say(what); };
+inline constexpr auto kMarks = [](NcBlock& b) { b.mark_setting(what); };
 inline constexpr auto kExactStop = [](NcBlock& b) { b.exact_stop = true; };
 inline constexpr auto kBlending = [](NcBlock& b) { b.exact_stop = false; };
 inline constexpr auto kAbsolute = [](NcBlock& b) { b.absolute = true; };
@@ -143,7 +143,7 @@ class IsoBlock {
   /// Sets the position and the velocity of an axis in a cubic move.
   /// \param cubic cubic move of the block
   void set_cubic(std::size_t axis, const NcNumber& place, double velocity, NcCubic& cubic);
-  bool wants_dwell() const { return wants_dwell_; }
+  bool expects_dwell_time() const { return expects_dwell_time_; }
   /// Ends the block and checks its words.
   /// \throw InputError for words that are not allowed together
   void finish();
@@ -154,7 +154,7 @@ class IsoBlock {
   const NcLines& lines_;
   NcBlock& block_;
   unsigned groups_ = 0;
-  bool wants_dwell_ = false;
+  bool expects_dwell_time_ = false;
 };
 
 /// Returns the index of an axis letter, or kNcAxes if it is not the letter of an axis.

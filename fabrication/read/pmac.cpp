@@ -95,7 +95,7 @@ class PmacReader {
 
   std::string whole_number(std::string_view& text) {
     const NcNumber number = take_number(text, lines_);
-    if (!number.is_whole() || number.has_point || number.value < 0) lines_.fail("needs a whole number");
+    if (!number.is_integer() || number.has_point || number.value < 0) lines_.fail("needs a whole number");
     return fmt::format("{}", number.value);
   }
 
@@ -124,7 +124,7 @@ class PmacReader {
     else if (name == "FRAX")
       read_feed_axes(text, block);
     else if (name == "CCMODE" && number_behind(text) == 0)
-      block.say(nc_said::kRadiusOff);
+      block.mark_setting(nc_setting::kRadiusOff);
     else
       lines_.fail_word(whole);
   }
@@ -181,7 +181,7 @@ class PmacReader {
     constexpr std::string_view all = "(X,Y,Z)";
     if (!text.starts_with(all)) lines_.fail("frax must name X, Y and Z");
     text.remove_prefix(all.size());
-    block.say(nc_said::kFeedAxes);
+    block.mark_setting(nc_setting::kFeedAxes);
   }
 
   void read_coordinate_system(std::string_view& text, NcBlock& block) {
@@ -201,13 +201,14 @@ class PmacReader {
     else if (name == "FEEDTIME" && value > 0)
       block.feed_time_s = value / 1000.0;  // the value is in ms
     else if (name == "SEGMOVETIME" && value == 0)
-      block.say(nc_said::kTransformationOff);  // without segmentation, the control applies no kinematic transformation
+      block.mark_setting(
+          nc_setting::kTransformationOff);  // without segmentation, the control applies no kinematic transformation
     else
       lines_.fail("Coord[" + number + "]." + printable(name) + " with that value is not understood");
   }
 
   void read_word(const NcWord& word, IsoBlock& iso) {
-    if (word.letter == 'G' || word.letter == 'S' || !iso.set(word, {})) lines_.fail_word(word.rest);
+    if (word.letter == 'G' || word.letter == 'S' || !iso.set(word, {})) lines_.fail_word(word.remainder);
   }
 
   NcLines lines_;

@@ -27,16 +27,16 @@ constexpr NcCode kRs274ngcCodes[] = {
     {19, 2, kNone},
     {20, 6, kInch},
     {21, 6, kMillimetre},
-    {40, 7, kSays<nc_said::kRadiusOff>},
-    {49, 8, kSays<nc_said::kLengthOff>},
-    {54, 12, kSays<nc_said::kWorkOffset>},
+    {40, 7, kMarks<nc_setting::kRadiusOff>},
+    {49, 8, kMarks<nc_setting::kLengthOff>},
+    {54, 12, kMarks<nc_setting::kWorkOffset>},
     {61, 13, kExactStop},
     {61.1, 13, kExactStop},
     {64, 13, kBlending},
     {80, 1, kNoMotion},
     {90, 3, kAbsolute},
     {91, 3, kIncremental},
-    {92.1, 0, kSays<nc_said::kShiftOff>},
+    {92.1, 0, kMarks<nc_setting::kShiftOff>},
     {93, 5, kInverseTime},
     {94, 5, kFeedPerMinuteFromZero},
     {97, 14, kNone},  // S is in rpm
@@ -120,7 +120,7 @@ class Rs274Reader {
 
   void read_o_word(std::string_view text) {
     const NcNumber number = take_number(text, lines_);
-    if (!number.is_whole() || number.has_point) lines_.fail("a subroutine must have a whole number");
+    if (!number.is_integer() || number.has_point) lines_.fail("a subroutine must have a whole number");
     const std::string name = fmt::format("{}", number.value);
     if (text == "SUB")
       begin(name);
@@ -171,7 +171,7 @@ class Rs274Reader {
       if (given) lines_.fail(fmt::format("has two words {}", word.letter));
       given = word.number.value;
     } else if (!iso.set(word, kRs274ngcCodes)) {
-      lines_.fail_word(word.rest);
+      lines_.fail_word(word.remainder);
     }
   }
 
@@ -181,7 +181,7 @@ class Rs274Reader {
     const bool blends = block.exact_stop == false;
     if (words_.p && !blends) iso.set_dwell(*words_.p);
     if (words_.q && !(blends && words_.p)) lines_.fail("Q is not understood here");
-    if (block.axes != 0 && (block.says & nc_said::kShiftOff) != 0) lines_.fail("G92.1 takes no axis words");
+    if (block.axes != 0 && (block.settings_made & nc_setting::kShiftOff) != 0) lines_.fail("G92.1 takes no axis words");
     const bool is_negative = words_.p.value_or(0.0) < 0.0 || words_.q.value_or(0.0) < 0.0;
     if (blends && is_negative) lines_.fail("P and Q of G64 must be >= 0");
     // P limits the deviation due to rounded corners, and Q the deviation due to merged blocks. Both may add up. Q

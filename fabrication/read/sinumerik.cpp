@@ -20,11 +20,11 @@ constexpr NcCode kSinumerikCodes[] = {
     {17, 6, kNone},
     {18, 6, kNone},
     {19, 6, kNone},
-    {40, 7, kSays<nc_said::kRadiusOff>},
-    {54, 8, kSays<nc_said::kWorkOffset>},
+    {40, 7, kMarks<nc_setting::kRadiusOff>},
+    {54, 8, kMarks<nc_setting::kWorkOffset>},
     {60, 10, kExactStop},
     {64, 10, kBlending},
-    {601, 12, kSays<nc_said::kFineStop>},
+    {601, 12, kMarks<nc_setting::kFineStop>},
     {700, 13, kInch},
     {710, 13, kMillimetre},
     {90, 14, kAbsolute},
@@ -150,13 +150,13 @@ class SinumerikReader {
     Setting<NcWord> feed;
     while (!text.empty()) {
       if (starts_with_word(text, "TRAFOOF")) {
-        block.say(nc_said::kTransformationOff);
+        block.mark_setting(nc_setting::kTransformationOff);
         text = trimmed(text.substr(7));
         continue;
       }
       // TRANS without words cancels programmed frames. TRANS with words, which would shift the zero, is not supported.
       if (text == "TRANS") {
-        block.say(nc_said::kShiftOff);
+        block.mark_setting(nc_setting::kShiftOff);
         text = {};
         continue;
       }
@@ -169,7 +169,7 @@ class SinumerikReader {
       }
     }
     // In a line with G4, F is the dwell time in seconds and does not change the feed.
-    if (feed && iso.wants_dwell())
+    if (feed && iso.expects_dwell_time())
       iso.set_dwell(feed->number.value);
     else if (feed)
       iso.set_feed(*feed);
@@ -201,7 +201,7 @@ class SinumerikReader {
       std::string_view rest = joined;
       if (!begins_with_number(rest.substr(1))) lines_.fail_word(text);
       NcWord word = take_word(rest, lines_);
-      word.rest = text;
+      word.remainder = text;
       text = trimmed(text.substr(text.size() - rest.size()));
       return word;
     }
@@ -213,9 +213,9 @@ class SinumerikReader {
   void read_word(const NcWord& word, IsoBlock& iso, NcBlock& block) {
     if (word.letter == 'D') {
       if (word.number.value != 0) lines_.fail("D must be 0, because tool offsets are not supported");
-      block.say(nc_said::kLengthOff);
+      block.mark_setting(nc_setting::kLengthOff);
     } else if (!iso.set(word, kSinumerikCodes)) {
-      lines_.fail_word(word.rest);
+      lines_.fail_word(word.remainder);
     }
   }
 
@@ -228,7 +228,7 @@ class SinumerikReader {
       if (last->second >= program_.blocks.size()) continue;
       program_.subroutines[i].first = first->second;
       program_.subroutines[i].last = last->second + 1;
-      program_.subroutines[i].is_whole = true;
+      program_.subroutines[i].is_complete = true;
     }
   }
 

@@ -24,14 +24,14 @@ class SubroutineTable {
   /// Begins a subroutine at the next block. Returns false if a subroutine with this name exists already.
   bool begin(const std::string& name) {
     open_ = index_of(name);
-    if (open().is_whole) return false;
+    if (open().is_complete) return false;
     open().first = program_.blocks.size();
     return true;
   }
   /// Ends the present subroutine after the last block.
   void end() {
     open().last = program_.blocks.size();
-    open().is_whole = true;
+    open().is_complete = true;
     open_ = -1;
   }
   bool is_open() const { return open_ >= 0; }

@@ -14,8 +14,8 @@ constexpr double kSqrt3 = std::numbers::sqrt3;
 }  // namespace
 
 double effective_radius_mm(const TurningTool& tool) {
-  const double b = std::cos(tool.skew_deg * kDegree);
-  return tool.nose_radius_mm * b * b / std::cos(tool.rake_deg * kDegree);
+  const double b = std::cos(tool.skew_deg * kRadPerDeg);
+  return tool.nose_radius_mm * b * b / std::cos(tool.rake_deg * kRadPerDeg);
 }
 
 FinishFigures finish_figures(double effective_radius_mm, double feed_mm, double curvature_per_mm) {
@@ -25,8 +25,8 @@ FinishFigures finish_figures(double effective_radius_mm, double feed_mm, double 
 }
 
 FinishFigures exact_finish(const TurningTool& tool, double feed_mm) {
-  const double a = tool.nose_radius_mm * std::cos(tool.rake_deg * kDegree) * kNmPerMm;
-  const double b = tool.nose_radius_mm * std::cos(tool.skew_deg * kDegree);
+  const double a = tool.nose_radius_mm * std::cos(tool.rake_deg * kRadPerDeg) * kNmPerMm;
+  const double b = tool.nose_radius_mm * std::cos(tool.skew_deg * kRadPerDeg);
   const double end = 0.5 * feed_mm / b;
   const auto height = [&](double u) { return a * u * u / (1.0 + std::sqrt(1.0 - u * u)); };
   using Gauss = boost::math::quadrature::gauss<double, 30>;

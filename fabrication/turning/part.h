@@ -17,7 +17,7 @@ struct TurnedPart {
   std::string title;
   geometry::FreeformSurface surface;
   TurningTool tool;
-  bool skew_is_least = false;  ///< true: the file requests the minimum possible skew, and `tool` contains its value
+  bool skew_is_min = false;  ///< true: the file requests the minimum possible skew, and `tool` contains its value
   PathOptions path;
   TurningMachine machine;
   double form_tolerance_nm = 10.0;

@@ -27,7 +27,7 @@ struct PathOptions {
   double arc_mm = 5e-3;       ///< distance of points, for Sampling::arc and for rasters
   double spindle_rpm = 60.0;
   double cutting_mm_per_min = 60.0;  ///< raster: cutting speed
-  double clear_mm = 1.0;             ///< clearance above the highest point, for moves without cutting
+  double clearance_mm = 1.0;         ///< clearance above the highest point, for moves without cutting
   double blend_mm = 1e-6;            ///< maximum deviation from the path between moves, due to blending
   double approach_mm_per_min = 5.0;  ///< feed of the downward move to the start of a cut
   /// Angular acceleration of C at both ends of a spiral, between rest and the speed of the spindle. The acceleration is

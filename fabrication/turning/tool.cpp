@@ -31,12 +31,12 @@ bool clears(const TurningTool& tool, const std::vector<SlopeSample>& samples) {
 
 Warnings tool_warnings(const TurningTool& tool) {
   Warnings warnings;
-  if (tool.rake_deg < kTriedRakeLowDeg || tool.rake_deg > kTriedRakeHighDeg)
+  if (tool.rake_deg < kMinTestedRakeDeg || tool.rake_deg > kMaxTestedRakeDeg)
     warnings.push_back(
         {"untried_rake",
          fmt::format("a rake of {} degrees is outside of -45 to 18 degrees, the range with proven good surface finish",
                      shortest(tool.rake_deg))});
-  if (std::abs(tool.skew_deg) > kTriedSkewDeg)
+  if (std::abs(tool.skew_deg) > kTestedSkewDeg)
     warnings.push_back(
         {"untried_skew",
          fmt::format("a skew of {} degrees is outside of -60 to 60 degrees, the range with proven good surface finish",
@@ -45,8 +45,8 @@ Warnings tool_warnings(const TurningTool& tool) {
 }
 
 ToolFrame tool_frame(const TurningTool& tool) {
-  const double skew = tool.skew_deg * kDegree;
-  const double rake = tool.rake_deg * kDegree;
+  const double skew = tool.skew_deg * kRadPerDeg;
+  const double rake = tool.rake_deg * kRadPerDeg;
   const Vec3 cut(std::sin(skew), std::cos(skew), 0.0);
   ToolFrame frame;
   frame.across = {std::cos(skew), -std::sin(skew), 0.0};
@@ -60,7 +60,7 @@ Contact contact_of(const ToolFrame& frame, const Vec3& normal) {
   // At the point of contact, the direction from the centre of the nose is opposite to the component of the normal in
   // the rake face.
   const double angle = std::atan2(-normal.dot(frame.across), normal.dot(frame.up));
-  return {std::asin(along) / kDegree, angle / kDegree};
+  return {std::asin(along) / kRadPerDeg, angle / kRadPerDeg};
 }
 
 Angle clearance_along_cut(Angle clearance, Angle skew) {
@@ -86,7 +86,7 @@ std::vector<SlopeSample> slopes_along(const geometry::FreeformSurface& surface, 
   for (int i = 1; i <= kAcross; ++i)
     for (int k = 0; k < kAlong; ++k) {
       const double r = options.radius_mm * i / kAcross;
-      const double theta = kTurn * k / kAlong;
+      const double theta = kTwoPi * k / kAlong;
       const geometry::Vec2 outward(std::cos(theta), std::sin(theta));
       add(r * outward.x(), r * outward.y(), outward, geometry::Vec2(outward.y(), -outward.x()));
     }
@@ -110,14 +110,14 @@ ClearanceFigures clearance_figures(const TurningTool& tool, const std::vector<Sl
   return figures;
 }
 
-std::optional<double> least_skew_deg(TurningTool tool, const std::vector<SlopeSample>& samples, double most_deg) {
+std::optional<double> min_skew_deg(TurningTool tool, const std::vector<SlopeSample>& samples, double max_deg) {
   constexpr double kCoarse = 0.25;
   const auto clears_at = [&](double skew) {
     tool.skew_deg = skew;
     return clears(tool, samples);
   };
   if (clears_at(0.0)) return 0.0;
-  for (int i = 1; kCoarse * i <= most_deg + 1e-9; ++i)
+  for (int i = 1; kCoarse * i <= max_deg + 1e-9; ++i)
     for (const double sign : {1.0, -1.0}) {
       if (!clears_at(sign * kCoarse * i)) continue;
       double failing = kCoarse * (i - 1);
@@ -126,7 +126,7 @@ std::optional<double> least_skew_deg(TurningTool tool, const std::vector<SlopeSa
         const double middle = 0.5 * (failing + clearing);
         (clears_at(sign * middle) ? clearing : failing) = middle;
       }
-      return sign * std::min(most_deg, std::ceil(clearing * 100.0) / 100.0);
+      return sign * std::min(max_deg, std::ceil(clearing * 100.0) / 100.0);
     }
   return std::nullopt;
 }

@@ -24,9 +24,9 @@ struct TurningTool {
 
 /// Range of rake and skew angles that gave a good finish in published tests (A. Sohn and N. Naples, Single-point
 /// diamond turning of features with large azimuthal slope, Fig. 10).
-inline constexpr double kTriedRakeLowDeg = -45.0;
-inline constexpr double kTriedRakeHighDeg = 18.0;
-inline constexpr double kTriedSkewDeg = 60.0;
+inline constexpr double kMinTestedRakeDeg = -45.0;
+inline constexpr double kMaxTestedRakeDeg = 18.0;
+inline constexpr double kTestedSkewDeg = 60.0;
 
 /// Returns warnings if rake or skew is outside of the tested range.
 Warnings tool_warnings(const TurningTool& tool);
@@ -82,6 +82,6 @@ ClearanceFigures clearance_figures(const TurningTool& tool, const std::vector<Sl
 
 /// Returns the skew closest to 0, within +-most_deg, with which the tool clears all samples. The resolution is 0.01
 /// degrees. Returns nothing if there is no such skew.
-std::optional<double> least_skew_deg(TurningTool tool, const std::vector<SlopeSample>& samples, double most_deg);
+std::optional<double> min_skew_deg(TurningTool tool, const std::vector<SlopeSample>& samples, double max_deg);
 
 }  // namespace retrace::fabrication::turning

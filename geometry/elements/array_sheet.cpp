@@ -82,21 +82,21 @@ Polygon common(Polygon polygon, const Polygon& other, double tolerance_mm) {
 ArraySheet::ArraySheet(const PartSpec& of) : spec(&of) {
   tolerance_mm = sliver_mm = kWhole * bounding_box(aperture_outline(of.element)).size().minCoeff();
   if (of.array.extent == Extent::infinite)
-    lay_out_endless();
+    lay_out_infinite();
   else
     lay_out_finite();
   measure_cells();
 }
 
-void ArraySheet::lay_out_endless() {
+void ArraySheet::lay_out_infinite() {
   lattice = make_lattice(*spec, true);
-  part_mm = reach_mm = block_mm = widened({}, kEndlessPeriods * lattice.period_mm);
+  part_mm = coverage_mm = block_mm = widened({}, kEndlessPeriods * lattice.period_mm);
 }
 
 void ArraySheet::lay_out_finite() {
   const Vec2 length(spec->array.x_length_mm, spec->array.y_length_mm);
-  middle_mm = 0.5 * length;
-  part_mm = reach_mm = {Vec2::Zero(), length};
+  centre_mm = 0.5 * length;
+  part_mm = coverage_mm = {Vec2::Zero(), length};
   if (spec->substrate) lay_on_substrate();
   if (const auto* prism = std::get_if<RtpElement>(&spec->element))
     lay_out_prisms(*prism);
@@ -104,21 +104,21 @@ void ArraySheet::lay_out_finite() {
     lay_out_cubes();
   if (!is_upright) return;
   snap(part_mm, block_mm, length);
-  reach_mm = part_mm;
+  coverage_mm = part_mm;
 }
 
 void ArraySheet::lay_on_substrate() {
   surface.emplace(substrate_surface_of(*spec));
-  top_mm = measure_substrate(*surface, middle_mm).highest_mm;
+  top_mm = measure_substrate(*surface, centre_mm).highest_mm;
   is_upright = surface->is_upright();
   if (is_upright) return;
-  tolerance_mm = std::max(sliver_mm, 2.0 * kWhole * middle_mm.maxCoeff());
-  reach_mm = arcs_of_border();
+  tolerance_mm = std::max(sliver_mm, 2.0 * kWhole * centre_mm.maxCoeff());
+  coverage_mm = arcs_of_border();
 }
 
 /// Lays out prisms as a flat array. On a substrate, the flat array has the size of the substrate unrolled into a plane.
 void ArraySheet::lay_out_prisms(const RtpElement& prism) {
-  const Rectangle all = is_upright ? part_mm : moved(surface->arc_reach(), middle_mm);
+  const Rectangle all = is_upright ? part_mm : moved(surface->arc_reach(), centre_mm);
   ArrayLayout array = spec->array;
   array.x_length_mm = all.size().x();
   array.y_length_mm = all.size().y();
@@ -131,8 +131,8 @@ void ArraySheet::lay_out_prisms(const RtpElement& prism) {
 
 void ArraySheet::lay_out_cubes() {
   const Vec2 margin(spec->array.x_offset_mm, spec->array.y_offset_mm);
-  block_mm = is_upright ? widened(part_mm, -margin) : widened(reach_mm, kEndlessReaches * reach_mm.size());
-  anchor_mm = middle_mm;
+  block_mm = is_upright ? widened(part_mm, -margin) : widened(coverage_mm, kEndlessReaches * coverage_mm.size());
+  anchor_mm = centre_mm;
   lattice = make_lattice(*spec, false);
 }
 
@@ -143,16 +143,16 @@ Rectangle ArraySheet::arcs_of_border() const {
   for (int k = 0; k <= kSteps; ++k) {
     const double along = 2.0 * k / kSteps - 1.0;
     for (const Vec2& p : {Vec2(along, -1.0), Vec2(along, 1.0), Vec2(-1.0, along), Vec2(1.0, along)}) {
-      const Vec2 arc = surface->arc_of(middle_mm.cwiseProduct(p));
+      const Vec2 arc = surface->arc_of(centre_mm.cwiseProduct(p));
       box = round_all(box, {arc, arc});
     }
   }
-  return moved(widened(box, Vec2::Constant(1.5 * width_across_mm(spec->element))), middle_mm);
+  return moved(widened(box, Vec2::Constant(1.5 * width_across_mm(spec->element))), centre_mm);
 }
 
 void ArraySheet::measure_cells() {
   for (const Cell& cell : lattice.cells) {
-    middles_mm.push_back(place_of(*spec, cell));
+    reference_points_mm.push_back(reference_position(*spec, cell));
     rims_mm.push_back(cell.is_element ? rim_heights(cell, spec->element)
                                       : std::vector<double>(cell.outline.size(), 0.0));
   }
@@ -165,8 +165,8 @@ IndexRange ArraySheet::indices() const {
   for (const Eigen::Index axis : {0, 1}) {
     const auto k = static_cast<std::size_t>(axis);
     const double period = lattice.period_mm[axis];
-    const double low = (reach_mm.lower[axis] - anchor_mm[axis] - cells.upper[axis]) / period;
-    const double high = (reach_mm.upper[axis] - anchor_mm[axis] - cells.lower[axis]) / period;
+    const double low = (coverage_mm.lower[axis] - anchor_mm[axis] - cells.upper[axis]) / period;
+    const double high = (coverage_mm.upper[axis] - anchor_mm[axis] - cells.lower[axis]) / period;
     range.lower[k] = static_cast<std::int64_t>(std::floor(low));
     range.upper[k] = static_cast<std::int64_t>(std::ceil(high)) + 1;
   }
@@ -181,40 +181,40 @@ bool ArraySheet::repeats_along(std::size_t axis) const {
   return !surface || (axis == 0 ? surface->repeats_along_u() : surface->repeats_along_v());
 }
 
-SheetPiece::SheetPiece(const ArraySheet& sheet, std::int64_t i, std::int64_t j, bool is_alone)
+SheetPortion::SheetPortion(const ArraySheet& sheet, std::int64_t i, std::int64_t j, bool is_alone)
     : sheet_(&sheet), at_(sheet.at_mm(i, j)), origin_(at_) {
   if (sheet.surface) {
-    const Vec3 origin = sheet.surface->frame_at(at_ - sheet.middle_mm).origin;
-    if (!sheet.is_upright) origin_ = sheet.middle_mm + origin.head<2>();
+    const Vec3 origin = sheet.surface->frame_at(at_ - sheet.centre_mm).origin;
+    if (!sheet.is_upright) origin_ = sheet.centre_mm + origin.head<2>();
     height_ = is_alone ? sheet.top_mm : origin.z();
   }
   part_ = moved(sheet.part_mm, -origin_);
-  reach_ = moved(sheet.reach_mm, -at_);
+  reach_ = moved(sheet.coverage_mm, -at_);
   block_ = moved(sheet.block_mm, -at_);
 }
 
-Vec2 SheetPiece::plan_of(const Vec2& on_sheet, double rim_mm) const {
+Vec2 SheetPortion::plan_of(const Vec2& on_sheet, double rim_mm) const {
   if (sheet_->is_upright) return on_sheet;
-  Vec2 plan = sheet_->surface->plan_of(at_ + on_sheet - sheet_->middle_mm);
+  Vec2 plan = sheet_->surface->plan_of(at_ + on_sheet - sheet_->centre_mm);
   if (rim_mm != 0.0) plan += rim_mm * sheet_->surface->normal_at(plan).head<2>();
-  return plan + sheet_->middle_mm - origin_;
+  return plan + sheet_->centre_mm - origin_;
 }
 
-SubstrateFrame SheetPiece::frame_at(const Vec2& on_sheet) const {
+SubstrateFrame SheetPortion::frame_at(const Vec2& on_sheet) const {
   SubstrateFrame frame;
   frame.origin.head<2>() = on_sheet;
   if (!sheet_->surface) return frame;
-  frame = sheet_->surface->frame_at(at_ + on_sheet - sheet_->middle_mm);
-  frame.origin.head<2>() += sheet_->middle_mm - origin_;
+  frame = sheet_->surface->frame_at(at_ + on_sheet - sheet_->centre_mm);
+  frame.origin.head<2>() += sheet_->centre_mm - origin_;
   frame.origin.z() -= height_;
   return frame;
 }
 
-CellPlace SheetPiece::place(std::size_t cell, const Vec2& shift_mm) const {
-  CellPlace place;
+SheetCell SheetPortion::sheet_cell(std::size_t cell, const Vec2& shift_mm) const {
+  SheetCell place;
   place.shift_mm = shift_mm;
   place.on_sheet = moved(sheet_->lattice.cells[cell].outline, shift_mm);
-  place.frame = frame_at(sheet_->middles_mm[cell] + shift_mm);
+  place.frame = frame_at(sheet_->reference_points_mm[cell] + shift_mm);
   place.outline = place.on_sheet;
   if (!sheet_->is_upright)
     for (std::size_t k = 0; k < place.outline.size(); ++k)
@@ -222,19 +222,19 @@ CellPlace SheetPiece::place(std::size_t cell, const Vec2& shift_mm) const {
   return place;
 }
 
-Standing SheetPiece::standing(const CellPlace& place) const {
+BorderRelation SheetPortion::border_relation(const SheetCell& place) const {
   if (contains(block_, place.on_sheet, sheet_->sliver_mm) &&
       (sheet_->is_upright || contains(part_, place.outline, sheet_->tolerance_mm)))
-    return Standing::whole;
-  return within(place, place.outline, block_).empty() ? Standing::beyond : Standing::cut;
+    return BorderRelation::inside;
+  return within(place, place.outline, block_).empty() ? BorderRelation::outside : BorderRelation::crossing;
 }
 
-bool SheetPiece::is_clear_of_part(const CellPlace& place) const {
+bool SheetPortion::is_clear_of_part(const SheetCell& place) const {
   const Rectangle box = bounding_box(place.outline);
   return (box.lower.array() > part_.upper.array()).any() || (box.upper.array() < part_.lower.array()).any();
 }
 
-Polygon SheetPiece::within(const CellPlace& place, const Polygon& outline, const Rectangle& on_sheet) const {
+Polygon SheetPortion::within(const SheetCell& place, const Polygon& outline, const Rectangle& on_sheet) const {
   if (sheet_->is_upright) return clip(outline, on_sheet, sheet_->sliver_mm);
   Polygon inner = outline;
   if (!contains(on_sheet, place.on_sheet, sheet_->sliver_mm)) {
@@ -245,13 +245,13 @@ Polygon SheetPiece::within(const CellPlace& place, const Polygon& outline, const
   return contains(part_, inner, 0.0) ? inner : clip(inner, part_, sheet_->tolerance_mm);
 }
 
-Rectangle SheetPiece::plan_round(const Rectangle& on_sheet) const {
+Rectangle SheetPortion::plan_bounding_box(const Rectangle& on_sheet) const {
   Polygon corners = to_polygon(on_sheet);
   for (Vec2& p : corners) p = plan_of(p);
   return bounding_box(corners);
 }
 
-Rectangle SheetPiece::block_in_plan() const {
+Rectangle SheetPortion::block_in_plan() const {
   if (sheet_->is_upright) return block_;
   if (!std::holds_alternative<RtpElement>(sheet_->spec->element)) return part_;
   return {plan_of(block_.lower).cwiseMax(part_.lower), plan_of(block_.upper).cwiseMin(part_.upper)};

@@ -45,22 +45,22 @@ struct ArraySheet {
   std::optional<PrismBlock> prisms;  ///< set if the elements are prisms; positions are relative to the block's centre
   Lattice lattice;
   Vec2 anchor_mm = Vec2::Zero();  ///< origin of the lattice on the sheet
-  Vec2 middle_mm = Vec2::Zero();  ///< centre of the part, where the substrate has its origin
+  Vec2 centre_mm = Vec2::Zero();  ///< centre of the part, where the substrate has its origin
   Rectangle part_mm;              ///< extent of the part in plan
-  Rectangle reach_mm;             ///< area of the sheet that covers the part
+  Rectangle coverage_mm;          ///< area of the sheet that covers the part
   /// area of the sheet that elements fill; the rest is flat land (surface without elements)
   Rectangle block_mm;
   double top_mm = 0.0;  ///< height of the substrate's highest point, which is placed at z = 0 of the part
   /// cells that extend beyond a border of the sheet by at most this length count as inside
   double sliver_mm = 0.0;
-  double tolerance_mm = 0.0;     ///< tolerance for the border of the part in plan
-  std::vector<Vec2> middles_mm;  ///< for each cell of the lattice, the point that is placed on the substrate
+  double tolerance_mm = 0.0;              ///< tolerance for the border of the part in plan
+  std::vector<Vec2> reference_points_mm;  ///< for each cell of the lattice, the point that is placed on the substrate
   /// For each cell, the height of each corner of its outline (its rim) above the substrate. The corners of one cell may
   /// have different heights, because the rim of a full cube corner is not horizontal.
   std::vector<std::vector<double>> rims_mm;
 
  private:
-  void lay_out_endless();
+  void lay_out_infinite();
   void lay_out_finite();
   void lay_on_substrate();
   void lay_out_prisms(const RtpElement& prism);
@@ -69,8 +69,8 @@ struct ArraySheet {
   void measure_cells();
 };
 
-/// Position of a lattice cell. Lengths are relative to the origin of its SheetPiece.
-struct CellPlace {
+/// Position of a lattice cell. Lengths are relative to the origin of its SheetPortion.
+struct SheetCell {
   Vec2 shift_mm = Vec2::Zero();  ///< shift on the sheet, relative to the cell's position in the lattice
   Polygon on_sheet;
   Polygon outline;       ///< in plan
@@ -79,20 +79,20 @@ struct CellPlace {
 
 /// Portion of a sheet. Its coordinates are relative to the lattice's origin in the period (i, j). Portions of the same
 /// shape therefore have the same coordinates, wherever they are on the sheet.
-class SheetPiece {
+class SheetPortion {
  public:
   /// \param is_alone true if this is the only portion of the sheet; heights are then relative to z = 0 of the part
-  SheetPiece(const ArraySheet& sheet, std::int64_t i, std::int64_t j, bool is_alone);
+  SheetPortion(const ArraySheet& sheet, std::int64_t i, std::int64_t j, bool is_alone);
 
-  CellPlace place(std::size_t cell, const Vec2& shift_mm) const;
-  Standing standing(const CellPlace& place) const;
+  SheetCell sheet_cell(std::size_t cell, const Vec2& shift_mm) const;
+  BorderRelation border_relation(const SheetCell& place) const;
   /// Returns true if the cell does not overlap the part in plan.
-  bool is_clear_of_part(const CellPlace& place) const;
+  bool is_clear_of_part(const SheetCell& place) const;
   /// Returns the part of an outline in plan that is within the part and within a rectangle of the sheet.
   /// \param outline the outline of `place`, or an outline within it
-  Polygon within(const CellPlace& place, const Polygon& outline, const Rectangle& on_sheet) const;
+  Polygon within(const SheetCell& place, const Polygon& outline, const Rectangle& on_sheet) const;
   /// Returns the bounding box in plan of a rectangle on the sheet.
-  Rectangle plan_round(const Rectangle& on_sheet) const;
+  Rectangle plan_bounding_box(const Rectangle& on_sheet) const;
   /// Returns the area in plan that elements fill. Walls on its border are border walls of the array.
   Rectangle block_in_plan() const;
 

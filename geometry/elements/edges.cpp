@@ -14,15 +14,15 @@ namespace retrace::geometry {
 
 namespace {
 
-// Minimum width of a facet (kSliver) and of an edge (kLeastEdge), relative to an element's size. Narrower facets result
+// Minimum width of a facet (kSliver) and of an edge (kMinEdge), relative to an element's size. Narrower facets result
 // from rounding errors and are omitted. Narrower edges are not built.
 constexpr double kSliver = 1e-9;
-constexpr double kLeastEdge = 1e-7;
+constexpr double kMinEdge = 1e-7;
 // Number of times that the spherical triangle at a corner is subdivided: 16 faces.
 constexpr int kSphereHalvings = 2;
 // Minimum angle between two planes (approximately, in radians) for a rim to be rounded. A rim is the edge between an
 // element and its neighbour.
-constexpr double kLeastTurn = 1e-3;
+constexpr double kMinEdgeAngle = 1e-3;
 
 double size_of(const Polygon& outline) {
   return bounding_box(outline).size().minCoeff();
@@ -51,7 +51,7 @@ bool is_sliver(const Polygon& polygon, double width_mm) {
 
 /// Returns the upper envelope of several planes over an outline.
 std::vector<CellFacet> upper_envelope(const Polygon& outline, const std::vector<CellFacet>& planes, double sliver_mm) {
-  std::vector<CellFacet> facets = highest_of(outline, planes);
+  std::vector<CellFacet> facets = upper_envelope_of(outline, planes);
   std::erase_if(facets, [&](const CellFacet& facet) { return is_sliver(facet.outline, sliver_mm); });
   return facets;
 }
@@ -200,7 +200,7 @@ std::optional<Rim> rim_over(const Cell& cell, const CellFacet& facet, std::size_
   const Vec3 normal = outward_normal(facet.plane);
   const Vec2 along = (b - a).normalized();
   const Vec3 outward(along.y(), -along.x(), 0.0);
-  if (normal.dot(outward) < kLeastTurn) return std::nullopt;
+  if (normal.dot(outward) < kMinEdgeAngle) return std::nullopt;
   return Rim{lifted(a, facet.plane),
              beyond == Beyond::land ? Vec3(-Vec3::UnitZ()) : Vec3(normal - 2.0 * normal.dot(outward) * outward)};
 }
@@ -231,7 +231,7 @@ std::vector<CellFacet> rim_planes(const Cell& cell, const CellFacet& facet, cons
 
 EdgeShape without_negligible(EdgeShape edges, double size_mm) {
   for (double* width_mm : {&edges.root_radius_mm, &edges.root_chamfer_mm, &edges.rim_radius_mm, &edges.rim_chamfer_mm})
-    if (*width_mm < kLeastEdge * size_mm) *width_mm = 0.0;
+    if (*width_mm < kMinEdge * size_mm) *width_mm = 0.0;
   return edges;
 }
 
@@ -293,7 +293,7 @@ double rim_reach_over_land_mm(const PartSpec& spec) {
          0.5 * spec.edges.rim_chamfer_mm / std::cos(0.5 * steepest);
 }
 
-double edge_share(const Cell& cell) {
+double edge_fraction(const Cell& cell) {
   double on_edges = 0.0;
   for (const CellFacet& facet : cell.facets)
     if (facet.is_edge) on_edges += area(facet.outline);

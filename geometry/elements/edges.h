@@ -25,6 +25,6 @@ Cell land_cell(const Rectangle& rectangle, const PartSpec& spec, Eigen::Index ax
 double rim_reach_over_land_mm(const PartSpec& spec);
 
 /// Returns the fraction of an element's area in plan that its edges and scratches occupy.
-double edge_share(const Cell& cell);
+double edge_fraction(const Cell& cell);
 
 }  // namespace retrace::geometry

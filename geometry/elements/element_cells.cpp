@@ -134,7 +134,7 @@ Cell cube_cell(Polygon outline, const Vec2& centre, double apex_height, const st
       facet.outline.push_back(outline[static_cast<std::size_t>(corner) % outline.size()]);
     facet.outline.push_back(point_at(ends[(k + 1) % 3]));
     facet.plane = {apex_height - slopes[k].dot(centre), slopes[k]};
-    facet.middle_mm = centroid(facet.outline);
+    facet.centroid_mm = centroid(facet.outline);
     cell.facets.push_back(std::move(facet));
   }
   cell.outline = std::move(outline);
@@ -164,7 +164,7 @@ Cell rtp_cell(const RtpElement& element, const AngleErrors& errors, const Vec2& 
     facet.outline = to_polygon(area);
     facet.plane.slope[across] = side * steepness * (std::tan(half.mean_rad) / std::tan(half.rad[k]));
     facet.plane.height_mm = -depth - facet.plane.slope[across] * root;
-    facet.middle_mm = centroid(facet.outline);
+    facet.centroid_mm = centroid(facet.outline);
     cell.facets.push_back(std::move(facet));
   }
   return cell;

@@ -38,7 +38,7 @@ struct CellFacet {
   bool is_edge = false;  ///< true for a strip of a rounded or chamfered edge, and for a flank of a scratch
   /// (x, y) of the centroid of the complete facet, before edges, scratches and borders remove parts of it. The facet's
   /// form error is defined relative to this point. Land and edges have no value.
-  std::optional<Vec2> middle_mm = {};
+  std::optional<Vec2> centroid_mm = {};
 };
 
 /// An element, or a flat area on z = 0 without elements (land). The order of an element's facets is the order of

@@ -10,8 +10,8 @@
 namespace retrace::geometry {
 
 /// Chooses each element with equal probability, using a hash of its row, its column and the seed.
-struct RandomShare {
-  double share = 0.0;  ///< 0 to 1
+struct RandomFraction {
+  double fraction = 0.0;  ///< 0 to 1
   std::uint32_t seed = 1;
 };
 struct Disc {
@@ -24,6 +24,6 @@ struct HalfPlane {
   double azimuth_deg = 0.0;  ///< direction from the line into the half-plane, from +x towards +y
 };
 /// Choice of elements. Positions are in the part frame. The borders of a rectangle are included.
-using ElementChoice = std::variant<RandomShare, Rectangle, Disc, HalfPlane>;
+using ElementChoice = std::variant<RandomFraction, Rectangle, Disc, HalfPlane>;
 
 }  // namespace retrace::geometry

@@ -15,7 +15,7 @@ namespace retrace::geometry {
 FacetPlanes::FacetPlanes(std::vector<ElementPlanes> elements, double spacing_mm)
     : elements_(std::move(elements)), spacing_mm_(spacing_mm) {
   for (std::size_t i = 0; i < elements_.size(); ++i)
-    if (!places_.try_emplace(key_of(elements_[i].centre_mm), i).second)
+    if (!index_of_key_.try_emplace(key_of(elements_[i].centre_mm), i).second)
       throw InputError("two elements have the same position");
 }
 
@@ -28,8 +28,8 @@ const ElementPlanes* FacetPlanes::at(const Vec2& centre_mm) const {
   const Key key = key_of(centre_mm);
   for (std::int64_t dx = -1; dx <= 1; ++dx)
     for (std::int64_t dy = -1; dy <= 1; ++dy) {
-      const auto found = places_.find({key.first + dx, key.second + dy});
-      if (found == places_.end()) continue;
+      const auto found = index_of_key_.find({key.first + dx, key.second + dy});
+      if (found == index_of_key_.end()) continue;
       const ElementPlanes& element = elements_[found->second];
       if ((element.centre_mm - centre_mm).norm() < kSameShare * spacing_mm_) return &element;
     }
@@ -79,9 +79,9 @@ double cube_spacing_mm(const Element& element) {
   return kNearest * bounding_box(aperture_outline(element)).size().minCoeff();
 }
 
-Vec2 place_of(const PartSpec& spec, const Cell& cell) {
+Vec2 reference_position(const PartSpec& spec, const Cell& cell) {
   if (cell.is_element && !std::holds_alternative<RtpElement>(spec.element)) return cell.at_mm;
-  return bounding_box(cell.outline).middle();
+  return bounding_box(cell.outline).centre();
 }
 
 Cell cell_with_planes(const Cell& cell, const ElementPlanes& element, const Vec2& centre_mm) {
@@ -94,9 +94,9 @@ Cell cell_with_planes(const Cell& cell, const ElementPlanes& element, const Vec2
   for (const HeightPlane& plane : element.planes) {
     const std::size_t k = own.facets.size();
     const bool is_of_element = element.planes.size() == cell.facets.size();
-    own.facets.push_back({{}, own_plane(plane), false, is_of_element ? cell.facets[k].middle_mm : std::nullopt});
+    own.facets.push_back({{}, own_plane(plane), false, is_of_element ? cell.facets[k].centroid_mm : std::nullopt});
   }
-  own.facets = highest_of(cell.outline, std::move(own.facets));
+  own.facets = upper_envelope_of(cell.outline, std::move(own.facets));
   std::vector<CellFacet> caps;
   for (const std::optional<HeightPlane>& cap : element.caps)
     if (cap) caps.push_back({{}, own_plane(*cap)});

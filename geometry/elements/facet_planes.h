@@ -61,12 +61,12 @@ class FacetPlanes {
 
   std::vector<ElementPlanes> elements_;
   double spacing_mm_ = 1.0;
-  std::map<Key, std::size_t> places_;
+  std::map<Key, std::size_t> index_of_key_;
 };
 
 /// Returns the reference position of a cell, as ElementPlanes::centre_mm defines it. The reference position of land is
 /// its centre.
-Vec2 place_of(const PartSpec& spec, const Cell& cell);
+Vec2 reference_position(const PartSpec& spec, const Cell& cell);
 
 /// Returns the element at the position of `cell`, with individual facet planes. Each facet ends where its plane
 /// intersects the planes of the other facets.

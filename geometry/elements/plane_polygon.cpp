@@ -19,7 +19,7 @@ Polygon where_higher(const Polygon& polygon, const HeightPlane& plane, const Hei
   return kept;
 }
 
-std::vector<CellFacet> highest_of(const Polygon& outline, std::vector<CellFacet> planes) {
+std::vector<CellFacet> upper_envelope_of(const Polygon& outline, std::vector<CellFacet> planes) {
   for (CellFacet& facet : planes) {
     facet.outline = outline;
     for (const CellFacet& other : planes)

@@ -13,6 +13,6 @@ Polygon where_higher(const Polygon& polygon, const HeightPlane& plane, const Hei
 
 /// Returns the planes over an outline, each with the outline in which it is the highest. If a plane is nowhere the
 /// highest, its outline is empty.
-std::vector<CellFacet> highest_of(const Polygon& outline, std::vector<CellFacet> planes);
+std::vector<CellFacet> upper_envelope_of(const Polygon& outline, std::vector<CellFacet> planes);
 
 }  // namespace retrace::geometry

@@ -83,7 +83,7 @@ CellFacet piece_of(const CellFacet& facet, const Stretch& stretch, const RoofEdg
   piece.outline = clip(facet.outline, edge.band(stretch), sliver_mm);
   if (piece.outline.empty() || !stretch.is_scratch()) return piece;
   piece.is_edge = true;
-  piece.middle_mm.reset();
+  piece.centroid_mm.reset();
   const double rise = edge.sign * (stretch.to_height_mm - stretch.from_height_mm) / (stretch.to_mm - stretch.from_mm);
   piece.plane.slope[edge.axis] += rise;
   piece.plane.height_mm += stretch.from_height_mm - rise * (edge.middle_mm + edge.sign * stretch.from_mm);

@@ -17,7 +17,7 @@ namespace retrace::geometry {
 namespace {
 
 constexpr double kRadPerDegree = std::numbers::pi / 180.0;
-constexpr double kMostIncline = 60.0;
+constexpr double kMaxInclineDeg = 60.0;
 constexpr double kSteepestFacet = 88.0;
 constexpr int kGridSteps = 64;  // intervals per side of the grids at which facets and pins are checked
 
@@ -31,14 +31,14 @@ void visit_grid(const Vec2& half_mm, const Visit& visit) {
 /// Limits the number of elements on spheres and formulas. On such substrates, all elements differ, and each element
 /// needs some kilobytes of memory.
 void check_count(const PartSpec& spec) {
-  constexpr double kMostUnlike = 2e6;
+  constexpr double kMaxDistinctElements = 2e6;
   const bool repeats = std::holds_alternative<PlaneSubstrate>(spec.substrate->shape) ||
                        std::holds_alternative<CylinderSubstrate>(spec.substrate->shape);
   const double count = spec.array.x_length_mm * spec.array.y_length_mm / area(aperture_outline(spec.element));
-  if (!repeats && count > kMostUnlike)
+  if (!repeats && count > kMaxDistinctElements)
     throw InputError(fmt::format(
         "must have at most {:.0f} elements, because no two elements on it are alike; the array has about {:.3g}",
-        kMostUnlike, count));
+        kMaxDistinctElements, count));
 }
 
 /// Returns the facet normals, towards the light, of an element and of its rotated neighbour, if the array has rotated
@@ -106,15 +106,15 @@ SubstrateMeasures check_substrate(const PartSpec& spec) {
   const SubstrateSurface surface = substrate_surface_of(spec);
   const SubstrateMeasures measures = measure_substrate(surface, half_mm);
   const double across = width_across_mm(spec.element);
-  if (measures.least_radius_mm < across)
+  if (measures.min_radius_mm < across)
     throw InputError(
         fmt::format("must have a radius of curvature of at least the width of an element: its smallest radius is {} "
                     "mm, but an element measures {} mm across",
-                    fixed_apart(measures.least_radius_mm, across, 4), shortest(across)));
-  if (measures.steepest_deg > kMostIncline + 1e-9)
+                    fixed_apart(measures.min_radius_mm, across, 4), shortest(across)));
+  if (measures.steepest_deg > kMaxInclineDeg + 1e-9)
     throw InputError(
         fmt::format("must have a slope of at most {} degrees over the part, but its maximum slope is {} degrees",
-                    kMostIncline, fixed_apart(measures.steepest_deg, kMostIncline, 2)));
+                    kMaxInclineDeg, fixed_apart(measures.steepest_deg, kMaxInclineDeg, 2)));
   if (spec.is_pin_bundle) check_contact(spec, surface, half_mm);
   if (!surface.is_upright()) check_steepness(spec, surface, half_mm);
   return measures;

@@ -13,14 +13,15 @@ namespace retrace::geometry {
 namespace {
 
 /// Maximum fraction of its size by which an element may cross the border and still count as inside.
-constexpr double kWholeShare = 1e-9;
+constexpr double kMaxCrossingFraction = 1e-9;
 
 /// Iterates over the elements of a sheet.
 class Walk {
  public:
   explicit Walk(ArraySheet sheet) : sheet_(std::move(sheet)), piece_(sheet_, 0, 0, false) {
     for (std::size_t c = 0; c < sheet_.lattice.cells.size(); ++c)
-      if (sheet_.lattice.cells[c].is_element) rows_[sheet_.middles_mm[c].y()][sheet_.middles_mm[c].x()] = c;
+      if (sheet_.lattice.cells[c].is_element)
+        rows_[sheet_.reference_points_mm[c].y()][sheet_.reference_points_mm[c].x()] = c;
   }
 
   template <class Visit>
@@ -43,10 +44,10 @@ class Walk {
   void visit_one(std::size_t cell, const std::array<std::int64_t, 2>& period, std::int64_t row, std::int64_t column,
                  const Visit& visit) {
     const Vec2 shift = sheet_.at_mm(period[0], period[1]) - sheet_.anchor_mm;
-    const CellPlace place = piece_.place(cell, shift);
+    const SheetCell place = piece_.sheet_cell(cell, shift);
     if (piece_.is_clear_of_part(place)) return;
-    const Standing standing = piece_.standing(place);
-    if (standing == Standing::beyond) return;
+    const BorderRelation standing = piece_.border_relation(place);
+    if (standing == BorderRelation::outside) return;
     WholeElement element;
     element.is_rotated = sheet_.lattice.cells[cell].rotated;
     if (sheet_.prisms) {
@@ -55,11 +56,11 @@ class Walk {
       element.centre_mm = sheet_.prisms->centre_mm(row, column);
     } else {
       element.row = row_;
-      element.column = standing == Standing::whole ? column_++ : column_;
+      element.column = standing == BorderRelation::inside ? column_++ : column_;
       element.centre_mm = apex_mm(cell, shift);
     }
     SubstrateFrame frame = place.frame;
-    frame.origin.head<2>() += piece_.origin_mm() - sheet_.middle_mm;
+    frame.origin.head<2>() += piece_.origin_mm() - sheet_.centre_mm;
     frame.origin.z() += piece_.height_mm();
     visit(PlacedElement{element, standing, frame});
   }
@@ -68,12 +69,12 @@ class Walk {
   Vec2 apex_mm(std::size_t cell, const Vec2& shift) const {
     const Vec2 half = 0.5 * sheet_.lattice.period_mm;
     const Vec2 aside(sheet_.lattice.cells[cell].rotated ? 0.5 * width_across_mm(sheet_.spec->element) : 0.0, 0.0);
-    const Vec2 steps = (sheet_.middles_mm[cell] + aside + shift).cwiseQuotient(half);
+    const Vec2 steps = (sheet_.reference_points_mm[cell] + aside + shift).cwiseQuotient(half);
     return half.cwiseProduct(Vec2(std::round(steps.x()), std::round(steps.y()))) - aside;
   }
 
   const ArraySheet sheet_;
-  const SheetPiece piece_;
+  const SheetPortion piece_;
   /// Index, in the lattice, of the cell of each element in a period. The keys are y and x of the element.
   std::map<double, std::map<double, std::size_t>> rows_;
   std::int32_t row_ = 0;  ///< row number among the rows with complete elements
@@ -84,7 +85,7 @@ class Walk {
 
 double whole_count(double length_mm, double offset_mm, double gap_mm, double pitch_mm) {
   const double count = (length_mm - 2.0 * offset_mm + gap_mm) / pitch_mm;
-  return std::floor(count + kWholeShare * std::max(1.0, count));
+  return std::floor(count + kMaxCrossingFraction * std::max(1.0, count));
 }
 
 bool PrismBlock::is_shifted(std::int64_t row) const {
@@ -128,7 +129,7 @@ PrismBlock prism_block(const ArrayLayout& array, const RtpElement& element) {
   return block;
 }
 
-std::vector<PlacedElement> place(const PartSpec& spec) {
+std::vector<PlacedElement> place_elements(const PartSpec& spec) {
   std::vector<PlacedElement> elements;
   Walk(ArraySheet(spec)).run([&](const PlacedElement& at) { elements.push_back(at); });
   return elements;
@@ -140,7 +141,7 @@ std::vector<WholeElement> on_plane(const ArrayLayout& array, const Element& elem
   const auto* const prism = std::get_if<RtpElement>(&element);
   std::vector<WholeElement> elements(1);
   if (array.arrangement == Arrangement::single) {
-    if (prism == nullptr) elements[0].centre_mm = -bounding_box(element_cell(element).outline).middle();
+    if (prism == nullptr) elements[0].centre_mm = -bounding_box(element_cell(element).outline).centre();
     return elements;
   }
   elements.clear();
@@ -150,7 +151,7 @@ std::vector<WholeElement> on_plane(const ArrayLayout& array, const Element& elem
   spec.element = element;
   spec.array = array;
   Walk(ArraySheet(spec)).run([&](const PlacedElement& at) {
-    if (at.standing == Standing::whole) elements.push_back(at.on_sheet);
+    if (at.border_relation == BorderRelation::inside) elements.push_back(at.on_sheet);
   });
   return elements;
 }

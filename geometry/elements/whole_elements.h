@@ -61,12 +61,12 @@ struct WholeElement {
 };
 
 /// Position of a cell relative to the border: inside, cut by the border, or outside.
-enum class Standing { whole, cut, beyond };
+enum class BorderRelation { inside, crossing, outside };
 
 /// Position and orientation of an element in the part.
 struct PlacedElement {
   WholeElement on_sheet;  ///< position on the sheet: the plane, or the substrate unrolled into a plane
-  Standing standing = Standing::whole;
+  BorderRelation border_relation = BorderRelation::inside;
   /// frame on the substrate below the element's centre or apex, relative to the centre of the part; z = 0 is the
   /// highest point of the substrate
   SubstrateFrame frame;
@@ -77,7 +77,7 @@ struct PlacedElement {
 /// complete elements.
 /// \pre the array is finite and not `single`
 /// \throw InputError if the array is smaller than one element
-std::vector<PlacedElement> place(const PartSpec& spec);
+std::vector<PlacedElement> place_elements(const PartSpec& spec);
 
 /// Returns the complete elements of a flat array, in the order of place(). Prisms fill a block in the centre of the
 /// extent. For cube corners, the apex of an element that is not rotated is at the centre of the extent. For `single`,

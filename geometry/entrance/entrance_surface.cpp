@@ -107,12 +107,12 @@ Vec2 climb(const EntranceSurface& surface, const Polygon& outline, Vec2 from, do
 
 EntranceRange range_of(const EntranceSurface& surface, const Polygon& outline) {
   const Rectangle box = bounding_box(outline);
-  const int cells = cells_to_show(surface, outline);
+  const int cells = cells_to_resolve(surface, outline);
   EntranceRange range;
   range.lowest_mm = INFINITY;
   range.highest_mm = -INFINITY;
   for (const Vec2& p : sample_points(outline, cells)) {
-    const EntranceSurface::Place place = surface.at(p);
+    const EntranceSurface::SurfaceSample place = surface.at(p);
     if (!std::isfinite(place.height_mm) || !place.slope.allFinite())
       throw InputError(
           fmt::format("must have a finite height and slope over the whole part, but has none at x = {}, y = {} mm",
@@ -139,10 +139,10 @@ EntranceRange range_of(const EntranceSurface& surface, const Polygon& outline) {
 
 EntranceSurface::EntranceSurface(FreeformSurface surface, const Vec3& origin_mm, double finest_mm)
     : surface_(std::move(surface)), origin_mm_(origin_mm), finest_mm_(finest_mm) {
-  for (const Lenslet& lenslet : surface_.lenslets()) finest_mm_ = std::min(finest_mm_, lenslet.outer.least_mm);
+  for (const Lenslet& lenslet : surface_.lenslets()) finest_mm_ = std::min(finest_mm_, lenslet.outer.min_radius_mm);
 }
 
-EntranceSurface::Place EntranceSurface::at(const Vec2& point_mm) const {
+EntranceSurface::SurfaceSample EntranceSurface::at(const Vec2& point_mm) const {
   const Vec2 place = point_mm - origin_mm_.head<2>();
   const jets::Gradient z = surface_.gradient(place.x(), place.y());
   if (std::isfinite(z.x) && std::isfinite(z.y)) return {origin_mm_.z() + z.value, {z.x, z.y}};
@@ -158,21 +158,21 @@ Vec2 EntranceSurface::slope_across(const Vec2& p) const {
          (2.0 * kStep);
 }
 
-int cells_to_show(const EntranceSurface& surface, const Polygon& outline) {
+int cells_to_resolve(const EntranceSurface& surface, const Polygon& outline) {
   const Rectangle box = bounding_box(outline);
   const double size_mm = box.size().maxCoeff();
   const auto refuse = [] {
     throw InputError(fmt::format(
         "must have features that {} sample points across the part can resolve; make its smallest features larger",
-        kMostEntranceCells));
+        kMaxEntranceCells));
   };
   const double wanted = std::max(std::ceil(kCellsPerFeature * size_mm / surface.finest_mm()), double{kFewestCells});
-  if (wanted > kMostEntranceCells) refuse();
+  if (wanted > kMaxEntranceCells) refuse();
   int cells = static_cast<int>(wanted);
   const bool is_known = std::isfinite(surface.finest_mm());
   double before = mean_bend(surface, box, cells, 1.0);
   for (int same = 0; same < (is_known ? 1 : 2);) {
-    if (2 * cells > kMostEntranceCells) {
+    if (2 * cells > kMaxEntranceCells) {
       if (!is_known) refuse();
       break;
     }

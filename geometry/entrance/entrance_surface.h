@@ -18,7 +18,7 @@ namespace retrace::geometry {
 /// material is below it.
 class EntranceSurface {
  public:
-  struct Place {
+  struct SurfaceSample {
     double height_mm = 0.0;
     Vec2 slope = Vec2::Zero();  ///< slope of the height along x and y; continuous
   };
@@ -28,7 +28,7 @@ class EntranceSurface {
 
   /// Returns height and slope at a point. They are not finite where there is no surface. May be called from several
   /// threads.
-  Place at(const Vec2& point_mm) const;
+  SurfaceSample at(const Vec2& point_mm) const;
   /// Returns the size of the smallest features, such as lenslets, or infinity if no features are known.
   double finest_mm() const { return finest_mm_; }
 
@@ -60,10 +60,10 @@ EntranceRange entrance_range(const Entrance& entrance, const Polygon& outline);
 /// Returns the number of cells along the longer side of the outline's bounding box that resolves all features of a
 /// surface. If no feature size is known, the number is increased until grids with two and four times as many cells find
 /// the same curvatures.
-/// \throw InputError, with a text that begins with "must", if kMostEntranceCells cells do not resolve the features
-int cells_to_show(const EntranceSurface& surface, const Polygon& outline);
+/// \throw InputError, with a text that begins with "must", if kMaxEntranceCells cells do not resolve the features
+int cells_to_resolve(const EntranceSurface& surface, const Polygon& outline);
 
-inline constexpr int kMostEntranceCells = 1024;
+inline constexpr int kMaxEntranceCells = 1024;
 
 /// Relative positions within a cell at which the surface is sampled in addition to the cell's corners. The values are
 /// irrational, so that a periodic structure that matches the grid is not missed.

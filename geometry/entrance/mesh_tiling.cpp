@@ -93,7 +93,7 @@ class GapFinder {
       const Vec3 twice = (vertices_[t[1]] - vertices_[t[0]]).cross(vertices_[t[2]] - vertices_[t[0]]);
       if (twice.z() > kStandsUpright * twice.norm()) continue;
       if (twice.norm() == 0.0) return TilingFault::no_area;
-      if (twice.z() > -kStandsUpright * twice.norm()) return TilingFault::upright_triangle;
+      if (twice.z() > -kStandsUpright * twice.norm()) return TilingFault::vertical_triangle;
       return goes_on ? TilingFault::overhang : TilingFault::reversed_triangle;
     }
     if (has_corner_on_side(side, open)) return TilingFault::corner_on_side;
@@ -148,7 +148,7 @@ std::string_view text_of(TilingFault fault) {
     case TilingFault::height_jump: return "the height is discontinuous";
     case TilingFault::corner_on_side: return "a vertex is on the edge of another triangle";
     case TilingFault::no_area: return "a triangle has no area";
-    case TilingFault::upright_triangle: return "a triangle is vertical";
+    case TilingFault::vertical_triangle: return "a triangle is vertical";
     case TilingFault::overhang: return "a triangle overhangs others";
     case TilingFault::reversed_triangle: return "a triangle has the wrong orientation";
   }

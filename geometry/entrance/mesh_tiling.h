@@ -18,11 +18,11 @@ enum class TilingFault {
   hole,
   overlap,
   height_jump,
-  corner_on_side,    ///< a corner of a triangle is located on a side of another triangle, between its ends
-  no_area,           ///< a triangle has zero area
-  upright_triangle,  ///< a triangle is vertical: its normal is perpendicular to z
-  overhang,          ///< a triangle faces -z although it has the same orientation as its neighbour across a side
-  reversed_triangle  ///< a triangle lists its corners in the opposite orientation to its neighbour
+  corner_on_side,     ///< a corner of a triangle is located on a side of another triangle, between its ends
+  no_area,            ///< a triangle has zero area
+  vertical_triangle,  ///< a triangle is vertical: its normal is perpendicular to z
+  overhang,           ///< a triangle faces -z although it has the same orientation as its neighbour across a side
+  reversed_triangle   ///< a triangle lists its corners in the opposite orientation to its neighbour
 };
 
 /// Returns a clause for messages that describes the fault, such as "there is a hole".

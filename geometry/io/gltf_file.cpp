@@ -145,7 +145,7 @@ std::string gltf_text(const BoundaryMesh& mesh, std::string_view title, std::opt
                       double absorption_per_mm) {
   // Upper bound of the size of the header and the description.
   constexpr std::size_t kHead = 16384;
-  if (12 * (mesh.vertices.size() + mesh.triangles.size()) + kHead > kMostGltfBytes)
+  if (12 * (mesh.vertices.size() + mesh.triangles.size()) + kHead > kMaxGltfBytes)
     throw InputError("the mesh is too large for glTF, whose files have at most 4 GiB; write OBJ instead");
   GltfFile file(title, refractive_index, absorption_per_mm);
   file.add_vertices(mesh.vertices);

@@ -11,7 +11,7 @@
 namespace retrace::geometry {
 
 /// Maximum size of a file in bytes. The header stores the size in 32 bits.
-inline constexpr std::size_t kMostGltfBytes = 0xffff'ffff;
+inline constexpr std::size_t kMaxGltfBytes = 0xffff'ffff;
 
 /// Returns the mesh as glTF 2.0 in one file (.glb). There is a node and a mesh for each role of its faces, named by
 /// kFaceGroups. Normals are not stored, so that facets are shaded flat. Vertices are in mm of the part frame, in single

@@ -45,7 +45,7 @@ std::vector<std::string> mask_pattern(const std::filesystem::path& file, double 
   };
   BytePicture picture;
   try {
-    require_short_file(file, kMostDataBytes);
+    require_short_file(file, kMaxDataBytes);
     check_size(name, picture_files().size(file), cells);
     picture = picture_files().read(file);
   } catch (const InputError& error) {

@@ -23,15 +23,15 @@ void require_long_edges(const FacetedSolid& solid) {
     for (const auto& loop : face.loops)
       for (std::size_t i = 0; i < loop.size(); ++i)
         least = std::min(least, (solid.vertices[loop[i]] - solid.vertices[loop[(i + 1) % loop.size()]]).norm());
-  if (least < kShortestStepEdgeMm)
+  if (least < kMinStepEdgeMm)
     throw InputError(
         fmt::format("a STEP file allows edges of at least {} mm, but the shortest edge of this solid is {} mm",
-                    shortest(kShortestStepEdgeMm), shortest(least)));
+                    shortest(kMinStepEdgeMm), shortest(least)));
 }
 
 constexpr Module kStepModule{.name = "retrace_step",
                              .function = "retrace_write_step",
-                             .lack = "STEP files cannot be written, but STL and OBJ files can",
+                             .missing_message = "STEP files cannot be written, but STL and OBJ files can",
                              .library = "OpenCASCADE",
                              .package = "libocct-data-exchange-7.6"};
 

@@ -50,7 +50,7 @@ Value value_at(std::string_view text, std::size_t at) {
 }
 
 [[noreturn]] void refuse_count(const std::string& name) {
-  throw InputError({name, 0, ""}, fmt::format("must have at most {} triangles", kMostStlTriangles));
+  throw InputError({name, 0, ""}, fmt::format("must have at most {} triangles", kMaxStlTriangles));
 }
 
 class Welder {
@@ -61,7 +61,7 @@ class Welder {
   void add(const std::array<Vec3, 3>& corners, const InputLocation& where, std::string_view what) {
     std::array<std::uint32_t, 3> triangle{};
     for (std::size_t k = 0; k < 3; ++k) triangle[k] = vertex(corners[k], where, what);
-    if (++read_ > kMostStlTriangles) refuse_count(name_);
+    if (++read_ > kMaxStlTriangles) refuse_count(name_);
     if (triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0]) return;
     mesh_.triangles.push_back(triangle);
   }
@@ -264,17 +264,17 @@ TriangleMesh read_stl(const std::filesystem::path& file, double scale) {
   const std::string name = file.string();
   std::error_code error;
   if (std::filesystem::is_regular_file(file, error)) {  // read_file() below reports other types of file
-    require_short_file(file, kMostDataBytes);
+    require_short_file(file, kMaxDataBytes);
     std::string begin(binary_length(0), '\0');
     std::ifstream stream(file, std::ios::binary);
     stream.read(begin.data(), static_cast<std::streamsize>(begin.size()));
     begin.resize(static_cast<std::size_t>(stream.gcount()));
     const std::uintmax_t bytes = std::filesystem::file_size(file, error);
     const bool is_whole = !error && is_binary(begin, bytes);
-    if (is_whole && binary_count(begin) > kMostStlTriangles) refuse_count(name);
+    if (is_whole && binary_count(begin) > kMaxStlTriangles) refuse_count(name);
     if (!error && !is_whole && begins_as_binary(begin)) refuse_length(begin, bytes, name);
   }
-  return parse_stl(read_file(file, kMostDataBytes), name, scale);
+  return parse_stl(read_file(file, kMaxDataBytes), name, scale);
 }
 
 }  // namespace retrace::geometry

@@ -13,7 +13,7 @@
 namespace retrace::geometry {
 
 /// Maximum number of triangles in a file: 10 million, 500 MB of binary STL.
-inline constexpr std::size_t kMostStlTriangles = 10'000'000;
+inline constexpr std::size_t kMaxStlTriangles = 10'000'000;
 
 /// Returns a mesh as binary STL. Coordinates are in mm in single precision. Normals are computed from the triangles.
 /// \param title text for the header; at most 80 bytes are used
@@ -26,11 +26,11 @@ std::string stl_text(const BoundaryMesh& mesh, std::string_view title);
 /// \param name name of the file, for messages
 /// \param scale factor from the unit of the file to mm
 /// \throw InputError if the text is not STL, if a coordinate is not a finite number below 1e6 mm, or if there are no
-///        triangles or more than kMostStlTriangles. The message quotes the file only if it begins like an STL file.
+///        triangles or more than kMaxStlTriangles. The message quotes the file only if it begins like an STL file.
 TriangleMesh parse_stl(std::string_view text, const std::string& name, double scale = 1.0);
 
 /// Reads an STL file as parse_stl() does. A binary file may be refused before its triangles are read. This happens if
-/// the stored number of triangles is above kMostStlTriangles or does not match the length of the file.
+/// the stored number of triangles is above kMaxStlTriangles or does not match the length of the file.
 /// \throw InputError in the same cases as parse_stl(), and if the file cannot be read
 TriangleMesh read_stl(const std::filesystem::path& file, double scale = 1.0);
 

@@ -22,13 +22,13 @@ Asphere conic_of(const Document& file, const std::string& table) {
 
 /// Returns the coefficients of r^4, r^6, ...
 std::vector<double> even_terms(const Document& file, const std::string& key) {
-  constexpr int kMostPower = 20;
+  constexpr int kMaxPower = 20;
   std::vector<double> terms;
   for (const auto& row : file.rows(key)) {
     const int power = static_cast<int>(row[0]);
-    if (power != row[0] || power % 2 != 0 || power < 4 || power > kMostPower)
+    if (power != row[0] || power % 2 != 0 || power < 4 || power > kMaxPower)
       file.fail(key, fmt::format("must have rows [power, coefficient] with even powers from 4 to {}, got power {}",
-                                 kMostPower, shortest(row[0])));
+                                 kMaxPower, shortest(row[0])));
     const auto index = static_cast<std::size_t>(power / 2 - 2);
     if (terms.size() <= index) terms.resize(index + 1, 0.0);
     terms[index] += row[1];
@@ -54,8 +54,8 @@ std::vector<Term> terms_of(const Document& file, const std::string& key, bool is
   };
   std::vector<Term> terms;
   for (const auto& row : file.rows(key)) {
-    const int i = whole(row[0], 0, kMostPolynomialDegree);
-    terms.push_back({i, is_signed ? whole(row[1], -i, i) : whole(row[1], 0, kMostPolynomialDegree), row[2]});
+    const int i = whole(row[0], 0, kMaxPolynomialDegree);
+    terms.push_back({i, is_signed ? whole(row[1], -i, i) : whole(row[1], 0, kMaxPolynomialDegree), row[2]});
   }
   return terms;
 }
@@ -66,8 +66,8 @@ XyPolynomial xy_polynomial(const Document& file, const std::string& table) {
   XyPolynomial p;
   p.scale_mm = file.number(table + ".scale_mm");
   for (const Term& term : terms) p.degree = std::max(p.degree, term.i + term.j);
-  if (p.degree > kMostPolynomialDegree)
-    file.fail(key, fmt::format("must have a degree of at most {}, got {}", kMostPolynomialDegree, p.degree));
+  if (p.degree > kMaxPolynomialDegree)
+    file.fail(key, fmt::format("must have a degree of at most {}, got {}", kMaxPolynomialDegree, p.degree));
   p.coefficients.assign(XyPolynomial::count(p.degree), 0.0);
   for (const Term& term : terms) p.coefficients[p.index(term.i, term.j)] += term.coefficient;
   return p;
@@ -156,8 +156,8 @@ std::vector<Vec2> read_places(const Document& file) {
   const std::string_view key = hexagonal ? "lenslets.hexagonal_pitch_mm" : "lenslets.square_pitch_mm";
   const double pitch = file.number(key);
   const double within = file.number("lenslets.within_mm");
-  if (!(within / pitch < std::sqrt(static_cast<double>(kMostLenslets)) / 2.0))
-    file.fail(key, fmt::format("must be large enough for at most {} lenslets, got {}", kMostLenslets, shortest(pitch)));
+  if (!(within / pitch < std::sqrt(static_cast<double>(kMaxLenslets)) / 2.0))
+    file.fail(key, fmt::format("must be large enough for at most {} lenslets, got {}", kMaxLenslets, shortest(pitch)));
   return grid(pitch, within, hexagonal);
 }
 
@@ -165,10 +165,10 @@ std::vector<Vec2> read_places(const Document& file) {
 struct BoundaryRequest {
   bool is_intersection = false;
   BoundaryOptions options;
-  double radius_mm = 0.0;    ///< radius of circles
-  double within_mm = 0.0;    ///< radius within which the intersection is searched
-  double inner_share = 1.0;  ///< radius at which the blend leaves the lenslet, relative to the curve's radius
-  double outer_share = 1.0;  ///< radius at which the blend reaches the base, relative to the curve's radius
+  double radius_mm = 0.0;           ///< radius of circles
+  double within_mm = 0.0;           ///< radius within which the intersection is searched
+  double inner_radius_ratio = 1.0;  ///< radius at which the blend leaves the lenslet, relative to the curve's radius
+  double outer_radius_ratio = 1.0;  ///< radius at which the blend reaches the base, relative to the curve's radius
   InputLocation where;
 };
 
@@ -199,8 +199,8 @@ void set_boundaries(Lenslet& lenslet, const FreeformSurface& base, const Vec2& c
   } else {
     curve = circle_boundary(centre, request.radius_mm, request.options.degree);
   }
-  lenslet.inner = scaled(curve, request.inner_share, 0.0, request.where);
-  lenslet.outer = scaled(curve, request.outer_share, 0.0, request.where);
+  lenslet.inner = scaled(curve, request.inner_radius_ratio, 0.0, request.where);
+  lenslet.outer = scaled(curve, request.outer_radius_ratio, 0.0, request.where);
   check_nested(lenslet.inner, lenslet.outer, request.where);
 }
 
@@ -218,7 +218,7 @@ std::vector<Lenslet> read_lenslets(const Document& file, const FreeformSurface& 
   for (const Vec2& place : places) {
     Lenslet lenslet;
     lenslet.sag = sag;
-    lenslet.sag.place_mm = {place.x(), place.y()};
+    lenslet.sag.position_mm = {place.x(), place.y()};
     lenslet.blend_order = order;
     place_on_base(lenslet, base, place.x(), place.y(), height, tilted, request.where);
     set_boundaries(lenslet, base, place, request);
@@ -264,22 +264,22 @@ FreeformSurface read_surface(const Document& file) {
   const Sag base = read_sag(file, "base");
   std::optional<Extrapolation> extrapolation = read_extrapolation(file);
   const FreeformSurface bare(base, extrapolation, {}, file.where("base.kind"));
-  return {base, std::move(extrapolation), read_lenslets(file, bare), surface_place(file)};
+  return {base, std::move(extrapolation), read_lenslets(file, bare), surface_location(file)};
 }
 
-InputLocation surface_place(const Document& file) {
+InputLocation surface_location(const Document& file) {
   return file.where(file.has("lenslets") ? "lenslets" : "base");
 }
 
-TurnedFront parse_turned_front(std::string_view text, const std::string& source_name) {
+TurnedEntrance parse_turned_entrance(std::string_view text, const std::string& source_name) {
   const Document file = schema::read_document(front_format(), text, source_name);
-  TurnedFront front{read_surface(file)};
+  TurnedEntrance front{read_surface(file)};
   front.is_round = file.text("path.strategy") == kStrategies[0];
   if (front.is_round)
     front.radius_mm = file.number("path.radius_mm");
   else
     front.size_mm = Vec2(file.numbers("path.size_mm").data());
-  check_surface(front.surface, front.is_round ? front.radius_mm : 0.5 * front.size_mm.norm(), surface_place(file));
+  check_surface(front.surface, front.is_round ? front.radius_mm : 0.5 * front.size_mm.norm(), surface_location(file));
   return front;
 }
 

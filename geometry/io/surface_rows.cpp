@@ -16,9 +16,9 @@ constexpr NumberRange kCoefficient{.low = -1e9, .high = 1e9};
 constexpr NumberRange kPlace{.low = -1e4, .high = 1e4};
 constexpr NumberRange kSize{.low = 0.0, .low_included = false, .high = 1e4};
 constexpr Kind kPositiveMm = Number{kSize};
-constexpr Kind kShare = Number{{.low = 0.01, .high = 10.0}};
-constexpr Kind kSplineDegree = Whole{{.low = 2.0, .high = kMostSplineDegree}};
-constexpr Kind kSamples = Whole{{.low = 16.0, .high = 4000.0}};
+constexpr Kind kRatio = Number{{.low = 0.01, .high = 10.0}};
+constexpr Kind kSplineDegree = Integer{{.low = 2.0, .high = kMaxSplineDegree}};
+constexpr Kind kSamples = Integer{{.low = 16.0, .high = 4000.0}};
 constexpr Kind kTerms = NumberRows{3, kCoefficient, 1, 200, "terms"};
 
 constexpr Words kSags = {"plane", "conic", "asphere", "xy_polynomial", "zernike", "formula"};
@@ -32,7 +32,7 @@ constexpr Condition kOfPolynomial[] = {is("kind", only(kSags, "xy_polynomial"))}
 constexpr Condition kOfZernike[] = {is("kind", only(kSags, "zernike"))};
 constexpr Condition kOfPolynomials[] = {is("kind", only(kSags, "xy_polynomial", "zernike"))};
 constexpr Condition kOfFormula[] = {is("kind", only(kSags, "formula"))};
-constexpr Condition kWithRadius[] = {beside("radius_mm")};
+constexpr Condition kWithRadius[] = {is_given("radius_mm")};
 
 constexpr Row kSagRows[] = {
     {"kind", Word{kSags}, kRequired, "Kind of the function that defines the height (sag)."},
@@ -83,15 +83,15 @@ constexpr Row kBoundaryRows[] = {
      "Degree of the periodic spline that represents the curve. The curve is C^(degree - 1) in azimuth."},
     {"samples", kSamples, 180.0, "Number of points at which the curve is sampled for the spline.", kSampledOnly}};
 
-constexpr Row kExtrapolationRows[] = {{"order", Whole{{.low = 1.0, .high = jets::kMostOrder}}, 2.0,
+constexpr Row kExtrapolationRows[] = {{"order", Integer{{.low = 1.0, .high = jets::kMaxOrder}}, 2.0,
                                        "Order n: the surface is C^n along radial lines. It is C^n in all directions if "
                                        "the `degree` of the boundary is n + 1."}};
 
-constexpr Condition kGridOnly[] = {without("positions_mm")};
+constexpr Condition kGridOnly[] = {is_absent("positions_mm")};
 constexpr Condition kCirclesOnly[] = {is("boundary", only(kBoundaries, "circle"))};
 constexpr Condition kIntersectionsOnly[] = {is("boundary", only(kBoundaries, "intersection"))};
 constexpr Row kPlacedRows[] = {
-    {"positions_mm", NumberRows{2, kPlace, 1, kMostLenslets, "places"}, kNone,
+    {"positions_mm", NumberRows{2, kPlace, 1, kMaxLenslets, "places"}, kNone,
      "Positions of the lenslets, as rows `[x, y]`."},
     {"hexagonal_pitch_mm", kPositiveMm, kNone, "Pitch of a hexagonal grid of lenslets."},
     {"square_pitch_mm", kPositiveMm, kNone, "Pitch of a square grid of lenslets."},
@@ -105,14 +105,14 @@ constexpr Row kPlacedRows[] = {
     {"search_mm", kPositiveMm, kRequired,
      "Maximum distance from the lenslet's position at which the intersection is searched.", kIntersectionsOnly},
     renamed("inner_share",
-            Row{"inner_radius_ratio", kShare, kRequired,
+            Row{"inner_radius_ratio", kRatio, kRequired,
                 "Radius at which the blend (transition from the lenslet to the base) begins, divided by the boundary's "
                 "radius."}),
     renamed("outer_share",
-            Row{"outer_radius_ratio", kShare, kRequired,
+            Row{"outer_radius_ratio", kRatio, kRequired,
                 "Radius at which the blend ends and the base begins, divided by the boundary's radius. It must be "
                 "greater than `inner_radius_ratio`."}),
-    {"blend_order", Whole{{.low = 1.0, .high = kMostBlendOrder}}, 2.0,
+    {"blend_order", Integer{{.low = 1.0, .high = kMaxBlendOrder}}, 2.0,
      "Order d of the blend, which is C^d at both ends."},
     {"degree", kSplineDegree, 3.0, "Degree of the periodic spline that represents the boundary."},
     {"samples", kSamples, 60.0, "Number of points at which the intersection is sampled for the spline.",
@@ -128,7 +128,7 @@ constexpr auto kLensletRows =
 (std::make_index_sequence<std::size(kSagRows)>{}, std::make_index_sequence<std::size(kPlacedRows)>{});
 
 constexpr Condition kBeyondBoundary[] = {
-    beside("boundary", "needs a [boundary], outside of which the surface is extrapolated")};
+    is_given("boundary", "needs a [boundary], outside of which the surface is extrapolated")};
 constexpr Table kTables[] = {{.name = "base", .meaning = "Sag of the surface.", .rows = kSagRows},
                              {.name = "boundary",
                               .meaning = "Closed curve inside of which the surface is the sag of `[base]`.",

@@ -14,7 +14,7 @@
 namespace retrace::geometry {
 
 inline constexpr std::string_view kTurnedPartId = "retrace.turned_part/1";
-inline constexpr std::size_t kMostLenslets = 100000;
+inline constexpr std::size_t kMaxLenslets = 100000;
 
 /// Returns the tables [base], [boundary], [extrapolation] and [lenslets].
 std::span<const schema::Table> surface_tables();
@@ -23,7 +23,7 @@ std::span<const schema::Table> surface_tables();
 /// \throw InputError with file, line and key
 FreeformSurface read_surface(const schema::Document& file);
 /// Returns the location, in the file, that error messages about the whole surface name.
-InputLocation surface_place(const schema::Document& file);
+InputLocation surface_location(const schema::Document& file);
 
 /// Keys of the table [path] that define the machined region of the surface.
 inline constexpr schema::Words kStrategies = {"spiral", "raster"};
@@ -39,7 +39,7 @@ inline constexpr schema::Row kRegionSizeRow = {
     "Size of the part: `[size across the lines of the raster (X), size along these lines (Y)]`.", kRasterOnly};
 
 /// Data of a turned part that ray tracing needs: the surface and its machined region.
-struct TurnedFront {
+struct TurnedEntrance {
   FreeformSurface surface;
   bool is_round = true;
   double radius_mm = 0.0;       ///< radius of a round region
@@ -49,6 +49,6 @@ struct TurnedFront {
 /// Reads the surface and the machined region from the file of a turned part. Keys about the tool, its path and the
 /// required accuracy are ignored. The surface must be finite and must not be vertical within the region.
 /// \throw InputError with file, line and key
-TurnedFront parse_turned_front(std::string_view text, const std::string& source_name);
+TurnedEntrance parse_turned_entrance(std::string_view text, const std::string& source_name);
 
 }  // namespace retrace::geometry

@@ -71,7 +71,7 @@ ChosenElements::ChosenElements(const Part& part, const ElementChoice& choice)
     for (std::size_t c = 0; c < patch.cells.size(); ++c) {
       const PatchCell& cell = patch.cells[c];
       const Vec2 place_mm = placement.offset_mm + middles[placement.patch][c];
-      const Place element = element_at(place_mm);
+      const LatticeElement element = element_at(place_mm);
       const bool chosen = is_chosen(element, place_mm);
       std::fill_n(facets_.begin() + static_cast<std::ptrdiff_t>(first + cell.first_facet), cell.facet_count, chosen);
       (chosen ? none : all) = false;
@@ -88,18 +88,18 @@ ChosenElements::ChosenElements(const Part& part, const ElementChoice& choice)
   // The regions by which elements can be chosen are convex. If all corners of the outline are chosen, the walls between
   // them are therefore chosen, too.
   const auto wall_is_chosen = [&](const Vec2& corner) { return is_chosen({}, corner); };
-  const auto* const by_chance = std::get_if<RandomShare>(&choice_);
-  is_everything_ = all && (by_chance ? by_chance->share >= 1.0 : std::ranges::all_of(part.outline, wall_is_chosen));
-  is_nothing_ = none;
+  const auto* const by_chance = std::get_if<RandomFraction>(&choice_);
+  contains_all_ = all && (by_chance ? by_chance->fraction >= 1.0 : std::ranges::all_of(part.outline, wall_is_chosen));
+  is_empty_ = none;
 }
 
-ChosenElements::Place ChosenElements::element_at(const Vec2& place_mm) const {
-  const Vec2 from_anchor = place_mm - sheet_.anchor_mm;
+ChosenElements::LatticeElement ChosenElements::element_at(const Vec2& position_mm) const {
+  const Vec2 from_anchor = position_mm - sheet_.anchor_mm;
   const Vec2 period = sheet_.lattice.period_mm;
   const auto index = [&](Eigen::Index axis) {
     return static_cast<std::int64_t>(std::floor(from_anchor[axis] / period[axis]));
   };
-  Place nearest;
+  LatticeElement nearest;
   double least_mm2 = INFINITY;
   for (std::int64_t j = index(1) - 1; j <= index(1) + 1; ++j)
     for (std::int64_t i = index(0) - 1; i <= index(0) + 1; ++i) {
@@ -107,9 +107,10 @@ ChosenElements::Place ChosenElements::element_at(const Vec2& place_mm) const {
       for (std::uint32_t k = 0; k < sheet_.lattice.cells.size(); ++k) {
         const Cell& cell = sheet_.lattice.cells[k];
         if (!cell.is_element) continue;
-        const Place here{i, j, k, contains(cell.outline, place_mm - origin), origin + place_of(spec_, cell)};
+        const LatticeElement here{i, j, k, contains(cell.outline, position_mm - origin),
+                                  origin + reference_position(spec_, cell)};
         if (here.is_within) return here;
-        const double mm2 = (here.middle_mm - place_mm).squaredNorm();
+        const double mm2 = (here.centre_mm - position_mm).squaredNorm();
         if (!(mm2 < least_mm2)) continue;
         least_mm2 = mm2;
         nearest = here;
@@ -118,15 +119,15 @@ ChosenElements::Place ChosenElements::element_at(const Vec2& place_mm) const {
   return nearest;
 }
 
-bool ChosenElements::is_chosen(const Place& element, const Vec2& place_mm) const {
+bool ChosenElements::is_chosen(const LatticeElement& element, const Vec2& position_mm) const {
   constexpr std::uint32_t kChoiceStream = 4;
   const Vec2 at =
-      element.is_within ? Vec2(element.middle_mm.cwiseMax(part_mm_.lower).cwiseMin(part_mm_.upper)) : place_mm;
-  return std::visit(Overloaded{[&](const RandomShare& random) {
+      element.is_within ? Vec2(element.centre_mm.cwiseMax(part_mm_.lower).cwiseMin(part_mm_.upper)) : position_mm;
+  return std::visit(Overloaded{[&](const RandomFraction& random) {
                                  const auto words =
                                      philox({random.seed, kChoiceStream}, static_cast<std::uint32_t>(element.i),
                                             static_cast<std::uint32_t>(element.j), element.number);
-                                 return unit_interval(words[0]) < random.share;
+                                 return unit_interval(words[0]) < random.fraction;
                                },
                                [&](const Rectangle& r) {
                                  return (at.array() >= r.lower.array()).all() && (at.array() <= r.upper.array()).all();
@@ -139,10 +140,10 @@ bool ChosenElements::is_chosen(const Place& element, const Vec2& place_mm) const
                     choice_);
 }
 
-bool ChosenElements::has_wall_at(const Vec2& place_mm) const {
+bool ChosenElements::has_wall_at(const Vec2& position_mm) const {
   // The point is moved slightly inward, because the lattice also has elements beyond the border. A point exactly on the
   // border could belong to one of them.
-  const Vec2 within = place_mm.cwiseMax(part_mm_.lower + inwards_).cwiseMin(part_mm_.upper - inwards_);
+  const Vec2 within = position_mm.cwiseMax(part_mm_.lower + inwards_).cwiseMin(part_mm_.upper - inwards_);
   return is_chosen(element_at(within), within);
 }
 

@@ -35,27 +35,27 @@ class ChosenElements {
     return facets_[first_of_placement_[placement] + facet];
   }
   /// Returns true if the element or land next to a position on the outer walls is chosen.
-  /// \param place_mm position in the part frame
-  bool has_wall_at(const Vec2& place_mm) const;
+  /// \param position_mm position in the part frame
+  bool has_wall_at(const Vec2& position_mm) const;
 
   /// Return the number of chosen elements and the number of all elements, including elements that are cut by the
   /// border.
   std::int64_t count() const { return count_; }
   std::int64_t of_all() const { return of_all_; }
   /// Return whether all facets or no facets are chosen, including land and walls.
-  bool is_everything() const { return is_everything_; }
-  bool is_nothing() const { return is_nothing_; }
+  bool contains_all() const { return contains_all_; }
+  bool is_empty() const { return is_empty_; }
 
  private:
-  struct Place {
+  struct LatticeElement {
     std::int64_t i = 0, j = 0;  ///< indices of the lattice period
     std::uint32_t number = 0;   ///< index of the cell within the period
     /// true if the position is within the element; if false, the element is the nearest one
     bool is_within = false;
-    Vec2 middle_mm = Vec2::Zero();
+    Vec2 centre_mm = Vec2::Zero();
   };
-  Place element_at(const Vec2& place_mm) const;
-  bool is_chosen(const Place& element, const Vec2& place_mm) const;
+  LatticeElement element_at(const Vec2& position_mm) const;
+  bool is_chosen(const LatticeElement& element, const Vec2& position_mm) const;
 
   ElementChoice choice_;
   PartSpec spec_;
@@ -66,8 +66,8 @@ class ChosenElements {
   std::vector<bool> facets_;
   std::int64_t count_ = 0;
   std::int64_t of_all_ = 0;
-  bool is_everything_ = false;
-  bool is_nothing_ = false;
+  bool contains_all_ = false;
+  bool is_empty_ = false;
 };
 
 }  // namespace retrace::geometry

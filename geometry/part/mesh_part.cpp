@@ -176,7 +176,7 @@ class PartBuilder {
   /// Moves a vertex that is near a corner or side of the outline onto this corner or side. Returns the projection onto
   /// the directions in which the vertex may still move: along z on a corner, within the side's plane on a side, and any
   /// direction elsewhere.
-  Freedom settle(Vec3& p) const {
+  VertexConstraint settle(Vec3& p) const {
     for (const Vec2& corner : outline_)
       if ((p.head<2>() - corner).norm() <= 2.0 * tolerance_mm_) {
         p.head<2>() = corner;
@@ -190,7 +190,7 @@ class PartBuilder {
       nearest = &side;
       least_mm = away_mm;
     }
-    Freedom free = Freedom::Identity();
+    VertexConstraint free = VertexConstraint::Identity();
     if (nearest == nullptr) return free;
     p.head<2>() -= (nearest->normal.dot(p.head<2>()) - nearest->offset_mm) * nearest->normal;
     free.topLeftCorner<2, 2>() -= nearest->normal * nearest->normal.transpose();
@@ -238,7 +238,7 @@ class PartBuilder {
     for (int pass = 0; pass < 2; ++pass) {
       if (pass > 0) weld_short_edges(settled_, kSamePoint * rounding_mm_, back_);
       regions = plane_regions(settled_, back_, rounding_mm_);
-      settle_on_planes(settled_, back_, freedom_, regions);
+      snap_to_planes(settled_, back_, freedom_, regions);
     }
     return regions;
   }
@@ -270,13 +270,13 @@ class PartBuilder {
   /// Builds the patch: the convex polygons of the plane regions become facets, grouped by element.
   SurfacePatch fill_patch(const PlaneRegions& regions, double cell_mm) const {
     const RegionTriangles needed =
-        without_needless_vertices(settled_, {back_, regions.region_of}, regions.planes, rounding_mm_);
+        without_redundant_vertices(settled_, {back_, regions.region_of}, regions.planes, rounding_mm_);
     std::vector<FacetRole> roles;
     for (const FacetPlane& plane : regions.planes) roles.push_back(role_of(plane.normal));
     const std::vector<std::uint32_t> element_of =
         elements_of_regions(settled_, needed, regions.planes, roles, rounding_mm_);
-    std::map<std::uint32_t, std::vector<RegionPiece>> elements;
-    for (RegionPiece& piece : convex_pieces(settled_, needed, regions.planes))
+    std::map<std::uint32_t, std::vector<RegionPolygon>> elements;
+    for (RegionPolygon& piece : convex_polygons(settled_, needed, regions.planes))
       elements[element_of[piece.region]].push_back(std::move(piece));
     SurfacePatch patch;
     patch.vertices = settled_;
@@ -284,10 +284,10 @@ class PartBuilder {
     return patch;
   }
 
-  void add_element(SurfacePatch& patch, const std::vector<RegionPiece>& pieces, const std::vector<FacetPlane>& planes,
+  void add_element(SurfacePatch& patch, const std::vector<RegionPolygon>& pieces, const std::vector<FacetPlane>& planes,
                    const std::vector<FacetRole>& roles, double cell_mm) const {
-    std::map<std::pair<std::int64_t, std::int64_t>, std::vector<const RegionPiece*>> bins;
-    for (const RegionPiece& piece : pieces) {
+    std::map<std::pair<std::int64_t, std::int64_t>, std::vector<const RegionPolygon*>> bins;
+    for (const RegionPolygon& piece : pieces) {
       const Vec3 place =
           pieces.size() > kMaxFacetsOfCell ? Vec3(ring_centroid(settled_, piece.corners) / cell_mm) : Vec3::Zero();
       bins[{static_cast<std::int64_t>(std::floor(place.y())), static_cast<std::int64_t>(std::floor(place.x()))}]
@@ -301,12 +301,13 @@ class PartBuilder {
       cell.lower.setConstant(INFINITY);
       cell.upper.setConstant(-INFINITY);
       cell.first_of_element = first_of_element;
-      for (const RegionPiece* piece : own) add_facet(patch, cell, *piece, planes[piece->region], roles[piece->region]);
+      for (const RegionPolygon* piece : own)
+        add_facet(patch, cell, *piece, planes[piece->region], roles[piece->region]);
       patch.cells.push_back(cell);
     }
   }
 
-  void add_facet(SurfacePatch& patch, PatchCell& cell, const RegionPiece& piece, const FacetPlane& plane,
+  void add_facet(SurfacePatch& patch, PatchCell& cell, const RegionPolygon& piece, const FacetPlane& plane,
                  FacetRole role) const {
     const std::vector<std::uint32_t>& corners = piece.corners;
     for (std::size_t k = 1; k + 1 < corners.size(); ++k) {
@@ -334,7 +335,7 @@ class PartBuilder {
   Polygon outline_;
   std::vector<Side> sides_;
   std::vector<Vec3> settled_;
-  std::vector<Freedom> freedom_;
+  std::vector<VertexConstraint> freedom_;
   std::vector<std::array<std::uint32_t, 3>> back_;
 };
 
@@ -382,7 +383,7 @@ std::optional<Vec3> mixed_winding(const TriangleMesh& mesh) {
   return std::nullopt;
 }
 
-TriangleMesh turned_over(const TriangleMesh& mesh) {
+TriangleMesh with_reversed_orientation(const TriangleMesh& mesh) {
   TriangleMesh turned = mesh;
   for (auto& t : turned.triangles) std::swap(t[1], t[2]);
   return turned;

@@ -30,7 +30,7 @@ BoundaryMesh boundary_of(const TriangleMesh& mesh);
 std::optional<Vec3> mixed_winding(const TriangleMesh& mesh);
 
 /// Returns the mesh with the orientation of every triangle reversed.
-TriangleMesh turned_over(const TriangleMesh& mesh);
+TriangleMesh with_reversed_orientation(const TriangleMesh& mesh);
 
 /// Builds a part that has the shape of a closed mesh. The x and y coordinates of the mesh are kept. The mesh is shifted
 /// along z so that the highest point of the back has z = 0. The highest face of the mesh becomes the entrance face: it

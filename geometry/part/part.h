@@ -71,7 +71,7 @@ struct Part {
   /// Returns a number that identifies the element to which a cell belongs. Cells of one element have the same number,
   /// and cells of different elements have different numbers.
   /// \pre `patch` is stored in `patches`, and `cell` is stored in `patch.cells`
-  std::uint64_t number_of(const SurfacePatch& patch, const PatchCell& cell) const {
+  std::uint64_t element_id(const SurfacePatch& patch, const PatchCell& cell) const {
     const auto p = static_cast<std::uint64_t>(&patch - patches.data());
     const auto own = static_cast<std::uint64_t>(&cell - patch.cells.data());
     return (p << 32) | cell.first_of_element.value_or(static_cast<std::uint32_t>(own));

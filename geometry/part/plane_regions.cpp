@@ -22,7 +22,7 @@ constexpr double kHeightWithNormal = 16.0;
 // kMaxError_rad.
 constexpr double kCertain_rad = 1e-4, kMaxError_rad = 0.5;
 constexpr int kMaxRounds = 100;
-// settle_on_planes() ends when all vertices are within this distance of their planes. The distance is relative to the
+// snap_to_planes() ends when all vertices are within this distance of their planes. The distance is relative to the
 // size of the mesh.
 constexpr double kAgreement = 1e-14;
 // Regularization of the least-squares movement of a vertex. Without this term, rounding errors would determine how far
@@ -53,10 +53,10 @@ class PlaneFit {
   void fit(const Vec3& outward, PlaneKind kind = PlaneKind::any) {
     middle_ = sum_ / count_;
     const Eigen::Matrix3d scatter = products_ - count_ * middle_ * middle_.transpose();
-    if (kind == PlaneKind::upright) {
+    if (kind == PlaneKind::vertical) {
       const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> in_plan(scatter.topLeftCorner<2, 2>());
       axes_.col(0) << in_plan.eigenvectors().col(0), 0.0;
-    } else if (kind == PlaneKind::level) {
+    } else if (kind == PlaneKind::horizontal) {
       axes_.col(0) = Vec3::UnitZ();
     } else {
       const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(scatter);
@@ -168,8 +168,8 @@ class RegionGrower {
   static PlaneKind kind_of(const Vec3& normal, double error_rad) {
     if (error_rad < kCertain_rad) return PlaneKind::any;
     const double angle = std::min(error_rad, kMaxError_rad);
-    if (std::abs(normal.z()) < angle) return PlaneKind::upright;
-    return normal.head<2>().norm() < angle ? PlaneKind::level : PlaneKind::any;
+    if (std::abs(normal.z()) < angle) return PlaneKind::vertical;
+    return normal.head<2>().norm() < angle ? PlaneKind::horizontal : PlaneKind::any;
   }
 
   void add(std::uint32_t triangle, std::uint32_t region, PlaneFit& fit) {
@@ -231,8 +231,8 @@ PlaneRegions plane_regions(const std::vector<Vec3>& vertices, const std::vector<
   return RegionGrower(vertices, triangles, rounding_mm).grow_all();
 }
 
-void settle_on_planes(std::vector<Vec3>& vertices, const std::vector<MeshTriangle>& triangles,
-                      const std::vector<Freedom>& freedom, PlaneRegions& regions) {
+void snap_to_planes(std::vector<Vec3>& vertices, const std::vector<MeshTriangle>& triangles,
+                    const std::vector<VertexConstraint>& freedom, PlaneRegions& regions) {
   Incidence regions_of_vertices;
   for (std::size_t t = 0; t < triangles.size(); ++t)
     for (const std::uint32_t v : triangles[t]) regions_of_vertices.emplace_back(v, regions.region_of[t]);

@@ -24,9 +24,9 @@ struct FacetPlane {
 /// of the plane from the vertical or from the horizontal is less than this uncertainty, the plane is made exactly
 /// vertical or horizontal.
 enum class PlaneKind : std::uint8_t {
-  any,      ///< no constraint
-  upright,  ///< vertical
-  level     ///< horizontal
+  any,        ///< no constraint
+  vertical,   ///< vertical
+  horizontal  ///< horizontal
 };
 
 /// Plane regions of a mesh. A region is a set of triangles in one plane that are connected through shared edges.
@@ -37,7 +37,7 @@ struct PlaneRegions {
 };
 
 /// Projection matrix onto the directions in which a vertex may move.
-using Freedom = Eigen::Matrix3d;
+using VertexConstraint = Eigen::Matrix3d;
 
 /// Groups triangles into plane regions. A region grows from one triangle. An adjacent triangle joins the region if all
 /// its vertices are near the region's plane: the distance must be at most `rounding_mm` plus the uncertainty of the
@@ -50,8 +50,8 @@ PlaneRegions plane_regions(const std::vector<Vec3>& vertices, const std::vector<
 /// repeated until all vertices are on their planes or a maximum number of rounds is reached.
 /// \param freedom directions in which each vertex may move
 /// \param regions regions of the triangles; their planes are updated
-void settle_on_planes(std::vector<Vec3>& vertices, const std::vector<MeshTriangle>& triangles,
-                      const std::vector<Freedom>& freedom, PlaneRegions& regions);
+void snap_to_planes(std::vector<Vec3>& vertices, const std::vector<MeshTriangle>& triangles,
+                    const std::vector<VertexConstraint>& freedom, PlaneRegions& regions);
 
 /// Merges vertices that are connected by edges shorter than `limit_mm`. Triangles with two merged corners are removed.
 void weld_short_edges(const std::vector<Vec3>& vertices, double limit_mm, std::vector<MeshTriangle>& triangles);

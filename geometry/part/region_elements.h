@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "geometry/elements/element_cells.h"
-#include "geometry/part/region_pieces.h"
+#include "geometry/part/region_polygons.h"
 
 namespace retrace::geometry {
 

@@ -184,7 +184,7 @@ class PatchBuilder {
       if (std::abs(da) <= tolerance_mm_ && std::abs(db) <= tolerance_mm_) continue;
       const bool left_is_deep = da + db < 0.0;
       const Wall wall = left_is_deep ? Wall{e.from, e.to, *e.left, *e.right} : Wall{e.to, e.from, *e.right, *e.left};
-      if (tiles_[wall.deep].owned) walls_of_[wall.deep].push_back(wall);
+      if (tiles_[wall.deep].is_output) walls_of_[wall.deep].push_back(wall);
     }
   }
 
@@ -226,8 +226,8 @@ class PatchBuilder {
 
   void emit_facets() {
     for (std::uint32_t t = 0; t < tiles_.size(); ++t) {
-      if (!tiles_[t].owned) continue;
-      const bool same_cell = t > 0 && tiles_[t - 1].owned && tiles_[t - 1].cell == tiles_[t].cell;
+      if (!tiles_[t].is_output) continue;
+      const bool same_cell = t > 0 && tiles_[t - 1].is_output && tiles_[t - 1].cell == tiles_[t].cell;
       if (!same_cell || patch_.cells.empty())
         patch_.cells.push_back({static_cast<std::uint32_t>(patch_.facets.size()), 0, Vec3::Zero(), Vec3::Zero()});
       emit_tile(t);
@@ -242,7 +242,7 @@ class PatchBuilder {
     const Tile& tile = tiles_[t];
     PatchFacet facet;
     facet.role = tile.role;
-    facet.middle_mm = tile.middle_mm;
+    facet.centroid_mm = tile.centroid_mm;
     const Vec3 downward(tile.plane.slope.x(), tile.plane.slope.y(), -1.0);
     facet.normal = downward.normalized();
     facet.offset_mm = -tile.plane.height_mm / downward.norm();
@@ -305,7 +305,7 @@ class PatchBuilder {
     for (const SharedEdge& e : edges_) {
       if (e.left.has_value() == e.right.has_value()) continue;
       const std::uint32_t tile = e.left ? *e.left : *e.right;
-      if (!tiles_[tile].owned) continue;
+      if (!tiles_[tile].is_output) continue;
       const std::uint32_t from = e.left ? e.from : e.to;
       const std::uint32_t to = e.left ? e.to : e.from;
       const double rim_from = rim_height(tile, from);

@@ -20,8 +20,8 @@ struct Tile {
   FacetRole role = FacetRole::retro_facet;
   std::uint32_t cell = 0;  ///< cell of the tile; tiles of one cell must be consecutive in the input
   /// if false, the tile is not output; it only provides walls and shared vertices for its neighbours
-  bool owned = true;
-  std::optional<Vec2> middle_mm = {};  ///< position defined by CellFacet::middle_mm
+  bool is_output = true;
+  std::optional<Vec2> centroid_mm = {};  ///< position defined by CellFacet::middle_mm
 };
 
 /// A plane, convex face of the back surface.
@@ -31,7 +31,7 @@ struct PatchFacet {
   std::uint32_t first_corner = 0;
   std::uint32_t corner_count = 0;
   FacetRole role = FacetRole::retro_facet;
-  std::optional<Vec2> middle_mm = {};  ///< as CellFacet::middle_mm
+  std::optional<Vec2> centroid_mm = {};  ///< as CellFacet::middle_mm
 };
 
 /// Consecutive facets of one cell, and their bounding box.

@@ -78,7 +78,7 @@ void move_facets(Cell& cell, const Vec2& shift_mm, double height_mm) {
     facet.outline = moved(std::move(facet.outline), shift_mm);
     facet.plane.height_mm -= facet.plane.slope.dot(shift_mm);
     if (height_mm != 0.0) facet.plane.height_mm += height_mm;
-    if (facet.middle_mm) *facet.middle_mm += shift_mm;
+    if (facet.centroid_mm) *facet.centroid_mm += shift_mm;
   }
 }
 
@@ -113,9 +113,9 @@ class Tiler {
       while (next != cells.end() && *next < number) ++next;
       if (next == cells.end() || *next != number) return;
       const std::size_t first = tiles_.size();
-      Cell cell = cell_at(index, here_->place(index.number, shift_mm));
+      Cell cell = cell_at(index, here_->sheet_cell(index.number, shift_mm));
       for (CellFacet& facet : cell.facets)
-        add_tile(std::move(facet.outline), facet.plane, role_of(cell, facet), facet.middle_mm);
+        add_tile(std::move(facet.outline), facet.plane, role_of(cell, facet), facet.centroid_mm);
       for (std::size_t t = first; t < tiles_.size(); ++t) tiles_[t].cell = number;
     });
     return tiles_of_part();
@@ -124,13 +124,13 @@ class Tiler {
   ArrayPlan plan() {
     ArrayPlan plan;
     visit_cells(begin_whole(), [&](const Index& index, std::uint32_t number, const Vec2& shift_mm, bool) {
-      const CellPlace place = here_->place(index.number, shift_mm);
+      const SheetCell place = here_->sheet_cell(index.number, shift_mm);
       if (here_->within(place, place.outline, here_->block()).empty()) return;
       plan.cells.push_back(
           {number, moved(place.outline, here_->origin_mm()), sheet_.lattice.cells[index.number].is_element});
     });
     plan.block_mm = sheet_.block_mm;
-    for (const Rectangle& margin : margins(sheet_.reach_mm, sheet_.block_mm))
+    for (const Rectangle& margin : margins(sheet_.coverage_mm, sheet_.block_mm))
       if (!margin.empty()) plan.land_mm.push_back(margin);
     return plan;
   }
@@ -152,7 +152,7 @@ class Tiler {
   std::array<std::int64_t, 2> patch_size(const IndexRange& all, double elements_per_patch) const {
     const double each = std::max(1, sheet_.lattice.elements_per_period);
     const double periods = std::max(1.0, elements_per_patch / each);
-    if (sheet_.reach_mm.size().cwiseQuotient(sheet_.lattice.period_mm).prod() <= periods)
+    if (sheet_.coverage_mm.size().cwiseQuotient(sheet_.lattice.period_mm).prod() <= periods)
       return {all.upper[0] - all.lower[0], all.upper[1] - all.lower[1]};
     const bool repeats_once = sheet_.repeats_along(0) != sheet_.repeats_along(1);
     double most = repeats_once ? std::min(periods, kElementsPerColumnPatch / each) : periods;
@@ -193,7 +193,7 @@ class Tiler {
         Vec2(static_cast<double>(range.upper[0] - range.lower[0]), static_cast<double>(range.upper[1] - range.lower[1]))
             .cwiseProduct(sheet_.lattice.period_mm);
     const Rectangle round{-reach, size + reach};
-    const Rectangle in_plan = here_->plan_round(round);
+    const Rectangle in_plan = here_->plan_bounding_box(round);
     Key key{};
     std::size_t k = 0;
     for (const Eigen::Index axis : {0, 1}) {
@@ -214,8 +214,8 @@ class Tiler {
   /// as neighbours.
   void fill(Piece& piece, const IndexRange& range) {
     collect(piece, range);
-    for (const Tile& tile : tiles_) piece.area_mm2 += tile.owned ? area(tile.outline) : 0.0;
-    if (std::none_of(tiles_.begin(), tiles_.end(), [](const Tile& tile) { return tile.owned; })) return;
+    for (const Tile& tile : tiles_) piece.area_mm2 += tile.is_output ? area(tile.outline) : 0.0;
+    if (std::none_of(tiles_.begin(), tiles_.end(), [](const Tile& tile) { return tile.is_output; })) return;
     piece.patch = static_cast<std::uint32_t>(part_.patches.size());
     part_.patches.push_back(build_patch(tiles_, here_->block_in_plan(), part_.size_mm));
   }
@@ -249,7 +249,7 @@ class Tiler {
       add_cell(owned ? &piece : nullptr, index, shift_mm);
       for (std::size_t t = first; t < tiles_.size(); ++t) {
         tiles_[t].cell = number;
-        tiles_[t].owned = owned;
+        tiles_[t].is_output = owned;
       }
     });
   }
@@ -266,7 +266,7 @@ class Tiler {
     for (Tile& tile : tiles_) {
       tile.outline = moved(std::move(tile.outline), here_->origin_mm());
       tile.plane.height_mm -= tile.plane.slope.dot(here_->origin_mm());
-      if (tile.middle_mm) *tile.middle_mm += here_->origin_mm();
+      if (tile.centroid_mm) *tile.centroid_mm += here_->origin_mm();
     }
     return std::move(tiles_);
   }
@@ -274,22 +274,23 @@ class Tiler {
   /// Appends the part of a cell that is inside the borders.
   /// \param piece counts the cell; null if the cell belongs to a neighbour
   void add_cell(Piece* piece, const Index& index, const Vec2& shift_mm) {
-    const CellPlace place = here_->place(index.number, shift_mm);
+    const SheetCell place = here_->sheet_cell(index.number, shift_mm);
     if (here_->is_clear_of_part(place)) return;
     Cell cell = cell_at(index, place);
-    const Standing standing = here_->standing(place);
+    const BorderRelation standing = here_->border_relation(place);
     if (piece != nullptr && cell.is_element) {
-      piece->full += standing == Standing::whole ? 1 : 0;
-      piece->partial += standing == Standing::cut ? 1 : 0;
+      piece->full += standing == BorderRelation::inside ? 1 : 0;
+      piece->partial += standing == BorderRelation::crossing ? 1 : 0;
     }
-    if (standing == Standing::whole) {
+    if (standing == BorderRelation::inside) {
       for (CellFacet& facet : cell.facets)
-        add_tile(std::move(facet.outline), facet.plane, role_of(cell, facet), facet.middle_mm);
+        add_tile(std::move(facet.outline), facet.plane, role_of(cell, facet), facet.centroid_mm);
       return;
     }
     if (cell.is_element && spec_.array.partial_elements == PartialElements::omit) turn_to_land(cell, place);
     for (const CellFacet& facet : cell.facets) {
-      add_tile(here_->within(place, facet.outline, here_->block()), facet.plane, role_of(cell, facet), facet.middle_mm);
+      add_tile(here_->within(place, facet.outline, here_->block()), facet.plane, role_of(cell, facet),
+               facet.centroid_mm);
       if (sheet_.is_upright) add_margins(place, facet.outline);
     }
     if (!sheet_.is_upright) add_margins(place, place.outline);
@@ -301,24 +302,24 @@ class Tiler {
   }
 
   /// Adds the land between the block of elements and the border.
-  void add_margins(const CellPlace& place, const Polygon& outline) {
+  void add_margins(const SheetCell& place, const Polygon& outline) {
     for (const Rectangle& margin : margins(here_->reach(), here_->block()))
       if (!margin.empty())
         add_tile(here_->within(place, outline, margin), placed_plane({}, place.frame), FacetRole::flat_back);
   }
 
-  void turn_to_land(Cell& cell, const CellPlace& place) const {
+  void turn_to_land(Cell& cell, const SheetCell& place) const {
     cell.is_element = false;
     if (!sheet_.is_upright) cell.facets = {CellFacet{place.outline, {}, false}};
     for (CellFacet& facet : cell.facets) {
       facet.plane = placed_plane({}, place.frame);
       facet.is_edge = false;
-      facet.middle_mm.reset();
+      facet.centroid_mm.reset();
     }
   }
 
   /// Returns the cell at its position on the substrate.
-  Cell cell_at(const Index& index, const CellPlace& place) const {
+  Cell cell_at(const Index& index, const SheetCell& place) const {
     if (!sheet_.is_upright) return cell_along_normal(index, place);
     Cell cell = upright_cell(index);
     move_facets(cell, place.shift_mm, place.frame.origin.z());
@@ -335,7 +336,7 @@ class Tiler {
 
   /// Returns the element with individual planes, or land if the element is missing.
   Cell own_cell(const Cell& cell, const Index& index) const {
-    const Vec2 place = place_of(spec_, cell);
+    const Vec2 place = reference_position(spec_, cell);
     const ElementPlanes* const planes = planes_->at(sheet_.at_mm(index.i, index.j) + place);
     if (planes != nullptr && planes->planes.empty()) return flared_land(cell, *planes, place);
     if (planes != nullptr) return finished_cell(cell_with_planes(cell, *planes, place), spec_);
@@ -347,7 +348,7 @@ class Tiler {
 
   /// Returns an element that is placed as a rigid body along the substrate's normal. It is cut by the vertical walls
   /// through its corners.
-  Cell cell_along_normal(const Index& index, const CellPlace& place) const {
+  Cell cell_along_normal(const Index& index, const SheetCell& place) const {
     Cell cell = sheet_.lattice.cells[index.number];
     if (!cell.is_element) {
       turn_to_land(cell, place);
@@ -356,19 +357,19 @@ class Tiler {
     if (!is_convex(place.outline, sheet_.tolerance_mm)) refuse_bend(place.frame);
     cell = element_in_place_of(cell, spec_.element, errors_of(spec_, index.i, index.j, index.number));
     for (CellFacet& facet : cell.facets) {
-      const Vec2& middle = sheet_.middles_mm[index.number];
-      if (facet.middle_mm)
-        facet.middle_mm = placed(*facet.middle_mm - middle, facet.plane.at(*facet.middle_mm), place.frame);
+      const Vec2& middle = sheet_.reference_points_mm[index.number];
+      if (facet.centroid_mm)
+        facet.centroid_mm = placed(*facet.centroid_mm - middle, facet.plane.at(*facet.centroid_mm), place.frame);
       facet.plane.height_mm += facet.plane.slope.dot(middle);
       facet.plane = placed_plane(facet.plane, place.frame);
     }
     cell.outline = place.outline;
-    cell.facets = highest_of(cell.outline, std::move(cell.facets));
+    cell.facets = upper_envelope_of(cell.outline, std::move(cell.facets));
     return with_edges(cell, spec_);
   }
 
   [[noreturn]] void refuse_bend(const SubstrateFrame& frame) const {
-    const Vec2 at = frame.origin.head<2>() + here_->origin_mm() - sheet_.middle_mm;
+    const Vec2 at = frame.origin.head<2>() + here_->origin_mm() - sheet_.centre_mm;
     throw InputError(
         fmt::format("the curvature of the substrate is too large for the element at x = {:.6g}, y = {:.6g} mm from the "
                     "centre of the part",
@@ -391,9 +392,9 @@ class Tiler {
   const PartSpec& spec_;
   const FacetPlanes* planes_;
   std::map<Key, Piece> known_;
-  bool is_one_ = false;             ///< true if a single portion is the whole array
-  std::optional<SheetPiece> here_;  ///< portion that is being built
-  std::vector<Tile> tiles_;         ///< tiles of this portion
+  bool is_one_ = false;               ///< true if a single portion is the whole array
+  std::optional<SheetPortion> here_;  ///< portion that is being built
+  std::vector<Tile> tiles_;           ///< tiles of this portion
   double covered_mm2_ = 0.0;
 };
 
@@ -435,7 +436,7 @@ void add_periods(Part& part, const ArraySheet& sheet) {
 void add_single(Part& part, const FacetPlanes* planes, const Vec2& origin_mm) {
   Cell cell = element_cell(part.spec.element, errors_of(part.spec, 0, 0, 0));
   if (planes != nullptr) {
-    const Vec2 place = place_of(part.spec, cell);
+    const Vec2 place = reference_position(part.spec, cell);
     const ElementPlanes* const own = planes->at(place - bounding_box(cell.outline).lower);
     if (own != nullptr && !own->planes.empty()) cell = cell_with_planes(cell, *own, place);
   }
@@ -443,7 +444,7 @@ void add_single(Part& part, const FacetPlanes* planes, const Vec2& origin_mm) {
   move_facets(cell, -bounding_box(cell.outline).lower, 0.0);
   std::vector<Tile> tiles;
   for (CellFacet& facet : cell.facets)
-    tiles.push_back({std::move(facet.outline), facet.plane, FacetRole::retro_facet, 0, true, facet.middle_mm});
+    tiles.push_back({std::move(facet.outline), facet.plane, FacetRole::retro_facet, 0, true, facet.centroid_mm});
   const Polygon outline = aperture_outline(part.spec.element);
   part.patches.push_back(build_patch(tiles, bounding_box(outline), part.size_mm));
   part.placements.push_back({0, origin_mm});

@@ -47,7 +47,7 @@ void turn(Tile& tile, const Turn& by) {
   const Vec2 slope = by.turned(tile.plane.slope);
   tile.plane = {at_origin_mm - slope.dot(by.place(Vec2::Zero())), slope};
   for (Vec2& p : tile.outline) p = by.place(p);
-  if (tile.middle_mm) tile.middle_mm = by.place(*tile.middle_mm);
+  if (tile.centroid_mm) tile.centroid_mm = by.place(*tile.centroid_mm);
 }
 
 bool is_box(const Polygon& region, double tolerance_mm) {
@@ -132,7 +132,7 @@ struct FillingArray {
   bool is_cut = false;
 
   FillingArray(const PartZone& zone, const Polygon& region, double tolerance_mm)
-      : spec(zone.elements), to_part(zone.rotation_deg, Vec2::Zero(), bounding_box(region).middle()) {
+      : spec(zone.elements), to_part(zone.rotation_deg, Vec2::Zero(), bounding_box(region).centre()) {
     is_cut = zone.rotation_deg != 0.0 || !is_box(region, tolerance_mm);
     Vec2 lengths_mm = bounding_box(region).size();
     if (is_cut) {
@@ -152,7 +152,7 @@ ArrayTiles tiles_of(const PartZone& zone, const Polygon& region, double toleranc
   ArrayTiles array = array_tiles(filling.spec);
   const Rectangle box = bounding_box(region);
   const Turn to_part =
-      filling.is_cut ? Turn(zone.rotation_deg, filling.middle_mm(), box.middle()) : Turn(0.0, Vec2::Zero(), box.lower);
+      filling.is_cut ? Turn(zone.rotation_deg, filling.middle_mm(), box.centre()) : Turn(0.0, Vec2::Zero(), box.lower);
   for (Tile& tile : array.tiles) turn(tile, to_part);
   if (filling.is_cut) RegionCutter(region, filling.spec.array.partial_elements, tolerance_mm).cut(array);
   return array;
@@ -160,7 +160,7 @@ ArrayTiles tiles_of(const PartZone& zone, const Polygon& region, double toleranc
 
 /// Appends the elements of a zone's array that are completely within a region.
 void add_whole_elements(const PartZone& zone, const Polygon& region, double tolerance_mm,
-                        std::vector<StandingElement>& elements) {
+                        std::vector<ElementPlacement>& elements) {
   const FillingArray filling(zone, region, tolerance_mm);
   const Polygon round_apex = element_cell(filling.spec.element).outline;
   for (const WholeElement& whole : whole_elements(filling.spec.array, filling.spec.element)) {
@@ -228,7 +228,7 @@ class ZoneTiler {
       }
       last = tile.cell;
       tile.cell = cells_;
-      tile.owned = true;
+      tile.is_output = true;
       tiles_.push_back(std::move(tile));
     }
   }
@@ -277,7 +277,7 @@ bool may_turn(const ArraySheet& sheet, double deg, double near_mm) {
 }
 
 /// Returns the smallest rotation for which may_turn() is true. Outlines have at most six corners.
-double least_turn_deg(const ArraySheet& sheet, double near_mm) {
+double min_rotation_deg(const ArraySheet& sheet, double near_mm) {
   for (int times = 6; times > 1; --times)
     if (may_turn(sheet, 360.0 / times, near_mm)) return 360.0 / times;
   return 360.0;
@@ -288,13 +288,14 @@ double least_turn_deg(const ArraySheet& sheet, double near_mm) {
 std::optional<ZoneFault> misfit(std::size_t zone, const ArraySheet& own, const ArraySheet& first, double rotation_deg,
                                 double near_mm) {
   if (!are_alike(own, first, near_mm))
-    return ZoneFault{zone, "must keep the outlines and positions of the elements of zone 1", ZoneFault::Of::elements};
+    return ZoneFault{zone, "must keep the outlines and positions of the elements of zone 1",
+                     ZoneFault::Subject::elements};
   if (!may_turn(own, rotation_deg, near_mm))
     return ZoneFault{zone,
                      fmt::format("must be a multiple of {:.6g}, which maps the outline of each element to itself, "
                                  "got {:.17g}",
-                                 least_turn_deg(own, near_mm), rotation_deg),
-                     ZoneFault::Of::rotation};
+                                 min_rotation_deg(own, near_mm), rotation_deg),
+                     ZoneFault::Subject::rotation};
   return std::nullopt;
 }
 
@@ -389,9 +390,9 @@ double element_estimate(const ZonedSpec& spec) {
   return sum;
 }
 
-std::vector<std::vector<StandingElement>> whole_elements(const ZonedSpec& spec) {
+std::vector<std::vector<ElementPlacement>> whole_elements(const ZonedSpec& spec) {
   const double tolerance_mm = kSamePlace * size_of(spec);
-  std::vector<std::vector<StandingElement>> elements(spec.zones.size());
+  std::vector<std::vector<ElementPlacement>> elements(spec.zones.size());
   if (!spec.is_by_cell) {
     for (std::size_t z = 0; z < spec.zones.size(); ++z)
       for (const Polygon& region : spec.zones[z].regions)

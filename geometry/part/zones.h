@@ -58,10 +58,10 @@ PartSpec array_of_cells(const ZonedSpec& spec, const PartZone& zone);
 
 /// Reason why zones do not cover the plate correctly.
 struct ZoneFault {
-  enum class Of { zone, elements, rotation };
+  enum class Subject { zone, elements, rotation };
   std::size_t zone = 0;
   std::string text;  ///< such as "reaches beyond the part" or "overlaps zone 1"
-  Of what = Of::zone;
+  Subject subject = Subject::zone;
 };
 /// Checks the zones. Returns the first fault, or nothing if there is none. The zones must cover the plate without
 /// overlap. If zones consist of cells, three more conditions apply. The array of each zone must have its cells at the
@@ -73,14 +73,14 @@ std::optional<ZoneFault> fault_of_zones(const ZonedSpec& spec);
 double element_estimate(const ZonedSpec& spec);
 
 /// Position and rotation of a complete element in the part.
-struct StandingElement {
+struct ElementPlacement {
   Vec2 apex_mm = Vec2::Zero();  ///< in the part frame
   /// Rotation of the element's zone. 180 degrees are added for an element that is rotated within the array of the zone.
   double rotation_deg = 0.0;
 };
 /// Returns the complete elements of each zone. Partial elements are omitted.
 /// \pre the preconditions of build_part() hold; all elements are cube corners
-std::vector<std::vector<StandingElement>> whole_elements(const ZonedSpec& spec);
+std::vector<std::vector<ElementPlacement>> whole_elements(const ZonedSpec& spec);
 
 /// Adds the zones to a part. For use by build_part() only.
 void add_zones(Part& part, const ZonedSpec& spec);

@@ -22,7 +22,7 @@ namespace {
 
 // Maximum distance from the centre at which circles are evaluated, relative to the radius. Only material that the
 // border cuts off is beyond this distance.
-constexpr double kMostSine = 0.999;
+constexpr double kMaxSine = 0.999;
 
 Eigen::Matrix3d turn_of(const PlaneSubstrate& plane) {
   // The axis of rotation is the horizontal line at right angles to the azimuth. The plane then rises towards the
@@ -32,7 +32,7 @@ Eigen::Matrix3d turn_of(const PlaneSubstrate& plane) {
 }
 
 Sag sag_of(const PlaneSubstrate& plane) {
-  const double rise = std::tan(plane.incline_deg * kDegree);
+  const double rise = std::tan(plane.incline_deg * kRadPerDeg);
   const Vec2 along = direction_at(Angle::from_deg(plane.azimuth_deg));
   Sag sag;
   sag.polynomial = XyPolynomial{1.0, 1, {0.0, rise * along.y(), rise * along.x()}};
@@ -61,18 +61,18 @@ Sag sag_of(const FormulaSubstrate& formula) {
 /// Returns the point nearest to `p` at which a circular cross section is not yet vertical.
 Vec2 short_of_upright(const SubstrateShape& shape, const Vec2& p) {
   if (const auto* const c = std::get_if<CylinderSubstrate>(&shape)) {
-    const double most = kMostSine * std::abs(c->radius_mm);
+    const double most = kMaxSine * std::abs(c->radius_mm);
     const Vec2 clamped = p.cwiseMax(-most).cwiseMin(most);
     return c->axis_is_x ? Vec2(p.x(), clamped.y()) : Vec2(clamped.x(), p.y());
   }
   const auto* const sphere = std::get_if<SphereSubstrate>(&shape);
-  const double most = sphere != nullptr ? kMostSine * std::abs(sphere->radius_mm) : INFINITY;
+  const double most = sphere != nullptr ? kMaxSine * std::abs(sphere->radius_mm) : INFINITY;
   return p.norm() <= most ? p : Vec2(p * (most / p.norm()));
 }
 
 double arc_of_chord(double radius, double t) {
   const double r = std::abs(radius);
-  return r * std::asin(std::clamp(t / r, -kMostSine, kMostSine));
+  return r * std::asin(std::clamp(t / r, -kMaxSine, kMaxSine));
 }
 
 double chord_of_arc(double radius, double s) {
@@ -124,8 +124,8 @@ class ArcTable {
       (place(middle) + excess_[middle] <= s ? low : high) = middle;
     }
     double t = place(low) + (s - place(low) - excess_[low]) / std::hypot(1.0, slope(place(low)));
-    constexpr int kMostSteps = 30;
-    for (int k = 0; k < kMostSteps; ++k) {
+    constexpr int kMaxSteps = 30;
+    for (int k = 0; k < kMaxSteps; ++k) {
       const double step = (s - t - excess_[low] - excess(place(low), t, slope)) / std::hypot(1.0, slope(t));
       t += step;
       if (std::abs(step) <= 1e-14 * (std::abs(t) + step_)) break;
@@ -168,7 +168,7 @@ class ArcTable {
 /// Arc lengths for a formula: along x = 0, and along the rows that were requested.
 struct SubstrateSurface::ArcTables {
   ArcTables(const SubstrateSurface& surface, double size_mm)
-      : step_mm(std::max(0.5 * size_mm, surface.half_mm_.maxCoeff() / kMostSteps)),
+      : step_mm(std::max(0.5 * size_mm, surface.half_mm_.maxCoeff() / kMaxSteps)),
         beyond_mm(8.0 * size_mm),
         along_y(surface.half_mm_.y(), beyond_mm, step_mm, middle_slope(surface)) {}
 
@@ -176,12 +176,12 @@ struct SubstrateSurface::ArcTables {
   const ArcTable& row(const SubstrateSurface& surface, double y) {
     const auto key = static_cast<std::int64_t>(std::llround(y / (1e-9 * step_mm)));
     if (const auto known = rows.find(key); known != rows.end()) return known->second;
-    if (rows.size() >= kMostRows) rows.clear();
+    if (rows.size() >= kMaxRows) rows.clear();
     return rows.emplace(key, ArcTable(surface.half_mm_.x(), beyond_mm, step_mm, row_slope(surface, y))).first->second;
   }
 
-  static constexpr double kMostSteps = 20000.0;
-  static constexpr std::size_t kMostRows = 512;
+  static constexpr double kMaxSteps = 20000.0;
+  static constexpr std::size_t kMaxRows = 512;
   double step_mm;
   double beyond_mm;
   ArcTable along_y;
@@ -309,7 +309,7 @@ namespace {
 
 /// Returns the larger magnitude of the two principal curvatures. They are the eigenvalues of the shape operator I^-1 II
 /// (do Carmo, Differential Geometry, 3-3).
-double most_curvature(const Jet& jet) {
+double max_curvature(const Jet& jet) {
   const double w2 = 1.0 + jet.x * jet.x + jet.y * jet.y;
   const double w = std::sqrt(w2);
   const double gauss = (jet.xx * jet.yy - jet.xy * jet.xy) / (w2 * w2);
@@ -341,14 +341,14 @@ SubstrateMeasures measure_substrate(const SubstrateSurface& substrate, const Vec
       measures.highest_mm = std::max(measures.highest_mm, jet.value);
       const double rise = std::hypot(jet.x, jet.y);
       steepness = std::max(steepness, rise);
-      curvature = std::max(curvature, most_curvature(jet));
+      curvature = std::max(curvature, max_curvature(jet));
       // Weights of Simpson's rule along both axes.
       const auto weight = [](int k) { return k == 0 || k == kSteps ? 1.0 : k % 2 == 1 ? 4.0 : 2.0; };
       area += weight(i) * weight(j) * std::hypot(1.0, rise);
     }
   measures.area_mm2 = area * half_mm.prod() * 4.0 / (9.0 * kSteps * kSteps);
-  measures.steepest_deg = std::atan(steepness) / kDegree;
-  measures.least_radius_mm = curvature > 0.0 ? 1.0 / curvature : std::numeric_limits<double>::infinity();
+  measures.steepest_deg = std::atan(steepness) / kRadPerDeg;
+  measures.min_radius_mm = curvature > 0.0 ? 1.0 / curvature : std::numeric_limits<double>::infinity();
   return measures;
 }
 

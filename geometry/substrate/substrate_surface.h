@@ -77,7 +77,7 @@ struct SubstrateMeasures {
   double lowest_mm = 0.0;  ///< heights of the substrate itself, before it is shifted to z = 0
   double highest_mm = 0.0;
   double steepest_deg = 0.0;
-  double least_radius_mm = 0.0;  ///< minimum radius of curvature; infinite for a plane
+  double min_radius_mm = 0.0;  ///< minimum radius of curvature; infinite for a plane
 };
 
 /// Measures a substrate on a grid of 129 x 129 points.

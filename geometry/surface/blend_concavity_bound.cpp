@@ -24,7 +24,7 @@ using jets::Jet2;
 using jets::line_series;
 using jets::Series;
 
-constexpr int kMostDegree = 2 * kMostBlendOrder + 1;
+constexpr int kMaxDegree = 2 * kMaxBlendOrder + 1;
 constexpr int kHalvings = 4;
 
 /// One polynomial piece of a spline, with its coefficients.
@@ -36,10 +36,10 @@ struct Piece {
 
 Piece piece_of(const PeriodicSpline& spline, double angle_rad) {
   const std::vector<double>& knots = spline.knots_rad();
-  const double turns = std::floor((angle_rad - knots.front()) / kTurn);
-  const auto after = std::upper_bound(knots.begin(), knots.end(), angle_rad - turns * kTurn);
+  const double turns = std::floor((angle_rad - knots.front()) / kTwoPi);
+  const auto after = std::upper_bound(knots.begin(), knots.end(), angle_rad - turns * kTwoPi);
   const auto index = static_cast<std::size_t>(after - knots.begin()) - 1;
-  return {knots[index] + turns * kTurn, spline.piece(index), spline.degree() + 1};
+  return {knots[index] + turns * kTwoPi, spline.piece(index), spline.degree() + 1};
 }
 
 /// Blend along a radial line, and its dependence on the azimuth. C is double or Interval. The members are Taylor series
@@ -48,7 +48,7 @@ template <class C>
 struct Ray {
   Series<C, 2> inner;
   Series<C, 2> width;
-  std::array<Series<C, 2>, kMostDegree + 1> node;  ///< Bernstein coefficients of z
+  std::array<Series<C, 2>, kMaxDegree + 1> node;  ///< Bernstein coefficients of z
 };
 
 /// Returns the height on the lenslet along a line, in doubles. The result always has a value. It is optional only
@@ -159,7 +159,7 @@ std::optional<Ray<C>> ray_at(const Lenslet& lenslet, const Sag& base, const C& a
     case 1: return ray_of_order<1>(lenslet, base, angle_rad, inner, outer);
     case 2: return ray_of_order<2>(lenslet, base, angle_rad, inner, outer);
     case 3: return ray_of_order<3>(lenslet, base, angle_rad, inner, outer);
-    default: return ray_of_order<kMostBlendOrder>(lenslet, base, angle_rad, inner, outer);
+    default: return ray_of_order<kMaxBlendOrder>(lenslet, base, angle_rad, inner, outer);
   }
 }
 
@@ -172,9 +172,9 @@ Series<C, 2> second_by_radius(const Ray<C>& ray, int degree, std::size_t j) {
 
 /// Returns an upper bound on [0, 1] of the polynomial with the given Bernstein coefficients, after several subdivisions
 /// by de Casteljau's algorithm.
-double above(std::array<double, kMostDegree> node, int degree, int halvings) {
+double above(std::array<double, kMaxDegree> node, int degree, int halvings) {
   if (halvings == 0) return *std::max_element(node.begin(), node.begin() + degree + 1);
-  std::array<double, kMostDegree> first{};
+  std::array<double, kMaxDegree> first{};
   for (int k = 0; k <= degree; ++k) {
     first[static_cast<std::size_t>(k)] = node[0];
     for (std::size_t j = 0; j < static_cast<std::size_t>(degree - k); ++j) node[j] = 0.5 * (node[j] + node[j + 1]);
@@ -192,7 +192,7 @@ double largest_bend(const Ray<Interval>& ray, const Ray<double>& middle, double 
   const Interval turn_squared(0.0, half_rad * half_rad);
   const auto at = [](int j) { return static_cast<std::size_t>(j); };
   Interval zrr = Interval::empty(), zv = zrr, slope = zrr, twist = zrr, bend = zrr;
-  std::array<double, kMostDegree> upper{};
+  std::array<double, kMaxDegree> upper{};
   for (int j = 0; j <= degree; ++j) {
     slope = hull(slope, ray.node[at(j)][1]);
     bend = hull(bend, 2.0 * ray.node[at(j)][2]);
@@ -242,15 +242,15 @@ std::vector<double> breaks_of(const Lenslet& lenslet) {
   std::vector<double> breaks;
   const double start = lenslet.inner.radius_mm.knots_rad().front();
   for (const PeriodicSpline* spline : {&lenslet.inner.radius_mm, &lenslet.outer.radius_mm})
-    for (const double knot : spline->knots_rad()) breaks.push_back(knot - kTurn * std::floor((knot - start) / kTurn));
+    for (const double knot : spline->knots_rad()) breaks.push_back(knot - kTwoPi * std::floor((knot - start) / kTwoPi));
   std::sort(breaks.begin(), breaks.end());
-  breaks.push_back(breaks.front() + kTurn);
+  breaks.push_back(breaks.front() + kTwoPi);
   return breaks;
 }
 
 /// Divides an interval into equal parts that are small enough for a proof. Returns true if all parts are proved.
 bool is_proved_in_parts(const Lenslet& lenslet, const Sag& base, double limit_per_mm, double from_rad, double to_rad) {
-  constexpr double kWidest = kTurn / 20.0;
+  constexpr double kWidest = kTwoPi / 20.0;
   const int parts = static_cast<int>(std::ceil((to_rad - from_rad) / kWidest - 1e-9));
   const auto at = [&](int part) { return from_rad + (to_rad - from_rad) * part / parts; };
   for (int part = 0; part < parts; ++part)

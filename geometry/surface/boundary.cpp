@@ -14,17 +14,17 @@ namespace retrace::geometry {
 namespace {
 
 std::string degrees(double angle_rad) {
-  return fixed(std::remainder(angle_rad, kTurn) * 180.0 / std::numbers::pi, 2);
+  return fixed(std::remainder(angle_rad, kTwoPi) * 180.0 / std::numbers::pi, 2);
 }
 
 /// Estimates the minimum and maximum radius from the ends and several points of each spline segment.
 void measure(Boundary& boundary, const InputLocation& where) {
   const std::vector<double>& knots = boundary.radius_mm.knots_rad();
   constexpr int kPlaces = 16;
-  boundary.least_mm = std::numeric_limits<double>::infinity();
-  boundary.most_mm = 0.0;
+  boundary.min_radius_mm = std::numeric_limits<double>::infinity();
+  boundary.max_radius_mm = 0.0;
   for (std::size_t i = 0; i < knots.size(); ++i) {
-    const double next = i + 1 < knots.size() ? knots[i + 1] : knots.front() + kTurn;
+    const double next = i + 1 < knots.size() ? knots[i + 1] : knots.front() + kTwoPi;
     for (int k = 0; k < kPlaces; ++k) {
       const double angle = knots[i] + (next - knots[i]) * k / kPlaces;
       const double r = boundary.radius_mm.evaluate(angle);
@@ -32,14 +32,14 @@ void measure(Boundary& boundary, const InputLocation& where) {
         throw InputError(where, fmt::format("must have a radius > 0 at every angle about its centre, but at {} degrees "
                                             "its spline has a radius of {} mm",
                                             degrees(angle), shortest(r)));
-      boundary.least_mm = std::min(boundary.least_mm, r);
-      boundary.most_mm = std::max(boundary.most_mm, r);
+      boundary.min_radius_mm = std::min(boundary.min_radius_mm, r);
+      boundary.max_radius_mm = std::max(boundary.max_radius_mm, r);
     }
   }
   // Between these points, the radius may slightly exceed the range. A margin is therefore added.
-  const double margin = 1e-3 * (boundary.most_mm - boundary.least_mm);
-  boundary.least_mm -= std::min(margin, 0.5 * boundary.least_mm);
-  boundary.most_mm += margin;
+  const double margin = 1e-3 * (boundary.max_radius_mm - boundary.min_radius_mm);
+  boundary.min_radius_mm -= std::min(margin, 0.5 * boundary.min_radius_mm);
+  boundary.max_radius_mm += margin;
 }
 
 /// Returns the angles of points about the centre. Each angle differs from the previous angle by at most half a turn.
@@ -47,7 +47,7 @@ std::vector<double> unwound(const std::vector<Vec2>& points, const Vec2& centre)
   std::vector<double> angles;
   for (const Vec2& p : points) {
     const double angle = std::atan2(p.y() - centre.y(), p.x() - centre.x());
-    angles.push_back(angles.empty() ? angle : angles.back() + std::remainder(angle - angles.back(), kTurn));
+    angles.push_back(angles.empty() ? angle : angles.back() + std::remainder(angle - angles.back(), kTwoPi));
   }
   return angles;
 }
@@ -68,7 +68,7 @@ void sort_by_angle(std::vector<Vec2>& points, const Vec2& centre) {
 
 /// Checks that the angles ascend through exactly one full turn.
 void check_single_valued(const std::vector<double>& angles, const InputLocation& where) {
-  const double closing = angles.back() + std::remainder(angles.front() - angles.back(), kTurn);
+  const double closing = angles.back() + std::remainder(angles.front() - angles.back(), kTwoPi);
   for (std::size_t i = 0; i < angles.size(); ++i) {
     const double next = i + 1 < angles.size() ? angles[i + 1] : closing;
     if (!(next - angles[i] > 1e-12))
@@ -76,9 +76,9 @@ void check_single_valued(const std::vector<double>& angles, const InputLocation&
                                           "centre, but the angle reverses at point {} ({} degrees)",
                                           i + 1, degrees(angles[i])));
   }
-  if (std::abs(closing - angles.front() - kTurn) > 1e-9)
+  if (std::abs(closing - angles.front() - kTwoPi) > 1e-9)
     throw InputError(where, fmt::format("must go around its centre one time, but goes around it {} times",
-                                        std::lround((closing - angles.front()) / kTurn)));
+                                        std::lround((closing - angles.front()) / kTwoPi)));
 }
 
 }  // namespace
@@ -125,7 +125,7 @@ Boundary boundary_from_radius(const Vec2& centre_mm, const std::function<double(
   std::vector<double> angles;
   std::vector<double> radii;
   for (int i = 0; i < options.samples; ++i) {
-    angles.push_back(kTurn * i / options.samples - std::numbers::pi);
+    angles.push_back(kTwoPi * i / options.samples - std::numbers::pi);
     radii.push_back(radius_mm(angles.back()));
     if (!(radii.back() > 0.0) || !std::isfinite(radii.back()))
       throw InputError(
@@ -140,8 +140,8 @@ Boundary circle_boundary(const Vec2& centre_mm, double radius_mm, int degree) {
   boundary.centre_mm = centre_mm;
   boundary.radius_mm = PeriodicSpline::constant(radius_mm, degree);
   // A spline through equal values is constant except for rounding errors.
-  boundary.least_mm = radius_mm * (1.0 - 1e-12);
-  boundary.most_mm = radius_mm * (1.0 + 1e-12);
+  boundary.min_radius_mm = radius_mm * (1.0 - 1e-12);
+  boundary.max_radius_mm = radius_mm * (1.0 + 1e-12);
   return boundary;
 }
 
@@ -165,20 +165,20 @@ Boundary rectangle_boundary(const Vec2& centre_mm, double width_mm, double heigh
 }
 
 Boundary boundary_of_intersection(const Vec2& centre_mm, const std::function<double(double, double)>& difference_mm,
-                                  double most_mm, const BoundaryOptions& options, const InputLocation& where) {
+                                  double max_mm, const BoundaryOptions& options, const InputLocation& where) {
   constexpr int kSteps = 256;
   const auto radius = [&](double angle) {
     const double c = std::cos(angle);
     const double s = std::sin(angle);
     const auto f = [&](double r) { return difference_mm(centre_mm.x() + r * c, centre_mm.y() + r * s); };
-    double low = most_mm / kSteps;
+    double low = max_mm / kSteps;
     double f_low = f(low);
     for (int i = 2; i <= kSteps; ++i) {
-      double high = most_mm * i / kSteps;
+      double high = max_mm * i / kSteps;
       const double f_high = f(high);
       if (f_low == 0.0) return low;
       if ((f_low < 0.0) != (f_high < 0.0) && std::isfinite(f_high)) {
-        while (high - low > 1e-15 * most_mm) {
+        while (high - low > 1e-15 * max_mm) {
           const double middle = 0.5 * (low + high);
           if (middle <= low || middle >= high) break;
           const double value = f(middle);
@@ -192,7 +192,7 @@ Boundary boundary_of_intersection(const Vec2& centre_mm, const std::function<dou
     throw InputError(
         where,
         fmt::format("must intersect the base at every angle, but at {} degrees there is no intersection within {} mm",
-                    degrees(angle), shortest(most_mm)));
+                    degrees(angle), shortest(max_mm)));
   };
   return boundary_from_radius(centre_mm, radius, options, where);
 }
@@ -207,7 +207,7 @@ Boundary scaled(const Boundary& boundary, double factor, double offset_mm, const
 void check_nested(const Boundary& inner, const Boundary& outer, const InputLocation& where) {
   constexpr int kAngles = 4096;
   for (int i = 0; i < kAngles; ++i) {
-    const double angle = kTurn * i / kAngles;
+    const double angle = kTwoPi * i / kAngles;
     const double r = inner.radius_mm.evaluate(angle);
     const double R = outer.radius_mm.evaluate(angle);
     if (!(r < R))

@@ -20,8 +20,8 @@ struct Boundary {
   PeriodicSpline radius_mm = PeriodicSpline::constant(1.0);
   /// Minimum and maximum radius, estimated from samples of each spline segment. They allow contains() to answer
   /// quickly.
-  double least_mm = 1.0;
-  double most_mm = 1.0;
+  double min_radius_mm = 1.0;
+  double max_radius_mm = 1.0;
 
   Vec2 point_mm(double angle_rad) const {
     return centre_mm + radius_mm.evaluate(angle_rad) * Vec2(std::cos(angle_rad), std::sin(angle_rad));
@@ -31,8 +31,8 @@ struct Boundary {
     const double dx = x_mm - centre_mm.x();
     const double dy = y_mm - centre_mm.y();
     const double r = std::hypot(dx, dy);
-    if (r <= least_mm) return true;
-    return r <= most_mm && r <= radius_mm.evaluate(std::atan2(dy, dx));
+    if (r <= min_radius_mm) return true;
+    return r <= max_radius_mm && r <= radius_mm.evaluate(std::atan2(dy, dx));
   }
 };
 
@@ -68,11 +68,11 @@ Boundary circle_boundary(const Vec2& centre_mm, double radius_mm, int degree = 3
 Boundary rectangle_boundary(const Vec2& centre_mm, double width_mm, double height_mm, double corner_mm,
                             const BoundaryOptions& options, const InputLocation& where);
 
-/// Returns the curve in which two surfaces intersect. At each angle, its radius is the smallest radius up to `most_mm`
+/// Returns the curve in which two surfaces intersect. At each angle, its radius is the smallest radius up to `max_mm`
 /// at which the difference of the two heights is 0.
 /// \throw InputError with the angle, if the surfaces do not intersect at this angle
 Boundary boundary_of_intersection(const Vec2& centre_mm, const std::function<double(double, double)>& difference_mm,
-                                  double most_mm, const BoundaryOptions& options, const InputLocation& where);
+                                  double max_mm, const BoundaryOptions& options, const InputLocation& where);
 
 /// Returns the boundary with the radii factor * r + offset_mm.
 /// \throw InputError if a radius is then not positive

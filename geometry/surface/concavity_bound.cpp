@@ -66,8 +66,8 @@ std::optional<double> covering(const Lenslet& lenslet, double reach_mm) {
 
 }  // namespace
 
-void prove_by_quarters(const PlanBox& box, int depth, const std::function<bool(const PlanBox&)>& holds,
-                       const std::function<void(const PlanBox&)>& on_failure) {
+void prove_by_subdivision(const PlanBox& box, int depth, const std::function<bool(const PlanBox&)>& holds,
+                          const std::function<void(const PlanBox&)>& on_failure) {
   if (holds(box)) return;
   if (depth == 0) {
     on_failure(box);
@@ -77,7 +77,7 @@ void prove_by_quarters(const PlanBox& box, int depth, const std::function<bool(c
   for (const double x : {box.low_mm.x(), middle.x()})
     for (const double y : {box.low_mm.y(), middle.y()}) {
       const Vec2 high(x == middle.x() ? box.high_mm.x() : middle.x(), y == middle.y() ? box.high_mm.y() : middle.y());
-      prove_by_quarters({{x, y}, high}, depth - 1, holds, on_failure);
+      prove_by_subdivision({{x, y}, high}, depth - 1, holds, on_failure);
     }
 }
 
@@ -88,7 +88,7 @@ void bound_concavity(const Sag& sag, const PlanBox& box, double limit_per_mm,
     on_failure(box);
     return;
   }
-  prove_by_quarters(
+  prove_by_subdivision(
       box, kDeepest,
       [&](const PlanBox& b) { return !is_needed(b) || bend_over(sag, along_x(b), along_y(b)).largest < limit_per_mm; },
       on_failure);
@@ -98,7 +98,7 @@ bool is_concavity_bounded(const Lenslet& lenslet, double limit_per_mm) {
   if (lenslet.sag.formula) return false;
   const Eigen::Matrix3d& r = lenslet.part_from_lenslet;
   const Vec2 offset = lenslet.inner.centre_mm - lenslet.origin_mm.head<2>();
-  const auto rho = covering(lenslet, offset.norm() + lenslet.inner.most_mm);
+  const auto rho = covering(lenslet, offset.norm() + lenslet.inner.max_radius_mm);
   if (!rho) return false;
   const auto holds = [&](const PlanBox& box) {
     const Bend bend = bend_over(lenslet.sag, along_x(box), along_y(box));
@@ -112,7 +112,7 @@ bool is_concavity_bounded(const Lenslet& lenslet, double limit_per_mm) {
     return std::max(0.0, bend.largest) * square / std::pow(upright.lower(), 3) < limit_per_mm;
   };
   bool is_proved = true;
-  prove_by_quarters({{-*rho, -*rho}, {*rho, *rho}}, 5, holds, [&](const PlanBox&) { is_proved = false; });
+  prove_by_subdivision({{-*rho, -*rho}, {*rho, *rho}}, 5, holds, [&](const PlanBox&) { is_proved = false; });
   return is_proved;
 }
 

@@ -16,8 +16,8 @@ struct PlanBox {
 
 /// Calls `holds` for a box. If it returns false, the box is divided into quarters, up to `depth` times. The smallest
 /// boxes for which `holds` still returns false are passed to `on_failure`.
-void prove_by_quarters(const PlanBox& box, int depth, const std::function<bool(const PlanBox&)>& holds,
-                       const std::function<void(const PlanBox&)>& on_failure);
+void prove_by_subdivision(const PlanBox& box, int depth, const std::function<bool(const PlanBox&)>& holds,
+                          const std::function<void(const PlanBox&)>& on_failure);
 
 /// Proves by interval arithmetic, box by box, that the second derivative of a sag is below a limit in every direction.
 /// \param limit_per_mm limit for d2z/ds2, where s is the length in plan

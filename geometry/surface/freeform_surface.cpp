@@ -38,7 +38,7 @@ Polar<T> polar(const T& x, const T& y, const Vec2& centre) {
   return {r, atan2(dy, dx), dx / r, dy / r};
 }
 
-std::string place(double x_mm, double y_mm) {
+std::string place_elements(double x_mm, double y_mm) {
   return fmt::format("x = {}, y = {} mm", fixed(x_mm, 4), fixed(y_mm, 4));
 }
 
@@ -160,16 +160,16 @@ namespace {
 void check_apart(const std::vector<Lenslet>& lenslets, std::uint32_t a, std::uint32_t b, const InputLocation& where) {
   const Boundary& first = lenslets[a].outer;
   const Boundary& second = lenslets[b].outer;
-  if ((first.centre_mm - second.centre_mm).norm() > first.most_mm + second.most_mm) return;
+  if ((first.centre_mm - second.centre_mm).norm() > first.max_radius_mm + second.max_radius_mm) return;
   constexpr int kAngles = 360;
   for (int i = 0; i < kAngles; ++i) {
-    const double angle = kTurn * i / kAngles;
+    const double angle = kTwoPi * i / kAngles;
     const Vec2 p = first.point_mm(angle);
     if (second.contains(p.x(), p.y()))
       throw InputError(
           where,
           fmt::format("must be so far apart that their blends do not overlap, but lenslets {} and {} overlap at {}",
-                      a + 1, b + 1, place(p.x(), p.y())));
+                      a + 1, b + 1, place_elements(p.x(), p.y())));
   }
 }
 
@@ -177,7 +177,7 @@ void check_apart(const std::vector<Lenslet>& lenslets, std::uint32_t a, std::uin
 bool is_inside(const Boundary& inner, const Boundary& outer) {
   constexpr int kAngles = 360;
   for (int i = 0; i < kAngles; ++i) {
-    const double angle = kTurn * i / kAngles;
+    const double angle = kTwoPi * i / kAngles;
     const Vec2 p = inner.point_mm(angle);
     if (!outer.contains(p.x(), p.y())) return false;
   }
@@ -192,9 +192,9 @@ void FreeformSurface::sort_into_grid(const InputLocation& where) {
   cell_mm_ = 0.0;
   for (std::size_t i = 0; i < lenslets_.size(); ++i) {
     const Boundary& outer = lenslets_[i].outer;
-    low = low.cwiseMin(outer.centre_mm - Vec2::Constant(outer.most_mm));
-    high = high.cwiseMax(outer.centre_mm + Vec2::Constant(outer.most_mm));
-    cell_mm_ = std::max(cell_mm_, outer.most_mm);
+    low = low.cwiseMin(outer.centre_mm - Vec2::Constant(outer.max_radius_mm));
+    high = high.cwiseMax(outer.centre_mm + Vec2::Constant(outer.max_radius_mm));
+    cell_mm_ = std::max(cell_mm_, outer.max_radius_mm);
     lenslets_[i].ends_on_base = !extrapolation_ || is_inside(outer, extrapolation_->boundary);
   }
   grid_low_ = low;
@@ -203,8 +203,8 @@ void FreeformSurface::sort_into_grid(const InputLocation& where) {
   cells_.assign(static_cast<std::size_t>(columns_ * rows_), {});
   for (std::uint32_t i = 0; i < lenslets_.size(); ++i) {
     const Boundary& outer = lenslets_[i].outer;
-    const Vec2 first = (outer.centre_mm - Vec2::Constant(outer.most_mm) - low) / cell_mm_;
-    const Vec2 last = (outer.centre_mm + Vec2::Constant(outer.most_mm) - low) / cell_mm_;
+    const Vec2 first = (outer.centre_mm - Vec2::Constant(outer.max_radius_mm) - low) / cell_mm_;
+    const Vec2 last = (outer.centre_mm + Vec2::Constant(outer.max_radius_mm) - low) / cell_mm_;
     for (long row = static_cast<long>(first.y()); row <= std::min(rows_ - 1, static_cast<long>(last.y())); ++row)
       for (long column = static_cast<long>(first.x()); column <= std::min(columns_ - 1, static_cast<long>(last.x()));
            ++column) {
@@ -219,7 +219,8 @@ void place_on_base(Lenslet& lenslet, const FreeformSurface& base, double x_mm, d
                    bool tilted, const InputLocation& where) {
   const Gradient z = base.gradient(x_mm, y_mm);
   if (!std::isfinite(z.value) || !std::isfinite(z.x) || !std::isfinite(z.y))
-    throw InputError(where, "must be at a position where the base has a height and a slope, got " + place(x_mm, y_mm));
+    throw InputError(
+        where, "must be at a position where the base has a height and a slope, got " + place_elements(x_mm, y_mm));
   const Vec3 normal = Vec3(-z.x, -z.y, 1.0).normalized();
   lenslet.origin_mm = Vec3(x_mm, y_mm, z.value) + height_mm * (tilted ? normal : Vec3(Vec3::UnitZ()));
   lenslet.part_from_lenslet = Eigen::Matrix3d::Identity();
@@ -233,17 +234,17 @@ void check_surface(const FreeformSurface& surface, double radius_mm, const Input
   for (int i = 0; i <= kCircles; ++i)
     for (int k = 0; k < (i == 0 ? 1 : kAngles); ++k) {
       const double r = radius_mm * i / kCircles;
-      const double angle = kTurn * k / kAngles;
+      const double angle = kTwoPi * k / kAngles;
       const double x = r * std::cos(angle);
       const double y = r * std::sin(angle);
       if (!std::isfinite(surface.height_mm(x, y)))
-        throw InputError(where, "must be finite over the whole part, but is not at " + place(x, y));
+        throw InputError(where, "must be finite over the whole part, but is not at " + place_elements(x, y));
       // At the centre, a formula of the radius r may have no slope. An example is a cone.
       if (i == 0) continue;
       const Gradient z = surface.gradient(x, y);
       const double slope = std::hypot(z.x, z.y);
-      if (!(slope < kSteepestSlope))
-        throw InputError(where, fmt::format("must not be vertical, but at {} its slope is {}", place(x, y),
+      if (!(slope < kMaxSlope))
+        throw InputError(where, fmt::format("must not be vertical, but at {} its slope is {}", place_elements(x, y),
                                             std::isfinite(slope) ? "above 89 degrees" : "not finite"));
     }
 }

@@ -78,7 +78,7 @@ void place_on_base(Lenslet& lenslet, const FreeformSurface& base, double x_mm, d
                    bool tilted, const InputLocation& where);
 
 /// Slope above which a surface counts as vertical: 89 degrees.
-inline constexpr double kSteepestSlope = 57.28996163075943;
+inline constexpr double kMaxSlope = 57.28996163075943;
 
 /// Checks the surface within `radius_mm` of the origin at samples on circles.
 /// \throw InputError with the position at which the height is not finite or the slope is vertical

@@ -40,9 +40,9 @@ struct Root {
 Root root_at(const Lenslet& lenslet, double x, double y) {
   const Eigen::Matrix3d& r = lenslet.part_from_lenslet;
   Root root{-(x * r(0, 2) + y * r(1, 2)) / r(2, 2), r(2, 2)};
-  constexpr int kMostSteps = 50;
+  constexpr int kMaxSteps = 50;
   double last = 1e300;
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < kMaxSteps; ++step) {
     const Series<double, 1> f = residual_and_slope(lenslet, x, y, root.z);
     root.slope = f[1];
     const double change = f[0] / f[1];

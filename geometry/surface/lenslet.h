@@ -11,7 +11,7 @@
 namespace retrace::geometry {
 
 /// Maximum order of the derivatives that a blend matches.
-inline constexpr int kMostBlendOrder = 4;
+inline constexpr int kMaxBlendOrder = 4;
 
 /// Returns the polynomial of degree 2 d + 1 that interpolates between two radii. At each end it has the first d + 1
 /// Taylor coefficients of a given curve. Hermite's formula is used, so no system of equations is solved (W. Gautschi,

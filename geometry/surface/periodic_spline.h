@@ -11,7 +11,7 @@
 
 namespace retrace::geometry {
 
-inline constexpr int kMostSplineDegree = jets::kMostOrder;
+inline constexpr int kMaxSplineDegree = jets::kMaxOrder;
 
 /// Interpolating spline of period 2 pi and degree p. It is C^(p - 1) everywhere, including the point where the period
 /// closes (C. de Boor, A Practical Guide to Splines, Springer 1978, ch. IX and XIII). The sites are the angles at which
@@ -21,7 +21,7 @@ class PeriodicSpline {
  public:
   /// \param sites_rad strictly ascending, within one period
   /// \param values one per site
-  /// \param degree 2 to kMostSplineDegree
+  /// \param degree 2 to kMaxSplineDegree
   /// \throw std::invalid_argument if there are fewer than degree + 2 sites, if the sites do not ascend within one
   ///     period, or if they are so uneven that the spline is not determined
   PeriodicSpline(const std::vector<double>& sites_rad, const std::vector<double>& values, int degree);

@@ -104,7 +104,7 @@ T Sag::evaluate_without_formula(const T& x, const T& y) const {
 template <class T>
 T Sag::evaluate(const T& x, const T& y) const {
   const T z = evaluate_without_formula(x, y);
-  return formula ? z + evaluate_formula(*formula, x, y, place_mm) : z;
+  return formula ? z + evaluate_formula(*formula, x, y, position_mm) : z;
 }
 
 /// Types with which heights are evaluated, for lenslets, blends, extrapolations and proofs.

@@ -35,7 +35,7 @@ struct XyPolynomial {
   std::size_t index(int i, int j) const { return static_cast<std::size_t>(i * (degree + 1) - i * (i - 1) / 2 + j); }
 };
 
-inline constexpr int kMostPolynomialDegree = 16;
+inline constexpr int kMaxPolynomialDegree = 16;
 
 /// Zernike term: coefficient in mm times the orthonormal polynomial (n, m) over a disc, with cos(m theta) for m >= 0
 /// and sin(|m| theta) for m < 0 (R. J. Noll, J. Opt. Soc. Am. 66, 207, 1976; signs as in ISO 24157).
@@ -54,7 +54,7 @@ struct Sag {
   Asphere asphere;
   std::optional<XyPolynomial> polynomial;
   std::optional<Formula> formula;
-  std::array<double, 2> place_mm{};  ///< position of a lenslet: cx and cy of the formula
+  std::array<double, 2> position_mm{};  ///< position of a lenslet: cx and cy of the formula
 
   /// Returns z at (x, y) with all derivatives of the type T. The result is NaN where the sag is undefined.
   template <class T>

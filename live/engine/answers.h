@@ -28,7 +28,7 @@ Json rre_json(const OpenedDesign& opened, const Json& request, const TimeLimit& 
 /// Traces the light that enters at one position.
 Json path_json(const OpenedDesign& opened, const Json& request);
 /// Returns the most frequent light paths.
-Json stories_json(const OpenedDesign& opened, const Json& request);
+Json typical_paths_json(const OpenedDesign& opened, const Json& request);
 
 /// Returns the photometric standards whose limits retrace contains.
 Json standards_json();

@@ -7,9 +7,9 @@
 #include "core/error.h"
 #include "core/schema/reader.h"
 #include "core/schema/writer.h"
+#include "design/io/design_format.h"
+#include "design/io/init_templates.h"
 #include "live/engine/form.h"
-#include "studies/design/io/design_format.h"
-#include "studies/design/io/init_templates.h"
 
 namespace retrace::live {
 namespace {
@@ -54,7 +54,7 @@ class Changes {
  public:
   Changes(Document document, const Json& changes) : document_(std::move(document)) {
     for (const auto& [path, value] : changes.items()) {
-      if (const std::string complaint = complaint_about_key(studies::design_format(), path); !complaint.empty())
+      if (const std::string complaint = complaint_about_key(design::design_format(), path); !complaint.empty())
         throw InputError({document_.source(), 0, path}, complaint);
       if (value.is_null())
         drop(document_, path);
@@ -73,8 +73,8 @@ class Changes {
   ChangedText result() const {
     try {
       const Document read =
-          read_document(studies::design_format(), text(), document_.source(), kMostTextBytes, overrides());
-      return {document_text(studies::design_format(), read), adapted_};
+          read_document(design::design_format(), text(), document_.source(), kMaxTextBytes, overrides());
+      return {document_text(design::design_format(), read), adapted_};
     } catch (const InputError& error) {
       // A change has no position in a file, so file and line are removed.
       const InputLocation& at = error.where();
@@ -88,7 +88,7 @@ class Changes {
   bool is_changed(const std::string& path) const {
     return std::ranges::any_of(values_, [&](const auto& value) { return value.first == path; });
   }
-  std::string text() const { return document_text(studies::design_format(), document_); }
+  std::string text() const { return document_text(design::design_format(), document_); }
   std::vector<std::string> overrides() const {
     std::vector<std::string> all;
     for (const auto& [path, toml] : values_) all.push_back(path + "=" + toml);
@@ -96,7 +96,7 @@ class Changes {
   }
   /// Returns the changed document without checking its values.
   Document unchecked() const {
-    return unchecked_names(studies::design_format(), text(), document_.source(), kMostTextBytes, overrides());
+    return unchecked_names(design::design_format(), text(), document_.source(), kMaxTextBytes, overrides());
   }
 
   /// Returns true if a key or table in the document has an effect, given the other keys.
@@ -135,7 +135,7 @@ class Changes {
     if (!model) return false;
     for (const std::string& path : given_of(*model)) {
       const Row* const row = all.row(path);
-      if (row == nullptr || !std::holds_alternative<Required>(row->otherwise) || all.has(path)) continue;
+      if (row == nullptr || !std::holds_alternative<Required>(row->default_spec) || all.has(path)) continue;
       give(path, override_text("", model->value(path)).substr(1));
       adapted_.push_back(path);
       return true;
@@ -145,8 +145,8 @@ class Changes {
 
   static std::optional<Document> template_for(const Document& document) {
     const std::string kind = document.text_if("element.kind");
-    if (std::ranges::count(studies::design_kinds(), std::string_view(kind)) == 0) return std::nullopt;
-    return read_document(studies::design_format(), studies::design_template(kind), kind);
+    if (std::ranges::count(design::design_kinds(), std::string_view(kind)) == 0) return std::nullopt;
+    return read_document(design::design_format(), design::design_template(kind), kind);
   }
 
   Document document_;

@@ -4,9 +4,9 @@
 #include <nlohmann/json.hpp>
 
 #include "core/number_format.h"
+#include "design/azimuth_symmetry.h"
 #include "live/engine/answers.h"
 #include "live/engine/form.h"
-#include "studies/design/azimuth_symmetry.h"
 
 namespace retrace::live {
 namespace {
@@ -16,7 +16,7 @@ constexpr std::int64_t kManyElements = 100;
 
 std::vector<std::string> notes_of(const OpenedDesign& opened) {
   std::vector<std::string> notes;
-  const studies::OpticalModel* const model = opened.model();
+  const design::OpticalModel* const model = opened.model();
   if (model == nullptr || !opened.why_not().empty()) return notes;
   if (!model->part.period_mm && model->part.elements_full > kManyElements)
     notes.push_back(
@@ -31,7 +31,7 @@ std::vector<std::string> notes_of(const OpenedDesign& opened) {
 }  // namespace
 
 Json design_json(const OpenedDesign& opened) {
-  const studies::Design& design = opened.design();
+  const design::Design& design = opened.design();
   Json json = {{"title", design.title},
                {"source", design.source},
                {"toml", opened.toml()},
@@ -41,12 +41,12 @@ Json design_json(const OpenedDesign& opened) {
                {"command", opened.command()},
                {"notes", notes_of(opened)},
                {"acceptance_half_angle_deg", design.detector.acceptance_half_angle_deg}};
-  if (const auto symmetry = studies::azimuth_symmetry(design))
+  if (const auto symmetry = design::azimuth_symmetry(design))
     json["azimuth_symmetry"] = {{"period_deg", symmetry->period_deg}, {"mirror_deg", symmetry->mirror_deg}};
-  const studies::OpticalModel* const model = opened.model();
+  const design::OpticalModel* const model = opened.model();
   json["warnings"] = texts_of(model != nullptr ? model->warnings : Warnings());
   if (model == nullptr) return json;
-  for (const studies::SpectralOptics& lit : model->spectral) json["wavelengths_nm"].push_back(lit.wavelength_nm);
+  for (const design::SpectralOptics& lit : model->spectral) json["wavelengths_nm"].push_back(lit.wavelength_nm);
   json["refractive_index"] = model->optics.index;
   json["elements"] = model->part.elements_full;
   json["partial_elements"] = model->part.elements_partial;

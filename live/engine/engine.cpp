@@ -6,13 +6,13 @@
 #include "core/error.h"
 #include "core/infinity.h"
 #include "core/version.h"
+#include "design/io/design_format.h"
+#include "design/io/design_reader.h"
+#include "design/io/init_templates.h"
 #include "live/engine/answers.h"
 #include "live/engine/changes.h"
 #include "live/engine/form.h"
 #include "live/engine/request.h"
-#include "studies/design/io/design_format.h"
-#include "studies/design/io/design_reader.h"
-#include "studies/design/io/init_templates.h"
 
 namespace retrace::live {
 namespace {
@@ -55,9 +55,9 @@ Json materials_json(const materials::MaterialLibrary& library) {
 
 /// Returns the template of `retrace init`. If requested, the array is made infinite.
 std::string template_of(const std::string& kind, const std::string& extent) {
-  std::string text = studies::design_template(kind);
+  std::string text = design::design_template(kind);
   if (extent.empty() || extent == "finite") return text;
-  const studies::Design design = studies::parse_design(text, kind);
+  const design::Design design = design::parse_design(text, kind);
   return changed(*design.document, {{"array.extent", extent}}, true).toml;
 }
 
@@ -109,7 +109,7 @@ Json Engine::answer(const Json& request) {
   if (ask == "direction") return direction_json(design_of(request), request, limit);
   if (ask == "rre") return rre_json(design_of(request), request, limit);
   if (ask == "path") return path_json(design_of(request), request);
-  if (ask == "stories") return stories_json(design_of(request), request);
+  if (ask == "stories") return typical_paths_json(design_of(request), request);
   if (ask == "photometry") return photometry_json(design_of(request), request, limit);
   throw InputError({"", 0, "ask"}, "must be a request of live/README.md, got " + ask);
 }
@@ -118,10 +118,10 @@ Json Engine::about() const {
   Json accounts = Json::array();
   for (const std::string_view name : raytrace::kAccountNames) accounts.push_back(name);
   Json kinds = Json::array();
-  for (const std::string_view kind : studies::design_kinds())
-    kinds.push_back({{"kind", kind}, {"title", studies::parse_design(studies::design_template(kind), "").title}});
+  for (const std::string_view kind : design::design_kinds())
+    kinds.push_back({{"kind", kind}, {"title", design::parse_design(design::design_template(kind), "").title}});
   return {{"version", kVersion},
-          {"schema", studies::design_format().id},
+          {"schema", design::design_format().id},
           {"accounts", std::move(accounts)},
           {"kinds", std::move(kinds)},
           {"materials", materials_json(library_)}};
@@ -135,7 +135,7 @@ const OpenedDesign& Engine::design_of(const Json& request) const {
 
 Json Engine::opened(std::string toml, const std::string& source) {
   auto design = std::make_unique<const OpenedDesign>(std::move(toml), source, library_);
-  if (designs_.size() >= kMostOpen) designs_.erase(designs_.begin());
+  if (designs_.size() >= kMaxOpenDesigns) designs_.erase(designs_.begin());
   Json json = {{"design", ++last_}};
   json.update(design_json(*design));
   designs_[last_] = std::move(design);

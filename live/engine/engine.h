@@ -17,7 +17,7 @@ namespace retrace::live {
 class Engine {
  public:
   /// Maximum number of designs that are kept open.
-  static constexpr std::size_t kMostOpen = 64;
+  static constexpr std::size_t kMaxOpenDesigns = 64;
 
   Engine();
   ~Engine();

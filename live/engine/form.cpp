@@ -12,7 +12,7 @@
 #include "core/overloaded.h"
 #include "core/schema/json.h"
 #include "core/toml_file.h"
-#include "studies/design/io/design_format.h"
+#include "design/io/design_format.h"
 
 namespace retrace::live {
 namespace {
@@ -43,9 +43,10 @@ Json list_of(std::string_view kind, const NumberRange& range, std::size_t count 
 
 Json kind_json(const Kind& kind) {
   return std::visit(Overloaded{[](const Number& number) {
-                                 return list_of("number", is_bounded(number.sane) ? number.sane : number.range);
+                                 return list_of("number",
+                                                is_bounded(number.plausible) ? number.plausible : number.range);
                                },
-                               [](const Whole& whole) { return list_of("whole", whole.range); },
+                               [](const Integer& whole) { return list_of("whole", whole.range); },
                                [](const Flag&) {
                                  return Json{{"kind", "flag"}};
                                },
@@ -68,7 +69,7 @@ Json kind_json(const Kind& kind) {
                                },
                                [](const NumberRows& rows) { return list_of("rows", rows.range, rows.columns); },
                                [](const Pairs& pairs) {
-                                 return Json{{"kind", "pairs"}, {"what", pairs.shape}, {"least", pairs.least}};
+                                 return Json{{"kind", "pairs"}, {"what", pairs.shape}, {"least", pairs.min_count}};
                                },
                                [](const Texts&) {
                                  return Json{{"kind", "texts"}};
@@ -104,7 +105,7 @@ Json row_json(const Row& row, const std::string& around) {
   Json json = {{"path", path_in(around, row.key)}, {"name", row.key}};
   json.update(kind_json(row.kind));
   if (const std::string_view unit = unit_of(row.key); !unit.empty()) json["unit"] = unit;
-  add_default(json, row.otherwise);
+  add_default(json, row.default_spec);
   json["meaning"] = plain(row.meaning);
   return json;
 }
@@ -169,7 +170,7 @@ class Keys {
 
 Json form_json() {
   Json groups = Json::array();
-  add_groups(studies::design_format().root, "", groups);
+  add_groups(design::design_format().root, "", groups);
   return groups;
 }
 

@@ -33,11 +33,11 @@ RrePoint point_at(const OpenedDesign& opened, const studies::SceneLight& light) 
 }
 
 /// Settings for tracing one direction of incidence.
-struct Way {
+struct TraceSettings {
   /// Maximum truncated power (exact engine), or target standard error of the RRE (resampled beams).
   double target_error = kMovingError;
   bool is_exact = false;  ///< true if resampled beams must not be used
-  studies::BeamQuestion question = {};
+  studies::BeamOutputRequest question = {};
 };
 
 /// Traces a design for one direction of incidence and one wavelength.
@@ -55,7 +55,7 @@ class Tracing {
   /// Traces with the exact engine or with resampled beams, whichever is faster. Returns nothing if the time limit is
   /// reached.
   /// \param limit null if there is no limit
-  std::optional<Found> trace(const Way& way, const TimeLimit* limit) {
+  std::optional<Found> trace(const TraceSettings& way, const TimeLimit* limit) {
     studies::BeamCollector collector(way.question, part(), cones().size(), illumination_);
     sampling_.target_error = way.target_error / std::sqrt(lit_.weight);
     raytrace::BeamPolicy policy;
@@ -71,14 +71,14 @@ class Tracing {
   const geometry::Part& part() const { return opened_.require_model().part; }
   const std::vector<double>& cones() const { return opened_.design().detector.acceptance_half_angle_deg; }
 
-  Found exact(const raytrace::BeamResult& traced, const studies::BeamQuestion& question) {
+  Found exact(const raytrace::BeamResult& traced, const studies::BeamOutputRequest& question) {
     at_.engine = "exact";
     Found found{studies::points_of(at_, cones(), traced), {}, {}, {}};
     if (!question.footprint && !question.far_field) return found;
     raytrace::BeamPolicy again;
     again.cutoff = traced.cutoff;
-    studies::BeamAnswer answer = studies::follow_beams(opened_.require_tracer(), part(), lit_.optics, illumination_,
-                                                       cones(), again, question, nullptr, nullptr);
+    studies::BeamOutputs answer = studies::trace_exact_beams(opened_.require_tracer(), part(), lit_.optics,
+                                                             illumination_, cones(), again, question, nullptr, nullptr);
     found.footprint = std::move(answer.footprint);
     found.far_field = std::move(answer.far_field);
     return found;
@@ -92,7 +92,7 @@ class Tracing {
   }
 
   const OpenedDesign& opened_;
-  const studies::SpectralOptics& lit_;
+  const design::SpectralOptics& lit_;
   RrePoint at_;
   raytrace::Illumination illumination_;
   raytrace::Sampling sampling_;
@@ -100,15 +100,15 @@ class Tracing {
 
 /// Traces one direction of incidence at all wavelengths. The footprint and the far field are computed only at the
 /// wavelength with the index OpticalModel::nearest_wavelength(). Returns nothing if the time limit is reached.
-std::optional<Found> traced(const OpenedDesign& opened, const studies::SceneLight& light, const Way& way,
+std::optional<Found> traced(const OpenedDesign& opened, const studies::SceneLight& light, const TraceSettings& way,
                             const TimeLimit* limit) {
-  const studies::OpticalModel& model = opened.require_model();
+  const design::OpticalModel& model = opened.require_model();
   const RrePoint at = point_at(opened, light);
   const std::size_t middle = model.nearest_wavelength();
   Found all;
   std::vector<std::vector<studies::SpectralPoint>> spectral(opened.design().detector.acceptance_half_angle_deg.size());
   for (std::size_t k = 0; k < model.spectral.size(); ++k) {
-    Way of_wavelength = way;
+    TraceSettings of_wavelength = way;
     if (k != middle) of_wavelength.question = {};
     std::optional<Found> found = Tracing(opened, at, k).trace(of_wavelength, limit);
     if (!found) return std::nullopt;
@@ -126,10 +126,10 @@ std::optional<Found> traced(const OpenedDesign& opened, const studies::SceneLigh
   return all;
 }
 
-Way way_of(const Json& request) {
+TraceSettings way_of(const Json& request) {
   const auto engine = get<std::string>(request, "engine", std::string("auto"));
   if (engine != "auto" && engine != "exact") throw InputError({"", 0, "engine"}, "must be auto or exact");
-  return {share_of(request, "target_error", kMovingError), engine == "exact"};
+  return {fraction_of(request, "target_error", kMovingError), engine == "exact"};
 }
 
 Json flat(const geometry::Polygon& outline) {
@@ -145,8 +145,9 @@ Json footprint_json(const studies::Footprint& footprint) {
   Json regions = Json::array();
   for (const studies::ActiveRegion& region : footprint.regions)
     regions.push_back({{"outline", flat(region.outline_mm)}, {"efficiency", region.efficiency}});
-  return {
-      {"active_fraction", footprint.active_share()}, {"shown", footprint.rre_shown()}, {"regions", std::move(regions)}};
+  return {{"active_fraction", footprint.active_fraction()},
+          {"shown", footprint.rre_contribution()},
+          {"regions", std::move(regions)}};
 }
 
 /// Returns the spots of the far field, the power outside these spots, and the total power.
@@ -165,7 +166,7 @@ Json far_field_json(const studies::FarField& far_field, const RrePoint& point) {
     spots.push_back({{"deviation_deg", spot.deviation.deg()},
                      {"orientation_deg", spot.orientation.deg()},
                      {"power", spot.stokes.i},
-                     {"depth", spot.least_depth}});
+                     {"depth", spot.min_depth}});
   }
   return {{"spots", std::move(spots)}, {"other_power", std::max(0.0, total - shown)}, {"total_power", total}};
 }
@@ -195,7 +196,7 @@ Json by_wavelength_json(const RrePoint& point) {
 }  // namespace
 
 Json direction_json(const OpenedDesign& opened, const Json& request, const TimeLimit& limit) {
-  Way way = way_of(request);
+  TraceSettings way = way_of(request);
   way.question = {.footprint = true, .far_field = true};
   const std::optional<Found> found = traced(opened, light_of(request), way, &limit);
   if (!found) fail_on_time();
@@ -217,7 +218,7 @@ Json direction_json(const OpenedDesign& opened, const Json& request, const TimeL
 }
 
 Json rre_json(const OpenedDesign& opened, const Json& request, const TimeLimit& limit) {
-  const Way way = way_of(request);
+  const TraceSettings way = way_of(request);
   const auto directions = get<std::vector<std::vector<double>>>(request, "directions");
   Json points = Json::array();
   for (const std::vector<double>& direction : directions) {

@@ -6,10 +6,10 @@
 #include <optional>
 #include <string>
 
+#include "design/optical_model.h"
 #include "materials/io/material_library.h"
 #include "raytrace/exact/beam_tracer.h"
-#include "studies/design/optical_model.h"
-#include "studies/scene/piece.h"
+#include "studies/scene/design_excerpt.h"
 
 namespace retrace::live {
 
@@ -21,30 +21,30 @@ class OpenedDesign {
   OpenedDesign& operator=(const OpenedDesign&) = delete;
 
   const std::string& toml() const { return toml_; }
-  const studies::Design& design() const { return design_; }
+  const design::Design& design() const { return design_; }
   /// Returns the reason why the exact engine cannot trace this design, or an empty text.
   const std::string& why_not() const { return why_not_; }
   /// Returns the command line that computes the same result with the program.
   std::string command() const;
 
   /// Returns the optical model, or null for balls.
-  const studies::OpticalModel* model() const { return model_ ? &*model_ : nullptr; }
+  const design::OpticalModel* model() const { return model_ ? &*model_ : nullptr; }
   /// \throw InputError if there is no optical model
-  const studies::OpticalModel& require_model() const;
+  const design::OpticalModel& require_model() const;
   /// \throw InputError if the exact engine cannot trace this design
   const raytrace::BeamTracer& require_tracer() const;
   /// Returns the three-dimensional shape for display, which is built on first use.
   /// \throw InputError if there is nothing to display
-  const studies::Piece& piece() const;
+  const studies::DesignExcerpt& excerpt() const;
 
  private:
   std::string toml_;
-  studies::Design design_;
+  design::Design design_;
   const materials::MaterialLibrary& library_;
-  std::optional<studies::OpticalModel> model_;
+  std::optional<design::OpticalModel> model_;
   std::string why_not_;
   std::optional<raytrace::BeamTracer> tracer_;
-  mutable std::unique_ptr<const studies::Piece> piece_;
+  mutable std::unique_ptr<const studies::DesignExcerpt> excerpt_;
 };
 
 }  // namespace retrace::live

@@ -19,7 +19,7 @@ Json standard_json(const studies::ShippedStandard& standard, const studies::Limi
   std::set<std::string> classes;
   std::set<std::string> colours;
   const auto add = [&](const studies::LimitLine& line) {
-    if (line.standard != standard.in_table) return;
+    if (line.standard != standard.table_name) return;
     classes.insert(line.classes.begin(), line.classes.end());
     if (!line.colour.empty()) colours.insert(line.colour == "clear" ? "white" : line.colour);
   };
@@ -33,15 +33,15 @@ Json standard_json(const studies::ShippedStandard& standard, const studies::Limi
 }
 
 Json point_json(const PhotometricPoint& point) {
-  return {{"observation_deg", point.asked.observation_deg},
-          {"v_deg", point.asked.v_deg},
-          {"h_deg", point.asked.h_deg},
+  return {{"observation_deg", point.test_point.observation_deg},
+          {"v_deg", point.test_point.v_deg},
+          {"h_deg", point.test_point.h_deg},
           {"rotation_deg", point.rotation_deg},
           {"value_mcd_per_lx", point.r_i_mcd_per_lx},
           {"std_error_mcd_per_lx", point.std_error_mcd_per_lx},
           {"limit_mcd_per_lx", point.limit_mcd_per_lx},
           {"margin", point.margin()},
-          {"limit_status", studies::status_name(point.asked.status)},
+          {"limit_status", studies::status_name(point.test_point.status)},
           {"verdict", studies::verdict_name(point.verdict())}};
 }
 

@@ -9,7 +9,7 @@
 
 #include "core/error.h"
 #include "requests/descriptions.h"
-#include "studies/scene/piece.h"
+#include "studies/scene/design_excerpt.h"
 
 namespace retrace::live {
 
@@ -51,7 +51,7 @@ Type fields_of(const Json& request) {
 }
 
 /// \throw InputError unless the value is between 0 and 1
-inline double share_of(const Json& request, const char* key, double otherwise) {
+inline double fraction_of(const Json& request, const char* key, double otherwise) {
   const double value = get<double>(request, key, otherwise);
   if (!(value > 0.0 && value < 1.0)) throw InputError({"", 0, key}, "must be between 0 and 1");
   return value;

@@ -2,10 +2,10 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base64.h"
+#include "design/design_part.h"
 #include "geometry/io/stl_file.h"
 #include "live/engine/answers.h"
 #include "live/engine/request.h"
-#include "studies/design/design_part.h"
 #include "studies/rre/footprint.h"
 #include "studies/scene/path_words.h"
 
@@ -15,7 +15,7 @@ namespace {
 using raytrace::PathEvent;
 
 // Maximum number of elements of a finite array for which the plan is drawn.
-constexpr std::int64_t kMostDrawn = 5000;
+constexpr std::int64_t kMaxDrawnElements = 5000;
 
 /// Names in the order of geometry::FacetRole.
 constexpr std::string_view kRoleNames[] = {"entrance", "retro_facet", "flat_back", "inner_wall", "border_wall", "side"};
@@ -51,7 +51,7 @@ Json flat(const std::vector<studies::EntranceFace::Line>& lines) {
 }
 
 Json plan_json(const geometry::Part& part) {
-  if (!part.period_mm && part.elements_full > kMostDrawn) {
+  if (!part.period_mm && part.elements_full > kMaxDrawnElements) {
     Json outline = flat(part.outline);
     return {{"outline", std::move(outline)}, {"periodic", false}, {"rims", Json::array()}, {"roots", Json::array()}};
   }
@@ -80,27 +80,27 @@ Json path_json(const raytrace::LightPath& path, const raytrace::Optics& optics) 
                  {"at_mm", {step.at_mm.x(), step.at_mm.y(), step.at_mm.z()}},
                  {"incidence_deg", step.incidence_deg},
                  {"power", step.power},
-                 {"text", studies::words_of(step)}};
+                 {"text", studies::description_of(step)}};
     if (const auto critical = critical_deg(optics, step)) json["critical_deg"] = *critical;
     steps.push_back(std::move(json));
   }
-  return {{"points", flat(path.points_mm)}, {"power", path.power},
-          {"returned", path.is_returned},   {"deviation_deg", path.deviation_deg},
-          {"fate", studies::fate_of(path)}, {"steps", std::move(steps)}};
+  return {{"points", flat(path.points_mm)},     {"power", path.power},
+          {"returned", path.is_returned},       {"deviation_deg", path.deviation_deg},
+          {"fate", studies::ending_text(path)}, {"steps", std::move(steps)}};
 }
 
 }  // namespace
 
 Json part_json(const OpenedDesign& opened) {
-  const studies::Piece& piece = opened.piece();
+  const studies::DesignExcerpt& piece = opened.excerpt();
   const geometry::Part& part = opened.require_model().part;
   Json roles = Json::array();
   for (const geometry::FacetRole role : piece.mesh().roles) roles.push_back(static_cast<std::size_t>(role));
   const geometry::Vec2 middle =
       geometry::bounding_box(part.period_mm ? geometry::to_polygon({geometry::Vec2::Zero(), *part.period_mm})
                                             : part.outline)
-          .middle();
-  const geometry::Vec2 shift = piece.like_place(middle) - middle;
+          .centre();
+  const geometry::Vec2 shift = piece.equivalent_position(middle) - middle;
   Json json = {{"vertices", flat(piece.mesh().vertices)},
                {"triangles", flat(piece.mesh().triangles)},
                {"roles", std::move(roles)},
@@ -118,26 +118,26 @@ Json path_json(const OpenedDesign& opened, const Json& request) {
   const auto at_mm = get<std::vector<double>>(request, "at_mm");
   if (at_mm.size() != 2) throw InputError({"", 0, "at_mm"}, "must be [x, y]");
   const studies::SceneLight light = light_of(request);
-  const studies::Piece& piece = opened.piece();
+  const studies::DesignExcerpt& piece = opened.excerpt();
   return path_json(piece.path(light, piece.entry_of(light, {at_mm[0], at_mm[1]})), piece.model().optics);
 }
 
-Json stories_json(const OpenedDesign& opened, const Json& request) {
-  const studies::Piece& piece = opened.piece();
+Json typical_paths_json(const OpenedDesign& opened, const Json& request) {
+  const studies::DesignExcerpt& piece = opened.excerpt();
   Json paths = Json::array();
-  for (const studies::ScenePath& story : piece.stories(light_of(request))) {
+  for (const studies::ScenePath& story : piece.typical_paths(light_of(request))) {
     Json json = path_json(story.path, piece.model().optics);
-    json["share"] = story.share;
+    json["share"] = story.fraction;
     paths.push_back(std::move(json));
   }
   return {{"paths", std::move(paths)}};
 }
 
 Json stl_json(const OpenedDesign& opened) {
-  const studies::Design& design = opened.design();
+  const design::Design& design = opened.design();
   const geometry::BoundaryMesh mesh =
-      design.elements() ? geometry::closed_boundary(studies::part_of(studies::single_element_of(design)))
-                        : opened.piece().mesh();
+      design.elements() ? geometry::closed_boundary(design::part_of(design::single_element_of(design)))
+                        : opened.excerpt().mesh();
   return {{"name", "element.stl"}, {"base64", base64(geometry::stl_text(mesh, design.title))}};
 }
 

@@ -11,7 +11,7 @@
 
 namespace retrace::materials {
 
-void AbsorptionData::Blemishes::add(int at_line, std::string_view why) {
+void AbsorptionData::Defects::add(int at_line, std::string_view why) {
   if (count++ > 0) return;
   line = at_line;
   reason = why;
@@ -22,11 +22,11 @@ void AbsorptionData::add_zero(int line, double wavelength_nm, std::string_view r
   add(line, wavelength_nm, 0.0);
 }
 
-void AbsorptionData::leave_out(int line, std::string_view reason) {
-  left_out_.add(line, reason);
+void AbsorptionData::omit(int line, std::string_view reason) {
+  omitted_.add(line, reason);
 }
 
-void AbsorptionData::warn(const Blemishes& blemishes, std::string_view one, std::string_view several,
+void AbsorptionData::warn(const Defects& blemishes, std::string_view one, std::string_view several,
                           Material& material) const {
   if (blemishes.count == 0) return;
   const std::string effect = blemishes.count == 1
@@ -53,12 +53,12 @@ void AbsorptionData::finish(Material& material) {
       continue;
     }
     for (std::size_t j = begin; j < k; ++j)
-      leave_out(samples_[j].line, fmt::format("must have one value for a wavelength, got several at {} nm",
-                                              shortest(first.wavelength_nm)));
+      omit(samples_[j].line,
+           fmt::format("must have one value for a wavelength, got several at {} nm", shortest(first.wavelength_nm)));
   }
   warn(zeros_, "counts as 0", "count as 0", material);
-  warn(left_out_, "is ignored", "are ignored", material);
-  if (curve.values.empty() && left_out_.count > 0)
+  warn(omitted_, "is ignored", "are ignored", material);
+  if (curve.values.empty() && omitted_.count > 0)
     material.warnings.push_back(
         {"no_absorption_data",
          InputError({file_, 0, key_},

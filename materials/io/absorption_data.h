@@ -28,7 +28,7 @@ class AbsorptionData {
   void add_zero(int line, double wavelength_nm, std::string_view reason);
   /// Counts a sample that cannot be used. The sample is omitted.
   /// \param reason text for the warning: the allowed values and the given value
-  void leave_out(int line, std::string_view reason);
+  void omit(int line, std::string_view reason);
 
   /// Sets the absorption of `material` and adds the warnings. Repeated equal samples count as one sample. If samples at
   /// the same wavelength have different values, all of them are omitted.
@@ -41,7 +41,7 @@ class AbsorptionData {
     double per_mm = 0.0;
   };
   /// Samples that cause the same warning: their number, and the line and reason of the first sample.
-  struct Blemishes {
+  struct Defects {
     int count = 0;
     int line = 0;
     std::string reason;
@@ -49,13 +49,13 @@ class AbsorptionData {
     void add(int at_line, std::string_view why);
   };
 
-  void warn(const Blemishes& blemishes, std::string_view one, std::string_view several, Material& material) const;
+  void warn(const Defects& blemishes, std::string_view one, std::string_view several, Material& material) const;
 
   std::string file_;
   std::string key_;
   std::vector<Sample> samples_;
-  Blemishes zeros_;
-  Blemishes left_out_;
+  Defects zeros_;
+  Defects omitted_;
 };
 
 }  // namespace retrace::materials

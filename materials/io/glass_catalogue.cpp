@@ -19,8 +19,8 @@
 namespace retrace::materials {
 namespace {
 
-constexpr std::size_t kMostCatalogueBytes = std::size_t{16} << 20;
-constexpr std::size_t kMostCoefficients = 10;
+constexpr std::size_t kMaxCatalogueBytes = std::size_t{16} << 20;
+constexpr std::size_t kMaxCoefficients = 10;
 /// Maximum amount by which measurement noise may raise a transmittance above 1.
 constexpr double kNoiseOfTransmittance = 0.01;
 
@@ -58,7 +58,7 @@ PowerSeries series(std::span<const double> coefficients, std::span<const int> ex
 /// Returns the Sellmeier formula with the given pairs of strength and resonance. Pairs with the strength 0 are omitted,
 /// because they would cause a pole in the formula.
 Sellmeier sellmeier(std::span<const double> pairs, PowerSeries rest = {}) {
-  Sellmeier made{.terms = {}, .rest = std::move(rest)};
+  Sellmeier made{.terms = {}, .power_terms = std::move(rest)};
   for (std::size_t k = 0; k + 1 < pairs.size(); k += 2)
     if (pairs[k] != 0.0) made.terms.push_back({pairs[k], pairs[k + 1]});
   return made;
@@ -89,40 +89,39 @@ GlassCatalogue::GlassCatalogue(std::string_view text, std::string file) : file_(
 }
 
 GlassCatalogue GlassCatalogue::read(const std::filesystem::path& file) {
-  return {read_file(file, kMostCatalogueBytes), file.string()};
+  return {read_file(file, kMaxCatalogueBytes), file.string()};
 }
 
 void GlassCatalogue::fail(int line, std::string_view key, std::string_view text) const {
   throw InputError({file_, line, std::string(key)}, text);
 }
 
-/// Returns the numbers of a record, beginning with field `first`. If there are fewer than `most` numbers, zeros are
-/// appended.
-/// \throw InputError if the record has fewer than `least` numbers
-std::vector<double> GlassCatalogue::numbers(const Record& record, std::size_t first, std::size_t least,
-                                            std::size_t most) const {
+/// Returns the numbers of a record, beginning with field `first`. If there are fewer than `max_count` numbers, zeros
+/// are appended. \throw InputError if the record has fewer than `min_count` numbers
+std::vector<double> GlassCatalogue::numbers(const Record& record, std::size_t first, std::size_t min_count,
+                                            std::size_t max_count) const {
   const std::string& code = record.front().text;
   std::vector<double> values;
-  for (std::size_t k = first; k < record.size() && values.size() < most; ++k) {
+  for (std::size_t k = first; k < record.size() && values.size() < max_count; ++k) {
     const std::optional<double> value = number_in(record[k].text);
     if (!value) fail(record[k].line, code, "must be finite numbers, got " + in_quotes(record[k].text));
     values.push_back(*value);
   }
-  if (values.size() < least)
-    fail(record.front().line, code, fmt::format("must have at least {} numbers, got {}", least, values.size()));
-  values.resize(most, 0.0);
+  if (values.size() < min_count)
+    fail(record.front().line, code, fmt::format("must have at least {} numbers, got {}", min_count, values.size()));
+  values.resize(max_count, 0.0);
   return values;
 }
 
 /// Refuses a record that consists of several lines and has too many numbers. The last line has no code and was
 /// therefore joined to this record, but it probably belongs to a different record.
-void GlassCatalogue::require_no_more(const Record& record, std::size_t most) const {
-  if (record.size() <= most + 1 || record.back().line == record.front().line) return;
+void GlassCatalogue::require_no_more(const Record& record, std::size_t max_count) const {
+  if (record.size() <= max_count + 1 || record.back().line == record.front().line) return;
   fail(record.back().line, record.front().text,
        fmt::format(
            "must have at most {} numbers including its continuation lines, got {}; a line without a code continues the "
            "previous record",
-           most, record.size() - 1));
+           max_count, record.size() - 1));
 }
 
 /// Refuses a record whose last coefficient is a strength without a resonance, unless this strength is 0.
@@ -152,8 +151,8 @@ const GlassCatalogue::Record* GlassCatalogue::find(const std::vector<Record>& re
 
 /// Returns the dispersion formula with a given number (manual of OpticStudio, "The Glass Dispersion Formulas").
 Dispersion GlassCatalogue::dispersion(const Record& name, const Record& coefficients) const {
-  require_no_more(coefficients, kMostCoefficients);
-  const std::vector<double> c = numbers(coefficients, 1, 1, kMostCoefficients);
+  require_no_more(coefficients, kMaxCoefficients);
+  const std::vector<double> c = numbers(coefficients, 1, 1, kMaxCoefficients);
   const std::span<const double> all = c;
   const double formula = numbers(name, 2, 1, 1).front();
   const auto constant = [](double n2) { return PowerSeries{{{n2 - 1.0, 0}}}; };
@@ -161,11 +160,11 @@ Dispersion GlassCatalogue::dispersion(const Record& name, const Record& coeffici
   const auto pole = [](double strength, double resonance_um2, Sellmeier& into) {
     if (strength == 0.0) return;
     if (resonance_um2 == 0.0) {
-      into.rest.terms.push_back({strength, -2});
+      into.power_terms.terms.push_back({strength, -2});
       return;
     }
     into.terms.push_back({strength / resonance_um2, resonance_um2});
-    into.rest.terms.push_back({-strength / resonance_um2, 0});
+    into.power_terms.terms.push_back({-strength / resonance_um2, 0});
   };
   // Formulas with pairs of strength and resonance. Each entry contains the number of the formula, the number of the
   // coefficient that is the first strength, and the number of the coefficient after the last resonance.
@@ -185,7 +184,7 @@ Dispersion GlassCatalogue::dispersion(const Record& name, const Record& coeffici
   if (formula == 6.0) return sellmeier(all.first(8));  // Sellmeier 3
   if (formula == 7.0 || formula == 8.0) {              // Handbook of Optics 1 and 2
     Sellmeier made = sellmeier({}, constant(c[0]));
-    made.rest.terms.push_back({-c[3], 2});
+    made.power_terms.terms.push_back({-c[3], 2});
     if (formula == 7.0)
       pole(c[1], c[2], made);
     else if (c[1] != 0.0)
@@ -247,18 +246,18 @@ void GlassCatalogue::add_absorption(const std::vector<Record>& records, Material
       require_no_more(record, 3);
       const std::vector<double> it = numbers(record, 1, 3, 3);
       if (!(it[0] > 0.0)) {
-        data.leave_out(line, fmt::format("the wavelength must be > 0, got {}", shortest(it[0])));
+        data.omit(line, fmt::format("the wavelength must be > 0, got {}", shortest(it[0])));
       } else if (!(it[1] >= 0.0 && it[1] <= 1.0 + kNoiseOfTransmittance)) {
-        data.leave_out(line, fmt::format("the transmittance must be >= 0 and <= 1, got {}", shortest(it[1])));
+        data.omit(line, fmt::format("the transmittance must be >= 0 and <= 1, got {}", shortest(it[1])));
       } else if (!(it[2] >= 0.0)) {
-        data.leave_out(line, fmt::format("the thickness must be >= 0, got {}", shortest(it[2])));
+        data.omit(line, fmt::format("the thickness must be >= 0, got {}", shortest(it[2])));
       } else if (it[1] > 0.0 && it[2] > 0.0) {
         samples.push_back({line, 1e3 * it[0], it[1], it[2]});
         double& thickest = thickest_mm[samples.back().wavelength_nm];
         thickest = std::max(thickest, it[2]);
       }
     } catch (const InputError& error) {
-      data.leave_out(error.where().line, error.text());
+      data.omit(error.where().line, error.text());
     }
   }
   for (const Sample& sample : samples) {
@@ -279,7 +278,7 @@ void GlassCatalogue::check_nd(const Record& name, Material& glass) const {
   if (name.size() <= at) return;
   const std::optional<double> stated = number_in(name[at].text);
   const std::string doubt =
-      stated ? doubt_of_nd(glass, *stated) : fmt::format("n_d must be a number, got {}", in_quotes(name[at].text));
+      stated ? nd_contradiction(glass, *stated) : fmt::format("n_d must be a number, got {}", in_quotes(name[at].text));
   if (!doubt.empty())
     glass.warnings.push_back({"index_disagrees", InputError({file_, name[at].line, "NM"}, doubt).what()});
 }
@@ -306,7 +305,7 @@ void GlassCatalogue::require(std::string_view name, const InputLocation& where) 
   if (std::ranges::any_of(names_, [&](const std::string& other) { return lower_case(other) == lower_case(name); }))
     return;
   const std::vector<std::string_view> known(names_.begin(), names_.end());
-  const std::string_view meant = closest(name, known);
+  const std::string_view meant = closest_match(name, known);
   throw InputError(
       where, fmt::format("must be the name of one of the {} glasses in {}, got {}{}", names_.size(), printable(file_),
                          in_quotes(name), meant.empty() ? "" : fmt::format("; did you mean {}?", in_quotes(meant))));

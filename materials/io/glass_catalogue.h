@@ -52,8 +52,9 @@ class GlassCatalogue {
   using Record = std::vector<Field>;  ///< fields of a record; the first field is the code
 
   [[noreturn]] void fail(int line, std::string_view key, std::string_view text) const;
-  std::vector<double> numbers(const Record& record, std::size_t first, std::size_t least, std::size_t most) const;
-  void require_no_more(const Record& record, std::size_t most) const;
+  std::vector<double> numbers(const Record& record, std::size_t first, std::size_t min_count,
+                              std::size_t max_count) const;
+  void require_no_more(const Record& record, std::size_t max_count) const;
   void require_whole_pairs(const Record& record, std::size_t first, std::size_t end) const;
   const Record* find(const std::vector<Record>& records, std::string_view code) const;
   Dispersion dispersion(const Record& name, const Record& coefficients) const;

@@ -20,8 +20,8 @@
 namespace retrace::materials {
 namespace {
 
-constexpr std::size_t kMostRecordBytes = std::size_t{4} << 20;
-constexpr std::size_t kMostOfFormula = 64;
+constexpr std::size_t kMaxRecordBytes = std::size_t{4} << 20;
+constexpr std::size_t kMaxFormulaCoefficients = 64;
 /// Largest magnitude of a negative k that is attributed to measurement noise.
 constexpr double kNoiseOfExtinction = 1e-6;
 constexpr double kZeroCelsiusK = 273.15;
@@ -147,7 +147,7 @@ class Record {
                        shortest(range_um[0]), shortest(range_um[1])));
     material.valid_from_nm = 1e3 * range_um[0];
     material.valid_to_nm = 1e3 * range_um[1];
-    RecordFormula formula{static_cast<int>(*number), numbers_in(entry, "coefficients", 1, kMostOfFormula)};
+    RecordFormula formula{static_cast<int>(*number), numbers_in(entry, "coefficients", 1, kMaxFormulaCoefficients)};
     if (!has_whole_terms(formula))
       fail(entry["coefficients"], "coefficients",
            fmt::format("must be {} for {}, got {} numbers", kTerms[static_cast<std::size_t>(formula.number - 1)], type,
@@ -253,9 +253,9 @@ class Record {
       else if (k >= -kNoiseOfExtinction)
         data.add_zero(row.line, wavelength_nm, fmt::format("k must be >= 0, got {}", shortest(k)));
       else
-        data.leave_out(row.line, fmt::format("k must be >= 0, got {}", shortest(k)));
+        data.omit(row.line, fmt::format("k must be >= 0, got {}", shortest(k)));
     } catch (const InputError& error) {
-      data.leave_out(row.line, error.text());
+      data.omit(row.line, error.text());
     }
   }
 
@@ -300,7 +300,7 @@ class Record {
       const YAML::Node properties = root[table];
       if (!properties || !properties.IsMap() || !properties["nd"] || !properties["nd"].IsScalar()) continue;
       const std::optional<double> stated = number_in(trimmed(properties["nd"].Scalar()));
-      const std::string doubt = stated ? doubt_of_nd(material, *stated) : std::string();
+      const std::string doubt = stated ? nd_contradiction(material, *stated) : std::string();
       if (!doubt.empty())
         material.warnings.push_back(
             {"index_disagrees", InputError({file_, line(properties["nd"]), "nd"}, doubt).what()});
@@ -323,7 +323,7 @@ Material parse_index_record(std::string_view text, const std::string& file) {
 }
 
 Material read_index_record(const std::filesystem::path& file) {
-  return parse_index_record(read_file(file, kMostRecordBytes), file.string());
+  return parse_index_record(read_file(file, kMaxRecordBytes), file.string());
 }
 
 }  // namespace retrace::materials

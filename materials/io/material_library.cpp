@@ -17,7 +17,7 @@ using namespace schema;
 constexpr Words kFormulas = {"constant", "power series", "sellmeier", "gas"};
 constexpr Condition kIsConstant[] = {is("formula", only(kFormulas, "constant"))};
 constexpr Condition kIsCurve[] = {is_not("formula", only(kFormulas, "constant"))};
-constexpr Condition kWithThermoOptic[] = {beside("thermo_optic")};
+constexpr Condition kWithThermoOptic[] = {is_given("thermo_optic")};
 constexpr NumberRange kAtLeastZero{.low = 0.0};
 constexpr NumberRange kAboveZero{.low = 0.0, .low_included = false};
 

@@ -14,14 +14,14 @@ namespace retrace::materials {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::size_t kMostBytes = std::size_t{1} << 20;
+constexpr std::size_t kMaxBytes = std::size_t{1} << 20;
 constexpr NumberRange kWavelengthNm{.low = 1.0, .high = 1e5};
 constexpr NumberRange kValue{.low = 0.0};
 
 /// Reads a table of numbers. The wavelengths in its first column must be ascending.
 std::vector<std::vector<double>> read_columns(std::string_view text, const std::string& name,
                                               std::span<const std::string_view> header) {
-  CsvReader table(text, name, kMostBytes, header);
+  CsvReader table(text, name, kMaxBytes, header);
   std::vector<std::vector<double>> columns(header.size());
   while (table.next()) {
     for (std::size_t k = 0; k < header.size(); ++k)
@@ -64,7 +64,7 @@ ColourMatching read_colour_matching(const fs::path& file) {
 }
 
 SpectralCurve read_spectral_power(const fs::path& file) {
-  return parse_spectral_power(read_file(file, kMostBytes), file.string());
+  return parse_spectral_power(read_file(file, kMaxBytes), file.string());
 }
 
 SpectralCurve parse_spectral_power(std::string_view text, const std::string& name) {
@@ -72,7 +72,7 @@ SpectralCurve parse_spectral_power(std::string_view text, const std::string& nam
 }
 
 SpectralCurve read_spectral_absorption(const fs::path& file) {
-  return parse_spectral_absorption(read_file(file, kMostBytes), file.string());
+  return parse_spectral_absorption(read_file(file, kMaxBytes), file.string());
 }
 
 SpectralCurve parse_spectral_absorption(std::string_view text, const std::string& name) {

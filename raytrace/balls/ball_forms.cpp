@@ -33,7 +33,7 @@ std::optional<double> focal_offset_over_radius(double index, double spacer_index
   return 1.0 / radius_over_rho - 1.0;
 }
 
-double share_within(double half_angle_rad, double index, double spacer_index, double mirror_radius_over_radius) {
+double fraction_within(double half_angle_rad, double index, double spacer_index, double mirror_radius_over_radius) {
   const auto error = [&](int k) {
     return std::abs(return_error_rad(sine_of_step(k), index, spacer_index, mirror_radius_over_radius));
   };
@@ -58,7 +58,7 @@ double largest_return_error_rad(double index, double spacer_index, double mirror
   return largest;
 }
 
-double packing_share(const BallLayer& layer) {
+double packing_fraction(const BallLayer& layer) {
   if (!layer.pitch_mm) return 1.0;
   return std::numbers::pi / (2.0 * std::numbers::sqrt3) * std::pow(layer.diameter_mm / *layer.pitch_mm, 2.0);
 }

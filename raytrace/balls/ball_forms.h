@@ -28,13 +28,13 @@ double paraxial_error(double index, double spacer_index, double mirror_radius_ov
 std::optional<double> focal_offset_over_radius(double index, double spacer_index);
 
 /// Returns the fraction of the aperture, by area, whose light returns within `half_angle_rad`.
-double share_within(double half_angle_rad, double index, double spacer_index, double mirror_radius_over_radius);
+double fraction_within(double half_angle_rad, double index, double spacer_index, double mirror_radius_over_radius);
 
 /// Returns the maximum absolute return error over all heights, in rad.
 double largest_return_error_rad(double index, double spacer_index, double mirror_radius_over_radius);
 
 /// Returns the fraction of the layer's area that the balls cover, in projection along z: pi / (2 sqrt 3) (diameter /
 /// pitch)^2, or 1 for a single ball.
-double packing_share(const BallLayer& layer);
+double packing_fraction(const BallLayer& layer);
 
 }  // namespace retrace::raytrace

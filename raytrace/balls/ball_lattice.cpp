@@ -10,7 +10,7 @@ namespace {
 constexpr double kRowOverPitch = 0.5 * std::numbers::sqrt3;
 // Maximum number of steps for which a ray between the balls is followed. Each step is half a pitch long, measured along
 // the plane. A nearly horizontal ray that needs more steps is not traced further.
-constexpr int kMostCells = 4096;
+constexpr int kMaxSteps = 4096;
 /// Index offsets of a ball and its six neighbours.
 constexpr std::array<BallIndex, 7> kAround = {{{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, -1}, {-1, 1}}};
 
@@ -27,9 +27,9 @@ Vec2 BallLattice::period_mm() const {
   return *pitch_mm_ * Vec2(1.0, 2.0 * kRowOverPitch);
 }
 
-BallIndex BallLattice::nearest(const Vec2& place_mm) const {
-  const double row = place_mm.y() / (kRowOverPitch * *pitch_mm_);
-  const double along = place_mm.x() / *pitch_mm_ - 0.5 * row;
+BallIndex BallLattice::nearest(const Vec2& point_mm) const {
+  const double row = point_mm.y() / (kRowOverPitch * *pitch_mm_);
+  const double along = point_mm.x() / *pitch_mm_ - 0.5 * row;
   const double third = -along - row;
   double r_along = std::round(along);
   double r_row = std::round(row);
@@ -59,9 +59,10 @@ std::optional<double> BallLattice::distance_to(const BallIndex& ball, const Vec3
   return is_above && distance >= 0.0 ? std::optional(distance) : std::nullopt;
 }
 
-BallLattice::Way BallLattice::follow(const Vec3& origin_mm, const Vec3& direction, const BallIndex* leaving) const {
-  Way way;
-  way.leaves = direction.z() > 0.0;
+BallLattice::SearchResult BallLattice::follow(const Vec3& origin_mm, const Vec3& direction,
+                                              const BallIndex* leaving) const {
+  SearchResult way;
+  way.is_rising = direction.z() > 0.0;
   const auto hit_at = [&](const BallIndex& ball, double distance) {
     const Vec3 from_centre = origin_mm + distance * direction - centre_mm(ball);
     return Hit{ball, from_centre * (radius_mm_ / from_centre.norm())};
@@ -72,10 +73,10 @@ BallLattice::Way BallLattice::follow(const Vec3& origin_mm, const Vec3& directio
     return way;
   }
   const double level = direction.head<2>().norm();
-  const double to_end = way.leaves ? (radius_mm_ - origin_mm.z()) / direction.z() : origin_mm.z() / -direction.z();
+  const double to_end = way.is_rising ? (radius_mm_ - origin_mm.z()) / direction.z() : origin_mm.z() / -direction.z();
   const double step = 0.5 * *pitch_mm_ / std::max(level, 1e-12);
   double begin = 0.0;
-  for (int k = 0; k < kMostCells; ++k, begin += step) {
+  for (int k = 0; k < kMaxSteps; ++k, begin += step) {
     const double end = std::min(begin + step, to_end);
     // The balls that the segment may meet are the ball nearest to its midpoint and the neighbours of this ball.
     const BallIndex middle = nearest((origin_mm + 0.5 * (begin + end) * direction).head<2>());
@@ -90,7 +91,7 @@ BallLattice::Way BallLattice::follow(const Vec3& origin_mm, const Vec3& directio
     }
     if (way.hit || end >= to_end) return way;
   }
-  way.goes_astray = true;
+  way.is_abandoned = true;
   return way;
 }
 

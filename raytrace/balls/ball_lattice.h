@@ -36,16 +36,16 @@ class BallLattice {
   };
   /// Result of the search along a ray in the air. A ray that meets no ball above z = 0 either leaves the layer, or
   /// reaches the plane z = 0 between the balls.
-  struct Way {
+  struct SearchResult {
     std::optional<Hit> hit;
-    bool leaves = false;       ///< true if the ray rises; a rising ray without a hit leaves the layer
-    bool goes_astray = false;  ///< true if the ray is nearly horizontal and was given up after many balls
+    bool is_rising = false;     ///< true if the ray rises; a rising ray without a hit leaves the layer
+    bool is_abandoned = false;  ///< true if the ray is nearly horizontal and was given up after many balls
   };
   /// \param leaving ball from whose surface the ray starts, which is excluded from the search; null for none
-  Way follow(const Vec3& origin_mm, const Vec3& direction, const BallIndex* leaving) const;
+  SearchResult follow(const Vec3& origin_mm, const Vec3& direction, const BallIndex* leaving) const;
 
  private:
-  BallIndex nearest(const Vec2& place_mm) const;
+  BallIndex nearest(const Vec2& point_mm) const;
   std::optional<double> distance_to(const BallIndex& ball, const Vec3& origin_mm, const Vec3& direction) const;
 
   double radius_mm_;

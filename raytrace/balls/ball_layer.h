@@ -22,7 +22,7 @@ struct BallLayer {
   double radius_mm() const { return 0.5 * diameter_mm; }
   double mirror_radius_mm() const { return radius_mm() + mirror_offset_mm; }
   /// Returns the maximum half angle of a mirror, at which the bowls of adjacent balls touch.
-  double most_mirror_half_angle_deg() const {
+  double max_mirror_half_angle_deg() const {
     if (!pitch_mm || mirror_offset_mm <= 0.0) return 90.0;
     return Angle::from_rad(std::asin(std::min(1.0, 0.5 * *pitch_mm / mirror_radius_mm()))).deg();
   }

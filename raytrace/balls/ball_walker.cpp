@@ -15,8 +15,8 @@ Vec3 against(const Vec3& direction, const Vec3& normal) {
 
 }  // namespace
 
-void BallWalker::trace(const Vec3& origin_mm, const Vec3& direction, const Light& light, const Chance& chance) {
-  chance_ = chance;
+void BallWalker::trace(const Vec3& origin_mm, const Vec3& direction, const Light& light, const RandomCounters& chance) {
+  random_ = chance;
   draws_ = 0;
   Ray ray;
   ray.position_mm = origin_mm;
@@ -33,25 +33,25 @@ void BallWalker::trace(const Vec3& origin_mm, const Vec3& direction, const Light
   }
 }
 
-void BallWalker::keep(Ray ray) {
+void BallWalker::enqueue(Ray ray) {
   if (ray.light.power() < policy_.cutoff)
     tally_.other[Account::truncated] += ray.light.power();
   else
     waiting_.push_back(std::move(ray));
 }
 
-void BallWalker::keep_branches(Ray one, Ray other) {
+void BallWalker::enqueue_branches(Ray one, Ray other) {
   const double both = one.light.power() + other.light.power();
   const double less = std::min(one.light.power(), other.light.power());
   if (less >= policy_.split_power) {
-    keep(std::move(one));
-    keep(std::move(other));
+    enqueue(std::move(one));
+    enqueue(std::move(other));
     return;
   }
-  const double chance = unit_interval(philox(chance_.key, chance_.replicate, chance_.ray, draws_++)[0]);
+  const double chance = unit_interval(philox(random_.key, random_.replicate, random_.ray, draws_++)[0]);
   Ray& taken = chance * both < one.light.power() ? one : other;
   if (taken.light.power() > 0.0) taken.light.scale(both / taken.light.power());
-  keep(std::move(taken));
+  enqueue(std::move(taken));
 }
 
 void BallWalker::follow(const Ray& ray) {
@@ -65,7 +65,7 @@ void BallWalker::follow(const Ray& ray) {
 
 void BallWalker::follow_in_air(const Ray& ray) {
   const Vec3 centre = ray.at_ball ? lattice_.centre_mm(ray.ball) : Vec3::Zero();
-  const BallLattice::Way way =
+  const BallLattice::SearchResult way =
       lattice_.follow(centre + ray.position_mm, ray.direction, ray.at_ball ? &ray.ball : nullptr);
   if (way.hit) {
     Ray at = ray;
@@ -74,9 +74,9 @@ void BallWalker::follow_in_air(const Ray& ray) {
     const Vec3 normal = way.hit->from_centre_mm / layer_.radius_mm();
     return meet(at, way.hit->from_centre_mm, normal, {Medium::air, Medium::ball, 1.0 / setup_.optics.index});
   }
-  if (way.goes_astray) {
+  if (way.is_abandoned) {
     tally_.other[Account::truncated] += ray.light.power();
-  } else if (way.leaves) {
+  } else if (way.is_rising) {
     leave(ray);
   } else {
     tally_.other[Account::transmitted] += ray.light.power();  // the light meets the black area between the balls
@@ -85,7 +85,7 @@ void BallWalker::follow_in_air(const Ray& ray) {
 
 void BallWalker::leave(const Ray& ray) {
   const std::size_t cone = setup_.cone_of(ray.direction);
-  (ray.entered ? tally_.returned : tally_.front)[cone] += seen_from_above(ray.light, ray.direction);
+  (ray.entered ? tally_.returned : tally_.entrance_reflected)[cone] += in_source_axes(ray.light, ray.direction);
   if (setup_.score != nullptr) setup_.score->add(ray.direction, ray.light.power(), tally_.score);
 }
 
@@ -110,7 +110,7 @@ void BallWalker::meet_back(const Ray& ray, const Vec3& position_mm, const Vec3& 
   if (is_mirrored(normal)) return meet_mirror(ray, position_mm, normal, true);
   // The back of the ball is uncoated here. Light that leaves through it does not return.
   Ray at = ray;
-  at.light.turn_to(ray.direction, normal);
+  at.light.rotate_basis_to_interface(ray.direction, normal);
   const double cosine = std::abs(normal.dot(ray.direction));
   const auto f = materials::fresnel(setup_.optics.ratio_at_back(true), cosine);
   const double before = at.light.power();
@@ -118,7 +118,7 @@ void BallWalker::meet_back(const Ray& ray, const Vec3& position_mm, const Vec3& 
   tally_.other[Account::transmitted] += before - at.light.power();
   at.position_mm = position_mm;
   at.direction = mirrored(ray.direction, normal);
-  keep(std::move(at));
+  enqueue(std::move(at));
 }
 
 bool BallWalker::is_mirrored(const Vec3& normal) const {
@@ -127,7 +127,7 @@ bool BallWalker::is_mirrored(const Vec3& normal) const {
 }
 
 void BallWalker::meet_mirror(Ray ray, const Vec3& position_mm, const Vec3& normal, bool from_ball) {
-  ray.light.turn_to(ray.direction, normal);
+  ray.light.rotate_basis_to_interface(ray.direction, normal);
   const double before = ray.light.power();
   const auto f = fresnel_at_mirror(setup_.optics, from_ball ? setup_.optics.index : setup_.optics.back_index,
                                    std::abs(normal.dot(ray.direction)));
@@ -135,7 +135,7 @@ void BallWalker::meet_mirror(Ray ray, const Vec3& position_mm, const Vec3& norma
   tally_.other[Account::absorbed] += before - ray.light.power();
   ray.position_mm = position_mm;
   ray.direction = mirrored(ray.direction, normal);
-  keep(std::move(ray));
+  enqueue(std::move(ray));
 }
 
 void BallWalker::follow_in_spacer(const Ray& ray) {
@@ -161,7 +161,7 @@ void BallWalker::follow_in_spacer(const Ray& ray) {
 void BallWalker::meet(const Ray& ray, const Vec3& position_mm, const Vec3& normal, const Interface& between) {
   Ray passed = ray;
   passed.position_mm = position_mm;
-  passed.light.turn_to(ray.direction, normal);
+  passed.light.rotate_basis_to_interface(ray.direction, normal);
   const Vec3 facing = against(ray.direction, normal);
   const double cosine = std::min(1.0, -facing.dot(ray.direction));
   const materials::FresnelCoefficients f = materials::fresnel(between.index_ratio, cosine);
@@ -171,11 +171,11 @@ void BallWalker::meet(const Ray& ray, const Vec3& position_mm, const Vec3& norma
   passed.medium = between.transmitted;
   passed.entered = true;
   reflected.light = reflected.light.reflected(f);
-  if (f.total_reflection) return keep(reflected);
+  if (f.total_reflection) return enqueue(reflected);
   passed.direction = refracted(ray.direction, facing, between.index_ratio, cosine, f.cos_refracted);
-  if (setup_.optics.lossless_entrance) return keep(passed);
+  if (setup_.optics.lossless_entrance) return enqueue(passed);
   passed.light = passed.light.transmitted(f);
-  keep_branches(passed, reflected);
+  enqueue_branches(passed, reflected);
 }
 
 }  // namespace retrace::raytrace

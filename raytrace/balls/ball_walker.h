@@ -23,13 +23,13 @@ class BallWalker {
       : layer_(layer), lattice_(layer), setup_(setup), policy_(policy), tally_(tally) {}
 
   /// Key and counters of the random numbers of a path.
-  struct Chance {
+  struct RandomCounters {
     RandomKey key;
     std::uint32_t replicate = 0;
     std::uint32_t ray = 0;
   };
   /// Traces light of power 1 from a point in the air above the layer.
-  void trace(const Vec3& origin_mm, const Vec3& direction, const Light& light, const Chance& chance);
+  void trace(const Vec3& origin_mm, const Vec3& direction, const Light& light, const RandomCounters& chance);
 
  private:
   enum class Medium { air, ball, spacer };
@@ -59,9 +59,9 @@ class BallWalker {
   void meet_back(const Ray& ray, const Vec3& position_mm, const Vec3& normal);
   void meet_mirror(Ray ray, const Vec3& position_mm, const Vec3& normal, bool from_ball);
   void leave(const Ray& ray);
-  void keep(Ray ray);
+  void enqueue(Ray ray);
   /// Queues both branches of an interface (reflected and refracted), or a random one of them with the power of both.
-  void keep_branches(Ray one, Ray other);
+  void enqueue_branches(Ray one, Ray other);
   bool is_mirrored(const Vec3& normal) const;
 
   const BallLayer& layer_;
@@ -70,7 +70,7 @@ class BallWalker {
   const PathPolicy& policy_;
   Tally& tally_;
   std::vector<Ray> waiting_;
-  Chance chance_;
+  RandomCounters random_;
   std::uint32_t draws_ = 0;
 };
 

@@ -19,7 +19,7 @@ CellArray::Facet facet_of(const geometry::CellFacet& facet, geometry::FacetRole 
   const geometry::HeightPlane& plane = facet.plane;
   const double length = std::sqrt(1.0 + plane.slope.squaredNorm());
   return {Vec3(plane.slope.x(), plane.slope.y(), -1.0) / length, -plane.height_mm / length, plane, role,
-          facet.middle_mm};
+          facet.centroid_mm};
 }
 
 CellArray::Column column_of(const geometry::Cell& cell) {
@@ -111,7 +111,7 @@ std::optional<CellArray> CellArray::make(const geometry::Part& part) {
   CellArray array;
   array.period_mm_ = lattice.period_mm;
   if (!part.period_mm) {
-    array.inner_ = Inner{*part.lattice_region_mm, part.lattice_anchor_mm};
+    array.inner_ = InnerRegion{*part.lattice_region_mm, part.lattice_anchor_mm};
     for (const geometry::Cell& cell : lattice.cells) {
       // The margin is so wide that it contains the columns at the border of the region and the columns next to them.
       const Vec2 margin = 2.0 * geometry::bounding_box(cell.outline).size();
@@ -124,7 +124,7 @@ std::optional<CellArray> CellArray::make(const geometry::Part& part) {
   }
   for (const geometry::Cell& cell : lattice.cells) array.columns_.push_back(column_of(cell));
   array.find_neighbours(lattice, tolerance_mm);
-  array.find_pieces(lattice, tolerance_mm);
+  array.find_fragments(lattice, tolerance_mm);
   return array;
 }
 
@@ -161,13 +161,13 @@ void CellArray::find_neighbours(const geometry::Lattice& lattice, double toleran
   }
 }
 
-void CellArray::find_pieces(const geometry::Lattice& lattice, double tolerance_mm) {
+void CellArray::find_fragments(const geometry::Lattice& lattice, double tolerance_mm) {
   const geometry::Rectangle period{Vec2::Zero(), period_mm_};
   for (std::uint32_t c = 0; c < columns_.size(); ++c)
     for_each_shift(period_mm_, [&](const Vec2& shift) {
       geometry::Polygon moved = lattice.cells[c].outline;
       for (Vec2& p : moved) p += shift;
-      if (!geometry::clip(moved, period, tolerance_mm).empty()) pieces_.push_back({c, -shift});
+      if (!geometry::clip(moved, period, tolerance_mm).empty()) fragments_.push_back({c, -shift});
     });
 }
 

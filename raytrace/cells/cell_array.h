@@ -24,7 +24,7 @@ class CellArray {
     double offset_mm = 0.0;                          ///< normal . p for points p of the plane
     geometry::HeightPlane height;                    ///< the same plane as a function z(x, y)
     geometry::FacetRole role = geometry::FacetRole::retro_facet;
-    std::optional<geometry::Vec2> middle_mm = {};  ///< CellFacet::middle_mm
+    std::optional<geometry::Vec2> centroid_mm = {};  ///< CellFacet::middle_mm
   };
   /// Neighbouring column on the other side of an edge of a cell. An edge may have several neighbours, each along one
   /// interval of the edge.
@@ -32,7 +32,7 @@ class CellArray {
     std::uint32_t column = 0;
     geometry::Vec2 shift_mm = geometry::Vec2::Zero();  ///< added to this column's coordinates to get the neighbour's
     double until_mm = 0.0;                             ///< end of the interval along the edge
-    bool is_level = true;                              ///< true if both surfaces have equal heights along the interval
+    bool is_flush = true;                              ///< true if both surfaces have equal heights along the interval
   };
   struct Edge {
     geometry::Vec2 normal = geometry::Vec2::Zero();  ///< unit normal that points out of the cell
@@ -49,13 +49,13 @@ class CellArray {
     double height(const geometry::Vec2& p) const;
   };
   /// Part of a column within the period that starts at the origin.
-  struct Piece {
+  struct ColumnFragment {
     std::uint32_t column = 0;
     geometry::Vec2 shift_mm = geometry::Vec2::Zero();  ///< added to the period's coordinates to get the column's
   };
 
   /// Inner region of a finite part, in which the borders of the part have no effect.
-  struct Inner {
+  struct InnerRegion {
     geometry::Rectangle where_mm;  ///< region; all columns that overlap it, and their neighbours, are complete
     geometry::Vec2 anchor_mm = geometry::Vec2::Zero();  ///< origin of the lattice on the part
   };
@@ -65,19 +65,19 @@ class CellArray {
   static std::optional<CellArray> make(const geometry::Part& part);
 
   const std::vector<Column>& columns() const { return columns_; }
-  const std::vector<Piece>& pieces() const { return pieces_; }
+  const std::vector<ColumnFragment>& fragments() const { return fragments_; }
   const geometry::Vec2& period_mm() const { return period_mm_; }
   /// Returns the inner region of a finite part, or nothing for an infinite part.
-  const std::optional<Inner>& inner() const { return inner_; }
+  const std::optional<InnerRegion>& inner() const { return inner_; }
 
  private:
   void find_neighbours(const geometry::Lattice& lattice, double tolerance_mm);
-  void find_pieces(const geometry::Lattice& lattice, double tolerance_mm);
+  void find_fragments(const geometry::Lattice& lattice, double tolerance_mm);
 
   std::vector<Column> columns_;
-  std::vector<Piece> pieces_;
+  std::vector<ColumnFragment> fragments_;
   geometry::Vec2 period_mm_ = geometry::Vec2::Zero();
-  std::optional<Inner> inner_;
+  std::optional<InnerRegion> inner_;
 };
 
 }  // namespace retrace::raytrace

@@ -19,53 +19,53 @@ CellEntrance::CellEntrance(const LightSetup& setup, const PathPolicy& policy, co
       policy_(policy),
       array_(array),
       height_mm_(setup.thickness_mm - setup.top_mm),
-      falling_(numbers),
-      left_(numbers == lanes::kRayNumbers ? numbers : lanes::kNumbersOfEndless),
-      queued_{falling_, falling_} {
-  if (setup.optics.entrance.scatters()) soiled_.emplace(setup.optics);
+      descending_(numbers),
+      exited_(numbers == lanes::kRayComponents ? numbers : lanes::kComponentsOfInfinite),
+      queued_{descending_, descending_} {
+  if (setup.optics.entrance.scatters()) contaminated_.emplace(setup.optics);
   // The pieces are slightly enlarged to avoid gaps between them due to rounding. A ray just outside of its column
   // crosses into the neighbouring column in its next step.
   const double slack_mm = kSlack * array.period_mm().maxCoeff();
-  for (const CellArray::Piece& piece : array.pieces()) {
-    piece_starts_.push_back(static_cast<std::uint32_t>(pieces_.size()));
+  for (const CellArray::ColumnFragment& piece : array.fragments()) {
+    fragment_starts_.push_back(static_cast<std::uint32_t>(fragment_edges_.size()));
     for (const CellArray::Edge& edge : array.columns()[piece.column].edges)
-      pieces_.push_back(
+      fragment_edges_.push_back(
           {-edge.normal.x(), -edge.normal.y(), edge.offset_mm - edge.normal.dot(piece.shift_mm) + slack_mm});
   }
-  piece_starts_.push_back(static_cast<std::uint32_t>(pieces_.size()));
+  fragment_starts_.push_back(static_cast<std::uint32_t>(fragment_edges_.size()));
 }
 
 void CellEntrance::reserve(std::size_t count) {
-  falling_.reserve(count);
+  descending_.reserve(count);
   if (labels_.size() < count + lanes::kPadding) labels_.resize(2 * count + lanes::kPadding);
 }
 
 void CellEntrance::enter(RayStreams& streams, CellRun& run) {
-  if (soiled_) return enter_soiled(streams, run);
+  if (contaminated_) return enter_contaminated(streams, run);
   const LightSetup::Entry& entry = setup_.entry;
-  const auto count = static_cast<double>(falling_.size());
-  run.tally.front[entry.front_cone] += count * entry.front;
+  const auto count = static_cast<double>(descending_.size());
+  run.tally.entrance_reflected[entry.reflected_cone] += count * entry.reflected;
   run.tally.other[Account::absorbed] += count * entry.absorbed;
-  if (setup_.score != nullptr) setup_.score->add(entry.front_direction, count * entry.front.i, run.tally.score);
-  const lanes::Rays rays = falling_.rays();
-  for (std::size_t k = 0; k < falling_.size(); ++k) set_ray(rays, k, {entry.direction, entry.light});
-  fall(false, streams, run);
+  if (setup_.score != nullptr) setup_.score->add(entry.reflected_direction, count * entry.reflected.i, run.tally.score);
+  const lanes::Rays rays = descending_.rays();
+  for (std::size_t k = 0; k < descending_.size(); ++k) set_ray(rays, k, {entry.direction, entry.light});
+  descend(false, streams, run);
 }
 
-void CellEntrance::fall(bool scattered, RayStreams& streams, CellRun& run) {
-  if (falling_.empty()) return;
-  const std::vector<CellArray::Piece>& pieces = array_.pieces();
-  const lanes::Rays rays = falling_.rays();
-  const std::size_t count = streams.keep_inner(rays, falling_.size(), -height_mm_, true, scattered);
+void CellEntrance::descend(bool scattered, RayStreams& streams, CellRun& run) {
+  if (descending_.empty()) return;
+  const std::vector<CellArray::ColumnFragment>& pieces = array_.fragments();
+  const lanes::Rays rays = descending_.rays();
+  const std::size_t count = streams.keep_inner(rays, descending_.size(), -height_mm_, true, scattered);
   run.tally.other[Account::absorbed] +=
-      lanes::fall(rays, count, height_mm_, setup_.top_mm, array_.period_mm(), setup_.optics.absorption_per_mm);
+      lanes::descend(rays, count, height_mm_, setup_.top_mm, array_.period_mm(), setup_.optics.absorption_per_mm);
   if (pieces.size() > 1)
-    lanes::mark_polygon(rays, count, pieces_, piece_starts_, labels_.data());
+    lanes::mark_polygon(rays, count, fragment_edges_, fragment_starts_, labels_.data());
   else
     std::fill_n(labels_.begin(), count, 0);
   std::size_t left = count;
   for (std::size_t k = 0; k < pieces.size() && left > 0; ++k) {
-    const StreamKey stream{pieces[k].column, Place::inside, scattered};
+    const StreamKey stream{pieces[k].column, RayLocation::inside, scattered};
     const lanes::Rays to = streams.end_of(stream, left);
     const std::size_t more = lanes::select(labels_.data(), static_cast<lanes::Label>(k), count, rays, to);
     if (pieces[k].shift_mm != Vec2::Zero()) lanes::shift(to, more, pieces[k].shift_mm);
@@ -80,12 +80,12 @@ void CellEntrance::fall(bool scattered, RayStreams& streams, CellRun& run) {
 
 void CellEntrance::meet(const CellStep& step) {
   // Rays that would reach a side of the part before the entrance face are added to RayStreams::handed_over().
-  const lanes::Reach outline{height_mm_, step.run.outline_mm.lower, step.run.outline_mm.upper};
+  const lanes::BoundsTest outline{height_mm_, step.run.outline_mm.lower, step.run.outline_mm.upper};
   if (array_.inner() && lanes::mark_beyond(step.rays(), step.size(), outline, label_of(Hit::end), label_of(Hit::limit),
                                            step.batch.hits.labels()) > 0)
     step.streams.hand_over(step.rays(), step.size(), step.batch.hits.labels(), label_of(Hit::limit), true,
                            step.stream().scattered);
-  if (soiled_) return meet_soiled(step);
+  if (contaminated_) return meet_contaminated(step);
   if (!setup_.optics.has_bare_entrance()) return meet_layers(step);
   meet_bare(step);
 }
@@ -98,21 +98,21 @@ void CellEntrance::meet_bare(const CellStep& step) {
       height_mm_,       optics.index,      optics.absorption_per_mm, optics.lossless_entrance,
       setup_.to_source, setup_.cone_chord2};
   const bool is_kept = setup_.score != nullptr || run.observer != nullptr;
-  if (is_kept) left_.reserve(step.size());
-  const lanes::Rays left = left_.rays();
+  if (is_kept) exited_.reserve(step.size());
+  const lanes::Rays left = exited_.rays();
   const lanes::Arrivals arrivals =
-      lanes::meet_entrance(step.rays(), step.size(), step.meeting(label_of(Hit::end)), entrance, falling_.rays(),
+      lanes::meet_entrance(step.rays(), step.size(), step.meeting(label_of(Hit::end)), entrance, descending_.rays(),
                            scattered ? run.tally.scattered : run.tally.returned, is_kept ? &left : nullptr);
-  for (std::size_t k = 0; k < arrivals.left; ++k) {
+  for (std::size_t k = 0; k < arrivals.exited; ++k) {
     const Vec3 direction = vector_of(left, lanes::kDx, k);
     if (setup_.score != nullptr) setup_.score->add(direction, left[lanes::kI][k], run.tally.score);
     if (run.observer != nullptr)
-      run.observer->leaves(owner_of(left, k), place_of(left, k), direction, left[lanes::kI][k]);
+      run.observer->on_exit(owner_of(left, k), position_of(left, k), direction, left[lanes::kI][k]);
   }
   run.tally.segments += arrivals.count;
   run.tally.other[Account::absorbed] += arrivals.absorbed;
-  falling_.resize(arrivals.reflected);
-  fall(scattered, step.streams, run);
+  descending_.resize(arrivals.reflected);
+  descend(scattered, step.streams, run);
 }
 
 // The following functions process rays one by one. They are used for entrance faces with layers and for entrance faces
@@ -135,7 +135,7 @@ void CellEntrance::meet_layers(const CellStep& step) {
   const bool scattered = step.stream().scattered;
   const Vec3 down = -Vec3::UnitZ();
   const lanes::Rays rays = step.rays();
-  const lanes::Rays falling = falling_.rays();
+  const lanes::Rays falling = descending_.rays();
   std::vector<Stokes>& returned = scattered ? run.tally.scattered : run.tally.returned;
   std::size_t reflected_count = 0;
   for (std::size_t k = 0; k < step.size(); ++k) {
@@ -144,17 +144,18 @@ void CellEntrance::meet_layers(const CellStep& step) {
     const double way_mm = height_mm_ / ray.direction.z();
     const double cos_incidence = ray.direction.z();
     const materials::FresnelCoefficients f = fresnel_at_entrance(optics, true, cos_incidence);
-    ray.light.turn_to(ray.direction, down);
+    ray.light.rotate_basis_to_interface(ray.direction, down);
     Light reflected = ray.light.reflected(f);
     Light transmitted = ray.light.transmitted(f);
     run.tally.other[Account::absorbed] += absorbed_at_entrance(optics, ray.light, reflected, transmitted);
     const Branch branch = choose_branch(reflected, transmitted, policy_.split_power, [&] { return run.random(); });
     if (branch != Branch::reflected) {
       const Vec3 out = refracted(ray.direction, down, optics.index, cos_incidence, f.cos_refracted);
-      returned[setup_.cone_of(out)] += seen_from_above(transmitted, out);
+      returned[setup_.cone_of(out)] += in_source_axes(transmitted, out);
       if (setup_.score != nullptr) setup_.score->add(out, transmitted.power(), run.tally.score);
       if (run.observer != nullptr)
-        run.observer->leaves(owner_of(rays, k), place_of(rays, k) + way_mm * ray.direction, out, transmitted.power());
+        run.observer->on_exit(owner_of(rays, k), position_of(rays, k) + way_mm * ray.direction, out,
+                              transmitted.power());
     }
     if (branch == Branch::transmitted) continue;
     copy_ray(rays, k, falling, reflected_count, {mirrored(ray.direction, down), reflected, true, scattered});
@@ -163,35 +164,35 @@ void CellEntrance::meet_layers(const CellStep& step) {
     falling[lanes::kZ][reflected_count] = setup_.thickness_mm;
     ++reflected_count;
   }
-  falling_.resize(reflected_count);
-  fall(scattered, step.streams, run);
+  descending_.resize(reflected_count);
+  descend(scattered, step.streams, run);
 }
 
 /// Returns the rays, inside and outside the part, into which a scattering face splits the incident ray.
-const SoiledReturn& CellEntrance::soiled(const Ray& ray, CellRun& run) {
+const EntranceScatter& CellEntrance::scatter_at_face(const Ray& ray, CellRun& run) {
   surface_models::RandomStream random = run.random_stream();
-  from_soiled_.clear();
-  soiled_->meet(ray, policy_.split_power, random, from_soiled_);
-  run.tally.other[Account::absorbed] += from_soiled_.absorbed;
-  run.tally.other[Account::truncated] += from_soiled_.truncated;
-  return from_soiled_;
+  scatter_.clear();
+  contaminated_->meet(ray, policy_.split_power, random, scatter_);
+  run.tally.other[Account::absorbed] += scatter_.absorbed;
+  run.tally.other[Account::truncated] += scatter_.truncated;
+  return scatter_;
 }
 
-void CellEntrance::enter_soiled(RayStreams& streams, CellRun& run) {
-  const lanes::Rays rays = falling_.rays();
-  for (std::size_t k = 0; k < falling_.size(); ++k) {
+void CellEntrance::enter_contaminated(RayStreams& streams, CellRun& run) {
+  const lanes::Rays rays = descending_.rays();
+  for (std::size_t k = 0; k < descending_.size(); ++k) {
     const Vec3 position(rays[lanes::kX][k], rays[lanes::kY][k], setup_.thickness_mm);
-    for (const Ray& ray : soiled({-setup_.to_source, setup_.incident, false, false}, run).rays) {
+    for (const Ray& ray : scatter_at_face({-setup_.to_source, setup_.incident, false, false}, run).rays) {
       if (ray.inside)
         queue(rays, k, position, ray);
       else
-        book_front(setup_, ray, run.tally);
+        add_entrance_reflection(setup_, ray, run.tally);
     }
   }
-  fall_queued(streams, run);
+  descend_queued(streams, run);
 }
 
-void CellEntrance::meet_soiled(const CellStep& step) {
+void CellEntrance::meet_contaminated(const CellStep& step) {
   Tally& tally = step.run.tally;
   const lanes::Rays rays = step.rays();
   for (std::size_t k = 0; k < step.size(); ++k) {
@@ -200,17 +201,17 @@ void CellEntrance::meet_soiled(const CellStep& step) {
     const double way_mm = height_mm_ / met.direction.z();
     const Vec3 position(rays[lanes::kX][k] + way_mm * met.direction.x(),
                         rays[lanes::kY][k] + way_mm * met.direction.y(), setup_.thickness_mm);
-    for (const Ray& ray : soiled(met, step.run).rays) {
+    for (const Ray& ray : scatter_at_face(met, step.run).rays) {
       if (ray.inside) {
         queue(rays, k, position, ray);
         continue;
       }
       (ray.scattered ? tally.scattered : tally.returned)[setup_.cone_of(ray.direction)] +=
-          seen_from_above(ray.light, ray.direction);
+          in_source_axes(ray.light, ray.direction);
       if (setup_.score != nullptr) setup_.score->add(ray.direction, ray.light.power(), tally.score);
     }
   }
-  fall_queued(step.streams, step.run);
+  descend_queued(step.streams, step.run);
 }
 
 /// Queues a ray that starts just below the face. Values that `position` and `ray` do not contain, such as the owner,
@@ -225,18 +226,18 @@ void CellEntrance::queue(const lanes::Rays& from, std::size_t k, const Vec3& pos
 }
 
 /// Moves the queued rays down to the top of the back surface, in groups that fit into the reserved memory.
-void CellEntrance::fall_queued(RayStreams& streams, CellRun& run) {
+void CellEntrance::descend_queued(RayStreams& streams, CellRun& run) {
   const std::size_t most = labels_.size() - lanes::kPadding;
-  falling_.reserve(most);
+  descending_.reserve(most);
   for (const bool scattered : {false, true}) {
     RayStore& from = queued_[scattered ? 1 : 0];
     for (std::size_t first = 0; first < from.size(); first += most) {
       const std::size_t count = std::min(most, from.size() - first);
-      falling_.resize(count);
+      descending_.resize(count);
       const lanes::Rays rays = from.rays(first);
-      const lanes::Rays falling = falling_.rays();
-      for (std::size_t n = 0; n < rays.numbers; ++n) std::copy_n(rays[n], count, falling[n]);
-      fall(scattered, streams, run);
+      const lanes::Rays falling = descending_.rays();
+      for (std::size_t n = 0; n < rays.component_count; ++n) std::copy_n(rays[n], count, falling[n]);
+      descend(scattered, streams, run);
     }
     from.clear();
   }

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "raytrace/cells/cell_step.h"
-#include "raytrace/faces/soiled_entrance.h"
+#include "raytrace/faces/contaminated_entrance.h"
 
 namespace retrace::raytrace {
 
@@ -24,11 +24,11 @@ class CellEntrance {
   void reserve(std::size_t count);
   /// Returns the rays just below the face. Before enter(), the caller must set their positions. Before fall(), the
   /// caller must set all their values.
-  RayStore& rays() { return falling_; }
+  RayStore& rays() { return descending_; }
   /// Sends incident light into the part at the positions of rays().
   void enter(RayStreams& streams, CellRun& run);
   /// Moves rays() down to the top of the back surface.
-  void fall(bool scattered, RayStreams& streams, CellRun& run);
+  void descend(bool scattered, RayStreams& streams, CellRun& run);
   /// Processes the rays of a batch that have reached the top of the back surface from below. The rays are moved up to
   /// the entrance face. Rays that this face reflects are moved back down.
   void meet(const CellStep& step);
@@ -36,25 +36,25 @@ class CellEntrance {
  private:
   void meet_bare(const CellStep& step);
   void meet_layers(const CellStep& step);
-  void meet_soiled(const CellStep& step);
-  void enter_soiled(RayStreams& streams, CellRun& run);
-  const SoiledReturn& soiled(const Ray& ray, CellRun& run);
+  void meet_contaminated(const CellStep& step);
+  void enter_contaminated(RayStreams& streams, CellRun& run);
+  const EntranceScatter& scatter_at_face(const Ray& ray, CellRun& run);
   Ray risen(const CellStep& step, const lanes::Rays& rays, std::size_t k) const;
   void queue(const lanes::Rays& from, std::size_t k, const Vec3& position, const Ray& ray);
-  void fall_queued(RayStreams& streams, CellRun& run);
+  void descend_queued(RayStreams& streams, CellRun& run);
 
   const LightSetup& setup_;
   const PathPolicy& policy_;
   const CellArray& array_;
-  double height_mm_;                         ///< height of the entrance face above the top of the back surface
-  std::vector<lanes::LinearForm> pieces_;    ///< edges of CellArray::pieces() as linear forms
-  std::vector<std::uint32_t> piece_starts_;  ///< first index in `pieces_` of each piece, then the size of `pieces_`
-  RayStore falling_;
-  std::vector<lanes::Label> labels_;      ///< index of the piece below each ray of `falling_`
-  RayStore left_;                         ///< rays that leave through the face; used only with a score or an observer
-  std::array<RayStore, 2> queued_;        ///< rays just below a contaminated face: [0] unscattered, [1] scattered
-  std::optional<SoiledEntrance> soiled_;  ///< set if the face scatters
-  SoiledReturn from_soiled_;
+  double height_mm_;                               ///< height of the entrance face above the top of the back surface
+  std::vector<lanes::LinearForm> fragment_edges_;  ///< edges of CellArray::pieces() as linear forms
+  std::vector<std::uint32_t> fragment_starts_;  ///< first index in `pieces_` of each piece, then the size of `pieces_`
+  RayStore descending_;
+  std::vector<lanes::Label> labels_;  ///< index of the piece below each ray of `descending_`
+  RayStore exited_;                   ///< rays that leave through the face; used only with a score or an observer
+  std::array<RayStore, 2> queued_;    ///< rays just below a contaminated face: [0] unscattered, [1] scattered
+  std::optional<ContaminatedEntrance> contaminated_;  ///< set if the face scatters
+  EntranceScatter scatter_;
 };
 
 }  // namespace retrace::raytrace

@@ -17,8 +17,8 @@ struct Branches {
 /// Returns the streams for the rays that a facet reflects and transmits. A ray that leaves the part through the convex
 /// surface of a column cannot meet this surface again.
 Branches branches_at_facet(const StreamKey& stream) {
-  const StreamKey above{stream.column, Place::inside, stream.scattered};
-  const StreamKey below{stream.column, Place::below_after_leaving, stream.scattered};
+  const StreamKey above{stream.column, RayLocation::inside, stream.scattered};
+  const StreamKey below{stream.column, RayLocation::below_after_leaving, stream.scattered};
   return stream.inside() ? Branches{above, below} : Branches{below, above};
 }
 
@@ -58,12 +58,13 @@ void meet_texture(const CellStep& step) {
     const Vec3 normal = step.batch.hits.normal(k);
     surface_models::RandomStream random = step.run.random_stream();
     TexturedReturn back = meet_textured_facet(optics, normal, step.batch.ray(rays, k), step.policy.split_power, random);
-    if (!optics.facet_form.is_plane()) back.keep_sides(step.faces.normal(column, step.faces.facet_of(column, normal)));
+    if (!optics.facet_form.is_plane())
+      back.mirror_to_side(step.faces.normal(column, step.faces.facet_of(column, normal)));
     step.run.tally.other[Account::truncated] += back.truncated;
     step.run.tally.other[Account::absorbed] += back.absorbed;
     for (std::size_t n = 0; n < back.count; ++n) {
       const Ray& ray = back.rays[n];
-      const StreamKey to{column, ray.inside ? Place::inside : Place::below_after_leaving, ray.scattered};
+      const StreamKey to{column, ray.inside ? RayLocation::inside : RayLocation::below_after_leaving, ray.scattered};
       copy_ray(rays, k, step.streams.end_of(to, 1), 0, ray);
       step.streams.grow(to, 1);
     }
@@ -88,7 +89,7 @@ void meet_layers(const CellStep& step) {
     Ray ray = step.batch.ray(rays, k);
     const double cos_incidence = -against.dot(ray.direction);
     const materials::FresnelCoefficients f = fresnel_at_back(optics, FacetRole::retro_facet, inside, cos_incidence);
-    ray.light.turn_to(ray.direction, against);
+    ray.light.rotate_basis_to_interface(ray.direction, against);
     Light reflected = ray.light.reflected(f);
     Light transmitted = ray.light.transmitted(f);
     step.run.tally.other[Account::absorbed] += absorbed_by(optics.facet_layers, ray.light, reflected, transmitted);
@@ -136,14 +137,14 @@ void meet_facets(const CellStep& step) {
 }
 
 void meet_wall(const ColumnFaces::Exit& exit, const CellStep& step) {
-  if (step.setup.optics.absorbing_walls) return step.book(*exit.wall, Account::absorbed);
+  if (step.setup.optics.absorbing_walls) return step.add_to_ledger(*exit.wall, Account::absorbed);
   if (!step.batch.hits.contain(*exit.wall, step.size())) return;
   step.batch.hits.set_normals(0, step.size(), exit.wall_normal);
   const StreamKey& from = step.stream();
-  const Place here = from.inside() ? Place::inside : Place::below;
-  const Place there = from.inside() ? Place::below : Place::inside;
+  const RayLocation here = from.inside() ? RayLocation::inside : RayLocation::below;
+  const RayLocation there = from.inside() ? RayLocation::below : RayLocation::inside;
   const Branches to = {{from.column, here, from.scattered}, {exit.column, there, from.scattered}};
-  step.streams.come_in(to.transmitted, meet_interfaces(step, *exit.wall, to), exit.shift_mm);
+  step.streams.grow_from_neighbour(to.transmitted, meet_interfaces(step, *exit.wall, to), exit.shift_mm);
 }
 
 }  // namespace retrace::raytrace

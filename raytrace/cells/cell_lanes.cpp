@@ -67,8 +67,8 @@ HWY_INLINE void find_border(std::span<const Plane> borders, const V3& p, const V
   }
 }
 
-HWY_INLINE void store_met(const Nearest& nearest, V way, const V3& p, const V3& d, const Rays& rays, const Met& met,
-                          std::size_t k) {
+HWY_INLINE void store_met(const Nearest& nearest, V way, const V3& p, const V3& d, const Rays& rays,
+                          const FaceHits& met, std::size_t k) {
   store3(along(p, way, d), rays, kX, k);
   store(nearest.label, met.labels, k);
   store(nearest.normal.x, met.normal[0], k);
@@ -77,7 +77,7 @@ HWY_INLINE void store_met(const Nearest& nearest, V way, const V3& p, const V3& 
 }
 
 double advance_inside(const Rays& rays, std::size_t count, std::span<const Plane> facets, double top_mm,
-                      std::span<const Plane> borders, double absorption_per_mm, const Met& met) {
+                      std::span<const Plane> borders, double absorption_per_mm, const FaceHits& met) {
   V lost = hn::Zero(D());
   for (std::size_t k = 0; k < count; k += hn::Lanes(D())) {
     const V3 p = load3(rays, kX, k);
@@ -97,7 +97,7 @@ double advance_inside(const Rays& rays, std::size_t count, std::span<const Plane
 }
 
 void advance_outside(const Rays& rays, std::size_t count, std::span<const Plane> facets, double depth_mm,
-                     std::span<const Plane> borders, const Met& met) {
+                     std::span<const Plane> borders, const FaceHits& met) {
   const V infinite = hn::Inf(D());
   for (std::size_t k = 0; k < count; k += hn::Lanes(D())) {
     const V3 p = load3(rays, kX, k);
@@ -145,8 +145,8 @@ void refine(const Rays& rays, std::size_t count, const Border& border, Label* la
       crossing = chosen(hn::Ge(s, splat(limit)), hn::Add(crossing, splat(kLabelStep)), crossing);
     VI result = crossing;
     std::size_t interval = border.first_interval;
-    for (const Border::Stretch& beyond : border.stretches) {
-      if (!beyond.is_level) {
+    for (const Border::Interval& beyond : border.intervals) {
+      if (!beyond.is_flush) {
         const V x = hn::Add(p.x, splat(beyond.shift.x()));
         const V y = hn::Add(p.y, splat(beyond.shift.y()));
         V highest = hn::Neg(hn::Inf(d));
@@ -170,7 +170,7 @@ std::size_t select(const Label* labels, Label wanted, std::size_t count, const R
     const M mask = hn::And(are(load(labels, i), wanted), present(i, count));
     const std::size_t more = hn::CountTrue(D(), mask);
     if (more == 0) continue;
-    for (std::size_t k = 0; k < from.numbers; ++k) append(load(from[k], i), mask, to[k] + found);
+    for (std::size_t k = 0; k < from.component_count; ++k) append(load(from[k], i), mask, to[k] + found);
     found += more;
   }
   return found;
@@ -215,7 +215,7 @@ void shift(const Rays& rays, std::size_t count, const geometry::Vec2& shift) {
   }
 }
 
-std::size_t mark_beyond(const Rays& rays, std::size_t count, const Reach& reach, Label tested, Label beyond,
+std::size_t mark_beyond(const Rays& rays, std::size_t count, const BoundsTest& reach, Label tested, Label beyond,
                         Label* labels) {
   const D d;
   std::size_t found = 0;
@@ -268,8 +268,8 @@ double sum(const Rays& rays, std::size_t count) {
   return total(power);
 }
 
-Share sum_of(const Label* labels, Label wanted, const Rays& rays, std::size_t count) {
-  Share share;
+PowerSum sum_of(const Label* labels, Label wanted, const Rays& rays, std::size_t count) {
+  PowerSum share;
   V power = hn::Zero(D());
   for (std::size_t k = 0; k < count; k += hn::Lanes(D())) {
     const M here = hn::And(are(load(labels, k), wanted), present(k, count));
@@ -299,11 +299,11 @@ HWY_EXPORT(sum);
 HWY_EXPORT(sum_of);
 
 double advance_inside(const Rays& rays, std::size_t count, std::span<const Plane> facets, double top_mm,
-                      std::span<const Plane> borders, double absorption_per_mm, const Met& met) {
+                      std::span<const Plane> borders, double absorption_per_mm, const FaceHits& met) {
   return HWY_DYNAMIC_DISPATCH(advance_inside)(rays, count, facets, top_mm, borders, absorption_per_mm, met);
 }
 void advance_outside(const Rays& rays, std::size_t count, std::span<const Plane> facets, double depth_mm,
-                     std::span<const Plane> borders, const Met& met) {
+                     std::span<const Plane> borders, const FaceHits& met) {
   HWY_DYNAMIC_DISPATCH(advance_outside)(rays, count, facets, depth_mm, borders, met);
 }
 void refine(const Rays& rays, std::size_t count, const Border& border, Label* labels) {
@@ -322,18 +322,18 @@ std::size_t mark_weak(const Rays& rays, double limit, std::size_t count, Label* 
 void shift(const Rays& rays, std::size_t count, const geometry::Vec2& by) {
   HWY_DYNAMIC_DISPATCH(shift)(rays, count, by);
 }
-std::size_t mark_beyond(const Rays& rays, std::size_t count, const Reach& reach, Label tested, Label beyond,
+std::size_t mark_beyond(const Rays& rays, std::size_t count, const BoundsTest& reach, Label tested, Label beyond,
                         Label* labels) {
   return HWY_DYNAMIC_DISPATCH(mark_beyond)(rays, count, reach, tested, beyond, labels);
 }
-double fall(const Rays& rays, std::size_t count, double height_mm, double top_mm, const geometry::Vec2& period_mm,
-            double absorption_per_mm) {
+double descend(const Rays& rays, std::size_t count, double height_mm, double top_mm, const geometry::Vec2& period_mm,
+               double absorption_per_mm) {
   return HWY_DYNAMIC_DISPATCH(fall)(rays, count, height_mm, top_mm, period_mm, absorption_per_mm);
 }
 double sum(const Rays& rays, std::size_t count) {
   return HWY_DYNAMIC_DISPATCH(sum)(rays, count);
 }
-Share sum_of(const Label* labels, Label wanted, const Rays& rays, std::size_t count) {
+PowerSum sum_of(const Label* labels, Label wanted, const Rays& rays, std::size_t count) {
   return HWY_DYNAMIC_DISPATCH(sum_of)(labels, wanted, rays, count);
 }
 

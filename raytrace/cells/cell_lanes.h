@@ -23,7 +23,7 @@ inline constexpr std::size_t kPadding = 16;
 /// to kV, see Light) and their first axis (kAx to kAz), which may have any length. In finite parts, the position is
 /// relative to the origin of a period. The coordinates of this origin in mm are kOx and kOy. If rays belong to numbered
 /// paths (CellRay::owner), kOwner is the number of the path.
-enum RayNumber : std::size_t {
+enum RayComponent : std::size_t {
   kX,
   kY,
   kZ,
@@ -40,17 +40,18 @@ enum RayNumber : std::size_t {
   kOx,
   kOy,
   kOwner,
-  kRayNumbers
+  kRayComponents
 };
-inline constexpr std::size_t kNumbersOfEndless = kOx;
-inline constexpr std::size_t kNumbersOfFinite = kOwner;
+inline constexpr std::size_t kComponentsOfInfinite = kOx;
+inline constexpr std::size_t kComponentsOfFinite = kOwner;
 
 struct Rays {
-  std::array<double*, kRayNumbers> at{};
-  std::size_t numbers = kNumbersOfEndless;  ///< number of arrays: kNumbersOfEndless, kNumbersOfFinite or kRayNumbers
+  std::array<double*, kRayComponents> at{};
+  std::size_t component_count =
+      kComponentsOfInfinite;  ///< number of arrays: kComponentsOfInfinite, kComponentsOfFinite or kRayComponents
 
   double* operator[](std::size_t number) const { return at[number]; }
-  bool have_periods() const { return numbers >= kNumbersOfFinite; }
+  bool have_periods() const { return component_count >= kComponentsOfFinite; }
 };
 
 struct Plane {
@@ -90,7 +91,7 @@ inline constexpr Label kKept = 0;
 inline constexpr Label kRemoved = 1;
 
 /// Faces that rays have met: one label per ray, and the normal of the facet for rays whose label is Hit::facet.
-struct Met {
+struct FaceHits {
   Label* labels = nullptr;
   std::array<double*, 3> normal{};
 };
@@ -99,20 +100,20 @@ struct Met {
 /// border of the column, or the plane z = `top_mm`.
 /// \return the power that the material absorbs on the path
 double advance_inside(const Rays& rays, std::size_t count, std::span<const Plane> facets, double top_mm,
-                      std::span<const Plane> borders, double absorption_per_mm, const Met& met);
+                      std::span<const Plane> borders, double absorption_per_mm, const FaceHits& met);
 
 /// Moves rays that are below the surface of a column. Each ray moves to its nearest face: a facet or a border of the
 /// column, or the plane z = -depth_mm.
 /// \param facets facets of the column; empty for rays that have left the part through these facets, because a ray
 ///        cannot meet the convex surface of the column again
 void advance_outside(const Rays& rays, std::size_t count, std::span<const Plane> facets, double depth_mm,
-                     std::span<const Plane> borders, const Met& met);
+                     std::span<const Plane> borders, const FaceHits& met);
 
 /// Border of a column. The surface of the neighbouring column may have a different height at the border.
 struct Border {
   /// The neighbouring column along one interval of the border.
-  struct Stretch {
-    bool is_level = true;
+  struct Interval {
+    bool is_flush = true;
     geometry::Vec2 shift = geometry::Vec2::Zero();
     std::span<const LinearForm> heights;  ///< their maximum is the height of the neighbouring surface
   };
@@ -120,7 +121,7 @@ struct Border {
   std::size_t first_interval = 0;  ///< index of its first interval among all intervals of the column's borders
   LinearForm along;
   std::vector<double> limits;  ///< ends of all intervals except the last, as values of `along`, ascending
-  std::vector<Stretch> stretches;
+  std::vector<Interval> intervals;
   bool inside = true;  ///< true for rays inside the part, false for rays below the surface
 };
 
@@ -148,7 +149,7 @@ std::size_t mark_weak(const Rays& rays, double limit, std::size_t count, Label* 
 void shift(const Rays& rays, std::size_t count, const geometry::Vec2& shift);
 
 /// Parameters of mark_beyond(): a height difference, and a rectangle in x and y on the part.
-struct Reach {
+struct BoundsTest {
   double height_mm = 0.0;  ///< height difference by which rays are extrapolated along their directions
   geometry::Vec2 lower = geometry::Vec2::Zero();
   geometry::Vec2 upper = geometry::Vec2::Zero();
@@ -156,15 +157,15 @@ struct Reach {
 /// Marks rays that are outside of the rectangle after they are extrapolated by the height difference. Only rays with
 /// the label `tested` are tested. The label of a marked ray becomes `beyond`.  Returns the number of marked rays.
 /// \pre rays.have_periods()
-std::size_t mark_beyond(const Rays& rays, std::size_t count, const Reach& reach, Label tested, Label beyond,
+std::size_t mark_beyond(const Rays& rays, std::size_t count, const BoundsTest& reach, Label tested, Label beyond,
                         Label* labels);
 
 /// Rays that have met faces of one kind, and the parameters for the choice of their branches (reflected and transmitted
 /// light). Both branches are traced if each has at least `split_power`. Otherwise, one branch is chosen with a
 /// probability proportional to its power, and it receives the power of both branches. The choices are stratified over
 /// the sequence of rays. They are unbiased if `start` is a uniform random number in [0, 1).
-struct Meeting {
-  Met met;
+struct FaceInteraction {
+  FaceHits hits;
   Label label = 0;             ///< label of the rays that have met the faces
   double towards_light = 1.0;  ///< factor by which normals are multiplied so that they face the light
   double split_power = 0.0;
@@ -179,11 +180,11 @@ struct Branches {
 /// Computes the branches of rays at interfaces between transparent media. Appends them to `reflected` and
 /// `transmitted`.
 /// \param index_ratio refractive index before the face divided by the index after the face
-Branches meet_faces(const Rays& rays, std::size_t count, const Meeting& meeting, double index_ratio,
+Branches meet_faces(const Rays& rays, std::size_t count, const FaceInteraction& meeting, double index_ratio,
                     const Rays& reflected, const Rays& transmitted);
 
 /// Reflects rays at perfect mirrors and appends them to `reflected`. Returns the number of reflected rays.
-std::size_t meet_mirrors(const Rays& rays, std::size_t count, const Meeting& meeting, const Rays& reflected);
+std::size_t meet_mirrors(const Rays& rays, std::size_t count, const FaceInteraction& meeting, const Rays& reflected);
 
 /// Parameters of meet_entrance(): the entrance face, at `height_mm` above the rays that rise to it, and the acceptance
 /// cones (LightSetup::cone_chord2).
@@ -198,7 +199,7 @@ struct Entrance {
 struct Arrivals {
   std::size_t count = 0;
   std::size_t reflected = 0;
-  std::size_t left = 0;
+  std::size_t exited = 0;
   double absorbed = 0.0;  ///< power that the material absorbs on the path to the entrance face
 };
 /// Moves rays that rise to the entrance face up to this face, and computes their branches there. The Stokes parameters
@@ -207,24 +208,24 @@ struct Arrivals {
 /// \param reflected receives the rays that the face reflects
 /// \param returned sums for each cone; the last element is the sum for light outside of all cones
 /// \param left receives the rays that leave through the entrance face; may be null
-Arrivals meet_entrance(const Rays& rays, std::size_t count, const Meeting& meeting, const Entrance& entrance,
+Arrivals meet_entrance(const Rays& rays, std::size_t count, const FaceInteraction& meeting, const Entrance& entrance,
                        const Rays& reflected, std::span<Stokes> returned, const Rays* left);
 
 /// Moves descending rays along their directions by the height difference `height_mm` to z = `top_mm`. Their positions
 /// are then wrapped into the period that starts at the origin.
 /// \return the power that the material absorbs
-double fall(const Rays& rays, std::size_t count, double height_mm, double top_mm, const geometry::Vec2& period_mm,
-            double absorption_per_mm);
+double descend(const Rays& rays, std::size_t count, double height_mm, double top_mm, const geometry::Vec2& period_mm,
+               double absorption_per_mm);
 
 /// Returns the total power of rays.
 double sum(const Rays& rays, std::size_t count);
 
 /// Power and number of the rays with the label `wanted`.
-struct Share {
+struct PowerSum {
   double power = 0.0;
   std::size_t count = 0;
 };
-Share sum_of(const Label* labels, Label wanted, const Rays& rays, std::size_t count);
+PowerSum sum_of(const Label* labels, Label wanted, const Rays& rays, std::size_t count);
 
 /// Computes the points `first` to `first + count - 1` of SobolSquare(key_x, key_y), multiplied by `size`. The results
 /// are identical to those of SobolSquare.

@@ -18,9 +18,9 @@ class CellObserver {
  public:
   virtual ~CellObserver() = default;
   /// Called when light leaves through the entrance face, see ExitObserver::leaves().
-  virtual void leaves(std::uint32_t owner, const Vec3& position, const Vec3& direction, double power) = 0;
+  virtual void on_exit(std::uint32_t owner, const Vec3& position, const Vec3& direction, double power) = 0;
   /// Called when light leaves through the back.
-  virtual void is_transmitted(std::uint32_t owner, double power) = 0;
+  virtual void on_transmission(std::uint32_t owner, double power) = 0;
 };
 
 /// Results and random choices of a run. The counters of the random generator are the replicate, the number of the first
@@ -51,12 +51,12 @@ struct CellStep {
   lanes::Rays rays() const { return batch.rays.rays(); }
   std::size_t size() const { return batch.rays.size(); }
   /// Returns the parameters for the choice of the branches of the rays with this label. Draws one random number.
-  lanes::Meeting meeting(lanes::Label label) const {
-    return {batch.hits.met(), label, stream().inside() ? -1.0 : 1.0, policy.split_power, run.random()};
+  lanes::FaceInteraction meeting(lanes::Label label) const {
+    return {batch.hits.face_hits(), label, stream().inside() ? -1.0 : 1.0, policy.split_power, run.random()};
   }
   /// Ends the rays with this label and adds their power to an account of the ledger.
-  void book(lanes::Label label, Account account) const {
-    const lanes::Share share = lanes::sum_of(batch.hits.labels(), label, rays(), size());
+  void add_to_ledger(lanes::Label label, Account account) const {
+    const lanes::PowerSum share = lanes::sum_of(batch.hits.labels(), label, rays(), size());
     run.tally.other[account] += share.power;
     run.tally.segments += share.count;
   }

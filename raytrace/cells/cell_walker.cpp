@@ -11,8 +11,8 @@ namespace {
 using lanes::Hit, lanes::label_of;
 
 std::size_t numbers_of(const CellArray& array, bool has_owners) {
-  if (has_owners) return lanes::kRayNumbers;
-  return array.inner() ? lanes::kNumbersOfFinite : lanes::kNumbersOfEndless;
+  if (has_owners) return lanes::kRayComponents;
+  return array.inner() ? lanes::kComponentsOfFinite : lanes::kComponentsOfInfinite;
 }
 
 /// Returns the inner region of a finite part, relative to the centre of its entrance face.
@@ -24,21 +24,21 @@ std::optional<geometry::Rectangle> inner_of(const CellArray& array, const Vec2& 
 
 /// Moves the rays that cross a border into the stream of the neighbouring column.
 void cross(const ColumnFaces::Exit& exit, const CellStep& step) {
-  const Place place = step.stream().inside() ? Place::inside : Place::below;
+  const RayLocation place = step.stream().inside() ? RayLocation::inside : RayLocation::below;
   const StreamKey to{exit.column, place, step.stream().scattered};
   const std::size_t more = lanes::select(step.batch.hits.labels(), exit.crossing, step.size(), step.rays(),
                                          step.streams.end_of(to, step.size()));
-  step.streams.come_in(to, more, exit.shift_mm);
+  step.streams.grow_from_neighbour(to, more, exit.shift_mm);
 }
 
 /// Ends the rays that have left the part through its back and meet no further face.
 void leave_through_back(const CellStep& step) {
-  step.book(label_of(Hit::end), Account::transmitted);
+  step.add_to_ledger(label_of(Hit::end), Account::transmitted);
   if (step.run.observer == nullptr) return;
   const lanes::Rays rays = step.rays();
   for (std::size_t k = 0; k < step.size(); ++k)
     if (step.batch.hits.labels()[k] == label_of(Hit::end))
-      step.run.observer->is_transmitted(owner_of(rays, k), rays[lanes::kI][k]);
+      step.run.observer->on_transmission(owner_of(rays, k), rays[lanes::kI][k]);
 }
 
 }  // namespace
@@ -84,7 +84,7 @@ void CellWalker::follow(const std::vector<CellRay>& starts, const geometry::Rect
     rays[lanes::kOwner][k] = static_cast<double>(starts[k].owner);
   }
   lanes::shift(rays, starts.size(), -anchor_mm_);
-  entrance_.fall(false, streams_, run);
+  entrance_.descend(false, streams_, run);
   advance_all(run);
 }
 

@@ -19,7 +19,7 @@ ColumnFaces::ColumnFaces(const CellArray& array) {
     for (const CellArray::Facet& facet : from.facets) {
       column.facets.push_back({facet.normal, facet.offset_mm});
       column.frames.emplace_back();
-      if (facet.middle_mm) column.frames.back() = FacetFrame(facet.normal, facet.offset_mm, *facet.middle_mm);
+      if (facet.centroid_mm) column.frames.back() = FacetFrame(facet.normal, facet.offset_mm, *facet.centroid_mm);
       column.heights.push_back({facet.height.slope.x(), facet.height.slope.y(), facet.height.height_mm});
     }
     for (const CellArray::Edge& edge : from.edges) column.borders.push_back({lifted(edge.normal), edge.offset_mm});
@@ -39,7 +39,7 @@ ColumnFaces::Side ColumnFaces::side_of_column(const CellArray::Column& column, b
       const Vec3 out = lifted(edge.normal);
       return Exit{crossing, std::nullopt, neighbour.column, neighbour.shift_mm, inside ? out : Vec3(-out)};
     };
-    if (edge.neighbours.size() == 1 && edge.neighbours[0].is_level) {
+    if (edge.neighbours.size() == 1 && edge.neighbours[0].is_flush) {
       side.exits.push_back(exit_to(edge.neighbours[0], lanes::label_of(lanes::Hit::border, k)));
       continue;
     }
@@ -50,10 +50,10 @@ ColumnFaces::Side ColumnFaces::side_of_column(const CellArray::Column& column, b
     border.inside = inside;
     for (const CellArray::Neighbour& neighbour : edge.neighbours) {
       border.limits.push_back(neighbour.until_mm);
-      border.stretches.push_back({neighbour.is_level, neighbour.shift_mm, columns_[neighbour.column].heights});
+      border.intervals.push_back({neighbour.is_flush, neighbour.shift_mm, columns_[neighbour.column].heights});
       const std::size_t interval = behind_intervals.size();
       Exit exit = exit_to(neighbour, lanes::label_of(lanes::Hit::crossing, interval));
-      if (!neighbour.is_level) exit.wall = lanes::label_of(lanes::Hit::wall, interval);
+      if (!neighbour.is_flush) exit.wall = lanes::label_of(lanes::Hit::wall, interval);
       behind_intervals.push_back(exit);
     }
     border.limits.pop_back();
@@ -65,14 +65,14 @@ ColumnFaces::Side ColumnFaces::side_of_column(const CellArray::Column& column, b
 double ColumnFaces::advance(const LightSetup& setup, RayBatch& batch) const {
   const Column& column = columns_[batch.stream.column];
   const lanes::Rays rays = batch.rays.rays();
-  const lanes::Met met = batch.hits.met();
+  const lanes::FaceHits met = batch.hits.face_hits();
   double absorbed = 0.0;
   if (batch.stream.inside()) {
     absorbed = lanes::advance_inside(rays, batch.rays.size(), column.facets, setup.top_mm, column.borders,
                                      setup.optics.absorption_per_mm, met);
   } else {
     std::span<const lanes::Plane> facets;
-    if (batch.stream.place == Place::below) facets = column.facets;
+    if (batch.stream.location == RayLocation::below) facets = column.facets;
     lanes::advance_outside(rays, batch.rays.size(), facets, setup.depth_mm, column.borders, met);
   }
   for (const lanes::Border& border : side_of(batch.stream).borders)

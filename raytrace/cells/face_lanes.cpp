@@ -9,9 +9,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace retrace::raytrace::lanes::HWY_NAMESPACE {
 
-/// Rotates the first axis of Stokes parameters from `axis` to `to`, as Light::turn_to_axis() does, but for axes of any
-/// length.
-/// \param over 1 / (|axis|^2 |to|^2)
+/// Rotates the first axis of Stokes parameters from `axis` to `to`, as Light::rotate_basis_to_axis() does, but for axes
+/// of any length. \param over 1 / (|axis|^2 |to|^2)
 HWY_INLINE S turned(const S& light, const V3& direction, const V3& axis, const V3& to, V over) {
   const V c = dot(to, axis);
   const V s = dot(to, cross(direction, axis));
@@ -121,7 +120,7 @@ struct Chosen {
 };
 
 /// Chooses the branches and scales their light.
-HWY_INLINE Chosen choose(const Meeting& meeting, std::size_t k, M here, S& reflected, S& transmitted) {
+HWY_INLINE Chosen choose(const FaceInteraction& meeting, std::size_t k, M here, S& reflected, S& transmitted) {
   constexpr double kGolden = 0.6180339887498949;  // its multiples modulo 1 are evenly distributed
   const V r = reflected.i;
   const V t = transmitted.i;
@@ -141,16 +140,16 @@ HWY_INLINE Chosen choose(const Meeting& meeting, std::size_t k, M here, S& refle
   return {hn::And(here, hn::Or(both, takes_reflected)), hn::And(here, hn::Or(both, hn::Not(takes_reflected)))};
 }
 
-HWY_INLINE M those(const Meeting& meeting, std::size_t k, std::size_t count) {
-  return hn::And(are(load(meeting.met.labels, k), meeting.label), present(k, count));
+HWY_INLINE M those(const FaceInteraction& meeting, std::size_t k, std::size_t count) {
+  return hn::And(are(load(meeting.hits.labels, k), meeting.label), present(k, count));
 }
 
-HWY_INLINE V3 normal_of(const Meeting& meeting, std::size_t k) {
+HWY_INLINE V3 normal_of(const FaceInteraction& meeting, std::size_t k) {
   return times(splat(meeting.towards_light),
-               {load(meeting.met.normal[0], k), load(meeting.met.normal[1], k), load(meeting.met.normal[2], k)});
+               {load(meeting.hits.normal[0], k), load(meeting.hits.normal[1], k), load(meeting.hits.normal[2], k)});
 }
 
-Branches meet_faces(const Rays& rays, std::size_t count, const Meeting& meeting, double index_ratio,
+Branches meet_faces(const Rays& rays, std::size_t count, const FaceInteraction& meeting, double index_ratio,
                     const Rays& reflected, const Rays& transmitted) {
   Branches found;
   for (std::size_t k = 0; k < count; k += hn::Lanes(D())) {
@@ -171,7 +170,7 @@ Branches meet_faces(const Rays& rays, std::size_t count, const Meeting& meeting,
   return found;
 }
 
-std::size_t meet_mirrors(const Rays& rays, std::size_t count, const Meeting& meeting, const Rays& reflected) {
+std::size_t meet_mirrors(const Rays& rays, std::size_t count, const FaceInteraction& meeting, const Rays& reflected) {
   std::size_t found = 0;
   for (std::size_t k = 0; k < count; k += hn::Lanes(D())) {
     const M here = those(meeting, k, count);
@@ -190,7 +189,7 @@ std::size_t meet_mirrors(const Rays& rays, std::size_t count, const Meeting& mee
   return found;
 }
 
-Arrivals meet_entrance(const Rays& rays, std::size_t count, const Meeting& meeting, const Entrance& entrance,
+Arrivals meet_entrance(const Rays& rays, std::size_t count, const FaceInteraction& meeting, const Entrance& entrance,
                        const Rays& reflected, std::span<Stokes> returned, const Rays* left_rays) {
   const D tag;
   const V zero = hn::Zero(tag);
@@ -231,8 +230,8 @@ Arrivals meet_entrance(const Rays& rays, std::size_t count, const Meeting& meeti
     const V axes2 = hn::Mul(dot(face.axis, face.axis), dot(x, x));
     const S seen = turned(face.transmitted, out, face.axis, x, hn::Div(splat(1.0), axes2));
     if (left_rays != nullptr && !hn::AllFalse(tag, take.transmitted)) {
-      append_ray(place, out, seen, x, take.transmitted, rays, k, *left_rays, arrivals.left);
-      arrivals.left += hn::CountTrue(tag, take.transmitted);
+      append_ray(place, out, seen, x, take.transmitted, rays, k, *left_rays, arrivals.exited);
+      arrivals.exited += hn::CountTrue(tag, take.transmitted);
     }
     const V3 off{hn::Sub(out.x, to_source.x), hn::Sub(out.y, to_source.y), hn::Sub(out.z, to_source.z)};
     const V chord2 = dot(off, off);
@@ -261,14 +260,14 @@ HWY_EXPORT(meet_faces);
 HWY_EXPORT(meet_mirrors);
 HWY_EXPORT(meet_entrance);
 
-Branches meet_faces(const Rays& rays, std::size_t count, const Meeting& meeting, double index_ratio,
+Branches meet_faces(const Rays& rays, std::size_t count, const FaceInteraction& meeting, double index_ratio,
                     const Rays& reflected, const Rays& transmitted) {
   return HWY_DYNAMIC_DISPATCH(meet_faces)(rays, count, meeting, index_ratio, reflected, transmitted);
 }
-std::size_t meet_mirrors(const Rays& rays, std::size_t count, const Meeting& meeting, const Rays& reflected) {
+std::size_t meet_mirrors(const Rays& rays, std::size_t count, const FaceInteraction& meeting, const Rays& reflected) {
   return HWY_DYNAMIC_DISPATCH(meet_mirrors)(rays, count, meeting, reflected);
 }
-Arrivals meet_entrance(const Rays& rays, std::size_t count, const Meeting& meeting, const Entrance& entrance,
+Arrivals meet_entrance(const Rays& rays, std::size_t count, const FaceInteraction& meeting, const Entrance& entrance,
                        const Rays& reflected, std::span<Stokes> returned, const Rays* left) {
   return HWY_DYNAMIC_DISPATCH(meet_entrance)(rays, count, meeting, entrance, reflected, returned, left);
 }

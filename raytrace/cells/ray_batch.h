@@ -17,15 +17,15 @@ namespace retrace::raytrace {
 /// Location of rays relative to the surface of a column: inside the part, below the surface, or below the surface after
 /// leaving the part through it. The surface is convex. Rays that have left through it can therefore meet only the
 /// surfaces of other columns.
-enum class Place : std::uint8_t { inside, below, below_after_leaving };
+enum class RayLocation : std::uint8_t { inside, below, below_after_leaving };
 
 /// Identifies a stream. A stream contains the rays of one column with the same `place` and the same `scattered`.
 struct StreamKey {
   std::uint32_t column = 0;
-  Place place = Place::inside;
+  RayLocation location = RayLocation::inside;
   bool scattered = false;  ///< true if there was a non-specular event on the paths of the rays
 
-  bool inside() const { return place == Place::inside; }
+  bool inside() const { return location == RayLocation::inside; }
 };
 
 /// Returns a vector of ray k, such as its direction.
@@ -36,12 +36,12 @@ inline Vec3 vector_of(const lanes::Rays& rays, std::size_t first, std::size_t k)
 
 /// Returns the position of ray k, relative to the centre of the entrance face instead of the origin of a period.
 /// \pre rays.have_periods()
-inline Vec3 place_of(const lanes::Rays& rays, std::size_t k) {
+inline Vec3 position_of(const lanes::Rays& rays, std::size_t k) {
   return vector_of(rays, lanes::kX, k) + Vec3(rays[lanes::kOx][k], rays[lanes::kOy][k], 0.0);
 }
 
 inline std::uint32_t owner_of(const lanes::Rays& rays, std::size_t k) {
-  return rays.numbers == lanes::kRayNumbers ? static_cast<std::uint32_t>(rays[lanes::kOwner][k]) : 0;
+  return rays.component_count == lanes::kRayComponents ? static_cast<std::uint32_t>(rays[lanes::kOwner][k]) : 0;
 }
 
 /// Returns the direction and the light of ray k.
@@ -66,7 +66,7 @@ inline void set_ray(const lanes::Rays& rays, std::size_t k, const Ray& ray) {
 
 /// Copies ray k of `from` to ray `at` of `to`. The direction and the light of the copy are those of `ray`.
 inline void copy_ray(const lanes::Rays& from, std::size_t k, const lanes::Rays& to, std::size_t at, const Ray& ray) {
-  for (std::size_t n = 0; n < from.numbers; ++n) to[n][at] = from[n][k];
+  for (std::size_t n = 0; n < from.component_count; ++n) to[n][at] = from[n][k];
   set_ray(to, at, ray);
 }
 
@@ -80,7 +80,9 @@ class HitStore {
     normals_.resize(3 * capacity_);
   }
 
-  lanes::Met met() { return {labels_.data(), {&normals_[0], &normals_[capacity_], &normals_[2 * capacity_]}}; }
+  lanes::FaceHits face_hits() {
+    return {labels_.data(), {&normals_[0], &normals_[capacity_], &normals_[2 * capacity_]}};
+  }
   lanes::Label* labels() { return labels_.data(); }
   bool is_facet(std::size_t k) const { return labels_[k] == lanes::label_of(lanes::Hit::facet); }
   bool contain(lanes::Label label, std::size_t count) const {

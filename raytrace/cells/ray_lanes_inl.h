@@ -147,7 +147,7 @@ HWY_INLINE void append_ray(const V3& place, const V3& direction, const S& light,
   append(light.u, mask, to[kU] + found);
   append(light.v, mask, to[kV] + found);
   append3(axis, mask, to, kAx, found);
-  for (std::size_t number = kNumbersOfEndless; number < to.numbers; ++number)
+  for (std::size_t number = kComponentsOfInfinite; number < to.component_count; ++number)
     append(load(from[number], k), mask, to[number] + found);
 }
 

@@ -37,7 +37,7 @@ class RayStore {
   /// Returns the arrays, beginning at ray `first`.
   lanes::Rays rays(std::size_t first = 0) {
     lanes::Rays all;
-    all.numbers = numbers_;
+    all.component_count = numbers_;
     for (std::size_t k = 0; k < numbers_; ++k) all.at[k] = values_.data() + k * capacity_ + first;
     return all;
   }

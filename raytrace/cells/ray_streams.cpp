@@ -10,8 +10,8 @@ RayStreams::RayStreams(std::size_t column_count, std::size_t numbers,
     : inner_mm_(inner_mm), streams_(kStreamsOfColumn * column_count, RayStore(numbers)), waiting_(64) {}
 
 StreamKey RayStreams::key_of(std::size_t index) {
-  return {static_cast<std::uint32_t>(index / kStreamsOfColumn), static_cast<Place>(index % kPlaces),
-          index % kStreamsOfColumn >= kPlaces};
+  return {static_cast<std::uint32_t>(index / kStreamsOfColumn), static_cast<RayLocation>(index % kLocations),
+          index % kStreamsOfColumn >= kLocations};
 }
 
 lanes::Rays RayStreams::end_of(const StreamKey& key, std::size_t most) {
@@ -29,7 +29,7 @@ void RayStreams::grow(const StreamKey& key, std::size_t more) {
   if (static_cast<std::size_t>(std::bit_width(before)) != bits) waiting_[bits].push_back(index_of(key));
 }
 
-void RayStreams::come_in(const StreamKey& key, std::size_t more, const Vec2& shift_mm) {
+void RayStreams::grow_from_neighbour(const StreamKey& key, std::size_t more, const Vec2& shift_mm) {
   if (more == 0) return;
   RayStore& stream = streams_[index_of(key)];
   const lanes::Rays rays = stream.rays(stream.size());
@@ -68,7 +68,7 @@ void RayStreams::hand_over(const lanes::Rays& rays, std::size_t count, const lan
                            bool inside, bool scattered) {
   for (std::size_t k = 0; k < count; ++k)
     if (labels[k] == label)
-      handed_over_.push_back({place_of(rays, k), ray_of(rays, k, inside, scattered), owner_of(rays, k)});
+      handed_over_.push_back({position_of(rays, k), ray_of(rays, k, inside, scattered), owner_of(rays, k)});
 }
 
 }  // namespace retrace::raytrace

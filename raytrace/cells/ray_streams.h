@@ -35,7 +35,7 @@ class RayStreams {
   /// Adds `more` rays that come from another column, in the same way as grow(). Rays outside of the inner region are
   /// handed over instead.
   /// \param shift_mm added to the positions of the rays to get the coordinates of the column
-  void come_in(const StreamKey& key, std::size_t more, const Vec2& shift_mm);
+  void grow_from_neighbour(const StreamKey& key, std::size_t more, const Vec2& shift_mm);
   /// Moves the rays of the fullest stream to `rays` and returns the key of the stream. The sizes of streams are
   /// compared by their bit widths. Returns nothing if all streams are empty.
   std::optional<StreamKey> take_fullest(RayStore& rays);
@@ -50,11 +50,11 @@ class RayStreams {
   void clear_handed_over() { handed_over_.clear(); }
 
  private:
-  static constexpr std::size_t kPlaces = 3;
-  static constexpr std::size_t kStreamsOfColumn = 2 * kPlaces;  ///< scattered light has separate streams
+  static constexpr std::size_t kLocations = 3;
+  static constexpr std::size_t kStreamsOfColumn = 2 * kLocations;  ///< scattered light has separate streams
 
   static std::size_t index_of(const StreamKey& key) {
-    return kStreamsOfColumn * key.column + (key.scattered ? kPlaces : 0) + static_cast<std::size_t>(key.place);
+    return kStreamsOfColumn * key.column + (key.scattered ? kLocations : 0) + static_cast<std::size_t>(key.location);
   }
   static StreamKey key_of(std::size_t index);
 

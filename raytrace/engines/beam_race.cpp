@@ -53,7 +53,7 @@ double beam_tracer_ns(const geometry::Part& part) {
 BeamRace::BeamRace(const BeamTracer& tracer, const ScatteredLight* scattered, const Optics& optics,
                    const Illumination& illumination, const std::vector<double>& cones_deg, const BeamPolicy& policy,
                    const Sampling& sampling, Options options, const Cancellation* cancel)
-    : cancel_(cancel), first_looks_(looks_of_stochastic(tracer.part())), may_resample_(options.may_resample) {
+    : cancel_(cancel), initial_work_(looks_of_stochastic(tracer.part())), may_resample_(options.may_resample) {
   if (optics.is_smooth()) beams_.emplace(tracer, optics, illumination, cones_deg, policy);
   make_stochastic_ = [&tracer, scattered, optics, illumination, cones_deg, sampling, cancel,
                       observer = std::move(options.observer)] {
@@ -68,14 +68,14 @@ double BeamRace::beams_ns() const {
 
 double BeamRace::stochastic_ns() const {
   if (!may_resample_) return kNever;
-  return kNsPerStochasticLook * (stochastic_ ? stochastic_->expected_work() : first_looks_);
+  return kNsPerStochasticLook * (stochastic_ ? stochastic_->expected_work() : initial_work_);
 }
 
 double BeamRace::expected_ns() const {
   return std::min(beams_ns(), stochastic_ns());
 }
 
-double BeamRace::share_done() const {
+double BeamRace::fraction_done() const {
   if (beams_ && beams_ns() <= stochastic_ns()) return beams_->work() / beams_->expected_work();
   return stochastic_ ? stochastic_->work() / stochastic_->expected_work() : 0.0;
 }

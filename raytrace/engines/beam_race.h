@@ -44,7 +44,7 @@ class BeamRace {
   /// Returns the expected total time of the faster method in ns. The time is infinite if both methods are abandoned.
   double expected_ns() const;
   /// Returns the finished fraction of the expected work of the faster method. It is 0 before the work begins.
-  double share_done() const;
+  double fraction_done() const;
   /// Runs one step of the method with the smaller expected time: exact or stochastic beam tracing. A method that
   /// exceeds a budget is abandoned.
   /// \return true if the method has reached its goal
@@ -68,7 +68,7 @@ class BeamRace {
   /// Creates the stochastic beams when they are needed for the first time.
   std::function<std::unique_ptr<StochasticBeams>()> make_stochastic_;
   std::unique_ptr<StochasticBeams> stochastic_;
-  double first_looks_ = 0.0;
+  double initial_work_ = 0.0;
   bool may_resample_ = true;
   bool is_exact_ = false;
 };

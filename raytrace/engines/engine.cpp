@@ -26,7 +26,7 @@ std::string_view engine_name(Engine engine) {
 EngineFacts facts_of(const Optics& optics) {
   const auto* const rough = std::get_if<surface_models::HarveyShack>(&optics.facet_scatter);
   EngineFacts facts;
-  facts.has_unequal_backs = !optics.has_one_back();
+  facts.has_unequal_backs = !optics.has_uniform_backing();
   facts.has_form = !optics.facet_form.is_plane();
   facts.has_texture = !optics.is_smooth();
   facts.texture_keeps_specular_light = rough != nullptr && rough->roughness().waviness_sq_nm == 0.0;
@@ -35,7 +35,7 @@ EngineFacts facts_of(const Optics& optics) {
   return facts;
 }
 
-std::optional<Obstacle> why_not(Engine engine, const EngineFacts& facts) {
+std::optional<Obstacle> obstacle_for(Engine engine, const EngineFacts& facts) {
   const bool chooses = engine == Engine::automatic || engine == Engine::montecarlo;
   const bool stochastic = engine == Engine::stochastic;
   const bool cell = engine == Engine::cell;
@@ -81,11 +81,11 @@ std::string traced_by(Obstacle obstacle, std::string_view tracer) {
 }
 
 bool is_exact(Engine requested, const EngineFacts& facts) {
-  return may_be_exact(requested) && !why_not(Engine::exact, facts);
+  return may_be_exact(requested) && !obstacle_for(Engine::exact, facts);
 }
 
 Engine ray_engine(Engine requested, const EngineFacts& facts) {
-  return requested == Engine::embree || why_not(Engine::cell, facts) ? Engine::embree : Engine::cell;
+  return requested == Engine::embree || obstacle_for(Engine::cell, facts) ? Engine::embree : Engine::cell;
 }
 
 }  // namespace retrace::raytrace

@@ -33,7 +33,7 @@ struct EngineFacts {
   bool has_balls = false;  ///< true: the model consists of balls; false: it is a part with an entrance face
   bool has_curved_entrance = false;
   bool has_unequal_backs = false;             ///< the medium behind the elements is not the same for all of them
-  bool has_unequal_cells = false;             ///< MonteCarlo::cell_serves() is false for the part
+  bool has_unequal_cells = false;             ///< MonteCarlo::cell_supports() is false for the part
   bool has_form = false;                      ///< retro facets deviate from planes
   bool has_texture = false;                   ///< retro facets scatter
   bool texture_keeps_specular_light = false;  ///< enough light remains in the specular direction to trace it as a beam
@@ -63,7 +63,7 @@ enum class Obstacle {
 /// Returns the reason why an engine cannot trace a model, or nothing if the engine can trace it. If there are several
 /// reasons, the first in the order of Obstacle is returned. Requests for `automatic` or `montecarlo` can trace balls:
 /// both then use BallTracer.
-std::optional<Obstacle> why_not(Engine engine, const EngineFacts& facts);
+std::optional<Obstacle> obstacle_for(Engine engine, const EngineFacts& facts);
 
 /// Returns an obstacle as the subject of a sentence, such as "rough facets".
 std::string_view subject_of(Obstacle obstacle);

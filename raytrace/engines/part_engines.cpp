@@ -26,7 +26,7 @@ constexpr SegmentCost kEmbree{350.0, 25.0};
 constexpr double kSegmentsOfFirstRound = 8192.0 * 8.0;
 /// Maximum time for constructing the beam tracer, as a fraction of the expected remaining time of ray tracing. With
 /// this limit, an unsuccessful attempt to trace beams takes at most half of the time of ray tracing.
-constexpr double kMaxTracerShare = 0.3;
+constexpr double kMaxTracerFraction = 0.3;
 
 EngineResult result_of_stochastic(const StochasticBeams& beams) {
   return {Engine::stochastic, beams.result(), beams.beams()};
@@ -121,11 +121,12 @@ std::optional<EngineResult> PartEngines::by_fastest(const Light& light, Progress
   while (!is_cancelled(cancel_)) {
     const double rays_take = ns_per_segment * (rays ? rays->expected_segments() : kSegmentsOfFirstRound);
     const double rays_took = rays ? ns_per_segment * static_cast<double>(rays->result().segments) : 0.0;
-    const bool begins = !beams.race && !beams.is_given_up && *tracer_ns_ <= kMaxTracerShare * (rays_take - rays_took);
+    const bool begins =
+        !beams.race && !beams.is_given_up && *tracer_ns_ <= kMaxTracerFraction * (rays_take - rays_took);
     if (begins) begin(beams, light);
     if (beams.race && beams.race->expected_ns() <= rays_take) {
       if (beams.advance()) return result_of(*beams.race);
-      if (beams.race) progress.at(beams.race->share_done());
+      if (beams.race) progress.at(beams.race->fraction_done());
     } else {
       if (!rays)
         rays.emplace(ray_tracer(), light.optics, light.illumination, settings_.cones_deg, light.sampling,

@@ -31,7 +31,7 @@ class PartEngines {
  public:
   struct Settings {
     Engine rays = Engine::embree;  ///< result of ray_engine()
-    BeamTracer::Elements elements = BeamTracer::Elements::equal_at_once;
+    BeamTracer::Elements elements = BeamTracer::Elements::instanced;
     bool has_texture = false;  ///< true if retro facets scatter
     /// Policy of exact beams. by_fastest() traces no stochastic beams if a cut-off is given.
     BeamPolicy beams = {};

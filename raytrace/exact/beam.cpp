@@ -66,7 +66,7 @@ Beam moved(Beam beam, const Vec2& by_mm, const Vec3& to_source, double index) {
   }
   if (beam.trail.first) beam.trail.first->offset_mm += by_mm;
   beam.start.offset_mm += beam.start.normal.dot(by);
-  beam.places = nullptr;
+  beam.instance_offsets = nullptr;
   return beam;
 }
 

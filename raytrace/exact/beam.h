@@ -64,11 +64,11 @@ struct EntryPoint {
 };
 
 /// Identity and position of a cell (an element or a flat area) of the back surface.
-struct CellPlace {
+struct CellInstance {
   std::uint64_t id = 0;           ///< identical for all copies of a cell, or for all cells of identical shape
   Vec2 offset_mm = Vec2::Zero();  ///< displacement of this copy
 
-  friend bool operator==(const CellPlace& a, const CellPlace& b) {
+  friend bool operator==(const CellInstance& a, const CellInstance& b) {
     constexpr double kRounding_mm = 1e-10;
     return a.id == b.id && (a.offset_mm - b.offset_mm).squaredNorm() <= kRounding_mm * kRounding_mm;
   }
@@ -76,16 +76,16 @@ struct CellPlace {
 
 /// Cells that the light has met so far.
 struct CellTrail {
-  std::optional<CellPlace> first;
-  bool is_mixed = false;  ///< true if the light has met cells other than `first`
-  std::uint64_t met = 0;  ///< hash of the sequence of cells, with offsets relative to `first`
+  std::optional<CellInstance> first;
+  bool is_mixed = false;            ///< true if the light has met cells other than `first`
+  std::uint64_t sequence_hash = 0;  ///< hash of the sequence of cells, with offsets relative to `first`
 
-  void meet(const CellPlace& cell) {
+  void meet(const CellInstance& cell) {
     if (!first) first = cell;
     is_mixed = is_mixed || !(*first == cell);
     const Vec2 away = cell.offset_mm - first->offset_mm;
     for (const std::uint64_t word : {cell.id, bits_of(away.x()), bits_of(away.y())})
-      met = ((met ^ (met >> 29)) + word) * 0x9e3779b97f4a7c15U;
+      sequence_hash = ((sequence_hash ^ (sequence_hash >> 29)) + word) * 0x9e3779b97f4a7c15U;
   }
 
  private:
@@ -119,7 +119,7 @@ struct TexturedHit {
 };
 
 /// Displacements in x and y from a position to all positions at which an identical beam exists.
-using BeamPlaces = std::vector<Vec2>;
+using InstanceOffsets = std::vector<Vec2>;
 
 /// Light with one direction and one state of polarization, which passes through a polygon.
 struct Beam {
@@ -128,7 +128,8 @@ struct Beam {
   CoherentLight light;    ///< light, not reduced by the absorption in the material; see `transmission`
   double phase_mm = 0.0;  ///< phase of the plane wave, extrapolated to the origin, as an optical path length
   CellTrail trail;
-  double share = 1.0;  ///< fraction of the area of the entrance face through which the light of this beam entered
+  double area_fraction =
+      1.0;  ///< fraction of the area of the entrance face through which the light of this beam entered
   /// Transmittance of the material along the path from the entrance face to the start of this beam. It is the mean over
   /// the polygon `corners`.
   double transmission = 1.0;
@@ -140,19 +141,20 @@ struct Beam {
   std::vector<TexturedHit> hits;
   Plane start;  ///< the beam is in the half space start.height(p) >= 0
   bool inside = true;
-  geometry::FacetRole left_through = geometry::FacetRole::retro_facet;  ///< last face through which light left the part
-  std::uint32_t depth = 0;                                              ///< number of interfaces so far
-  std::uint32_t level_steps = 0;                                        ///< number of steps since the last interface
+  geometry::FacetRole last_exit_role =
+      geometry::FacetRole::retro_facet;     ///< last face through which light left the part
+  std::uint32_t depth = 0;                  ///< number of interfaces so far
+  std::uint32_t steps_since_interface = 0;  ///< number of steps since the last interface
   /// Displacements from this beam to all identical beams at identical elements, including the displacement 0 of this
   /// beam. The pointer is null if the beam represents only itself.
-  std::shared_ptr<const BeamPlaces> places;
-  /// Index in EqualPlaces::regions() of the region that contains all `places`. It is used only for parts with zones
-  /// (regions with different arrays).
+  std::shared_ptr<const InstanceOffsets> instance_offsets;
+  /// Index in TranslationalSymmetry::regions() of the region that contains all `places`. It is used only for parts with
+  /// zones (regions with different arrays).
   std::uint32_t region = 0;
 
-  double place_count() const { return places ? static_cast<double>(places->size()) : 1.0; }
+  double instance_count() const { return instance_offsets ? static_cast<double>(instance_offsets->size()) : 1.0; }
   /// Returns the power of this beam and of all identical beams in `places`, as a fraction of the incident power.
-  double total_power() const { return place_count() * power; }
+  double total_power() const { return instance_count() * power; }
 };
 
 /// Queue of beams that have not been traced yet. The queue is a deque, because beams are large and should not be copied
@@ -168,12 +170,12 @@ struct ScatterSite {
   Light light;                  ///< incident light, not reduced by the absorption in the material
   PathLength path_length;       ///< length of the path in the material
   Vec3 normal = Vec3::UnitZ();  ///< normal of the facet, which points out of the part
-  double share = 0.0;           ///< fraction of the area of the entrance face through which this light entered
+  double area_fraction = 0.0;   ///< fraction of the area of the entrance face through which this light entered
   double scattered = 0.0;       ///< scattered power as a fraction of the incident power
   bool inside = true;
   /// Displacements in x and y from this site to all sites at which an identical beam meets an identical facet. The list
   /// includes the displacement 0 of this site. The pointer is null if there is no other site.
-  std::shared_ptr<const BeamPlaces> places;
+  std::shared_ptr<const InstanceOffsets> instance_offsets;
 };
 
 /// Returns the copy of a beam at another position of an array. The copy represents only itself.

@@ -96,16 +96,16 @@ class Division {
   const Beam& whole() const { return whole_; }
   /// Queues a fragment.
   /// \param places displacements to its copies (Beam::places); empty for the displacements of the whole beam
-  /// \param region parts with zones: index in EqualPlaces::regions()
-  void add(Corners corners, BeamPlaces places = {}, std::uint32_t region = 0) {
+  /// \param region parts with zones: index in TranslationalSymmetry::regions()
+  void add(Corners corners, InstanceOffsets places = {}, std::uint32_t region = 0) {
     if (corners.empty()) return;
     Beam piece = whole_;
     piece.corners = std::move(corners);
-    piece.share = whole_.share * (area_of(piece.corners) / whole_area_);
-    if (piece.share <= 0.0) return;
-    if (!places.empty()) piece.places = queue_.shared(std::move(places));
+    piece.area_fraction = whole_.area_fraction * (area_of(piece.corners) / whole_area_);
+    if (piece.area_fraction <= 0.0) return;
+    if (!places.empty()) piece.instance_offsets = queue_.shared(std::move(places));
     piece.region = region;
-    entered_ += piece.share * (piece.place_count() / whole_.place_count());
+    entered_ += piece.area_fraction * (piece.instance_count() / whole_.instance_count());
     queue_.push(std::move(piece));
   }
   /// Returns the part of the whole beam's Beam::share that the queued fragments and their copies contain.
@@ -143,7 +143,7 @@ void divide_by_period(const Vec2& period, const Vec2& most_step, Division& into)
   for (const Span& y : along(1)) {
     const Corners row = between(into.whole().corners, Vec3::UnitY(), y.from, y.to);
     for (const Span& x : along(0)) {
-      BeamPlaces places;
+      InstanceOffsets places;
       for (const double up : y.shifts)
         for (const double right : x.shifts) places.emplace_back(right, up);
       into.add(between(row, Vec3::UnitX(), x.from, x.to), std::move(places));
@@ -152,11 +152,11 @@ void divide_by_period(const Vec2& period, const Vec2& most_step, Division& into)
 }
 
 /// Divides the portion of a beam that is above one region of a part with zones (areas with different arrays).
-void divide_region(const RepeatRegion& region, std::uint32_t number, const Vec2& most_step, Division& into) {
-  const auto add = [&](const geometry::Polygon& tile, BeamPlaces places) {
+void divide_region(const PeriodicRegion& region, std::uint32_t number, const Vec2& most_step, Division& into) {
+  const auto add = [&](const geometry::Polygon& tile, InstanceOffsets places) {
     into.add(within(within(into.whole().corners, tile), region.outline_mm()), std::move(places), number);
   };
-  for (const RepeatRegion::Tiles& tiles : region.tiles(most_step)) {
+  for (const PeriodicRegion::Tiles& tiles : region.tiles(most_step)) {
     if (!tiles.inner.empty()) add(tiles.first, tiles.inner);
     for (const geometry::Polygon& tile : tiles.at_border) add(tile, {});
   }
@@ -187,31 +187,31 @@ Beam incident_beam(const BeamScene& scene) {
 }
 
 /// Reduces the beam on one period of an infinite part to one half if the two halves of the period are identical.
-void keep_half(const EqualPlaces& equal, Beam& whole, BeamQueue& queue) {
+void keep_half(const TranslationalSymmetry& equal, Beam& whole, BeamQueue& queue) {
   const auto& by = equal.within_period_mm();
   if (!by) return;
   const Eigen::Index axis = by->y() > 0.0 ? 1 : 0;
   const double middle = plan_of(whole).lower[axis] + 0.5 * equal.period_mm()[axis];
   whole.corners = cut(whole.corners, {-Vec3::Unit(axis), -middle});
-  whole.share = 0.5;
-  whole.places = queue.shared({Vec2::Zero(), *by});
+  whole.area_fraction = 0.5;
+  whole.instance_offsets = queue.shared({Vec2::Zero(), *by});
 }
 
 /// Divides the incident beam into fragments according to the symmetry of the part. Returns the part of Beam::share that
 /// these fragments contain.
 double divide(const BeamScene& scene, const Beam& whole, const Vec2& most_step, BeamQueue& queue) {
-  if (scene.equal == nullptr || scene.setup.infinite() || scene.equal->regions().empty()) {
+  if (scene.symmetry == nullptr || scene.setup.infinite() || scene.symmetry->regions().empty()) {
     Division into(scene, whole, queue);
-    if (scene.equal == nullptr || scene.setup.infinite())
+    if (scene.symmetry == nullptr || scene.setup.infinite())
       divide_by_step(most_step, into);
     else
-      divide_by_period(scene.equal->period_mm(), most_step, into);
+      divide_by_period(scene.symmetry->period_mm(), most_step, into);
     return into.entered();
   }
   double entered = 0.0;
-  for (std::uint32_t number = 0; number < scene.equal->regions().size(); ++number) {
+  for (std::uint32_t number = 0; number < scene.symmetry->regions().size(); ++number) {
     Division into(scene, whole, queue);
-    divide_region(scene.equal->regions()[number], number, most_step, into);
+    divide_region(scene.symmetry->regions()[number], number, most_step, into);
     entered += into.entered();
   }
   return entered;
@@ -223,11 +223,11 @@ void enter_beams(const BeamScene& scene, BeamRecord& record, BeamQueue& queue) {
   Beam whole = incident_beam(scene);
   const double parts = parts_of_element(scene.part);
   if (scene.setup.infinite()) {
-    if (scene.equal != nullptr) keep_half(*scene.equal, whole, queue);
+    if (scene.symmetry != nullptr) keep_half(*scene.symmetry, whole, queue);
     if (parts == 1.0) return queue.push(std::move(whole));
   }
   const double entered = divide(scene, whole, step_of_entrance(scene.part, parts), queue);
-  record.book_rest(whole, whole.share - entered);
+  record.add_rounding_loss(whole, whole.area_fraction - entered);
 }
 
 }  // namespace retrace::raytrace

@@ -19,8 +19,8 @@ double power_at_start(const BeamStep& step, const Fragment& fragment) {
   const Beam& from = step.beam;
   const Plane start{from.start.normal, from.start.normal.dot(from.corners[0])};
   const Corners corners = lifted(fragment.polygon, step.frame, Distance(step.frame, start));
-  return fragment.share * mean_transmission(corners, from.path_length, step.scene.setup.optics.absorption_per_mm) *
-         from.light.power();
+  return fragment.area_fraction *
+         mean_transmission(corners, from.path_length, step.scene.setup.optics.absorption_per_mm) * from.light.power();
 }
 
 /// Returns the fragment as a beam that has arrived at a plane. The power that the material absorbs up to the plane is
@@ -28,13 +28,13 @@ double power_at_start(const BeamStep& step, const Fragment& fragment) {
 Beam arrived(const BeamStep& step, const Fragment& fragment, const Plane& plane) {
   const double absorption_per_mm = step.scene.setup.optics.absorption_per_mm;
   Beam beam = step.beam;
-  beam.share = fragment.share;
+  beam.area_fraction = fragment.area_fraction;
   beam.depth = step.beam.depth + 1;
-  beam.level_steps = 0;
+  beam.steps_since_interface = 0;
   beam.corners = lifted(fragment.polygon, step.frame, Distance(step.frame, plane));
   beam.transmission = mean_transmission(beam.corners, beam.path_length, absorption_per_mm);
   if (beam.inside && absorption_per_mm > 0.0)
-    step.record.book(beam, Account::absorbed, power_at_start(step, fragment) - power_of(beam));
+    step.record.add_to_ledger(beam, Account::absorbed, power_at_start(step, fragment) - power_of(beam));
   return beam;
 }
 
@@ -63,13 +63,13 @@ void keep_phases(const BeamScene& scene, Beam& beam, const Candidate& facet, con
                  double cos_incidence, Lobe lobe) {
   const Optics& optics = scene.setup.optics;
   const bool has_texture = scene.policy.keeps_phases && !optics.is_smooth();
-  const bool has_form = facet.middle_mm && !optics.facet_form.is_plane();
+  const bool has_form = facet.centroid_mm && !optics.facet_form.is_plane();
   if (facet.role != FacetRole::retro_facet || !(has_texture || has_form)) return;
   TexturedHit hit;
   hit.plane = facet.plane;
   if (has_texture) hit.phase = phase_texture(optics, beam.inside, cos_incidence, lobe);
   if (has_form) {
-    hit.frame = FacetFrame(hit.plane.normal, hit.plane.offset_mm, *facet.middle_mm);
+    hit.frame = FacetFrame(hit.plane.normal, hit.plane.offset_mm, *facet.centroid_mm);
     // The path difference per height is the normal component of the wave vector before the facet minus the normal
     // component after the facet, in units of the wave number in vacuum.
     const double before = scene.index_at(beam.inside) * cos_incidence;
@@ -89,7 +89,7 @@ CoherentLight unscattered(const BeamScene& scene, const Beam& beam, const materi
   };
   if (role != FacetRole::retro_facet || optics.is_smooth() || scene.policy.keeps_phases) return passed(f);
   CoherentLight light = passed(mean_field(optics, beam.inside, cos_incidence, f));
-  light.scale(mean_field_share(optics, beam.inside, cos_incidence, lobe));
+  light.scale(mean_field_fraction(optics, beam.inside, cos_incidence, lobe));
   return light;
 }
 
@@ -99,7 +99,7 @@ void meet_hull(const BeamStep& step, const Fragment& fragment, const Plane& plan
   const Vec3& direction = step.beam.direction;
   Beam beam = arrived(step, fragment, plane);
   if (role == FacetRole::border_wall && optics.absorbing_walls) {
-    step.record.book(beam, Account::absorbed, power_of(beam));
+    step.record.add_to_ledger(beam, Account::absorbed, power_of(beam));
     return;
   }
   const bool is_entrance = role == FacetRole::entrance;
@@ -109,7 +109,7 @@ void meet_hull(const BeamStep& step, const Fragment& fragment, const Plane& plan
   const materials::FresnelCoefficients f =
       is_entrance ? fresnel_at_entrance(optics, true, cos_incidence) : materials::fresnel(ratio, cos_incidence);
   const Vec3 out = refracted(direction, against, ratio, cos_incidence, f.cos_refracted);
-  beam.light.turn_to(direction, against);
+  beam.light.rotate_basis_to_interface(direction, against);
   if (is_entrance && optics.lossless_entrance) {
     if (f.total_reflection)
       step.record.leave_outside_cones(beam);
@@ -120,13 +120,13 @@ void meet_hull(const BeamStep& step, const Fragment& fragment, const Plane& plan
   const CoherentLight through = beam.light.transmitted(f);
   const CoherentLight reflected = beam.light.reflected(f);
   if (is_entrance)
-    step.record.book(beam, Account::absorbed,
-                     transmission_of(beam) * absorbed_at_entrance(optics, beam.light, reflected, through));
+    step.record.add_to_ledger(beam, Account::absorbed,
+                              transmission_of(beam) * absorbed_at_entrance(optics, beam.light, reflected, through));
   if (!f.total_reflection) {
     if (is_entrance)
       step.record.leave_through_entrance(beam, through, out);
     else
-      step.record.book(beam, account_of_exit(role), transmission_of(beam) * through.power());
+      step.record.add_to_ledger(beam, account_of_exit(role), transmission_of(beam) * through.power());
   }
   send(step, std::move(beam), plane, against, mirrored(direction, against), reflected, true);
 }
@@ -143,7 +143,8 @@ void leave_hull(const BeamStep& step, const Fragment& fragment) {
   const double merge_mm = step.scene.merge_mm;
   boost::container::small_vector<Exit, 8> exits;
   const auto offer = [&](const Plane& plane, FacetRole role) {
-    if (plane.normal.dot(step.beam.direction) > kGrazing) exits.push_back({plane, Distance(step.frame, plane), role});
+    if (plane.normal.dot(step.beam.direction) > kMinIncidenceCosine)
+      exits.push_back({plane, Distance(step.frame, plane), role});
   };
   offer({Vec3::UnitZ(), setup.thickness_mm}, FacetRole::entrance);
   for (const auto& side : setup.sides) offer({side.normal, side.offset_mm}, FacetRole::side);
@@ -151,8 +152,8 @@ void leave_hull(const BeamStep& step, const Fragment& fragment) {
   const double whole = area(fragment.polygon);
   double used = 0.0;
   const auto meet = [&](const Exit& exit, FacetRole role, const FlatPolygon& own) {
-    if (own.empty() || area(own) <= step.scene.least_area) return;
-    const double part = fragment.share * area(own) / whole;
+    if (own.empty() || area(own) <= step.scene.min_area) return;
+    const double part = fragment.area_fraction * area(own) / whole;
     used += part;
     meet_hull(step, {own, part}, exit.plane, role);
   };
@@ -170,7 +171,7 @@ void leave_hull(const BeamStep& step, const Fragment& fragment) {
       const Distance& distance = exits[k].distance;
       const Vec2 up = Vec2(frame.u.z(), frame.v.z()) + frame.w.z() * distance.slope;
       const double start = frame.w.z() * distance.constant;
-      if (up.norm() > kGrazing) {
+      if (up.norm() > kMinIncidenceCosine) {
         meet(exits[k], FacetRole::border_wall, clipped(own, {up.x(), up.y(), -start}, merge_mm));
         meet(exits[k], FacetRole::side, clipped(own, {-up.x(), -up.y(), start}, merge_mm));
         continue;
@@ -178,7 +179,7 @@ void leave_hull(const BeamStep& step, const Fragment& fragment) {
     }
     meet(exits[k], exits[k].role, own);
   }
-  step.record.book_rest(step.beam, fragment.share - used);
+  step.record.add_rounding_loss(step.beam, fragment.area_fraction - used);
 }
 
 /// Queues a fragment that has reached the limited horizon of its step without meeting a face. After kMaxLevelSteps such
@@ -188,11 +189,11 @@ void stop_at_horizon(const BeamStep& step, const Fragment& fragment) {
   Beam beam = arrived(step, fragment, there);
   beam.start = there;
   beam.depth = step.beam.depth;
-  beam.level_steps = step.beam.level_steps + 1;
-  if (beam.level_steps < kMaxLevelSteps)
+  beam.steps_since_interface = step.beam.steps_since_interface + 1;
+  if (beam.steps_since_interface < kMaxLevelSteps)
     step.queue.push(std::move(beam));
   else
-    step.record.book(beam, Account::truncated, power_of(beam));
+    step.record.add_to_ledger(beam, Account::truncated, power_of(beam));
 }
 
 }  // namespace
@@ -204,7 +205,7 @@ void meet_facet(const BeamStep& step, const Fragment& fragment, const Candidate&
   Beam beam = arrived(step, fragment, plane);
   const bool is_wall = facet.role == FacetRole::inner_wall || facet.role == FacetRole::border_wall;
   if (is_wall && optics.absorbing_walls) {
-    step.record.book(beam, Account::absorbed, power_of(beam));
+    step.record.add_to_ledger(beam, Account::absorbed, power_of(beam));
     return;
   }
   const Vec3 against = from.inside ? Vec3(-plane.normal) : plane.normal;
@@ -212,16 +213,17 @@ void meet_facet(const BeamStep& step, const Fragment& fragment, const Candidate&
   const double cos_incidence = -against.dot(from.direction);
   const materials::FresnelCoefficients f = fresnel_at_back(optics, facet.role, from.inside, cos_incidence);
   beam.trail.meet(facet.cell);
-  beam.light.turn_to(from.direction, against);
+  beam.light.rotate_basis_to_interface(from.direction, against);
   const CoherentLight reflected = beam.light.reflected(f);
   const CoherentLight transmitted = beam.light.transmitted(f);
-  step.record.book(beam, Account::absorbed,
-                   transmission_of(beam) * absorbed_at_back(optics, facet.role, beam.light, reflected, transmitted));
+  step.record.add_to_ledger(
+      beam, Account::absorbed,
+      transmission_of(beam) * absorbed_at_back(optics, facet.role, beam.light, reflected, transmitted));
   const CoherentLight back = unscattered(step.scene, beam, f, facet.role, cos_incidence, Lobe::reflection);
   double scattered = reflected.power() - back.power();
   if (!f.total_reflection) {
     Beam through = beam;
-    if (from.inside) through.left_through = facet.role;
+    if (from.inside) through.last_exit_role = facet.role;
     keep_phases(step.scene, through, facet, f, cos_incidence, Lobe::transmission);
     const CoherentLight on = unscattered(step.scene, beam, f, facet.role, cos_incidence, Lobe::transmission);
     scattered += transmitted.power() - on.power();
@@ -238,8 +240,8 @@ void pass_facets(const BeamStep& step, const Fragment& fragment) {
   if (step.horizon.limited) return stop_at_horizon(step, fragment);
   if (from.inside) return leave_hull(step, fragment);
   const bool rises_through_plate = step.scene.setup.infinite() && from.direction.z() > 0.0;
-  step.record.book(from, rises_through_plate ? Account::truncated : account_of_exit(from.left_through),
-                   power_at_start(step, fragment));
+  step.record.add_to_ledger(from, rises_through_plate ? Account::truncated : account_of_exit(from.last_exit_role),
+                            power_at_start(step, fragment));
 }
 
 }  // namespace retrace::raytrace

@@ -18,11 +18,11 @@ constexpr std::uint32_t kResamplingStream = 7;
 // Directions whose components differ by less than this value are treated as equal when beams are sorted.
 constexpr double kOneDirection = 1e-7;
 // Generations with less total power than this value are not traced.
-constexpr double kLeastPower = 1e-14;
+constexpr double kMinPower = 1e-14;
 
 /// Returns the Morton code of a and b, which interleaves their bits. Points close to each other in the plane usually
 /// have similar codes.
-std::uint64_t interleaved(std::uint32_t a, std::uint32_t b) {
+std::uint64_t morton_code(std::uint32_t a, std::uint32_t b) {
   const auto spread = [](std::uint64_t x) {
     x = (x | (x << 16)) & 0x0000ffff0000ffffU;
     x = (x | (x << 8)) & 0x00ff00ff00ff00ffU;
@@ -73,7 +73,7 @@ Vec2 centroid_of(const Beam& beam) {
 /// \param scale reciprocal size of the period or outline, in 1 / mm
 std::uint64_t number_of_place(const Vec2& at, const Vec2& scale) {
   const auto share = [](double x) { return static_cast<std::uint32_t>((x - std::floor(x)) * 65535.0); };
-  return interleaved(share(at.x() * scale.x()), share(at.y() * scale.y()));
+  return morton_code(share(at.x() * scale.x()), share(at.y() * scale.y()));
 }
 
 /// Returns the first position, beginning with `at`, for which `holds` is true. The search is fast if the result is near
@@ -90,7 +90,7 @@ Iterator first_that(Iterator at, Iterator end, const Predicate& holds) {
 }  // namespace
 
 BeamGeneration::BeamGeneration(const geometry::Part& part, const WaitingBeams& beams)
-    : beams_(beams), is_endless_(part.period_mm.has_value()) {
+    : beams_(beams), is_infinite_(part.period_mm.has_value()) {
   const Vec2 scale = scale_of(part);
   const std::vector<std::uint32_t> ranks = ranks_of_headings(beams);
   entries_.reserve(beams.size());
@@ -102,19 +102,19 @@ BeamGeneration::BeamGeneration(const geometry::Part& part, const WaitingBeams& b
   for (Entry& entry : entries_) entry.power_up_to = power_ += beams[entry.beam].total_power();
 }
 
-bool BeamGeneration::counts() const {
-  return power_ > kLeastPower;
+bool BeamGeneration::is_significant() const {
+  return power_ > kMinPower;
 }
 
-double BeamGeneration::survivor_count(double most_power) const {
-  return std::ceil(power_ / most_power);
+double BeamGeneration::survivor_count(double max_power) const {
+  return std::ceil(power_ / max_power);
 }
 
-std::size_t BeamGeneration::for_each_survivor(double most_power, double offset, const BeamWalk& walk,
+std::size_t BeamGeneration::for_each_survivor(double max_power, double offset, const BeamWalk& walk,
                                               const std::function<void(const Beam&)>& follow) const {
-  if (!counts()) return 0;
+  if (!is_significant()) return 0;
   std::size_t survivors = 0;
-  const double count = survivor_count(most_power);
+  const double count = survivor_count(max_power);
   const double each = power_ / count;
   const Entry& last = entries_.back();
   const auto marks_up_to = [&](double power) { return std::min(count, std::floor(power / each + offset)); };
@@ -126,14 +126,14 @@ std::size_t BeamGeneration::for_each_survivor(double most_power, double offset, 
   while (taken < count) {
     at = first_that(at, entries_.end(), [&](const Entry& entry) { return marks_up_to_end_of(entry) > taken; });
     const Beam& beam = beams_[at->beam];
-    const double places = is_endless_ ? 1.0 : beam.place_count();
+    const double places = is_infinite_ ? 1.0 : beam.instance_count();
     const double power = beam.total_power() / places;
     const double before = at->power_up_to - beam.total_power();
     const double place = std::clamp(std::floor(((taken + 1.0 - offset) * each - before) / power), 0.0, places - 1.0);
     const double until = place < places - 1.0 ? std::max(taken + 1.0, marks_up_to(before + (place + 1.0) * power))
                                               : marks_up_to_end_of(*at);
-    Beam survivor = walk.at_place(beam, static_cast<std::size_t>(place));
-    survivor.share *= (until - taken) * each / beam.power;
+    Beam survivor = walk.instance(beam, static_cast<std::size_t>(place));
+    survivor.area_fraction *= (until - taken) * each / beam.power;
     survivor.power = (until - taken) * each;
     taken = until;
     ++survivors;
@@ -153,12 +153,12 @@ bool follow_survivors(BeamWalk& walk, const geometry::Part& part, const BeamGene
   for (std::uint32_t generation = 0;; ++generation) {
     const BeamGeneration& now = parts ? *parts : first;
     const std::size_t survivors =
-        now.for_each_survivor(how.most_power, how.offset(generation), walk, [&](const Beam& beam) {
+        now.for_each_survivor(how.max_power, how.offset(generation), walk, [&](const Beam& beam) {
           if (!is_cancelled(cancel)) walk.step(beam, cancel);
         });
     if (is_cancelled(cancel)) return false;
     if (survivors == 0) {
-      walk.book_truncated(now.power());
+      walk.add_truncated(now.power());
       return true;
     }
     if (after_each) after_each();

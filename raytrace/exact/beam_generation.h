@@ -30,16 +30,16 @@ class BeamGeneration {
 
   double power() const { return power_; }
   /// Returns true if the generation has enough power to be traced.
-  bool counts() const;
-  /// Returns the number of survivors if the power of a survivor must not exceed `most_power`.
-  double survivor_count(double most_power) const;
+  bool is_significant() const;
+  /// Returns the number of survivors if the power of a survivor must not exceed `max_power`.
+  double survivor_count(double max_power) const;
   /// Selects survivors by systematic resampling and calls `follow` for each of them. Each survivor has at most the
-  /// power `most_power`, and their total power is that of the generation. There are no survivors if counts() is false.
+  /// power `max_power`, and their total power is that of the generation. There are no survivors if counts() is false.
   /// \param offset position of the first of the equally spaced sampling points, in [0, 1)
   /// \param walk computes the copy of a beam at another position
   /// \param follow receives the survivors in order; each reference is valid only during the call
   /// \return the number of survivors
-  std::size_t for_each_survivor(double most_power, double offset, const BeamWalk& walk,
+  std::size_t for_each_survivor(double max_power, double offset, const BeamWalk& walk,
                                 const std::function<void(const Beam&)>& follow) const;
 
  private:
@@ -49,14 +49,14 @@ class BeamGeneration {
     double power_up_to;  ///< cumulative power: sum over all entries up to this entry, which is included
   };
   const WaitingBeams& beams_;
-  bool is_endless_;
+  bool is_infinite_;
   std::vector<Entry> entries_;
   double power_ = 0.0;
 };
 
 /// Parameters of the resampling of weak beams in one replicate.
 struct Resampling {
-  double most_power = 0.0;  ///< maximum power of a survivor
+  double max_power = 0.0;  ///< maximum power of a survivor
   std::uint32_t seed = 1;
   std::uint32_t replicate = 0;
   std::uint32_t round = 0;  ///< number of the round; each round has a first generation of its own

@@ -9,7 +9,7 @@ namespace {
 
 // Maximum number of beams below the cut-off that are kept for a later pass with a lower cut-off. They take about 150
 // MB. Their memory is also limited to three quarters of beam_memory_bytes().
-constexpr std::size_t kMostDeferred = 200'000;
+constexpr std::size_t kMaxDeferred = 200'000;
 // Work of storing one displacement in a list Beam::places, in units of BeamWalk::work().
 constexpr std::uint64_t kWorkOfPlace = 1;
 
@@ -53,7 +53,7 @@ void BeamQueue::defer(Beam&& beam, bool may_discard) {
 }
 
 bool BeamQueue::is_full() const {
-  return deferred_.beams.size() > kMostDeferred || deferred_.bytes > beam_memory_bytes() / 4 * 3;
+  return deferred_.beams.size() > kMaxDeferred || deferred_.bytes > beam_memory_bytes() / 4 * 3;
 }
 
 void BeamQueue::resume_deferred() {
@@ -65,13 +65,13 @@ void BeamQueue::discard_pending() {
   for (const Beam& beam : take_pending()) deferred_.power += beam.total_power();
 }
 
-std::shared_ptr<const BeamPlaces> BeamQueue::shared(BeamPlaces places) {
-  if (places.size() <= 1) return nullptr;
-  places.shrink_to_fit();
-  const std::uint64_t bytes = places.size() * sizeof(Vec2);
-  work_ += kWorkOfPlace * places.size();
+std::shared_ptr<const InstanceOffsets> BeamQueue::shared(InstanceOffsets offsets) {
+  if (offsets.size() <= 1) return nullptr;
+  offsets.shrink_to_fit();
+  const std::uint64_t bytes = offsets.size() * sizeof(Vec2);
+  work_ += kWorkOfPlace * offsets.size();
   memory_->add(bytes);
-  return {new BeamPlaces(std::move(places)), [memory = memory_, bytes](const BeamPlaces* gone) {
+  return {new InstanceOffsets(std::move(offsets)), [memory = memory_, bytes](const InstanceOffsets* gone) {
             memory->remove(bytes);
             delete gone;
           }};

@@ -46,12 +46,12 @@ class BeamQueue {
   double open_power() const { return pending_.power + deferred_.power; }
   /// Returns a shared list of displacements (Beam::places), or null for a single displacement. The list counts as
   /// memory of this run until the last beam that uses it is destroyed.
-  std::shared_ptr<const BeamPlaces> shared(BeamPlaces places);
+  std::shared_ptr<const InstanceOffsets> shared(InstanceOffsets offsets);
   /// Returns the work of making the lists Beam::places, in units of BeamWalk::work().
   std::uint64_t work() const { return work_; }
   /// Checks that the beams fit into the memory.
   /// \throw BudgetError if the beams of this run exceed the memory budget
-  /// \throw SharedMemoryShort if all parallel traces together exceed their limit, see BeamMemory::require_shared()
+  /// \throw SharedMemoryExceeded if all parallel traces together exceed their limit, see BeamMemory::require_shared()
   void require_memory() const;
 
  private:

@@ -26,7 +26,7 @@ std::pair<double, double> distances_to_hull(const LightSetup& setup, const Beam&
     double t = beam.direction.z() > 0.0 ? (setup.thickness_mm - p.z()) / beam.direction.z() : kInfinity;
     for (const auto& side : setup.sides) {
       const double towards = side.normal.dot(beam.direction);
-      if (towards > kGrazing) t = std::min(t, (side.offset_mm - side.normal.dot(p)) / towards);
+      if (towards > kMinIncidenceCosine) t = std::min(t, (side.offset_mm - side.normal.dot(p)) / towards);
     }
     least = std::min(least, t);
     greatest = std::max(greatest, t);
@@ -47,7 +47,7 @@ Horizon horizon_of(const BeamScene& scene, const Beam& beam) {
   }
   const double dz = beam.direction.z();
   const double slack = 1e-6 * size_mm;
-  if (dz > -kGrazing && low >= setup.top_mm - scene.merge_mm) return {};
+  if (dz > -kMinIncidenceCosine && low >= setup.top_mm - scene.merge_mm) return {};
   // Distance at which all corners of the beam are in the layer. If it exceeds kFarInElements, it is replaced by the
   // distance at which the lowest corner enters the layer.
   double first = 0.0;
@@ -58,7 +58,7 @@ Horizon horizon_of(const BeamScene& scene, const Beam& beam) {
     if (first > kFarInElements * size_mm) first = std::max(0.0, (low - setup.top_mm) / -dz);
     last = (high + setup.depth_mm + slack) / -dz;
   }
-  const bool is_shared = beam.places && !setup.infinite();
+  const bool is_shared = beam.instance_offsets && !setup.infinite();
   const double reach = first + (is_shared ? kReachOfShared : kReachInElements) * size_mm;
   if (last <= reach) return {last, false};
   if (setup.infinite()) return {reach, true};
@@ -96,7 +96,7 @@ PlanBox sweep_of(const BeamScene& scene, const Beam& beam) {
   const Horizon horizon = horizon_of(scene, beam);
   const double dz = beam.direction.z();
   PlanBox box;
-  if (beam.inside && horizon.t == 0.0 && dz <= kGrazing) return {-box.lower, -box.upper};
+  if (beam.inside && horizon.t == 0.0 && dz <= kMinIncidenceCosine) return {-box.lower, -box.upper};
   for (const Vec3& p : beam.corners) {
     box.include(p.head<2>());
     box.include((p + horizon.t * beam.direction).head<2>());

@@ -10,31 +10,32 @@ BeamRecord::BeamRecord(const BeamScene& scene, BeamObserver observer)
 
 void BeamRecord::scatter(const Beam& beam, const Plane& plane, double power) {
   if (sites_ == nullptr) {
-    book(beam, Account::truncated, power);
+    add_to_ledger(beam, Account::truncated, power);
     return;
   }
   // In an infinite part, a beam represents all its periodic copies, and all copies scatter light identically. A single
   // scattering site is therefore sufficient. It receives the total power of the copies.
-  const double count = beam.place_count();
-  sites_->push_back({beam.corners, beam.direction, beam.light, beam.path_length, plane.normal, count * beam.share,
-                     count * power, beam.inside, scene_.setup.infinite() ? nullptr : beam.places});
+  const double count = beam.instance_count();
+  sites_->push_back({beam.corners, beam.direction, beam.light, beam.path_length, plane.normal,
+                     count * beam.area_fraction, count * power, beam.inside,
+                     scene_.setup.infinite() ? nullptr : beam.instance_offsets});
 }
 
 void BeamRecord::enter() {
   const LightSetup::Entry& entry = scene_.setup.entry;
-  tally_.front[entry.front_cone] += entry.front;
+  tally_.entrance_reflected[entry.reflected_cone] += entry.reflected;
   tally_.other[Account::absorbed] += entry.absorbed;
-  if (observer_ && entry.front.i > 0.0) observe_front();
+  if (observer_ && entry.reflected.i > 0.0) observe_entrance_reflection();
 }
 
 void BeamRecord::leave_through_entrance(const Beam& beam, const CoherentLight& light, const Vec3& direction) {
   const std::size_t cone = scene_.setup.cone_of(direction);
-  const Stokes stokes = transmission_of(beam) * seen_from_above(light, direction);
-  tally_.returned[cone] += beam.place_count() * stokes;
+  const Stokes stokes = transmission_of(beam) * in_source_axes(light, direction);
+  tally_.returned[cone] += beam.instance_count() * stokes;
   if (!observer_) return;
   ReturnedBeam returned = returned_beam(beam, light, direction);
   returned.stokes = stokes;
-  returned.efficiency = stokes.i / beam.share;
+  returned.efficiency = stokes.i / beam.area_fraction;
   returned.cone = cone;
   observer_(returned);
 }
@@ -47,16 +48,16 @@ ReturnedBeam BeamRecord::returned_beam(const Beam& beam, CoherentLight light, co
   returned.direction = direction;
   returned.depth = beam.depth;
   for (const Vec3& p : beam.corners) {
-    returned.entered_mm.push_back(beam.entry.of(p));
-    returned.left_mm.push_back(p.head<2>() + scene_.centre_mm);
+    returned.entry_polygon_mm.push_back(beam.entry.of(p));
+    returned.exit_polygon_mm.push_back(p.head<2>() + scene_.centre_mm);
   }
   returned.entry_from_exit.linear() = beam.entry.slope.leftCols<2>();
   returned.entry_from_exit.translation() = beam.entry.of({0.0, 0.0, thickness_mm}) - scene_.centre_mm;
   returned.index = index;
   // An odd number of reflections reverses the orientation of the polygon.
-  for (geometry::Polygon* polygon : {&returned.entered_mm, &returned.left_mm})
+  for (geometry::Polygon* polygon : {&returned.entry_polygon_mm, &returned.exit_polygon_mm})
     if (geometry::area(*polygon) < 0.0) std::reverse(polygon->begin(), polygon->end());
-  light.turn_to_axis(direction, source_axis(direction));
+  light.rotate_basis_to_axis(direction, source_axis(direction));
   returned.jones = light.jones;
   returned.transmission = transmission_of(beam);
   // The phase is continuous across the face. It is referred to the plane of the face.
@@ -64,22 +65,22 @@ ReturnedBeam BeamRecord::returned_beam(const Beam& beam, CoherentLight light, co
   returned.replicate = replicate_;
   returned.centre_mm = scene_.centre_mm;
   returned.trail = beam.trail;
-  returned.places = beam.places;
+  returned.instance_offsets = beam.instance_offsets;
   returned.hits = beam.hits;
   return returned;
 }
 
-void BeamRecord::observe_front() const {
+void BeamRecord::observe_entrance_reflection() const {
   const LightSetup::Entry& entry = scene_.setup.entry;
   ReturnedBeam front;
-  front.direction = entry.front_direction;
-  front.stokes = entry.front;
+  front.direction = entry.reflected_direction;
+  front.stokes = entry.reflected;
   front.efficiency = front.stokes.i;
-  front.cone = entry.front_cone;
-  front.jones = entry.front_jones;
+  front.cone = entry.reflected_cone;
+  front.jones = entry.reflected_jones;
   front.transmission = 1.0;
   front.centre_mm = scene_.centre_mm;
-  if (!scene_.setup.infinite()) front.left_mm = scene_.part.outline;
+  if (!scene_.setup.infinite()) front.exit_polygon_mm = scene_.part.outline;
   observer_(front);
 }
 

@@ -11,25 +11,27 @@
 namespace retrace::raytrace {
 
 /// Adds the power of beams to the accounts of the ledger. The power that is passed with a beam is that of a single
-/// copy. It is multiplied by the number of copies that the beam represents (Beam::place_count()).
+/// copy. It is multiplied by the number of copies that the beam represents (Beam::instance_count()).
 class BeamRecord {
  public:
   BeamRecord(const BeamScene& scene, BeamObserver observer);
 
   /// Makes the record append a ScatterSite to `sites` wherever a rough facet scatters light. Without this call, the
   /// scattered power is added to `truncated`.
-  void collect(std::vector<ScatterSite>& sites) { sites_ = &sites; }
+  void collect_scatter_sites(std::vector<ScatterSite>& sites) { sites_ = &sites; }
   /// Sets the replicate number of the returned beams that the observer receives.
-  void serve_replicate(std::uint32_t replicate) { replicate_ = replicate; }
+  void set_replicate(std::uint32_t replicate) { replicate_ = replicate; }
 
   /// Adds power of a beam to the ledger.
-  void book(const Beam& beam, Account account, double power) { tally_.other[account] += beam.place_count() * power; }
+  void add_to_ledger(const Beam& beam, Account account, double power) {
+    tally_.other[account] += beam.instance_count() * power;
+  }
   /// Adds power to `truncated`. The power must include all copies of the beams.
-  void book_truncated(double power) { tally_.other[Account::truncated] += power; }
+  void add_truncated(double power) { tally_.other[Account::truncated] += power; }
   /// Adds the power that is lost by rounding to `truncated`. This power is negative if fragments overlap.
-  /// \param share part of beam.share that is lost
-  void book_rest(const Beam& beam, double share) {
-    book(beam, Account::truncated, share / beam.share * power_of(beam));
+  /// \param area_fraction part of beam.share that is lost
+  void add_rounding_loss(const Beam& beam, double area_fraction) {
+    add_to_ledger(beam, Account::truncated, area_fraction / beam.area_fraction * power_of(beam));
   }
   /// Adds a scattering site, or adds the scattered power to `truncated` if sites are not collected.
   /// \param beam beam that arrives; its light is expressed in the s and p axes of the facet
@@ -40,7 +42,7 @@ class BeamRecord {
   /// \param direction direction of the light in air
   void leave_through_entrance(const Beam& beam, const CoherentLight& light, const Vec3& direction);
   /// Adds the light of a beam to the light that leaves through the entrance face outside of all cones.
-  void leave_outside_cones(const Beam& beam) { tally_.returned.back().i += beam.place_count() * power_of(beam); }
+  void leave_outside_cones(const Beam& beam) { tally_.returned.back().i += beam.instance_count() * power_of(beam); }
 
   const Tally& tally() const { return tally_; }
   /// Returns the ledger and the light of each cone.
@@ -48,7 +50,7 @@ class BeamRecord {
 
  private:
   ReturnedBeam returned_beam(const Beam& beam, CoherentLight light, const Vec3& direction) const;
-  void observe_front() const;
+  void observe_entrance_reflection() const;
 
   BeamScene scene_;
   BeamObserver observer_;

@@ -4,14 +4,14 @@
 
 #include "raytrace/exact/beam.h"
 #include "raytrace/exact/beam_tracer.h"
-#include "raytrace/exact/equal_places.h"
+#include "raytrace/exact/translational_symmetry.h"
 #include "raytrace/light/light_setup.h"
 
 namespace retrace::raytrace {
 
 /// Minimum absolute cosine of the angle of incidence. A plane at which the cosine is smaller is nearly parallel to the
 /// beam and is ignored.
-inline constexpr double kGrazing = 1e-12;
+inline constexpr double kMinIncidenceCosine = 1e-12;
 
 /// Part, light and tolerances of a run. All references must outlive the run.
 struct BeamScene {
@@ -21,10 +21,10 @@ struct BeamScene {
   const LightSetup& setup;
   const BeamPolicy& policy;
   /// Symmetry of the array, with which identical beams are traced as one beam. Null if the symmetry is not used.
-  const EqualPlaces* equal = nullptr;
+  const TranslationalSymmetry* symmetry = nullptr;
   /// Fragments of a cross-section with a smaller area (mm^2) are caused by rounding. Their power is added to
   /// `truncated`, and they are not traced.
-  double least_area = 1e-15 * part.size_mm * part.size_mm;
+  double min_area = 1e-15 * part.size_mm * part.size_mm;
   /// Two fragments are joined if their union differs from a convex polygon by less than this area (mm^2).
   double join_area = 1e-13 * part.size_mm * part.size_mm;
   double merge_mm = 1e-11 * part.size_mm;  ///< corners of a cross-section are merged if their distance is smaller
@@ -35,7 +35,7 @@ struct BeamScene {
 
 /// Returns the fraction of the entrance area that belongs to a beam, multiplied by the transmittance of the material.
 inline double transmission_of(const Beam& beam) {
-  return beam.share * beam.transmission;
+  return beam.area_fraction * beam.transmission;
 }
 inline double power_of(const Beam& beam) {
   return transmission_of(beam) * beam.light.power();

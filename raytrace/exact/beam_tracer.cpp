@@ -22,7 +22,7 @@ constexpr double kHighestFirstCutoff = 1e-3;
 // The truncated power is assumed to decrease at least as (cut-off)^kSlowestFall.
 constexpr double kSlowestFall = 0.7;
 // Maximum number of weak beams that are queued before they are resampled. They take about 30 MB.
-constexpr std::size_t kMostWaiting = 50'000;
+constexpr std::size_t kMaxWaiting = 50'000;
 // Progress is reported when the work of BeamTrace has grown by 5 % and by kWorkBetweenReports (about 0.1 s) since the
 // last report.
 constexpr double kWorkBetweenReports = 3e6;
@@ -39,18 +39,19 @@ const geometry::Part& within_memory(const geometry::Part& part) {
 
 BeamTracer::BeamTracer(const geometry::Part& part, Elements elements)
     : part_(within_memory(part)), centre_mm_(EntranceSampler(part).centre_mm()), cells_(part, centre_mm_) {
-  if (elements == Elements::equal_at_once) equal_ = EqualPlaces::of(part, centre_mm_);
+  if (elements == Elements::instanced) symmetry_ = TranslationalSymmetry::of(part, centre_mm_);
 }
 
 BeamScene BeamTracer::scene(const LightSetup& setup, const BeamPolicy& policy) const {
-  return {part_, centre_mm_, cells_, setup, policy, equal_ ? &*equal_ : nullptr};
+  return {part_, centre_mm_, cells_, setup, policy, symmetry_ ? &*symmetry_ : nullptr};
 }
 
 BeamResult BeamTracer::trace(const Optics& optics, const Illumination& illumination,
                              const std::vector<double>& cones_deg, const BeamPolicy& policy, const Cancellation* cancel,
                              const BeamObserver& observer, Progress* progress) const {
-  if (policy.weak) return trace_with_weak(optics, illumination, cones_deg, policy, cancel, observer);
-  const auto traced = [&](const BeamPolicy& how, const BeamObserver& told, PartOfProgress part) {
+  if (policy.population_control)
+    return trace_with_population_control(optics, illumination, cones_deg, policy, cancel, observer);
+  const auto traced = [&](const BeamPolicy& how, const BeamObserver& told, PartProgress part) {
     BeamTrace trace(*this, optics, illumination, cones_deg, how, told);
     double share = 0.0;
     while (!trace.advance(static_cast<std::uint64_t>(kWorkBetweenReports + kGrowthBetweenReports * trace.work()),
@@ -94,30 +95,30 @@ BeamResult with_replicates(const BeamWalk& strong, const std::vector<BeamWalk>& 
 
 }  // namespace
 
-BeamResult BeamTracer::trace_with_weak(const Optics& optics, const Illumination& illumination,
-                                       const std::vector<double>& cones_deg, const BeamPolicy& policy,
-                                       const Cancellation* cancel, const BeamObserver& observer) const {
-  const WeakBeams& weak = *policy.weak;
+BeamResult BeamTracer::trace_with_population_control(const Optics& optics, const Illumination& illumination,
+                                                     const std::vector<double>& cones_deg, const BeamPolicy& policy,
+                                                     const Cancellation* cancel, const BeamObserver& observer) const {
+  const PopulationControl& weak = *policy.population_control;
   const LightSetup setup(part_, centre_mm_, optics, illumination, cones_deg);
   const BeamScene scene = this->scene(setup, policy);
   BeamWalk strong(scene, observer);
   std::vector<BeamWalk> replicates;
   for (std::uint32_t k = 0; k < weak.replicates; ++k) {
     replicates.emplace_back(scene, observer);
-    replicates.back().serve_replicate(k);
+    replicates.back().set_replicate(k);
   }
-  strong.pause_at_kept(kMostWaiting);
-  strong.enter(*policy.cutoff, BeamWalk::Approach::kept);
-  const double most_power = weak.thinning * *policy.cutoff;
+  strong.pause_at_deferred(kMaxWaiting);
+  strong.enter(*policy.cutoff, BeamWalk::CutoffMode::deferring);
+  const double most_power = weak.survivor_power_ratio * *policy.cutoff;
   double power = 0.0;
   bool is_done = false;
   for (std::uint32_t round = 0; !is_done; ++round) {
     const auto end = strong.run(std::numeric_limits<std::uint64_t>::max(), cancel);
     is_done = end == BeamWalk::End::done;
     bool goes_on = is_done || end == BeamWalk::End::paused;
-    const WaitingBeams kept = strong.take_kept();
+    const WaitingBeams kept = strong.take_deferred();
     const BeamGeneration first(part_, kept);
-    if (first.counts()) power += first.power();
+    if (first.is_significant()) power += first.power();
     for (std::uint32_t k = 0; k < weak.replicates && goes_on; ++k)
       goes_on = follow_survivors(replicates[k], part_, first, {most_power, weak.seed, k, round}, cancel);
     if (goes_on) continue;
@@ -143,17 +144,17 @@ BeamTrace::~BeamTrace() = default;
 
 void BeamTrace::start() {
   walk_ = std::make_unique<BeamWalk>(tracer_.scene(setup_, policy_), observer_);
-  walk_->enter(cutoff_, policy_.cutoff ? BeamWalk::Approach::fixed : BeamWalk::Approach::falling);
+  walk_->enter(cutoff_, policy_.cutoff ? BeamWalk::CutoffMode::fixed : BeamWalk::CutoffMode::decreasing);
 }
 
-bool BeamTrace::advance(std::uint64_t most_work, const Cancellation* cancel) {
-  while (!is_done_ && work() < static_cast<double>(most_work)) {
-    const auto end = walk_->run(most_work - static_cast<std::uint64_t>(work_before_), cancel);
+bool BeamTrace::advance(std::uint64_t max_work, const Cancellation* cancel) {
+  while (!is_done_ && work() < static_cast<double>(max_work)) {
+    const auto end = walk_->run(max_work - static_cast<std::uint64_t>(work_before_), cancel);
     is_done_ = end == BeamWalk::End::done;
     if (end != BeamWalk::End::cutoff_too_high) return is_done_;
     policy_.max_beams -= walk_->beams();
     work_before_ = work();
-    const double fall = std::pow(policy_.truncated_goal / walk_->left_behind(), 1.0 / kSlowestFall);
+    const double fall = std::pow(policy_.truncated_goal / walk_->deferred_power(), 1.0 / kSlowestFall);
     cutoff_ = walk_->cutoff() * std::clamp(fall, 1e-4, 0.1);
     start();
   }

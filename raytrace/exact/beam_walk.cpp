@@ -29,38 +29,38 @@ constexpr double kUsualSlope = 0.5;
 
 }  // namespace
 
-void BeamWalk::enter(double cutoff, Approach approach) {
+void BeamWalk::enter(double cutoff, CutoffMode approach) {
   cutoff_ = cutoff;
-  approach_ = approach;
+  mode_ = approach;
   record_.enter();
   enter_beams(scene_, record_, queue_);
   pass_ = {0.0, queue_.pending_power()};
   // With a coarse goal, the first cut-off is relative to the mean power of the beams that enter.
-  if (approach_ == Approach::falling && scene_.policy.truncated_goal > kFinestGoal)
+  if (mode_ == CutoffMode::decreasing && scene_.policy.truncated_goal > kFinestGoal)
     cutoff_ *= queue_.pending_power() / static_cast<double>(queue_.pending_count());
 }
 
-BeamWalk::End BeamWalk::run(std::uint64_t most_work, const Cancellation* cancel) {
+BeamWalk::End BeamWalk::run(std::uint64_t max_work, const Cancellation* cancel) {
   const BeamPolicy& policy = scene_.policy;
   for (;;) {
     while (queue_.has_pending() && !may_stop()) {
       if (is_cancelled(cancel)) return End::cancelled;
-      if (work() >= most_work) return End::paused;
+      if (work() >= max_work) return End::paused;
       queue_.require_memory();
       Beam beam = queue_.pop();
-      if (strength_of(beam) < cutoff_) {
-        // Approach::kept keeps all beams. The other approaches discard beams while the queue is full. A lower cut-off
+      if (power_for_cutoff(beam) < cutoff_) {
+        // CutoffMode::kept keeps all beams. The other approaches discard beams while the queue is full. A lower cut-off
         // then requires a new trace.
-        queue_.defer(std::move(beam), approach_ != Approach::kept);
-        if (queue_.deferred().size() >= most_kept_) return End::paused;
+        queue_.defer(std::move(beam), mode_ != CutoffMode::deferring);
+        if (queue_.deferred().size() >= max_deferred_) return End::paused;
         continue;
       }
       if (++beams_ > policy.max_beams) fail_on_budget();
-      if (beam.places) keep_equal_places(beam);
+      if (beam.instance_offsets) split_instances(beam);
       advance(beam, cancel);
     }
-    if (approach_ == Approach::kept) return End::done;
-    const bool is_enough = approach_ == Approach::fixed || queue_.open_power() <= policy.truncated_goal;
+    if (mode_ == CutoffMode::deferring) return End::done;
+    const bool is_enough = mode_ == CutoffMode::fixed || queue_.open_power() <= policy.truncated_goal;
     if ((is_enough && (may_stop() || policy.spare_work <= work())) || cutoff_ < kLastCutoff) break;
     if (queue_.is_full()) {
       if (is_enough) break;
@@ -79,7 +79,7 @@ BeamWalk::End BeamWalk::run(std::uint64_t most_work, const Cancellation* cancel)
 /// below the cut-off is at most the goal. With the other approaches, the trace stops when the queue is empty.
 bool BeamWalk::may_stop() const {
   const BeamPolicy& policy = scene_.policy;
-  if (approach_ != Approach::falling) return !queue_.has_pending();
+  if (mode_ != CutoffMode::decreasing) return !queue_.has_pending();
   if (policy.truncated_goal <= kFinestGoal)
     return !queue_.has_pending() && queue_.deferred_power() <= policy.truncated_goal;
   return queue_.open_power() <= (work() < policy.spare_work ? kFinestGoal : policy.truncated_goal);
@@ -98,7 +98,7 @@ void BeamWalk::lower_cutoff_to(double cutoff) {
 /// Ends the trace. The power of all beams that have not been traced is added to `truncated`.
 void BeamWalk::close() {
   queue_.discard_pending();
-  record_.book_truncated(queue_.deferred_power());
+  record_.add_truncated(queue_.deferred_power());
 }
 
 /// Returns the expected total work. It is extrapolated with a power law between work and open power. The work of the
@@ -109,7 +109,7 @@ double BeamWalk::expected_work() const {
   const double settled = 1.0 - queue_.pending_power() / pass_.power;
   if (settled < 0.01) return 2.0 * done;
   const Pass end{pass_.work + (done - pass_.work) / settled, std::max(queue_.deferred_power() / settled, 1e-300)};
-  if (approach_ == Approach::fixed || end.power <= goal) return std::max(end.work, done);
+  if (mode_ == CutoffMode::fixed || end.power <= goal) return std::max(end.work, done);
   const bool has_slope = pass_.work > 0.0 && end.power < 0.9 * pass_.power;
   const double slope = has_slope ? std::log(end.work / pass_.work) / std::log(pass_.power / end.power) : kUsualSlope;
   return end.work * std::pow(end.power / goal, std::clamp(slope, 0.2, 2.0));
@@ -133,32 +133,34 @@ WaitingBeams BeamWalk::take_waiting() {
   return queue_.take_pending();
 }
 
-Beam BeamWalk::at_place(const Beam& beam, std::size_t place) const {
-  if (!beam.places) return beam;
-  return moved(beam, (*beam.places)[place], scene_.setup.to_source, scene_.index_at(beam.inside));
+Beam BeamWalk::instance(const Beam& beam, std::size_t index) const {
+  if (!beam.instance_offsets) return beam;
+  return moved(beam, (*beam.instance_offsets)[index], scene_.setup.to_source, scene_.index_at(beam.inside));
 }
 
 /// Splits the copies of a beam into groups that meet the same facets in the next step. The beam keeps its own group,
 /// and the other groups are queued as new beams. The horizon (the length of the next step) is the same for all copies
 /// of a group. The reason is that along each axis, either all copies of a group have the same position, or no border is
 /// within the horizon of any copy.
-void BeamWalk::keep_equal_places(Beam& beam) {
+void BeamWalk::split_instances(Beam& beam) {
   if (scene_.setup.infinite()) return;
-  work_ += beam.places->size() / kPlacesPerWork;
+  work_ += beam.instance_offsets->size() / kPlacesPerWork;
   const PlanBox sweep = sweep_of(scene_, beam);
-  std::vector<BeamPlaces> groups = scene_.equal->divided(*beam.places, {sweep.lower, sweep.upper}, beam.region);
+  std::vector<InstanceOffsets> groups =
+      scene_.symmetry->divided(*beam.instance_offsets, {sweep.lower, sweep.upper}, beam.region);
   if (groups.size() <= 1) return;
-  for (BeamPlaces& group : groups) {
+  for (InstanceOffsets& group : groups) {
     const Vec2 first = group.front();
     if (first.isZero(0.0)) continue;
     Beam other = moved(beam, first, scene_.setup.to_source, scene_.index_at(beam.inside));
     for (Vec2& by : group) by -= first;
-    other.places = queue_.shared(std::move(group));
+    other.instance_offsets = queue_.shared(std::move(group));
     queue_.push(std::move(other));
   }
-  const auto own = std::find_if(groups.begin(), groups.end(),
-                                [](const BeamPlaces& group) { return !group.empty() && group.front().isZero(0.0); });
-  beam.places = queue_.shared(std::move(*own));
+  const auto own = std::find_if(groups.begin(), groups.end(), [](const InstanceOffsets& group) {
+    return !group.empty() && group.front().isZero(0.0);
+  });
+  beam.instance_offsets = queue_.shared(std::move(*own));
 }
 
 /// Traces a beam to the next faces.
@@ -168,15 +170,15 @@ void BeamWalk::advance(const Beam& beam, const Cancellation* cancel) {
   const Frame frame(beam.direction);
   const FlatPolygon whole = flattened(beam.corners, frame, scene_.merge_mm);
   const double whole_area = area(whole);
-  if (whole_area <= scene_.least_area) {
-    record_.book_rest(beam, beam.share);
+  if (whole_area <= scene_.min_area) {
+    record_.add_rounding_loss(beam, beam.area_fraction);
     return;
   }
   const BeamStep step{scene_, beam, frame, horizon_of(scene_, beam), record_, queue_};
   facets_.find(beam, frame, whole, step.horizon);
   double used = 0.0;
   const auto fragment = [&](const FlatPolygon& piece) {
-    const double share = beam.share * area(piece) / whole_area;
+    const double share = beam.area_fraction * area(piece) / whole_area;
     used += share;
     return Fragment{piece, share};
   };
@@ -188,9 +190,9 @@ void BeamWalk::advance(const Beam& beam, const Cancellation* cancel) {
       meet_facet(step, fragment(piece), facets_[k]);
     }
   }
-  if (whole_area - met_area > scene_.least_area)
+  if (whole_area - met_area > scene_.min_area)
     for (const FlatPolygon& piece : facets_.unblocked(whole)) pass_facets(step, fragment(piece));
-  record_.book_rest(beam, beam.share - used);
+  record_.add_rounding_loss(beam, beam.area_fraction - used);
 }
 
 void BeamWalk::fail_on_budget() const {

@@ -7,8 +7,8 @@
 namespace retrace::raytrace {
 namespace {
 
-/// Memory in bytes per cell. It includes the lookup table in which EqualPlaces finds identical cells, and about five
-/// entries in CellIndex, because a cell usually overlaps several buckets.
+/// Memory in bytes per cell. It includes the lookup table in which TranslationalSymmetry finds identical cells, and
+/// about five entries in CellIndex, because a cell usually overlaps several buckets.
 constexpr double kBytesPerCell = 150.0;
 /// Memory in bytes per bucket of CellIndex. Cells that are much longer than wide overlap many buckets.
 constexpr double kBytesPerBucket = 24.0;

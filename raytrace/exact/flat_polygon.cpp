@@ -77,10 +77,10 @@ void make_convex(FlatPolygon& polygon) {
   }
 }
 
-void join_convex(FlatPolygons& polygons, double least_area) {
+void join_convex(FlatPolygons& polygons, double min_area) {
   if (polygons.size() < 2) return;
   // Polygons whose bounding boxes do not touch have no convex union.
-  const double slack_mm = std::sqrt(least_area);
+  const double slack_mm = std::sqrt(min_area);
   boost::container::small_vector<Box, 16> boxes;
   for (const FlatPolygon& polygon : polygons) boxes.push_back(box_around(polygon, slack_mm));
   for (std::size_t i = 0; i < polygons.size(); ++i)
@@ -89,8 +89,8 @@ void join_convex(FlatPolygons& polygons, double least_area) {
         ++j;
         continue;
       }
-      FlatPolygon hull = convex_hull(polygons[i], polygons[j], least_area);
-      if (std::abs(area(hull) - area(polygons[i]) - area(polygons[j])) > least_area) {
+      FlatPolygon hull = convex_hull(polygons[i], polygons[j], min_area);
+      if (std::abs(area(hull) - area(polygons[i]) - area(polygons[j])) > min_area) {
         ++j;
         continue;
       }
@@ -102,13 +102,13 @@ void join_convex(FlatPolygons& polygons, double least_area) {
     }
 }
 
-void subtract(const FlatPolygon& a, const FlatPolygon& b, double least_area, double merge_mm, FlatPolygons& out) {
+void subtract(const FlatPolygon& a, const FlatPolygon& b, double min_area, double merge_mm, FlatPolygons& out) {
   FlatPolygon rest = a;
   for (std::size_t i = 0; i < b.size() && !rest.empty(); ++i) {
     const HalfPlane inner = left_of(b[i], b[(i + 1) % b.size()]);
     FlatPolygon& outer = out.emplace_back(rest);
     clip(outer, {-inner.a, -inner.b, -inner.c}, merge_mm);
-    if (outer.size() < 3 || area(outer) <= least_area) out.pop_back();
+    if (outer.size() < 3 || area(outer) <= min_area) out.pop_back();
     clip(rest, inner, merge_mm);
   }
 }

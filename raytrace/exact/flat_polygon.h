@@ -97,13 +97,13 @@ inline FlatPolygon intersection(const FlatPolygon& a, const FlatPolygon& b, doub
 }
 
 /// Joins polygons whose union is convex.
-/// \param least_area maximum difference between the area of the convex hull and the sum of the areas
+/// \param min_area maximum difference between the area of the convex hull and the sum of the areas
 /// \pre the polygons do not overlap
-void join_convex(FlatPolygons& polygons, double least_area);
+void join_convex(FlatPolygons& polygons, double min_area);
 
 /// Splits the part of `a` outside of `b` into convex polygons and appends them to `out`. Polygons with an area of at
-/// most `least_area` are omitted.
+/// most `min_area` are omitted.
 /// \pre `b` is convex and counter-clockwise; see make_convex()
-void subtract(const FlatPolygon& a, const FlatPolygon& b, double least_area, double merge_mm, FlatPolygons& out);
+void subtract(const FlatPolygon& a, const FlatPolygon& b, double min_area, double merge_mm, FlatPolygons& out);
 
 }  // namespace retrace::raytrace

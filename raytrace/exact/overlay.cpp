@@ -22,10 +22,10 @@ using TreeBox = bg::model::box<Corner>;
 using Entry = std::pair<TreeBox, std::size_t>;
 using Tree = bg::index::rtree<Entry, bg::index::quadratic<16>>;
 
-constexpr double kPieceMergeShare = 1e-11;
-constexpr double kLeastPieceShare = 1e-13;
+constexpr double kPolygonMergeFraction = 1e-11;
+constexpr double kMinPolygonFraction = 1e-13;
 // Tolerance for equal corners and straight edges when polygons are joined, as a fraction of `size_mm`.
-constexpr double kFuseShare = 1e-10;
+constexpr double kFuseFraction = 1e-10;
 
 TreeBox box_of(const FlatPolygon& polygon) {
   Vec2 lower = polygon[0];
@@ -39,12 +39,12 @@ TreeBox box_of(const FlatPolygon& polygon) {
 
 }  // namespace
 
-struct Overlay::Hidden {
-  explicit Hidden(double size_mm)
-      : merge_mm(kPieceMergeShare * size_mm), least_area(kLeastPieceShare * size_mm * size_mm) {}
+struct Overlay::Impl {
+  explicit Impl(double size_mm)
+      : merge_mm(kPolygonMergeFraction * size_mm), min_area(kMinPolygonFraction * size_mm * size_mm) {}
 
   double merge_mm;
-  double least_area;
+  double min_area;
   std::vector<ValuedPolygon> pieces;  ///< an empty polygon marks an entry that was divided into new entries
   Tree tree;
 
@@ -63,7 +63,7 @@ struct Overlay::Hidden {
 
   void subtract_all(std::vector<FlatPolygon>& from, const FlatPolygon& what) const {
     std::vector<FlatPolygon> left;
-    for (const FlatPolygon& piece : from) subtract(piece, what, least_area, merge_mm, left);
+    for (const FlatPolygon& piece : from) subtract(piece, what, min_area, merge_mm, left);
     from = std::move(left);
   }
 
@@ -72,9 +72,9 @@ struct Overlay::Hidden {
   bool divide(const Entry& entry, const FlatPolygon& polygon, double value) {
     const ValuedPolygon before = pieces[entry.second];
     FlatPolygon common = intersection(before.polygon, polygon, merge_mm);
-    if (common.size() < 3 || area(common) <= least_area) return false;
+    if (common.size() < 3 || area(common) <= min_area) return false;
     std::vector<FlatPolygon> outside;
-    subtract(before.polygon, polygon, least_area, merge_mm, outside);
+    subtract(before.polygon, polygon, min_area, merge_mm, outside);
     tree.remove(entry);
     pieces[entry.second].polygon.clear();
     add(std::move(common), before.value + value);
@@ -83,23 +83,23 @@ struct Overlay::Hidden {
   }
 };
 
-Overlay::Overlay(double size_mm) : hidden_(std::make_unique<Hidden>(size_mm)) {}
+Overlay::Overlay(double size_mm) : impl_(std::make_unique<Impl>(size_mm)) {}
 
 Overlay::~Overlay() = default;
 
 void Overlay::insert(const FlatPolygon& polygon, double value) {
-  if (polygon.size() < 3 || area(polygon) <= hidden_->least_area) return;
+  if (polygon.size() < 3 || area(polygon) <= impl_->min_area) return;
   std::vector<FlatPolygon> rest = {polygon};
-  for (const Entry& entry : hidden_->near(polygon)) {
-    const FlatPolygon there = hidden_->pieces[entry.second].polygon;
-    if (hidden_->divide(entry, polygon, value)) hidden_->subtract_all(rest, there);
+  for (const Entry& entry : impl_->near(polygon)) {
+    const FlatPolygon there = impl_->pieces[entry.second].polygon;
+    if (impl_->divide(entry, polygon, value)) impl_->subtract_all(rest, there);
   }
-  for (FlatPolygon& piece : rest) hidden_->add(std::move(piece), value);
+  for (FlatPolygon& piece : rest) impl_->add(std::move(piece), value);
 }
 
-std::vector<ValuedPolygon> Overlay::pieces() const {
+std::vector<ValuedPolygon> Overlay::polygons() const {
   std::vector<ValuedPolygon> all;
-  for (const ValuedPolygon& piece : hidden_->pieces)
+  for (const ValuedPolygon& piece : impl_->pieces)
     if (!piece.polygon.empty()) all.push_back(piece);
   return all;
 }
@@ -110,7 +110,7 @@ namespace {
 class Fusion {
  public:
   Fusion(double size_mm, double value_tolerance)
-      : near_mm_(kFuseShare * size_mm), value_tolerance_(value_tolerance), edges_(near_mm_) {}
+      : near_mm_(kFuseFraction * size_mm), value_tolerance_(value_tolerance), edges_(near_mm_) {}
 
   void add(const ValuedPolygon& piece) {
     const std::size_t id = pieces_.size();

@@ -29,11 +29,11 @@ class Overlay {
   void insert(const FlatPolygon& polygon, double value);
 
   /// Returns the disjoint polygons. The subdivision depends on the order of insertion.
-  std::vector<ValuedPolygon> pieces() const;
+  std::vector<ValuedPolygon> polygons() const;
 
  private:
-  struct Hidden;
-  std::unique_ptr<Hidden> hidden_;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 /// Joins disjoint convex polygons that have a whole edge in common. Their values must agree within `value_tolerance`,

@@ -19,8 +19,8 @@ class ScatteredReplicate {
  public:
   virtual ~ScatteredReplicate() = default;
 
-  /// Traces all light that the sites scatter, in rays with at most the power `most_power`. Stops early if cancelled.
-  virtual void launch(const std::vector<ScatterSite>& sites, double most_power) = 0;
+  /// Traces all light that the sites scatter, in rays with at most the power `max_power`. Stops early if cancelled.
+  virtual void launch(const std::vector<ScatterSite>& sites, double max_power) = 0;
   /// Returns the sums over all light traced so far.
   virtual const Tally& tally() const = 0;
 };

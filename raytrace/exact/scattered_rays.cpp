@@ -22,7 +22,7 @@ constexpr std::uint32_t kRaysOfRound = 1U << 26;
 // the cone well enough.
 constexpr double kNarrow = 0.1;
 // Power of a ray to the source, as a fraction of an ordinary ray's power, below which Russian roulette is applied.
-constexpr double kLeastShare = 0.05;
+constexpr double kMinPowerFraction = 0.05;
 
 /// Returns the solid angle of the widest cone in air, in sr.
 double solid_angle(const PathSetup& setup) {
@@ -40,10 +40,10 @@ double narrowing(const PathSetup& setup, const Vec3& out) {
 
 /// A path from a point of a facet through the part into the widest cone about the direction to the source. On this
 /// path, the light is only reflected until it leaves through the entrance face.
-class WayToSource {
+class PathToSource {
  public:
   /// \param turn matrix of all reflections on the path, from PathWalker::mirrors_to_entrance()
-  WayToSource(const PathSetup& setup, Eigen::Matrix3d turn) : setup_(setup), turn_(std::move(turn)) {}
+  PathToSource(const PathSetup& setup, Eigen::Matrix3d turn) : setup_(setup), turn_(std::move(turn)) {}
 
   /// Returns the direction at the start of the path for light that leaves the part in the direction `out`.
   Vec3 direction_to(const Vec3& out) const {
@@ -80,8 +80,8 @@ namespace {
 /// the cone well enough.
 /// \param met light that meets the facet
 /// \param power power of an ordinary ray from this site
-std::optional<WayToSource> way_to_source(const PathSetup& setup, const PathWalker& walker, const Vec3& position,
-                                         const Vec3& normal, const Ray& met, double power) {
+std::optional<PathToSource> way_to_source(const PathSetup& setup, const PathWalker& walker, const Vec3& position,
+                                          const Vec3& normal, const Ray& met, double power) {
   if (!met.inside || surface_models::first_order_model(setup.optics.facet_scatter) == nullptr) return std::nullopt;
   // The power in the cone is tested first, because the search for reflections takes longer. It is estimated for the
   // specular direction, in which the scattering lobe has its maximum.
@@ -90,7 +90,7 @@ std::optional<WayToSource> way_to_source(const PathSetup& setup, const PathWalke
   const double in_cone = density * narrowing(setup, setup.to_source) * solid_angle(setup);
   if (in_cone <= 0.0 || in_cone >= kNarrow * power) return std::nullopt;
   const auto turn = walker.mirrors_to_entrance(position, specular);
-  return turn ? std::optional<WayToSource>(std::in_place, setup, *turn) : std::nullopt;
+  return turn ? std::optional<PathToSource>(std::in_place, setup, *turn) : std::nullopt;
 }
 
 }  // namespace
@@ -128,14 +128,14 @@ ScatteredRays::ScatteredRays(const PathSetup& setup, RandomKey key, std::uint32_
       cancel_(cancel),
       tally_(setup.cone_chord2.size()),
       walker_(setup, tally_),
-      apart_(setup.cone_chord2.size()),
-      walker_apart_(setup, apart_) {}
+      single_ray_tally_(setup.cone_chord2.size()),
+      single_ray_walker_(setup, single_ray_tally_) {}
 
-void ScatteredRays::launch(const std::vector<ScatterSite>& sites, double most_power) {
+void ScatteredRays::launch(const std::vector<ScatterSite>& sites, double max_power) {
   double power = 0.0;
   for (const ScatterSite& site : sites) power += site.scattered;
   if (power <= 0.0) return;
-  const double count = std::ceil(power / most_power);
+  const double count = std::ceil(power / max_power);
   const double each = power / count;
   const double offset = unit_interval(philox(key_, replicate_, number_++)[0]);
   double passed = 0.0;
@@ -158,7 +158,7 @@ void ScatteredRays::launch_one(const ScatterSite& site, double power) {
   const double x = random.next();
   const Vec3 home = point_of(site.corners, {x, random.next()});
   Ray met{site.direction, site.light, site.inside, false};
-  met.light.scale(power / site.scattered * site.share *
+  met.light.scale(power / site.scattered * site.area_fraction *
                   std::exp(-optics.absorption_per_mm * site.path_length.at(home)));
   const TexturedReturn back = meet_textured_facet(optics, site.normal, met, 0.0, random);
   double scattered = 0.0;
@@ -179,9 +179,9 @@ void ScatteredRays::launch_one(const ScatterSite& site, double power) {
   Ray ray = back.rays[chosen];
   ray.light.scale(scattered / ray.light.power());
   Vec3 position = home;
-  if (site.places) {
-    const auto place = static_cast<std::size_t>(random.next() * static_cast<double>(site.places->size()));
-    position.head<2>() += (*site.places)[place];
+  if (site.instance_offsets) {
+    const auto place = static_cast<std::size_t>(random.next() * static_cast<double>(site.instance_offsets->size()));
+    position.head<2>() += (*site.instance_offsets)[place];
   }
   const auto off_facet = [&](bool inside) {
     Vec3 at = position + (inside ? -kClearance : kClearance) * setup_.depth_mm * site.normal;
@@ -194,7 +194,7 @@ void ScatteredRays::launch_one(const ScatterSite& site, double power) {
   const Vec3 inside = ray.inside ? start : off_facet(true);
   const auto way = way_to_source(setup_, walker_, inside, site.normal, met, power);
   if (way) score(*way, inside, site.normal, met, power, number, choices);
-  if (way && back.once == chosen && ray.inside && way->leads_back(ray.direction))
+  if (way && back.diffracted_once == chosen && ray.inside && way->leads_back(ray.direction))
     follow_scored(start, ray, number, choices);
   else
     walker_.resume(start, ray, key_, replicate_, number, choices);
@@ -204,34 +204,34 @@ void ScatteredRays::launch_one(const ScatterSite& site, double power) {
 /// represents the light that is diffracted one time and reaches the cones. If the ordinary ray ends in a cone, its
 /// power is therefore added to the light outside of the cones.
 void ScatteredRays::follow_scored(const Vec3& position, const Ray& ray, std::uint32_t number, std::uint32_t& choices) {
-  apart_.clear();
-  walker_apart_.resume(position, ray, key_, replicate_, number, choices);
+  single_ray_tally_.clear();
+  single_ray_walker_.resume(position, ray, key_, replicate_, number, choices);
   for (std::size_t cone = 0; cone < setup_.cone_chord2.size(); ++cone)
-    apart_.scattered.back() += std::exchange(apart_.scattered[cone], Stokes{});
-  tally_.add(apart_);
+    single_ray_tally_.scattered.back() += std::exchange(single_ray_tally_.scattered[cone], Stokes{});
+  tally_.add(single_ray_tally_);
 }
 
 /// Traces a ray that represents all light of this site that is diffracted one time towards the widest cone. The same
 /// light is added to the light outside of the cones by follow_scored(). The power of this ray that reaches a cone is
 /// therefore subtracted from the light outside of the cones.
-void ScatteredRays::score(const WayToSource& way, const Vec3& position, const Vec3& normal, const Ray& met,
+void ScatteredRays::score(const PathToSource& path, const Vec3& position, const Vec3& normal, const Ray& met,
                           double power, std::uint32_t number, std::uint32_t& choices) {
   surface_models::RandomStream random(key_, replicate_, number, choices++);
-  const Vec3 out = way.draw(random);
+  const Vec3 out = path.draw(random);
   if (out.z() <= 0.0) return;
-  Ray ray = diffracted_once_into(setup_.optics, normal, met, way.direction_to(out));
+  Ray ray = diffracted_once_into(setup_.optics, normal, met, path.direction_to(out));
   if (!ray.inside) return;
   ray.light.scale(narrowing(setup_, out) * solid_angle(setup_));
-  const double chance = ray.light.power() / (kLeastShare * power);
+  const double chance = ray.light.power() / (kMinPowerFraction * power);
   if (chance <= 0.0 || random.next() >= chance) return;
   if (chance < 1.0) ray.light.scale(1.0 / chance);
-  apart_.clear();
-  walker_apart_.resume(position, ray, key_, replicate_, number, choices);
+  single_ray_tally_.clear();
+  single_ray_walker_.resume(position, ray, key_, replicate_, number, choices);
   for (std::size_t cone = 0; cone < setup_.cone_chord2.size(); ++cone) {
-    tally_.scattered[cone] += apart_.scattered[cone];
-    tally_.scattered.back() += -1.0 * apart_.scattered[cone];
+    tally_.scattered[cone] += single_ray_tally_.scattered[cone];
+    tally_.scattered.back() += -1.0 * single_ray_tally_.scattered[cone];
   }
-  tally_.segments += apart_.segments;
+  tally_.segments += single_ray_tally_.segments;
 }
 
 }  // namespace retrace::raytrace

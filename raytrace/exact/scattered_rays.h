@@ -12,7 +12,7 @@
 
 namespace retrace::raytrace {
 
-class WayToSource;
+class PathToSource;
 
 /// Starts rays for the light that rough facets scatter out of beams. Each ray starts at a random point of the beam's
 /// polygon on the facet, in a random direction of the scattering lobe. It is traced like a Monte Carlo ray and never
@@ -29,16 +29,16 @@ class ScatteredRays : public ScatteredReplicate {
   ScatteredRays(const PathSetup& setup, RandomKey key, std::uint32_t replicate, std::uint32_t round,
                 const Cancellation* cancel = nullptr);
 
-  /// Traces rays for all light that the sites scatter. Each ray has at most the power `most_power`. The rays are
+  /// Traces rays for all light that the sites scatter. Each ray has at most the power `max_power`. The rays are
   /// distributed over the sites in proportion to the scattered power, by systematic sampling. Stops early if cancelled.
-  void launch(const std::vector<ScatterSite>& sites, double most_power) override;
+  void launch(const std::vector<ScatterSite>& sites, double max_power) override;
 
   const Tally& tally() const override { return tally_; }
 
  private:
   void launch_one(const ScatterSite& site, double power);
   void follow_scored(const Vec3& position, const Ray& ray, std::uint32_t number, std::uint32_t& choices);
-  void score(const WayToSource& way, const Vec3& position, const Vec3& normal, const Ray& met, double power,
+  void score(const PathToSource& path, const Vec3& position, const Vec3& normal, const Ray& met, double power,
              std::uint32_t number, std::uint32_t& choices);
 
   const PathSetup& setup_;
@@ -48,8 +48,8 @@ class ScatteredRays : public ScatteredReplicate {
   const Cancellation* cancel_;
   Tally tally_;
   PathWalker walker_;
-  Tally apart_;  ///< tally of a single ray; see follow_scored()
-  PathWalker walker_apart_;
+  Tally single_ray_tally_;  ///< tally of a single ray; see follow_scored()
+  PathWalker single_ray_walker_;
 };
 
 /// Traces scattered light as rays. Each replicate has its own ScatteredRays.

@@ -29,13 +29,13 @@ constexpr double kSteepestFall = 0.003;
 constexpr double kGentlestFall = 0.5;
 constexpr double kMargin = 0.8;
 // Maximum number of beams that are kept for the replicates. They take about 100 MB.
-constexpr std::size_t kMostKept = 200'000;
+constexpr std::size_t kMaxDeferred = 200'000;
 // Maximum power of a ray of scattered light: the value in the first round, and the value at which the rounds end.
 constexpr double kFirstRayPower = 1e-3;
 constexpr double kLastRayPower = 1e-10;
 // Fraction of the target error that is allowed for each of two errors, if facets scatter light: the error of the beams,
 // and the error of the rays of scattered light. The two errors add in quadrature.
-constexpr double kShareOfTarget = 0.7;
+constexpr double kFractionOfTarget = 0.7;
 // Work of tracing a ray segment, in units of BeamTrace::work().
 constexpr std::uint64_t kLooksPerSegment = 25;
 
@@ -60,8 +60,8 @@ StochasticBeams::StochasticBeams(const BeamTracer& tracer, const ScatteredLight*
       strong_(std::make_unique<BeamWalk>(tracer.scene(setup_, policy_), std::move(observer))),
       threshold_(kFirstThreshold),
       ray_power_(std::min(kFirstRayPower, kReplicates * sampling.target_error)) {
-  if (scattered_ != nullptr) strong_->collect(strong_sites_);
-  strong_->enter(threshold_, BeamWalk::Approach::kept);
+  if (scattered_ != nullptr) strong_->collect_scatter_sites(strong_sites_);
+  strong_->enter(threshold_, BeamWalk::CutoffMode::deferring);
 }
 
 StochasticBeams::~StochasticBeams() = default;
@@ -80,8 +80,8 @@ bool StochasticBeams::follow_round() {
   const std::uint64_t before = strong_->work();
   result_.complete = strong_->run(std::numeric_limits<std::uint64_t>::max(), cancel_) == BeamWalk::End::done;
   if (!result_.complete) return true;
-  const BeamGeneration first(tracer_.part_, strong_->kept());
-  first_survivors_ = std::max(1.0, first.survivor_count(kThinning * threshold_));
+  const BeamGeneration first(tracer_.part_, strong_->deferred());
+  first_survivors_ = std::max(1.0, first.survivor_count(kSurvivorPowerRatio * threshold_));
   std::vector<std::optional<Replicate>> replicates(kReplicates);
   for_each_in_parallel(kReplicates, [&](std::size_t k) {
     replicates[k] = replicate(static_cast<std::uint32_t>(k), first);
@@ -102,12 +102,13 @@ bool StochasticBeams::follow_round() {
     both.back().add(one->rays);
     beam_work_ += one->beam_work;
     ray_work_ += kLooksPerSegment * one->rays.segments;
-    weak_beams_ += one->beam_count;
+    resampled_beams_ += one->beam_count;
   }
   work_ += beam_work_ + ray_work_;
   result_ = result_of(both, 1, cones_deg_);
   result_.rays = 0;
-  const double unseen_beam = first.counts() ? std::min(kThinning * threshold_, first.power()) / kReplicates : 0.0;
+  const double unseen_beam =
+      first.is_significant() ? std::min(kSurvivorPowerRatio * threshold_, first.power()) / kReplicates : 0.0;
   const double unseen = std::max(unseen_beam, std::min(ray_power_, rays[0].ledger(0).total()) / kReplicates);
   const double widened = student_factor(kReplicates);
   beam_error_ = std::max(unseen_beam, widened * largest_error(result_of(beams, 1, cones_deg_)));
@@ -116,22 +117,22 @@ bool StochasticBeams::follow_round() {
   result_.reached_target = largest_error(result_) <= sampling_.target_error;
   ++round_;
   return result_.reached_target || threshold_ <= kLastThreshold || ray_power_ <= kLastRayPower ||
-         strong_->kept().size() > kMostKept;
+         strong_->deferred().size() > kMaxDeferred;
 }
 
 std::uint64_t StochasticBeams::beams() const {
-  return strong_->beams() + weak_beams_;
+  return strong_->beams() + resampled_beams_;
 }
 
 double StochasticBeams::next_threshold() const {
-  const double target = (scattered_ != nullptr ? kShareOfTarget : 1.0) * sampling_.target_error;
+  const double target = (scattered_ != nullptr ? kFractionOfTarget : 1.0) * sampling_.target_error;
   if (scattered_ != nullptr && beam_error_ <= target) return threshold_;
   const double fall = kMargin * std::pow(target / beam_error_, 1.0 / kConvergence);
   return std::max(kLastThreshold, threshold_ * std::clamp(fall, kSteepestFall, kGentlestFall));
 }
 
 double StochasticBeams::next_ray_power() const {
-  const double target = kShareOfTarget * sampling_.target_error;
+  const double target = kFractionOfTarget * sampling_.target_error;
   if (ray_error_ <= target) return ray_power_;
   return std::max(kLastRayPower, ray_power_ * std::min(kGentlestFall, kMargin * std::pow(target / ray_error_, 2.0)));
 }
@@ -143,11 +144,11 @@ double StochasticBeams::expected_work() const {
   // inversely proportional to the threshold. In an array with many elements, all beams may be weaker than the next
   // threshold.
   double still_weak = 0.0;
-  for (const Beam& beam : strong_->kept())
-    if (strong_->strength_of(beam) < next) still_weak += beam.total_power();
+  for (const Beam& beam : strong_->deferred())
+    if (strong_->power_for_cutoff(beam) < next) still_weak += beam.total_power();
   const double more =
-      std::max(std::pow(threshold_ / next, kWorkSlope), still_weak / (kThinning * next) / first_survivors_);
-  if (more * static_cast<double>(strong_->kept().size()) > static_cast<double>(kMostKept))
+      std::max(std::pow(threshold_ / next, kWorkSlope), still_weak / (kSurvivorPowerRatio * next) / first_survivors_);
+  if (more * static_cast<double>(strong_->deferred().size()) > static_cast<double>(kMaxDeferred))
     return std::numeric_limits<double>::infinity();
   return work() + static_cast<double>(beam_work_) * more +
          static_cast<double>(ray_work_) * ray_power_ / next_ray_power();
@@ -157,20 +158,20 @@ double StochasticBeams::expected_work() const {
 std::optional<StochasticBeams::Replicate> StochasticBeams::replicate(std::uint32_t number,
                                                                      const BeamGeneration& first) const {
   BeamScene scene = tracer_.scene(setup_, policy_);
-  scene.equal = nullptr;
+  scene.symmetry = nullptr;
   BeamWalk walk(scene, BeamObserver{});
   std::vector<ScatterSite> sites;
   std::unique_ptr<ScatteredReplicate> rays;
   if (scattered_ != nullptr) {
     rays = scattered_->replicate(RandomKey{sampling_.seed, kScatterStream}, number, round_, cancel_);
-    walk.collect(sites);
+    walk.collect_scatter_sites(sites);
     rays->launch(strong_sites_, ray_power_);
   }
   const auto launch = [&] {
     if (rays) rays->launch(sites, ray_power_);
     sites.clear();
   };
-  const Resampling how{kThinning * threshold_, sampling_.seed, number, round_};
+  const Resampling how{kSurvivorPowerRatio * threshold_, sampling_.seed, number, round_};
   if (!follow_survivors(walk, tracer_.part_, first, how, cancel_, launch)) return std::nullopt;
   return Replicate{walk.tally(), rays ? rays->tally() : Tally(setup_.cone_chord2.size()), walk.work(), walk.beams()};
 }

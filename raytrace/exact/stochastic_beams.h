@@ -21,8 +21,8 @@ class BeamGeneration;
 /// rounds end when the standard error of the RRE (retroreflective efficiency) is below the target.
 ///
 /// Beams with more power than the threshold w are traced exactly, as BeamTrace does. Each generation of weaker beams
-/// with the total power P is resampled: n = ceil(P / (kThinning w)) beams survive, each with the power P / n. They are
-/// selected by systematic resampling, which is unbiased and preserves the total power (BeamGeneration).
+/// with the total power P is resampled: n = ceil(P / (kSurvivorPowerRatio w)) beams survive, each with the power P / n.
+/// They are selected by systematic resampling, which is unbiased and preserves the total power (BeamGeneration).
 ///
 /// The standard error is estimated from independent replicates. Its minimum is the power of one survivor, or of one ray
 /// of scattered light, divided by the number of replicates. This minimum allows for light that no replicate has traced
@@ -84,7 +84,7 @@ class StochasticBeams {
   std::uint32_t round_ = 0;
   std::uint64_t work_ = 0;
   std::uint64_t beam_work_ = 0, ray_work_ = 0;  ///< work of the last round only
-  std::uint64_t weak_beams_ = 0;
+  std::uint64_t resampled_beams_ = 0;
   double first_survivors_ = 1.0;  ///< number of survivors of a replicate's first generation in the last round
   MonteCarloResult result_;
 };

@@ -15,12 +15,12 @@ namespace retrace::raytrace {
 struct Candidate {
   Plane plane;
   geometry::FacetRole role = geometry::FacetRole::retro_facet;
-  CellPlace cell;
+  CellInstance cell;
   Distance distance;
-  FlatPolygon piece;  ///< intersection of the facet and the beam, including parts that other facets hide
+  FlatPolygon overlap;  ///< intersection of the facet and the beam, including parts that other facets hide
   PlanBox box;
-  bool is_met = false;                 ///< true if the candidate has been processed
-  std::optional<Vec2> middle_mm = {};  ///< PatchFacet::middle_mm, displaced to the position of the cell
+  bool is_processed = false;             ///< true if the candidate has been processed
+  std::optional<Vec2> centroid_mm = {};  ///< PatchFacet::middle_mm, displaced to the position of the cell
 };
 
 /// Facets that may block a beam in its next step. One object serves all beams of a run, one after the other.
@@ -46,9 +46,9 @@ class VisibleFacets {
   struct Search;
 
   void consider(const Search& search, const geometry::SurfacePatch& patch, const geometry::PatchFacet& facet,
-                const Vec3& shift, const CellPlace& cell);
+                const Vec3& shift, const CellInstance& cell);
   bool is_nearer(const Candidate& own, const Candidate& other) const;
-  FlatPolygons visible_pieces(std::size_t k);
+  FlatPolygons visible_polygons(std::size_t k);
   void join(FlatPolygons& pieces);
 
   BeamScene scene_;

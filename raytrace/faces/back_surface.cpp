@@ -189,7 +189,7 @@ struct BackSurface::Boxes {
   static void bounds(const RTCBoundsFunctionArguments* args) {
     const auto& group = *static_cast<const Group*>(args->geometryUserPtr);
     const Boxes& self = *group.owner;
-    const FacetBox box = box_round(self.part.patches[group.patch], self.contents[group.patch][args->primID]);
+    const FacetBox box = bounding_box_of(self.part.patches[group.patch], self.contents[group.patch][args->primID]);
     const Vec3 lower = box.lower + group.place - Vec3::Constant(self.band_mm);
     const Vec3 upper = box.upper + group.place + Vec3::Constant(self.band_mm);
     *args->bounds_o = {below(lower.x()), below(lower.y()), below(lower.z()), 0.0F,
@@ -219,7 +219,7 @@ struct BackSurface::Boxes {
     RTCRayHit embree = embree_ray(ray);
     if (std::isfinite(ray.t_max)) embree.ray.tfar = above(ray.t_max + band_mm);
     rtcIntersect1(scene.get(), &query.substrate, &embree);
-    return ExactSurface::settled(query.best);
+    return ExactSurface::found_hit(query.best);
   }
 
   const geometry::Part& part;
@@ -241,7 +241,7 @@ std::optional<SurfaceHit> BackSurface::first_hit(const SurfaceRay& ray) const {
   return boxes_->first_hit(ray, exact_.tolerance_mm());
 }
 
-std::optional<SurfaceHit> BackSurface::certain_first_hit(const SurfaceRay& ray) const {
+std::optional<SurfaceHit> BackSurface::first_hit_with_tolerance(const SurfaceRay& ray) const {
   const auto hit = first_hit(ray);
   return hit ? hit : boxes_->first_hit(ray, exact_.wide_tolerance_mm());
 }

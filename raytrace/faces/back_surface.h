@@ -33,7 +33,7 @@ class BackSurface {
 
   /// Returns the first facet for a ray that must meet the surface. If first_hit() finds no facet, the search is
   /// repeated with slightly enlarged facets, because rounding may leave a gap between two facets.
-  std::optional<SurfaceHit> certain_first_hit(const SurfaceRay& ray) const;
+  std::optional<SurfaceHit> first_hit_with_tolerance(const SurfaceRay& ray) const;
 
   const ExactSurface::Facet& facet(FacetRef ref) const { return exact_.facet(ref); }
   /// Returns the position of the patch that contains the facet.

@@ -13,7 +13,7 @@ using geometry::PatchFacet, geometry::SurfacePatch;
 // Tolerances of the searches, as fractions of the element size.
 constexpr double kTolerance = 1e-10, kWideTolerance = 1e-6;
 
-Vec3 place_of(const geometry::Placement& placement) {
+Vec3 position_of(const geometry::Placement& placement) {
   return {placement.offset_mm.x(), placement.offset_mm.y(), placement.height_mm};
 }
 
@@ -86,16 +86,16 @@ std::optional<SurfaceHit> ExactSurface::first_hit(const SurfaceRay& ray) const {
   best.t = ray.t_max;
   for (std::uint32_t p = 0; p < placements_.size(); ++p) {
     const std::uint32_t patch = placements_[p].patch;
-    const Vec3 local = ray.origin - place_of(placements_[p]);
+    const Vec3 local = ray.origin - position_of(placements_[p]);
     if (!meets_box(local, ray.direction, boxes_[patch].lower, boxes_[patch].upper, tolerance, best.t)) continue;
     for (const auto& cell : part_->patches[patch].cells)
       if (meets_box(local, ray.direction, cell.lower, cell.upper, tolerance, best.t))
         search(ray, p, {cell.first_facet, cell.facet_count}, tolerance, best);
   }
-  return settled(best);
+  return found_hit(best);
 }
 
-std::optional<SurfaceHit> ExactSurface::settled(SurfaceHit best) {
+std::optional<SurfaceHit> ExactSurface::found_hit(SurfaceHit best) {
   if (best.facet.placement == FacetRef::kNone) return std::nullopt;
   best.t = std::max(best.t, 0.0);
   return best;
@@ -104,7 +104,7 @@ std::optional<SurfaceHit> ExactSurface::settled(SurfaceHit best) {
 void ExactSurface::search(const SurfaceRay& ray, std::uint32_t placement, const FacetRange& range, double tolerance_mm,
                           SurfaceHit& best) const {
   const SurfacePatch& patch = part_->patches[placements_[placement].patch];
-  const Vec3 local = ray.origin - place_of(placements_[placement]);
+  const Vec3 local = ray.origin - position_of(placements_[placement]);
   for (std::uint32_t f = range.first; f < range.first + range.count; ++f) {
     const PatchFacet& facet = patch.facets[f];
     const double towards = facet.normal.dot(ray.direction);

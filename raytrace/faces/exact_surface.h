@@ -41,7 +41,7 @@ class ExactSurface {
               SurfaceHit& best) const;
 
   /// Returns the hit found by calls of search(), or nothing if they have found none. A distance below 0 becomes 0.
-  static std::optional<SurfaceHit> settled(SurfaceHit best);
+  static std::optional<SurfaceHit> found_hit(SurfaceHit best);
 
   /// Returns the placements of the patches, relative to the origin of rays.
   const std::vector<geometry::Placement>& placements() const { return placements_; }

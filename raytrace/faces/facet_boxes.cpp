@@ -9,7 +9,7 @@ namespace {
 // Maximum number of facets of a cell that has one box for all facets. In larger cells, each facet has a box.
 constexpr std::uint32_t kFewFacets = 16;
 // Maximum number of boxes per facet.
-constexpr double kMostPieces = 8.0;
+constexpr double kMaxBoxes = 8.0;
 // Minimum cosine of the angle between the longest direction of a facet and the nearest coordinate axis, for the facet
 // to have a single box. The box of such a facet contains little empty space.
 constexpr double kAlongAnAxis = 0.98;
@@ -42,7 +42,7 @@ std::uint16_t pieces_of(const std::vector<Vec3>& corners) {
     width = std::max(width, (from - from.dot(along) * along).norm());
   }
   if (!(length > 0.0)) return 1;
-  return static_cast<std::uint16_t>(std::clamp(length / std::max(width, length / kMostPieces), 1.0, kMostPieces));
+  return static_cast<std::uint16_t>(std::clamp(length / std::max(width, length / kMaxBoxes), 1.0, kMaxBoxes));
 }
 
 /// Returns the part of a polygon where along . p >= level.
@@ -60,7 +60,7 @@ std::vector<Vec3> beyond(const std::vector<Vec3>& polygon, const Vec3& along, do
 }
 
 std::vector<Vec3> piece_of(std::vector<Vec3> corners, const BoxContent& content) {
-  if (content.pieces == 1) return corners;
+  if (content.parts == 1) return corners;
   const Vec3 along = length_of(corners);
   double low = INFINITY;
   double high = -INFINITY;
@@ -68,9 +68,9 @@ std::vector<Vec3> piece_of(std::vector<Vec3> corners, const BoxContent& content)
     low = std::min(low, along.dot(p));
     high = std::max(high, along.dot(p));
   }
-  const double step = (high - low) / content.pieces;
-  if (content.piece > 0) corners = beyond(corners, along, low + content.piece * step);
-  if (content.piece + 1 < content.pieces) corners = beyond(corners, -along, -(low + (content.piece + 1) * step));
+  const double step = (high - low) / content.parts;
+  if (content.part > 0) corners = beyond(corners, along, low + content.part * step);
+  if (content.part + 1 < content.parts) corners = beyond(corners, -along, -(low + (content.part + 1) * step));
   return corners;
 }
 
@@ -92,7 +92,7 @@ std::vector<BoxContent> box_contents(const geometry::SurfacePatch& patch) {
   return contents;
 }
 
-FacetBox box_round(const geometry::SurfacePatch& patch, const BoxContent& content) {
+FacetBox bounding_box_of(const geometry::SurfacePatch& patch, const BoxContent& content) {
   FacetBox box{Vec3::Constant(INFINITY), Vec3::Constant(-INFINITY)};
   for (std::uint32_t f = content.range.first; f < content.range.first + content.range.count; ++f)
     for (const Vec3& p : piece_of(corners_of(patch, patch.facets[f]), content)) {

@@ -13,8 +13,8 @@ namespace retrace::raytrace {
 /// Content of a bounding box: consecutive facets of a cell, or one of several parts of equal length of a single facet.
 struct BoxContent {
   ExactSurface::FacetRange range;
-  std::uint16_t piece = 0;   ///< index of the part of the facet
-  std::uint16_t pieces = 1;  ///< number of parts of the facet
+  std::uint16_t part = 0;   ///< index of the part of the facet
+  std::uint16_t parts = 1;  ///< number of parts of the facet
 };
 
 struct FacetBox {
@@ -27,6 +27,6 @@ struct FacetBox {
 std::vector<BoxContent> box_contents(const geometry::SurfacePatch& patch);
 
 /// Returns the bounding box of a content, in the patch's coordinates.
-FacetBox box_round(const geometry::SurfacePatch& patch, const BoxContent& content);
+FacetBox bounding_box_of(const geometry::SurfacePatch& patch, const BoxContent& content);
 
 }  // namespace retrace::raytrace

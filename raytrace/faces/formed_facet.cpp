@@ -6,15 +6,15 @@
 
 namespace retrace::raytrace {
 
-FacetFrame::FacetFrame(const Vec3& normal, double offset_mm, const Vec2& middle_mm)
-    : origin_mm(middle_mm.x(), middle_mm.y(), (offset_mm - normal.head<2>().dot(middle_mm)) / normal.z()),
-      level(normal.cross(Vec3::UnitZ()).normalized()),
-      down(normal.cross(level)) {}
+FacetFrame::FacetFrame(const Vec3& normal, double offset_mm, const Vec2& centroid_mm)
+    : origin_mm(centroid_mm.x(), centroid_mm.y(), (offset_mm - normal.head<2>().dot(centroid_mm)) / normal.z()),
+      horizontal(normal.cross(Vec3::UnitZ()).normalized()),
+      down(normal.cross(horizontal)) {}
 
 Vec3 formed_normal(const Optics& optics, const Vec3& normal, const FacetFrame& frame, const Vec3& point,
                    const Vec3& direction, bool inside) {
   const Vec2 slope = optics.facet_form.slope(frame.local(point));
-  const Vec3 formed = (normal - slope.x() * frame.level - slope.y() * frame.down).normalized();
+  const Vec3 formed = (normal - slope.x() * frame.horizontal - slope.y() * frame.down).normalized();
   const Vec3 against = inside ? Vec3(-formed) : formed;
   const Vec3 plane_against = inside ? Vec3(-normal) : normal;
   const double cos_incidence = -against.dot(direction);

@@ -13,15 +13,15 @@ using geometry::Vec2, geometry::Vec3;
 /// right-handed.
 struct FacetFrame {
   Vec3 origin_mm = Vec3::Zero();
-  Vec3 level = Vec3::UnitX();
+  Vec3 horizontal = Vec3::UnitX();
   Vec3 down = Vec3::UnitY();
 
   FacetFrame() = default;
   /// \param normal unit normal of the plane normal . p = offset_mm, which points out of the part
-  /// \param middle_mm see PatchFacet::middle_mm
-  FacetFrame(const Vec3& normal, double offset_mm, const Vec2& middle_mm);
+  /// \param centroid_mm see PatchFacet::middle_mm
+  FacetFrame(const Vec3& normal, double offset_mm, const Vec2& centroid_mm);
 
-  Vec2 local(const Vec3& p) const { return {level.dot(p - origin_mm), down.dot(p - origin_mm)}; }
+  Vec2 local(const Vec3& p) const { return {horizontal.dot(p - origin_mm), down.dot(p - origin_mm)}; }
 };
 
 /// Returns the normal of the facet's surface including its form. The normal points out of the part. It is evaluated at

@@ -20,12 +20,13 @@ constexpr double kBendMargin = 2.0;
 constexpr double kSameHeight = 4e-16;
 // Margin above the highest and below the lowest point, as a fraction of the part's size.
 constexpr double kRoom = 1e-12;
-constexpr int kMostIterations = 200;
+constexpr int kMaxIterations = 200;
 // Maximum distance from the surface, in units of rounding errors, of a ray that starts on the surface.
 constexpr double kStillOn = 8.0;
 
 /// Returns the curvature between two points, estimated from the difference of their slopes.
-double bend_between(const EntranceSurface::Place& a, const EntranceSurface::Place& b, double distance_mm) {
+double bend_between(const EntranceSurface::SurfaceSample& a, const EntranceSurface::SurfaceSample& b,
+                    double distance_mm) {
   const double bend = (a.slope - b.slope).norm() / distance_mm;
   return std::isfinite(bend) ? bend : 0.0;
 }
@@ -38,8 +39,8 @@ HeightField::HeightField(std::shared_ptr<const geometry::EntranceSurface> surfac
       surface_(std::move(surface)),
       x0_(centre_mm.x()),
       y0_(centre_mm.y()) {
-  make_cells(outline, geometry::cells_to_show(*surface_, outline));
-  widen_bends();
+  make_cells(outline, geometry::cells_to_resolve(*surface_, outline));
+  widen_curvatures();
 }
 
 void HeightField::make_cells(const geometry::Polygon& outline, int cells) {
@@ -50,7 +51,7 @@ void HeightField::make_cells(const geometry::Polygon& outline, int cells) {
   lower_ = box.lower - Vec2(x0_, y0_);
   cell_mm_ = box.size().cwiseQuotient(Vec2(columns_, rows_));
   const auto across = static_cast<std::size_t>(columns_) + 1;
-  std::vector<EntranceSurface::Place> nodes(across * (static_cast<std::size_t>(rows_) + 1));
+  std::vector<EntranceSurface::SurfaceSample> nodes(across * (static_cast<std::size_t>(rows_) + 1));
   for_each_in_parallel(static_cast<std::size_t>(rows_) + 1, [&](std::size_t j) {
     for (int i = 0; i <= columns_; ++i)
       nodes[j * across + static_cast<std::size_t>(i)] =
@@ -60,18 +61,18 @@ void HeightField::make_cells(const geometry::Polygon& outline, int cells) {
   for_each_in_parallel(static_cast<std::size_t>(rows_), [&](std::size_t j) {
     for (int i = 0; i < columns_; ++i) {
       const std::size_t n = j * across + static_cast<std::size_t>(i);
-      const EntranceSurface::Place within = at(lower_.x() + (i + kWithinX) * cell_mm_.x(),
-                                               lower_.y() + (static_cast<double>(j) + kWithinY) * cell_mm_.y());
-      const std::array<const EntranceSurface::Place*, 5> places = {&nodes[n], &nodes[n + 1], &nodes[n + across],
-                                                                   &nodes[n + across + 1], &within};
+      const EntranceSurface::SurfaceSample within = at(lower_.x() + (i + kWithinX) * cell_mm_.x(),
+                                                       lower_.y() + (static_cast<double>(j) + kWithinY) * cell_mm_.y());
+      const std::array<const EntranceSurface::SurfaceSample*, 5> places = {&nodes[n], &nodes[n + 1], &nodes[n + across],
+                                                                           &nodes[n + across + 1], &within};
       cells_[j * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(i)] = cell_between(places);
     }
   });
 }
 
-HeightField::Cell HeightField::cell_between(const std::array<const EntranceSurface::Place*, 5>& places) const {
+HeightField::Cell HeightField::cell_between(const std::array<const EntranceSurface::SurfaceSample*, 5>& places) const {
   Cell cell{kInfinity, -kInfinity, 0.0};
-  for (const EntranceSurface::Place* place : places) {
+  for (const EntranceSurface::SurfaceSample* place : places) {
     // The surface may be undefined outside of the outline. A cell with such a corner has unlimited bounds.
     const bool known = std::isfinite(place->height_mm);
     cell.low_mm = std::min(cell.low_mm, known ? place->height_mm : -kInfinity);
@@ -83,14 +84,14 @@ HeightField::Cell HeightField::cell_between(const std::array<const EntranceSurfa
     for (std::size_t b = 0; b < a; ++b)
       most =
           std::max(most, bend_between(*places[a], *places[b], (shares[a] - shares[b]).cwiseProduct(cell_mm_).norm()));
-  cell.bend_per_mm = kBendMargin * most;
+  cell.curvature_per_mm = kBendMargin * most;
   return cell;
 }
 
 /// Enlarges the bounds of the cells. The largest curvature may be just outside of the cell in which it was estimated.
 /// Each cell therefore receives the maximum of its own bound and the bounds of its neighbours. The range of heights is
 /// enlarged by the error of bilinear interpolation at this curvature.
-void HeightField::widen_bends() {
+void HeightField::widen_curvatures() {
   std::vector<Cell> wide = cells_;
   const double square = cell_mm_.squaredNorm();
   for (int j = 0; j < rows_; ++j)
@@ -98,10 +99,10 @@ void HeightField::widen_bends() {
       Cell& c = wide[static_cast<std::size_t>(j) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(i)];
       for (int v = std::max(0, j - 1); v <= std::min(rows_ - 1, j + 1); ++v)
         for (int u = std::max(0, i - 1); u <= std::min(columns_ - 1, i + 1); ++u)
-          c.bend_per_mm = std::max(c.bend_per_mm, cell(u, v).bend_per_mm);
+          c.curvature_per_mm = std::max(c.curvature_per_mm, cell(u, v).curvature_per_mm);
       // Upper bound of the error of bilinear interpolation (W. Gautschi, Numerical Analysis, section 2.2, generalized
       // to two dimensions).
-      const double room_mm = 0.25 * c.bend_per_mm * square;
+      const double room_mm = 0.25 * c.curvature_per_mm * square;
       c.low_mm -= room_mm;
       c.high_mm += room_mm;
     }
@@ -122,12 +123,12 @@ struct HeightField::Search {
   struct Gap {
     double value = 0.0;
     double slope = 0.0;
-    EntranceSurface::Place place;
+    EntranceSurface::SurfaceSample place;
   };
 
   Gap gap(double t) const {
     const Vec3 p = ray.origin + t * ray.direction;
-    const EntranceSurface::Place place = field.at(p.x(), p.y());
+    const EntranceSurface::SurfaceSample place = field.at(p.x(), p.y());
     return {sign * (p.z() - place.height_mm), sign * (ray.direction.z() - place.slope.dot(ray.direction.head<2>())),
             place};
   }
@@ -140,7 +141,7 @@ struct HeightField::Search {
   /// Returns the intersection between two points of the ray by bisection. At `clear`, the ray is on the side from which
   /// it comes; at `beyond`, it has crossed the surface.
   EntranceHit between(double clear, double beyond) const {
-    for (int k = 0; k < kMostIterations; ++k) {
+    for (int k = 0; k < kMaxIterations; ++k) {
       const double middle = 0.5 * (clear + beyond);
       if (middle <= clear || middle >= beyond) break;
       (gap(middle).value > 0.0 ? clear : beyond) = middle;
@@ -166,7 +167,7 @@ struct HeightField::Search {
 };
 
 std::optional<EntranceHit> HeightField::Search::within(const Cell& cell, double from, double to, bool on_surface) {
-  const double bend = cell.bend_per_mm * across2;
+  const double bend = cell.curvature_per_mm * across2;
   double t = from;
   Gap g = gap(t);
   // A ray that starts on the border of two cells may leave the first cell immediately. In the next cell, its distance
@@ -179,12 +180,12 @@ std::optional<EntranceHit> HeightField::Search::within(const Cell& cell, double 
     // The curvature may exceed the bound of the cell. The step is then halved until the ray is on the side from which
     // it comes.
     double clear = t;
-    for (int k = 0; g.value <= 0.0 && k < kMostIterations; ++k) {
+    for (int k = 0; g.value <= 0.0 && k < kMaxIterations; ++k) {
       clear = 0.5 * (from + clear);
       if (gap(clear).value > 0.0) return between(clear, t);
     }
   }
-  for (int k = 0; k < kMostIterations; ++k) {
+  for (int k = 0; k < kMaxIterations; ++k) {
     if (!std::isfinite(g.value)) return std::nullopt;  // the point is outside of the outline because of rounding
     if (g.value <= same_mm) {
       if (g.value < -same_mm && last_clear >= 0.0) return between(last_clear, t);

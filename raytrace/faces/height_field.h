@@ -26,16 +26,18 @@ class HeightField : public EntranceFace {
   struct Cell {
     double low_mm = 0.0;
     double high_mm = 0.0;
-    double bend_per_mm = 0.0;  ///< upper bound of the second derivatives
+    double curvature_per_mm = 0.0;  ///< upper bound of the second derivatives
   };
   struct Search;
   struct Walk;
 
-  geometry::EntranceSurface::Place at(double x_mm, double y_mm) const { return surface_->at({x_mm + x0_, y_mm + y0_}); }
+  geometry::EntranceSurface::SurfaceSample at(double x_mm, double y_mm) const {
+    return surface_->at({x_mm + x0_, y_mm + y0_});
+  }
   void make_cells(const geometry::Polygon& outline, int cells);
   /// \param places points at the four corners of a cell, first along x and then along y, and one point inside
-  Cell cell_between(const std::array<const geometry::EntranceSurface::Place*, 5>& places) const;
-  void widen_bends();
+  Cell cell_between(const std::array<const geometry::EntranceSurface::SurfaceSample*, 5>& places) const;
+  void widen_curvatures();
   std::optional<std::array<double, 2>> span_of(const SurfaceRay& ray, double room_mm) const;
   const Cell& cell(int i, int j) const {
     return cells_[static_cast<std::size_t>(j) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(i)];

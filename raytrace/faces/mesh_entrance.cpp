@@ -36,7 +36,8 @@ std::optional<EntranceHit> MeshEntrance::first_hit(const SurfaceRay& ray) const 
   SurfaceRay local = ray;
   local.origin.z() -= lowest_mm();
   // Due to rounding, a ray may pass between two triangles.
-  const std::optional<SurfaceHit> hit = crosses(ray) ? surface_.certain_first_hit(local) : surface_.first_hit(local);
+  const std::optional<SurfaceHit> hit =
+      crosses(ray) ? surface_.first_hit_with_tolerance(local) : surface_.first_hit(local);
   if (!hit || hit->t > ray.t_max) return std::nullopt;
   return EntranceHit{*hit, surface_.facet(hit->facet).normal};
 }

@@ -31,22 +31,22 @@ bool fits_memory(const Part& part) {
 }
 
 /// A facet at its position in the part.
-struct StandingFacet {
+struct PlacedFacet {
   std::vector<Vec3> corners;
   Vec3 middle = Vec3::Zero();  ///< centroid of the corners
   Vec3 normal = Vec3::UnitZ();
   geometry::FacetRole role = geometry::FacetRole::retro_facet;
 };
 
-StandingFacet standing(const SurfacePatch& patch, const PatchFacet& facet, const Vec3& shift) {
-  StandingFacet result{{}, Vec3::Zero(), facet.normal, facet.role};
+PlacedFacet standing(const SurfacePatch& patch, const PatchFacet& facet, const Vec3& shift) {
+  PlacedFacet result{{}, Vec3::Zero(), facet.normal, facet.role};
   for (std::uint32_t c = 0; c < facet.corner_count; ++c)
     result.corners.push_back(patch.vertices[patch.corners[facet.first_corner + c]] + shift);
   result.middle = geometry::centroid(std::span<const Vec3>(result.corners));
   return result;
 }
 
-StandingFacet mirror_image(StandingFacet facet, Eigen::Index axis, double about_mm) {
+PlacedFacet mirror_image(PlacedFacet facet, Eigen::Index axis, double about_mm) {
   const auto mirror = [&](Vec3& p) { p[axis] = 2.0 * about_mm - p[axis]; };
   for (Vec3& corner : facet.corners) mirror(corner);
   mirror(facet.middle);
@@ -68,16 +68,16 @@ class FacetsByPlace {
     }
   }
 
-  const std::vector<StandingFacet>& all() const { return facets_; }
+  const std::vector<PlacedFacet>& all() const { return facets_; }
 
-  bool has(const StandingFacet& facet) const {
+  bool has(const PlacedFacet& facet) const {
     bool found = false;
     by_middle_.visit(facet.middle, [&](std::size_t k) { found = found || is_same(facets_[k], facet); });
     return found;
   }
 
  private:
-  bool is_same(const StandingFacet& a, const StandingFacet& b) const {
+  bool is_same(const PlacedFacet& a, const PlacedFacet& b) const {
     const auto is_corner_of_a = [&](const Vec3& p) {
       return std::any_of(a.corners.begin(), a.corners.end(),
                          [&](const Vec3& q) { return (p - q).squaredNorm() <= near_mm_ * near_mm_; });
@@ -87,19 +87,19 @@ class FacetsByPlace {
   }
 
   double near_mm_;
-  std::vector<StandingFacet> facets_;
+  std::vector<PlacedFacet> facets_;
   geometry::PointLookup<std::size_t> by_middle_;
 };
 
 /// Returns the facets of the central period of an infinite part. The patch of such a part contains several periods,
 /// stored row by row.
-std::vector<StandingFacet> central_facets(const Part& part) {
+std::vector<PlacedFacet> central_facets(const Part& part) {
   const SurfacePatch& patch = part.patches.front();
   const auto side = static_cast<std::size_t>(2 * part.periods_beyond + 1);
   const std::size_t each = patch.cells.size() / (side * side);
   const std::size_t first = (side * side / 2) * each;
   const Vec2& offset = part.placements.front().offset_mm;
-  std::vector<StandingFacet> facets;
+  std::vector<PlacedFacet> facets;
   for (std::size_t k = first; k < first + each; ++k) {
     const PatchCell& cell = patch.cells[k];
     for (std::uint32_t f = cell.first_facet; f < cell.first_facet + cell.facet_count; ++f)
@@ -108,18 +108,18 @@ std::vector<StandingFacet> central_facets(const Part& part) {
   return facets;
 }
 
-bool holds(const FacetsByPlace& part, const std::vector<StandingFacet>& facets, Eigen::Index axis, double about_mm) {
+bool holds(const FacetsByPlace& part, const std::vector<PlacedFacet>& facets, Eigen::Index axis, double about_mm) {
   return std::all_of(facets.begin(), facets.end(),
-                     [&](const StandingFacet& f) { return part.has(mirror_image(f, axis, about_mm)); });
+                     [&](const PlacedFacet& f) { return part.has(mirror_image(f, axis, about_mm)); });
 }
 
 /// Returns true if an infinite part is symmetric about a plane normal to `axis`. The tested planes map the first facet
 /// of the central period to a facet that is at most one period away.
 bool endless_is_mirrored(const Part& part, Eigen::Index axis) {
   const FacetsByPlace all(part);
-  const std::vector<StandingFacet> central = central_facets(part);
-  const StandingFacet& first = central.front();
-  for (const StandingFacet& other : all.all()) {
+  const std::vector<PlacedFacet> central = central_facets(part);
+  const PlacedFacet& first = central.front();
+  for (const PlacedFacet& other : all.all()) {
     const double about_mm = 0.5 * (first.middle[axis] + other.middle[axis]);
     const bool is_near = std::abs(other.middle[axis] - first.middle[axis]) <= (*part.period_mm)[axis];
     const Vec3 image = mirror_image(first, axis, about_mm).middle;
@@ -139,10 +139,10 @@ bool is_mirrored(const geometry::Polygon& outline, Eigen::Index axis, double abo
 
 }  // namespace
 
-bool is_its_own_mirror_image(const Part& part, Eigen::Index axis) {
+bool is_mirror_symmetric(const Part& part, Eigen::Index axis) {
   if (!fits_memory(part)) return false;
   if (part.period_mm) return endless_is_mirrored(part, axis);
-  const double about_mm = geometry::bounding_box(part.outline).middle()[axis];
+  const double about_mm = geometry::bounding_box(part.outline).centre()[axis];
   if (!is_mirrored(part.outline, axis, about_mm, kSamePlace * part.size_mm)) return false;
   const FacetsByPlace all(part);
   return holds(all, all.all(), axis, about_mm);

@@ -8,6 +8,6 @@ namespace retrace::raytrace {
 
 /// Returns true if a part is symmetric about a plane normal to an axis (0: x, 1: y). For a finite part, the plane
 /// passes through its centre. For an infinite part, it may have any position.
-bool is_its_own_mirror_image(const geometry::Part& part, Eigen::Index axis);
+bool is_mirror_symmetric(const geometry::Part& part, Eigen::Index axis);
 
 }  // namespace retrace::raytrace

@@ -183,7 +183,7 @@ TexturedReturn meet_rough_dielectric(const surface_models::HarveyShack& rough, c
       const Vec3 direction = local.world_from_local.transpose() * ray.direction;
       if (!surface_models::is_on_side(direction, lobe)) continue;
       surface_models::ScatterSample out{direction, direction, 1.0, true};
-      if (local.piece.is_tilted) out.weight = rough.unmasked_share(direction);
+      if (local.piece.is_tilted) out.weight = rough.unmasked_fraction(direction);
       add(ray, local, out, result);
     } else if (const auto out =
                    surface_models::sample_diffracted_again(rough, local.event, local.piece, lobe, random)) {
@@ -201,7 +201,7 @@ TexturedReturn meet_rough_dielectric(const surface_models::HarveyShack& rough, c
   ray.light = {stokes_of(out->coherency, power[RoughLight::once] * unmasked), local.world_from_local * out->s_axis};
   ray.scattered = true;
   result.truncated -= ray.light.power();
-  result.once = result.count;
+  result.diffracted_once = result.count;
   result.rays[result.count++] = ray;
   return result;
 }
@@ -217,7 +217,7 @@ TexturedReturn meet_textured_facet(const Optics& optics, const Vec3& normal, con
   const materials::FresnelCoefficients f =
       fresnel_at_back(optics, geometry::FacetRole::retro_facet, ray.inside, cos_incidence);
   Light light = ray.light;
-  light.turn_to(ray.direction, against);
+  light.rotate_basis_to_interface(ray.direction, against);
   Ray reflected{mirrored(ray.direction, against), light.reflected(f), ray.inside, ray.scattered};
   Ray transmitted{refracted(ray.direction, against, optics.ratio_at_back(ray.inside), cos_incidence, f.cos_refracted),
                   light.transmitted(f), !ray.inside, ray.scattered};
@@ -236,7 +236,7 @@ Ray diffracted_once_into(const Optics& optics, const Vec3& normal, const Ray& ra
   const LocalEvent local = event_at(optics, normal, ray);
   const Vec3 against = local.world_from_local.col(2);
   Light light = ray.light;
-  light.turn_to(ray.direction, against);
+  light.rotate_basis_to_interface(ray.direction, against);
   const Vec3 s_axis = local.world_from_local.transpose() * light.s_axis;
   const Vec3 leaving = local.world_from_local.transpose() * direction;
   const surface_models::DiffractedOnce into =
@@ -251,7 +251,7 @@ Ray diffracted_once_into(const Optics& optics, const Vec3& normal, const Ray& ra
   return made;
 }
 
-void TexturedReturn::keep_sides(const Vec3& plane_normal) {
+void TexturedReturn::mirror_to_side(const Vec3& plane_normal) {
   for (std::size_t k = 0; k < count; ++k) {
     Ray& ray = rays[k];
     const double out = plane_normal.dot(ray.direction);
@@ -262,10 +262,10 @@ void TexturedReturn::keep_sides(const Vec3& plane_normal) {
   }
 }
 
-double mean_field_share(const Optics& optics, bool inside, double cos_incidence, Lobe lobe) {
+double mean_field_fraction(const Optics& optics, bool inside, double cos_incidence, Lobe lobe) {
   if (surface_models::first_order_model(optics.facet_scatter) != nullptr) return 1.0;
-  return surface_models::mean_field_share(optics.facet_scatter, event_of(optics, inside, at_incidence(cos_incidence)),
-                                          lobe);
+  return surface_models::mean_field_fraction(optics.facet_scatter,
+                                             event_of(optics, inside, at_incidence(cos_incidence)), lobe);
 }
 
 materials::FresnelCoefficients mean_field(const Optics& optics, bool inside, double cos_incidence,

@@ -44,7 +44,7 @@ struct TexturedReturn {
   std::array<Ray, 5> rays;  ///< only the first `count` elements are valid
   std::size_t count = 0;
   /// Index in `rays` of the light that was diffracted exactly one time by roughness between two dielectrics.
-  std::optional<std::size_t> once;
+  std::optional<std::size_t> diffracted_once;
   /// Incident power minus the power of `rays` and `absorbed`: the error of the texture model. May be negative.
   double truncated = 0.0;
   double absorbed = 0.0;  ///< power that the layers on the facet absorb
@@ -52,7 +52,7 @@ struct TexturedReturn {
   /// Mirrors directions that point to the wrong side of the facet's plane at this plane. The form of a facet causes
   /// such directions for light at grazing incidence.
   /// \param plane_normal unit normal of the plane, which points out of the part
-  void keep_sides(const Vec3& plane_normal);
+  void mirror_to_side(const Vec3& plane_normal);
 };
 
 /// Returns the rays that leave a random patch of the facet's texture. The reflected and the transmitted light are
@@ -71,7 +71,7 @@ Ray diffracted_once_into(const Optics& optics, const Vec3& normal, const Ray& ra
 
 /// Returns the fraction of a lobe's power that remains in the mean field at a textured retro facet. It returns 1 if s
 /// and p polarization have different fractions, because mean_field() then contains the effect of the texture.
-double mean_field_share(const Optics& optics, bool inside, double cos_incidence, surface_models::Lobe lobe);
+double mean_field_fraction(const Optics& optics, bool inside, double cos_incidence, surface_models::Lobe lobe);
 
 /// Returns the Fresnel coefficients of a retro facet for the mean field. The coefficients `fresnel` are reduced, for
 /// each polarization, by the light that roughness between two dielectrics scatters.

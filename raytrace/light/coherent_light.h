@@ -21,27 +21,27 @@ using JonesMatrix = Eigen::Matrix2cd;
 struct CoherentLight : Light {
   JonesMatrix jones = JonesMatrix::Identity();
 
-  void turn_to_axis(const Vec3& direction, const Vec3& axis) {
+  void rotate_basis_to_axis(const Vec3& direction, const Vec3& axis) {
     const double c = axis.dot(s_axis);
     const double s = axis.dot(direction.cross(s_axis));
     Eigen::Matrix2d turn;
     turn << c, s, -s, c;
     jones = turn * jones;
-    Light::turn_to_axis(direction, axis);
+    Light::rotate_basis_to_axis(direction, axis);
   }
 
-  void turn_to(const Vec3& direction, const Vec3& normal) {
+  void rotate_basis_to_interface(const Vec3& direction, const Vec3& normal) {
     const Vec3 across = direction.cross(normal);
     const double norm2 = across.squaredNorm();
     if (norm2 < kNormalIncidence) return;
-    turn_to_axis(direction, across / std::sqrt(norm2));
+    rotate_basis_to_axis(direction, across / std::sqrt(norm2));
   }
 
   /// Reduces the power of the light.
-  /// \param share fraction of the power that remains
-  void scale(double share) {
-    Light::scale(share);
-    jones *= std::sqrt(share);
+  /// \param fraction fraction of the power that remains
+  void scale(double fraction) {
+    Light::scale(fraction);
+    jones *= std::sqrt(fraction);
   }
 
   CoherentLight reflected(const materials::FresnelCoefficients& f) const {

@@ -43,7 +43,7 @@ std::optional<std::size_t> DirectionGrid::bin_of(const Vec2& angles_rad) const {
   return static_cast<std::size_t>(row) * columns_ + static_cast<std::size_t>(column);
 }
 
-Vec2 DirectionGrid::middle_rad(std::size_t bin) const {
+Vec2 DirectionGrid::centre_rad(std::size_t bin) const {
   const double row = (static_cast<double>(bin / columns_) + 0.5) / static_cast<double>(rows_);
   const double column = (static_cast<double>(bin % columns_) + 0.5) / static_cast<double>(columns_);
   if (layout_ == Layout::square) return half_width_rad_ * Vec2(2.0 * column - 1.0, 2.0 * row - 1.0);
@@ -52,7 +52,7 @@ Vec2 DirectionGrid::middle_rad(std::size_t bin) const {
 
 double DirectionGrid::solid_angle_sr(std::size_t bin) const {
   if (layout_ == Layout::square)
-    return square_solid_angle(middle_rad(bin), 2.0 * half_width_rad_ / static_cast<double>(columns_),
+    return square_solid_angle(centre_rad(bin), 2.0 * half_width_rad_ / static_cast<double>(columns_),
                               2.0 * half_width_rad_ / static_cast<double>(rows_));
   const double step = half_width_rad_ / static_cast<double>(rows_);
   const double inner = static_cast<double>(bin / columns_) * step;

@@ -29,7 +29,7 @@ class DirectionGrid {
   double half_width_rad() const { return half_width_rad_; }
   /// Returns the bin that contains a direction, or nothing outside of the grid.
   std::optional<std::size_t> bin_of(const geometry::Vec2& angles_rad) const;
-  geometry::Vec2 middle_rad(std::size_t bin) const;
+  geometry::Vec2 centre_rad(std::size_t bin) const;
   double solid_angle_sr(std::size_t bin) const;
 
  private:

@@ -19,17 +19,17 @@ struct Drops {
 
 /// Dust particles. They absorb a part of the incident light and scatter the rest according to Lambert's law.
 struct Dust {
-  double coverage = 0.0;       ///< fraction of the face under dust, 0 to 1
-  double albedo = 0.0;         ///< fraction of the incident light that is scattered
-  double forward_share = 0.0;  ///< fraction of the scattered light that continues to the other side of the dust
+  double coverage = 0.0;          ///< fraction of the face under dust, 0 to 1
+  double albedo = 0.0;            ///< fraction of the incident light that is scattered
+  double forward_fraction = 0.0;  ///< fraction of the scattered light that continues to the other side of the dust
 };
 
 /// Haze: a fraction of the light in the air at the face is scattered. The direction of this light changes: its
 /// direction cosines along the face are shifted by a random vector with the density exp(-shift^2 / spread^2). Shifts to
 /// directions outside of the unit disc are omitted.
 struct Haze {
-  double share = 0.0;   ///< fraction of the light that is deflected at each passage, 0 to 1
-  double spread = 0.0;  ///< > 0 if `share` is > 0
+  double fraction = 0.0;  ///< fraction of the light that is deflected at each passage, 0 to 1
+  double spread = 0.0;    ///< > 0 if `share` is > 0
 };
 
 /// Fine scratches. Light that meets a scratch is deflected: its direction cosine perpendicular to the scratch is
@@ -56,10 +56,10 @@ struct EntranceCondition {
   std::span<const materials::ThickLayer> layers_under_film() const {
     return std::span(layers).first(layers.size() - (film_coverage > 0.0 ? 1 : 0));
   }
-  double spots() const { return drops.coverage + dust.coverage + scratches.coverage; }
+  double covered_fraction() const { return drops.coverage + dust.coverage + scratches.coverage; }
   bool is_rough() const { return !std::holds_alternative<surface_models::Smooth>(roughness); }
   /// Returns true if the face sends light into other directions than a smooth plane does.
-  bool scatters() const { return spots() > 0.0 || haze.share > 0.0 || is_rough(); }
+  bool scatters() const { return covered_fraction() > 0.0 || haze.fraction > 0.0 || is_rough(); }
   bool absorbs() const {
     for (const materials::ThickLayer& layer : layers)
       if (layer.absorption_per_mm > 0.0) return true;

@@ -8,7 +8,7 @@
 namespace retrace::raytrace {
 
 /// Light that leaves the part and does not meet it again.
-struct Departure {
+struct ExitEvent {
   Account account = Account::returned_elsewhere;  ///< `retroreflected` means inside the widest cone
   /// Point where the light leaves, relative to the centre of the entrance face in x and y. In an infinite part, the
   /// point may be in any period.
@@ -26,7 +26,7 @@ struct Departure {
 class ExitObserver {
  public:
   virtual ~ExitObserver() = default;
-  virtual void leaves(const Departure& departure) = 0;
+  virtual void on_exit(const ExitEvent& event) = 0;
 };
 
 }  // namespace retrace::raytrace

@@ -30,7 +30,7 @@ struct Light {
   void scale(double factor) { stokes = factor * stokes; }
 
   /// Expresses the same light with the s axis along `axis`, a unit vector perpendicular to `direction`.
-  void turn_to_axis(const Vec3& direction, const Vec3& axis) {
+  void rotate_basis_to_axis(const Vec3& direction, const Vec3& axis) {
     const double c = axis.dot(s_axis);
     const double s = axis.dot(direction.cross(s_axis));
     const double c2 = c * c - s * s;
@@ -42,11 +42,11 @@ struct Light {
   }
 
   /// Expresses the same light with the s axis perpendicular to the plane of incidence at an interface.
-  void turn_to(const Vec3& direction, const Vec3& normal) {
+  void rotate_basis_to_interface(const Vec3& direction, const Vec3& normal) {
     const Vec3 across = direction.cross(normal);
     const double norm2 = across.squaredNorm();
     if (norm2 < kNormalIncidence) return;
-    turn_to_axis(direction, across / std::sqrt(norm2));
+    rotate_basis_to_axis(direction, across / std::sqrt(norm2));
   }
 
   Light reflected(const materials::FresnelCoefficients& f) const {

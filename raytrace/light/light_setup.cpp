@@ -10,9 +10,10 @@ namespace retrace::raytrace {
 
 using materials::StackSide;
 
-/// Returns the direction after refraction at a plane. The unit normal `against` faces the ray.
-Vec3 refracted(const Vec3& direction, const Vec3& against, double ratio, double cos_incidence, double cos_refracted) {
-  return (ratio * direction + (ratio * cos_incidence - cos_refracted) * against).normalized();
+/// Returns the direction after refraction at a plane. The unit normal `facing_normal` faces the ray.
+Vec3 refracted(const Vec3& direction, const Vec3& facing_normal, double ratio, double cos_incidence,
+               double cos_refracted) {
+  return (ratio * direction + (ratio * cos_incidence - cos_refracted) * facing_normal).normalized();
 }
 
 Vec3 mirrored(const Vec3& direction, const Vec3& normal) {
@@ -97,8 +98,8 @@ Light light_of_beam(const Stokes& stokes, const Vec3& to_source) {
   return light;
 }
 
-Stokes seen_from_above(Light light, const Vec3& direction) {
-  light.turn_to_axis(direction, source_axis(direction));
+Stokes in_source_axes(Light light, const Vec3& direction) {
+  light.rotate_basis_to_axis(direction, source_axis(direction));
   return light.stokes;
 }
 
@@ -110,7 +111,7 @@ Account account_of_exit(geometry::FacetRole role) {
 void Tally::add(const Tally& more) {
   for (std::size_t k = 0; k < returned.size(); ++k) returned[k] += more.returned[k];
   for (std::size_t k = 0; k < scattered.size(); ++k) scattered[k] += more.scattered[k];
-  for (std::size_t k = 0; k < front.size(); ++k) front[k] += more.front[k];
+  for (std::size_t k = 0; k < entrance_reflected.size(); ++k) entrance_reflected[k] += more.entrance_reflected[k];
   for (std::size_t k = 0; k < score.size(); ++k) score[k] += more.score[k];
   for (std::size_t k = 0; k < kAccountCount; ++k) other.power[k] += more.other.power[k];
   segments += more.segments;
@@ -118,7 +119,7 @@ void Tally::add(const Tally& more) {
 }
 
 void Tally::clear() {
-  for (std::vector<Stokes>* const sums : {&returned, &scattered, &front})
+  for (std::vector<Stokes>* const sums : {&returned, &scattered, &entrance_reflected})
     std::fill(sums->begin(), sums->end(), Stokes{});
   std::fill(score.begin(), score.end(), 0.0);
   other = {};
@@ -130,7 +131,7 @@ Ledger Tally::ledger(std::size_t cone) const {
   for (std::size_t k = 0; k < returned.size(); ++k) {
     ledger[k <= cone ? Account::retroreflected : Account::returned_elsewhere] += returned[k].i;
     ledger[k <= cone ? Account::retroreflected : Account::scattered_out] += scattered[k].i;
-    ledger[k <= cone ? Account::retroreflected : Account::front_specular] += front[k].i;
+    ledger[k <= cone ? Account::retroreflected : Account::front_specular] += entrance_reflected[k].i;
   }
   return ledger;
 }
@@ -140,7 +141,7 @@ Stokes Tally::retroreflected(std::size_t cone) const {
   for (std::size_t k = 0; k <= cone; ++k) {
     sum += returned[k];
     sum += scattered[k];
-    sum += front[k];
+    sum += entrance_reflected[k];
   }
   return sum;
 }
@@ -183,18 +184,18 @@ LightSetup::Entry LightSetup::enter(const Stokes& stokes) const {
   light.stokes.u = -stokes.u;  // the p axis, direction x s, is opposite to the second axis of the source
   light.jones(1, 1) = -1.0;
   light.s_axis = source_axis(to_source);
-  light.turn_to(down, Vec3::UnitZ());
+  light.rotate_basis_to_interface(down, Vec3::UnitZ());
   Entry entered;
   entered.direction = refracted(down, Vec3::UnitZ(), ratio, to_source.z(), f.cos_refracted);
-  entered.front_direction = mirrored(down, Vec3::UnitZ());
-  entered.front_cone = cone_of(entered.front_direction);
+  entered.reflected_direction = mirrored(down, Vec3::UnitZ());
+  entered.reflected_cone = cone_of(entered.reflected_direction);
   entered.light = light;
   if (optics.lossless_entrance) return entered;
   const CoherentLight reflected = light.reflected(f);
   CoherentLight seen = reflected;
-  seen.turn_to_axis(entered.front_direction, source_axis(entered.front_direction));
-  entered.front = seen.stokes;
-  entered.front_jones = seen.jones;
+  seen.rotate_basis_to_axis(entered.reflected_direction, source_axis(entered.reflected_direction));
+  entered.reflected = seen.stokes;
+  entered.reflected_jones = seen.jones;
   entered.light = light.transmitted(f);
   entered.absorbed = absorbed_at_entrance(optics, light, reflected, entered.light);
   return entered;

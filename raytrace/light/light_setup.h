@@ -48,12 +48,13 @@ struct LightSetup {
   struct Entry {
     Vec3 direction = -Vec3::UnitZ();  ///< direction of the light that enters the part
     CoherentLight light;
-    Vec3 front_direction = Vec3::UnitZ();  ///< direction in air of the light that the face reflects
-    std::size_t front_cone = 0;            ///< narrowest cone that contains `front_direction`, see cone_of()
-    Stokes front;  ///< Stokes parameters of the reflected light, with source_axis(front_direction) as first axis
+    Vec3 reflected_direction = Vec3::UnitZ();  ///< direction in air of the light that the face reflects
+    std::size_t reflected_cone = 0;            ///< narrowest cone that contains `reflected_direction`, see cone_of()
+    Stokes
+        reflected;  ///< Stokes parameters of the reflected light, with source_axis(reflected_direction) as first axis
     /// Jones matrix of the reflection. The first axis of the incident field is source_axis(to_source). The first axis
-    /// of the reflected field is source_axis(front_direction).
-    JonesMatrix front_jones = JonesMatrix::Zero();
+    /// of the reflected field is source_axis(reflected_direction).
+    JonesMatrix reflected_jones = JonesMatrix::Zero();
     double absorbed = 0.0;  ///< power that the layers on the entrance face absorb
   };
   Entry entry;
@@ -66,17 +67,20 @@ struct LightSetup {
 /// that a single trace gives the results for several cones.
 struct Tally {
   explicit Tally(std::size_t cone_count = 0, std::size_t score_size = 0)
-      : returned(cone_count + 1), scattered(cone_count + 1), front(cone_count + 1), score(score_size, 0.0) {}
+      : returned(cone_count + 1),
+        scattered(cone_count + 1),
+        entrance_reflected(cone_count + 1),
+        score(score_size, 0.0) {}
 
   /// Light that left through the entrance face, by the narrowest cone that contains it. The last element is the light
   /// outside all cones. The following two vectors have the same order.
   std::vector<Stokes> returned;
-  std::vector<Stokes> scattered;  ///< light with at least one non-specular event on its path
-  std::vector<Stokes> front;      ///< light that the entrance face reflects from outside
-  std::vector<double> score;      ///< sums of LightSetup::score; empty without a score
-  Ledger other;                   ///< the remaining accounts
-  std::uint64_t segments = 0;     ///< number of straight ray segments traced
-  std::uint64_t misses = 0;       ///< number of rays that missed every face although faces surround them
+  std::vector<Stokes> scattered;           ///< light with at least one non-specular event on its path
+  std::vector<Stokes> entrance_reflected;  ///< light that the entrance face reflects from outside
+  std::vector<double> score;               ///< sums of LightSetup::score; empty without a score
+  Ledger other;                            ///< the remaining accounts
+  std::uint64_t segments = 0;              ///< number of straight ray segments traced
+  std::uint64_t misses = 0;                ///< number of rays that missed every face although faces surround them
   void add(const Tally& more);
   /// Sets all sums to 0.
   void clear();
@@ -101,7 +105,7 @@ Vec3 direction_to_source(const Illumination& illumination);
 Light light_of_beam(const Stokes& stokes, const Vec3& to_source);
 
 /// Returns the Stokes parameters of light that leaves the entrance face, with source_axis(direction) as first axis.
-Stokes seen_from_above(Light light, const Vec3& direction);
+Stokes in_source_axes(Light light, const Vec3& direction);
 
 /// Returns the account for light that leaves the part through a face with this role and does not enter again.
 /// \pre the face is not the entrance
@@ -140,9 +144,10 @@ inline double absorbed_at_entrance(const Optics& optics, const Light& met, const
 double absorbed_at_back(const Optics& optics, geometry::FacetRole role, const Light& met, const Light& reflected,
                         const Light& transmitted);
 
-/// Returns the direction after refraction at a plane. The unit normal `against` faces the ray.
+/// Returns the direction after refraction at a plane. The unit normal `facing_normal` faces the ray.
 /// \param ratio refractive index before the plane divided by that after the plane
-Vec3 refracted(const Vec3& direction, const Vec3& against, double ratio, double cos_incidence, double cos_refracted);
+Vec3 refracted(const Vec3& direction, const Vec3& facing_normal, double ratio, double cos_incidence,
+               double cos_refracted);
 
 /// Returns the direction after reflection at a plane.
 Vec3 mirrored(const Vec3& direction, const Vec3& normal);

@@ -43,7 +43,7 @@ struct Optics {
   /// Returns true if facets do not scatter, so that a beam remains a beam at each facet.
   bool is_smooth() const { return std::holds_alternative<surface_models::Smooth>(facet_scatter); }
   /// Returns true if the medium behind all elements is the same.
-  bool has_one_back() const { return wet == nullptr; }
+  bool has_uniform_backing() const { return wet == nullptr; }
   /// Returns true if there are no layers on the entrance face.
   bool has_bare_entrance() const { return entrance_layers.empty() && entrance.layers.empty(); }
   bool entrance_absorbs() const { return entrance_layers.absorbs() || entrance.absorbs(); }

@@ -43,45 +43,46 @@ constexpr std::uint32_t kFirstPass = 0xffffffff;
 // The picture is divided into rectangular tiles, and a PixelGuide has one map per tile. These are the minimum side
 // length of a tile in pixels and the maximum number of tiles along a side of the picture.
 constexpr std::size_t kTilePixels = 100;
-constexpr std::size_t kMostTiles = 8;
+constexpr std::size_t kMaxTiles = 8;
 
 /// A path of the camera. It begins where a ray from the pupil meets the part.
-struct Look {
+struct CameraSample {
   Contact contact;
   double luminance = 0.0;                              ///< luminance along the path, cd/m^2
   double weight = 1.0 / CameraTracer::kPointsPerPass;  ///< weight of the path in the mean of its pixel
-  bool shows_part() const { return contact.what == Contact::What::face || contact.what == Contact::What::side; }
+  bool shows_part() const { return contact.kind == Contact::Kind::face || contact.kind == Contact::Kind::side; }
 };
 
 /// Adds the luminance of the lamp and the surroundings to each path, in the direction in which the path leaves the
 /// part.
-class Sight : public ExitObserver, public CellObserver {
+class SensorAccumulator : public ExitObserver, public CellObserver {
  public:
   /// \param film true if the part is a film; the lamp is then evaluated at the start of the path
-  Sight(const Luminaire& luminaire, const Surroundings& surroundings, bool film, std::vector<Look>& looks)
+  SensorAccumulator(const Luminaire& luminaire, const Surroundings& surroundings, bool film,
+                    std::vector<CameraSample>& looks)
       : luminaire_(luminaire), surroundings_(surroundings), film_(film), looks_(looks) {}
 
   /// Selects the path to which the following events of PathWalker belong.
   void begin(std::size_t look) { look_ = static_cast<std::uint32_t>(look); }
-  void leaves(const Departure& departure) override {
+  void on_exit(const ExitEvent& departure) override {
     if (departure.is_through_entrance())
-      leaves(look_, departure.position, departure.direction, departure.light.power());
+      on_exit(look_, departure.position, departure.direction, departure.light.power());
   }
-  void leaves(std::uint32_t owner, const Vec3& position, const Vec3& direction, double power) override {
-    Look& look = looks_[owner];
+  void on_exit(std::uint32_t owner, const Vec3& position, const Vec3& direction, double power) override {
+    CameraSample& look = looks_[owner];
     const Vec3& from = film_ ? look.contact.world : position;
     look.luminance +=
-        power * (surroundings_.front + luminaire_.luminance(from, look.contact.world_from_local * direction));
+        power * (surroundings_.entrance_side + luminaire_.luminance(from, look.contact.world_from_local * direction));
   }
-  void is_transmitted(std::uint32_t owner, double power) override {
-    looks_[owner].luminance += surroundings_.behind * power;
+  void on_transmission(std::uint32_t owner, double power) override {
+    looks_[owner].luminance += surroundings_.back_side * power;
   }
 
  private:
   const Luminaire& luminaire_;
   const Surroundings& surroundings_;
   bool film_ = false;
-  std::vector<Look>& looks_;
+  std::vector<CameraSample>& looks_;
   std::uint32_t look_ = 0;
 };
 
@@ -148,11 +149,11 @@ double CameraImage::relative_noise() const {
   return sum > 0.0 ? errors / sum : 0.0;
 }
 
-struct CameraTracer::Hidden {
+struct CameraTracer::Impl {
   struct Block;
 
-  Hidden(const geometry::Part& p, const std::vector<WeighedOptics>& light, const CameraScene& s,
-         const PathPolicy& policy, std::uint32_t number, CameraEngine engine)
+  Impl(const geometry::Part& p, const std::vector<WeightedOptics>& light, const CameraScene& s,
+       const PathPolicy& policy, std::uint32_t number, CameraEngine engine)
       : part(p),
         scene(s),
         seed(number),
@@ -161,10 +162,10 @@ struct CameraTracer::Hidden {
         lens(s.view),
         luminaire(s.lamp, s.view, s.discs),
         entrance_mm(EntranceSampler(p).bounding_box()),
-        tiles_along(std::clamp<std::size_t>(std::min(s.view.columns, s.view.rows) / kTilePixels, 1, kMostTiles)) {
+        tiles_along(std::clamp<std::size_t>(std::min(s.view.columns, s.view.rows) / kTilePixels, 1, kMaxTiles)) {
     if (engine == CameraEngine::fastest) cells = CellArray::make(p);
     double sum = 0.0;
-    for (const WeighedOptics& at : light) {
+    for (const WeightedOptics& at : light) {
       // The direction of incidence has no effect, because each path starts in its own direction.
       setups.emplace_back(p, surface, centre_mm, at.optics, Illumination{}, std::vector<double>{90.0}, policy);
       sum += at.weight;
@@ -186,15 +187,16 @@ struct CameraTracer::Hidden {
   void look(const WorldRay& ray, std::size_t wavelength, std::uint32_t pixel, std::uint32_t point, Block& block) const;
   void look_from(std::uint32_t pixel, std::uint32_t pass, Block& block) const;
   std::array<PixelGuide::Point, kPointsPerPass> points_of(std::uint32_t pixel, std::uint32_t pass) const;
-  std::optional<PixelPlace> place_of(std::uint32_t pixel) const;
+  std::optional<PixelProjection> place_of(std::uint32_t pixel) const;
   std::uint32_t tile_of(std::size_t pixel) const {
     const std::size_t row = pixel / scene.view.columns * tiles_along / scene.view.rows;
     const std::size_t column = pixel % scene.view.columns * tiles_along / scene.view.columns;
     return static_cast<std::uint32_t>(row * tiles_along + column);
   }
   bool is_guided(std::size_t pixel) const { return guide && has_guide[pixel]; }
-  struct Lesson;
-  std::optional<CameraPass> trace(std::uint32_t pass, const Cancellation* cancel, Lesson* lesson = nullptr) const;
+  struct GuideTraining;
+  std::optional<CameraPass> trace(std::uint32_t pass, const Cancellation* cancel,
+                                  GuideTraining* lesson = nullptr) const;
   std::optional<CameraPass> trace_and_learn(std::uint32_t pass, const Cancellation* cancel);
   void follow_together(std::uint32_t pass, std::uint32_t block_number, Block& block, const Cancellation* cancel) const;
 
@@ -215,15 +217,15 @@ struct CameraTracer::Hidden {
   std::optional<PixelGuide> guide;  ///< set after the training pass, which is not part of the picture
   bool has_learnt_all = false;      ///< true if the guide has been trained with the training pass and with pass 0
   std::vector<bool> has_guide;      ///< indexed by pixel: true if the guide selects points of this pixel
-  std::vector<float> levels;        ///< indexed by pixel: typical luminance, see Lesson::level_of()
+  std::vector<float> levels;        ///< indexed by pixel: typical luminance, see GuideTraining::level_of()
 };
 
 /// Training samples for a PixelGuide, collected during one pass.
-struct CameraTracer::Hidden::Lesson {
+struct CameraTracer::Impl::GuideTraining {
   /// Maximum number of paths that are used as samples.
   static constexpr std::size_t kMostLooks = std::size_t{1} << 22U;
 
-  explicit Lesson(const Hidden& h)
+  explicit GuideTraining(const Impl& h)
       : hidden(h),
         pixels(h.scene.view.columns * h.scene.view.rows),
         guide(h.guide ? *h.guide
@@ -236,19 +238,19 @@ struct CameraTracer::Hidden::Lesson {
   /// Appends the paths of consecutive pixels to the samples.
   /// \param looks paths, kPointsPerPass per pixel
   /// \param pixel index of the first pixel
-  void take(const std::vector<Look>& looks, std::size_t pixel, PixelGuide::Samples& into) {
+  void take(const std::vector<CameraSample>& looks, std::size_t pixel, PixelGuide::Samples& into) {
     for (std::size_t k = 0; k < looks.size(); k += kPointsPerPass, ++pixel) {
-      const std::span<const Look, kPointsPerPass> of(looks.data() + k, kPointsPerPass);
+      const std::span<const CameraSample, kPointsPerPass> of(looks.data() + k, kPointsPerPass);
       if (!hidden.guide) levels[pixel] = level_of(of);
       if (pixel % stride != 0) continue;
-      for (const Look& look : of)
-        if (look.contact.what == Contact::What::face)
+      for (const CameraSample& look : of)
+        if (look.contact.kind == Contact::Kind::face)
           into.push_back(guide.sample(look.contact.local.head<2>(), hidden.tile_of(pixel),
                                       static_cast<float>(look.luminance) - levels[pixel]));
     }
   }
 
-  const Hidden& hidden;
+  const Impl& hidden;
   std::size_t pixels;
   std::size_t stride = (pixels * kPointsPerPass + kMostLooks - 1) / kMostLooks;  ///< every stride-th pixel is sampled
   PixelGuide guide;
@@ -258,9 +260,9 @@ struct CameraTracer::Hidden::Lesson {
  private:
   /// Returns the typical luminance of a pixel. It is the second smallest value of its paths, because the few areas that
   /// differ from the rest of the pixel are usually brighter.
-  static float level_of(std::span<const Look, kPointsPerPass> looks) {
+  static float level_of(std::span<const CameraSample, kPointsPerPass> looks) {
     std::array<double, kPointsPerPass> seen;
-    std::ranges::transform(looks, seen.begin(), &Look::luminance);
+    std::ranges::transform(looks, seen.begin(), &CameraSample::luminance);
     std::ranges::sort(seen);
     return static_cast<float>(seen[1]);
   }
@@ -268,7 +270,7 @@ struct CameraTracer::Hidden::Lesson {
 
 /// Returns the point at which a ray enters the plate of a finite part, through the entrance face or a side. Returns
 /// nothing if the ray meets neither of them from outside.
-std::optional<Contact> CameraTracer::Hidden::contact_with_plate(const WorldRay& ray) const {
+std::optional<Contact> CameraTracer::Impl::contact_with_plate(const WorldRay& ray) const {
   const PathSetup& setup = setups.front();
   const auto is_within = [&](const Vec3& p, std::size_t except) {
     for (std::size_t k = 0; k < setup.sides.size(); ++k)
@@ -279,7 +281,7 @@ std::optional<Contact> CameraTracer::Hidden::contact_with_plate(const WorldRay& 
     const double t = (setup.thickness_mm - ray.origin.z()) / ray.direction.z();
     const Vec3 at = ray.origin + t * ray.direction;
     if (t > 0.0 && is_within(at, setup.sides.size())) {
-      Contact contact{Contact::What::face, at, at, Eigen::Matrix3d::Identity(), 0};
+      Contact contact{Contact::Kind::face, at, at, Eigen::Matrix3d::Identity(), 0};
       contact.local.z() = setup.thickness_mm;
       return contact;
     }
@@ -290,24 +292,24 @@ std::optional<Contact> CameraTracer::Hidden::contact_with_plate(const WorldRay& 
     const double t = (setup.sides[k].offset_mm - setup.sides[k].normal.dot(ray.origin)) / towards;
     const Vec3 at = ray.origin + t * ray.direction;
     if (t > 0.0 && at.z() < setup.thickness_mm && at.z() > setup.top_mm && is_within(at, k))
-      return Contact{Contact::What::side, at, at, Eigen::Matrix3d::Identity(), k};
+      return Contact{Contact::Kind::side, at, at, Eigen::Matrix3d::Identity(), k};
   }
   return std::nullopt;
 }
 
-Contact CameraTracer::Hidden::contact_of(const WorldRay& ray) const {
+Contact CameraTracer::Impl::contact_of(const WorldRay& ray) const {
   if (scene.film) return contact_with(*scene.film, part.thickness_mm, ray);
   const double nearest = (middle - ray.origin).dot(ray.direction);
   if ((ray.origin + nearest * ray.direction - middle).norm() > radius_mm) return {};
   if (const auto plate = contact_with_plate(ray)) return *plate;
   // The start is moved close to the part, because Embree's single precision is inaccurate for points metres away.
   const Vec3 at = ray.origin + std::max(0.0, nearest - 1.01 * radius_mm) * ray.direction;
-  return {Contact::What::outside, at, at, Eigen::Matrix3d::Identity(), 0};
+  return {Contact::Kind::outside, at, at, Eigen::Matrix3d::Identity(), 0};
 }
 
 /// Rows of the picture that are traced together in one pass. Each thread reuses its block to avoid memory allocations.
-struct CameraTracer::Hidden::Block {
-  explicit Block(const Hidden& h)
+struct CameraTracer::Impl::Block {
+  explicit Block(const Impl& h)
       : sight(h.luminaire, h.scene.surroundings, h.scene.film.has_value(), looks), starts(h.setups.size()) {
     for (const PathSetup& setup : h.setups) {
       walkers.emplace_back(setup, tally, &sight);
@@ -329,49 +331,49 @@ struct CameraTracer::Hidden::Block {
     const double before = behind();
     sight.begin(start.owner);
     walkers[wavelength].resume(start.position, start.ray, key, replicate, sample, choices);
-    sight.is_transmitted(start.owner, behind() - before);
+    sight.on_transmission(start.owner, behind() - before);
   }
 
-  std::vector<Look> looks;  ///< kPointsPerPass per pixel
+  std::vector<CameraSample> looks;  ///< kPointsPerPass per pixel
   Tally tally{1};
-  Sight sight;
+  SensorAccumulator sight;
   std::vector<PathWalker> walkers;  ///< indexed by wavelength
   std::vector<CellWalker> cell_walkers;
   std::vector<std::vector<CellRay>> starts;  ///< indexed by wavelength: paths that are traced together
 };
 
 /// Adds a path to a block. The path is traced immediately, or queued for the cell engine.
-void CameraTracer::Hidden::look(const WorldRay& ray, std::size_t wavelength, std::uint32_t pixel, std::uint32_t point,
-                                Block& block) const {
+void CameraTracer::Impl::look(const WorldRay& ray, std::size_t wavelength, std::uint32_t pixel, std::uint32_t point,
+                              Block& block) const {
   const auto number = static_cast<std::uint32_t>(block.looks.size());
-  Look& look = block.looks.emplace_back();
+  CameraSample& look = block.looks.emplace_back();
   look.contact = contact_of(ray);
   const Contact contact = look.contact;
-  if (contact.what == Contact::What::nothing) look.luminance = scene.surroundings.behind;
-  if (contact.what == Contact::What::nothing || contact.what == Contact::What::dark) return;
+  if (contact.kind == Contact::Kind::nothing) look.luminance = scene.surroundings.back_side;
+  if (contact.kind == Contact::Kind::nothing || contact.kind == Contact::Kind::dark) return;
   const Optics& optics = setups[wavelength].optics;
   const Vec3 direction = contact.world_from_local.transpose() * ray.direction;
-  Ray start{direction, {}, contact.what != Contact::What::outside, false};
+  Ray start{direction, {}, contact.kind != Contact::Kind::outside, false};
   start.light.s_axis = direction.unitOrthogonal();
   if (look.shows_part()) {
-    const bool is_side = contact.what == Contact::What::side;
+    const bool is_side = contact.kind == Contact::Kind::side;
     const Vec3 normal = is_side ? setups[wavelength].sides[contact.side].normal : Vec3(Vec3::UnitZ());
     const double cosine = -normal.dot(direction);
     const materials::FresnelCoefficients f =
         is_side ? materials::fresnel(1.0 / optics.index, cosine) : fresnel_at_entrance(optics, false, cosine);
-    start.light.turn_to(direction, normal);
+    start.light.rotate_basis_to_interface(direction, normal);
     const Light front = start.light.reflected(f);
     start.direction = refracted(direction, normal, 1.0 / optics.index, cosine, f.cos_refracted);
     if (is_side || !optics.lossless_entrance) {
       start.light = start.light.transmitted(f);
       if (is_side)
-        block.sight.is_transmitted(number, front.power());
+        block.sight.on_transmission(number, front.power());
       else
-        block.sight.leaves(number, contact.local, mirrored(direction, normal), front.power());
+        block.sight.on_exit(number, contact.local, mirrored(direction, normal), front.power());
     }
   }
   const CellRay on{contact.local, start, number};
-  if (cells && contact.what == Contact::What::face) {
+  if (cells && contact.kind == Contact::Kind::face) {
     block.starts[wavelength].push_back(on);
     return;
   }
@@ -380,21 +382,21 @@ void CameraTracer::Hidden::look(const WorldRay& ray, std::size_t wavelength, std
 }
 
 /// Returns the area of the entrance face that a pixel shows. Returns nothing if the pixel also shows something else.
-std::optional<PixelPlace> CameraTracer::Hidden::place_of(std::uint32_t pixel) const {
+std::optional<PixelProjection> CameraTracer::Impl::place_of(std::uint32_t pixel) const {
   const auto columns = static_cast<std::uint32_t>(scene.view.columns);
   const Vec2 corner(pixel % columns, pixel / columns);
   std::array<Vec2, 4> at;
   for (std::size_t k = 0; k < at.size(); ++k) {
     const Contact contact = contact_of(lens.ray(corner + Vec2(k % 2, k / 2), Vec2::Zero()));
-    if (contact.what != Contact::What::face) return std::nullopt;
+    if (contact.kind != Contact::Kind::face) return std::nullopt;
     at[k] = contact.local.head<2>();
   }
-  return PixelPlace{at[0], at[1] - at[0], at[2] - at[0], tile_of(pixel)};
+  return PixelProjection{at[0], at[1] - at[0], at[2] - at[0], tile_of(pixel)};
 }
 
 /// Returns the points of a pixel through which paths start in a pass.
-std::array<PixelGuide::Point, CameraTracer::kPointsPerPass> CameraTracer::Hidden::points_of(std::uint32_t pixel,
-                                                                                            std::uint32_t pass) const {
+std::array<PixelGuide::Point, CameraTracer::kPointsPerPass> CameraTracer::Impl::points_of(std::uint32_t pixel,
+                                                                                          std::uint32_t pass) const {
   if (is_guided(pixel)) {
     const auto words = philox({seed, kGuideStream}, pass, pixel);
     auto points = guide->points(*place_of(pixel), {words[0], words[1], words[2], words[3]});
@@ -415,7 +417,7 @@ std::array<PixelGuide::Point, CameraTracer::kPointsPerPass> CameraTracer::Hidden
 }
 
 /// Starts the paths of one pixel in a pass.
-void CameraTracer::Hidden::look_from(std::uint32_t pixel, std::uint32_t pass, Block& block) const {
+void CameraTracer::Impl::look_from(std::uint32_t pixel, std::uint32_t pass, Block& block) const {
   const auto columns = static_cast<std::uint32_t>(scene.view.columns);
   const Vec2 corner(pixel % columns, pixel / columns);
   const auto points = points_of(pixel, pass);
@@ -437,8 +439,8 @@ void CameraTracer::Hidden::look_from(std::uint32_t pixel, std::uint32_t pass, Bl
 
 /// Traces the queued paths of a block with the cell engine. Paths that this engine cannot complete are continued with
 /// the PathWalker.
-void CameraTracer::Hidden::follow_together(std::uint32_t pass, std::uint32_t block_number, Block& block,
-                                           const Cancellation* cancel) const {
+void CameraTracer::Impl::follow_together(std::uint32_t pass, std::uint32_t block_number, Block& block,
+                                         const Cancellation* cancel) const {
   const RandomKey key{seed, kCameraCellStream};
   for (std::size_t w = 0; w < setups.size(); ++w) {
     if (is_cancelled(cancel)) return;
@@ -453,8 +455,8 @@ void CameraTracer::Hidden::follow_together(std::uint32_t pass, std::uint32_t blo
 
 /// Traces one pass over the picture.
 /// \param lesson receives training samples for the guide; may be null
-std::optional<CameraPass> CameraTracer::Hidden::trace(std::uint32_t number, const Cancellation* cancel,
-                                                      Lesson* lesson) const {
+std::optional<CameraPass> CameraTracer::Impl::trace(std::uint32_t number, const Cancellation* cancel,
+                                                    GuideTraining* lesson) const {
   const std::size_t columns = scene.view.columns;
   const std::size_t pixels = columns * scene.view.rows;
   CameraPass result(2 * pixels + 1, 0.0);
@@ -477,7 +479,7 @@ std::optional<CameraPass> CameraTracer::Hidden::trace(std::uint32_t number, cons
     }
     if (cells) follow_together(number, static_cast<std::uint32_t>(block_number), block, cancel);
     for (std::size_t k = 0; k < block.looks.size(); ++k) {
-      const Look& look = block.looks[k];
+      const CameraSample& look = block.looks[k];
       const std::size_t pixel = first + k / kPointsPerPass;
       // The weights of a pixel's points add up to 1 only on average. The weights are therefore applied to the
       // difference from the typical luminance of the pixel, so that deviations of their sum from 1 cause little noise.
@@ -503,18 +505,18 @@ std::optional<CameraPass> CameraTracer::Hidden::trace(std::uint32_t number, cons
 }
 
 /// Traces a pass and trains the guide with it. If the pass is cancelled, the guide remains unchanged.
-std::optional<CameraPass> CameraTracer::Hidden::trace_and_learn(std::uint32_t number, const Cancellation* cancel) {
-  Lesson lesson(*this);
+std::optional<CameraPass> CameraTracer::Impl::trace_and_learn(std::uint32_t number, const Cancellation* cancel) {
+  GuideTraining lesson(*this);
   std::optional<CameraPass> result = trace(number, cancel, &lesson);
   if (!result) return std::nullopt;
-  lesson.guide.learn(lesson.samples);
+  lesson.guide.train(lesson.samples);
   std::vector<std::uint8_t> serves(lesson.pixels, 0);
   for_each_in_parallel(scene.view.rows, [&](std::size_t row) {
     if (is_cancelled(cancel)) return;
     for (std::size_t column = 0; column < scene.view.columns; ++column) {
       const std::size_t pixel = row * scene.view.columns + column;
-      const std::optional<PixelPlace> place = place_of(static_cast<std::uint32_t>(pixel));
-      serves[pixel] = place && lesson.guide.serves(*place) ? 1 : 0;
+      const std::optional<PixelProjection> place = place_of(static_cast<std::uint32_t>(pixel));
+      serves[pixel] = place && lesson.guide.reduces_noise(*place) ? 1 : 0;
     }
   });
   if (is_cancelled(cancel)) return std::nullopt;
@@ -525,19 +527,19 @@ std::optional<CameraPass> CameraTracer::Hidden::trace_and_learn(std::uint32_t nu
   return result;
 }
 
-CameraTracer::CameraTracer(const geometry::Part& part, const std::vector<WeighedOptics>& light,
+CameraTracer::CameraTracer(const geometry::Part& part, const std::vector<WeightedOptics>& light,
                            const CameraScene& scene, const PathPolicy& policy, std::uint32_t seed, CameraEngine engine)
-    : hidden_(std::make_unique<Hidden>(part, light, scene, policy, seed, engine)) {}
+    : impl_(std::make_unique<Impl>(part, light, scene, policy, seed, engine)) {}
 CameraTracer::~CameraTracer() = default;
 
 bool CameraTracer::is_by_cells() const {
-  return hidden_->cells.has_value();
+  return impl_->cells.has_value();
 }
 
 CameraImage CameraTracer::empty_image() const {
   CameraImage image;
-  image.columns = hidden_->scene.view.columns;
-  image.rows = hidden_->scene.view.rows;
+  image.columns = impl_->scene.view.columns;
+  image.rows = impl_->scene.view.rows;
   image.luminance.assign(image.columns * image.rows, 0.0);
   image.squares = image.luminance;
   image.coverage = image.luminance;
@@ -545,7 +547,7 @@ CameraImage CameraTracer::empty_image() const {
 }
 
 std::optional<CameraPass> CameraTracer::pass(std::uint32_t number, const Cancellation* cancel) const {
-  Hidden& h = *hidden_;
+  Impl& h = *impl_;
   if (!h.cells) return h.trace(number, cancel);
   if (number == 0 && h.has_learnt_all) {
     h.guide.reset();

@@ -38,8 +38,8 @@ struct LampDisc {
 
 /// Uniform luminances around the part, in cd/m^2.
 struct Surroundings {
-  double front = 0.0;   ///< luminance for paths that leave through the entrance face
-  double behind = 0.0;  ///< luminance for paths that leave through other faces or miss the part
+  double entrance_side = 0.0;  ///< luminance for paths that leave through the entrance face
+  double back_side = 0.0;      ///< luminance for paths that leave through other faces or miss the part
 };
 
 /// A thin sheet of an infinite part, bent around a body. Light is traced as in a plane part that is tangent to the film
@@ -64,7 +64,7 @@ struct CameraScene {
 };
 
 /// The optics at one of the wavelengths of the lamp.
-struct WeighedOptics {
+struct WeightedOptics {
   Optics optics;
   double weight = 1.0;  ///< fraction of the luminous flux; the weights add up to 1
 };
@@ -121,8 +121,8 @@ class CameraTracer {
   static constexpr std::uint32_t kPointsPerPass = 4;
 
   /// \pre the scene has a film if and only if the part is infinite; light is unpolarized; `part` outlives the tracer;
-  /// if `engine` is `fastest`, Optics::has_one_back() is true for all `light`
-  CameraTracer(const geometry::Part& part, const std::vector<WeighedOptics>& light, const CameraScene& scene,
+  /// if `engine` is `fastest`, Optics::has_uniform_backing() is true for all `light`
+  CameraTracer(const geometry::Part& part, const std::vector<WeightedOptics>& light, const CameraScene& scene,
                const PathPolicy& policy, std::uint32_t seed, CameraEngine engine = CameraEngine::fastest);
   ~CameraTracer();
 
@@ -141,8 +141,8 @@ class CameraTracer {
   bool add_pass(CameraImage& image, const Cancellation* cancel = nullptr) const;
 
  private:
-  struct Hidden;
-  std::unique_ptr<Hidden> hidden_;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace retrace::raytrace

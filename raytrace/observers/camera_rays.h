@@ -21,8 +21,8 @@ struct WorldRay {
 /// traced. For a film, the entrance face in this frame is tangent to the film at the point. `outside` means that the
 /// ray comes close to the part but does not meet the entrance face or a side. `dark` is the back of a film.
 struct Contact {
-  enum class What { nothing, face, side, outside, dark };
-  What what = What::nothing;
+  enum class Kind { nothing, face, side, outside, dark };
+  Kind kind = Kind::nothing;
   Vec3 world = Vec3::Zero();
   Vec3 local = Vec3::Zero();
   Eigen::Matrix3d world_from_local = Eigen::Matrix3d::Identity();
@@ -79,7 +79,7 @@ class Luminaire {
   /// discs of lamp and pupil.
   double luminance(const Vec3& from, const Vec3& direction) const {
     if (!(intensity_ > 0.0)) return 0.0;
-    return discs_ == DiscAverage::kernel ? averaged(from, direction) : met(from, direction);
+    return discs_ == DiscAverage::kernel ? averaged(from, direction) : luminance_of_disc(from, direction);
   }
 
  private:
@@ -97,7 +97,7 @@ class Luminaire {
     return intensity_ / (distance * distance) * kernel.per_sr(2.0 * std::asin(0.5 * chord));
   }
 
-  double met(const Vec3& from, const Vec3& direction) const {
+  double luminance_of_disc(const Vec3& from, const Vec3& direction) const {
     const double towards = direction.dot(axis_);
     if (!(towards > 0.0)) return 0.0;
     const Vec3 at = from + (position_ - from).dot(axis_) / towards * direction;
@@ -124,7 +124,7 @@ inline Contact contact_with(const Film& film, double thickness_mm, const WorldRa
   const auto take = [&](double t, double u, const Vec3& normal) {
     const Vec3 world = ray.origin + t * ray.direction;
     if (!(t > 0.0) || !is_on_it(u, world.y())) return false;
-    contact.what = normal.dot(ray.direction) < 0.0 ? Contact::What::face : Contact::What::dark;
+    contact.kind = normal.dot(ray.direction) < 0.0 ? Contact::Kind::face : Contact::Kind::dark;
     contact.world = world;
     contact.local = {u, world.y(), thickness_mm};
     contact.world_from_local.col(0) = Vec3::UnitY().cross(normal);

@@ -90,9 +90,9 @@ class Recorder : public ExitObserver {
   void enters(const Vec2& position_mm) {
     entry_ = pixel_at(position_mm);
     if (light_.optics.entrance.scatters()) return;  // in this case the walker reports the reflected light
-    add(position_mm, light_.entry.front_direction, light_.entry.front.i);
+    add(position_mm, light_.entry.reflected_direction, light_.entry.reflected.i);
   }
-  void leaves(const Departure& departure) override {
+  void on_exit(const ExitEvent& departure) override {
     if (departure.is_through_entrance())
       add(departure.position.head<2>(), departure.direction, departure.light.power());
   }
@@ -148,8 +148,8 @@ class RunningMean {
   PixelValues values(std::uint64_t rays, double largest) const {
     PixelValues values{mean_, squares_};
     for (double& s : values.std_error)
-      s = with_unseen(student_factor(kDetectorReplicates) * std::sqrt(s / (count_ - 1.0) / count_),
-                      static_cast<double>(rays), largest);
+      s = with_unsampled_paths(student_factor(kDetectorReplicates) * std::sqrt(s / (count_ - 1.0) / count_),
+                               static_cast<double>(rays), largest);
     return values;
   }
 
@@ -175,8 +175,8 @@ DetectorMaps exact_detector_maps(const geometry::Part& part, const Optics& optic
     if (beam.cone > 0) return;
     maps.rre += beam.stokes.i;
     const bool entered = beam.depth > 0;
-    spread(part, setting.face, entered ? beam.left_mm : face, beam.stokes.i, maps.leaving.value);
-    spread(part, setting.face, entered ? beam.entered_mm : face, beam.stokes.i, maps.entering.value);
+    spread(part, setting.face, entered ? beam.exit_polygon_mm : face, beam.stokes.i, maps.leaving.value);
+    spread(part, setting.face, entered ? beam.entry_polygon_mm : face, beam.stokes.i, maps.entering.value);
   };
   const BeamResult traced =
       BeamTracer(part).trace(optics, illumination, {setting.acceptance_deg}, policy, cancel, record);

@@ -32,14 +32,14 @@ Vec3 upward(const Vec2& cosines) {
 /// Table of an ApertureKernel. The argument is the chord, the distance between two points of the unit sphere.
 class ChordKernel {
  public:
-  explicit ChordKernel(const ApertureKernel& kernel) : most_(2.0 * std::sin(0.5 * kernel.reach_rad())) {
+  explicit ChordKernel(const ApertureKernel& kernel) : max_(2.0 * std::sin(0.5 * kernel.reach_rad())) {
     for (std::size_t k = 0; k <= kKernelSteps + 1; ++k)
-      values_.push_back(kernel.per_sr(2.0 * std::asin(std::min(1.0, 0.5 * most_ * static_cast<double>(k) / steps()))));
+      values_.push_back(kernel.per_sr(2.0 * std::asin(std::min(1.0, 0.5 * max_ * static_cast<double>(k) / steps()))));
   }
-  double most() const { return most_; }
+  double most() const { return max_; }
   /// \pre 0 <= chord < most()
   double per_sr(double chord) const {
-    const double place = chord / most_ * steps();
+    const double place = chord / max_ * steps();
     const auto k = static_cast<std::size_t>(place);
     return std::lerp(values_[k], values_[k + 1], place - static_cast<double>(k));
   }
@@ -47,7 +47,7 @@ class ChordKernel {
  private:
   static double steps() { return static_cast<double>(kKernelSteps); }
 
-  double most_;
+  double max_;
   std::vector<double> values_;
 };
 
@@ -57,7 +57,7 @@ class Lattice {
   /// Creates a lattice that covers a square and a margin on all sides.
   /// \param step distance of lattice points in both direction cosines
   Lattice(const CosineSquare& square, double margin, double step)
-      : first_(square.middle - Vec2::Constant(square.half_width + margin)),
+      : first_(square.centre - Vec2::Constant(square.half_width + margin)),
         step_(step),
         columns_(static_cast<std::size_t>(std::ceil(2.0 * (square.half_width + margin) / step)) + 1),
         heights_(columns_ * columns_, 0.0),
@@ -158,7 +158,7 @@ std::vector<Spot> spots_of(std::span<const BandedField> fields, double apart) {
 
 Vec2 CosineSquare::at(std::size_t index) const {
   const double step = 2.0 * half_width / static_cast<double>(columns - 1);
-  return middle - Vec2::Constant(half_width) +
+  return centre - Vec2::Constant(half_width) +
          step * Vec2(static_cast<double>(index % columns), static_cast<double>(index / columns));
 }
 

@@ -17,7 +17,7 @@ namespace retrace::raytrace {
 /// Square grid of directions, given by the x and y components of unit vectors. Its points are ordered row by row. y
 /// increases with the row, and x with the column.
 struct CosineSquare {
-  geometry::Vec2 middle = geometry::Vec2::Zero();
+  geometry::Vec2 centre = geometry::Vec2::Zero();
   double half_width = 0.0;  ///< > 0
   std::size_t columns = 2;  ///< number of columns and of rows; >= 2
 

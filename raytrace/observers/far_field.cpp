@@ -156,7 +156,7 @@ std::vector<double> FarField::binned(const ReturnFrame& frame, const DirectionGr
   if (groups_.empty() && scattered_.power() == 0.0) return sums;
   double inside = 0.0;
   std::vector<Vec3> directions;
-  for (std::size_t bin = 0; bin < grid.size(); ++bin) directions.push_back(frame.direction(grid.middle_rad(bin)));
+  for (std::size_t bin = 0; bin < grid.size(); ++bin) directions.push_back(frame.direction(grid.centre_rad(bin)));
   const std::vector<double> diffracted = diffracted_per_sr(directions);
   for (std::size_t bin = 0; bin < grid.size(); ++bin) {
     const double power = (diffracted[bin] + scattered_per_sr(directions[bin])) * grid.solid_angle_sr(bin);
@@ -202,7 +202,7 @@ double FarField::tail(const ReturnFrame& frame, double half_angle_rad) const {
   const double nearest = 0.9 * frame.to_source.z() * std::sin(half_angle_rad);
   const double decades = std::log(kFarthestCosine / nearest);
   const SobolSquare square(kTailKey, ~kTailKey);
-  const bool is_far = !plane_groups_.empty() && nearest > kFarInBends * bend_;
+  const bool is_far = !plane_groups_.empty() && nearest > kFarInBends * max_deflection_;
   std::vector<Vec2> outside;
   std::vector<double> areas;
   for (std::uint32_t k = 0; k < kTailPoints; ++k) {

@@ -28,12 +28,13 @@ struct FarFieldPolicy {
   double coherence_length_mm = 0.02;
   /// Maximum fraction of the power in the window that is not diffracted, to save time. The weakest beams are selected.
   /// If there are few polygons, all beams are diffracted.
-  double undiffracted_share = 1e-4;
-  std::size_t most_polygons = 20'000;  ///< maximum number of diffracted polygons; weaker ones are not diffracted
+  double undiffracted_fraction = 1e-4;
+  std::size_t max_polygons = 20'000;  ///< maximum number of diffracted polygons; weaker ones are not diffracted
   /// Minimum width of diffraction patterns that are computed. Light of cells with narrower patterns (larger cells) is
   /// not diffracted, because averaging over the discs of source and receiver hides these patterns.
   double finest_detail_rad = 0.0;
-  /// Number of replicates of WeakBeams, or 0 without weak beams. A resampled beam does not interfere with other beams.
+  /// Number of replicates of PopulationControl, or 0 without weak beams. A resampled beam does not interfere with other
+  /// beams.
   std::uint32_t replicates = 0;
   /// Form of the retro facets (deviation from their planes) as in the tracer's optics; null if they are plane. It must
   /// outlive the collector. The form deflects diffracted light, and also the rays of cells that are too large to be
@@ -106,7 +107,7 @@ class FarField {
   /// Returns the scattered power of the weakest beams and of beams outside of the window. The directions of this light
   /// are not computed.
   double unplaced_power() const { return unplaced_power_; }
-  /// Returns the power that is not diffracted because there are more polygons than `most_polygons`.
+  /// Returns the power that is not diffracted because there are more polygons than `max_polygons`.
   double beyond_budget_power() const { return beyond_budget_power_; }
   /// Returns the angular width of the finest details of the diffracted light, or infinity if nothing is diffracted.
   double detail_rad() const;
@@ -125,12 +126,12 @@ class FarField {
   Eigen::Matrix2cd coherency_ = 0.5 * Eigen::Matrix2cd::Identity();
   std::vector<CoherentGroup> groups_;
   /// The groups of `groups_` as if all facets were plane. They are stored only if facets have a form. The form changes
-  /// the direction cosines of light by at most `bend_`. Far from the direction to the source, the field of
+  /// the direction cosines of light by at most `max_deflection_`. Far from the direction to the source, the field of
   /// `plane_groups_` is nearly that of `groups_`, and `plane_groups_` have fewer polygons.
   std::vector<CoherentGroup> plane_groups_;
   ApertureField field_;        ///< field of groups_
   ApertureField plane_field_;  ///< field of plane_groups_
-  double bend_ = 0.0;
+  double max_deflection_ = 0.0;
   std::vector<FarFieldRay> rays_;
   ScatteredField scattered_;
   double unplaced_power_ = 0.0;
@@ -155,7 +156,7 @@ class FarFieldCollector {
  private:
   /// A beam in the window (FarFieldPolicy::window_rad). It is moved, together with its cell, to the position of the
   /// first copy of the cell.
-  struct Piece {
+  struct CollectedBeam {
     geometry::Polygon outline_mm;
     Vec3 direction;
     JonesMatrix jones;
@@ -169,27 +170,27 @@ class FarFieldCollector {
   /// Key of a wave: its direction, its field, and the points where it met facets with a form or a texture.
   using WaveKey = std::vector<std::int64_t>;
   /// Key of a coherent sum of fields: a cell, a wave that met several cells, or a resampled beam.
-  struct Place {
+  struct CoherenceKey {
     std::uint64_t cell = 0;
     std::int64_t x = 0;
     std::int64_t y = 0;
     std::uint64_t beam = 0;
-    auto operator<=>(const Place&) const = default;
+    auto operator<=>(const CoherenceKey&) const = default;
   };
 
   void add_ray(const FarFieldRay& ray);
   void add_scattering_ray(const FarFieldRay& ray, double phase_variance);
   double replicates_of(const ReturnedBeam& beam) const;
-  Place place_of(const ReturnedBeam& beam, const Piece& piece);
-  void put(Piece piece, const ReturnedBeam& beam);
-  WaveKey wave_of(const Piece& piece) const;
-  Piece moved_home(const ReturnedBeam& beam) const;
+  CoherenceKey coherence_key_of(const ReturnedBeam& beam, const CollectedBeam& piece);
+  void put(CollectedBeam piece, const ReturnedBeam& beam);
+  WaveKey wave_of(const CollectedBeam& piece) const;
+  CollectedBeam moved_to_first_copy(const ReturnedBeam& beam) const;
   /// Indices into pieces_.
-  using PiecesOfCell = std::vector<std::uint32_t>;
-  geometry::Vec2 middle_of(const PiecesOfCell& numbers) const;
-  std::vector<CoherentGroup> groups_of(const PiecesOfCell& numbers, const geometry::Vec2& middle_mm) const;
-  CoherentGroup group_of(std::vector<Piece> pieces, const geometry::Vec2& middle_mm) const;
-  void join(std::vector<Piece>& pieces) const;
+  using BeamsOfCell = std::vector<std::uint32_t>;
+  geometry::Vec2 centroid_of(const BeamsOfCell& numbers) const;
+  std::vector<CoherentGroup> groups_of(const BeamsOfCell& numbers, const geometry::Vec2& middle_mm) const;
+  CoherentGroup group_of(std::vector<CollectedBeam> pieces, const geometry::Vec2& middle_mm) const;
+  void join(std::vector<CollectedBeam>& pieces) const;
   std::vector<CoherentGroup> distinct_groups() const;
   void keep_strongest(std::vector<CoherentGroup> groups);
   /// \param has_lobes true if the scattered light of the group has been added to the far field
@@ -202,9 +203,9 @@ class FarFieldCollector {
   Vec3 to_source_;
   FarField field_;
   /// Beams in the window. A beam that several cells have in common is stored one time.
-  std::vector<Piece> pieces_;
-  std::map<Place, PiecesOfCell> cells_;
-  std::uint64_t alone_ = 0;  ///< number of values of Place that belong to a single wave or beam
+  std::vector<CollectedBeam> beams_;
+  std::map<CoherenceKey, BeamsOfCell> cells_;
+  std::uint64_t unique_keys_ = 0;  ///< number of values of Place that belong to a single wave or beam
   /// Values of Place::beam, by CellTrail::met and the key of a wave.
   std::map<std::pair<std::uint64_t, WaveKey>, std::uint64_t> mixed_;
   geometry::PointLookup<std::size_t> directions_;  ///< indices into FarField::rays()

@@ -35,7 +35,7 @@ constexpr double kLengthStep = 1e-7, kCosineStep = 1e-8, kAmplitudeStep = 1e-7, 
 // Rounding step for the points where light met facets, in element sizes, and for the derivatives of these points.
 constexpr double kHitStep = 1e-6;
 // Polygons are joined if their union differs from a convex polygon by less than this fraction of size_mm^2.
-constexpr double kJoinOutlinesShare = 1e-10;
+constexpr double kJoinOutlinesFraction = 1e-10;
 
 std::int64_t step_of(double value, double step) {
   return std::llround(value / step);
@@ -137,28 +137,28 @@ void FarFieldCollector::add_scattering_ray(const FarFieldRay& ray, double phase_
 
 void FarFieldCollector::add(const ReturnedBeam& beam) {
   const double power = beam.stokes.i / replicates_of(beam);
-  field_.total_power_ += beam.place_count() * power;
-  const bool is_diffracted = policy_.diffraction && beam.left_mm.size() >= 3 && power > kFaint &&
+  field_.total_power_ += beam.instance_count() * power;
+  const bool is_diffracted = policy_.diffraction && beam.exit_polygon_mm.size() >= 3 && power > kFaint &&
                              small_angle_between(beam.direction, to_source_) <= policy_.window_rad;
   if (!is_diffracted) {
     double phase_variance = 0.0;
     for (const TexturedHit& hit : beam.hits) phase_variance += hit.phase.variance();
-    return add_scattering_ray({beam.direction, beam.place_count() * power, beam.replicate}, phase_variance);
+    return add_scattering_ray({beam.direction, beam.instance_count() * power, beam.replicate}, phase_variance);
   }
-  put(moved_home(beam), beam);
+  put(moved_to_first_copy(beam), beam);
 }
 
 /// Adds a beam to all cells from which it comes.
-void FarFieldCollector::put(Piece piece, const ReturnedBeam& beam) {
-  const auto number = static_cast<std::uint32_t>(pieces_.size());
-  Place place = place_of(beam, piece);
-  if (is_infinite_) piece.copies = beam.place_count();
-  pieces_.push_back(std::move(piece));
-  if (!beam.places || is_infinite_) {
+void FarFieldCollector::put(CollectedBeam piece, const ReturnedBeam& beam) {
+  const auto number = static_cast<std::uint32_t>(beams_.size());
+  CoherenceKey place = coherence_key_of(beam, piece);
+  if (is_infinite_) piece.copies = beam.instance_count();
+  beams_.push_back(std::move(piece));
+  if (!beam.instance_offsets || is_infinite_) {
     cells_[place].push_back(number);
     return;
   }
-  for (const Vec2& by : *beam.places) {
+  for (const Vec2& by : *beam.instance_offsets) {
     const Vec2 at = beam.trail.first->offset_mm + by;
     place.x = step_of(at.x(), kLengthStep * size_mm_);
     place.y = step_of(at.y(), kLengthStep * size_mm_);
@@ -172,16 +172,17 @@ void FarFieldCollector::put(Piece piece, const ReturnedBeam& beam) {
 /// fragments of one wave. The tracer creates such fragments when it divides the entrance face.
 /// A resampled beam has a unique key. A beam that met no cell, such as the reflection at the entrance face, also has a
 /// unique key.
-FarFieldCollector::Place FarFieldCollector::place_of(const ReturnedBeam& beam, const Piece& piece) {
-  if (beam.replicate || !beam.trail.first) return {0, 0, 0, ++alone_};
-  Place place{beam.trail.first->id, 0, 0, 0};
+FarFieldCollector::CoherenceKey FarFieldCollector::coherence_key_of(const ReturnedBeam& beam,
+                                                                    const CollectedBeam& piece) {
+  if (beam.replicate || !beam.trail.first) return {0, 0, 0, ++unique_keys_};
+  CoherenceKey place{beam.trail.first->id, 0, 0, 0};
   if (!is_infinite_) {
     place.x = step_of(beam.trail.first->offset_mm.x(), kLengthStep * size_mm_);
     place.y = step_of(beam.trail.first->offset_mm.y(), kLengthStep * size_mm_);
   }
   if (beam.trail.is_mixed) {
-    const auto [known, is_new] = mixed_.try_emplace({beam.trail.met, wave_of(piece)}, alone_ + 1);
-    if (is_new) ++alone_;
+    const auto [known, is_new] = mixed_.try_emplace({beam.trail.sequence_hash, wave_of(piece)}, unique_keys_ + 1);
+    if (is_new) ++unique_keys_;
     place.beam = known->second;
   }
   return place;
@@ -196,12 +197,12 @@ double FarFieldCollector::replicates_of(const ReturnedBeam& beam) const {
 /// beam is that of a part without errors of angle (ErrorFreeExit).
 /// Copies of a cell have the same field except for a phase. The incident and the returned wave cause this phase,
 /// because the copies are at different positions. The function removes it.
-FarFieldCollector::Piece FarFieldCollector::moved_home(const ReturnedBeam& beam) const {
+FarFieldCollector::CollectedBeam FarFieldCollector::moved_to_first_copy(const ReturnedBeam& beam) const {
   const Vec2 by = beam.trail.first ? beam.trail.first->offset_mm : Vec2::Zero();
   const ErrorFreeExit exit = error_free_exit(beam, to_source_, by).value_or(ErrorFreeExit{});
   const Eigen::Affine2d home_from_exit = Eigen::Translation2d(-by) * exit.from_exit;
-  Piece piece;
-  for (const Vec2& p : beam.left_mm) piece.outline_mm.push_back(home_from_exit * (p - beam.centre_mm));
+  CollectedBeam piece;
+  for (const Vec2& p : beam.exit_polygon_mm) piece.outline_mm.push_back(home_from_exit * (p - beam.centre_mm));
   piece.direction = beam.direction;
   piece.jones = beam.jones;
   piece.transmission = beam.transmission / replicates_of(beam);
@@ -220,7 +221,7 @@ FarFieldCollector::Piece FarFieldCollector::moved_home(const ReturnedBeam& beam)
     at_home.phase = hit.phase;
     at_home.path_per_height = hit.path_per_height;
     Eigen::Matrix<double, 2, 3> axes;
-    axes << hit.frame.level.transpose(), hit.frame.down.transpose();
+    axes << hit.frame.horizontal.transpose(), hit.frame.down.transpose();
     at_home.form_constant_mm = axes * (at_home.constant_mm + moved - hit.frame.origin_mm);
     at_home.form_slope = axes * at_home.slope;
     piece.hits.push_back(at_home);
@@ -228,26 +229,27 @@ FarFieldCollector::Piece FarFieldCollector::moved_home(const ReturnedBeam& beam)
   return piece;
 }
 
-Vec2 FarFieldCollector::middle_of(const PiecesOfCell& numbers) const {
+Vec2 FarFieldCollector::centroid_of(const BeamsOfCell& numbers) const {
   Vec2 middle = Vec2::Zero();
   double area = 0.0;
   for (const std::uint32_t number : numbers) {
-    const double own = geometry::area(pieces_[number].outline_mm);
-    middle += own * geometry::centroid(pieces_[number].outline_mm);
+    const double own = geometry::area(beams_[number].outline_mm);
+    middle += own * geometry::centroid(beams_[number].outline_mm);
     area += own;
   }
   return area > 0.0 ? Vec2(middle / area) : middle;
 }
 
 /// Divides the light of a cell into groups whose optical paths differ by more than the coherence length.
-std::vector<CoherentGroup> FarFieldCollector::groups_of(const PiecesOfCell& numbers, const Vec2& middle_mm) const {
-  const auto path = [&](const Piece& p) { return p.phase_mm + p.direction.head<2>().dot(middle_mm); };
-  std::vector<Piece> sorted;
-  for (const std::uint32_t number : numbers) sorted.push_back(pieces_[number]);
-  std::stable_sort(sorted.begin(), sorted.end(), [&](const Piece& a, const Piece& b) { return path(a) < path(b); });
+std::vector<CoherentGroup> FarFieldCollector::groups_of(const BeamsOfCell& numbers, const Vec2& middle_mm) const {
+  const auto path = [&](const CollectedBeam& p) { return p.phase_mm + p.direction.head<2>().dot(middle_mm); };
+  std::vector<CollectedBeam> sorted;
+  for (const std::uint32_t number : numbers) sorted.push_back(beams_[number]);
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [&](const CollectedBeam& a, const CollectedBeam& b) { return path(a) < path(b); });
   std::vector<CoherentGroup> groups;
-  std::vector<Piece> open;
-  for (const Piece& piece : sorted) {
+  std::vector<CollectedBeam> open;
+  for (const CollectedBeam& piece : sorted) {
     if (!open.empty() && path(piece) - path(open.back()) > policy_.coherence_length_mm) {
       groups.push_back(group_of(std::move(open), middle_mm));
       open.clear();
@@ -258,7 +260,7 @@ std::vector<CoherentGroup> FarFieldCollector::groups_of(const PiecesOfCell& numb
   return groups;
 }
 
-FarFieldCollector::WaveKey FarFieldCollector::wave_of(const Piece& p) const {
+FarFieldCollector::WaveKey FarFieldCollector::wave_of(const CollectedBeam& p) const {
   WaveKey key(11);
   key[0] = step_of(p.direction.x(), kCosineStep);
   key[1] = step_of(p.direction.y(), kCosineStep);
@@ -281,10 +283,10 @@ FarFieldCollector::WaveKey FarFieldCollector::wave_of(const Piece& p) const {
 
 /// Joins the fragments of a wave. The tracer divides a large entrance face into fragments that are independent of
 /// cells.
-void FarFieldCollector::join(std::vector<Piece>& pieces) const {
+void FarFieldCollector::join(std::vector<CollectedBeam>& pieces) const {
   std::stable_sort(pieces.begin(), pieces.end(),
-                   [&](const Piece& a, const Piece& b) { return wave_of(a) < wave_of(b); });
-  std::vector<Piece> joined;
+                   [&](const CollectedBeam& a, const CollectedBeam& b) { return wave_of(a) < wave_of(b); });
+  std::vector<CollectedBeam> joined;
   for (std::size_t first = 0; first < pieces.size();) {
     std::size_t last = first;
     FlatPolygons outlines;
@@ -297,9 +299,9 @@ void FarFieldCollector::join(std::vector<Piece>& pieces) const {
       transmission += pieces[last].transmission;
       power += pieces[last].power;
     }
-    if (last - first > 1) join_convex(outlines, kJoinOutlinesShare * size_mm_ * size_mm_);
+    if (last - first > 1) join_convex(outlines, kJoinOutlinesFraction * size_mm_ * size_mm_);
     for (const FlatPolygon& outline : outlines) {
-      Piece piece = pieces[first];
+      CollectedBeam piece = pieces[first];
       piece.outline_mm.assign(outline.begin(), outline.end());
       const double share = raytrace::area(outline) / area_before;
       piece.transmission = share * transmission;
@@ -311,22 +313,23 @@ void FarFieldCollector::join(std::vector<Piece>& pieces) const {
   pieces = std::move(joined);
 }
 
-CoherentGroup FarFieldCollector::group_of(std::vector<Piece> pieces, const Vec2& middle_mm) const {
+CoherentGroup FarFieldCollector::group_of(std::vector<CollectedBeam> pieces, const Vec2& middle_mm) const {
   join(pieces);
   const double wave_number = 2.0 * pi / field_.wavelength_mm_;
-  const auto path = [&](const Piece& p) { return p.phase_mm + p.direction.head<2>().dot(middle_mm); };
-  const auto key = [](const Piece& p) {
+  const auto path = [&](const CollectedBeam& p) { return p.phase_mm + p.direction.head<2>().dot(middle_mm); };
+  const auto key = [](const CollectedBeam& p) {
     const Vec2 c = geometry::centroid(p.outline_mm);
     return std::tuple(step_of(c.x(), 1e-6), step_of(c.y(), 1e-6), step_of(p.direction.x(), kCosineStep));
   };
-  std::stable_sort(pieces.begin(), pieces.end(), [&](const Piece& a, const Piece& b) { return key(a) < key(b); });
+  std::stable_sort(pieces.begin(), pieces.end(),
+                   [&](const CollectedBeam& a, const CollectedBeam& b) { return key(a) < key(b); });
   CoherentGroup group;
   if (!pieces.empty()) {
     group.replicate = pieces.front().replicate;
     group.copies = pieces.front().copies;
   }
   const double first_path = pieces.empty() ? 0.0 : path(pieces.front());
-  for (const Piece& piece : pieces) {
+  for (const CollectedBeam& piece : pieces) {
     geometry::Polygon outline;
     for (const Vec2& p : piece.outline_mm) outline.push_back(p - middle_mm);
     PolygonTransform transform(outline);
@@ -351,21 +354,21 @@ CoherentGroup FarFieldCollector::group_of(std::vector<Piece> pieces, const Vec2&
 std::vector<CoherentGroup> FarFieldCollector::distinct_groups() const {
   std::vector<CoherentGroup> groups;
   std::map<Signature, std::size_t> known;
-  std::map<PiecesOfCell, std::vector<std::size_t>> known_cells;
+  std::map<BeamsOfCell, std::vector<std::size_t>> known_cells;
   // All copies of a cell use the centroid of the first copy as the origin, so that equal fields have equal keys.
   std::optional<std::uint64_t> cell;
   Vec2 middle = Vec2::Zero();
   for (const auto& [place, pieces] : cells_) {
     if (is_cancelled(policy_.cancel)) break;
     const bool is_alone = place.beam != 0;
-    if (!is_alone && place.cell != cell) middle = middle_of(pieces);
+    if (!is_alone && place.cell != cell) middle = centroid_of(pieces);
     if (!is_alone) cell = place.cell;
     const auto [same, is_first] = known_cells.try_emplace(pieces);
     if (!is_first) {
       for (const std::size_t group : same->second) groups[group].copies += 1.0;
       continue;
     }
-    for (CoherentGroup& group : groups_of(pieces, is_alone ? middle_of(pieces) : middle)) {
+    for (CoherentGroup& group : groups_of(pieces, is_alone ? centroid_of(pieces) : middle)) {
       if (group.polygons.empty()) continue;
       const auto [it, is_new] = known.try_emplace(signature_of(group, size_mm_), groups.size());
       same->second.push_back(it->second);
@@ -381,11 +384,11 @@ std::vector<CoherentGroup> FarFieldCollector::distinct_groups() const {
 void FarFieldCollector::keep_strongest(std::vector<CoherentGroup> groups) {
   double left = 0.0;
   for (const CoherentGroup& group : groups) left += group.power();
-  const double least = policy_.undiffracted_share * left;
+  const double least = policy_.undiffracted_fraction * left;
   std::stable_sort(groups.begin(), groups.end(),
                    [](const CoherentGroup& a, const CoherentGroup& b) { return a.power() > b.power(); });
   std::size_t polygons = 0;
-  FormedPolicy how_finely{.wave_number = 2.0 * pi / field_.wavelength_mm_, .most_pieces = policy_.most_polygons};
+  FormedPolicy how_finely{.wave_number = 2.0 * pi / field_.wavelength_mm_, .max_polygons = policy_.max_polygons};
   for (const CoherentGroup& group : groups)
     for (const FieldPolygon& p : group.polygons)
       how_finely.strongest = std::max(how_finely.strongest, group.copies * p.power);
@@ -400,10 +403,10 @@ void FarFieldCollector::keep_strongest(std::vector<CoherentGroup> groups) {
     const bool is_formed = is_strong && policy_.form != nullptr;
     CoherentGroup bent = is_formed ? formed(group, *policy_.form, how_finely) : CoherentGroup{};
     const std::size_t more = is_formed ? bent.polygons.size() : group.polygons.size();
-    const bool is_within_budget = polygons + more <= policy_.most_polygons;
+    const bool is_within_budget = polygons + more <= policy_.max_polygons;
     if (is_strong && is_within_budget) field_.scattered_.add(group, is_narrow);
     if (is_formed) {
-      field_.bend_ = std::max(field_.bend_, turn_between(group, bent));
+      field_.max_deflection_ = std::max(field_.max_deflection_, max_deflection(group, bent));
       if (is_to_be_diffracted && is_within_budget) field_.plane_groups_.push_back(group);
       group = std::move(bent);
     }
@@ -429,7 +432,7 @@ void FarFieldCollector::add_undiffracted(const CoherentGroup& group, bool has_lo
 FarField FarFieldCollector::finish() {
   keep_strongest(distinct_groups());
   cells_.clear();
-  pieces_.clear();
+  beams_.clear();
   const auto fields_of = [&](const std::vector<CoherentGroup>& groups) {
     return ApertureField(groups, field_.wavelength_mm_, field_.coherency_, kLengthStep * size_mm_, policy_.replicates);
   };

@@ -146,9 +146,9 @@ void add_fringes(const Fringes& fringes, double wave_number, const Block& x, con
   Block kx, ky, lobe, phase;
   bool is_dark = true;
   for (std::size_t k = 0; k < kBlock; k += hn::Lanes(D())) {
-    const Plane here = difference(fringes.cosines_here, k);
-    const Plane there = difference(fringes.cosines_there, k);
-    const Plane back = product(fringes.turn.transpose(), there);
+    const Plane here = difference(fringes.first_cosines, k);
+    const Plane there = difference(fringes.second_cosines, k);
+    const Plane back = product(fringes.rotation.transpose(), there);
     const V height = gaussian(fringes.spread_mm2, there);
     is_dark = is_dark && hn::AllTrue(D(), hn::Lt(height, splat(kLeastLobe)));
     hn::StoreU(hn::Sub(here.x, back.x), D(), kx.data() + k);
@@ -159,10 +159,10 @@ void add_fringes(const Fringes& fringes, double wave_number, const Block& x, con
   ComplexBlock places{};
   if (!is_dark) HWY_NAMESPACE::transform(fringes.outline, kx, ky, places);
   for (std::size_t k = 0; k < kBlock; k += hn::Lanes(D())) {
-    const Plane here = difference(fringes.cosines_here, k);
-    const Plane there = difference(fringes.cosines_there, k);
+    const Plane here = difference(fringes.first_cosines, k);
+    const Plane there = difference(fringes.second_cosines, k);
     const Plane between{hn::Mul(splat(0.5), hn::Add(here.x, there.x)), hn::Mul(splat(0.5), hn::Add(here.y, there.y))};
-    const V dip = hn::Mul(splat(fringes.dip_mm2_of_places), gaussian(fringes.dip_mm2, between));
+    const V dip = hn::Mul(splat(fringes.dip_area_mm2), gaussian(fringes.dip_mm2, between));
     const V height = hn::LoadU(D(), lobe.data() + k);
     const Complex wave = unit(hn::LoadU(D(), phase.data() + k));
     const V re = hn::LoadU(D(), places.re.data() + k);

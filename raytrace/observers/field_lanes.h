@@ -53,14 +53,15 @@ void add_power(const std::vector<Use>& uses, const std::vector<ComplexBlock>& tr
 /// it leaves at turn r + shift_mm (docs/theory/photometry.md).
 struct Fringes {
   Outline outline;  ///< polygon that contains all points r
-  Eigen::Matrix2d turn;
+  Eigen::Matrix2d rotation;
   geometry::Vec2 shift_mm;
-  geometry::Vec2 cosines_here, cosines_there;  ///< direction cosines of the specular light of the first and second path
-  std::array<double, 2> coefficient;           ///< real and imaginary part of the amplitude of the fringes
-  Eigen::Matrix2d spread_mm2;                  ///< second moments of the covariance; a symmetric matrix
+  geometry::Vec2 first_cosines,
+      second_cosines;                 ///< direction cosines of the specular light of the first and second path
+  std::array<double, 2> coefficient;  ///< real and imaginary part of the amplitude of the fringes
+  Eigen::Matrix2d spread_mm2;         ///< second moments of the covariance; a symmetric matrix
   /// Second moments of a term that is subtracted where r and turn r + shift_mm nearly coincide; a symmetric matrix.
   Eigen::Matrix2d dip_mm2;
-  double dip_mm2_of_places;  ///< area of the points r from which the term of `dip_mm2` is subtracted
+  double dip_area_mm2;  ///< area of the points r from which the term of `dip_mm2` is subtracted
 };
 
 /// Adds the power of the fringes to `sum`, per unit area of direction cosines.

@@ -26,7 +26,7 @@ constexpr std::size_t kPoints = 3;
 // Corners are merged if their distance is less than this fraction of the polygon's size.
 constexpr double kOneCorner = 1e-12;
 // Minimum relative power in the formula for the subdivision. Weaker polygons are subdivided as if they had this power.
-constexpr double kLeastShare = 1e-4;
+constexpr double kMinRelativePower = 1e-4;
 
 /// Phase that the forms of facets add to the light of a polygon, as a function of the point where the light leaves the
 /// entrance face.
@@ -159,12 +159,12 @@ class Cutter {
       return;
     }
     const FormPhase phase{whole.hits, form_, policy_.wave_number};
-    const double share = std::max(kLeastShare, made_.copies * whole.power / policy_.strongest);
+    const double share = std::max(kMinRelativePower, made_.copies * whole.power / policy_.strongest);
     const double widened = share < 1.0 ? 1.0 / std::pow(share, 0.25) : 1.0;
     const double merge_mm = kOneCorner * whole.transform.size_mm();
     std::vector<FlatPolygon> waiting = {{whole.transform.polygon().begin(), whole.transform.polygon().end()}};
     const double whole_left_rad = LinearPhase(waiting.front(), phase).left_rad;
-    const double left_rad = policy_.phase_left_rad * std::cbrt(whole_left_rad) * widened;
+    const double left_rad = policy_.target_phase_error_rad * std::cbrt(whole_left_rad) * widened;
     while (!waiting.empty()) {
       const FlatPolygon polygon = std::move(waiting.back());
       waiting.pop_back();
@@ -199,11 +199,11 @@ class Cutter {
     require(0);
   }
   void require(std::size_t waiting) const {
-    if (made_.polygons.size() + waiting > policy_.most_pieces)
+    if (made_.polygons.size() + waiting > policy_.max_polygons)
       throw BudgetError(
           fmt::format("the form of the facets deflects the light of a cell too much for diffraction: more "
                       "than {} plane waves would be required",
-                      policy_.most_pieces));
+                      policy_.max_polygons));
   }
 
   CoherentGroup& made_;
@@ -220,7 +220,7 @@ CoherentGroup formed(const CoherentGroup& group, const FacetForm& form, const Fo
   return made;
 }
 
-double turn_between(const CoherentGroup& plane, const CoherentGroup& formed) {
+double max_deflection(const CoherentGroup& plane, const CoherentGroup& formed) {
   double most = 0.0;
   for (const FieldPolygon& piece : formed.polygons) {
     double nearest = std::numeric_limits<double>::infinity();

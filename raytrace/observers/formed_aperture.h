@@ -21,19 +21,19 @@ struct FormedPolicy {
   /// polygons scatter the error into wide angles. The target is therefore proportional to the cubic root of the phase
   /// error before the subdivision. For a polygon with less power, the target is larger, in proportion to the inverse
   /// fourth root of the power.
-  double phase_left_rad = 0.05;
+  double target_phase_error_rad = 0.05;
   double strongest = 0.0;  ///< highest power of a polygon, in all copies of its group
-  std::size_t most_pieces = 20'000;
+  std::size_t max_polygons = 20'000;
 };
 
 /// Returns the field including the phases of the facets with a form that the light has met (docs/theory/form.md). Every
 /// polygon is divided into convex polygons, each with a plane wave. Powers and amplitudes are unchanged.
 /// FieldPolygon::hits of the new polygons is empty.
-/// \throw BudgetError if more than FormedPolicy::most_pieces polygons are needed
+/// \throw BudgetError if more than FormedPolicy::max_polygons polygons are needed
 CoherentGroup formed(const CoherentGroup& group, const surface_models::FacetForm& form, const FormedPolicy& policy);
 
 /// Returns the maximum deflection that the form causes, in direction cosines. The deflection of a small polygon is the
 /// difference between its direction and the nearest direction of an original polygon.
-double turn_between(const CoherentGroup& plane, const CoherentGroup& formed);
+double max_deflection(const CoherentGroup& plane, const CoherentGroup& formed);
 
 }  // namespace retrace::raytrace

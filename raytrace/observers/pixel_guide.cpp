@@ -12,9 +12,9 @@ namespace {
 using geometry::Vec2;
 
 /// Number of training samples of a whole picture per bin of a map. It determines the number of bins, which is at most
-/// kMostBins.
+/// kMaxBins.
 constexpr std::size_t kPathsPerBin = 32;
-constexpr std::size_t kMostBins = std::size_t{1} << 16U;
+constexpr std::size_t kMaxBins = std::size_t{1} << 16U;
 /// Weight of the expected mean of a bin, as a number of paths. It stabilizes the map, because few paths of a bin are
 /// bright.
 constexpr double kPathsOfPrior = 32.0;
@@ -26,7 +26,7 @@ std::uint64_t digits(double x) {
   return static_cast<std::uint64_t>(std::llround(x * kWhole));
 }
 
-std::uint32_t share_of(std::uint32_t within, std::uint64_t whole) {
+std::uint32_t scaled_to(std::uint32_t within, std::uint64_t whole) {
   return static_cast<std::uint32_t>((std::uint64_t{within} * whole) >> 32U);
 }
 
@@ -80,23 +80,23 @@ PixelGuide::Bins PixelGuide::Bins::coarser() const {
 }
 
 PixelGuide::PixelGuide(const Vec2& period_mm, std::size_t tiles, std::size_t paths) : period_mm_(period_mm) {
-  const auto bins = static_cast<double>(std::clamp<std::size_t>(paths / kPathsPerBin, 1, kMostBins));
+  const auto bins = static_cast<double>(std::clamp<std::size_t>(paths / kPathsPerBin, 1, kMaxBins));
   columns_ = static_cast<std::size_t>(std::max(1.0, std::sqrt(bins * period_mm.x() / period_mm.y())));
   rows_ = static_cast<std::size_t>(std::max(1.0, bins / static_cast<double>(columns_)));
   found_.assign(tiles, Bins(columns_, rows_));
   roots_.resize(tiles);
 }
 
-PixelGuide::Sample PixelGuide::sample(const Vec2& place_mm, std::uint32_t tile, float excess) const {
-  const Vec2 periods = place_mm.cwiseQuotient(period_mm_);
+PixelGuide::Sample PixelGuide::sample(const Vec2& position_mm, std::uint32_t tile, float excess) const {
+  const Vec2 periods = position_mm.cwiseQuotient(period_mm_);
   const std::size_t bin =
       bin_at(static_cast<std::uint32_t>(digits(periods.x())), static_cast<std::uint32_t>(digits(periods.y())));
   // The limit prevents an overflow of the sum over all paths.
-  constexpr float kMostSquare = 1e30F;
-  return {static_cast<std::uint32_t>(tile * columns_ * rows_ + bin), std::min(excess * excess, kMostSquare)};
+  constexpr float kMaxSquare = 1e30F;
+  return {static_cast<std::uint32_t>(tile * columns_ * rows_ + bin), std::min(excess * excess, kMaxSquare)};
 }
 
-void PixelGuide::learn(const std::vector<Samples>& lists) {
+void PixelGuide::train(const std::vector<Samples>& lists) {
   const std::size_t bins = columns_ * rows_;
   for (const Samples& samples : lists)
     for (const auto& [bin, square] : samples) {
@@ -119,7 +119,7 @@ void PixelGuide::learn(const std::vector<Samples>& lists) {
 }
 
 std::size_t PixelGuide::bin_at(std::uint32_t x, std::uint32_t y) const {
-  return share_of(y, rows_) * columns_ + share_of(x, columns_);
+  return scaled_to(y, rows_) * columns_ + scaled_to(x, columns_);
 }
 
 std::array<std::uint32_t, 2> PixelGuide::candidate(std::size_t k, const Shift& shift) {
@@ -128,7 +128,7 @@ std::array<std::uint32_t, 2> PixelGuide::candidate(std::size_t k, const Shift& s
           static_cast<std::uint32_t>(k * kCandidateStep % kCandidates * kStep) + shift[1]};
 }
 
-double PixelGuide::roots_at(const PixelPlace& pixel, const Shift& shift, Weights& roots) const {
+double PixelGuide::roots_at(const PixelProjection& pixel, const Shift& shift, Weights& roots) const {
   const std::vector<float>& map = roots_[pixel.tile];
   const auto in_period = [&](const Vec2& mm) {
     return std::array{digits(mm.x() / period_mm_.x()), digits(mm.y() / period_mm_.y())};
@@ -140,8 +140,8 @@ double PixelGuide::roots_at(const PixelPlace& pixel, const Shift& shift, Weights
   for (std::size_t k = 0; k < kCandidates; ++k) {
     const auto [x, y] = candidate(k, shift);
     const std::size_t bin =
-        bin_at(static_cast<std::uint32_t>(corner[0]) + share_of(x, right[0]) + share_of(y, down[0]),
-               static_cast<std::uint32_t>(corner[1]) + share_of(x, right[1]) + share_of(y, down[1]));
+        bin_at(static_cast<std::uint32_t>(corner[0]) + scaled_to(x, right[0]) + scaled_to(y, down[0]),
+               static_cast<std::uint32_t>(corner[1]) + scaled_to(x, right[1]) + scaled_to(y, down[1]));
     roots[k] = static_cast<double>(map[bin]);
     sum += roots[k];
   }
@@ -150,7 +150,7 @@ double PixelGuide::roots_at(const PixelPlace& pixel, const Shift& shift, Weights
   return kCandidates;
 }
 
-bool PixelGuide::serves(const PixelPlace& pixel) const {
+bool PixelGuide::reduces_noise(const PixelProjection& pixel) const {
   Weights roots;
   const double mean = roots_at(pixel, {}, roots) / kCandidates;
   double square = 0.0;
@@ -160,13 +160,13 @@ bool PixelGuide::serves(const PixelPlace& pixel) const {
   return square > kUneven * mean * mean && square > kFaint * mean_square_;
 }
 
-std::array<PixelGuide::Point, PixelGuide::kPoints> PixelGuide::points(
-    const PixelPlace& pixel, const std::array<std::uint32_t, 4>& random) const {
+std::array<PixelGuide::Point, PixelGuide::kPointsPerPixel> PixelGuide::points(
+    const PixelProjection& pixel, const std::array<std::uint32_t, 4>& random) const {
   const Shift shift = {random[0], random[1]};
   Weights roots;
   const double sum = roots_at(pixel, shift, roots);
-  constexpr std::size_t kByMap = kPoints / 2;
-  constexpr std::size_t kEvenly = kPoints - kByMap;
+  constexpr std::size_t kByMap = kPointsPerPixel / 2;
+  constexpr std::size_t kEvenly = kPointsPerPixel - kByMap;
   // The same candidate may be selected by the uniform rule and by the map. The weight of a point is the reciprocal of
   // the expected number of its selections.
   const auto point_of = [&](std::size_t k) {
@@ -174,7 +174,7 @@ std::array<PixelGuide::Point, PixelGuide::kPoints> PixelGuide::points(
     const auto [x, y] = candidate(k, shift);
     return Point{{unit_interval(x), unit_interval(y)}, 1.0 / (kCandidates * (even + kByMap * roots[k] / sum))};
   };
-  std::array<Point, kPoints> points;
+  std::array<Point, kPointsPerPixel> points;
   for (std::size_t k = 0; k < kEvenly; ++k)
     points[k] = point_of(std::min<std::size_t>(
         kCandidates - 1,

@@ -15,7 +15,7 @@ namespace retrace::raytrace {
 
 /// Affine map from the points of a pixel to points of the entrance face. The exact map differs from it by terms of
 /// second order in the angle that a pixel subtends.
-struct PixelPlace {
+struct PixelProjection {
   geometry::Vec2 corner_mm = geometry::Vec2::Zero();
   geometry::Vec2 along_row_mm = geometry::Vec2::Zero();     ///< vector from the left to the right side of the pixel
   geometry::Vec2 along_column_mm = geometry::Vec2::Zero();  ///< vector from the upper to the lower side of the pixel
@@ -31,12 +31,12 @@ struct PixelPlace {
 class PixelGuide {
  public:
   /// Number of points per pixel and pass. Half of them are selected uniformly and half of them by the map.
-  static constexpr std::size_t kPoints = 4;
+  static constexpr std::size_t kPointsPerPixel = 4;
 
   /// A sample point of a pixel, in coordinates from 0 to 1, and the weight of its path in the mean of the pixel.
   struct Point {
     geometry::Vec2 within = geometry::Vec2::Zero();
-    double weight = 1.0 / kPoints;
+    double weight = 1.0 / kPointsPerPixel;
   };
 
   /// Training sample: the contribution of one path to the map.
@@ -66,16 +66,17 @@ class PixelGuide {
 
   /// Returns the training sample of a path.
   /// \param excess luminance of the path minus the typical luminance of its pixel
-  Sample sample(const geometry::Vec2& place_mm, std::uint32_t tile, float excess) const;
+  Sample sample(const geometry::Vec2& position_mm, std::uint32_t tile, float excess) const;
   /// Updates the map with the training samples of one pass. The points of this pass may have been selected uniformly or
   /// by an earlier map. In both cases, they are uniformly distributed within a bin.
-  void learn(const std::vector<Samples>& lists);
+  void train(const std::vector<Samples>& lists);
   /// Returns true if the map reduces the noise of a pixel. It does not if the map is nearly constant over the pixel, or
   /// small compared with its mean over the picture.
-  bool serves(const PixelPlace& pixel) const;
+  bool reduces_noise(const PixelProjection& pixel) const;
   /// Returns the sample points of a pixel for one pass.
   /// \param random four random 32-bit words
-  std::array<Point, kPoints> points(const PixelPlace& pixel, const std::array<std::uint32_t, 4>& random) const;
+  std::array<Point, kPointsPerPixel> points(const PixelProjection& pixel,
+                                            const std::array<std::uint32_t, 4>& random) const;
 
  private:
   /// Number of candidate points of a pixel. They form a rank-1 lattice of Fibonacci numbers. Their projections onto
@@ -88,7 +89,7 @@ class PixelGuide {
   static std::array<std::uint32_t, 2> candidate(std::size_t k, const Shift& shift);
   /// Computes the square root of the map at each candidate.
   /// \return the sum of the square roots, which is greater than 0
-  double roots_at(const PixelPlace& pixel, const Shift& shift, Weights& roots) const;
+  double roots_at(const PixelProjection& pixel, const Shift& shift, Weights& roots) const;
   std::size_t bin_at(std::uint32_t x, std::uint32_t y) const;
 
   geometry::Vec2 period_mm_;

@@ -19,10 +19,10 @@ using Amplitude = std::complex<double>;
 // tenth longer than on a facet.
 constexpr double kReachInLengths = 3.6 * 1.2;
 // Maximum phase, over the radius of the grid, for which the grid is refined. Finer details of lobes are not resolved.
-constexpr double kMostPhase = 200.0;
+constexpr double kMaxPhase = 200.0;
 // Numbers of grid points: minimum per interval of the radius, minimum per half circle, and increase per radian of
 // phase.
-constexpr double kLeastAlong = 8.0, kLeastRound = 24.0, kAlongPerRad = 0.5;
+constexpr double kMinAlong = 8.0, kMinRound = 24.0, kAlongPerRad = 0.5;
 constexpr std::size_t kCoarseAlong = 6, kCoarseRound = 24;
 // Two maps between points are treated as equal if their images differ by less than this fraction of the correlation
 // length.
@@ -40,7 +40,7 @@ constexpr double kFolded = 0.1;
 // line, the remaining integral is that of the complementary error function.
 constexpr double kDipWidth = 2.0 / pi;
 // Minimum common area as a fraction of the polygon's area. Smaller areas are neglected.
-constexpr double kLeastCommonShare = 1e-6;
+constexpr double kMinCommonFraction = 1e-6;
 
 Amplitude phasor(double phase) {
   return {std::cos(phase), std::sin(phase)};
@@ -202,16 +202,16 @@ ScatteredField::ScatteredField(double wavelength_mm, const Eigen::Matrix2cd& coh
     }
   if (longest_mm_ == 0.0) return;
   const double reach_mm = std::min(kReachInLengths * longest_mm_, extent_mm);
-  const double phase_per_mm = std::min(wave_number_ * reach_cosine, kMostPhase / reach_mm);
+  const double phase_per_mm = std::min(wave_number_ * reach_cosine, kMaxPhase / reach_mm);
   // If phases are large, the covariance of the phase factors is narrower than the covariance of the phases.
   double width_mm = 0.5 * shortest_mm_ / std::sqrt(std::max(1.0, greatest_variance));
   for (double from = 0.0; from < reach_mm;) {
     const double until = std::min(from + width_mm, reach_mm);
-    const auto along = static_cast<std::size_t>(kLeastAlong + kAlongPerRad * phase_per_mm * (until - from));
+    const auto along = static_cast<std::size_t>(kMinAlong + kAlongPerRad * phase_per_mm * (until - from));
     const GaussRule fine = gauss_legendre(along);
     for (std::size_t k = 0; k < along; ++k) {
       const double r = std::lerp(from, until, fine.nodes[k]);
-      rings_.push_back({r, (until - from) * fine.weights[k], static_cast<std::size_t>(kLeastRound + phase_per_mm * r)});
+      rings_.push_back({r, (until - from) * fine.weights[k], static_cast<std::size_t>(kMinRound + phase_per_mm * r)});
     }
     const GaussRule coarse = gauss_legendre(kCoarseAlong);
     for (std::size_t k = 0; k < kCoarseAlong; ++k)
@@ -290,7 +290,7 @@ void ScatteredField::add_lobe(const Shared& shared, const CoherentGroup& group, 
 void ScatteredField::add_fringes(const Shared& shared, double copies) {
   const FlatPolygon common = shared.common_places(Vec2::Zero());
   const double common_mm2 = common.size() < 3 ? 0.0 : area(common);
-  if (!(common_mm2 > kLeastCommonShare * shared.here->transform.area_mm2())) return;
+  if (!(common_mm2 > kMinCommonFraction * shared.here->transform.area_mm2())) return;
   // Displacements between points and their partners.
   const Moves moves(shared);
   double whole_mm2 = 0.0;
@@ -358,11 +358,11 @@ Eigen::ArrayXd ScatteredField::lobes_by_replicate(const Vec2& cosines, const Eig
   return sums;
 }
 
-double ScatteredField::lobes_within(const Vec2& middle, const Eigen::Matrix2d& axes) const {
+double ScatteredField::lobes_within(const Vec2& centre, const Eigen::Matrix2d& axes) const {
   double sum = 0.0;
   for (const Distance& d : distances_) {
     const Vec2 kappa = wave_number_ * d.mm;
-    sum += (d.weight * phasor(kappa.dot(middle))).real() * disc_transform((axes.transpose() * kappa).norm());
+    sum += (d.weight * phasor(kappa.dot(centre))).real() * disc_transform((axes.transpose() * kappa).norm());
   }
   return pi * std::abs(axes.determinant()) * sum;
 }

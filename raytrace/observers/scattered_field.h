@@ -47,9 +47,9 @@ class ScatteredField {
   Eigen::ArrayXd lobes_by_replicate(const geometry::Vec2& cosines, const Eigen::Matrix2d& cosines_per_rad,
                                     const ApertureKernel& kernel) const;
   /// Returns the power of the lobes within an ellipse in the plane of direction cosines.
-  /// \param middle centre of the ellipse
+  /// \param centre centre of the ellipse
   /// \param axes matrix that maps the unit disc to the ellipse
-  double lobes_within(const geometry::Vec2& middle, const Eigen::Matrix2d& axes) const;
+  double lobes_within(const geometry::Vec2& centre, const Eigen::Matrix2d& axes) const;
   /// Returns the power of the interference fringes per unit area of direction cosines. Bright fringes are positive and
   /// dark fringes are negative. The integral over all directions is 0. If the computation was cancelled, the remaining
   /// elements are 0.

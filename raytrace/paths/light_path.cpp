@@ -10,7 +10,7 @@
 namespace retrace::raytrace {
 namespace {
 
-constexpr std::size_t kMostSteps = 16;
+constexpr std::size_t kMaxSteps = 16;
 constexpr double kFaintest = 1e-3;
 
 class Follower {
@@ -28,7 +28,7 @@ class Follower {
     direction_ = setup_.entry.direction;
     light_ = setup_.entry.light;
     add({PathEvent::enters, geometry::FacetRole::entrance, position_, deg(setup_.to_source.z()), light_.power()});
-    while (path_.steps.size() < kMostSteps && light_.power() > kFaintest && advance()) {
+    while (path_.steps.size() < kMaxSteps && light_.power() > kFaintest && advance()) {
     }
     if (!is_done_) add({PathEvent::ends, geometry::FacetRole::entrance, position_, 0.0, light_.power()});
     path_.power = light_.power();
@@ -115,7 +115,7 @@ class Follower {
   /// \param out normal of the face that points to the side away from the incoming light
   bool split(const Vec3& out, geometry::FacetRole role, const materials::FresnelCoefficients& f, double ratio) {
     const double cosine = out.dot(direction_);
-    light_.turn_to(direction_, out);
+    light_.rotate_basis_to_interface(direction_, out);
     const CoherentLight reflected = light_.reflected(f);
     const CoherentLight transmitted = light_.transmitted(f);
     if (f.total_reflection || reflected.power() >= transmitted.power()) {

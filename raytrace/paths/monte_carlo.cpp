@@ -54,7 +54,7 @@ MonteCarlo::MonteCarlo(const geometry::Part& part, Engine engine, const geometry
     : scene_(std::make_unique<Scene>(part, engine, entrance_face)) {}
 MonteCarlo::~MonteCarlo() = default;
 
-bool MonteCarlo::cell_serves(const geometry::Part& part) {
+bool MonteCarlo::cell_supports(const geometry::Part& part) {
   return CellArray::make(part).has_value();
 }
 
@@ -110,7 +110,7 @@ bool MonteCarlo::trace_range(const TraceTask& trace_task, std::uint32_t from, st
 }
 
 /// Objects that the rounds of a run use. A member may refer to the members before it.
-struct MonteCarlo::Run::Question {
+struct MonteCarlo::Run::Impl {
   PathPolicy policy;
   std::optional<LightSetup> light;
   std::optional<PathSetup> paths;
@@ -121,8 +121,8 @@ struct MonteCarlo::Run::Question {
 MonteCarlo::Run::Run(const MonteCarlo& tracer, const Optics& optics, const Illumination& illumination,
                      const std::vector<double>& cones_deg, const Sampling& sampling, const PathPolicy& policy,
                      const Cancellation* cancel, const DirectionScore* score, Progress* progress)
-    : question_(std::make_unique<Question>()) {
-  Question& q = *question_;
+    : impl_(std::make_unique<Impl>()) {
+  Impl& q = *impl_;
   const Scene& scene = *tracer.scene_;
   q.policy = policy;
   PathPolicy how = policy;
@@ -152,15 +152,15 @@ MonteCarlo::Run::Run(const MonteCarlo& tracer, const Optics& optics, const Illum
 MonteCarlo::Run::~Run() = default;
 
 bool MonteCarlo::Run::advance() {
-  return question_->rounds->advance();
+  return impl_->rounds->advance();
 }
 
 const MonteCarloResult& MonteCarlo::Run::result() const {
-  return question_->rounds->result();
+  return impl_->rounds->result();
 }
 
 double MonteCarlo::Run::expected_segments() const {
-  return question_->rounds->expected_segments();
+  return impl_->rounds->expected_segments();
 }
 
 MonteCarloResult MonteCarlo::trace(const Optics& optics, const Illumination& illumination,

@@ -28,11 +28,11 @@ class MonteCarlo {
   /// Method of finding the facets that rays meet.
   enum class Engine {
     embree,  ///< rays one by one, with a bounding volume hierarchy; for any part
-    cell     ///< many rays in the same cell together, cell by cell; requires cell_serves()
+    cell     ///< many rays in the same cell together, cell by cell; requires cell_supports()
   };
   /// Returns true if Engine::cell can be used: for infinite parts, and for finite arrays of identical elements with an
   /// inner region. Rays near the borders of a finite array are traced with Embree.
-  static bool cell_serves(const geometry::Part& part);
+  static bool cell_supports(const geometry::Part& part);
 
   /// \param part must outlive the tracer
   /// \param entrance_face replaces the plane entrance face of the part; null for the plane face
@@ -46,7 +46,7 @@ class MonteCarlo {
   /// Traces rays with the TBB threads of the calling thread's arena.
   /// \param score function of the directions in which light leaves the entrance face; null for none
   /// \param progress receives the finished fraction of the work, see the constructor of Rounds; null for none
-  /// \pre cell_serves() is true if Engine::cell is used
+  /// \pre cell_supports() is true if Engine::cell is used
   /// \throw BudgetError if power is lost because a ray inside the part missed every face
   MonteCarloResult trace(const Optics& optics, const Illumination& illumination, const std::vector<double>& cones_deg,
                          const Sampling& sampling, const PathPolicy& policy, const Cancellation* cancel = nullptr,
@@ -69,8 +69,8 @@ class MonteCarlo {
     double expected_segments() const;
 
    private:
-    struct Question;
-    std::unique_ptr<Question> question_;
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
   };
 
  private:

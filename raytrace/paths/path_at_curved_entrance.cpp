@@ -51,7 +51,7 @@ bool PathWalker::meet_entrance_face(State& state, const SurfaceHit& hit, const V
   const double cos_incidence = std::max(0.0, -against.dot(state.direction));
   const double ratio = from_inside ? setup_.optics.index : 1.0 / setup_.optics.index;
   const materials::FresnelCoefficients f = fresnel_at_entrance(setup_.optics, from_inside, cos_incidence);
-  state.light.turn_to(state.direction, against);
+  state.light.rotate_basis_to_interface(state.direction, against);
   state.source = {};
   state.entrance_source = hit.facet;
   const bool is_lossless = setup_.optics.lossless_entrance;
@@ -64,8 +64,9 @@ bool PathWalker::meet_entrance_face(State& state, const SurfaceHit& hit, const V
   if (!is_lossless)
     tally_.other[Account::absorbed] += absorbed_at_entrance(setup_.optics, state.light, reflected, transmitted);
   // Both branches of the first surface are traced, as at a plane entrance face.
-  const Branch branch = is_first && splits_at_front_ && !is_lossless ? Branch::both : choose(reflected, transmitted);
-  return go_on(state, branch, reflected, against, [&](State& through) {
+  const Branch branch =
+      is_first && splits_at_first_interface_ && !is_lossless ? Branch::both : choose(reflected, transmitted);
+  return continue_with(state, branch, reflected, against, [&](State& through) {
     through.light = transmitted;
     through.direction = refracted(through.direction, against, ratio, cos_incidence, f.cos_refracted);
     through.inside = !from_inside;

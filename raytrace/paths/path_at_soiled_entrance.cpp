@@ -4,18 +4,18 @@
 namespace retrace::raytrace {
 
 /// Returns the rays, inside and outside the part, into which a scattering entrance face splits the incident ray.
-const SoiledReturn& PathWalker::soiled(const Ray& ray) {
+const EntranceScatter& PathWalker::scatter_at_face(const Ray& ray) {
   surface_models::RandomStream random(key_, replicate_, sample_, choices_++);
-  from_soiled_.clear();
-  setup_.soiled->meet(ray, setup_.policy.split_power, random, from_soiled_);
-  tally_.other[Account::absorbed] += from_soiled_.absorbed;
-  tally_.other[Account::truncated] += from_soiled_.truncated;
-  return from_soiled_;
+  scatter_.clear();
+  setup_.contaminated_entrance->meet(ray, setup_.policy.split_power, random, scatter_);
+  tally_.other[Account::absorbed] += scatter_.absorbed;
+  tally_.other[Account::truncated] += scatter_.truncated;
+  return scatter_;
 }
 
 /// Processes light in the air that meets the face.
-void PathWalker::enter_soiled(const State& state) {
-  for (const Ray& ray : soiled(state).rays) {
+void PathWalker::enter_contaminated(const State& state) {
+  for (const Ray& ray : scatter_at_face(state).rays) {
     State next = state;
     static_cast<Ray&>(next) = ray;
     if (ray.inside)
@@ -25,8 +25,8 @@ void PathWalker::enter_soiled(const State& state) {
   }
 }
 
-bool PathWalker::meet_soiled_entrance(const State& state) {
-  for (const Ray& ray : soiled(state).rays) {
+bool PathWalker::meet_contaminated_entrance(const State& state) {
+  for (const Ray& ray : scatter_at_face(state).rays) {
     State next = state;
     static_cast<Ray&>(next) = ray;
     next.source = {};

@@ -38,7 +38,7 @@ bool PathWalker::launch(const Vec3& position, const Ray& ray, RandomKey key, std
                         std::uint32_t sample) {
   begin(key, replicate, sample);
   to_source_ = -ray.direction;
-  splits_at_front_ = false;
+  splits_at_first_interface_ = false;
   State state;
   static_cast<Ray&>(state) = ray;
   state.position = position;
@@ -123,15 +123,15 @@ bool PathWalker::arrive_from_above(State& state, double reach_mm, double toleran
 /// Processes light that meets the plane entrance face from the air.
 bool PathWalker::arrive_at_entrance(State& state) {
   ++tally_.segments;
-  if (setup_.soiled) {
-    enter_soiled(state);
+  if (setup_.contaminated_entrance) {
+    enter_contaminated(state);
     return true;
   }
   const Vec3 up = Vec3::UnitZ();
   const double cos_incidence = -state.direction.z();
   const materials::FresnelCoefficients f = fresnel_at_entrance(setup_.optics, false, cos_incidence);
   const Vec3 front = mirrored(state.direction, up);
-  state.light.turn_to(state.direction, up);
+  state.light.rotate_basis_to_interface(state.direction, up);
   Branch branch = Branch::transmitted;
   if (!setup_.optics.lossless_entrance) {
     Light reflected = state.light.reflected(f);
@@ -160,13 +160,13 @@ bool PathWalker::arrive_at_side(State& state, const Vec3& normal) {
   const double ratio = is_border_wall ? optics.ratio_at_back(false) : 1.0 / optics.index;
   const double cos_incidence = -normal.dot(state.direction);
   const materials::FresnelCoefficients f = materials::fresnel(ratio, cos_incidence);
-  state.light.turn_to(state.direction, normal);
+  state.light.rotate_basis_to_interface(state.direction, normal);
   Light reflected = state.light.reflected(f);
   Light transmitted = state.light.transmitted(f);
   const Branch branch = choose(reflected, transmitted);
   if (branch != Branch::transmitted) {
     tally_.other[Account::side_exit] += reflected.power();
-    tell(Account::side_exit, state, mirrored(state.direction, normal), reflected);
+    report_exit(Account::side_exit, state, mirrored(state.direction, normal), reflected);
   }
   if (branch == Branch::reflected) return true;
   state.light = transmitted;
@@ -188,7 +188,7 @@ bool PathWalker::arrive_from_below(State& state) {
   if (step.end == End::escape) return false;
   ++tally_.segments;
   if (step.end == End::facet) {
-    state.left_through = setup_.surface.facet(step.hit.facet).role;  // role of the face that reflects the light
+    state.last_exit_role = setup_.surface.facet(step.hit.facet).role;  // role of the face that reflects the light
     if (meet_facet(state, step.hit)) pending_.push_back(state);
     return true;
   }
@@ -207,7 +207,7 @@ bool PathWalker::begin_inside(State& state, double tolerance_mm) {
   }
   if (const auto met = setup_.surface.first_hit({state.position, -state.direction, {}, true, tolerance_mm})) {
     state.position -= met->t * state.direction;
-    state.left_through = setup_.surface.facet(met->facet).role;
+    state.last_exit_role = setup_.surface.facet(met->facet).role;
     if (meet_facet(state, *met)) pending_.push_back(state);
     return true;
   }

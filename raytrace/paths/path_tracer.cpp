@@ -19,7 +19,7 @@ using geometry::FacetRole;
 // cross. A ray that crosses more tiles counts as trapped.
 constexpr int kMaxWraps = 1000;
 // Maximum number of reflections in mirrors_to_entrance(). Paths in prisms and cube corners have at most three.
-constexpr int kMostMirrors = 8;
+constexpr int kMaxMirrors = 8;
 
 // If there is no cut-off and every branch is traced, the paths of a ray split without end.
 [[noreturn]] void fail_on_segments(std::uint64_t max_segments) {
@@ -45,7 +45,7 @@ PathSetup::PathSetup(const geometry::Part& part, const BackSurface& back, const 
     // their periods.
     tile_half_mm = (part.periods_beyond - 0.5) * period_mm;
   }
-  if (how.entrance.scatters()) soiled.emplace(how);
+  if (how.entrance.scatters()) contaminated_entrance.emplace(how);
 }
 
 void PathWalker::trace(const Vec2& entry_mm, RandomKey key, std::uint32_t replicate, std::uint32_t sample) {
@@ -69,7 +69,7 @@ std::optional<Eigen::Matrix3d> PathWalker::mirrors_to_entrance(const Vec3& posit
   state.position = position;
   state.direction = direction;
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  for (int mirrors = 0; mirrors <= kMostMirrors; ++mirrors) {
+  for (int mirrors = 0; mirrors <= kMaxMirrors; ++mirrors) {
     const Step step = setup_.infinite() ? step_inside_periodic(state) : step_inside(state);
     if (step.end == End::entrance) return turn;
     if (step.end != End::facet && step.end != End::side) return std::nullopt;
@@ -88,7 +88,7 @@ void PathWalker::begin(RandomKey key, std::uint32_t replicate, std::uint32_t sam
   sample_ = sample;
   choices_ = choices;
   to_source_ = setup_.to_source;
-  splits_at_front_ = true;
+  splits_at_first_interface_ = true;
 }
 
 void PathWalker::follow_pending() {
@@ -105,14 +105,14 @@ void PathWalker::enter(const Vec2& entry_mm) {
   if (setup_.entrance_face != nullptr) return enter_entrance_face(entry_mm);
   State state;
   state.position = {entry_mm.x(), entry_mm.y(), setup_.thickness_mm};
-  if (setup_.soiled) {
+  if (setup_.contaminated_entrance) {
     static_cast<Ray&>(state) = {-setup_.to_source, setup_.incident, false, false};
-    return enter_soiled(state);
+    return enter_contaminated(state);
   }
   const LightSetup::Entry& entry = setup_.entry;
-  tally_.front[entry.front_cone] += entry.front;
+  tally_.entrance_reflected[entry.reflected_cone] += entry.reflected;
   tally_.other[Account::absorbed] += entry.absorbed;
-  if (setup_.score != nullptr) setup_.score->add(entry.front_direction, entry.front.i, tally_.score);
+  if (setup_.score != nullptr) setup_.score->add(entry.reflected_direction, entry.reflected.i, tally_.score);
   state.direction = entry.direction;
   state.light = entry.light;
   pending_.push_back(state);
@@ -152,7 +152,8 @@ std::optional<SurfaceHit> PathWalker::search(const State& state, double t_max) c
 
 /// Searches the surface for a ray that must meet it, because the ray would otherwise leave the bounds of the part.
 std::optional<SurfaceHit> PathWalker::search_certainly(const State& state) const {
-  return setup_.surface.certain_first_hit({state.position, state.direction, state.source, state.inside, kInfinity});
+  return setup_.surface.first_hit_with_tolerance(
+      {state.position, state.direction, state.source, state.inside, kInfinity});
 }
 
 /// Finds the next face inside a finite part: the nearest of the entrance, the sides and the back surface.
@@ -323,12 +324,12 @@ bool PathWalker::is_over_part(const Vec3& position) const {
 
 bool PathWalker::meet_entrance(State& state) {
   state.position.z() = setup_.thickness_mm;
-  if (setup_.soiled) return meet_soiled_entrance(state);
+  if (setup_.contaminated_entrance) return meet_contaminated_entrance(state);
   const Vec3 down = -Vec3::UnitZ();
   const double cos_incidence = state.direction.z();
   const materials::FresnelCoefficients f = fresnel_at_entrance(setup_.optics, true, cos_incidence);
   const Vec3 out = refracted(state.direction, down, setup_.optics.index, cos_incidence, f.cos_refracted);
-  state.light.turn_to(state.direction, down);
+  state.light.rotate_basis_to_interface(state.direction, down);
   if (setup_.optics.lossless_entrance) {
     if (f.total_reflection)
       returned(state).back().i += state.light.power();
@@ -352,24 +353,24 @@ bool PathWalker::meet_entrance(State& state) {
 /// \param direction direction of the light in air
 void PathWalker::leave(const State& state, const Light& light, const Vec3& direction) {
   const std::size_t cone = setup_.cone_of(direction, to_source_);
-  returned(state)[cone] += seen_from_above(light, direction);
+  returned(state)[cone] += in_source_axes(light, direction);
   const Account outside = state.scattered ? Account::scattered_out : Account::returned_elsewhere;
-  tell(cone < setup_.cone_chord2.size() ? Account::retroreflected : outside, state, direction, light);
+  report_exit(cone < setup_.cone_chord2.size() ? Account::retroreflected : outside, state, direction, light);
   if (setup_.score != nullptr) setup_.score->add(direction, light.power(), tally_.score);
 }
 
 /// Records light that the entrance face reflects before the light enters the part.
 void PathWalker::send_back(const State& state, const Light& light, const Vec3& direction) {
   const std::size_t cone = setup_.cone_of(direction, to_source_);
-  (state.scattered ? tally_.scattered : tally_.front)[cone] += seen_from_above(light, direction);
+  (state.scattered ? tally_.scattered : tally_.entrance_reflected)[cone] += in_source_axes(light, direction);
   const Account outside = state.scattered ? Account::scattered_out : Account::front_specular;
-  tell(cone < setup_.cone_chord2.size() ? Account::retroreflected : outside, state, direction, light);
+  report_exit(cone < setup_.cone_chord2.size() ? Account::retroreflected : outside, state, direction, light);
   if (setup_.score != nullptr) setup_.score->add(direction, light.power(), tally_.score);
 }
 
 /// Reports light that leaves the part at the position of `state` to the observer.
-void PathWalker::tell(Account account, const State& state, const Vec3& direction, const Light& light) const {
-  if (observer_ != nullptr) observer_->leaves({account, state.position, direction, light, state.shift_mm});
+void PathWalker::report_exit(Account account, const State& state, const Vec3& direction, const Light& light) const {
+  if (observer_ != nullptr) observer_->on_exit({account, state.position, direction, light, state.shift_mm});
 }
 
 /// Returns the optics of the element to which a facet belongs. They differ from those of other elements if the back of
@@ -392,7 +393,7 @@ bool PathWalker::meet_side(State& state, const Vec3& normal) {
   const double ratio = is_border_wall ? optics.ratio_at_back(true) : optics.index;
   const double cos_incidence = normal.dot(state.direction);
   const materials::FresnelCoefficients f = materials::fresnel(ratio, cos_incidence);
-  state.light.turn_to(state.direction, normal);
+  state.light.rotate_basis_to_interface(state.direction, normal);
   Light reflected = state.light.reflected(f);
   Light transmitted = state.light.transmitted(f);
   const Branch branch = choose(reflected, transmitted);
@@ -400,8 +401,8 @@ bool PathWalker::meet_side(State& state, const Vec3& normal) {
   if (branch != Branch::reflected) {
     tally_.other[Account::side_exit] += transmitted.power();
     if (observer_ != nullptr)
-      tell(Account::side_exit, state, refracted(state.direction, -normal, ratio, cos_incidence, f.cos_refracted),
-           transmitted);
+      report_exit(Account::side_exit, state, refracted(state.direction, -normal, ratio, cos_incidence, f.cos_refracted),
+                  transmitted);
   }
   state.light = reflected;
   state.direction = mirrored(state.direction, normal);
@@ -418,23 +419,23 @@ bool PathWalker::meet_facet(State& state, const SurfaceHit& hit) {
   const bool is_retro = facet.role == FacetRole::retro_facet;
   state.source = hit.facet;
   state.entrance_source = {};
-  const bool is_formed = is_retro && facet.middle_mm && !optics.facet_form.is_plane();
+  const bool is_formed = is_retro && facet.centroid_mm && !optics.facet_form.is_plane();
   const Vec3 normal = is_formed ? normal_at(state, hit.facet) : facet.normal;
   if (is_retro && !optics.is_smooth()) return meet_textured(state, normal, facet.normal, optics);
   const Vec3 against = state.inside ? Vec3(-normal) : normal;
   const double cos_incidence = -against.dot(state.direction);
   const materials::FresnelCoefficients f = fresnel_at_back(optics, facet.role, state.inside, cos_incidence);
 
-  state.light.turn_to(state.direction, against);
+  state.light.rotate_basis_to_interface(state.direction, against);
   Light reflected = state.light.reflected(f);
   Light transmitted = state.light.transmitted(f);
   tally_.other[Account::absorbed] += absorbed_at_back(optics, facet.role, state.light, reflected, transmitted);
   const Branch branch = choose(reflected, transmitted);
-  return go_on(state, branch, reflected, against, [&](State& through) {
+  return continue_with(state, branch, reflected, against, [&](State& through) {
     through.light = transmitted;
     through.direction =
         refracted(through.direction, against, optics.ratio_at_back(through.inside), cos_incidence, f.cos_refracted);
-    if (through.inside) through.left_through = facet.role;
+    if (through.inside) through.last_exit_role = facet.role;
     through.inside = !through.inside;
   });
 }
@@ -444,7 +445,7 @@ Vec3 PathWalker::normal_at(const State& state, const FacetRef& where) const {
   const ExactSurface::Facet& facet = setup_.surface.facet(where);
   const geometry::Placement& placement = setup_.surface.placement(where);
   const Vec3 place(placement.offset_mm.x(), placement.offset_mm.y(), placement.height_mm);
-  const FacetFrame frame(facet.normal, facet.offset_mm, *facet.middle_mm);
+  const FacetFrame frame(facet.normal, facet.offset_mm, *facet.centroid_mm);
   return formed_normal(setup_.optics, facet.normal, frame, state.position - place, state.direction, state.inside);
 }
 
@@ -454,14 +455,14 @@ Vec3 PathWalker::normal_at(const State& state, const FacetRef& where) const {
 bool PathWalker::meet_textured(State& state, const Vec3& normal, const Vec3& plane_normal, const Optics& optics) {
   surface_models::RandomStream random(key_, replicate_, sample_, choices_++);
   TexturedReturn back = meet_textured_facet(optics, normal, state, setup_.policy.split_power, random);
-  if (!optics.facet_form.is_plane()) back.keep_sides(plane_normal);
+  if (!optics.facet_form.is_plane()) back.mirror_to_side(plane_normal);
   tally_.other[Account::truncated] += back.truncated;
   tally_.other[Account::absorbed] += back.absorbed;
   const State before = state;
   for (std::size_t k = 0; k < back.count; ++k) {
     state = before;
     static_cast<Ray&>(state) = back.rays[k];
-    if (before.inside && !state.inside) state.left_through = FacetRole::retro_facet;
+    if (before.inside && !state.inside) state.last_exit_role = FacetRole::retro_facet;
     if (k + 1 < back.count) pending_.push_back(state);
   }
   return back.count > 0;
@@ -478,8 +479,8 @@ bool PathWalker::finish(const State& state, Account account) {
 }
 
 bool PathWalker::escape(const State& state) {
-  const Account account = account_of_exit(state.left_through);
-  tell(account, state, state.direction, state.light);
+  const Account account = account_of_exit(state.last_exit_role);
+  report_exit(account, state, state.direction, state.light);
   return finish(state, account);
 }
 

@@ -10,8 +10,8 @@
 #include "core/random.h"
 #include "geometry/part/part.h"
 #include "raytrace/faces/back_surface.h"
+#include "raytrace/faces/contaminated_entrance.h"
 #include "raytrace/faces/entrance_face.h"
-#include "raytrace/faces/soiled_entrance.h"
 #include "raytrace/faces/textured_facet.h"
 #include "raytrace/light/exit_observer.h"
 #include "raytrace/light/light_setup.h"
@@ -27,7 +27,7 @@ struct PathSetup : LightSetup {
 
   const BackSurface& surface;
   const EntranceFace* entrance_face = nullptr;  ///< curved entrance face; null for the plane z = thickness_mm
-  std::optional<SoiledEntrance> soiled;         ///< set if the plane entrance face scatters light
+  std::optional<ContaminatedEntrance> contaminated_entrance;  ///< set if the plane entrance face scatters light
   PathPolicy policy;
   Vec2 centre_mm = Vec2::Zero();     ///< origin of positions, in the part frame
   double clearance_mm = 0.0;         ///< maximum z at which the back surface is searched
@@ -55,7 +55,7 @@ class PathWalker {
 
   /// Predicts the path from a point inside the part to the entrance face if every face on the path only reflects.
   /// Returns the product of the reflection matrices, which maps the direction at the point to the direction at the
-  /// entrance face. Returns nothing if the path has more than kMostMirrors reflections.
+  /// entrance face. Returns nothing if the path has more than kMaxMirrors reflections.
   /// \pre all faces are plane
   std::optional<Eigen::Matrix3d> mirrors_to_entrance(const Vec3& position, const Vec3& direction) const;
 
@@ -73,7 +73,7 @@ class PathWalker {
     FacetRef entrance_source;  ///< facet of a curved entrance face that the path has just left
     bool above = false;        ///< true if the path is in the air above a curved entrance face
     bool entered = false;      ///< true if the path has passed a curved entrance face
-    geometry::FacetRole left_through = geometry::FacetRole::retro_facet;  ///< last face through which light left
+    geometry::FacetRole last_exit_role = geometry::FacetRole::retro_facet;  ///< last face through which light left
     std::uint32_t events = 0;
     Vec2 shift_mm = Vec2::Zero();  ///< infinite part: real position minus `position` (in the central period)
   };
@@ -109,12 +109,12 @@ class PathWalker {
   bool leave_entrance_face(const State& state);
   bool meet_entrance(State& state);
   void send_back(const State& state, const Light& light, const Vec3& direction);
-  void enter_soiled(const State& state);
-  bool meet_soiled_entrance(const State& state);
-  const SoiledReturn& soiled(const Ray& ray);
+  void enter_contaminated(const State& state);
+  bool meet_contaminated_entrance(const State& state);
+  const EntranceScatter& scatter_at_face(const Ray& ray);
   std::vector<Stokes>& returned(const State& state) { return state.scattered ? tally_.scattered : tally_.returned; }
   void leave(const State& state, const Light& light, const Vec3& direction);
-  void tell(Account account, const State& state, const Vec3& direction, const Light& light) const;
+  void report_exit(Account account, const State& state, const Vec3& direction, const Light& light) const;
   bool meet_side(State& state, const Vec3& normal);
   bool meet_facet(State& state, const SurfaceHit& hit);
   Vec3 normal_at(const State& state, const FacetRef& where) const;
@@ -123,7 +123,7 @@ class PathWalker {
   const Optics& optics_of_wall(const Vec3& position) const;
   Branch choose(Light& reflected, Light& transmitted);
   template <class Pass>
-  bool go_on(State& state, Branch branch, const Light& reflected, const Vec3& against, const Pass& pass);
+  bool continue_with(State& state, Branch branch, const Light& reflected, const Vec3& facing_normal, const Pass& pass);
   bool finish(const State& state, Account account);
   bool escape(const State& state);
 
@@ -141,9 +141,9 @@ class PathWalker {
   Tally& tally_;
   ExitObserver* observer_;
   std::vector<State> pending_;
-  SoiledReturn from_soiled_;
-  Vec3 to_source_ = Vec3::UnitZ();  ///< direction opposite to the light that is traced
-  bool splits_at_front_ = true;     ///< true if both branches of the first interface are traced at any power
+  EntranceScatter scatter_;
+  Vec3 to_source_ = Vec3::UnitZ();         ///< direction opposite to the light that is traced
+  bool splits_at_first_interface_ = true;  ///< true if both branches of the first interface are traced at any power
   RandomKey key_;
   std::uint32_t replicate_ = 0;
   std::uint32_t sample_ = 0;
@@ -153,14 +153,15 @@ class PathWalker {
 /// Continues a path at a face with the chosen branch or both branches.
 /// \param pass function that changes the state of the path to that of the transmitted branch
 template <class Pass>
-bool PathWalker::go_on(State& state, Branch branch, const Light& reflected, const Vec3& against, const Pass& pass) {
+bool PathWalker::continue_with(State& state, Branch branch, const Light& reflected, const Vec3& facing_normal,
+                               const Pass& pass) {
   if (branch == Branch::transmitted) {
     pass(state);
     return true;
   }
   if (branch == Branch::both) pass(pending_.emplace_back(state));
   state.light = reflected;
-  state.direction = mirrored(state.direction, against);
+  state.direction = mirrored(state.direction, facing_normal);
   return true;
 }
 

@@ -46,7 +46,7 @@ double RayLedger::std_error() const {
   const double share = ledger[Account::retroreflected] / incident;
   const double spread =
       std::sqrt(std::max(0.0, squares_back2 - 2.0 * share * squares_back + share * share * squares)) / incident;
-  return std::min(kMaxErrorOfFraction, with_unseen(spread, incident * incident / squares));
+  return std::min(kMaxErrorOfFraction, with_unsampled_paths(spread, incident * incident / squares));
 }
 
 struct RayTracer::Scene {
@@ -96,7 +96,7 @@ class RayTracer::Walk : public ExitObserver {
     book();
   }
 
-  void leaves(const Departure& departure) override {
+  void on_exit(const ExitEvent& departure) override {
     if (traced_.leaving.size() % kRaysTogether == 0) add_memory();
     LeavingRay& ray = traced_.leaving.emplace_back();
     ray.incident = incident_;

@@ -55,7 +55,8 @@ struct RayLedger {
 
   void add(const RayLedger& more);
   /// Returns the standard error of the retroreflected fraction of the power. This fraction is a mean over independent
-  /// rays, weighted with their powers. The error includes an allowance for paths that no ray has taken (with_unseen()).
+  /// rays, weighted with their powers. The error includes an allowance for paths that no ray has taken
+  /// (with_unsampled_paths()).
   double std_error() const;
 };
 

@@ -21,7 +21,7 @@ EntranceSampler::EntranceSampler(const geometry::Part& part) {
     return;
   }
   const geometry::Rectangle box = geometry::bounding_box(part.outline);
-  centre_mm_ = box.middle();
+  centre_mm_ = box.centre();
   lower_ = box.lower - centre_mm_;
   size_ = box.size();
   for (const Vec2& p : part.outline) outline_.push_back(p - centre_mm_);
@@ -30,17 +30,17 @@ EntranceSampler::EntranceSampler(const geometry::Part& part) {
   double sum = 0.0;
   for (std::size_t k = 1; k + 1 < outline_.size(); ++k) {
     sum += geometry::area({outline_[0], outline_[k], outline_[k + 1]});
-    cumulative_share_.push_back(sum / whole);
+    cumulative_fraction_.push_back(sum / whole);
   }
-  cumulative_share_.back() = 1.0;
+  cumulative_fraction_.back() = 1.0;
 }
 
 Vec2 EntranceSampler::operator()(const std::array<double, 2>& u) const {
   if (is_rectangle_) return lower_ + size_.cwiseProduct(Vec2(u[0], u[1]));
-  const auto it = std::upper_bound(cumulative_share_.begin(), cumulative_share_.end() - 1, u[0]);
-  const auto k = static_cast<std::size_t>(it - cumulative_share_.begin());
-  const double before = k == 0 ? 0.0 : cumulative_share_[k - 1];
-  const double within = (u[0] - before) / (cumulative_share_[k] - before);
+  const auto it = std::upper_bound(cumulative_fraction_.begin(), cumulative_fraction_.end() - 1, u[0]);
+  const auto k = static_cast<std::size_t>(it - cumulative_fraction_.begin());
+  const double before = k == 0 ? 0.0 : cumulative_fraction_[k - 1];
+  const double within = (u[0] - before) / (cumulative_fraction_[k] - before);
   // The square root makes the distribution over the triangle uniform.
   const double away = std::sqrt(std::clamp(within, 0.0, 1.0));
   const Vec2 far_side = outline_[k + 1] + u[1] * (outline_[k + 2] - outline_[k + 1]);

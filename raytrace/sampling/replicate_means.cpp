@@ -64,7 +64,7 @@ MonteCarloResult result_of(const std::vector<Tally>& replicates, std::uint32_t r
   return result;
 }
 
-double with_unseen(double spread, double rays, double largest) {
+double with_unsampled_paths(double spread, double rays, double largest) {
   constexpr double kRuleOfThree = 3.0;
   return std::hypot(spread, kRuleOfThree / kNormal95 * largest / rays);
 }

@@ -50,7 +50,7 @@ MonteCarloResult result_of(const std::vector<Tally>& replicates, std::uint32_t r
 /// \param spread standard deviation of the mean, estimated from the differences between replicates
 /// \param rays number of rays of equal power; for rays with powers p_i, the effective number (sum p_i)^2 / sum p_i^2
 /// \param largest maximum value that a single ray can contribute
-double with_unseen(double spread, double rays, double largest = 1.0);
+double with_unsampled_paths(double spread, double rays, double largest = 1.0);
 
 /// Returns the factor by which a standard error from this number of replicates is multiplied. After that, 1.96 standard
 /// errors correspond to a confidence of 95 %. The factor is the ratio of the 97.5 % quantiles of Student's t

@@ -23,7 +23,7 @@ constexpr std::uint32_t kRaysPerTask = 2048;
 constexpr std::uint32_t kRaysPerSlice = 64 * kRaysPerTask;
 // Maximum number of rays per replicate. It is less than 2^32, the length of the Sobol sequence, so that counters do not
 // overflow.
-constexpr std::uint32_t kMostRaysPerReplicate = UINT32_MAX - kRaysPerSlice;
+constexpr std::uint32_t kMaxRaysPerReplicate = UINT32_MAX - kRaysPerSlice;
 // Number of rays of a replicate in the first round, after which the standard error is first estimated.
 constexpr std::uint32_t kFirstRound = 256;
 // Assumed exponent: the error is proportional to rays^-kConvergence. The exponent is 0.5 for random points, and 1 for
@@ -40,11 +40,11 @@ void check_lost(const MonteCarloResult& result) {
 }
 
 /// Returns the standard error of the RRE (retroreflective efficiency) of one cone. It combines the spread of the
-/// replicates with an allowance for paths that no ray has taken, see with_unseen().
+/// replicates with an allowance for paths that no ray has taken, see with_unsampled_paths().
 /// \param spread standard deviation of the mean over replicates, see ConeResult::spread
 /// \param rays total number of rays in all replicates
 double std_error_of(double spread, double rays) {
-  return with_unseen(student_factor(kReplicates) * spread, rays);
+  return with_unsampled_paths(student_factor(kReplicates) * spread, rays);
 }
 
 }  // namespace
@@ -80,7 +80,7 @@ Rounds::Rounds(const Sampling& sampling, std::vector<double> cones_deg, std::siz
       trace_range_(std::move(trace_range)),
       progress_(progress),
       goal_(static_cast<std::uint32_t>(std::min<std::uint64_t>(
-          (sampling.rays.value_or(sampling.max_rays) + kReplicates - 1) / kReplicates, kMostRaysPerReplicate))),
+          (sampling.rays.value_or(sampling.max_rays) + kReplicates - 1) / kReplicates, kMaxRaysPerReplicate))),
       replicates_(kReplicates, Tally(cones_deg_.size(), score_size)) {}
 
 /// Returns the number of rays per replicate after the next round. The number is doubled in each round, because the

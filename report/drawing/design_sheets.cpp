@@ -126,7 +126,7 @@ Panel plan_panel(const PlanPanel& panel) {
   const ToPaper at = [&](const Vec2& p) { return Point{scale * (p.x() - origin.x()), scale * (origin.y() - p.y())}; };
   Panel result{{}, place_of(origin, scale, "y")};
   SvgGroup& group = result.group;
-  if (panel.faces_are_left_out && !panel.outline_mm.empty()) group.outline("plain", on_paper(panel.outline_mm, at));
+  if (panel.omits_faces && !panel.outline_mm.empty()) group.outline("plain", on_paper(panel.outline_mm, at));
   const bool fine = has_fine_lines(panel.view, scale);
   if (fine) result.attributes += " class=\"fine\"";
   draw_faces(group, panel.view, at);
@@ -235,13 +235,13 @@ Panel section_panel(const SectionPanel& panel) {
   SvgGroup& group = result.group;
   const std::vector<Point> outline = on_paper(view.outline_mm, at);
   const auto corners = static_cast<std::ptrdiff_t>(outline.size());
-  group.outline(panel.goes_on ? "body bare" : "body", outline);
-  if (panel.goes_on) {
+  group.outline(panel.is_continued ? "body bare" : "body", outline);
+  if (panel.is_continued) {
     group.path("outline", {outline.begin(), outline.begin() + corners - 2});
     group.path("outline", {outline.begin() + corners - 2, outline.end()});
   }
   if (z.is_interrupted()) draw_break(group, z, scale * width_mm);
-  if (panel.goes_on)
+  if (panel.is_continued)
     for (const double x_mm : {view.x_from_mm, view.x_to_mm}) {
       const double foot_mm =
           x_mm == view.x_from_mm ? view.outline_mm.front().y() : view.outline_mm[view.outline_mm.size() - 3].y();
@@ -303,7 +303,7 @@ std::string plan_svg(const DesignDrawing& drawing) {
   std::string words = "Plan of the part";
   for (const PlanPanel& panel : drawing.plan) {
     panels.push_back(plan_panel(panel));
-    titles.push_back(panel.faces_are_left_out ? panel.title + " (elements too small to be drawn)" : panel.title);
+    titles.push_back(panel.omits_faces ? panel.title + " (elements too small to be drawn)" : panel.title);
     words += "; " + words_of(panel.dimensions);
   }
   return sheet_of(drawing, panels, titles, "plan", words);

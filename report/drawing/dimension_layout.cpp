@@ -13,7 +13,7 @@ constexpr double kArrow = 8.0;
 constexpr double kGap = 3.0;   ///< distance from the measured point to its extension line
 constexpr double kOver = 4.0;  ///< length of an extension line beyond the dimension line
 constexpr double kClear = 3.0, kTextGap = 4.0;
-constexpr int kMostLevels = 16;
+constexpr int kMaxLevels = 16;
 
 /// Interval of one coordinate in the frame of a side of the figure. The coordinates are the position along the
 /// dimension line and the distance away from the figure.
@@ -38,7 +38,7 @@ class SideLayout {
 
   PlacedDimension place(const PaperDimension& d) {
     Candidate best = candidate(d, 0, 0);
-    for (int level = 0; level < kMostLevels; ++level)
+    for (int level = 0; level < kMaxLevels; ++level)
       for (int position = 0; position < 3; ++position) {
         const Candidate c = candidate(d, level, position);
         if (c.is_possible && is_free(c)) {

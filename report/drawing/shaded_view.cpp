@@ -10,9 +10,9 @@ namespace {
 
 using geometry::BoundaryMesh, geometry::FacetRole, geometry::Vec2, geometry::Vec3;
 
-constexpr std::size_t kFiner = 3;      ///< number of sample points along each side of a pixel
-constexpr double kMarginShare = 0.04;  ///< margin on every side, as a fraction of the picture
-constexpr double kEdgeWidth = 1.1;     ///< pixels
+constexpr std::size_t kFiner = 3;         ///< number of sample points along each side of a pixel
+constexpr double kMarginFraction = 0.04;  ///< margin on every side, as a fraction of the picture
+constexpr double kEdgeWidth = 1.1;        ///< pixels
 /// Depth tolerance for edges, as a fraction of the depth of the scene. Edges are on the surface, so rounding may move
 /// them behind it. They are still drawn if they are behind the surface by less than this tolerance.
 constexpr double kBias = 2e-3;
@@ -49,7 +49,7 @@ class Projection {
         low = low.cwiseMin(p);
         high = high.cwiseMax(p);
       }
-    const Vec2 room = (1.0 - 2.0 * kMarginShare) * Vec2(static_cast<double>(columns), static_cast<double>(rows));
+    const Vec2 room = (1.0 - 2.0 * kMarginFraction) * Vec2(static_cast<double>(columns), static_cast<double>(rows));
     const Vec2 size = (high - low).head<2>();
     mm_per_pixel_ = std::max(size.x() / room.x(), size.y() / room.y());
     middle_ = 0.5 * (low + high);

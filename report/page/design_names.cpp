@@ -69,7 +69,7 @@ std::string DesignNames::of(const Json& design) const {
 
 std::string DesignNames::of(const ResultDocument& document, double number) const {
   if (const Json* const design = design_of(folder_, document, number)) return of(*design);
-  return fmt::format("design {}", shown(number));
+  return fmt::format("design {}", six_digits(number));
 }
 
 }  // namespace retrace::report

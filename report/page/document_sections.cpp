@@ -117,7 +117,7 @@ PageSection fabrication_section(const ResultDocument& document, const ResultFold
   PageSection section = titled("Tool path");
   section.facts = {{"Machining time", measured(number(json, "time_s") / 3600.0, 3, " h")},
                    {"Time per element", measured(number(json, "time_per_element_s"), 2, " s")},
-                   {"Elements", shown(number(json, "elements"))},
+                   {"Elements", six_digits(number(json, "elements"))},
                    {"Machine", text(json, "machine")},
                    {"Strategy", text(json, "strategy")},
                    {"Dialect", text(json, "dialect")}};

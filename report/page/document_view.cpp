@@ -51,11 +51,11 @@ std::string measured(double value, int digits, const char* unit) {
 }
 
 std::string measured(double value, const char* unit) {
-  return std::isfinite(value) ? shown(value) + unit : "";
+  return std::isfinite(value) ? six_digits(value) + unit : "";
 }
 
-std::string percent(double share) {
-  return std::isfinite(share) ? fixed(100.0 * share, 2) + " %" : "";
+std::string percent(double fraction) {
+  return std::isfinite(fraction) ? fixed(100.0 * fraction, 2) + " %" : "";
 }
 
 PageCell cell_of(const Json& value) {
@@ -104,8 +104,8 @@ PageTable table_of(const Json& rows, const std::vector<std::string>& keys, const
       present.push_back(key);
   for (const std::string& key : present) table.columns.push_back(column_name(key));
   for (const Json& row : rows) {
-    if (table.rows.size() == kMostRows) {
-      table.left_out = rows.size() - kMostRows;
+    if (table.rows.size() == kMaxRows) {
+      table.omitted_rows = rows.size() - kMaxRows;
       break;
     }
     std::vector<PageCell> cells;
@@ -145,7 +145,7 @@ std::string name_of_design(const Json& design) {
   if (!element.is_object()) return text(member(design, "part"), "mesh");
   std::string name = text(element, "kind");
   for (const char* size : {"base_mm", "width_mm", "aperture_mm"})
-    if (std::isfinite(number(element, size))) name += " " + shown(number(element, size));
+    if (std::isfinite(number(element, size))) name += " " + six_digits(number(element, size));
   return name + " mm, " + text(member(design, "array"), "arrangement");
 }
 

@@ -15,7 +15,7 @@ namespace retrace::report::document {
 using Json = nlohmann::ordered_json;
 
 /// Maximum number of rows of a table on the page. The limit keeps the page small. The result files contain all rows.
-inline constexpr std::size_t kMostRows = 400;
+inline constexpr std::size_t kMaxRows = 400;
 
 const Json& member(const Json& json, const char* key);  ///< returns a member; null if absent
 double number(const Json& json, const char* key);       ///< returns a number; NaN if absent
@@ -30,7 +30,7 @@ const Json& list(const Json& json, const char* key);  ///< returns a list; empty
 std::string measured(double value, int digits, const char* unit);
 /// Returns a number with six digits and its unit. Returns an empty text if the number is not finite.
 std::string measured(double value, const char* unit);
-std::string percent(double share);
+std::string percent(double fraction);
 
 PageCell cell_of(const Json& value);
 /// Converts a key to the title of a column, for example "incidence_deg" to "incidence (deg)".

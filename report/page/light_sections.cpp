@@ -48,8 +48,8 @@ PageTable ledger_table(const ResultDocument& document, const DesignNames& names)
     for (const auto& [key, value] : member(points.front(), "ledger").items()) accounts.push_back(key);
   for (const std::string& account : accounts) table.columns.push_back(column_name(account) + " (%)");
   for (const Json& p : points) {
-    if (table.rows.size() == kMostRows) {
-      table.left_out = points.size() - kMostRows;
+    if (table.rows.size() == kMaxRows) {
+      table.omitted_rows = points.size() - kMaxRows;
       break;
     }
     const double design = number(p, "design");
@@ -81,9 +81,9 @@ PageSection rre_section(const ResultDocument& document, const ResultFolder& fold
 
 namespace {
 
-constexpr std::size_t kMostPanels = 6;
-constexpr std::size_t kMostRegions = 1500;  // maximum number of regions that are drawn in a panel
-constexpr std::size_t kMostSpots = 600;
+constexpr std::size_t kMaxPanels = 6;
+constexpr std::size_t kMaxRegions = 1500;  // maximum number of regions that are drawn in a panel
+constexpr std::size_t kMaxSpots = 600;
 
 /// Returns the outer ring of a GeoJSON polygon.
 Polygon ring_of(const Json& feature) {
@@ -124,7 +124,7 @@ std::string scale_bar(const Rectangle& face) {
       4.0 * unit, length);
 }
 
-/// Returns at most kMostPanels entries of a list. The entries are sorted by the magnitude of the angle of incidence and
+/// Returns at most kMaxPanels entries of a list. The entries are sorted by the magnitude of the angle of incidence and
 /// then selected at equal intervals.
 std::vector<const Json*> spread(const Json& entries) {
   std::vector<const Json*> all;
@@ -135,9 +135,9 @@ std::vector<const Json*> spread(const Json& entries) {
   // Entries with NaN or infinite angles are removed, because they cannot be sorted.
   std::erase_if(all, [](const Json* entry) { return !std::isfinite(number(*entry, "incidence_deg")); });
   std::stable_sort(all.begin(), all.end(), less);
-  if (all.size() <= kMostPanels) return all;
+  if (all.size() <= kMaxPanels) return all;
   std::vector<const Json*> chosen;
-  for (std::size_t k = 0; k < kMostPanels; ++k) chosen.push_back(all[k * (all.size() - 1) / (kMostPanels - 1)]);
+  for (std::size_t k = 0; k < kMaxPanels; ++k) chosen.push_back(all[k * (all.size() - 1) / (kMaxPanels - 1)]);
   return chosen;
 }
 
@@ -178,8 +178,8 @@ MapPanel panel_of(const Json& json, const Json& region, const Rectangle& face, c
       footprint_panel({.design = design,
                        .incidence_deg = number(region, "incidence_deg"),
                        .azimuth_deg = has_azimuths ? std::optional(number_or_0(region, "azimuth_deg")) : std::nullopt,
-                       .active_share = number_or_0(region, "active_fraction"),
-                       .rre_shown = number_or_0(region, "rre_shown")});
+                       .active_fraction = number_or_0(region, "active_fraction"),
+                       .rre_contribution = number_or_0(region, "rre_shown")});
   panel.outline = geometry::to_polygon(face);
   for (const Json& feature : list(json, "features"))
     if (is_of(feature, region))
@@ -188,10 +188,10 @@ MapPanel panel_of(const Json& json, const Json& region, const Rectangle& face, c
 }
 
 /// Draws a panel. The value of a region is its efficiency in percent, and regions with a higher value are darker. Only
-/// the first kMostRegions regions are drawn.
+/// the first kMaxRegions regions are drawn.
 PageFigure figure_of(const MapPanel& panel) {
   std::string shapes;
-  for (const MapRegion& region : panel.regions | std::views::take(kMostRegions)) {
+  for (const MapRegion& region : panel.regions | std::views::take(kMaxRegions)) {
     shapes += fmt::format("<polygon class=\"region\" fill-opacity=\"{:.3f}\" points=\"",
                           0.15 + 0.85 * std::clamp(0.01 * region.value, 0.0, 1.0));
     for (const geometry::Vec2& p : region.outline) shapes += fmt::format("{:.6g},{:.6g} ", p.x(), -p.y());
@@ -199,8 +199,8 @@ PageFigure figure_of(const MapPanel& panel) {
   }
   PageFigure figure;
   figure.caption = fmt::format("{}: {}.", panel.title, fmt::join(panel.remarks, "; "));
-  if (panel.regions.size() > kMostRegions)
-    figure.caption += fmt::format(" {} of {} regions are drawn.", kMostRegions, panel.regions.size());
+  if (panel.regions.size() > kMaxRegions)
+    figure.caption += fmt::format(" {} of {} regions are drawn.", kMaxRegions, panel.regions.size());
   const Rectangle face = geometry::bounding_box(panel.outline);
   const geometry::Vec2 size = face.size();
   const double margin = 0.04 * size.maxCoeff();
@@ -267,7 +267,7 @@ PageFigure far_field_panel(const Json& direction, const std::string& design) {
   for (const Json& spot : spots) {
     const double r = number(spot, "deviation_arcmin");
     const double power = number(spot, "power");
-    if (!(r <= reach) || ++drawn > kMostSpots) continue;
+    if (!(r <= reach) || ++drawn > kMaxSpots) continue;
     const double angle = number(spot, "deviation_azimuth_deg") * std::acos(-1.0) / 180.0;
     const double size = std::max(0.6, 9.0 * std::sqrt(std::max(0.0, power)));
     shapes += fmt::format(
@@ -281,8 +281,8 @@ PageFigure far_field_panel(const Json& direction, const std::string& design) {
   figure.caption = fmt::format(
       "{}Incidence {} deg, azimuth {} deg. {} of the light leaves more than {:.0f} arcmin from the direction to the "
       "source.",
-      design.empty() ? design : design + ". ", shown(number(direction, "incidence_deg")),
-      shown(number(direction, "azimuth_deg")), percent(other_reach), kWindowArcmin);
+      design.empty() ? design : design + ". ", six_digits(number(direction, "incidence_deg")),
+      six_digits(number(direction, "azimuth_deg")), percent(other_reach), kWindowArcmin);
   figure.svg = fmt::format("<svg role=\"img\" aria-label=\"{}\" viewBox=\"-100 -100 200 200\">{}</svg>",
                            markup_text(figure.caption), shapes);
   return figure;
@@ -307,7 +307,7 @@ PageSection far_field_section(const ResultDocument& document, const ResultFolder
                   {"azimuth_deg", member(direction, "azimuth_deg")}};
       if (names.are_several()) row["design"] = names.of(document, number(direction, "design"));
       row.update(spot);
-      if (rows.size() <= kMostRows) rows.push_back(std::move(row));
+      if (rows.size() <= kMaxRows) rows.push_back(std::move(row));
     }
   }
   section.tables.push_back(table_of(rows,

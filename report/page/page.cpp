@@ -223,7 +223,7 @@ class HtmlWriter {
       add("</tr>\n");
     }
     add("</tbody></table></div>\n");
-    if (table.left_out > 0) add("<p>The file contains {} more rows.</p>\n", table.left_out);
+    if (table.omitted_rows > 0) add("<p>The file contains {} more rows.</p>\n", table.omitted_rows);
   }
 
   const Page& page_;
@@ -243,12 +243,12 @@ PageSection titled(std::string title, const std::string& paragraph) {
   return section;
 }
 
-std::string shown(double value) {
+std::string six_digits(double value) {
   if (!std::isfinite(value)) return "";
   return fmt::format("{:.6g}", value + 0.0);
 }
 
-PageCell::PageCell(double value) : text(shown(value)) {
+PageCell::PageCell(double value) : text(six_digits(value)) {
   if (!std::isfinite(value)) return;
   std::string all = shortest(value);
   if (all != text) full = std::move(all);

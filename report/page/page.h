@@ -37,7 +37,7 @@ struct PageTable {
   std::vector<std::string> columns;  ///< titles with units, such as "incidence (deg)"
   std::vector<std::vector<PageCell>> rows;
   std::string csv_name;
-  std::size_t left_out = 0;  ///< number of rows of the result that were omitted
+  std::size_t omitted_rows = 0;  ///< number of rows of the result that were omitted
 };
 
 /// A drawing (SVG made by retrace) or a picture from a file of the result folder.
@@ -103,6 +103,6 @@ PageAssets assets_for(const Page& page);
 std::string page_html(const Page& page, const PageAssets& assets);
 
 /// Returns a number with six significant digits.
-std::string shown(double value);
+std::string six_digits(double value);
 
 }  // namespace retrace::report

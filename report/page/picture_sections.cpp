@@ -54,7 +54,7 @@ PageSection road_section(const ResultDocument& document) {
       table.columns.push_back(fmt::format("{} lamp: {}", lamp, what));
   for (const Json& view : list(document.json, "views")) {
     const Json& reflectors = list(view, "reflectors");
-    for (std::size_t k = 0; k < reflectors.size() && table.rows.size() < kMostRows; ++k) {
+    for (std::size_t k = 0; k < reflectors.size() && table.rows.size() < kMaxRows; ++k) {
       std::vector<PageCell> row = {number(view, "distance_m"), k == 0 ? "left" : "right",
                                    number(reflectors[k], "luminance_cd_per_m2")};
       for (const std::size_t lamp : {0U, 1U})

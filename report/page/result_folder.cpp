@@ -113,7 +113,7 @@ ResultFolder read_result_folder(const fs::path& folder, const std::vector<std::s
            name + ": left out because it links to a file outside the folder; allow it with --read"});
       continue;
     }
-    if (ending == ".json") add_document(result, file, name, read_file(file, kLongestDocumentBytes));
+    if (ending == ".json") add_document(result, file, name, read_file(file, kMaxDocumentBytes));
     if (type.empty() || (ending == ".png" && known.contains(fs::path(file).replace_extension(".svg")))) continue;
     if (fs::file_size(file, ignored) > kLargestPictureBytes) continue;
     result.pictures.push_back({name, type, read_file(file)});

@@ -38,7 +38,7 @@ struct ResultFolder {
 };
 
 /// Maximum size of a document in bytes.
-inline constexpr std::size_t kLongestDocumentBytes = std::size_t{256} << 20;
+inline constexpr std::size_t kMaxDocumentBytes = std::size_t{256} << 20;
 
 /// Adds a document or a picture from memory. Does nothing if the extension of `name` is not .json, .svg or .png.
 /// \param name file name, whose extension gives the type

@@ -7,11 +7,11 @@
 #include "core/message_text.h"
 #include "core/number_format.h"
 #include "core/schema/json.h"
+#include "design/file_names.h"
+#include "design/io/design_format.h"
+#include "design/io/design_reader.h"
 #include "report/page/design_names.h"
 #include "report/page/sections.h"
-#include "studies/design/io/design_format.h"
-#include "studies/design/io/design_reader.h"
-#include "studies/design/io/file_names.h"
 #include "studies/scene/path_words.h"
 
 namespace retrace::report {
@@ -24,7 +24,7 @@ std::array<double, 3> numbers(const geometry::Vec3& p) {
 /// Checks that all files to which a design refers may be read, see may_read(). The check is needed because result
 /// documents may come from untrusted sources.
 /// \throw InputError for the first key whose file may not be read
-void check_files(const studies::Design& design, const ResultFolder& folder) {
+void check_files(const design::Design& design, const ResultFolder& folder) {
   for (const std::string& key : design.document->keys_of_files())
     if (const std::filesystem::path file = design.document->file(key); !may_read(folder, file))
       throw InputError(
@@ -43,9 +43,9 @@ SceneView scene_view(const studies::DesignScene& scene) {
   for (const studies::ScenePath& path : scene.paths) {
     ScenePathView shown;
     shown.label = fmt::format("Incidence {} deg: {} ({} % of the light)", fixed_visible(path.incidence_deg, 1),
-                              studies::fate_of(path.path), fixed(100.0 * path.share, 0));
+                              studies::ending_text(path.path), fixed(100.0 * path.fraction, 0));
     for (const geometry::Vec3& p : path.path.points_mm) shown.points_mm.push_back(numbers(p));
-    for (const raytrace::PathStep& step : path.path.steps) shown.events.push_back(studies::words_of(step));
+    for (const raytrace::PathStep& step : path.path.steps) shown.events.push_back(studies::description_of(step));
     view.paths.push_back(std::move(shown));
   }
   return view;
@@ -61,7 +61,7 @@ Warnings add_scene(Page& page, const ResultFolder& folder) {
       std::vector<studies::SceneLight> lights;
       for (const auto& [incidence_deg, azimuth_deg] : extreme_directions_deg(folder))
         lights.push_back({incidence_deg, azimuth_deg});
-      const studies::Design quoted = studies::design_of_json(*design);
+      const design::Design quoted = studies::design_of_json(*design);
       check_files(quoted, folder);
       const studies::DesignScene scene = studies::make_scene(quoted, lights);
       page.scene = scene_view(scene);
@@ -84,9 +84,9 @@ void add_live(Page& page, const ResultFolder& folder) {
   const auto* const json = first_design(folder);
   if (json == nullptr) return;
   try {
-    const std::string toml = schema::toml_of_json(studies::design_format(), *json);
-    const studies::Design design = studies::parse_design(toml, "design.toml");
-    studies::check_names_no_file(design, "which a self-contained page cannot read");
+    const std::string toml = schema::toml_of_json(design::design_format(), *json);
+    const design::Design design = design::parse_design(toml, "design.toml");
+    design::require_no_files(design, "which a self-contained page cannot read");
     PageSection section = titled("Live",
                                  "The design with the engine in this page: change a value or the direction of the "
                                  "light to see the effect. The results of the other sections do not change.");

@@ -94,7 +94,7 @@ void add_efficiencies(const Json& points, double design, const std::string& whos
   }
   if (normal != nullptr) facts.push_back({"RRE at normal incidence" + whose, percent(number(*normal, "rre"))});
   if (best != nullptr && best != normal)
-    facts.push_back({fmt::format("Maximum RRE, at {} deg{}", shown(number(*best, "incidence_deg")), whose),
+    facts.push_back({fmt::format("Maximum RRE, at {} deg{}", six_digits(number(*best, "incidence_deg")), whose),
                      percent(number(*best, "rre"))});
 }
 

@@ -55,7 +55,7 @@ std::string cost(const SetupSheet& sheet, std::string_view key) {
       return fmt::format(
           "An error of 1 {} causes errors of up to {} nm on facets, {} nm at roots, {} nm in walls and {} nm in chip "
           "thickness",
-          row.quantity->unit(), fixed(row.farthest_nm(), 0), fixed(std::max(row.root_left_nm, row.root_cut_nm), 0),
+          row.quantity->unit(), fixed(row.farthest_nm(), 0), fixed(std::max(row.root_residual_nm, row.root_cut_nm), 0),
           fixed(row.wall_nm, 0), fixed(row.chip_nm, 0));
   return {};
 }
@@ -146,11 +146,11 @@ PageSection tool_section(const FabricationResult& result, const SetupSheet& shee
   if (is_dmc) s.facts.push_back({"Angle between its edges", shortest(tool.nose_angle_deg) + " degrees"});
   if (sheet.tool.free_length_mm) s.facts.push_back({"Free length below the holder", mm(*sheet.tool.free_length_mm, 2)});
   const ToolMount& mount = result.machine.mount;
-  if (mount.offset_mm.value != Vec3::Zero() || mount.turn_deg.value != Vec3::Zero())
+  if (mount.offset_mm.value != Vec3::Zero() || mount.rotation_deg.value != Vec3::Zero())
     s.paragraphs.push_back(fmt::format(
         "Programs compensate a tool that is mounted {} mm off its nominal position along X, Y, Z and is rotated "
         "by {} degrees about these axes ({}).",
-        triple(mount.offset_mm.value, 6), triple(mount.turn_deg.value, 6), mount.turn_deg.source));
+        triple(mount.offset_mm.value, 6), triple(mount.rotation_deg.value, 6), mount.rotation_deg.source));
   s.steps = tool_steps(result, sheet);
   return s;
 }
@@ -233,7 +233,7 @@ PageTable stops_table(const FabricationResult& result) {
     table.rows.push_back({result.program_file(stop.program), hours(stop.at_s),
                           std::string(fabrication::kStopReasonWords[static_cast<std::size_t>(stop.reason)]),
                           fmt::format("element {} of {}", stop.element, result.plan.stages[stop.stage].name),
-                          result.job.tool.edge_life_mm ? fixed(stop.used.cut_mm, 1) : std::string(),
+                          result.job.tool.edge_life_mm ? fixed(stop.wear.cut_mm, 1) : std::string(),
                           "_________________"});
   return table;
 }
@@ -291,11 +291,11 @@ PageSection checks_section(const FabricationResult& result, const SetupSheet& sh
   constexpr std::size_t kMost = 60;
   for (const studies::StageCheck& check : sheet.checks) {
     if (table.rows.size() == kMost) break;
-    table.rows.push_back({check.stage, result.program_file(check.program), hours(check.ends_s), fixed(check.left_um, 3),
-                          check.root_depth_mm > 0.0 ? fixed(check.root_depth_mm, 6) : std::string("-"),
-                          "_________________"});
+    table.rows.push_back(
+        {check.stage, result.program_file(check.program), hours(check.ends_s), fixed(check.remaining_um, 3),
+         check.root_depth_mm > 0.0 ? fixed(check.root_depth_mm, 6) : std::string("-"), "_________________"});
   }
-  table.left_out = sheet.checks.size() - table.rows.size();
+  table.omitted_rows = sheet.checks.size() - table.rows.size();
   s.tables.push_back(std::move(table));
   return s;
 }
@@ -329,15 +329,15 @@ PageTable sensitivity_table(const FabricationResult& result, const SetupSheet& s
   if (has_walls) table.columns.emplace_back("cut into walls (nm)");
   if (sheet.light) table.columns.insert(table.columns.end(), {"RRE (%)", "R_A (%)"});
   for (const Sensitivity& row : sheet.sensitivities.rows) {
-    std::vector<PageCell> cells = {fmt::format("{}, {}", row.quantity->words, row.quantity->unit())};
+    std::vector<PageCell> cells = {fmt::format("{}, {}", row.quantity->description, row.quantity->unit())};
     for (const studies::FacetEffect& effect : row.facets) cells.push_back(effect_text(effect));
-    for (const double nm : {row.farthest_nm(), row.chip_nm, row.root_left_nm, row.root_cut_nm})
+    for (const double nm : {row.farthest_nm(), row.chip_nm, row.root_residual_nm, row.root_cut_nm})
       cells.push_back(fixed(nm, 1));
     if (has_walls) cells.push_back(fixed(row.wall_nm, 1));
     if (const studies::PartLight* const change = sheet.change_of_light(*row.quantity, result.machine.tilt)) {
       cells.push_back(
-          change_text(change->rre.back(), sheet.light->nominal.rre.back(), studies::SetupLight::kLeastChangeOfRre));
-      cells.push_back(change_text(change->r_a, sheet.light->nominal.r_a, studies::SetupLight::kLeastChangeOfRa));
+          change_text(change->rre.back(), sheet.light->nominal.rre.back(), studies::SetupLight::kMinRreChange));
+      cells.push_back(change_text(change->r_a, sheet.light->nominal.r_a, studies::SetupLight::kMinRaChange));
     }
     table.rows.push_back(std::move(cells));
   }

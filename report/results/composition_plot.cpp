@@ -12,7 +12,8 @@ MixturePlot composition_plot(const studies::Study& study, const studies::Compose
   plot.title = study.title.empty() ? std::filesystem::path(study.source).filename().string() : study.title;
   if (!composition.best) return plot;
   const studies::PartOfZones& part = *composition.best;
-  for (const studies::Zone& zone : part.zones) plot.zones.push_back({studies::cell_text(study, zone.cell), zone.share});
+  for (const studies::Zone& zone : part.zones)
+    plot.zones.push_back({studies::cell_text(study, zone.cell), zone.area_fraction});
   bool are_margins = true;
   for (const std::size_t goal : studies::goals_to_show(request, part.mixture)) {
     const studies::Quantity& quantity = studies::goal_of(study, request, goal);
@@ -22,7 +23,8 @@ MixturePlot composition_plot(const studies::Study& study, const studies::Compose
                     {},
                     studies::goal_value_text(part.mixture.goals[goal], is_margin),
                     studies::is_price(part.mixture.prices.goals[goal]) ? part.mixture.prices.goals[goal] : 0.0};
-    for (const studies::Zone& zone : part.zones) row.given.push_back(studies::given_by(zone, goal, is_margin));
+    for (const studies::Zone& zone : part.zones)
+      row.contributions.push_back(studies::contribution_of(zone, goal, is_margin));
     plot.goals.push_back(std::move(row));
   }
   plot.total_label = are_margins ? "margin %" : "part";

@@ -10,8 +10,8 @@ namespace retrace::report {
 SurfacePlot error_map_plot(const studies::ErrorMap& map) {
   constexpr double kUmPerMm = 1e3;
   GridPanel panel;
-  panel.title =
-      "x_w to the right, y_w up; shown from -" + fixed(map.shown_nm, 0) + " to " + fixed(map.shown_nm, 0) + " nm";
+  panel.title = "x_w to the right, y_w up; shown from -" + fixed(map.colour_range_nm, 0) + " to " +
+                fixed(map.colour_range_nm, 0) + " nm";
   panel.value_label = "material above the facets (nm)";
   panel.columns = map.field.columns;
   panel.rows = map.field.rows;
@@ -19,7 +19,7 @@ SurfacePlot error_map_plot(const studies::ErrorMap& map) {
   panel.y_size_um = kUmPerMm * map.field.size_mm.y();
   panel.values = map.field.height_nm;
   for (double& value : panel.values)
-    if (std::isfinite(value)) value = std::clamp(value, -map.shown_nm, map.shown_nm);
+    if (std::isfinite(value)) value = std::clamp(value, -map.colour_range_nm, map.colour_range_nm);
   return {"Material that the programs leave", {std::move(panel)}};
 }
 

@@ -17,7 +17,7 @@ using geometry::Polygon, geometry::Vec2;
 
 /// Maximum number of prisms that are drawn one by one. In larger arrays, adjacent prisms of a row are drawn as one
 /// rectangle.
-constexpr std::size_t kMostElementsDrawn = 4000;
+constexpr std::size_t kMaxDrawnElements = 4000;
 
 std::string name_of(const studies::FabricationResult& result) {
   return std::filesystem::path(result.job.source).filename().string();
@@ -52,8 +52,8 @@ Polygon outline_of(const fabrication::Job& job, const fabrication::CutElement& c
   }
   // In a job with zones, the outline is rotated about z like the element. Elements on a curved substrate are drawn
   // without their tilt, as on the unrolled sheet.
-  const Eigen::Matrix2d turn =
-      job.zones.empty() ? Eigen::Matrix2d::Identity() : Eigen::Matrix2d(cut.turn.topLeftCorner<2, 2>());
+  const Eigen::Matrix2d turn = job.zones.empty() ? Eigen::Matrix2d::Identity()
+                                                 : Eigen::Matrix2d(cut.workpiece_from_element.topLeftCorner<2, 2>());
   Polygon outline = geometry::element_cell(element).outline;
   for (Vec2& p : outline) p = cut.rotated ? Vec2(centre - p) : Vec2(centre + turn * p);
   return outline;
@@ -101,7 +101,7 @@ struct DrawnElements {
   std::int64_t places = 0;  ///< sum of the positions of the elements in the order of cutting, for their mean
 };
 
-/// Returns the outline of the element `first`. If there are more than kMostElementsDrawn elements, returns the outline
+/// Returns the outline of the element `first`. If there are more than kMaxDrawnElements elements, returns the outline
 /// of a group of adjacent prisms that begins with `first`.
 /// \param places position of each element in the order of cutting
 /// \param in_plan function that converts coordinates of the workpiece to coordinates of the drawing
@@ -110,7 +110,7 @@ DrawnElements drawn_from(std::size_t first, const std::vector<fabrication::CutEl
                          const std::vector<std::int64_t>& places, const fabrication::Job& job, const InPlan& in_plan) {
   const auto outline_at = [&](std::size_t k) { return outline_of(job, elements[k], in_plan(elements[k].centre_mm)); };
   DrawnElements drawn{outline_at(first), 1, places[first]};
-  if (!cuts_prisms(job) || elements.size() <= kMostElementsDrawn) return drawn;
+  if (!cuts_prisms(job) || elements.size() <= kMaxDrawnElements) return drawn;
   for (std::size_t next = first + 1; next < elements.size() && elements[next].row == elements[first].row &&
                                      elements[next].column == elements[next - 1].column + 1;
        ++next) {
@@ -127,13 +127,13 @@ DrawnElements drawn_from(std::size_t first, const std::vector<fabrication::CutEl
 
 MapPlot arrangement_plot(const studies::FabricationResult& result) {
   const std::vector<fabrication::CutElement>& elements = result.plan.elements;
-  const std::vector<std::int64_t> places = studies::cutting_places(result);
+  const std::vector<std::int64_t> places = studies::cutting_order_numbers(result);
   const Vec2 extent(fabrication::blank_extent_mm(result.job).y(), fabrication::blank_extent_mm(result.job).x());
   MapPlot plot;
   plot.title = fmt::format("{}: {} elements", name_of(result), elements.size());
   plot.axis_unit = "mm";
   plot.value_label = "Position in the order of cutting (%)";
-  plot.rest_label = "not cut";
+  plot.hatched_label = "not cut";
   plot.full_value = 100.0;
   MapPanel panel;
   panel.title = sizes_of(result.job);

@@ -1,7 +1,7 @@
 #include <algorithm>
 
+#include "design/io/design_json.h"
 #include "report/results/result_plots.h"
-#include "studies/design/io/design_json.h"
 #include "studies/rre/rre.h"
 
 namespace retrace::report {
@@ -14,11 +14,11 @@ MapPanel panel_of(const RreResult& result, const ReturnedLight& light) {
   const bool has_azimuths =
       std::ranges::any_of(result.returned, [](const ReturnedLight& other) { return other.at.azimuth_deg != 0.0; });
   MapPanel panel = footprint_panel(
-      {.design = result.designs.size() > 1 ? short_name(result.designs[light.at.design]) : std::string(),
+      {.design = result.designs.size() > 1 ? design::short_name(result.designs[light.at.design]) : std::string(),
        .incidence_deg = light.at.incidence_deg,
        .azimuth_deg = has_azimuths ? std::optional(light.at.azimuth_deg) : std::nullopt,
-       .active_share = light.footprint->active_share(),
-       .rre_shown = light.footprint->rre_shown()});
+       .active_fraction = light.footprint->active_fraction(),
+       .rre_contribution = light.footprint->rre_contribution()});
   panel.outline = face.outline_mm;
   panel.is_periodic = face.is_periodic;
   panel.lines = face.rims_mm;
@@ -32,13 +32,14 @@ MapPanel panel_of(const RreResult& result, const ReturnedLight& light) {
 
 MapPlot footprint_plot(const RreResult& result) {
   MapPlot plot;
-  plot.title = result.designs.size() == 1 ? short_name(result.designs.front()) : "Active regions of the entrance face";
+  plot.title =
+      result.designs.size() == 1 ? design::short_name(result.designs.front()) : "Active regions of the entrance face";
   plot.axis_unit = "mm";
   plot.value_label = "Efficiency (%)";
-  plot.rest_label = "dead";
+  plot.hatched_label = "dead";
   plot.full_value = 100.0;
   for (const ReturnedLight& light : result.returned)
-    if (light.footprint && plot.panels.size() < kMostFootprintPanels) plot.panels.push_back(panel_of(result, light));
+    if (light.footprint && plot.panels.size() < kMaxFootprintPanels) plot.panels.push_back(panel_of(result, light));
   return plot;
 }
 

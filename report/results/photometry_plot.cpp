@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "core/number_format.h"
+#include "design/io/design_json.h"
 #include "report/results/result_plots.h"
-#include "studies/design/io/design_json.h"
 #include "studies/photometry/photometry.h"
 
 namespace retrace::report {
@@ -24,7 +24,7 @@ PolarMark::Kind mark_of(studies::Verdict verdict) {
 
 PolarPlot far_field_plot(const studies::PhotometryResult& result) {
   PolarPlot plot;
-  plot.title = fmt::format("{}: far field and test points", short_name(result.design));
+  plot.title = fmt::format("{}: far field and test points", design::short_name(result.design));
   plot.value_label = "R_A (cd/lx/m²)";
   for (const studies::FarFieldMap& map : result.maps) {
     PolarPanel panel;
@@ -33,8 +33,8 @@ PolarPlot far_field_plot(const studies::PhotometryResult& result) {
     panel.columns = map.columns;
     panel.values = map.r_a;
     for (const studies::PhotometricPoint& p : result.points)
-      if (p.v_deg == map.v_deg && p.asked.h_deg == map.h_deg)
-        panel.marks.push_back({0.0, p.asked.observation_deg,
+      if (p.v_deg == map.v_deg && p.test_point.h_deg == map.h_deg)
+        panel.marks.push_back({0.0, p.test_point.observation_deg,
                                fmt::format("{} mcd/lx", fixed(p.r_i_mcd_per_lx, p.r_i_mcd_per_lx < 10.0 ? 1 : 0)),
                                mark_of(p.verdict())});
     plot.panels.push_back(std::move(panel));
@@ -44,7 +44,7 @@ PolarPlot far_field_plot(const studies::PhotometryResult& result) {
 
 LinePlot observation_plot(const studies::PhotometryResult& result) {
   LinePlot plot;
-  plot.title = fmt::format("{}: coefficient of retroreflection", short_name(result.design));
+  plot.title = fmt::format("{}: coefficient of retroreflection", design::short_name(result.design));
   plot.x_label = "Observation angle α (°)";
   plot.y_label = "log₁₀ of R_A (cd/lx/m²)";
   for (const studies::ObservationCurve& curve : result.curves) {

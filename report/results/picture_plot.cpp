@@ -2,9 +2,9 @@
 
 #include "core/number_format.h"
 #include "core/version.h"
+#include "design/io/design_json.h"
 #include "report/colour_scale.h"
 #include "report/results/result_plots.h"
-#include "studies/design/io/design_json.h"
 #include "studies/image/camera_study.h"
 #include "studies/image/detector_study.h"
 
@@ -35,7 +35,7 @@ void add_channel(FloatPicture& picture, const std::string& name, const std::vect
 
 }  // namespace
 
-std::vector<std::pair<std::string, std::string>> picture_texts(const char* kind, const studies::Design& design) {
+std::vector<std::pair<std::string, std::string>> picture_texts(const char* kind, const design::Design& design) {
   return {{"Software", std::string("retrace ") + kVersion},
           {"retrace:schema", "retrace.image/1"},
           {"retrace:kind", kind},
@@ -44,7 +44,7 @@ std::vector<std::pair<std::string, std::string>> picture_texts(const char* kind,
 
 ImagePlot irradiance_plot(const DetectorResult& result) {
   ImagePlot plot;
-  plot.title = studies::short_name(result.design);
+  plot.title = design::short_name(result.design);
   plot.remarks.push_back(fmt::format("{}; returned within {}°: RRE {} %{}", direction_text(result),
                                      shortest(result.acceptance_half_angle_deg), fixed(100.0 * result.maps.rre, 2),
                                      result.is_period ? "; one period of an infinite array" : ""));
@@ -64,7 +64,7 @@ ImagePlot irradiance_plot(const DetectorResult& result) {
 
 ImagePlot angular_plot(const DetectorResult& result) {
   ImagePlot plot;
-  plot.title = studies::short_name(result.design);
+  plot.title = design::short_name(result.design);
   plot.remarks.push_back(direction_text(result) + "; around the direction back to the source");
   plot.remarks.push_back(fmt::format("{} % of the light leaves beyond {}°", fixed(100.0 * result.maps.outside, 2),
                                      shortest(result.request.window_deg)));
@@ -151,7 +151,7 @@ std::vector<unsigned char> tone_mapped_pixels(const std::vector<double>& luminan
 
 ImagePlot false_colour_plot(const CameraResult& result) {
   ImagePlot plot;
-  plot.title = studies::short_name(result.design);
+  plot.title = design::short_name(result.design);
   plot.remarks.push_back(fmt::format("{} lx, observation angle {}°, entrance angle {}°",
                                      shortest(result.request.illuminance_lx), fixed_visible(result.observation_deg, 2),
                                      fixed_visible(result.entrance_deg, 2)));

@@ -38,7 +38,7 @@ LinePlot planing_profile_plot(const studies::PlaningResult& result) {
   const auto& profile = result.check.profile;
   for (std::size_t k = 0; k < profile.size(); k += stride_of(profile.size())) {
     design.add(profile[k].x_mm, -profile[k].design_mm);
-    left.add(profile[k].x_mm, -profile[k].left_mm);
+    left.add(profile[k].x_mm, -profile[k].machined_mm);
   }
   const auto& points = result.plan.points;
   for (std::size_t k = 0; k < points.size(); k += stride_of(points.size())) design.add(points[k].x_mm, points[k].z_mm);
@@ -59,7 +59,7 @@ LinePlot planing_zones_plot(const studies::PlaningResult& result) {
   const double grid = result.part.mill->grid_mm;
   for (std::size_t k = 0; k < result.plan.cuts.size(); ++k) {
     const fabrication::ZoneCut& cut = result.plan.cuts[k];
-    Series& series = plot.series[!result.plan.by_depths[cut.zone] ? 2 : cut.zone % 2];
+    Series& series = plot.series[!result.plan.uses_depth_method[cut.zone] ? 2 : cut.zone % 2];
     if (k > 0 && result.plan.cuts[k - 1].zone != cut.zone) series.add(kBreak, kBreak);
     series.add(static_cast<double>(cut.x) * grid, -static_cast<double>(cut.depth) * grid);
   }
@@ -76,7 +76,7 @@ LinePlot planing_error_plot(const studies::PlaningResult& result) {
     if (here != zone) error.add(kBreak, kBreak);
     // Samples within one grid step of a vertical wall are omitted, because they may be on either side of the wall.
     if (here == zone && s.x_mm < result.part.lens.half_width_mm - result.part.mill->grid_mm)
-      error.add(s.x_mm, s.design_mm - s.left_mm);
+      error.add(s.x_mm, s.design_mm - s.machined_mm);
     zone = here;
   }
   plot.series = {error};

@@ -17,12 +17,17 @@
 #include "report/polar_plot.h"
 #include "report/surface_plot.h"
 
+namespace retrace::design {
+
+struct Design;
+
+}  // namespace retrace::design
+
 namespace retrace::studies {
 
 struct CameraResult;
 struct ComposeRequest;
 struct Composition;
-struct Design;
 struct DetectorResult;
 struct ErrorMap;
 struct FabricationResult;
@@ -46,7 +51,7 @@ namespace retrace::report {
 LinePlot rre_plot(const studies::RreResult& result);
 
 /// Maximum number of directions in the drawing of footprints.
-inline constexpr std::size_t kMostFootprintPanels = 24;
+inline constexpr std::size_t kMaxFootprintPanels = 24;
 
 /// Returns a plot of the active regions of the entrance face (regions that return light). It has one panel for each
 /// direction of light. The colour shows the efficiency in percent.
@@ -81,7 +86,7 @@ SurfacePlot metrology_plot(const studies::MetrologyResult& result);
 
 /// Returns the metadata of a picture file.
 /// \param kind kind of the document that belongs to the picture
-std::vector<std::pair<std::string, std::string>> picture_texts(const char* kind, const studies::Design& design);
+std::vector<std::pair<std::string, std::string>> picture_texts(const char* kind, const design::Design& design);
 /// Returns a plot with two maps of the light that leaves the entrance face. One map shows where the light leaves the
 /// face, and the other shows where the same light entered it.
 ImagePlot irradiance_plot(const studies::DetectorResult& result);

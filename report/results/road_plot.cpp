@@ -4,10 +4,10 @@
 #include <array>
 
 #include "core/number_format.h"
+#include "design/io/design_json.h"
 #include "report/canvas.h"
 #include "report/colour_scale.h"
 #include "report/results/result_plots.h"
-#include "studies/design/io/design_json.h"
 #include "studies/image/road_study.h"
 
 namespace retrace::report {
@@ -67,7 +67,7 @@ std::string road_png(const RoadResult& result, double scale) {
   Canvas canvas(Canvas::Format::png, size, scale);
   canvas.fill_rectangle({0.0, 0.0}, size, kBackground);
   const std::string title =
-      fmt::format("{}{}: view of a driver, lit by the car's own headlamps", studies::short_name(result.design),
+      fmt::format("{}{}: view of a driver, lit by the car's own headlamps", design::short_name(result.design),
                   result.scene.dye.empty() ? "" : ", " + result.scene.dye);
   for (const std::string& line : canvas.fitted(title, {15.0, true}, size.width - 2.0 * kMargin, 1, Ellipsis::middle))
     canvas.text({kMargin, 25.0}, line, {15.0, true}, kText, Align::left);

@@ -1,5 +1,5 @@
+#include "design/io/design_json.h"
 #include "report/results/result_plots.h"
-#include "studies/design/io/design_json.h"
 #include "studies/roughness/roughness.h"
 
 namespace retrace::report {
@@ -12,7 +12,7 @@ LinePlot roughness_plot(const studies::RoughnessResult& result) {
     const studies::FacetGroup& group = result.measured[*p.measured];
     values.back().measured = {group.is_process, group.name, group.table, group.facets, group.waviness_sa_nm};
   }
-  return roughness_plot(short_name(result.design), values);
+  return roughness_plot(design::short_name(result.design), values);
 }
 
 }  // namespace retrace::report

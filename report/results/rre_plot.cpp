@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "design/io/design_json.h"
 #include "report/results/result_plots.h"
-#include "studies/design/io/design_json.h"
 #include "studies/rre/rre.h"
 
 namespace retrace::report {
@@ -14,8 +14,8 @@ using studies::RrePoint, studies::RreResult;
 /// Returns the name of a design. Designs with the same name, such as two designs from one template, are distinguished
 /// by their number.
 std::string name_of(const RreResult& result, std::size_t design) {
-  const std::string name = short_name(result.designs[design]);
-  const auto has_name = [&](const studies::Design& other) { return short_name(other) == name; };
+  const std::string name = design::short_name(result.designs[design]);
+  const auto has_name = [&](const design::Design& other) { return design::short_name(other) == name; };
   const bool is_only_one = std::count_if(result.designs.begin(), result.designs.end(), has_name) < 2;
   return is_only_one ? name : fmt::format("{} (design {})", name, design);
 }

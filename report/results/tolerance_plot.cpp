@@ -7,7 +7,7 @@
 namespace retrace::report {
 namespace {
 
-constexpr std::size_t kMostPoints = 400;
+constexpr std::size_t kMaxPoints = 400;
 constexpr double kPercent = 100.0;
 
 Series line_at(const std::string& label, double value) {
@@ -18,7 +18,7 @@ Series line_at(const std::string& label, double value) {
 /// points, evenly spaced percentiles are used.
 Series distribution(const std::vector<double>& ascending) {
   Series series{"parts", {}, {}, {}};
-  const std::size_t points = std::min(kMostPoints, ascending.size());
+  const std::size_t points = std::min(kMaxPoints, ascending.size());
   for (std::size_t k = 0; k < points; ++k) {
     const double share = points > 1 ? static_cast<double>(k) / static_cast<double>(points - 1) : 0.5;
     series.add(compute::percentile(ascending, share), kPercent * share);
@@ -41,8 +41,8 @@ LinePlot tolerance_plot(const studies::Study& study, const studies::ToleranceReq
   if (quantity.nominal) plot.series.push_back(line_at("nominal", *quantity.nominal));
   for (const studies::Constraint& limit : request.constraints) {
     if (limit.quantity != quantity.quantity) continue;
-    if (limit.least) plot.series.push_back(line_at("minimum allowed", *limit.least));
-    if (limit.most) plot.series.push_back(line_at("maximum allowed", *limit.most));
+    if (limit.min) plot.series.push_back(line_at("minimum allowed", *limit.min));
+    if (limit.max) plot.series.push_back(line_at("maximum allowed", *limit.max));
   }
   return plot;
 }

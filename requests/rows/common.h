@@ -10,7 +10,7 @@
 namespace retrace::requests {
 
 using schema::File, schema::Flag, schema::Number, schema::NumberOrNumbers, schema::NumberRows, schema::Numbers,
-    schema::Text, schema::Texts, schema::Whole, schema::Word, schema::WordOrFile;
+    schema::Text, schema::Texts, schema::Integer, schema::Word, schema::WordOrFile;
 
 inline constexpr NumberRange kIncidence{.low = -90.0, .low_included = false, .high = 90.0, .high_included = false};
 /// Allowed azimuths, in degrees. Larger azimuths are refused, because a floating-point number of large magnitude has
@@ -42,7 +42,7 @@ inline constexpr WordOrFile kDye{kDyes, ".csv", "none, red, amber or a file"};
 template <class Type>
 constexpr Row seed_row() {
   return {"seed",
-          Whole{kUnsigned32},
+          Integer{kUnsigned32},
           "seed of the random numbers",
           schema::access<&Type::seed>,
           {.value = "S", .is_no_option = true}};

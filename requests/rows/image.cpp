@@ -12,8 +12,8 @@ namespace {
 using schema::access, schema::access_by;
 
 constexpr NumberRange kLampAim{.low = -45.0, .high = 45.0};
-constexpr double kMostSide = 16384.0;
-constexpr std::size_t kMostPixels = std::size_t{1} << 26U;
+constexpr double kMaxPictureSide = 16384.0;
+constexpr std::size_t kMaxPixels = std::size_t{1} << 26U;
 
 constexpr Row kDetectorRows[] = {{"incidence_deg",
                                   Number{kIncidence},
@@ -26,12 +26,12 @@ constexpr Row kDetectorRows[] = {{"incidence_deg",
                                   access<&DetectorRequest::azimuth_deg>,
                                   {.value = "P", .option = "--azimuth"}},
                                  {"pixels",
-                                  Whole{{.low = 1.0, .high = 8192.0}},
+                                  Integer{{.low = 1.0, .high = 8192.0}},
                                   "pixels along the longer side of the face",
                                   access<&DetectorRequest::pixels>,
                                   {.value = "N"}},
                                  {"angle_pixels",
-                                  Whole{{.low = 1.0, .high = 2049.0}},
+                                  Integer{{.low = 1.0, .high = 2049.0}},
                                   "pixels along each side of the angular map",
                                   access<&DetectorRequest::angle_pixels>,
                                   {.value = "N"}},
@@ -53,7 +53,7 @@ constexpr Row kDetectorRows[] = {{"incidence_deg",
                                   {.value = "W", .otherwise = "truncates at most 1e-5"},
                                   kNeedExact},
                                  {"samples",
-                                  Whole{kSamples},
+                                  Integer{kSamples},
                                   "number of Monte Carlo rays",
                                   access<&DetectorRequest::samples>,
                                   {.value = "N", .usual = "4194304"},
@@ -71,18 +71,18 @@ void set_camera_pixels(CameraRequest& request, const schema::Value& value) {
 
 void check_camera(const void* object) {
   const auto& request = *static_cast<const CameraRequest*>(object);
-  if (request.columns * request.rows > kMostPixels)
+  if (request.columns * request.rows > kMaxPixels)
     throw InputError(Field{"pixels"},
-                     fmt::format("must be at most {} in all, got {}x{}", kMostPixels, request.columns, request.rows));
+                     fmt::format("must be at most {} in all, got {}x{}", kMaxPixels, request.columns, request.rows));
 }
 
 constexpr NumberRange kLampAngle{.low = -90.0, .low_included = false, .high = 90.0, .high_included = false};
 
-constexpr schema::Condition kNoEye[] = {schema::without("eye_mm")};
-constexpr schema::Condition kNoEyeOrNoLamp[] = {schema::without("eye_mm"), schema::without("lamp_mm")};
-constexpr schema::Condition kNoLampFile[] = {schema::without("lamp")};
-constexpr schema::Condition kLampFile[] = {schema::beside("lamp")};
-constexpr schema::Condition kNoNoise[] = {schema::without("noise")};
+constexpr schema::Condition kNoEye[] = {schema::is_absent("eye_mm")};
+constexpr schema::Condition kNoEyeOrNoLamp[] = {schema::is_absent("eye_mm"), schema::is_absent("lamp_mm")};
+constexpr schema::Condition kNoLampFile[] = {schema::is_absent("lamp")};
+constexpr schema::Condition kLampFile[] = {schema::is_given("lamp")};
+constexpr schema::Condition kNoNoise[] = {schema::is_absent("noise")};
 constexpr Need kNeedNoEye[] = {kNoEye};
 constexpr Need kNeedNoEyeOrNoLamp[] = {kNoEyeOrNoLamp};
 constexpr Need kNeedNoLampFile[] = {kNoLampFile};
@@ -146,7 +146,7 @@ constexpr Row kCameraRows[] = {
      access<&CameraRequest::backlight_lx>,
      {.value = "E"}},
     {"pixels",
-     Numbers{2, {.low = 1.0, .high = kMostSide}, "numbers", true},
+     Numbers{2, {.low = 1.0, .high = kMaxPictureSide}, "numbers", true},
      "columns and rows of the picture",
      access_by<camera_pixels, set_camera_pixels>,
      {.value = "CxR", .notation = Notation::by_x}},
@@ -171,7 +171,7 @@ constexpr Row kCameraRows[] = {
      access<&CameraRequest::noise>,
      {.value = "E"}},
     {"passes",
-     Whole{{.low = 2.0, .high = 65536.0}},
+     Integer{{.low = 2.0, .high = 65536.0}},
      "number of passes, each with four light paths per pixel; not together with the noise",
      access<&CameraRequest::passes>,
      {.value = "N", .otherwise = "as many as the noise requires"},

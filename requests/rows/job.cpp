@@ -70,7 +70,7 @@ constexpr std::string_view kProgramDialects[] = {"rs274ngc", "sinumerik", "fanuc
 /// Maximum number of an element or pass, and maximum value of `stop_every`: the largest signed 32-bit integer.
 constexpr double kMaxVisits = 2147483647.0;
 
-constexpr schema::Condition kFromElement[] = {schema::beside("from_element")};
+constexpr schema::Condition kFromElement[] = {schema::is_given("from_element")};
 constexpr Need kNeedFromElement[] = {kFromElement};
 
 constexpr Row kFabricationRows[] = {
@@ -86,20 +86,20 @@ constexpr Row kFabricationRows[] = {
      access<&FabricationRequest::phase>,
      {.value = "PHASE"}},
     {"from_element",
-     Whole{{.low = 0.0, .high = kMaxVisits}},
+     Integer{{.low = 0.0, .high = kMaxVisits}},
      "number, counted from 0, of the element at which the programs start; all earlier cuts of the selected stages are "
      "omitted",
      access<&FabricationRequest::from_element>,
      {.value = "N", .otherwise = "the first"}},
     {"from_pass",
-     Whole{{.low = 1.0, .high = kMaxVisits}},
+     Integer{{.low = 1.0, .high = kMaxVisits}},
      "number, counted from 1, of the pass with which the programs start at the first element; a tool that is narrower "
      "than an element needs several parallel passes for it",
      access<&FabricationRequest::from_pass>,
      {.value = "K", .usual = "1"},
      kNeedFromElement},
     {"stop_every",
-     Whole{{.low = 1.0, .high = kMaxVisits}},
+     Integer{{.low = 1.0, .high = kMaxVisits}},
      "number of elements that the tool cuts between two optional stops; an element that is cut in several stages "
      "counts several times",
      access<&FabricationRequest::stop_every>,

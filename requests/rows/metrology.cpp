@@ -14,7 +14,7 @@ constexpr NumberRange kPositive{.low = 0.0, .low_included = false};
 constexpr std::string_view kForms[] = {"none", "plane", "poly2", "poly3", "poly4", "poly5", "poly6", "poly7", "poly8"};
 constexpr std::string_view kLengthUnits[] = {"m", "mm", "um", "nm", "pm"};
 
-constexpr schema::Condition kNoEdge[] = {schema::without("edge")};
+constexpr schema::Condition kNoEdge[] = {schema::is_absent("edge")};
 constexpr Need kNeedNoEdge[] = {kNoEdge};
 
 schema::Value pixels_um(const MetrologyRequest& request) {
@@ -34,7 +34,7 @@ void set_pixels_um(MetrologyRequest& request, const schema::Value& value) {
 
 constexpr Row kMetrologyRows[] = {
     {"pixel_um",
-     NumberOrNumbers{.range = kPositive, .most = 2},
+     NumberOrNumbers{.range = kPositive, .max_count = 2},
      "spacing of the points, or spacings along x and y",
      access_by<pixels_um, set_pixels_um>,
      {.value = "P|PX,PY", .notation = Notation::commas, .otherwise = "as in the file"}},
@@ -60,7 +60,7 @@ constexpr Row kMetrologyRows[] = {
      access<&MetrologyRequest::lateral_unit>,
      {.value = "UNIT", .otherwise = "as in the file"}},
     {"channel",
-     Whole{{.low = 0.0, .high = 999999.0}},
+     Integer{{.low = 0.0, .high = 999999.0}},
      "channel of a GWY file",
      access<&MetrologyRequest::channel>,
      {.value = "N", .otherwise = "the first"}},

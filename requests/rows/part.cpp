@@ -51,7 +51,7 @@ constexpr Row kMaterialRows[] = {{"entrance_deg",
                                   access<&MaterialRequest::error>,
                                   {.value = "E"}},
                                  {"max_directions",
-                                  Whole{{.low = 64.0, .high = 10000.0}},
+                                  Integer{{.low = 64.0, .high = 10000.0}},
                                   "maximum number of directions of light that are computed",
                                   access<&MaterialRequest::max_directions>,
                                   {.value = "N", .former = "most_directions"}}};

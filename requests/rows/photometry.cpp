@@ -92,7 +92,7 @@ constexpr Row kPhotometryRows[] = {
      access<&PhotometryRequest::engine>,
      {.value = "ENGINE"}},
     {"samples",
-     Whole{kSamples},
+     Integer{kSamples},
      "number of Monte Carlo rays for each direction of the incident light",
      access<&PhotometryRequest::samples>,
      {.value = "N", .usual = "1048576"},

@@ -14,12 +14,12 @@ constexpr std::string_view kEmitters[] = {"lambertian", "gaussian", "collimated"
 
 constexpr NumberRange kFraction{.low = 0.0, .high = 1.0};
 
-constexpr schema::Condition kEmitter[] = {schema::beside("emitter")};
-constexpr schema::Condition kNoEmitter[] = {schema::without("emitter")};
-constexpr schema::Condition kNoIncidence[] = {schema::without("incidence_deg")};
-constexpr schema::Condition kNoAzimuth[] = {schema::without("azimuth_deg")};
-constexpr schema::Condition kNoDistance[] = {schema::without("distance_mm")};
-constexpr schema::Condition kOut[] = {schema::beside("out")};
+constexpr schema::Condition kEmitter[] = {schema::is_given("emitter")};
+constexpr schema::Condition kNoEmitter[] = {schema::is_absent("emitter")};
+constexpr schema::Condition kNoIncidence[] = {schema::is_absent("incidence_deg")};
+constexpr schema::Condition kNoAzimuth[] = {schema::is_absent("azimuth_deg")};
+constexpr schema::Condition kNoDistance[] = {schema::is_absent("distance_mm")};
+constexpr schema::Condition kOut[] = {schema::is_given("out")};
 constexpr Need kNeedEmitter[] = {kEmitter};
 constexpr Need kNeedNoEmitter[] = {kNoEmitter};
 constexpr Need kNeedNoAngles[] = {kNoIncidence, kNoAzimuth, kNoDistance};
@@ -57,7 +57,7 @@ constexpr Row kRaysRows[] = {
      access<&RaysRequest::emitter>,
      {.value = "KIND", .otherwise = "rays of a file"}},
     {"rays",
-     Whole{{.low = 1.0, .high = 0x1p40}},
+     Integer{{.low = 1.0, .high = 0x1p40}},
      "emitter: number of rays",
      access<&RaysRequest::rays>,
      {.value = "N"},

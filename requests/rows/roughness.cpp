@@ -9,7 +9,7 @@ namespace {
 using schema::access;
 
 constexpr NumberRange kRoughnessLengthUm{.low = 0.0, .low_included = false, .high = 1e6};
-constexpr schema::Condition kRoughnessNoSamples[] = {schema::without("samples")};
+constexpr schema::Condition kRoughnessNoSamples[] = {schema::is_absent("samples")};
 constexpr Need kRoughnessNeedNoSamples[] = {kRoughnessNoSamples};
 
 constexpr Row kRoughnessRows[] = {{"sa_nm",
@@ -39,7 +39,7 @@ constexpr Row kRoughnessRows[] = {{"sa_nm",
                                    access<&RoughnessRequest::azimuth_deg>,
                                    {.value = "P", .option = "--azimuth"}},
                                   {"samples",
-                                   Whole{kSamples},
+                                   Integer{kSamples},
                                    "number of rays for each point",
                                    access<&RoughnessRequest::samples>,
                                    {.value = "N", .otherwise = "until the target error is reached"}},

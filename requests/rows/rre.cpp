@@ -23,12 +23,13 @@ constexpr std::string_view kRreSamplings[] = {"stratified", "plain"};
 constexpr schema::Condition kRreByRays[] = {schema::is("engine", kRreRayEngines)};
 constexpr schema::Condition kRreWithCutoff[] = {schema::is("engine", kRreCutoffEngines)};
 // Condition of the field target_error. The exact engine cannot use it together with a cut-off power.
-constexpr schema::Condition kRreWithTarget[] = {schema::is("engine", kRreTargetEngines), schema::without("cutoff")};
-constexpr schema::Condition kRreNoCutoffOrDerivatives[] = {schema::without("cutoff"), schema::without("derivatives")};
-constexpr schema::Condition kRreNoCutoffOrFootprint[] = {schema::without("cutoff"), schema::without("footprint")};
-constexpr schema::Condition kRreNoCutoffOrFarField[] = {schema::without("cutoff"), schema::without("far_field")};
-constexpr schema::Condition kRreNoSamples[] = {schema::without("samples")};
-constexpr schema::Condition kRreOut[] = {schema::beside("out")};
+constexpr schema::Condition kRreWithTarget[] = {schema::is("engine", kRreTargetEngines), schema::is_absent("cutoff")};
+constexpr schema::Condition kRreNoCutoffOrDerivatives[] = {schema::is_absent("cutoff"),
+                                                           schema::is_absent("derivatives")};
+constexpr schema::Condition kRreNoCutoffOrFootprint[] = {schema::is_absent("cutoff"), schema::is_absent("footprint")};
+constexpr schema::Condition kRreNoCutoffOrFarField[] = {schema::is_absent("cutoff"), schema::is_absent("far_field")};
+constexpr schema::Condition kRreNoSamples[] = {schema::is_absent("samples")};
+constexpr schema::Condition kRreOut[] = {schema::is_given("out")};
 
 constexpr Need kRreNeedRays[] = {kRreByRays};
 constexpr Need kRreNeedCutoff[] = {kRreWithCutoff};
@@ -69,7 +70,7 @@ constexpr Row kRreRows[] = {
      access<&RreRequest::azimuth_deg>,
      {.value = "LIST", .notation = Notation::number_list, .option = "--azimuth"}},
     {"incidence_spans_deg",
-     NumberRows{.columns = 2, .range = kIncidence, .least = 0, .most = 100'000, .what = "ranges"},
+     NumberRows{.columns = 2, .range = kIncidence, .min_rows = 0, .max_rows = 100'000, .what = "ranges"},
      "ranges in which further angles of incidence are chosen automatically, as many as the curve requires",
      access_by<incidence_spans, set_incidence_spans>,
      {.value = "RANGES", .option = "--incidence", .is_no_option = true}},
@@ -85,7 +86,7 @@ constexpr Row kRreRows[] = {
      {.value = "E", .otherwise = "0.0001; with exact: 1e-10"},
      kRreNeedTarget},
     {"samples",
-     Whole{kSamples},
+     Integer{kSamples},
      "number of rays for each point",
      access<&RreRequest::samples>,
      {.value = "N", .otherwise = "until the target error is reached"},

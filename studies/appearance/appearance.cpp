@@ -35,9 +35,9 @@ constexpr RandomKey kProbeKey{.seed = kAppearanceSeed, .stream = 2};
 
 /// Checks that the exact engine supports the design.
 /// \throw InputError if the engine does not support it
-void check_engine(const Design& design, PhotometrySettings request) {
-  request.engine = Engine::automatic;
-  const Photometer photometer(design, request, kParts);
+void check_engine(const design::Design& design, PhotometrySettings request) {
+  request.engine = raytrace::Engine::automatic;
+  const Photometer photometer(design, request, kIntervalsPerFunction);
   if (!photometer.is_exact())
     throw InputError(design.where_facets(),
                      "a material is computed by the exact engine, which does not support this design: " +
@@ -48,9 +48,10 @@ void check_engine(const Design& design, PhotometrySettings request) {
 /// this axis, and -1 if light keeps this component. Cube corners reverse both components, prisms reverse only one. The
 /// value that applies to more than half of the returned light is chosen. If neither value does, both components count
 /// as reversed. Returns nothing if the computation was cancelled.
-std::optional<Vec2> back_of(const Design& design, const MaterialRequest& request, const Cancellation* cancel) {
+std::optional<Vec2> back_of(const design::Design& design, const MaterialRequest& request, const Cancellation* cancel) {
   const Vec3 to_source = geometry::direction_at(Angle::from_deg(request.entrance_deg), Angle::from_deg(kAsideDeg));
-  const Photometer eye = photometer_of(design, photometry_of(request, -Vec2::Ones()), kEye, kParts);
+  const Photometer eye =
+      photometer_of(design, photometry_of(request, -Vec2::Ones()), kEyeResponse, kIntervalsPerFunction);
   const auto fields = eye.far_fields(to_source, eye.make_tracer(), cancel);
   if (!fields) return std::nullopt;
   const std::array<Vec2, 3> ways = {Vec2(1.0, 1.0), Vec2(1.0, -1.0), Vec2(-1.0, 1.0)};
@@ -62,7 +63,7 @@ std::optional<Vec2> back_of(const Design& design, const MaterialRequest& request
     if (distance(*nearest) < std::sin(Angle::from_deg(request.window_deg).rad()))
       powers[static_cast<std::size_t>(nearest - ways.begin())] += power;
   };
-  for (const Photometer::WeighedField& one : *fields) {
+  for (const Photometer::WeightedField& one : *fields) {
     for (const raytrace::FarFieldRay& ray : one.field.rays()) add(ray.direction.head<2>(), one.weight * ray.power);
     for (const raytrace::CoherentGroup& group : one.field.groups())
       for (const raytrace::FieldPolygon& polygon : group.polygons)
@@ -79,28 +80,29 @@ ReflectionTable empty_table(const MaterialRequest& request, const Vec2& back, co
   ReflectionTable table;
   table.back = back;
   table.half_width = std::sin(Angle::from_deg(request.window_deg).rad());
-  table.most_entrance = Angle::from_deg(request.entrance_deg);
+  table.max_entrance = Angle::from_deg(request.entrance_deg);
   table.mirrors = eye.mirrors();
   table.columns = first_columns(request, table);
   return table;
 }
 
 /// Returns random geometries with their photometer readings. Returns nothing if the computation was cancelled.
-std::optional<std::vector<AppearanceProbe>> probes_of(const Design& design, const PhotometrySettings& photometry,
+std::optional<std::vector<AppearanceProbe>> probes_of(const design::Design& design,
+                                                      const PhotometrySettings& photometry,
                                                       const ReflectionTable& table, const Cancellation* cancel) {
   std::vector<AppearanceProbe> probes;
   std::vector<PhotometerSetting> settings;
   for (std::uint32_t k = 0; k < kProbes; ++k) {
     const auto random = philox(kProbeKey, k, 0);
-    const double sine = std::sin(table.most_entrance.rad()) * std::sqrt(unit_interval(random[0]));
+    const double sine = std::sin(table.max_entrance.rad()) * std::sqrt(unit_interval(random[0]));
     const Vec3 to_source =
         geometry::direction_at(Angle::from_rad(std::asin(sine)), Angle::from_deg(360.0 * unit_interval(random[1])));
     const auto view = view_at(table, to_source, random_deviation(table, random[2], random[3]));
     if (!view) continue;
-    probes.push_back({view->to_source, view->to_observer, 0.0, greatest_r_a(table, to_source)});
+    probes.push_back({view->to_source, view->to_observer, 0.0, max_r_a(table, to_source)});
     settings.push_back(setting_of(*view));
   }
-  const Photometer eye = photometer_of(design, photometry, kEye, kPartsOfProbes);
+  const Photometer eye = photometer_of(design, photometry, kEyeResponse, kPartsOfProbes);
   const auto readings = eye.measure(settings, nullptr, cancel);
   if (!readings) return std::nullopt;
   for (std::size_t k = 0; k < probes.size(); ++k) probes[k].r_a = (*readings)[k].r_a.front();
@@ -111,11 +113,11 @@ std::optional<std::vector<AppearanceProbe>> probes_of(const Design& design, cons
 
 AppearanceError appearance_error(const std::vector<AppearanceProbe>& probes, const std::vector<double>& r_a) {
   std::vector<double> errors;
-  for (std::size_t k = 0; k < probes.size(); ++k) errors.push_back(error_of(r_a[k], probes[k].r_a, probes[k].r_a_most));
-  return {errors.size(), quantile(errors, 0.5), judged_error(errors), quantile(errors, 1.0)};
+  for (std::size_t k = 0; k < probes.size(); ++k) errors.push_back(error_of(r_a[k], probes[k].r_a, probes[k].r_a_max));
+  return {errors.size(), quantile(errors, 0.5), percentile_95_of(errors), quantile(errors, 1.0)};
 }
 
-AppearanceResult compute_appearance(const Design& design, const MaterialRequest& request, Progress* progress,
+AppearanceResult compute_appearance(const design::Design& design, const MaterialRequest& request, Progress* progress,
                                     const Cancellation* cancel) {
   requests::check(request);
   check_engine(design, photometry_of(request, Vec2::Ones()));
@@ -137,19 +139,19 @@ AppearanceResult compute_appearance(const Design& design, const MaterialRequest&
   std::optional<std::vector<AppearanceProbe>> probes = probes_of(design, photometry, table, cancel);
   result.complete = probes.has_value();
   if (!result.complete) return result;
-  result.least_cell_deg = lattice.least_extent_deg(cells);
+  result.min_cell_deg = lattice.min_extent_deg(cells);
   result.table = std::move(table);
   result.probes = *std::move(probes);
   std::vector<double> told;
   for (const AppearanceProbe& probe : result.probes)
     told.push_back(luminous(result.table.r_a(probe.to_source, probe.to_observer).value()));
   result.error = appearance_error(result.probes, told);
-  if (result.error.of_95_percent > request.error)
+  if (result.error.percentile_95 > request.error)
     result.warnings.push_back(
         {"table_error_above_target",
          fmt::format("for 95 % of random geometries, the table deviates from the photometer by up to {} %, but {} % "
                      "were requested: allow more directions of light, or reduce the maximum entrance angle",
-                     fixed(100.0 * result.error.of_95_percent, 1), fixed(100.0 * request.error, 1))});
+                     fixed(100.0 * result.error.percentile_95, 1), fixed(100.0 * request.error, 1))});
   result.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   if (progress != nullptr) progress->at(1.0);
   return result;

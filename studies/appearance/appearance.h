@@ -7,9 +7,9 @@
 
 #include "core/progress.h"
 #include "core/warning.h"
+#include "design/design.h"
 #include "requests/part.h"
 #include "studies/appearance/reflection_table.h"
-#include "studies/design/design.h"
 
 namespace retrace::studies {
 
@@ -19,25 +19,25 @@ namespace retrace::studies {
 struct AppearanceError {
   std::size_t geometries = 0;
   double median = 0.0;
-  double of_95_percent = 0.0;
-  double greatest = 0.0;
+  double percentile_95 = 0.0;
+  double max = 0.0;
 };
 
 /// Random geometry with its photometer reading.
 struct AppearanceProbe {
   geometry::Vec3 to_source;
   geometry::Vec3 to_observer;
-  double r_a = 0.0;       ///< reading for the eye's response
-  double r_a_most = 0.0;  ///< maximum value of the table for the same direction of light
+  double r_a = 0.0;      ///< reading for the eye's response
+  double r_a_max = 0.0;  ///< maximum value of the table for the same direction of light
 };
 
 struct AppearanceResult {
-  Design design;
+  design::Design design;
   MaterialRequest request;
   ReflectionTable table;
   std::vector<AppearanceProbe> probes;
-  AppearanceError error;        ///< error of the table
-  double least_cell_deg = 0.0;  ///< extent of the smallest cell in entrance angle
+  AppearanceError error;      ///< error of the table
+  double min_cell_deg = 0.0;  ///< extent of the smallest cell in entrance angle
   double elapsed_s = 0.0;
   bool complete = true;  ///< false: the computation was cancelled, and the table must not be used
   Warnings warnings;
@@ -54,7 +54,7 @@ AppearanceError appearance_error(const std::vector<AppearanceProbe>& probes, con
 /// largest product of error and projected solid angle comes first. Refinement ends when all cells are accurate, or when
 /// the table has `max_directions` directions of light.
 /// \throw InputError for numbers out of range, and for designs that the exact engine does not support
-AppearanceResult compute_appearance(const Design& design, const MaterialRequest& request, Progress* progress = nullptr,
-                                    const Cancellation* cancel = nullptr);
+AppearanceResult compute_appearance(const design::Design& design, const MaterialRequest& request,
+                                    Progress* progress = nullptr, const Cancellation* cancel = nullptr);
 
 }  // namespace retrace::studies

@@ -40,26 +40,27 @@ PhotometrySettings photometry_of(const MaterialRequest& request, const Vec2& bac
       std::numbers::sqrt2 * request.window_deg / std::cos(Angle::from_deg(request.entrance_deg).rad());
   if (back != Vec2::Ones()) photometry.window_deg += 2.0 * request.entrance_deg;
   photometry.light = PhotometricLight::illuminant_d65;
-  photometry.engine = Engine::exact;
+  photometry.engine = raytrace::Engine::exact;
   return photometry;
 }
 
-Photometer photometer_of(const Design& design, const PhotometrySettings& request, std::size_t response,
+Photometer photometer_of(const design::Design& design, const PhotometrySettings& request, std::size_t response,
                          std::size_t parts) {
   Photometer photometer(design, request_of_response(request, response), parts,
                         static_cast<PhotometricResponse>(response));
-  photometer.leave_out_mirror_image();
+  photometer.ignore_mirror_image();
   return photometer;
 }
 
-ColourPhotometer::ColourPhotometer(const Design& design, const PhotometrySettings& photometry) {
+ColourPhotometer::ColourPhotometer(const design::Design& design, const PhotometrySettings& photometry) {
   for (std::size_t response = 0; response < instruments_.size(); ++response)
-    instruments_[response] = std::make_unique<Instrument>(photometer_of(design, photometry, response, kParts));
+    instruments_[response] =
+        std::make_unique<Instrument>(photometer_of(design, photometry, response, kIntervalsPerFunction));
   const materials::SpectralCurve lamp = lamp_power(photometry.light);
   const materials::Tristimulus sent = materials::tristimulus(lamp, materials::shipped_colour_matching());
   // Readings of a photometer are relative to its response to the incident light, which is `sent`. The matrix therefore
   // multiplies the readings by `sent`.
-  rgb_of_shares_ = rgb_from_xyz(sent) * Eigen::Vector3d(sent[0], sent[1], sent[2]).asDiagonal() / sent[1];
+  rgb_of_fractions_ = rgb_from_xyz(sent) * Eigen::Vector3d(sent[0], sent[1], sent[2]).asDiagonal() / sent[1];
 }
 
 std::optional<ColourFields> ColourPhotometer::fields(const Vec3& to_source, const Cancellation* cancel) const {
@@ -69,13 +70,14 @@ std::optional<ColourFields> ColourPhotometer::fields(const Vec3& to_source, cons
     const Instrument& with = *instruments_[response];
     auto found = with.photometer.far_fields(to_source, with.tracer, cancel);
     if (!found) return std::nullopt;
-    fields.of_response[response] = *std::move(found);
-    for (const Photometer::WeighedField& one : fields.of_response[response]) {
-      raytrace::BandedField& weighed = fields.weighed.emplace_back();
+    fields.by_response[response] = *std::move(found);
+    for (const Photometer::WeightedField& one : fields.by_response[response]) {
+      raytrace::BandedField& weighed = fields.weighted.emplace_back();
       weighed.field = &one.field;
       for (std::size_t band = 0; band < weighed.weights.size(); ++band)
-        weighed.weights[band] = rgb_of_shares_(static_cast<Eigen::Index>(band), static_cast<Eigen::Index>(response)) *
-                                raytrace::coefficient_of_retroreflection(one.weight, entrance);
+        weighed.weights[band] =
+            rgb_of_fractions_(static_cast<Eigen::Index>(band), static_cast<Eigen::Index>(response)) *
+            raytrace::coefficient_of_retroreflection(one.weight, entrance);
     }
   }
   return fields;

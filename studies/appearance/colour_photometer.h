@@ -18,9 +18,9 @@ namespace retrace::studies {
 
 /// Number of spectral intervals into which each colour matching function is divided. Each interval is represented by
 /// two wavelengths.
-inline constexpr std::size_t kParts = 2;
+inline constexpr std::size_t kIntervalsPerFunction = 2;
 /// Index of the response of the eye, which is y.
-inline constexpr auto kEye = static_cast<std::size_t>(PhotometricResponse::y_bar);
+inline constexpr auto kEyeResponse = static_cast<std::size_t>(PhotometricResponse::y_bar);
 
 raytrace::PhotometricApertures apertures_of(const MaterialRequest& request);
 
@@ -31,22 +31,22 @@ PhotometrySettings photometry_of(const MaterialRequest& request, const geometry:
 /// Returns a photometer for the response x, y or z. The photometer ignores light that the entrance face reflects
 /// specularly, because this light does not return to the source.
 /// \param parts number of spectral intervals, see kParts
-Photometer photometer_of(const Design& design, const PhotometrySettings& request, std::size_t response,
+Photometer photometer_of(const design::Design& design, const PhotometrySettings& request, std::size_t response,
                          std::size_t parts);
 
 /// Far fields for one direction of light.
 struct ColourFields {
-  std::array<std::vector<Photometer::WeighedField>, 3> of_response;  ///< far fields for the responses x, y and z
+  std::array<std::vector<Photometer::WeightedField>, 3> by_response;  ///< far fields for the responses x, y and z
   /// All fields of `of_response`, with their weights in red, green and blue.
-  std::vector<raytrace::BandedField> weighed;
+  std::vector<raytrace::BandedField> weighted;
 };
 
 /// Photometers for the responses x, y and z.
 class ColourPhotometer {
  public:
-  ColourPhotometer(const Design& design, const PhotometrySettings& photometry);
+  ColourPhotometer(const design::Design& design, const PhotometrySettings& photometry);
 
-  const Photometer& eye() const { return instruments_[kEye]->photometer; }
+  const Photometer& eye() const { return instruments_[kEyeResponse]->photometer; }
   /// Computes the far fields for one direction of light. Returns nothing if the computation was cancelled.
   std::optional<ColourFields> fields(const geometry::Vec3& to_source, const Cancellation* cancel) const;
 
@@ -61,7 +61,7 @@ class ColourPhotometer {
   };
 
   std::array<std::unique_ptr<Instrument>, 3> instruments_;
-  Eigen::Matrix3d rgb_of_shares_;
+  Eigen::Matrix3d rgb_of_fractions_;
 };
 
 }  // namespace retrace::studies

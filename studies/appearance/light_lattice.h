@@ -13,7 +13,7 @@
 namespace retrace::studies {
 
 /// Position on the lattice: entrance angle and azimuth, in lattice steps.
-using LatticePlace = std::pair<int, int>;
+using LatticeIndex = std::pair<int, int>;
 
 /// Cell of the reflection table while the table is being made.
 struct PlannedCell {
@@ -21,7 +21,7 @@ struct PlannedCell {
   std::array<int, 2> size{};    ///< number of lattice steps along each side; multiples of 3
   double error = 0.0;           ///< relative error of values that are interpolated inside the cell
 
-  bool is_least() const { return size[0] <= 3 && size[1] <= 3; }
+  bool is_smallest() const { return size[0] <= 3 && size[1] <= 3; }
 };
 
 /// Lattice of directions of light, which is common to all cells. Neighbouring cells therefore share the directions on
@@ -37,19 +37,19 @@ class LightLattice {
   /// Returns the lattice positions of a cell's 4 x 4 directions, ordered by azimuth and then by entrance angle. At
   /// normal incidence, all azimuths have the same lattice position. If the azimuths cover a full circle, the last
   /// azimuth has the same lattice position as the first.
-  std::vector<LatticePlace> places_of(const PlannedCell& cell) const;
-  Angle entrance_at(double place) const { return Angle::from_rad(place * entrance_step_.rad()); }
-  Angle azimuth_at(double place) const { return Angle::from_rad(first_azimuth_.rad() + place * azimuth_step_.rad()); }
+  std::vector<LatticeIndex> indices_of(const PlannedCell& cell) const;
+  Angle entrance_at(double steps) const { return Angle::from_rad(steps * entrance_step_.rad()); }
+  Angle azimuth_at(double steps) const { return Angle::from_rad(first_azimuth_.rad() + steps * azimuth_step_.rad()); }
   /// Returns the direction to the source at a position within a cell. The position is given as fractions of the cell's
   /// sides.
-  geometry::Vec3 to_source(const PlannedCell& cell, double entrance_share, double azimuth_share) const;
+  geometry::Vec3 to_source(const PlannedCell& cell, double entrance_fraction, double azimuth_fraction) const;
   /// Returns the minimum extent in entrance angle over all given cells.
-  double least_extent_deg(const std::vector<PlannedCell>& cells) const;
+  double min_extent_deg(const std::vector<PlannedCell>& cells) const;
 
  private:
   int entrance_cells_;
   int azimuth_cells_;
-  bool closes_;  ///< true if the azimuths cover a full circle
+  bool is_full_circle_;  ///< true if the azimuths cover a full circle
   Angle first_azimuth_;
   Angle entrance_step_;
   Angle azimuth_step_;

@@ -27,9 +27,9 @@ constexpr double kStepsPerLattice = 2.5;
 // Standard deviation of the lobes on the lattice, in steps of the lattice.
 constexpr double kLatticeSpread = 0.7;
 // Maximum number of lattice lobes in a row. Shaders keep all lobes in registers or in a small memory.
-constexpr int kMostInARow = 15;
+constexpr int kMaxLobesPerRow = 15;
 // Minimum variance of a lobe, in squares of the table's grid step. Narrower lobes would fall between grid points.
-constexpr double kLeastVariance = 0.5;
+constexpr double kMinVariance = 0.5;
 
 std::array<double, Lobe::kTerms> terms_of(const Vec2& place) {
   std::array<double, Lobe::kTerms> terms{};
@@ -57,7 +57,7 @@ class Fit {
       const ReflectionTable::Direction& direction = table.directions[static_cast<std::size_t>(light)];
       const Vec3 to_source = geometry::direction_at(direction.entrance, direction.azimuth);
       for (Index point = 0; point < points; ++point) {
-        const Vec2 view = table.middle(to_source) + table.deviation(static_cast<std::size_t>(point));
+        const Vec2 view = table.central_direction(to_source) + table.deviation(static_cast<std::size_t>(point));
         if (view.squaredNorm() >= 1.0) continue;
         const double share = table.step() * table.step() / (to_source.z() * std::sqrt(1.0 - view.squaredNorm()));
         const Rgb& r_a = direction.r_a[static_cast<std::size_t>(point)];
@@ -73,7 +73,7 @@ class Fit {
     colour();
     add_lattice();
     fit_powers();
-    ReflectionLobes result{{}, std::sin(table_.most_entrance.rad()), table_.mirrors, table_.back};
+    ReflectionLobes result{{}, std::sin(table_.max_entrance.rad()), table_.mirrors, table_.back};
     Eigen::MatrixXd terms(luminous_.cols(), static_cast<Index>(Lobe::kTerms));
     for (Index light = 0; light < terms.rows(); ++light) {
       const ReflectionTable::Direction& direction = table_.directions[static_cast<std::size_t>(light)];
@@ -102,13 +102,13 @@ class Fit {
         const double angle = 2.0 * std::numbers::pi * k / ring.count;
         Lobe lobe;
         lobe.centre = ring.distance * unit * Vec2(std::cos(angle), std::sin(angle));
-        lobe.spread = Vec2::Constant(std::max(std::pow(ring.spread * unit, 2.0), least_variance()));
+        lobe.spread = Vec2::Constant(std::max(std::pow(ring.spread * unit, 2.0), min_variance()));
         lobes_.push_back(lobe);
       }
     of_light_ = ArrayXXd::Ones(luminous_.cols(), static_cast<Index>(lobes_.size()));
   }
 
-  double least_variance() const { return kLeastVariance * table_.step() * table_.step(); }
+  double min_variance() const { return kMinVariance * table_.step() * table_.step(); }
 
   /// Returns the densities of the lobes at the grid points, with one row for each grid point and one column for each
   /// lobe.
@@ -125,7 +125,7 @@ class Fit {
   /// colour of the central lobe.
   void add_lattice() {
     const double steps = static_cast<double>(table_.columns - 1) / kStepsPerLattice;
-    const int row = std::clamp(static_cast<int>(std::ceil(steps)) + 1, 2, kMostInARow);
+    const int row = std::clamp(static_cast<int>(std::ceil(steps)) + 1, 2, kMaxLobesPerRow);
     const double step = 2.0 * table_.half_width / (row - 1);
     for (int j = 0; j < row; ++j)
       for (int i = 0; i < row; ++i) {
@@ -198,7 +198,7 @@ class Fit {
       mixed += got[point] / sum * d.x() * d.y();
     }
     lobe.centre = mean;
-    lobe.spread = squares.cwiseMax(least_variance());
+    lobe.spread = squares.cwiseMax(min_variance());
     const double most = 0.99 * std::sqrt(lobe.spread.x() * lobe.spread.y());
     lobe.covariance = std::clamp(mixed, -most, most);
   }

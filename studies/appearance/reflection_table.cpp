@@ -13,11 +13,11 @@ using geometry::Vec2, geometry::Vec3;
 constexpr double kSlackRad = 1e-9;
 
 /// Returns the weights of the values at 0, 1, 2 and 3 for the cubic through them, evaluated at `x`.
-std::array<double, kPerSide> cubic_weights(double x) {
-  std::array<double, kPerSide> weights{};
-  for (std::size_t k = 0; k < kPerSide; ++k) {
+std::array<double, kDirectionsPerSide> cubic_weights(double x) {
+  std::array<double, kDirectionsPerSide> weights{};
+  for (std::size_t k = 0; k < kDirectionsPerSide; ++k) {
     weights[k] = 1.0;
-    for (std::size_t other = 0; other < kPerSide; ++other)
+    for (std::size_t other = 0; other < kDirectionsPerSide; ++other)
       if (other != k)
         weights[k] *= (x - static_cast<double>(other)) / (static_cast<double>(k) - static_cast<double>(other));
   }
@@ -27,14 +27,14 @@ std::array<double, kPerSide> cubic_weights(double x) {
 /// Four neighbouring grid points and their interpolation weights.
 struct Stencil {
   std::size_t first = 0;
-  std::array<double, kPerSide> weights{};
+  std::array<double, kDirectionsPerSide> weights{};
 };
 
 /// Returns the interpolation stencil at a position.
 /// \param place position in steps from the first of `count` grid points
 Stencil stencil_at(double place, std::size_t count) {
   Stencil stencil;
-  const double first = std::clamp(std::floor(place) - 1.0, 0.0, static_cast<double>(count - kPerSide));
+  const double first = std::clamp(std::floor(place) - 1.0, 0.0, static_cast<double>(count - kDirectionsPerSide));
   stencil.first = static_cast<std::size_t>(first);
   stencil.weights = cubic_weights(place - first);
   return stencil;
@@ -80,7 +80,8 @@ std::optional<ReflectionTable::Weighted> ReflectionTable::at(const Vec3& to_sour
     const auto along = cubic_weights(thirds_of(cell.entrance, entrance));
     const auto round = cubic_weights(thirds_of(cell.azimuth, azimuth));
     found.directions = cell.directions;
-    for (std::size_t k = 0; k < found.weights.size(); ++k) found.weights[k] = round[k / kPerSide] * along[k % kPerSide];
+    for (std::size_t k = 0; k < found.weights.size(); ++k)
+      found.weights[k] = round[k / kDirectionsPerSide] * along[k % kDirectionsPerSide];
     return found;
   }
   return std::nullopt;
@@ -91,8 +92,8 @@ Rgb ReflectionTable::between(const std::vector<Rgb>& grid, const Vec2& deviation
   const Stencil x = stencil_at(place.x(), columns);
   const Stencil y = stencil_at(place.y(), columns);
   Rgb sum{};
-  for (std::size_t j = 0; j < kPerSide; ++j)
-    for (std::size_t i = 0; i < kPerSide; ++i) {
+  for (std::size_t j = 0; j < kDirectionsPerSide; ++j)
+    for (std::size_t i = 0; i < kDirectionsPerSide; ++i) {
       const Rgb& value = grid[(y.first + j) * columns + x.first + i];
       for (std::size_t band = 0; band < sum.size(); ++band) sum[band] += y.weights[j] * x.weights[i] * value[band];
     }
@@ -101,7 +102,7 @@ Rgb ReflectionTable::between(const std::vector<Rgb>& grid, const Vec2& deviation
 
 std::optional<Rgb> ReflectionTable::r_a(const Vec3& to_source, const Vec3& to_observer) const {
   const std::optional<Weighted> among = at(to_source);
-  const Vec2 deviation = to_observer.head<2>() - middle(to_source);
+  const Vec2 deviation = to_observer.head<2>() - central_direction(to_source);
   if (!among || deviation.cwiseAbs().maxCoeff() > half_width) return std::nullopt;
   Rgb sum{};
   for (std::size_t k = 0; k < among->directions.size(); ++k) {

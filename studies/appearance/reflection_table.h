@@ -21,7 +21,7 @@ using Rgb = std::array<double, 3>;
 double luminous(const Rgb& rgb);
 
 /// Number of points that determine a cubic polynomial. It is also the number of directions along each side of a cell.
-inline constexpr std::size_t kPerSide = 4;
+inline constexpr std::size_t kDirectionsPerSide = 4;
 
 /// Table of the coefficient of retroreflection R_A, in cd/(lx m^2), for views close to a central direction. For cube
 /// corners, the central direction is the direction to the source. For prisms, it is the direction into which they
@@ -44,12 +44,12 @@ struct ReflectionTable {
     std::array<Angle, 2> entrance;  ///< lower and upper limit
     std::array<Angle, 2> azimuth;
     /// Indices in `directions`, ordered by azimuth and then by entrance angle.
-    std::array<std::size_t, kPerSide * kPerSide> directions{};
+    std::array<std::size_t, kDirectionsPerSide * kDirectionsPerSide> directions{};
   };
 
   double half_width = 0.0;  ///< half-width of the square of deviations, in components of a unit vector
   std::size_t columns = 0;  ///< number of columns, and of rows; >= 4
-  Angle most_entrance;
+  Angle max_entrance;
   /// Signs for x and y: 1 if the part reverses the component of the direction of light along this axis, otherwise -1.
   geometry::Vec2 back = geometry::Vec2::Ones();
   /// Flags for x and y: true if the part is mirror-symmetric along this axis.
@@ -61,7 +61,9 @@ struct ReflectionTable {
   geometry::Vec2 deviation(std::size_t index) const;
   /// Returns the x and y components of the central direction of view. This is the direction to the source, or for
   /// prisms its mirror image along x or y.
-  geometry::Vec2 middle(const geometry::Vec3& to_source) const { return back.cwiseProduct(to_source.head<2>()); }
+  geometry::Vec2 central_direction(const geometry::Vec3& to_source) const {
+    return back.cwiseProduct(to_source.head<2>());
+  }
   /// Returns the interpolated value of a grid at a deviation. The deviation must be within the grid.
   Rgb between(const std::vector<Rgb>& grid, const geometry::Vec2& deviation) const;
   /// Returns the range of azimuths that the cells cover. Other azimuths follow from mirror symmetry.
@@ -72,8 +74,8 @@ struct ReflectionTable {
     /// Signs by which x and y of a deviation are multiplied before the deviation is looked up in the grids of these
     /// directions. -1 mirrors the deviation.
     geometry::Vec2 signs = geometry::Vec2::Ones();
-    std::array<std::size_t, kPerSide * kPerSide> directions{};
-    std::array<double, kPerSide * kPerSide> weights{};
+    std::array<std::size_t, kDirectionsPerSide * kDirectionsPerSide> directions{};
+    std::array<double, kDirectionsPerSide * kDirectionsPerSide> weights{};
   };
   std::optional<Weighted> at(const geometry::Vec3& to_source) const;
   /// Returns R_A for directions to source and observer in the part frame. Returns nothing outside the table.
@@ -95,7 +97,7 @@ void ReflectionTable::for_each_power(const geometry::Vec3& to_source, Visit visi
   const Weighted among = at(to_source).value();
   const auto at_border = [&](std::size_t k) { return k == 0 || k + 1 == columns ? 0.5 : 1.0; };
   for (std::size_t place = 0; place < columns * columns; ++place) {
-    const geometry::Vec2 view = middle(to_source) + deviation(place).cwiseProduct(among.signs);
+    const geometry::Vec2 view = central_direction(to_source) + deviation(place).cwiseProduct(among.signs);
     if (view.squaredNorm() >= 1.0) continue;
     double r_a = 0.0;
     for (std::size_t k = 0; k < among.directions.size(); ++k)

@@ -9,16 +9,16 @@ namespace retrace::studies {
 
 using geometry::Vec2, geometry::Vec3;
 
-double error_of(double told, double truth, double most) {
-  return std::abs(told - truth) / std::max({truth, kErrorFloor * most, 1e-300});
+double error_of(double interpolated, double reference, double maximum) {
+  return std::abs(interpolated - reference) / std::max({reference, kErrorFloor * maximum, 1e-300});
 }
 
-double quantile(std::vector<double> errors, double share) {
+double quantile(std::vector<double> errors, double fraction) {
   std::sort(errors.begin(), errors.end());
-  return errors[static_cast<std::size_t>(share * static_cast<double>(errors.size() - 1))];
+  return errors[static_cast<std::size_t>(fraction * static_cast<double>(errors.size() - 1))];
 }
 
-double judged_error(const std::vector<double>& errors) {
+double percentile_95_of(const std::vector<double>& errors) {
   return quantile(errors, 0.95);
 }
 
@@ -28,12 +28,12 @@ Vec2 random_deviation(const ReflectionTable& table, std::uint32_t x, std::uint32
 
 std::optional<raytrace::PhotometricDirections> view_at(const ReflectionTable& table, const Vec3& to_source,
                                                        const Vec2& deviation) {
-  const Vec2 across = table.middle(to_source) + deviation;
+  const Vec2 across = table.central_direction(to_source) + deviation;
   if (across.squaredNorm() >= 1.0) return std::nullopt;
   return raytrace::PhotometricDirections{to_source, {across.x(), across.y(), std::sqrt(1.0 - across.squaredNorm())}};
 }
 
-double greatest_r_a(const ReflectionTable& table, const Vec3& to_source) {
+double max_r_a(const ReflectionTable& table, const Vec3& to_source) {
   const auto among = table.at(to_source).value();
   double most = 0.0;
   for (std::size_t place = 0; place < table.columns * table.columns; ++place) {

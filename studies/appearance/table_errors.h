@@ -18,14 +18,14 @@ inline constexpr std::uint32_t kAppearanceSeed = 0x6d61746cU;
 /// Minimum reference of relative errors, as a fraction of the maximum value for the same light.
 inline constexpr double kErrorFloor = 0.01;
 
-/// Returns the relative error of the interpolated value `told` compared with the true value `truth`. If `truth` is
-/// below kErrorFloor times the maximum `most`, the error is relative to this product.
-double error_of(double told, double truth, double most);
+/// Returns the relative error of the interpolated value `interpolated` compared with the true value `reference`. If
+/// `reference` is below kErrorFloor times the maximum `maximum`, the error is relative to this product.
+double error_of(double interpolated, double reference, double maximum);
 
-double quantile(std::vector<double> errors, double share);
+double quantile(std::vector<double> errors, double fraction);
 
 /// Returns the 95 % quantile of the errors. This quantile must be below the requested error.
-double judged_error(const std::vector<double>& errors);
+double percentile_95_of(const std::vector<double>& errors);
 
 /// Returns the deviation of a random view from the central direction of the table.
 /// \param x random number for the first component
@@ -37,6 +37,6 @@ std::optional<raytrace::PhotometricDirections> view_at(const ReflectionTable& ta
                                                        const geometry::Vec2& deviation);
 
 /// Returns the maximum of R_A over the view grid of the table, for the eye's response and one direction of light.
-double greatest_r_a(const ReflectionTable& table, const geometry::Vec3& to_source);
+double max_r_a(const ReflectionTable& table, const geometry::Vec3& to_source);
 
 }  // namespace retrace::studies

@@ -21,7 +21,7 @@ using geometry::Vec3;
 // Threshold for halving a cell along a side. The mean third difference of the values is computed along each of the two
 // sides. A cell is halved along a side if the third difference along it is at least this fraction of the larger third
 // difference, or if the cell cannot be halved along its other side.
-constexpr double kLeastBend = 0.3;
+constexpr double kMinDifferenceRatio = 0.3;
 // Number of directions of light that are computed in parallel.
 constexpr std::size_t kBatch = 16;
 // Number of random view directions at which the error of a cell is measured, for each tested direction of light.
@@ -34,13 +34,13 @@ class DirectionList {
   /// \param most maximum number of directions, from which the progress is estimated
   DirectionList(const ColourPhotometer& photometer, const LightLattice& lattice, std::size_t most,
                 ReflectionTable& table)
-      : photometer_(photometer), lattice_(lattice), most_(most), table_(table) {}
+      : photometer_(photometer), lattice_(lattice), max_(most), table_(table) {}
 
   /// Returns the lattice positions of those directions of the cells that have not been computed yet.
-  std::vector<LatticePlace> missing(const std::vector<PlannedCell>& cells) const {
-    std::vector<LatticePlace> places;
+  std::vector<LatticeIndex> missing(const std::vector<PlannedCell>& cells) const {
+    std::vector<LatticeIndex> places;
     for (const PlannedCell& cell : cells)
-      for (const LatticePlace& place : lattice_.places_of(cell))
+      for (const LatticeIndex& place : lattice_.indices_of(cell))
         if (!known_.contains(place) && std::find(places.begin(), places.end(), place) == places.end())
           places.push_back(place);
     return places;
@@ -49,11 +49,11 @@ class DirectionList {
   /// Computes those directions of the cells that have not been computed yet. The first call must pass the cells from
   /// which refinement starts. Returns false if the computation was cancelled.
   bool add(const std::vector<PlannedCell>& cells, Progress* progress, const Cancellation* cancel) {
-    const std::vector<LatticePlace> places = missing(cells);
+    const std::vector<LatticeIndex> places = missing(cells);
     for (std::size_t first = 0; first < places.size(); first += kBatch) {
       const std::size_t count = std::min(kBatch, places.size() - first);
       if (!compute({places.data() + first, count}, cancel)) return false;
-      if (progress != nullptr) progress->at(share_done(places.size()));
+      if (progress != nullptr) progress->at(fraction_done(places.size()));
     }
     if (first_count_ == 0) first_count_ = table_.directions.size();
     return true;
@@ -66,13 +66,13 @@ class DirectionList {
     cell.entrance = {lattice_.entrance_at(planned.corner[0]),
                      lattice_.entrance_at(planned.corner[0] + planned.size[0])};
     cell.azimuth = {lattice_.azimuth_at(planned.corner[1]), lattice_.azimuth_at(planned.corner[1] + planned.size[1])};
-    const std::vector<LatticePlace> places = lattice_.places_of(planned);
+    const std::vector<LatticeIndex> places = lattice_.indices_of(planned);
     for (std::size_t k = 0; k < places.size(); ++k) cell.directions[k] = known_.at(places[k]);
     return cell;
   }
 
  private:
-  bool compute(std::span<const LatticePlace> places, const Cancellation* cancel) {
+  bool compute(std::span<const LatticeIndex> places, const Cancellation* cancel) {
     std::vector<ReflectionTable::Direction> computed(places.size());
     for_each_in_parallel(places.size(), [&](std::size_t k) {
       computed[k] = {lattice_.entrance_at(places[k].first), lattice_.azimuth_at(places[k].second), {}};
@@ -91,29 +91,29 @@ class DirectionList {
   /// Returns the finished fraction of the work. The first cells count as one half of the work, because the amount of
   /// refinement after them is not known in advance.
   /// \param first number of directions of the first cells; used only while these directions are computed
-  double share_done(std::size_t first) const {
+  double fraction_done(std::size_t first) const {
     const auto done = static_cast<double>(table_.directions.size());
     if (first_count_ == 0) return 0.5 * done / static_cast<double>(first);
     const auto before = static_cast<double>(first_count_);
-    return 0.5 + 0.5 * (done - before) / std::max(static_cast<double>(most_) - before, done - before);
+    return 0.5 + 0.5 * (done - before) / std::max(static_cast<double>(max_) - before, done - before);
   }
 
   const ColourPhotometer& photometer_;
   const LightLattice& lattice_;
-  std::size_t most_;
+  std::size_t max_;
   ReflectionTable& table_;
-  std::map<LatticePlace, std::size_t> known_;  ///< index of each lattice position in the table's list of directions
+  std::map<LatticeIndex, std::size_t> known_;  ///< index of each lattice position in the table's list of directions
   std::size_t first_count_ = 0;                ///< number of directions of the first cells; 0 until they are computed
 };
 
 /// Returns the mean third differences of the values of a cell along entrance angle and azimuth.
 std::array<double, 2> bends_of(const ReflectionTable& table, const ReflectionTable::Cell& cell) {
   const auto value = [&](std::size_t azimuth, std::size_t entrance, std::size_t point) {
-    return luminous(table.directions[cell.directions[kPerSide * azimuth + entrance]].r_a[point]);
+    return luminous(table.directions[cell.directions[kDirectionsPerSide * azimuth + entrance]].r_a[point]);
   };
   std::array<double, 2> bends{};
   for (std::size_t point = 0; point < table.columns * table.columns; ++point)
-    for (std::size_t line = 0; line < kPerSide; ++line) {
+    for (std::size_t line = 0; line < kDirectionsPerSide; ++line) {
       bends[0] += std::abs(value(line, 3, point) - 3.0 * value(line, 2, point) + 3.0 * value(line, 1, point) -
                            value(line, 0, point));
       bends[1] += std::abs(value(3, line, point) - 3.0 * value(2, line, point) + 3.0 * value(1, line, point) -
@@ -123,13 +123,13 @@ std::array<double, 2> bends_of(const ReflectionTable& table, const ReflectionTab
 }
 
 /// Returns the smaller cells into which a cell is divided. The cell is halved along each side along which the third
-/// differences of the values are large (see kLeastBend).
+/// differences of the values are large (see kMinDifferenceRatio).
 std::vector<PlannedCell> halves_of(const PlannedCell& cell, const std::array<double, 2>& bends) {
   const double most = std::max(bends[0], bends[1]);
   std::vector<PlannedCell> parts = {cell};
   for (const std::size_t side : {0U, 1U}) {
     if (cell.size[side] <= 3) continue;
-    if (cell.size[1 - side] > 3 && bends[side] < kLeastBend * most) continue;
+    if (cell.size[1 - side] > 3 && bends[side] < kMinDifferenceRatio * most) continue;
     const std::size_t count = parts.size();
     for (std::size_t k = 0; k < count; ++k) {
       parts[k].size[side] /= 2;
@@ -143,7 +143,7 @@ std::vector<PlannedCell> halves_of(const PlannedCell& cell, const std::array<dou
 /// Returns the priority with which a cell is halved. It is proportional to the error of the cell times its projected
 /// solid angle of light directions. Returns 0 if the error is small enough or the cell cannot be halved further.
 double urgency(const LightLattice& lattice, const PlannedCell& cell, double requested_error) {
-  if (cell.error <= requested_error || cell.is_least()) return 0.0;
+  if (cell.error <= requested_error || cell.is_smallest()) return 0.0;
   const double from = std::sin(lattice.entrance_at(cell.corner[0]).rad());
   const double to = std::sin(lattice.entrance_at(cell.corner[0] + cell.size[0]).rad());
   return cell.error * (to * to - from * from) * cell.size[1];
@@ -160,7 +160,7 @@ bool measure_errors(const ReflectionTable& table, const LightLattice& lattice, c
   for (std::size_t k = first; k < cells.size(); ++k) {
     for (const double share : {1.0 / 6.0, 0.5, 5.0 / 6.0}) {
       const Vec3 to_source = lattice.to_source(cells[k], share, share);
-      const double greatest = greatest_r_a(table, to_source);
+      const double greatest = max_r_a(table, to_source);
       for (std::uint32_t view = 0; view < kViews; ++view) {
         const auto random = philox(kViewKey, view, static_cast<std::uint32_t>(k));
         const auto seen = view_at(table, to_source, random_deviation(table, random[0], random[1]));
@@ -177,7 +177,7 @@ bool measure_errors(const ReflectionTable& table, const LightLattice& lattice, c
   std::map<std::size_t, std::vector<double>> errors;
   for (std::size_t k = 0; k < settings.size(); ++k)
     errors[of_cell[k]].push_back(error_of(told[k], (*readings)[k].r_a.front(), most[k]));
-  for (auto& [cell, of_views] : errors) cells[cell].error = judged_error(of_views);
+  for (auto& [cell, of_views] : errors) cells[cell].error = percentile_95_of(of_views);
   return true;
 }
 

@@ -67,7 +67,7 @@ TensorTree tensor_tree_of(const ReflectionTable& table) {
   tree.level = static_cast<int>(std::clamp<double>(finest, kCoarsestLevel, kFinestLevel));
   const std::uint32_t cells = 1U << tree.level;
   const double projected_sr = std::numbers::pi / (static_cast<double>(cells) * cells);
-  const double most_sine = std::sin(table.most_entrance.rad());
+  const double most_sine = std::sin(table.max_entrance.rad());
   for (std::uint32_t y = 0; y < cells; ++y)
     for (std::uint32_t x = 0; x < cells; ++x) {
       std::map<std::uint64_t, double> power;

@@ -21,13 +21,13 @@ using geometry::Vec2, geometry::Vec3;
 // of the grid step (docs/theory/appearance.md).
 constexpr double kStepsPerReach = 4.0;
 // Maximum initial number of grid points along a side.
-constexpr std::size_t kMostColumns = 161;
+constexpr std::size_t kMaxColumns = 161;
 // Maximum interpolation error of a grid of view directions, as a fraction of the requested error.
-constexpr double kShareOfGrid = 0.5;
+constexpr double kGridErrorFraction = 0.5;
 // Factor by which the number of grid points along each side grows if the interpolation error is too large.
 constexpr double kFinerGrid = 1.5;
 // Number of grid points along a side above which a grid is not refined further.
-constexpr std::size_t kMostColumnsForError = 121;
+constexpr std::size_t kMaxColumnsToRefine = 121;
 constexpr RandomKey kGridKey{.seed = kAppearanceSeed, .stream = 3};
 
 /// Deviations of random views, and R_A of these views for the eye's response.
@@ -46,7 +46,7 @@ TestViews random_views(const ReflectionTable& table, const Vec3& to_source, cons
     if (!view) continue;
     views.deviations.push_back(deviation);
     Rgb sum{};
-    for (const raytrace::BandedField& one : fields.weighed) {
+    for (const raytrace::BandedField& one : fields.weighted) {
       const double per_sr = one.field->intensity(view->to_observer, kernel).per_sr;
       for (std::size_t band = 0; band < sum.size(); ++band) sum[band] += one.weights[band] * per_sr;
     }
@@ -62,27 +62,27 @@ double interpolation_error(const ReflectionTable& table, const std::vector<Rgb>&
   std::vector<double> errors;
   for (std::size_t k = 0; k < views.r_a.size(); ++k)
     errors.push_back(error_of(luminous(table.between(grid, views.deviations[k])), views.r_a[k], most));
-  return judged_error(errors);
+  return percentile_95_of(errors);
 }
 
 }  // namespace
 
 std::size_t first_columns(const MaterialRequest& request, const ReflectionTable& table) {
   const double narrowest =
-      raytrace::ApertureKernel(apertures_of(request)).reach_rad() * std::cos(table.most_entrance.rad());
+      raytrace::ApertureKernel(apertures_of(request)).reach_rad() * std::cos(table.max_entrance.rad());
   const double steps = 2.0 * table.half_width * kStepsPerReach / narrowest;
-  return std::clamp(static_cast<std::size_t>(std::ceil(steps)) + 1, kPerSide, kMostColumns);
+  return std::clamp(static_cast<std::size_t>(std::ceil(steps)) + 1, kDirectionsPerSide, kMaxColumns);
 }
 
 std::vector<Rgb> grid_of(const ReflectionTable& table, const Vec3& to_source, const ColourFields& fields,
                          const raytrace::ApertureKernel& kernel, const Cancellation* cancel) {
-  return raytrace::disc_means(fields.weighed, {table.middle(to_source), table.half_width, table.columns}, kernel,
-                              cancel);
+  return raytrace::disc_means(fields.weighted, {table.central_direction(to_source), table.half_width, table.columns},
+                              kernel, cancel);
 }
 
 bool refine_grid(const ColourPhotometer& photometer, double error, ReflectionTable& table, const Cancellation* cancel) {
   const std::array<Angle, 2> range = table.azimuths();
-  const Vec3 to_source = geometry::direction_at(Angle::from_rad(0.5 * table.most_entrance.rad()),
+  const Vec3 to_source = geometry::direction_at(Angle::from_rad(0.5 * table.max_entrance.rad()),
                                                 Angle::from_rad(0.5 * (range[0].rad() + range[1].rad())));
   const std::optional<ColourFields> fields = photometer.fields(to_source, cancel);
   if (!fields) return false;
@@ -92,7 +92,8 @@ bool refine_grid(const ColourPhotometer& photometer, double error, ReflectionTab
     const std::vector<Rgb> grid = grid_of(table, to_source, *fields, kernel, cancel);
     if (is_cancelled(cancel)) return false;
     const auto finer = static_cast<std::size_t>(std::ceil(kFinerGrid * static_cast<double>(table.columns)));
-    if (interpolation_error(table, grid, views) <= kShareOfGrid * error || finer > kMostColumnsForError) return true;
+    if (interpolation_error(table, grid, views) <= kGridErrorFraction * error || finer > kMaxColumnsToRefine)
+      return true;
     table.columns = finer;
   }
 }

@@ -23,11 +23,11 @@ using Eigen::Index, Eigen::VectorXd;
 /// Maximum length of the last Gauss-Newton step. Its unit is the standard uncertainty of the observable combinations,
 /// which are the combinations of set-up errors that the measurements determine.
 constexpr double kLastStep = 1e-3;
-constexpr int kMostSteps = 20;
+constexpr int kMaxSteps = 20;
 /// Probability that a calibration with correct measurements rejects one of them as an outlier.
 constexpr double kFalseAlarm = 0.01;
 /// Maximum fraction of the measurements that may be outliers.
-constexpr double kMostOutliers = 0.1;
+constexpr double kMaxOutliers = 0.1;
 /// Assumed standard deviations of the unobservable combinations. They are typical of axes that are set with dial gauges
 /// and of tools that are set under a microscope.
 constexpr double kUntoldArcsec = 50.0;
@@ -38,7 +38,7 @@ constexpr double kUnchecked = 1.0 - 1e-9;
 
 void check(const MeasuredParts& measured, const std::vector<CutPart>& parts) {
   for (const Measurement& m : measured.measurements)
-    if (const std::string fault = parts[m.part].fault_of(m); !fault.empty())
+    if (const std::string fault = parts[m.part].obstacle_for(m); !fault.empty())
       throw InputError({measured.file, m.line, ""}, fault);
 }
 
@@ -55,25 +55,26 @@ Eigen::MatrixXd spread_of_untold(const std::vector<CutPart>& parts, const Measur
   const auto machine = [&](const VectorXd& errors) {
     return with_errors(nominal, {errors.data(), static_cast<std::size_t>(errors.size())});
   };
-  const LinearModel model = with_poses_by_eye(
+  const LinearModel model = with_pose_priors(
       linear_model(parts, measured.measurements, machine(fitted.value), measured.map_faces, poses), poses);
   const VectorXd now = residual_of(parts, measured.measurements, machine(fitted.value), measured.map_faces, poses);
   std::mt19937_64 bits(1);
   std::normal_distribution<double> normal;
-  Eigen::MatrixXd spread = Eigen::MatrixXd::Zero(first.told.cols(), first.told.cols());
+  Eigen::MatrixXd spread = Eigen::MatrixXd::Zero(first.observable.cols(), first.observable.cols());
   for (int k = 0; k < kMachines; ++k) {
-    VectorXd errors(first.untold.rows());
+    VectorXd errors(first.unobservable.rows());
     for (Index q = 0; q < errors.size(); ++q)
       errors[q] = normal(bits) * (quantities[static_cast<std::size_t>(q)].is_angle() ? kUntoldArcsec : kUntoldUm);
-    const VectorXd untold = first.untold * (first.untold.transpose() * errors);
+    const VectorXd untold = first.unobservable * (first.unobservable.transpose() * errors);
     VectorXd change = VectorXd::Zero(model.residual.size());
     change.head(now.size()) =
         now - residual_of(parts, measured.measurements, machine(fitted.value + untold), measured.map_faces, poses);
-    const VectorXd moved =
-        compute::estimate(model.of_setup * first.told, model.of_poses, change, 2.0 * kSetUpByEye).value;
+    const VectorXd moved = compute::estimate(model.setup_jacobian * first.observable, model.pose_jacobian, change,
+                                             2.0 * kMaxObservableUncertainty)
+                               .value;
     spread += moved * moved.transpose() / kMachines;
   }
-  return first.told * spread * first.told.transpose();
+  return first.observable * spread * first.observable.transpose();
 }
 
 /// Estimates the observable combinations by Gauss-Newton steps, which start at the nominal machine. Unobservable
@@ -85,20 +86,21 @@ compute::LeastSquaresEstimate fit(const std::vector<CutPart>& parts, const Measu
   std::vector<PartPose> poses(parts.size());
   LinearModel model = linear_model(parts, measured.measurements, nominal, measured.map_faces, poses);
   // Observability is determined from the measurements only, before the priors on the poses are added.
-  compute::LeastSquaresEstimate result = compute::estimate(model.of_setup, model.of_poses, model.residual, kSetUpByEye);
-  model = with_poses_by_eye(std::move(model), poses);
+  compute::LeastSquaresEstimate result =
+      compute::estimate(model.setup_jacobian, model.pose_jacobian, model.residual, kMaxObservableUncertainty);
+  model = with_pose_priors(std::move(model), poses);
   const compute::LeastSquaresEstimate first = result;
-  const Eigen::MatrixXd& told = first.told;
-  VectorXd left = model.residual - model.of_setup * result.value;
-  for (int step = 0; step < kMostSteps; ++step) {
-    move(poses, model.of_poses.colPivHouseholderQr().solve(left));
+  const Eigen::MatrixXd& told = first.observable;
+  VectorXd left = model.residual - model.setup_jacobian * result.value;
+  for (int step = 0; step < kMaxSteps; ++step) {
+    move(poses, model.pose_jacobian.colPivHouseholderQr().solve(left));
     const VectorXd before = told.transpose() * result.value;
     const std::span<const double> amounts(result.value.data(), static_cast<std::size_t>(result.value.size()));
-    model = with_poses_by_eye(
+    model = with_pose_priors(
         linear_model(parts, measured.measurements, with_errors(nominal, amounts), measured.map_faces, poses), poses);
-    const Eigen::MatrixXd of_told = model.of_setup * told;
-    const compute::LeastSquaresEstimate next =
-        compute::estimate(of_told, model.of_poses, model.residual + of_told * before, 2.0 * kSetUpByEye);
+    const Eigen::MatrixXd of_told = model.setup_jacobian * told;
+    const compute::LeastSquaresEstimate next = compute::estimate(
+        of_told, model.pose_jacobian, model.residual + of_told * before, 2.0 * kMaxObservableUncertainty);
     left = model.residual - of_told * (next.value - before);
     result.value = told * next.value;
     result.covariance = told * next.covariance * told.transpose();
@@ -125,7 +127,7 @@ std::pair<std::size_t, double> worst(const compute::LeastSquaresEstimate& estima
   return found;
 }
 
-double most_by_chance(std::size_t measurements) {
+double max_by_chance(std::size_t measurements) {
   const double tail = 0.5 * kFalseAlarm / static_cast<double>(measurements);
   return boost::math::quantile(boost::math::complement(boost::math::normal(), tail));
 }
@@ -185,7 +187,7 @@ void check_signs(const MeasuredParts& measured, const std::vector<CutPart>& part
 }
 
 /// Returns a combination of quantities as text, such as "2 c_x_um + 1 tool_x_um".
-std::string words_of(const VectorXd& combination, std::span<const SetupQuantity> quantities) {
+std::string description_of(const VectorXd& combination, std::span<const SetupQuantity> quantities) {
   std::string words;
   for (Index k = 0; k < combination.size(); ++k) {
     const double share = combination[k];
@@ -218,7 +220,7 @@ void tell_source(Machine& machine, const CalibratedQuantity& found, const std::s
     case SetupPart::y_direction: return mark(machine.y.direction);
     case SetupPart::z_direction: return mark(machine.z.direction);
     case SetupPart::tool_offset: return mark(machine.mount.offset_mm);
-    case SetupPart::tool_turn: return mark(machine.mount.turn_deg);
+    case SetupPart::tool_rotation: return mark(machine.mount.rotation_deg);
   }
 }
 
@@ -229,27 +231,27 @@ void tell(Calibration& result, const compute::LeastSquaresEstimate& fitted) {
   result.covariance = fitted.covariance;
   for (std::size_t k = 0; k < quantities.size(); ++k) {
     const auto at = static_cast<Index>(k);
-    const CalibratedQuantity found{&quantities[k], fitted.is_told(at), fitted.value[at],
+    const CalibratedQuantity found{&quantities[k], fitted.is_observable(at), fitted.value[at],
                                    std::sqrt(fitted.covariance(at, at))};
     result.quantities.push_back(found);
     if (found.value != 0.0)
       tell_source(result.machine, found, std::filesystem::path(result.parts.file).filename().string());
   }
-  result.untold = untold_words(fitted, nominal.tilt);
+  result.unobservable = unobservable_texts(fitted, nominal.tilt);
   const auto measurements = static_cast<std::ptrdiff_t>(result.parts.measurements.size());
   result.residuals.assign(fitted.residual.begin(), fitted.residual.begin() + measurements);
   result.chi_square = fitted.residual.squaredNorm();
   // The sum of the leverages is the number of observable unknowns, including the poses of the parts.
   const double freedom = static_cast<double>(fitted.residual.size()) - fitted.leverage.sum();
-  result.freedom = static_cast<std::size_t>(std::max(0L, std::lround(freedom)));
+  result.degrees_of_freedom = static_cast<std::size_t>(std::max(0L, std::lround(freedom)));
 }
 
 }  // namespace
 
-std::vector<std::string> untold_words(const compute::LeastSquaresEstimate& estimate, Tilt tilt) {
-  const Eigen::MatrixXd untold = compute::reduced_combinations(estimate.untold);
+std::vector<std::string> unobservable_texts(const compute::LeastSquaresEstimate& estimate, Tilt tilt) {
+  const Eigen::MatrixXd untold = compute::reduced_combinations(estimate.unobservable);
   std::vector<std::string> words;
-  for (Index k = 0; k < untold.cols(); ++k) words.push_back(words_of(untold.col(k), setup_quantities(tilt)));
+  for (Index k = 0; k < untold.cols(); ++k) words.push_back(description_of(untold.col(k), setup_quantities(tilt)));
   return words;
 }
 
@@ -272,8 +274,8 @@ Calibration calibrate(MeasuredParts measured) {
   check(measured, parts);
   Calibration result;
   std::vector<Measurement>& measurements = measured.measurements;
-  const auto most = static_cast<std::size_t>(std::ceil(kMostOutliers * static_cast<double>(measurements.size())));
-  const double by_chance = most_by_chance(measurements.size());
+  const auto most = static_cast<std::size_t>(std::ceil(kMaxOutliers * static_cast<double>(measurements.size())));
+  const double by_chance = max_by_chance(measurements.size());
   compute::LeastSquaresEstimate fitted = fit(parts, measured);
   for (auto [at, deviations] = worst(fitted, measurements.size()); deviations > by_chance;) {
     result.outliers.push_back({measurements[at], deviations});

@@ -40,7 +40,7 @@ struct MeasuredParts {
 /// Estimate of a quantity of the set-up.
 struct CalibratedQuantity {
   const fabrication::SetupQuantity* quantity = nullptr;
-  bool is_told = false;  ///< true if the measurements determine the value of the quantity
+  bool is_observable = false;  ///< true if the measurements determine the value of the quantity
   /// Estimated difference of the real machine from the machine file of the job, in um or arcsec. If is_told is false,
   /// the measurements do not determine this difference.
   double value = 0.0;
@@ -52,21 +52,22 @@ struct Calibration {
   MeasuredParts parts;           ///< measurements without outliers
   fabrication::Machine machine;  ///< calibrated machine: the machine of the job with the estimated values
   std::vector<CalibratedQuantity> quantities;
-  Eigen::MatrixXd covariance;       ///< covariance matrix, in the order of the quantities
-  std::vector<std::string> untold;  ///< unobservable combinations, as text
-  std::vector<double> residuals;    ///< residuals in standard uncertainties
-  std::vector<Outlier> outliers;    ///< removed measurements, the worst first
+  Eigen::MatrixXd covariance;             ///< covariance matrix, in the order of the quantities
+  std::vector<std::string> unobservable;  ///< unobservable combinations, as text
+  std::vector<double> residuals;          ///< residuals in standard uncertainties
+  std::vector<Outlier> outliers;          ///< removed measurements, the worst first
   double chi_square = 0.0;
-  std::size_t freedom = 0;  ///< degrees of freedom: number of measurements minus number of estimated unknowns
+  std::size_t degrees_of_freedom =
+      0;  ///< degrees of freedom: number of measurements minus number of estimated unknowns
   Warnings warnings;
 };
 
 /// Maximum uncertainty, in um or arcsec, of a combination that counts as observable. Errors of a set-up with a dial
 /// gauge are smaller than this value.
-inline constexpr double kSetUpByEye = 100.0;
+inline constexpr double kMaxObservableUncertainty = 100.0;
 
 /// Returns the unobservable combinations of an estimate as text, such as "-0.707 c_lean_x_arcsec + a_lean_y_arcsec".
-std::vector<std::string> untold_words(const compute::LeastSquaresEstimate& estimate, fabrication::Tilt tilt);
+std::vector<std::string> unobservable_texts(const compute::LeastSquaresEstimate& estimate, fabrication::Tilt tilt);
 
 /// Returns the measured parts, in the order of Measurement::part, with their measured elements.
 std::vector<CutPart> cut_parts(const MeasuredParts& measured);

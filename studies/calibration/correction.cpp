@@ -14,7 +14,7 @@ namespace {
 using namespace fabrication;
 using Eigen::Index;
 
-void take(FacetOutlook& outlook, FacetQuantity what, double value) {
+void take(DeviationPrediction& outlook, FacetQuantity what, double value) {
   double& most = what == FacetQuantity::distance ? outlook.distance_nm : outlook.tilt_arcsec;
   most = std::max(most, std::abs(value));
 }
@@ -25,7 +25,8 @@ void tell_outlooks(Correction& result) {
   const std::vector<CutPart> parts = cut_parts(measured);
   const Machine& machine = result.calibration.machine;
   const LinearModel model = linear_model(parts, measured.measurements, machine, measured.map_faces);
-  const Eigen::MatrixXd spread = model.of_setup * result.calibration.covariance * model.of_setup.transpose();
+  const Eigen::MatrixXd spread =
+      model.setup_jacobian * result.calibration.covariance * model.setup_jacobian.transpose();
   for (std::size_t k = 0; k < measured.measurements.size(); ++k) {
     const Measurement& m = measured.measurements[k];
     const auto at = static_cast<Index>(k);
@@ -36,41 +37,42 @@ void tell_outlooks(Correction& result) {
 
 /// Sets the waves and marks that facets of all maps have in common, and adds warnings about them.
 void tell_rests(Correction& result, double feed_mm_per_min) {
-  std::vector<FacetRest> rests;
-  for (const RegisteredMap& map : result.registered) rests.insert(rests.end(), map.rests.begin(), map.rests.end());
+  std::vector<FacetResiduals> rests;
+  for (const RegisteredMap& map : result.registered)
+    rests.insert(rests.end(), map.residuals.begin(), map.residuals.end());
   result.facets = rests.size();
   result.waves = common_waves(rests, feed_mm_per_min);
   result.marks = common_marks(rests);
   for (const FacetWave& wave : result.waves)
     result.calibration.warnings.push_back(
         {"waves_not_corrected",
-         fmt::format("{}: waves are not corrected. {}", words_of(wave, result.facets),
+         fmt::format("{}: waves are not corrected. {}", description_of(wave, result.facets),
                      wave.is_along_edge ? "They come from the tool's edge"
                                         : "Look for a drive or a spindle that runs at their frequency")});
   for (const FacetMark& mark : result.marks)
     result.calibration.warnings.push_back(
         {"marks_not_corrected",
-         fmt::format("{}: marks are not corrected. {}", words_of(mark),
+         fmt::format("{}: marks are not corrected. {}", description_of(mark),
                      mark.is_of_edge ? "Most facets with this position have the mark, so the tool's edge causes it"
                                      : "The facets are measured next to the mark")});
 }
 
 }  // namespace
 
-std::string words_of(const FacetWave& wave, std::size_t facets) {
+std::string description_of(const FacetWave& wave, std::size_t facets) {
   return fmt::format(
       "waves {}, {} um long, amplitude {} nm{}, on {} of {} facets",
       wave.is_along_edge ? "along the edge" : "up the facets", fixed(wave.length_um, 1), fixed(wave.amplitude_nm, 1),
       wave.frequency_hz ? fmt::format(", {} Hz", fixed(*wave.frequency_hz, 2)) : "", wave.facets.size(), facets);
 }
 
-std::string words_of(const FacetMark& mark) {
+std::string description_of(const FacetMark& mark) {
   return fmt::format("{}{} {} nm {}, {} um wide, {} um {}, on {} of {} facets measured at this position",
                      mark.is_of_edge ? (mark.height_nm > 0.0 ? "a chip of the edge: " : "a bulge of the edge: ") : "",
                      mark.height_nm > 0.0 ? "a ridge" : "a groove", fixed(std::abs(mark.height_nm), 1),
-                     mark.height_nm > 0.0 ? "high" : "deep", fixed(mark.width_um, 1), fixed(mark.place_um, 1),
+                     mark.height_nm > 0.0 ? "high" : "deep", fixed(mark.width_um, 1), fixed(mark.position_um, 1),
                      mark.is_along_cut ? "along the edge from its centre" : "up the facet", mark.facets.size(),
-                     mark.shown);
+                     mark.facets_covering);
 }
 
 Correction correct(const FabricationResult& plan, std::vector<FacetMap> maps) {

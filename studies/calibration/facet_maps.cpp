@@ -16,7 +16,7 @@
 
 #include "core/error.h"
 #include "core/number_format.h"
-#include "fabrication/chisel/check/groove.h"
+#include "fabrication/chisel/check/cavity.h"
 
 namespace retrace::studies {
 namespace {
@@ -35,15 +35,15 @@ constexpr double kTurnsDeg[] = {-2.0, -1.0, 0.0, 1.0, 2.0};
 constexpr std::size_t kFollowed = 4;
 /// Maximum number of refinement steps with all points, and also of the following steps with only the points away from
 /// edges.
-constexpr int kMostMoves = 20;
+constexpr int kMaxMoves = 20;
 constexpr double kRoughMove = 1e-6;  ///< length of the last step with all points, in mm or rad
 /// Length of the last step with points away from edges, in mm or rad. Smaller changes have no effect, because
 /// the calibration estimates the pose again.
 constexpr double kLastMove = 1e-9;
 /// Maximum median deviation of a registered map from the design, as a fraction of an element's depth.
-constexpr double kMostOff = 0.02;
+constexpr double kMaxMedianDeviation = 0.02;
 /// Minimum number of points that determine the plane of a facet or of the blank's face.
-constexpr std::size_t kLeastPoints = 30;
+constexpr std::size_t kMinPoints = 30;
 /// Distance from edges within which points are ignored, as a fraction of the facet's length and as a number of pixels.
 /// The larger of the two distances applies.
 constexpr double kMargin = 0.05;
@@ -63,7 +63,7 @@ struct Region {
 /// Surface of the design as a height over x and y.
 class DesignSurface {
  public:
-  explicit DesignSurface(const std::vector<Groove>& grooves) : grooves_(grooves), map_(grooves) {}
+  explicit DesignSurface(const std::vector<Cavity>& grooves) : grooves_(grooves), map_(grooves) {}
 
   Region region(double x_mm, double y_mm) const {
     const auto element = map_.at(x_mm, y_mm);
@@ -91,7 +91,7 @@ class DesignSurface {
   double height_mm(const Region& r, const Vec3& p) const {
     return r.is_face ? p.z() : common(grooves_[r.element]).facets[r.facet].height_mm(p);
   }
-  const std::vector<Groove>& grooves() const { return grooves_; }
+  const std::vector<Cavity>& grooves() const { return grooves_; }
 
  private:
   /// Returns true if a point is in the region. For prisms with a vertical axis, the region is the rectangle that
@@ -111,8 +111,8 @@ class DesignSurface {
     return (f.offset_mm - f.normal.x() * x_mm - f.normal.y() * y_mm) / f.normal.z();
   }
 
-  const std::vector<Groove>& grooves_;
-  GrooveMap map_;
+  const std::vector<Cavity>& grooves_;
+  CavityMap map_;
 };
 
 /// Returns the measured points. x and y are relative to the centre of the map, and z is relative to the mean height.
@@ -159,13 +159,13 @@ class Registration {
         points_(points_of(map.heights)),
         coarse_(thinned(points_, kCoarsePoints)),
         fine_(thinned(points_, kFinePoints)) {
-    const Groove& groove = surface.grooves().front();
+    const Cavity& groove = surface.grooves().front();
     margin_mm_ = std::max(kMargin * common(groove).facet_length_mm,
                           kMarginPixels * 1e-3 * std::max(map.heights.x_pixel_um, map.heights.y_pixel_um));
     reach_mm_ = half_size_mm(groove);
-    if (points_.size() < 3 * kLeastPoints)
+    if (points_.size() < 3 * kMinPoints)
       throw InputError({map.file, 0, ""}, fmt::format("must have at least {} points with a height, got {}",
-                                                      3 * kLeastPoints, points_.size()));
+                                                      3 * kMinPoints, points_.size()));
   }
 
   RigidMotion best(const FacetMap& map) const {
@@ -179,7 +179,7 @@ class Registration {
     }
     refine(best, true);
     least = off_mm(best);
-    const double most = kMostOff * common(surface_.grooves().front()).depth_mm;
+    const double most = kMaxMedianDeviation * common(surface_.grooves().front()).depth_mm;
     if (!(least < most))
       throw InputError(
           {map.file, 0, ""},
@@ -187,7 +187,7 @@ class Registration {
               "fits no position on the part within half an element of x = {}, y = {} mm: at best, half of its "
               "points are more than {} nm from the design, but {} nm are allowed. Rows must be parallel to X of "
               "the workpiece",
-              shortest(map.middle_mm.x()), shortest(map.middle_mm.y()), fixed(1e6 * least, 0), fixed(1e6 * most, 0)));
+              shortest(map.centre_mm.x()), shortest(map.centre_mm.y()), fixed(1e6 * least, 0), fixed(1e6 * most, 0)));
     return best;
   }
 
@@ -201,9 +201,9 @@ class Registration {
       for (int i = 0; i < kPlaces; ++i)
         for (int j = 0; j < kPlaces; ++j) {
           const double step = 2.0 * reach_mm_ / kPlaces;
-          RigidMotion pose{rotation_about(Vec3::UnitZ(), Angle::from_deg(map.turn_deg + turn_deg)),
-                           Vec3(map.middle_mm.x() + (i + 0.5) * step - reach_mm_,
-                                map.middle_mm.y() + (j + 0.5) * step - reach_mm_, 0.0)};
+          RigidMotion pose{rotation_about(Vec3::UnitZ(), Angle::from_deg(map.rotation_deg + turn_deg)),
+                           Vec3(map.centre_mm.x() + (i + 0.5) * step - reach_mm_,
+                                map.centre_mm.y() + (j + 0.5) * step - reach_mm_, 0.0)};
           std::vector<double> off;
           for (const Vec3& p : coarse_) {
             const Vec3 at = pose.point(p);
@@ -235,7 +235,7 @@ class Registration {
   /// Improves a pose by Gauss-Newton steps, which minimize the distances of the points from the planes below them.
   /// \param is_clear true: only points away from edges are used
   void refine(RigidMotion& pose, bool is_clear) const {
-    for (int step = 0; step < kMostMoves; ++step) {
+    for (int step = 0; step < kMaxMoves; ++step) {
       std::vector<std::pair<Vec3, Region>> placed;
       std::vector<double> off;
       std::vector<double> off_facets;
@@ -247,7 +247,7 @@ class Registration {
         off.push_back(std::abs(surface_.height_mm(*region, at)));
         if (!region->is_face) off_facets.push_back(off.back());
       }
-      if (off_facets.size() < kLeastPoints) return;
+      if (off_facets.size() < kMinPoints) return;
       const double most = kFarOff * median_of(off_facets) + 1e-9;
       Eigen::Matrix<double, 6, 6> a = Eigen::Matrix<double, 6, 6>::Identity() * 1e-12;
       Eigen::Matrix<double, 6, 1> b = Eigen::Matrix<double, 6, 1>::Zero();
@@ -308,7 +308,7 @@ std::optional<RegionFit> fitted(const std::vector<Vec3>& points, const std::vect
   std::vector<const Vec3*> taken;
   for (const Vec3& p : points) taken.push_back(&p);
   for (int round = 0; round < kRounds; ++round) {
-    if (taken.size() < kLeastPoints) return std::nullopt;
+    if (taken.size() < kMinPoints) return std::nullopt;
     const auto count = static_cast<double>(taken.size());
     fit.middle_mm.setZero();
     for (const Vec3* p : taken) fit.middle_mm += p->head<2>() / count;
@@ -345,21 +345,21 @@ std::optional<RegionFit> fitted(const std::vector<Vec3>& points, const std::vect
 /// Fits the plane of a facet. Points in marks are excluded, and waves are fitted together with the plane.
 /// \param points for each point: distance up the facet, distance along the facet, and height
 /// \param rest receives the marks and waves
-std::optional<RegionFit> fitted_facet(const std::vector<Vec3>& points, const EdgeView& view, const Vec2& pitch_mm,
-                                      FacetRest& rest) {
+std::optional<RegionFit> fitted_facet(const std::vector<Vec3>& points, const CutCoordinates& view, const Vec2& pitch_mm,
+                                      FacetResiduals& rest) {
   constexpr int kRounds = 3;
   std::optional<RegionFit> fit = fitted(points);
   std::vector<Vec3> unmarked = points;
   std::vector<Vec3> left;
   for (int round = 0; fit && round < kRounds; ++round) {
     left.clear();
-    for (const Vec3& p : points) left.emplace_back(view.place_mm(p).x(), view.place_mm(p).y(), left_of(*fit, p));
+    for (const Vec3& p : points) left.emplace_back(view.position_mm(p).x(), view.position_mm(p).y(), left_of(*fit, p));
     const std::size_t before = rest.marks.size();
     rest = marks_of(rest.at, left, pitch_mm);
     if (rest.marks.size() == before) break;
     unmarked.clear();
     for (const Vec3& p : points)
-      if (!rest.is_marked(view.place_mm(p))) unmarked.push_back(p);
+      if (!rest.is_marked(view.position_mm(p))) unmarked.push_back(p);
     fit = fitted(unmarked);
   }
   if (!fit) return fit;
@@ -367,7 +367,8 @@ std::optional<RegionFit> fitted_facet(const std::vector<Vec3>& points, const Edg
   std::vector<Vec2> waves;
   for (const surface_models::SpectralPeak& wave : rest.waves) {
     const Eigen::Index axis = wave.axis == surface_models::Axis::x ? 0 : 1;
-    waves.push_back(2.0 * std::numbers::pi * wave.frequency_per_mm * Vec2(view.of_up[axis], view.of_along[axis]));
+    waves.push_back(2.0 * std::numbers::pi * wave.frequency_per_mm *
+                    Vec2(view.up_step_mm[axis], view.along_step_mm[axis]));
   }
   return waves.empty() ? fit : fitted(unmarked, waves);
 }
@@ -386,18 +387,18 @@ void add_figures(RegisteredMap& result, const Region& region, const RegionFit& f
     m.what = what;
     m.value = value;
     m.uncertainty = uncertainty;
-    if (what == FacetQuantity::distance) m.place_mm = fit.middle_mm;
+    if (what == FacetQuantity::distance) m.position_mm = fit.middle_mm;
     result.figures.push_back(m);
   };
   add(FacetQuantity::distance, kNmPerMm * fit.value[0], kNmPerMm * fit.uncertainty[0]);
-  add(FacetQuantity::up, kArcsecPerRad * fit.value[1], kArcsecPerRad * fit.uncertainty[1]);
-  add(FacetQuantity::along, kArcsecPerRad * fit.value[2], kArcsecPerRad * fit.uncertainty[2]);
+  add(FacetQuantity::tilt_up, kArcsecPerRad * fit.value[1], kArcsecPerRad * fit.uncertainty[1]);
+  add(FacetQuantity::tilt_along, kArcsecPerRad * fit.value[2], kArcsecPerRad * fit.uncertainty[2]);
 }
 
 }  // namespace
 
 RegisteredMap registered(const FacetMap& map, const FabricationResult& plan) {
-  const std::vector<Groove> grooves = designed_grooves(plan.job);
+  const std::vector<Cavity> grooves = designed_cavities(plan.job);
   const DesignSurface surface(grooves);
   const Registration registration(map, surface);
   RegisteredMap result;
@@ -423,7 +424,7 @@ RegisteredMap registered(const FacetMap& map, const FabricationResult& plan) {
     by_region[*region].emplace_back(facet.up_slope.dot(from_root), facet.along.dot(from_root), height);
   }
   if (count > 0) result.rms_nm = kNmPerMm * std::sqrt(sum / static_cast<double>(count));
-  const std::map<FacetPlace, EdgeView> views = edge_views(plan, {elements.begin(), elements.end()});
+  const std::map<FacetId, CutCoordinates> views = cut_coordinates(plan, {elements.begin(), elements.end()});
   for (const auto& [region, points] : by_region) {
     if (region.is_face) {
       if (const std::optional<RegionFit> fit = fitted(points))
@@ -439,14 +440,14 @@ RegisteredMap registered(const FacetMap& map, const FabricationResult& plan) {
     const auto pitch = [&](Eigen::Index axis) {
       // direction along the edge (axis 0) or along the motion of the edge (axis 1)
       return pitch_mm(map, result.part_from_map,
-                      view->second.of_up[axis] * facet.up_slope + view->second.of_along[axis] * facet.along);
+                      view->second.up_step_mm[axis] * facet.up_slope + view->second.along_step_mm[axis] * facet.along);
     };
-    FacetRest rest;
+    FacetResiduals rest;
     rest.at = {region.element, region.facet};
     const std::optional<RegionFit> fit = fitted_facet(points, view->second, {pitch(0), pitch(1)}, rest);
     if (!fit) continue;
     add_figures(result, region, *fit);
-    result.rests.push_back(std::move(rest));
+    result.residuals.push_back(std::move(rest));
   }
   if (result.figures.empty())
     throw InputError({map.file, 0, ""}, "shows no facet, because all points are too close to edges");

@@ -18,8 +18,8 @@ struct FacetMap {
   std::string file;  ///< for messages
   surface_models::HeightMap heights;
   /// Centre of the map in the workpiece frame, accurate to half an element.
-  geometry::Vec2 middle_mm = geometry::Vec2::Zero();
-  double turn_deg = 0.0;  ///< rotation about z, accurate to 2 degrees
+  geometry::Vec2 centre_mm = geometry::Vec2::Zero();
+  double rotation_deg = 0.0;  ///< rotation about z, accurate to 2 degrees
 };
 
 /// Registered map: the rotation and translation that fit it best to the design.
@@ -28,7 +28,7 @@ struct RegisteredMap {
   double rms_nm = 0.0;                     ///< rms deviation from the design after registration
   std::vector<Measurement> figures;        ///< distance and both tilts of every facet that the map shows
   std::optional<FaceFigures> face;         ///< figures of the blank's face; none if the map shows too little of it
-  std::vector<FacetRest> rests;            ///< waves and marks of the measured facets
+  std::vector<FacetResiduals> residuals;   ///< waves and marks of the measured facets
 };
 
 /// Registers a map to the design and measures its facets. Points on marks of chips and scratches are left out of the

@@ -19,14 +19,14 @@ constexpr double kUmPerMm = 1e3;
 /// Maximum distance, in um, between a line of a facet and the neighbouring lines with which it is compared.
 constexpr double kBesideUm = 30.0;
 /// Minimum number of periods of a wave on a facet. Longer waves count as form of the facet.
-constexpr double kLeastPeriods = 3.0;
+constexpr double kMinPeriods = 3.0;
 /// Tolerances within which waves of two facets count as the same wave: relative difference of their frequencies, and
 /// difference of their numbers of periods on a facet.
 constexpr double kSameFrequency = 0.02;
 constexpr double kSamePeriods = 0.5;
 /// Minimum fraction of facets that must have a mark at the same position, so that the mark is attributed to the tool's
 /// edge. Only facets whose measured area contains the position are counted.
-constexpr double kShareOfEdge = 0.5;
+constexpr double kMinMarkedFraction = 0.5;
 /// Minimum distance, in um, of detectable marks from the ends of the measured area of a facet.
 constexpr double kUnseenUm = kBesideUm;
 
@@ -52,7 +52,7 @@ HeightMap laid_out(std::span<const Vec3> left, const Vec2& low_mm, const Vec2& h
 }
 
 /// Averages the heights of points in the cells of a grid. Points inside of marks are ignored.
-HeightMap laid_out(const FacetRest& rest, std::span<const Vec3> left) {
+HeightMap laid_out(const FacetResiduals& rest, std::span<const Vec3> left) {
   std::vector<Vec3> unmarked;
   for (const Vec3& p : left)
     if (!rest.is_marked(p.head<2>())) unmarked.push_back(p);
@@ -66,7 +66,7 @@ Eigen::Index across(MapAxis along) {
 /// Wave or mark of a facet, used to collect the waves and marks that several facets have in common.
 template <class Thing>
 struct Found {
-  const FacetRest* rest = nullptr;
+  const FacetResiduals* rest = nullptr;
   Thing thing;
 };
 
@@ -92,33 +92,36 @@ FacetWave gathered(const std::vector<Found<SpectralPeak>>& waves, double feed_mm
   return wave;
 }
 
-FacetMark gathered(const std::vector<Found<Scratch>>& marks, const std::vector<FacetRest>& rests) {
+FacetMark gathered(const std::vector<Found<Scratch>>& marks, const std::vector<FacetResiduals>& rests) {
   FacetMark mark;
   const MapAxis along = marks.front().thing.along;
   mark.is_along_cut = along == MapAxis::y;
   for (const auto& [rest, scratch] : marks) {
     const double share = 1.0 / static_cast<double>(marks.size());
-    mark.place_um += share * scratch.position_um;
+    mark.position_um += share * scratch.position_um;
     mark.height_nm -= share * scratch.depth_nm;
     mark.width_um += share * scratch.width_um;
     mark.facets.push_back(rest->at);
   }
-  for (const FacetRest& rest : rests) {
+  for (const FacetResiduals& rest : rests) {
     const double low_um = kUmPerMm * rest.low_mm[across(along)];
     const double high_um = kUmPerMm * rest.high_mm[across(along)];
     const bool is_of_mark = std::ranges::find(mark.facets, rest.at) != mark.facets.end();
-    mark.shown += is_of_mark || (low_um + kUnseenUm < mark.place_um && mark.place_um < high_um - kUnseenUm) ? 1U : 0U;
+    mark.facets_covering +=
+        is_of_mark || (low_um + kUnseenUm < mark.position_um && mark.position_um < high_um - kUnseenUm) ? 1U : 0U;
   }
-  mark.is_of_edge = mark.is_along_cut && mark.facets.size() > 1 &&
-                    static_cast<double>(mark.facets.size()) >= kShareOfEdge * static_cast<double>(mark.shown);
+  mark.is_of_edge =
+      mark.is_along_cut && mark.facets.size() > 1 &&
+      static_cast<double>(mark.facets.size()) >= kMinMarkedFraction * static_cast<double>(mark.facets_covering);
   return mark;
 }
 
 }  // namespace
 
-std::map<FacetPlace, EdgeView> edge_views(const FabricationResult& plan, const std::vector<std::size_t>& elements) {
-  const std::vector<Groove> grooves = designed_grooves(plan.job);
-  std::map<FacetPlace, EdgeView> views;
+std::map<FacetId, CutCoordinates> cut_coordinates(const FabricationResult& plan,
+                                                  const std::vector<std::size_t>& elements) {
+  const std::vector<Cavity> grooves = designed_cavities(plan.job);
+  std::map<FacetId, CutCoordinates> views;
   for (const FacetEdgeCut& made : facet_edge_cuts(plan.job, plan.plan, elements)) {
     if (!made.ends_at_root && !made.is_ploughed) continue;
     const DesignElement& groove = common(grooves[made.element]);
@@ -136,15 +139,15 @@ std::map<FacetPlace, EdgeView> edge_views(const FabricationResult& plan, const s
   return views;
 }
 
-bool FacetRest::is_marked(const Vec2& place_mm) const {
+bool FacetResiduals::is_marked(const Vec2& position_mm) const {
   return std::ranges::any_of(marks, [&](const Scratch& mark) {
     const Eigen::Index axis = across(mark.along);
-    return std::abs(kUmPerMm * place_mm[axis] - mark.position_um) <= mark.width_um + kUmPerMm * pitch_mm[axis];
+    return std::abs(kUmPerMm * position_mm[axis] - mark.position_um) <= mark.width_um + kUmPerMm * pitch_mm[axis];
   });
 }
 
-FacetRest marks_of(const FacetPlace& at, std::span<const Vec3> left, const Vec2& pitch_mm) {
-  FacetRest rest;
+FacetResiduals marks_of(const FacetId& at, std::span<const Vec3> left, const Vec2& pitch_mm) {
+  FacetResiduals rest;
   rest.at = at;
   rest.pitch_mm = pitch_mm;
   if (left.empty()) return rest;
@@ -155,8 +158,8 @@ FacetRest marks_of(const FacetPlace& at, std::span<const Vec3> left, const Vec2&
   }
   // Search the marks one by one, beginning with the deepest one, and exclude the marks that are already found.
   // Otherwise, lines next to a wide mark would be detected as further marks.
-  constexpr std::size_t kMostMarks = 16;
-  while (rest.marks.size() < kMostMarks) {
+  constexpr std::size_t kMaxMarks = 16;
+  while (rest.marks.size() < kMaxMarks) {
     const HeightMap map = laid_out(rest, left);
     std::vector<Scratch> found = surface_models::find_scratches(map, MapAxis::x, kBesideUm);
     for (const Scratch& scratch : surface_models::find_scratches(map, MapAxis::y, kBesideUm)) found.push_back(scratch);
@@ -169,17 +172,17 @@ FacetRest marks_of(const FacetPlace& at, std::span<const Vec3> left, const Vec2&
   return rest;
 }
 
-void add_waves(FacetRest& rest, std::span<const Vec3> left) {
+void add_waves(FacetResiduals& rest, std::span<const Vec3> left) {
   if (left.empty()) return;
   rest.waves = surface_models::dominant_peaks(laid_out(rest, left));
   std::erase_if(rest.waves, [&](const SpectralPeak& wave) {
-    return wave.frequency_per_mm * periods({&rest, wave}) < kLeastPeriods;
+    return wave.frequency_per_mm * periods({&rest, wave}) < kMinPeriods;
   });
 }
 
-std::vector<FacetWave> common_waves(const std::vector<FacetRest>& rests, double feed_mm_per_min) {
+std::vector<FacetWave> common_waves(const std::vector<FacetResiduals>& rests, double feed_mm_per_min) {
   std::vector<std::vector<Found<SpectralPeak>>> groups;
-  for (const FacetRest& rest : rests)
+  for (const FacetResiduals& rest : rests)
     for (const SpectralPeak& peak : rest.waves) {
       const Found<SpectralPeak> wave{&rest, peak};
       const auto same = std::ranges::find_if(groups, [&](const auto& group) {
@@ -196,9 +199,9 @@ std::vector<FacetWave> common_waves(const std::vector<FacetRest>& rests, double 
   return waves;
 }
 
-std::vector<FacetMark> common_marks(const std::vector<FacetRest>& rests) {
+std::vector<FacetMark> common_marks(const std::vector<FacetResiduals>& rests) {
   std::vector<std::vector<Found<Scratch>>> groups;
-  for (const FacetRest& rest : rests)
+  for (const FacetResiduals& rest : rests)
     for (const Scratch& mark : rest.marks) {
       const auto same = std::ranges::find_if(groups, [&](const auto& group) {
         const Scratch& first = group.front().thing;
@@ -216,7 +219,7 @@ std::vector<FacetMark> common_marks(const std::vector<FacetRest>& rests) {
     return std::ranges::any_of(all, [&](const FacetMark& chip) {
       return chip.is_of_edge && mark.is_along_cut && mark.facets.size() < chip.facets.size() &&
              std::abs(mark.height_nm) < std::abs(chip.height_nm) &&
-             std::abs(mark.place_um - chip.place_um) < 2.0 * kBesideUm;
+             std::abs(mark.position_um - chip.position_um) < 2.0 * kBesideUm;
     });
   });
   std::ranges::stable_sort(marks, std::ranges::greater(), [](const FacetMark& m) { return std::abs(m.height_nm); });

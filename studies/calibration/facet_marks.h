@@ -23,24 +23,27 @@ namespace retrace::studies {
 
 /// Transformation of points of a facet to coordinates of its cut: x along the cutting edge, from the centre of the
 /// edge, and y up the facet.
-struct EdgeView {
-  geometry::Vec2 root_mm = geometry::Vec2::Zero();  ///< coordinates of the facet's root or apex
-  geometry::Vec2 of_up = geometry::Vec2::UnitY();   ///< coordinates of a step of 1 mm up the facet
+struct CutCoordinates {
+  geometry::Vec2 root_mm = geometry::Vec2::Zero();      ///< coordinates of the facet's root or apex
+  geometry::Vec2 up_step_mm = geometry::Vec2::UnitY();  ///< coordinates of a step of 1 mm up the facet
   /// Coordinates of a step of 1 mm along the facet's horizontal line.
-  geometry::Vec2 of_along = geometry::Vec2::UnitX();
+  geometry::Vec2 along_step_mm = geometry::Vec2::UnitX();
 
   /// Returns the coordinates of a point.
   /// \param p distances from the root, up the facet and along its horizontal line
-  geometry::Vec2 place_mm(const geometry::Vec3& p) const { return root_mm + p.x() * of_up + p.y() * of_along; }
+  geometry::Vec2 position_mm(const geometry::Vec3& p) const {
+    return root_mm + p.x() * up_step_mm + p.y() * along_step_mm;
+  }
 };
 
 /// Returns the transformations for the last cuts of the facets.
 /// \param elements numbers of the elements, in ascending order
-std::map<FacetPlace, EdgeView> edge_views(const FabricationResult& plan, const std::vector<std::size_t>& elements);
+std::map<FacetId, CutCoordinates> cut_coordinates(const FabricationResult& plan,
+                                                  const std::vector<std::size_t>& elements);
 
-/// Waves and marks in the residual heights of a facet. Coordinates are those of EdgeView.
-struct FacetRest {
-  FacetPlace at;
+/// Waves and marks in the residual heights of a facet. Coordinates are those of CutCoordinates.
+struct FacetResiduals {
+  FacetId at;
   geometry::Vec2 low_mm = geometry::Vec2::Zero();  ///< lower limits of the measured area
   geometry::Vec2 high_mm = geometry::Vec2::Zero();
   geometry::Vec2 pitch_mm = geometry::Vec2::Zero();  ///< distances between points of the map
@@ -50,15 +53,15 @@ struct FacetRest {
   std::vector<surface_models::Scratch> marks;
 
   /// Returns true if a position is inside a mark or so close that the flanks of the mark may extend to it.
-  bool is_marked(const geometry::Vec2& place_mm) const;
+  bool is_marked(const geometry::Vec2& position_mm) const;
 };
 
 /// Finds the marks of a facet.
-/// \param left coordinates of EdgeView and residual heights, in mm
+/// \param left coordinates of CutCoordinates and residual heights, in mm
 /// \param pitch_mm distances between points of the map
-FacetRest marks_of(const FacetPlace& at, std::span<const geometry::Vec3> left, const geometry::Vec2& pitch_mm);
+FacetResiduals marks_of(const FacetId& at, std::span<const geometry::Vec3> left, const geometry::Vec2& pitch_mm);
 /// Adds the waves of a facet. Points inside the marks of `rest` are left out.
-void add_waves(FacetRest& rest, std::span<const geometry::Vec3> left);
+void add_waves(FacetResiduals& rest, std::span<const geometry::Vec3> left);
 
 /// Wave that facets have in common.
 struct FacetWave {
@@ -66,7 +69,7 @@ struct FacetWave {
   double length_um = 0.0;
   double amplitude_nm = 0.0;           ///< root mean square of the amplitudes on the facets
   std::optional<double> frequency_hz;  ///< temporal frequency of a wave up the facet; none for a wave along the edge
-  std::vector<FacetPlace> facets;
+  std::vector<FacetId> facets;
 };
 
 /// Ridge or groove that facets have at the same position.
@@ -74,16 +77,16 @@ struct FacetMark {
   bool is_along_cut = false;  ///< true: along the cut; false: along the edge
   bool is_of_edge = false;    ///< true: the edge causes the mark, which most facets with this position have
   /// Position along the edge, from its centre, or up the facet, from the last position of the edge's tip.
-  double place_um = 0.0;
+  double position_um = 0.0;
   double height_nm = 0.0;  ///< mean height; negative for a groove
   double width_um = 0.0;   ///< full width at half of the height
-  std::vector<FacetPlace> facets;
-  std::size_t shown = 0;  ///< number of facets whose measured area contains the position
+  std::vector<FacetId> facets;
+  std::size_t facets_covering = 0;  ///< number of facets whose measured area contains the position
 };
 
 /// Returns the waves or marks that facets have in common, the highest first.
 /// \param feed_mm_per_min feed of the cuts of the facets
-std::vector<FacetWave> common_waves(const std::vector<FacetRest>& rests, double feed_mm_per_min);
-std::vector<FacetMark> common_marks(const std::vector<FacetRest>& rests);
+std::vector<FacetWave> common_waves(const std::vector<FacetResiduals>& rests, double feed_mm_per_min);
+std::vector<FacetMark> common_marks(const std::vector<FacetResiduals>& rests);
 
 }  // namespace retrace::studies

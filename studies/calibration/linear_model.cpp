@@ -26,16 +26,16 @@ constexpr double kTurnByEye = 3600.0;
 /// \param unknown index of an unknown of the part, or kPose and kPose + 1 for the rotations of the face
 void move_one(PartPose& pose, Index unknown, double amount) {
   if (unknown >= kPose)
-    pose.face_turn_arcsec[unknown - kPose] += amount;
+    pose.face_rotation_arcsec[unknown - kPose] += amount;
   else
-    (unknown < kTurns ? pose.turn_arcsec[unknown] : pose.shift_um[unknown - kTurns]) += amount;
+    (unknown < kTurns ? pose.rotation_arcsec[unknown] : pose.shift_um[unknown - kTurns]) += amount;
 }
 
 /// Returns the height and tilts of the face that a map would show if the part had this pose.
 geometry::Vec3 predicted_face(const FaceFigures& face, const PartPose& pose) {
   const geometry::Vec3 normal = pose.face_rotation().col(2);
   const geometry::Vec3 shift = pose.shift_um / kUmInMm;
-  const double height_mm = shift.z() - (normal.head<2>().dot(face.middle_mm - shift.head<2>())) / normal.z();
+  const double height_mm = shift.z() - (normal.head<2>().dot(face.centroid_mm - shift.head<2>())) / normal.z();
   return {kNmPerMm * height_mm, -kArcsecPerRad * normal.x() / normal.z(), -kArcsecPerRad * normal.y() / normal.z()};
 }
 
@@ -66,8 +66,8 @@ LinearModel linear_model(const std::vector<CutPart>& parts, std::span<const Meas
   for (const SetupQuantity& quantity : quantities)
     off.push_back({with_error(machine, quantity, -kStep), with_error(machine, quantity, kStep)});
   const auto of_face = kPose * static_cast<Index>(parts.size());
-  model.of_setup.setZero(model.residual.size(), static_cast<Index>(quantities.size()));
-  model.of_poses.setZero(model.residual.size(), of_face + 2);
+  model.setup_jacobian.setZero(model.residual.size(), static_cast<Index>(quantities.size()));
+  model.pose_jacobian.setZero(model.residual.size(), of_face + 2);
   const auto poses_about = [](const PartPose& pose, Index unknown) {
     std::array<PartPose, 2> both{pose, pose};
     move_one(both[0], unknown, -kStep);
@@ -80,16 +80,17 @@ LinearModel linear_model(const std::vector<CutPart>& parts, std::span<const Meas
     const PartPose& pose = poses[m.part];
     const double span = 2.0 * kStep * m.uncertainty;
     for (std::size_t k = 0; k < off.size(); ++k)
-      model.of_setup(row, static_cast<Index>(k)) =
+      model.setup_jacobian(row, static_cast<Index>(k)) =
           (part.predicted(m, off[k][1], pose) - part.predicted(m, off[k][0], pose)) / span;
     const auto of_pose = [&](Index unknown) {
       const auto [low, high] = poses_about(pose, unknown);
       return (part.predicted(m, machine, high) - part.predicted(m, machine, low)) / span;
     };
     const Index first = kPose * static_cast<Index>(m.part);
-    for (Index k = 0; k < (map_faces.empty() ? kPose - 1 : kPose); ++k) model.of_poses(row, first + k) = of_pose(k);
+    for (Index k = 0; k < (map_faces.empty() ? kPose - 1 : kPose); ++k)
+      model.pose_jacobian(row, first + k) = of_pose(k);
     if (!map_faces.empty())
-      for (Index k = 0; k < 2; ++k) model.of_poses(row, of_face + k) = of_pose(kPose + k);
+      for (Index k = 0; k < 2; ++k) model.pose_jacobian(row, of_face + k) = of_pose(kPose + k);
     ++row;
   }
   for (std::size_t k = 0; k < map_faces.size(); ++k) {
@@ -97,7 +98,7 @@ LinearModel linear_model(const std::vector<CutPart>& parts, std::span<const Meas
     const FaceFigures& face = *map_faces[k];
     for (Index unknown = 0; unknown < kPose; ++unknown) {
       const auto [low, high] = poses_about(poses[k], unknown);
-      model.of_poses.block<3, 1>(row, kPose * static_cast<Index>(k) + unknown) =
+      model.pose_jacobian.block<3, 1>(row, kPose * static_cast<Index>(k) + unknown) =
           (predicted_face(face, high) - predicted_face(face, low)).cwiseQuotient(2.0 * kStep * face.uncertainty);
     }
     row += 3;
@@ -105,22 +106,22 @@ LinearModel linear_model(const std::vector<CutPart>& parts, std::span<const Meas
   return model;
 }
 
-LinearModel with_poses_by_eye(LinearModel model, const std::vector<PartPose>& poses) {
+LinearModel with_pose_priors(LinearModel model, const std::vector<PartPose>& poses) {
   const Index rows = model.residual.size();
-  const Index unknowns = model.of_poses.cols();
+  const Index unknowns = model.pose_jacobian.cols();
   Eigen::VectorXd value(unknowns);
   Eigen::VectorXd deviation(unknowns);
   for (std::size_t part = 0; part < poses.size(); ++part) {
     const Index first = kPose * static_cast<Index>(part);
-    value.segment<kPose>(first) << poses[part].turn_arcsec, poses[part].shift_um;
+    value.segment<kPose>(first) << poses[part].rotation_arcsec, poses[part].shift_um;
     deviation.segment<kPose>(first) << geometry::Vec3::Constant(kTurnByEye), geometry::Vec3::Constant(kShiftByEye);
   }
-  value.tail<2>() = poses.front().face_turn_arcsec;
+  value.tail<2>() = poses.front().face_rotation_arcsec;
   deviation.tail<2>().setConstant(kTurnByEye);
-  model.of_setup.conservativeResizeLike(Eigen::MatrixXd::Zero(rows + unknowns, model.of_setup.cols()));
-  model.of_poses.conservativeResizeLike(Eigen::MatrixXd::Zero(rows + unknowns, unknowns));
+  model.setup_jacobian.conservativeResizeLike(Eigen::MatrixXd::Zero(rows + unknowns, model.setup_jacobian.cols()));
+  model.pose_jacobian.conservativeResizeLike(Eigen::MatrixXd::Zero(rows + unknowns, unknowns));
   model.residual.conservativeResize(rows + unknowns);
-  model.of_poses.bottomRows(unknowns).diagonal() = deviation.cwiseInverse();
+  model.pose_jacobian.bottomRows(unknowns).diagonal() = deviation.cwiseInverse();
   model.residual.tail(unknowns) = -value.cwiseQuotient(deviation);
   return model;
 }

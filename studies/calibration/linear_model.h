@@ -16,12 +16,12 @@ namespace retrace::studies {
 /// Linear model of the measurements at a given machine. Each row is divided by the standard uncertainty of its
 /// measurement.
 struct LinearModel {
-  Eigen::MatrixXd of_setup;  ///< derivatives with respect to the quantities of setup_quantities()
+  Eigen::MatrixXd setup_jacobian;  ///< derivatives with respect to the quantities of setup_quantities()
   /// Derivatives with respect to the poses of the parts. Each part has shifts along X and Y and three rotations. The
   /// height of a part is not an unknown, because measured heights are relative to the face on which the tool was
   /// touched off. For height maps, the height is an unknown as well; the figures of the blank's face determine it. The
   /// two rotations of the face in the machine are common to all maps of a part.
-  Eigen::MatrixXd of_poses;
+  Eigen::MatrixXd pose_jacobian;
   Eigen::VectorXd residual;  ///< measured values minus the values that the machine would produce
 };
 
@@ -44,9 +44,9 @@ Eigen::VectorXd residual_of(const std::vector<CutPart>& parts, std::span<const M
 /// Returns the model with prior knowledge about the poses as additional rows at the end. The priors have standard
 /// deviations of 100 um and one degree about the poses in the programs. Without them, a shift that moves facets only
 /// because they are slightly tilted could become arbitrarily large and hide an observable combination.
-LinearModel with_poses_by_eye(LinearModel model, const std::vector<PartPose>& poses);
+LinearModel with_pose_priors(LinearModel model, const std::vector<PartPose>& poses);
 
-/// Adds changes of the unknowns of LinearModel::of_poses to the poses.
+/// Adds changes of the unknowns of LinearModel::pose_jacobian to the poses.
 /// \pre there is one pose for each part
 void move(std::vector<PartPose>& poses, const Eigen::VectorXd& by);
 

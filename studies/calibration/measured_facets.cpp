@@ -43,36 +43,36 @@ Eigen::Matrix3d rotation_by(const Vec3& turn_arcsec) {
 }  // namespace
 
 Eigen::Matrix3d PartPose::face_rotation() const {
-  return rotation_by(turn_arcsec);
+  return rotation_by(rotation_arcsec);
 }
 
 Eigen::Matrix3d PartPose::rotation() const {
-  return rotation_by(turn_arcsec) * rotation_by({face_turn_arcsec.x(), face_turn_arcsec.y(), 0.0});
+  return rotation_by(rotation_arcsec) * rotation_by({face_rotation_arcsec.x(), face_rotation_arcsec.y(), 0.0});
 }
 
 CutPart::CutPart(const FabricationResult& result, const std::vector<std::size_t>& elements)
-    : grooves_(designed_grooves(result.job)), half_edge_mm_(0.5 * result.job.tool.width_mm) {
+    : cavities_(designed_cavities(result.job)), half_edge_mm_(0.5 * result.job.tool.width_mm) {
   for (const FacetEdgeCut& cut : facet_edge_cuts(result.job, result.plan, elements))
     if (cut.ends_at_root || cut.is_ploughed) cuts_[{cut.element, cut.facet}] = cut.cut;
 }
 
-std::string CutPart::fault_of(const Measurement& m) const {
-  for (const std::optional<FacetPlace>& place : {std::optional(m.at), m.from}) {
+std::string CutPart::obstacle_for(const Measurement& m) const {
+  for (const std::optional<FacetId>& place : {std::optional(m.at), m.from}) {
     if (!place) continue;
-    if (place->element >= grooves_.size())
-      return fmt::format("the job cuts elements 0 to {}, got {}", grooves_.size() - 1, place->element);
-    const std::size_t facets = common(grooves_[place->element]).facets.size();
+    if (place->element >= cavities_.size())
+      return fmt::format("the job cuts elements 0 to {}, got {}", cavities_.size() - 1, place->element);
+    const std::size_t facets = common(cavities_[place->element]).facets.size();
     if (place->facet >= facets)
       return fmt::format("its elements have facets 1 to {}, got {}", facets, place->facet + 1);
     if (!cuts_.contains({place->element, place->facet})) return fmt::format("element {} is not cut", place->element);
   }
   if (m.what == FacetQuantity::angle) {
     if (!m.from) return "an angle is measured between two facets: from_element and from_facet must be given";
-    const Vec3& a = common(grooves_[m.at.element]).facets[m.at.facet].normal;
-    const Vec3& b = common(grooves_[m.from->element]).facets[m.from->facet].normal;
+    const Vec3& a = common(cavities_[m.at.element]).facets[m.at.facet].normal;
+    const Vec3& b = common(cavities_[m.from->element]).facets[m.from->facet].normal;
     if (a.cross(b).norm() < kParallel) return "the two facets of an angle must not be parallel";
   }
-  if (m.what == FacetQuantity::end && m.from)
+  if (m.what == FacetQuantity::cut_end && m.from)
     return "from_element and from_facet must be empty for end_nm, which is the height above the other facet of this "
            "element";
   return {};
@@ -81,19 +81,19 @@ std::string CutPart::fault_of(const Measurement& m) const {
 std::string CutPart::positive_sense(const Measurement& m) const {
   switch (m.what) {
     case FacetQuantity::distance: return "material is left";
-    case FacetQuantity::up: return "rises away from the root";
-    case FacetQuantity::along:
-      return "rises towards " + direction_text(common(grooves_[m.at.element]).facets[m.at.facet].along);
+    case FacetQuantity::tilt_up: return "rises away from the root";
+    case FacetQuantity::tilt_along:
+      return "rises towards " + direction_text(common(cavities_[m.at.element]).facets[m.at.facet].along);
     case FacetQuantity::angle: return "opens the groove";
     case FacetQuantity::depth: return "deeper";
-    case FacetQuantity::end: break;
+    case FacetQuantity::cut_end: break;
   }
   return "ends above the other facet";
 }
 
-CutPart::MadeFacet CutPart::made(const FacetPlace& at, const Machine& real, const PartPose& pose) const {
-  const Groove& groove = grooves_[at.element];
-  MadeFacet facet{&groove, at.facet, {}};
+CutPart::MachinedFacet CutPart::machined_facet(const FacetId& at, const Machine& real, const PartPose& pose) const {
+  const Cavity& groove = cavities_[at.element];
+  MachinedFacet facet{&groove, at.facet, {}};
   facet.plane = cut_plane(real, cuts_.at({at.element, at.facet}), facet.design().normal);
   const Eigen::Matrix3d rotation = pose.rotation();
   facet.plane.point_mm = kMmPerUm * pose.shift_um + rotation * facet.plane.point_mm;
@@ -101,13 +101,13 @@ CutPart::MadeFacet CutPart::made(const FacetPlace& at, const Machine& real, cons
   return facet;
 }
 
-double CutPart::depth_nm(const FacetPlace& at, const Machine& real, const PartPose& pose) const {
-  const DesignElement& groove = common(grooves_[at.element]);
+double CutPart::depth_nm(const FacetId& at, const Machine& real, const PartPose& pose) const {
+  const DesignElement& groove = common(cavities_[at.element]);
   const auto facets = static_cast<Eigen::Index>(groove.facets.size());
   Eigen::MatrixXd normals(facets, 3);
   Eigen::VectorXd heights(facets);
   for (Eigen::Index f = 0; f < facets; ++f) {
-    const MadeFacet facet = made({at.element, static_cast<std::size_t>(f)}, real, pose);
+    const MachinedFacet facet = machined_facet({at.element, static_cast<std::size_t>(f)}, real, pose);
     normals.row(f) = facet.plane.normal.transpose();
     heights[f] = facet.plane.normal.dot(facet.plane.point_mm - groove.root_mm);
   }
@@ -116,8 +116,8 @@ double CutPart::depth_nm(const FacetPlace& at, const Machine& real, const PartPo
 }
 
 double CutPart::end_nm(const Measurement& m, const Machine& real) const {
-  const std::size_t facets = common(grooves_[m.at.element]).facets.size();
-  const MadeFacet other = made({m.at.element, (m.at.facet + 1) % facets}, real, {});
+  const std::size_t facets = common(cavities_[m.at.element]).facets.size();
+  const MachinedFacet other = machined_facet({m.at.element, (m.at.facet + 1) % facets}, real, {});
   const EdgeCut& cut = cuts_.at({m.at.element, m.at.facet});
   const RigidMotion back = machine_from_workpiece(real, rotary_pose(real, cut.at)).inverse();
   const Vec3 end =
@@ -126,24 +126,25 @@ double CutPart::end_nm(const Measurement& m, const Machine& real) const {
   return kNmPerMm * other.plane.normal.dot(end - other.plane.point_mm);
 }
 
-double CutPart::of_one(const Measurement& m, const FacetPlace& at, const Machine& real, const PartPose& pose) const {
-  const MadeFacet facet = made(at, real, pose);
+double CutPart::of_one(const Measurement& m, const FacetId& at, const Machine& real, const PartPose& pose) const {
+  const MachinedFacet facet = machined_facet(at, real, pose);
   switch (m.what) {
     case FacetQuantity::distance: {
-      const Vec3 place = m.place_mm ? Vec3(common(*facet.groove).root_mm + m.place_mm->x() * facet.design().up_slope +
-                                           m.place_mm->y() * facet.design().along)
-                                    : facet_middle(*facet.groove, at.facet);
+      const Vec3 place = m.position_mm
+                             ? Vec3(common(*facet.cavity).root_mm + m.position_mm->x() * facet.design().up_slope +
+                                    m.position_mm->y() * facet.design().along)
+                             : facet_centre(*facet.cavity, at.facet);
       return kNmPerMm * facet.height_mm(place);
     }
-    case FacetQuantity::up: return kArcsecPerRad * facet.rise(facet.design().up_slope);
-    case FacetQuantity::along: return kArcsecPerRad * facet.rise(facet.design().along);
+    case FacetQuantity::tilt_up: return kArcsecPerRad * facet.rise(facet.design().up_slope);
+    case FacetQuantity::tilt_along: return kArcsecPerRad * facet.rise(facet.design().along);
     case FacetQuantity::angle: {
-      const MadeFacet other = made(*m.from, real, pose);
+      const MachinedFacet other = machined_facet(*m.from, real, pose);
       return kArcsecPerRad * (included_rad(facet.plane.normal, other.plane.normal) -
                               included_rad(facet.design().normal, other.design().normal));
     }
     case FacetQuantity::depth: return depth_nm(at, real, pose);
-    case FacetQuantity::end: break;
+    case FacetQuantity::cut_end: break;
   }
   return end_nm(m, real);
 }

@@ -32,23 +32,23 @@ constexpr double kEnough = 3.0;
 double uncertainty_of(FacetQuantity what) {
   switch (what) {
     case FacetQuantity::distance: return 20.0;
-    case FacetQuantity::end: return 10.0;
+    case FacetQuantity::cut_end: return 10.0;
     default: return 1.0;
   }
 }
 
 /// Returns a design of four test prisms with a square outline. The size of the square is the base or the width of the
 /// given design's prisms, whichever is smaller, and at most `most_mm`.
-Design test_design(const Design& design, double apex_angle_deg, double most_mm) {
-  const auto* const array = std::get_if<ElementArray>(&design.shape);
+design::Design test_design(const design::Design& design, double apex_angle_deg, double most_mm) {
+  const auto* const array = std::get_if<design::ElementArray>(&design.shape);
   const auto* const prism = array ? std::get_if<geometry::RtpElement>(&array->part.element) : nullptr;
   if (prism == nullptr)
     throw InputError(Field{"test_cuts"},
                      "test cuts are prisms: the design must have element.kind = \"rtp\", got another kind");
-  Design test = design;
+  design::Design test = design;
   test.title = fmt::format("Test cuts, apex angle {} degrees", shortest(apex_angle_deg));
   const double size_mm = std::min({prism->base_mm, prism->width_mm, most_mm});
-  ElementArray cuts;
+  design::ElementArray cuts;
   cuts.part.element = geometry::RtpElement{size_mm, size_mm, apex_angle_deg};
   cuts.part.array.arrangement = geometry::Arrangement::checker;
   cuts.part.array.x_gap_mm = cuts.part.array.y_gap_mm = kPitchMm - size_mm;
@@ -66,31 +66,32 @@ std::vector<Measurement> all_figures(std::size_t part) {
   };
   for (std::size_t element = 0; element < 4; ++element)
     for (std::size_t facet = 0; facet < 2; ++facet) {
-      for (const FacetQuantity what : {FacetQuantity::distance, FacetQuantity::up, FacetQuantity::along})
+      for (const FacetQuantity what : {FacetQuantity::distance, FacetQuantity::tilt_up, FacetQuantity::tilt_along})
         add(element, facet, what, 0.0);
-      for (const double at : {-1.0, 1.0}) add(element, facet, FacetQuantity::end, at);
+      for (const double at : {-1.0, 1.0}) add(element, facet, FacetQuantity::cut_end, at);
     }
   return figures;
 }
 
 LinearModel rows_of(const LinearModel& all, const std::vector<Index>& chosen) {
-  return {all.of_setup(chosen, Eigen::all), all.of_poses(chosen, Eigen::all), all.residual(chosen)};
+  return {all.setup_jacobian(chosen, Eigen::all), all.pose_jacobian(chosen, Eigen::all), all.residual(chosen)};
 }
 
 compute::LeastSquaresEstimate estimate_of(const LinearModel& model) {
-  return compute::estimate(model.of_setup, model.of_poses, model.residual, kSetUpByEye);
+  return compute::estimate(model.setup_jacobian, model.pose_jacobian, model.residual, kMaxObservableUncertainty);
 }
 
 /// Chooses measurements one by one.
 class Chooser {
  public:
   explicit Chooser(const LinearModel& all) : all_(all), of_all_(estimate_of(all)) {
-    const Index setup = all.of_setup.cols();
-    rows_.resize(all.of_setup.rows(), setup + all.of_poses.cols());
-    rows_ << all.of_setup, all.of_poses;
-    covariance_ = kSetUpByEye * kSetUpByEye * MatrixXd::Identity(rows_.cols(), rows_.cols());
+    const Index setup = all.setup_jacobian.cols();
+    rows_.resize(all.setup_jacobian.rows(), setup + all.pose_jacobian.cols());
+    rows_ << all.setup_jacobian, all.pose_jacobian;
+    covariance_ =
+        kMaxObservableUncertainty * kMaxObservableUncertainty * MatrixXd::Identity(rows_.cols(), rows_.cols());
     for (Index k = 0; k < setup; ++k)
-      if (of_all_.is_told(k)) told_.push_back(k);
+      if (of_all_.is_observable(k)) told_.push_back(k);
   }
 
   std::vector<Index> choose() {
@@ -104,7 +105,7 @@ class Chooser {
   bool is_enough(const std::vector<Index>& chosen) const {
     if (static_cast<Index>(chosen.size()) < rows_.cols()) return false;
     const compute::LeastSquaresEstimate now = estimate_of(rows_of(all_, chosen));
-    if (now.told.cols() < of_all_.told.cols()) return false;
+    if (now.observable.cols() < of_all_.observable.cols()) return false;
     constexpr double kChecked = 0.95;
     return now.leverage.maxCoeff() < kChecked && std::all_of(told_.begin(), told_.end(), [&](Index k) {
              return now.covariance(k, k) < kEnough * kEnough * of_all_.covariance(k, k);
@@ -150,17 +151,17 @@ void tell(TestCuts& cuts, const LinearModel& chosen, Tilt tilt) {
   }
   for (const SetupQuantity& quantity : setup_quantities(tilt)) {
     const auto at = static_cast<Index>(cuts.quantities.size());
-    PlannedQuantity planned{&quantity, all.is_told(at), std::sqrt(all.covariance(at, at)), {}};
-    for (std::size_t part = 0; planned.is_told && part < without.size(); ++part)
-      if (!without[part].is_told(at)) planned.needs.push_back(part);
+    PlannedQuantity planned{&quantity, all.is_observable(at), std::sqrt(all.covariance(at, at)), {}};
+    for (std::size_t part = 0; planned.is_observable && part < without.size(); ++part)
+      if (!without[part].is_observable(at)) planned.needs.push_back(part);
     cuts.quantities.push_back(std::move(planned));
   }
-  cuts.untold = untold_words(all, tilt);
+  cuts.unobservable = unobservable_texts(all, tilt);
 }
 
 }  // namespace
 
-TestCuts plan_test_cuts(const Design& design, const JobRequest& request) {
+TestCuts plan_test_cuts(const design::Design& design, const JobRequest& request) {
   TestCuts cuts;
   std::vector<CutPart> parts;
   std::vector<Measurement> figures;

@@ -14,16 +14,16 @@ namespace retrace::studies {
 /// Expected result of the test cuts for a quantity of the set-up.
 struct PlannedQuantity {
   const fabrication::SetupQuantity* quantity = nullptr;
-  bool is_told = false;
+  bool is_observable = false;
   double uncertainty = 0.0;        ///< expected standard uncertainty, um or arcsec
   std::vector<std::size_t> needs;  ///< parts that are needed: if one of them is missing, the quantity is unobservable
 };
 
 struct TestCuts {
-  std::vector<MadeJob> jobs;                ///< jobs, in the order of MeasuredParts::jobs
+  std::vector<GeneratedJob> jobs;           ///< jobs, in the order of MeasuredParts::jobs
   MeasuredParts parts;                      ///< measurements to be made, without values
   std::vector<PlannedQuantity> quantities;  ///< quantities, in the order of setup_quantities()
-  std::vector<std::string> untold;          ///< unobservable combinations, as text
+  std::vector<std::string> unobservable;    ///< unobservable combinations, as text
 };
 
 /// Plans the test cuts. Each job has four prisms, two of them rotated, and an apex angle that the tool can cut. Axis A
@@ -31,6 +31,6 @@ struct TestCuts {
 /// one that reduces the uncertainty most. The choice ends when each observable quantity has at most three times the
 /// uncertainty that all possible measurements would give, and each measurement is checked by others.
 /// \throw InputError for designs without prisms and requests that cannot be cut
-TestCuts plan_test_cuts(const Design& design, const JobRequest& request);
+TestCuts plan_test_cuts(const design::Design& design, const JobRequest& request);
 
 }  // namespace retrace::studies

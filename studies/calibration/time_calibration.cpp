@@ -29,7 +29,7 @@ constexpr auto at(TimeQuantity quantity) {
 constexpr double kTooUncertain[kTimeQuantities] = {0.05, 0.7, 0.05, 0.7};
 /// Length of the last step of the search, as a fraction of kTooUncertain.
 constexpr double kLastTimeStep = 1e-7;
-constexpr int kMostTimeSteps = 60;
+constexpr int kMaxTimeSteps = 60;
 /// Ramps and acceleration factors at which searches start. Several starts are needed because the sum of squares is not
 /// convex in these unknowns.
 constexpr double kFirstRampsS[] = {0.0, 3e-3, 1e-2, 3e-2, 0.1};
@@ -37,7 +37,7 @@ constexpr double kFirstFactors[] = {0.5, 1.0, 2.0};
 /// Deviation, in standard deviations, above which a row of the table causes a warning.
 constexpr double kManyDeviations = 4.0;
 /// Ramps below this time count as 0.
-constexpr double kLeastRampS = 1e-6;
+constexpr double kMinRampS = 1e-6;
 
 /// Unknowns as multiples of kTooUncertain. For both acceleration factors, the unknown is the logarithm of the factor.
 using Unknowns = Eigen::Matrix<double, kUnknowns, 1>;
@@ -81,7 +81,7 @@ Machine with_times(Machine machine, const Unknowns& unknowns) {
     const double ramp = longest_before > 0.0 ? longest * ramp_s(*axis) / longest_before : longest;
     axis->acceleration_mm_per_s2.value *= value_of(unknowns, TimeQuantity::linear_acceleration);
     axis->jerk_mm_per_s3.value =
-        ramp > kLeastRampS ? axis->acceleration_mm_per_s2.value / ramp : std::numeric_limits<double>::infinity();
+        ramp > kMinRampS ? axis->acceleration_mm_per_s2.value / ramp : std::numeric_limits<double>::infinity();
   }
   for (RotaryAxis* axis : {&machine.a, &machine.c}) {
     // Acceleration and jerk are scaled by the same factor, so that the ramp takes the same time.
@@ -102,7 +102,7 @@ class Fit {
     VectorXd left(static_cast<Index>(programs_.rows.size()));
     for (Index k = 0; k < left.size(); ++k) {
       const TimedMoves& row = programs_.rows[static_cast<std::size_t>(k)];
-      left[k] = (row.seconds - row.on_s(machine)) / row.uncertainty_s;
+      left[k] = (row.seconds - row.predicted_s(machine)) / row.uncertainty_s;
     }
     return left;
   }
@@ -134,7 +134,7 @@ class Fit {
   Unknowns nearest(Unknowns unknowns) const {
     const Eigen::MatrixXd nothing(static_cast<Index>(programs_.rows.size()), 0);
     VectorXd left = residual(unknowns);
-    for (int k = 0; k < kMostTimeSteps; ++k) {
+    for (int k = 0; k < kMaxTimeSteps; ++k) {
       const Unknowns step = compute::estimate(free_derivatives(unknowns, left), nothing, left, 1.0).value;
       double share = 1.0;
       Unknowns next;
@@ -178,7 +178,7 @@ class Fit {
 void tell_sources(TimeCalibration& result) {
   const auto tell = [&](auto& sourced, TimeQuantity quantity) {
     const CalibratedTime& found = result.quantities[static_cast<std::size_t>(quantity)];
-    if (!found.is_told) return;
+    if (!found.is_observable) return;
     sourced.basis = fabrication::Basis::measured;
     sourced.source = fmt::format(
         "retrace calibrate {}: {} {:.4g} +- {:.2g}", std::filesystem::path(result.programs.file).filename().string(),
@@ -194,7 +194,7 @@ void tell_sources(TimeCalibration& result) {
 }
 
 std::vector<std::string> not_told_apart(const compute::LeastSquaresEstimate& fitted) {
-  const Eigen::MatrixXd combinations = compute::reduced_combinations(fitted.untold);
+  const Eigen::MatrixXd combinations = compute::reduced_combinations(fitted.unobservable);
   std::vector<std::string> words;
   for (Index k = 0; k < combinations.cols(); ++k) {
     std::string& keys = words.emplace_back();
@@ -224,9 +224,9 @@ void warn_of_misses(TimeCalibration& result, const compute::LeastSquaresEstimate
 
 }  // namespace
 
-double TimedMoves::on_s(const Machine& machine) const {
+double TimedMoves::predicted_s(const Machine& machine) const {
   double sum_s = dwell_s;
-  for (const AlikeMoves& alike : moves) {
+  for (const RepeatedMove& alike : moves) {
     fabrication::ProgramTime time;
     time.add(machine, alike.motion);
     sum_s += static_cast<double>(alike.count) * time.total_s();
@@ -245,19 +245,20 @@ TimeCalibration calibrate_times(TimedPrograms programs, const Machine& machine) 
   const Eigen::MatrixXd nothing(left.size(), 0);
   const compute::LeastSquaresEstimate fitted = compute::estimate(fit.derivatives(found), nothing, left, 1.0);
   result.residuals.assign(left.begin(), left.end());
-  result.freedom =
+  result.degrees_of_freedom =
       static_cast<std::size_t>(std::max(0L, std::lround(static_cast<double>(left.size()) - fitted.leverage.sum())));
-  if (result.freedom > 0) result.scatter = std::sqrt(left.squaredNorm() / static_cast<double>(result.freedom));
+  if (result.degrees_of_freedom > 0)
+    result.scatter = std::sqrt(left.squaredNorm() / static_cast<double>(result.degrees_of_freedom));
   result.machine = with_times(result.nominal, found);
   for (std::size_t k = 0; k < kTimeQuantities; ++k) {
     const auto quantity = static_cast<TimeQuantity>(k);
     CalibratedTime& told = result.quantities[k];
-    told.is_told = fitted.is_told(at(quantity));
+    told.is_observable = fitted.is_observable(at(quantity));
     told.value = value_of(found, quantity);
     const double deviation = kTooUncertain[k] * std::sqrt(fitted.covariance(at(quantity), at(quantity)));
     told.uncertainty = deviation * std::max(1.0, result.scatter) * (is_bounded(at(quantity)) ? 1.0 : told.value);
   }
-  result.untold = not_told_apart(fitted);
+  result.unobservable = not_told_apart(fitted);
   tell_sources(result);
   warn_of_misses(result, fitted);
   return result;

@@ -17,7 +17,7 @@
 namespace retrace::studies {
 
 /// Move that occurs several times. All occurrences take the same time.
-struct AlikeMoves {
+struct RepeatedMove {
   fabrication::NcMotion motion;
   std::int64_t count = 0;
 };
@@ -28,11 +28,11 @@ struct TimedMoves {
   std::string program;  ///< name of the program, as given in the table
   double seconds = 0.0;
   double uncertainty_s = 0.0;  ///< standard uncertainty
-  std::vector<AlikeMoves> moves;
+  std::vector<RepeatedMove> moves;
   double dwell_s = 0.0;
 
   /// Returns the time that a machine takes for the moves and dwells.
-  double on_s(const fabrication::Machine& machine) const;
+  double predicted_s(const fabrication::Machine& machine) const;
 };
 
 /// Programs of a machine with their measured times.
@@ -48,7 +48,7 @@ inline constexpr std::size_t kTimeQuantities = 4;
 
 struct TimeQuantityWords {
   std::string_view key;
-  std::string_view words;
+  std::string_view description;
 };
 inline constexpr std::array<TimeQuantityWords, kTimeQuantities> kTimeQuantityWords = {{
     {"settling_s", "settling time at every exact stop, s"},
@@ -58,7 +58,7 @@ inline constexpr std::array<TimeQuantityWords, kTimeQuantities> kTimeQuantityWor
 }};
 
 struct CalibratedTime {
-  bool is_told = false;
+  bool is_observable = false;
   double value = 0.0;  ///< estimated value, or the value in the machine file if is_told is false
   double uncertainty = 0.0;
 };
@@ -69,11 +69,11 @@ struct TimeCalibration {
   fabrication::Machine machine;  ///< calibrated machine
   std::array<CalibratedTime, kTimeQuantities> quantities;
   /// Groups of quantities that the times do not separate, such as "settling_s, linear_ramp_s".
-  std::vector<std::string> untold;
+  std::vector<std::string> unobservable;
   std::vector<double> residuals;  ///< residuals of the rows, in standard uncertainties
   /// Square root of the residuals' sum of squares per degree of freedom. 1 if there are no degrees of freedom.
   double scatter = 1.0;
-  std::size_t freedom = 0;  ///< degrees of freedom: number of rows minus number of estimated unknowns
+  std::size_t degrees_of_freedom = 0;  ///< degrees of freedom: number of rows minus number of estimated unknowns
   Warnings warnings;
 };
 

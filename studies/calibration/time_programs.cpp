@@ -19,13 +19,13 @@ constexpr double kTurnDeg = 2.0;
 class TimeProgram {
  public:
   TimeProgram(std::string name, std::string what, const Machine& machine, std::string_view dialect)
-      : increments_(word_increments(dialect, machine.control)) {
+      : increments_(position_increments(dialect, machine.control)) {
     program_.name = std::move(name);
     program_.header = {std::move(what), "Cuts nothing: the time that it takes tells how axes speed up and settle"};
     program_.has_mist = program_.needs_mist = false;
     program_.tilt_letter = machine.tilt_letter();
     program_.control = machine.control;
-    Words start{};
+    AxisWords start{};
     start[kZ] = linear(machine.first_z_mm());
     go(start);
     start = {};
@@ -42,7 +42,7 @@ class TimeProgram {
     const Nanometres length = linear(length_mm);
     for (int k = 0; k < times; ++k) {
       const Axis axis = k / 2 % 2 == 0 ? kX : kY;
-      Words to{};
+      AxisWords to{};
       to[axis] = *at_[axis] + (k % 2 == 0 ? length : -length);
       go(to, feed_mm_per_min);
     }
@@ -52,7 +52,7 @@ class TimeProgram {
   void turns(int times, double tilt_deg, double c_deg) {
     for (int k = 0; k < times; ++k) {
       const Axis axis = k / 2 % 2 == 0 ? kC : kTilt;
-      Words to{};
+      AxisWords to{};
       to[axis] =
           k % 2 == 0 ? to_step((axis == kC ? c_deg : tilt_deg) * kRotaryUnitsPerDeg, increments_.rotary_units) : 0;
       go(to);
@@ -65,7 +65,7 @@ class TimeProgram {
   static double middle(const Interval& limits) { return 0.5 * (limits.low + limits.high); }
   Nanometres linear(double mm) const { return to_step(mm * kNanometresPerMm, increments_.linear_nm); }
 
-  void go(const Words& to, std::optional<double> feed_mm_per_min = std::nullopt) {
+  void go(const AxisWords& to, std::optional<double> feed_mm_per_min = std::nullopt) {
     Move move;
     move.to = to;
     if (feed_mm_per_min) {
@@ -78,7 +78,7 @@ class TimeProgram {
 
   Increments increments_;
   Program program_;
-  Words at_{};
+  AxisWords at_{};
 };
 
 double quarter(const Interval& limits) {

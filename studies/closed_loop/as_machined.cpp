@@ -10,8 +10,8 @@
 
 #include "core/error.h"
 #include "core/number_format.h"
+#include "design/io/design_document.h"
 #include "studies/closed_loop/machined_zones.h"
-#include "studies/design/io/design_document.h"
 
 namespace retrace::studies {
 namespace {
@@ -25,8 +25,8 @@ constexpr double kUmPerMm = 1e3;
 // Fractions of the published Sa that are roughness and waviness. Five facets that were finished by plunging have a mean
 // Sa of 48.9 nm. After separation at a cut-off wavelength of 80 um, their roughness has a mean Sa of 19.7 nm, and their
 // waviness has 29.9 nm (Milliken 2017, Table 3.4). Other motions are assumed to have the same fractions.
-constexpr double kRoughnessShare = 19.7 / 48.9;
-constexpr double kWavinessShare = 29.9 / 48.9;
+constexpr double kRoughnessFraction = 19.7 / 48.9;
+constexpr double kWavinessFraction = 29.9 / 48.9;
 // Temporal frequency of feed marks. They have 42.4 periods per mm at a feed of 10 mm/min (Milliken, 3.3.5).
 constexpr double kFeedMarksHz = 7.07;
 constexpr double kCorrelationLengthUm = 5.0;  // assumed; smaller than the resolution of the profilometer
@@ -52,8 +52,8 @@ double sa_of(const Job& job) {
 PredictedTexture predicted_texture(const Job& job) {
   PredictedTexture texture;
   texture.sa_nm = sa_of(job);
-  texture.roughness_sq_nm = kRoughnessShare * texture.sa_nm * kSqPerSa;
-  texture.waviness_sq_nm = kWavinessShare * texture.sa_nm * kSqPerSa;
+  texture.roughness_sq_nm = kRoughnessFraction * texture.sa_nm * kSqPerSa;
+  texture.waviness_sq_nm = kWavinessFraction * texture.sa_nm * kSqPerSa;
   texture.correlation_length_um = kCorrelationLengthUm;
   const double feed_mm_per_min =
       has_finishing_cuts(job) ? job.process.finishing_feed_mm_per_min : job.process.roughing_feed_mm_per_min;
@@ -95,14 +95,14 @@ std::vector<double> tilts_of(const ElementResult& element) {
 }
 
 /// Differences between the machined elements and a design in which all elements are equal.
-struct Unlikeness {
+struct ElementDifferences {
   double along_arcmin = 0.0;   ///< maximum rotation of a facet that raises one end of its root
   double spread_arcmin = 0.0;  ///< maximum deviation of a tilt from the mean
   std::int64_t missing = 0;
 };
 
-Unlikeness unlikeness_of(const VerificationRun& run, const std::vector<double>& mean_arcmin) {
-  Unlikeness unlike;
+ElementDifferences unlikeness_of(const VerificationRun& run, const std::vector<double>& mean_arcmin) {
+  ElementDifferences unlike;
   const geometry::Arrangement arrangement = run.job.array.arrangement;
   const bool is_whole = arrangement == geometry::Arrangement::single || run.job.array.pattern.empty();
   if (!is_whole) ++unlike.missing;
@@ -137,7 +137,7 @@ ElementCutPlanes fitted_planes(const DesignElement& groove, const ElementFigures
 }
 
 geometry::FacetPlanes facet_planes_of(const VerificationRun& run) {
-  const std::vector<Groove> grooves = designed_grooves(run.job);
+  const std::vector<Cavity> grooves = designed_cavities(run.job);
   std::vector<ElementCutPlanes> planes(grooves.size());
   for (std::size_t i = 0; i < grooves.size(); ++i)
     if (run.result.elements[i].figures.is_cut)
@@ -147,7 +147,7 @@ geometry::FacetPlanes facet_planes_of(const VerificationRun& run) {
 
 /// Adds warnings about differences between the elements. A design with equal elements cannot represent them.
 /// \param where description of the part in the warning, such as "on a substrate"
-void warn_of(const Unlikeness& unlike, AsMachined& part, const char* where) {
+void warn_of(const ElementDifferences& unlike, AsMachined& part, const char* where) {
   if (unlike.along_arcmin > kShownArcmin)
     part.warnings.push_back(
         {"rotation_along_root_omitted",
@@ -178,7 +178,7 @@ bool has_flares(const VerificationRun& run) {
 /// Checks the as-machined part of a job on a substrate. The design describes such a part by equal elements and not by a
 /// table of planes. Adds warnings about the differences between the elements.
 /// \throw InputError if an element is not cut
-void check_on_substrate(const VerificationRun& run, const Unlikeness& unlike, AsMachined& part) {
+void check_on_substrate(const VerificationRun& run, const ElementDifferences& unlike, AsMachined& part) {
   if (unlike.missing > 0)
     throw InputError(
         Field{"as_machined"},
@@ -196,7 +196,7 @@ void check_on_substrate(const VerificationRun& run, const Unlikeness& unlike, As
                              "design omits this for elements on a substrate"});
 }
 
-ZonedPart zones_of_run(const VerificationRun& run, AsMachined& part) {
+design::ZonedPart zones_of_run(const VerificationRun& run, AsMachined& part) {
   std::vector<ElementTilts> elements;
   for (const ElementResult& element : run.result.elements) {
     ElementTilts& tilts = elements.emplace_back();
@@ -230,7 +230,7 @@ AsMachined as_machined(const VerificationRun& run) {
   }
   if (cut == 0) throw InputError(Field{"as_machined"}, "the programs cut no element of the job");
   for (double& tilt : part.facet_tilt_arcmin) tilt /= static_cast<double>(cut);
-  const Unlikeness unlike = unlikeness_of(run, part.facet_tilt_arcmin);
+  const ElementDifferences unlike = unlikeness_of(run, part.facet_tilt_arcmin);
   const bool is_direct = run.job.workpiece.kind == WorkpieceKind::direct;
   // Facet 1 faces -x in a moulded part. A part that is cut directly is rotated about y, which exchanges its facets.
   if (is_direct) std::swap(part.facet_tilt_arcmin[0], part.facet_tilt_arcmin[1]);
@@ -283,10 +283,10 @@ void add_edges(geometry::PartSpec& spec, const AsMachined& part) {
   spec.thickness_mm = part.body.thickness_mm;
 }
 
-ElementArray array_shape(const VerificationRun& run, const AsMachined& part, const std::string& facets_file) {
-  ElementArray array{machined_elements(run.job, part.planes.has_value()), {}, {}};
+design::ElementArray array_shape(const VerificationRun& run, const AsMachined& part, const std::string& facets_file) {
+  design::ElementArray array{machined_elements(run.job, part.planes.has_value()), {}, {}};
   if (part.planes)
-    array.facet_planes = FacetPlanesFile{facets_file, facets_file};
+    array.facet_planes = design::FacetPlanesFile{facets_file, facets_file};
   else
     array.part.angle_errors = machined_errors(run.job.angle_errors, part.facet_tilt_arcmin);
   add_edges(array.part, part);
@@ -294,8 +294,8 @@ ElementArray array_shape(const VerificationRun& run, const AsMachined& part, con
   return array;
 }
 
-ZonedPart zoned_shape(const AsMachined& part) {
-  ZonedPart zones = *part.zones;
+design::ZonedPart zoned_shape(const AsMachined& part) {
+  design::ZonedPart zones = *part.zones;
   add_edges(zones.base, part);
   zones.spec.thickness_mm = part.body.thickness_mm;
   return zones;
@@ -305,15 +305,16 @@ ZonedPart zoned_shape(const AsMachined& part) {
 
 std::string as_machined_toml(const VerificationRun& run, const AsMachined& part, const std::string& facets_file) {
   const auto rounded = [](double value) { return std::round(1e3 * value) / 1e3; };
-  Design design;
+  design::Design design;
   design.title = (run.job.title.empty() ? "Part" : run.job.title) + ", as machined";
-  design.shape = part.zones ? Shape(zoned_shape(part)) : Shape(array_shape(run, part, facets_file));
+  design.shape = part.zones ? design::Shape(zoned_shape(part)) : design::Shape(array_shape(run, part, facets_file));
   design.substance = part.body.substance();
   design.surface.texture =
-      HarveyShackTexture{rounded(part.texture.roughness_sq_nm), part.texture.correlation_length_um,
-                         rounded(part.texture.waviness_sq_nm), rounded(part.texture.waviness_length_um)};
+      design::HarveyShackTexture{rounded(part.texture.roughness_sq_nm), part.texture.correlation_length_um,
+                                 rounded(part.texture.waviness_sq_nm), rounded(part.texture.waviness_length_um)};
   design.detector.acceptance_half_angle_deg = {0.05, 0.5};
-  return design_text(design, fmt::format("# Facets as the programs cut them: {}. Sa {} nm is a published value for\n"
+  return design::design_text(design,
+                             fmt::format("# Facets as the programs cut them: {}. Sa {} nm is a published value for\n"
                                          "# facets that were cut by such motions; feed marks at 7.07 Hz.\n",
                                          part.planes  ? "one plane for each facet"
                                          : part.zones ? "the mean over the elements of each zone"

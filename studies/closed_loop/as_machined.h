@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "core/warning.h"
+#include "design/design.h"
 #include "geometry/elements/facet_planes.h"
 #include "studies/closed_loop/part_planes.h"
 #include "studies/closed_loop/verification.h"
-#include "studies/design/design.h"
 
 namespace retrace::studies {
 
@@ -33,7 +33,7 @@ struct AsMachined {
   std::vector<double> facet_tilt_arcmin;
   std::optional<geometry::FacetPlanes> planes;  ///< individual planes of all facets; if empty, mean tilts are used
   /// Zones as machined, which replace `facet_tilt_arcmin` and `planes`. Empty if the job has no zones.
-  std::optional<ZonedPart> zones;
+  std::optional<design::ZonedPart> zones;
   double root_radius_um = 0.0, root_chamfer_um = 0.0;
   PredictedTexture texture;
   std::vector<geometry::Scratch> scratches;  ///< scratches caused by chips in the tool's edge

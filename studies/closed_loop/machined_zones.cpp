@@ -13,10 +13,10 @@
 #include "core/number_format.h"
 #include "core/schema/document.h"
 #include "core/schema/writer.h"
+#include "design/zone_elements.h"
 #include "geometry/elements/element_cells.h"
 #include "geometry/part/zones.h"
 #include "studies/closed_loop/part_planes.h"
-#include "studies/design/zone_elements.h"
 
 namespace retrace::studies {
 namespace {
@@ -36,7 +36,7 @@ class DesignElements {
   explicit DesignElements(const geometry::ZonedSpec& spec) {
     const auto elements = geometry::whole_elements(spec);
     for (std::size_t z = 0; z < elements.size(); ++z)
-      for (const geometry::StandingElement& at : elements[z]) elements_[key_of(at.apex_mm)] = {z, at.rotation_deg};
+      for (const geometry::ElementPlacement& at : elements[z]) elements_[key_of(at.apex_mm)] = {z, at.rotation_deg};
   }
   std::size_t size() const { return elements_.size(); }
   const Element* at(const Vec2& apex) const {
@@ -71,7 +71,7 @@ struct ZoneTilts {
   }
 };
 
-ZoneChange change_of(const std::string& key, const std::array<double, 3>& arcmin) {
+design::ZoneChange change_of(const std::string& key, const std::array<double, 3>& arcmin) {
   return {key, schema::override_text(key, std::vector(arcmin.begin(), arcmin.end()))};
 }
 
@@ -136,10 +136,10 @@ std::vector<CutAngles> cut_angles(const fabrication::Job& job, const std::vector
 
 }  // namespace
 
-ZonedPart machined_zones(const fabrication::Job& job, const std::filesystem::path& job_file,
-                         const std::vector<ElementTilts>& elements, Warnings& warnings) {
+design::ZonedPart machined_zones(const fabrication::Job& job, const std::filesystem::path& job_file,
+                                 const std::vector<ElementTilts>& elements, Warnings& warnings) {
   const Field at{"as_machined"};
-  const std::optional<Design> design = design_beside(job, job_file);
+  const std::optional<design::Design> design = design_of_job(job, job_file);
   if (!design)
     throw InputError(
         at,
@@ -147,8 +147,8 @@ ZonedPart machined_zones(const fabrication::Job& job, const std::filesystem::pat
         "that the job gives");
   if (!design->zoned())
     throw InputError(at, "the regions of the zones are taken from the job's design, but it has no [[zone]]");
-  ZonedPart part = *design->zoned();
-  part.spec = zones_of(*design);
+  design::ZonedPart part = *design->zoned();
+  part.spec = design::zones_of(*design);
   const DesignElements designed(part.spec);
   const std::vector<CutAngles> angles = cut_angles(job, elements, designed, part.spec);
   part.base.array.partial_elements = geometry::PartialElements::omit;
@@ -160,7 +160,7 @@ ZonedPart machined_zones(const fabrication::Job& job, const std::filesystem::pat
   for (std::size_t z = 0; z < angles.size(); ++z) {
     // Remove changes of [surface] and of partial_elements from the zone. Programs do not cut edge radii and random
     // errors, angle errors are set below, and an as-machined part has no partial elements.
-    std::erase_if(part.changes[z], [](const ZoneChange& change) {
+    std::erase_if(part.changes[z], [](const design::ZoneChange& change) {
       return change.key.starts_with("surface.") || change.key == "array.partial_elements";
     });
     geometry::AngleErrors errors = angles[z].asked.value_or(part.spec.zones[z].elements.angle_errors);
@@ -171,7 +171,7 @@ ZonedPart machined_zones(const fabrication::Job& job, const std::filesystem::pat
     part.changes[z].push_back(change_of("surface.dihedral_error_arcmin", errors.dihedral_error_arcmin));
     part.changes[z].push_back(change_of("surface.facet_tilt_arcmin", errors.facet_tilt_arcmin));
   }
-  for (ElementsOfZone& of_zone : part.elements)
+  for (design::ElementsOfZone& of_zone : part.elements)
     if (of_zone.mask) of_zone.mask->name = std::filesystem::absolute(of_zone.mask->file).string();
   if (cut < designed.size())
     warnings.push_back({"uncut_elements_included",

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/warning.h"
+#include "design/design.h"
 #include "fabrication/job/job.h"
-#include "studies/design/design.h"
 
 namespace retrace::studies {
 
@@ -23,7 +23,7 @@ using ElementTilts = std::optional<std::array<double, 3>>;
 /// \param warnings receives a warning about each deviation that the result does not represent
 /// \throw InputError if the job's design does not exist or has no zones, or if the job cuts an element that the design
 ///        does not have
-ZonedPart machined_zones(const fabrication::Job& job, const std::filesystem::path& job_file,
-                         const std::vector<ElementTilts>& elements, Warnings& warnings);
+design::ZonedPart machined_zones(const fabrication::Job& job, const std::filesystem::path& job_file,
+                                 const std::vector<ElementTilts>& elements, Warnings& warnings);
 
 }  // namespace retrace::studies

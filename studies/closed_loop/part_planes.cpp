@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <system_error>
 
+#include "design/io/design_reader.h"
 #include "fabrication/job/substrate_cells.h"
 #include "geometry/elements/element_cells.h"
-#include "studies/design/io/design_reader.h"
 
 namespace retrace::studies {
 namespace {
@@ -45,7 +45,7 @@ geometry::HeightPlane height_plane(const PartFrame& frame, const CutPlane& cut, 
 geometry::ElementPlanes planes_of(const PartFrame& frame, const CutElement& element, const ElementCutPlanes& cuts,
                                   bool is_prism) {
   geometry::ElementPlanes planes;
-  planes.centre_mm = frame.point(element.foot_mm).head<2>();
+  planes.centre_mm = frame.point(element.origin_mm).head<2>();
   planes.planes.resize(cuts.size());
   for (std::size_t f = 0; f < cuts.size(); ++f) {
     const geometry::HeightPlane plane = height_plane(frame, cuts[f], planes.centre_mm);
@@ -56,8 +56,8 @@ geometry::ElementPlanes planes_of(const PartFrame& frame, const CutElement& elem
 
 }  // namespace
 
-Substance MachinedBody::substance() const {
-  Substance substance;
+design::Substance MachinedBody::substance() const {
+  design::Substance substance;
   substance.material = material;
   substance.catalogue = catalogue;
   substance.refractive_index = refractive_index;
@@ -66,18 +66,18 @@ Substance MachinedBody::substance() const {
   return substance;
 }
 
-std::optional<Design> design_beside(const Job& job, const fs::path& job_file) {
+std::optional<design::Design> design_of_job(const Job& job, const fs::path& job_file) {
   const fs::path file = job_file.parent_path() / job.design;
   std::error_code error;
   if (job.design.empty() || !fs::is_regular_file(file, error)) return std::nullopt;
-  return read_design(file);
+  return design::read_design(file);
 }
 
 MachinedBody machined_body(const Job& job, const fs::path& job_file, Warnings& warnings) {
-  if (const std::optional<Design> design = design_beside(job, job_file))
+  if (const std::optional<design::Design> design = design_of_job(job, job_file))
     return {design->thickness_mm(),
             design->substance.material,
-            from_anywhere(design->substance.catalogue),
+            design::with_absolute_path(design->substance.catalogue),
             design->substance.refractive_index,
             design->substance.temperature_c,
             design->substance.absorption_per_mm};

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "core/warning.h"
+#include "design/design.h"
 #include "fabrication/job/job.h"
 #include "fabrication/machine/edge_cut.h"
 #include "geometry/elements/facet_planes.h"
-#include "studies/design/design.h"
 
 namespace retrace::studies {
 
@@ -20,16 +20,16 @@ namespace retrace::studies {
 struct MachinedBody {
   double thickness_mm = 2.0;
   std::string material = "PMMA";
-  std::optional<GlassCatalogueFile> catalogue;
+  std::optional<design::GlassCatalogueFile> catalogue;
   std::optional<double> refractive_index;
   std::optional<double> temperature_c;
-  Absorption absorption_per_mm;
+  design::Absorption absorption_per_mm;
 
-  Substance substance() const;
+  design::Substance substance() const;
 };
 
 /// Returns the design from which a job was made, or nothing if the file does not exist in the folder of the job.
-std::optional<Design> design_beside(const fabrication::Job& job, const std::filesystem::path& job_file);
+std::optional<design::Design> design_of_job(const fabrication::Job& job, const std::filesystem::path& job_file);
 
 /// Returns thickness and material of the job's design, or default values.
 /// \param warnings receives a warning if the design does not exist

@@ -37,13 +37,13 @@ VerificationRun run_verification(const VerificationRequest& request, const Cance
   run.warnings = run.job.warnings;
   append(run.warnings, run.machine.warnings);
   if (!request.next_stage.empty()) run.programs = programs_before(request.next_stage, run.job, run.machine);
-  run.standing = run.programs.size();
+  run.unchecked_programs = run.programs.size();
   for (NcProgram& program :
        read_programs(request.programs, request.dialect, texts_of(run.machine.control), request.texts))
     run.programs.push_back(std::move(program));
   VerifyOptions options;
   options.tolerance_nm = request.tolerance_nm;
-  options.standing = run.standing;
+  options.unchecked_programs = run.unchecked_programs;
   run.result = verify_programs(run.job, run.machine, run.programs, options, shipped_machines(), cancellation);
   return run;
 }
@@ -56,7 +56,8 @@ ErrorMap error_map(const VerificationRun& run) {
   map.field = fabrication::error_field(run.job, run.machine, run.programs, kPixels);
   // The colour scale covers all unavoidable deviations. Larger faults are clamped: the picture shows where they are,
   // but not how large they are.
-  map.shown_nm = std::max(kTolerances * run.result.tolerance_nm, kMargin * run.result.root_residual_nm_predicted);
+  map.colour_range_nm =
+      std::max(kTolerances * run.result.tolerance_nm, kMargin * run.result.root_residual_nm_predicted);
   return map;
 }
 

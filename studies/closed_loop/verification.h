@@ -21,7 +21,7 @@ struct VerificationRun {
   fabrication::Job job;
   fabrication::Machine machine;
   std::vector<fabrication::NcProgram> programs;  ///< programs of the stages that are already cut, then the given ones
-  std::size_t standing = 0;                      ///< number of programs at the beginning that are not checked
+  std::size_t unchecked_programs = 0;            ///< number of programs at the beginning that are not checked
   fabrication::Verification result;
   Warnings warnings;
 };
@@ -33,7 +33,7 @@ VerificationRun run_verification(const VerificationRequest& request, const Cance
 /// Map of the height errors of the machined surface, for a picture.
 struct ErrorMap {
   fabrication::ErrorField field;
-  double shown_nm = 0.0;  ///< range of the colour scale: heights beyond +- this value are clamped
+  double colour_range_nm = 0.0;  ///< range of the colour scale: heights beyond +- this value are clamped
 };
 
 ErrorMap error_map(const VerificationRun& run);

@@ -26,8 +26,8 @@ constexpr double kFirstStep = 0.1;
 OptimiseRequest single_request(const ComposeRequest& request) {
   OptimiseRequest single;
   for (const std::string& goal : request.goals) single.objective.weights.emplace_back(goal, 1.0);
-  single.objective.is_least = true;
-  single.constraints = request.of_cells;
+  single.objective.uses_minimum = true;
+  single.constraints = request.cell_constraints;
   single.scan = request.scan;
   return single;
 }
@@ -47,7 +47,8 @@ class CellReader {
  public:
   CellReader(const Study& study, const ComposeRequest& request) {
     for (const std::string& goal : request.goals) goals_.push_back(index_of(study, goal));
-    for (const Constraint& constraint : request.of_part) means_.push_back(index_of(study, constraint.quantity));
+    for (const Constraint& constraint : request.part_constraints)
+      means_.push_back(index_of(study, constraint.quantity));
     if (request.front) means_.push_back(index_of(study, request.front->quantity));
     for (const auto& [quantity, price] : request.price) prices_.emplace_back(index_of(study, quantity), price);
   }
@@ -107,8 +108,8 @@ class Composer {
   void read_catalogue(Composition& composition) const {
     composition.catalogue.clear();
     composition.failed = 0;
-    composition.evaluations = family_.seen().size();
-    for (const Variant& variant : family_.seen()) {
+    composition.evaluations = family_.evaluated().size();
+    for (const Variant& variant : family_.evaluated()) {
       if (variant.failed && composition.failed++ == 0) composition.first_failure = variant.reason;
       if (std::optional<FamilyCell> cell = reader_.cell_of(variant)) composition.catalogue.push_back(*std::move(cell));
     }
@@ -117,16 +118,16 @@ class Composer {
  private:
   MixtureRules rules(std::optional<std::size_t> most_zones) const {
     MixtureRules rules;
-    for (const Constraint& constraint : request_.of_part) {
+    for (const Constraint& constraint : request_.part_constraints) {
       compute::Bounds bounds;
-      if (constraint.least) bounds.least = *constraint.least;
-      if (constraint.most) bounds.most = *constraint.most;
+      if (constraint.min) bounds.lower = *constraint.min;
+      if (constraint.max) bounds.upper = *constraint.max;
       rules.means.push_back(bounds);
     }
     if (request_.front) rules.means.push_back({});
-    rules.least_share = request_.least_share;
-    rules.most_share = request_.most_share;
-    if (most_zones) rules.most_zones = *most_zones;
+    rules.min_fraction = request_.min_area_fraction;
+    rules.max_fraction = request_.max_area_fraction;
+    if (most_zones) rules.max_zones = *most_zones;
     return rules;
   }
 
@@ -134,7 +135,7 @@ class Composer {
   /// programme.
   MixtureRules relaxed_rules() const {
     MixtureRules relaxed = rules({});
-    relaxed.least_share = 0.0;
+    relaxed.min_fraction = 0.0;
     return relaxed;
   }
 
@@ -149,7 +150,7 @@ class Composer {
 
   static std::vector<Zone> zones_of(const Composition& composition, const Mixture& mixture) {
     std::vector<Zone> zones;
-    for (const ZoneShare& zone : mixture.zones) zones.push_back({composition.catalogue[zone.cell], zone.share});
+    for (const ZoneFraction& zone : mixture.zones) zones.push_back({composition.catalogue[zone.cell], zone.fraction});
     return zones;
   }
 
@@ -159,11 +160,11 @@ class Composer {
   void search_by_prices(Composition& composition) {
     for (std::size_t round = 0; round < request_.rounds; ++round) {
       const Mixture relaxed = mixture_of(composition, relaxed_rules());
-      if (!relaxed.is_there()) return;
+      if (!relaxed.is_feasible()) return;
       const std::size_t before = composition.catalogue.size();
       bool helps = search(composition, relaxed);
-      const Mixture few = mixture_of(composition, rules(request_.most_zones));
-      if (few.is_there() && few.merit < relaxed.merit - kHelps * (1.0 + std::abs(relaxed.merit)))
+      const Mixture few = mixture_of(composition, rules(request_.max_zones));
+      if (few.is_feasible() && few.merit < relaxed.merit - kHelps * (1.0 + std::abs(relaxed.merit)))
         helps = search(composition, few) || helps;
       composition.has_converged = !helps;
       if (!helps || composition.catalogue.size() == before) return;
@@ -175,12 +176,12 @@ class Composer {
     std::map<std::string, double> weights;
     for (std::size_t k = 0; k < request_.goals.size(); ++k)
       if (mixture.prices.goals[k] > 0.0) weights[request_.goals[k]] += mixture.prices.goals[k];
-    for (std::size_t k = 0; k < request_.of_part.size(); ++k)
-      if (mixture.prices.means[k] != 0.0) weights[request_.of_part[k].quantity] -= mixture.prices.means[k];
+    for (std::size_t k = 0; k < request_.part_constraints.size(); ++k)
+      if (mixture.prices.means[k] != 0.0) weights[request_.part_constraints[k].quantity] -= mixture.prices.means[k];
     for (const auto& [quantity, price] : request_.price) weights[quantity] -= price;
     OptimiseRequest pricing;
     pricing.objective.weights.assign(weights.begin(), weights.end());
-    pricing.constraints = request_.of_cells;
+    pricing.constraints = request_.cell_constraints;
     return pricing;
   }
 
@@ -193,8 +194,8 @@ class Composer {
     const std::vector<PointValues> starts = starts_of(composition, mixture);
     Evaluator evaluator(study_, pricing, store_, observer_, cancel_);
     for (const PointValues& start : starts)
-      refine(study_, pricing, evaluator, evaluator.look_at(start), {request_.looks, kFirstStep});
-    family_.take_in(evaluator.seen());
+      refine(study_, pricing, evaluator, evaluator.evaluate(start), {request_.evaluations_per_start, kFirstStep});
+    family_.add_evaluated(evaluator.evaluated());
     read_catalogue(composition);
     const double least_gain = kHelps * (1.0 + std::abs(mixture.merit));
     return std::ranges::any_of(composition.catalogue,
@@ -205,7 +206,7 @@ class Composer {
   /// The cells with the highest gain follow. Cells near an earlier starting point are left out.
   std::vector<PointValues> starts_of(const Composition& composition, const Mixture& mixture) const {
     std::vector<std::size_t> order;
-    for (const ZoneShare& zone : mixture.zones) order.push_back(zone.cell);
+    for (const ZoneFraction& zone : mixture.zones) order.push_back(zone.cell);
     std::vector<std::size_t> others(composition.catalogue.size());
     std::iota(others.begin(), others.end(), std::size_t{0});
     std::ranges::stable_sort(others, [&](std::size_t a, std::size_t b) {
@@ -231,7 +232,7 @@ class Composer {
       if (!interval && a[k].toml != b[k].toml) return false;
       if (!interval) continue;
       const double between =
-          share_of(*interval, std::get<double>(a[k].shown)) - share_of(*interval, std::get<double>(b[k].shown));
+          fraction_of(*interval, std::get<double>(a[k].shown)) - fraction_of(*interval, std::get<double>(b[k].shown));
       if (std::abs(between) > kFirstStep) return false;
     }
     return true;
@@ -243,7 +244,7 @@ class Composer {
     Mixture mixture = mixture_of(composition, rules(most_zones));
     if (composition.by_zones.empty()) return mixture;
     const Mixture& fewer = composition.by_zones.back().mixture;
-    if (mixture.is_there() && mixture.merit >= fewer.merit) return mixture;
+    if (mixture.is_feasible() && mixture.merit >= fewer.merit) return mixture;
     const double bound = std::max(mixture.bound, fewer.merit);
     mixture = fewer;
     mixture.bound = bound;
@@ -252,21 +253,21 @@ class Composer {
 
   void choose(Composition& composition) const {
     const Mixture relaxed = mixture_of(composition, relaxed_rules());
-    Mixture mixture = relaxed.is_there() ? mixture_of(composition, rules(request_.most_zones)) : relaxed;
-    if (mixture.is_there()) {
-      const std::size_t most = request_.most_zones.value_or(mixture.zones.size());
+    Mixture mixture = relaxed.is_feasible() ? mixture_of(composition, rules(request_.max_zones)) : relaxed;
+    if (mixture.is_feasible()) {
+      const std::size_t most = request_.max_zones.value_or(mixture.zones.size());
       for (std::size_t zones = 1; zones <= most; ++zones) add_by_zones(composition, zones);
       if (!composition.by_zones.empty() && composition.by_zones.back().mixture.merit > mixture.merit)
         mixture = composition.by_zones.back().mixture;
     }
-    if (!mixture.is_there()) {
-      composition.excluding = excluding_bounds(composition, relaxed);
-      composition.none_because = why_none(composition, relaxed);
+    if (!mixture.is_feasible()) {
+      composition.infeasible_bounds = excluding_bounds(composition, relaxed);
+      composition.infeasible_reason = why_none(composition, relaxed);
       return;
     }
-    composition.unlimited = relaxed.merit;
+    composition.unlimited_merit = relaxed.merit;
     composition.best =
-        PartOfZones{zones_of(composition, mixture), mixture, request_.most_zones.value_or(mixture.zones.size())};
+        PartOfZones{zones_of(composition, mixture), mixture, request_.max_zones.value_or(mixture.zones.size())};
     if (mixture.kind == Mixture::Kind::best_found)
       composition.proof = Proof::none;
     else
@@ -278,8 +279,8 @@ class Composer {
   /// \param relaxed best mixture without limits on the number of zones and on the minimum area of a zone
   std::vector<std::size_t> excluding_bounds(const Composition& composition, const Mixture& relaxed) const {
     std::vector<std::size_t> bounds;
-    if (composition.catalogue.empty() || relaxed.is_there()) return bounds;
-    for (std::size_t k = 0; k < request_.of_part.size(); ++k)
+    if (composition.catalogue.empty() || relaxed.is_feasible()) return bounds;
+    for (std::size_t k = 0; k < request_.part_constraints.size(); ++k)
       if (std::abs(relaxed.prices.means[k]) > 1e-9) bounds.push_back(k);
     return bounds;
   }
@@ -291,40 +292,40 @@ class Composer {
     if (composition.catalogue.empty())
       return composition.failed > 0 ? fmt::format("no cell can be computed: {}", composition.first_failure)
                                     : "the constraints on cells exclude all cells";
-    if (relaxed.is_there())
+    if (relaxed.is_feasible())
       return fmt::format(
           "no mixture of at most {} of the {} cells, each with an area fraction of at least {}, satisfies the "
           "constraints on the part",
-          request_.most_zones.value_or(composition.catalogue.size()), composition.catalogue.size(),
-          shortest(request_.least_share));
+          request_.max_zones.value_or(composition.catalogue.size()), composition.catalogue.size(),
+          shortest(request_.min_area_fraction));
     std::string text;
-    for (const std::size_t k : composition.excluding)
-      text += fmt::format("{}{}", text.empty() ? "" : " and ", request_.of_part[k].text());
+    for (const std::size_t k : composition.infeasible_bounds)
+      text += fmt::format("{}{}", text.empty() ? "" : " and ", request_.part_constraints[k].text());
     if (text.empty())
       return fmt::format("{} cells cannot fill the part if each covers at most the fraction {} of its area",
-                         composition.catalogue.size(), shortest(request_.most_share));
+                         composition.catalogue.size(), shortest(request_.max_area_fraction));
     return fmt::format("{} as a mean over the part excludes every mixture of the {} cells", text,
                        composition.catalogue.size());
   }
 
   void add_by_zones(Composition& composition, std::size_t zones) const {
     const Mixture mixture = mixture_of_zones(composition, zones);
-    if (mixture.is_there()) composition.by_zones.push_back({zones_of(composition, mixture), mixture, zones});
+    if (mixture.is_feasible()) composition.by_zones.push_back({zones_of(composition, mixture), mixture, zones});
   }
 
   /// Adds to `by_zones` the best part of at most n + 1 zones. n is the number of zones of the best part, or the maximum
   /// number of zones in `by_zones` if it is larger. The added part shows how much a further zone improves the merit.
   void count_zones(Composition& composition) const {
     const PartOfZones& last = composition.by_zones.empty() ? *composition.best : composition.by_zones.back();
-    add_by_zones(composition, std::max(last.most_zones, composition.best->zones.size()) + 1);
+    add_by_zones(composition, std::max(last.max_zones, composition.best->zones.size()) + 1);
   }
 
   /// Computes the parts of the Pareto front. The bounds of the front's mean are equally spaced, from the best value of
   /// a single cell to the mean of the best part.
   void draw_front(Composition& composition) const {
     if (!request_.front) return;
-    const double sign = request_.front->largest ? 1.0 : -1.0;
-    MixtureRules along = rules(request_.most_zones);
+    const double sign = request_.front->is_maximized ? 1.0 : -1.0;
+    MixtureRules along = rules(request_.max_zones);
     compute::Bounds& bounds = along.means.back();
     double best = -std::numeric_limits<double>::infinity();
     for (const FamilyCell& cell : composition.catalogue) best = std::max(best, sign * cell.mixed.means.back());
@@ -332,10 +333,10 @@ class Composer {
     for (std::size_t k = 0; k < request_.front_points; ++k) {
       const double step = static_cast<double>(k) / static_cast<double>(request_.front_points - 1);
       const double mean = sign * (best + step * (of_best - best));
-      (sign > 0.0 ? bounds.least : bounds.most) = mean;
+      (sign > 0.0 ? bounds.lower : bounds.upper) = mean;
       const Mixture mixture = mixture_of(composition, along);
-      if (mixture.is_there())
-        composition.front.push_back({mixture.means.back(), mixture.least, zones_of(composition, mixture)});
+      if (mixture.is_feasible())
+        composition.front.push_back({mixture.means.back(), mixture.min_goal, zones_of(composition, mixture)});
     }
   }
 
@@ -351,9 +352,9 @@ class Composer {
 
 }  // namespace
 
-std::vector<Zone> zones_for_worst(const Composition& composition) {
-  const bool has_them = composition.errors && composition.errors->for_worst;
-  return has_them ? composition.errors->for_worst->zones : std::vector<Zone>{};
+std::vector<Zone> robust_zones(const Composition& composition) {
+  const bool has_them = composition.errors && composition.errors->robust_part;
+  return has_them ? composition.errors->robust_part->zones : std::vector<Zone>{};
 }
 
 compute::StoreLayout compose_layout(const Study& study) {

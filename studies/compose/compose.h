@@ -23,25 +23,25 @@ struct ErrorSpread {
   std::size_t parts = 1024;        ///< number of random parts
   /// Fraction of the random parts that counts as the worst. If it is given, a further part is optimized for these worst
   /// parts.
-  std::optional<double> worst_share;
+  std::optional<double> worst_fraction;
 };
 
 struct ComposeRequest {
   std::vector<std::string> goals;                     ///< quantities whose minimum is maximized
-  std::vector<Constraint> of_cells;                   ///< constraints that each cell of the family must satisfy
-  std::vector<Constraint> of_part;                    ///< constraints on means over the part
+  std::vector<Constraint> cell_constraints;           ///< constraints that each cell of the family must satisfy
+  std::vector<Constraint> part_constraints;           ///< constraints on means over the part
   std::vector<std::pair<std::string, double>> price;  ///< quantity, and reduction of the merit per unit of its mean
   /// Quantity whose mean is one axis of the Pareto front. The minimum goal is the other axis.
   std::optional<FrontAxis> front;
   std::size_t front_points = 9;
-  std::optional<double> least_goal;  ///< minimum goal that a part must reach
-  double least_share = 0.0;          ///< minimum fraction of the area for a zone
-  double most_share = 1.0;
-  std::optional<std::size_t> most_zones;  ///< maximum number of zones; no limit if empty
-  std::size_t scan = 65;                  ///< number of cells of the first scan, per combination of discrete values
-  std::size_t rounds = 4;                 ///< maximum number of searches with dual prices
-  std::size_t starts = 3;                 ///< number of cells from which each search with dual prices starts
-  int looks = 20;                         ///< maximum number of cells that are evaluated from each start
+  std::optional<double> min_goal;  ///< minimum goal that a part must reach
+  double min_area_fraction = 0.0;  ///< minimum fraction of the area for a zone
+  double max_area_fraction = 1.0;
+  std::optional<std::size_t> max_zones;  ///< maximum number of zones; no limit if empty
+  std::size_t scan = 65;                 ///< number of cells of the first scan, per combination of discrete values
+  std::size_t rounds = 4;                ///< maximum number of searches with dual prices
+  std::size_t starts = 3;                ///< number of cells from which each search with dual prices starts
+  int evaluations_per_start = 20;        ///< maximum number of cells that are evaluated from each start
   std::optional<ErrorSpread> errors;
 };
 
@@ -54,33 +54,33 @@ struct FamilyCell {
 
 struct Zone {
   FamilyCell cell;
-  double share = 0.0;
+  double area_fraction = 0.0;
 };
 
 /// Best part with a limited number of zones.
 struct PartOfZones {
-  std::vector<Zone> zones;     ///< the largest first
-  Mixture mixture;             ///< mixture whose cells are indices in Composition::catalogue
-  std::size_t most_zones = 0;  ///< maximum number of zones
+  std::vector<Zone> zones;    ///< the largest first
+  Mixture mixture;            ///< mixture whose cells are indices in Composition::catalogue
+  std::size_t max_zones = 0;  ///< maximum number of zones
 };
 
 /// Part on the Pareto front of two values: the mean of a quantity, and the minimum goal.
 struct FrontPart {
   double mean = 0.0;
-  double least = 0.0;
+  double min_goal = 0.0;
   std::vector<Zone> zones;
 };
 
 /// Yield of random parts.
 struct PartYield {
-  std::vector<double> leasts;           ///< minimum goal of each part, in ascending order
-  std::optional<std::size_t> good;      ///< number of parts that reach ComposeRequest::least_goal
+  std::vector<double> min_goals;        ///< minimum goal of each part, in ascending order
+  std::optional<std::size_t> good;      ///< number of parts that reach ComposeRequest::min_goal
   std::optional<double> mean_of_worst;  ///< mean of the minimum goal over the fraction worst_share of the parts
 };
 
 /// Composition that is optimized for the worst random parts: the mean of the minimum goal over these parts is maximal.
 /// Its cells are chosen from the best compositions of all numbers of zones.
-struct PartForWorst {
+struct RobustPart {
   std::vector<Zone> zones;  ///< the largest first
   PartYield yield;
 };
@@ -92,10 +92,10 @@ struct ErrorEffects {
   /// include the effect of re-optimized areas.
   std::vector<std::vector<double>> slopes;
   PartYield yield;
-  std::optional<PartForWorst> for_worst;
+  std::optional<RobustPart> robust_part;
   /// Error of the part's goals that arises because the goals of cells are approximated by polynomials in the angle
   /// errors. It is the area-weighted mean of the maximum errors that were found for the cells of the zones.
-  double missed_by = 0.0;
+  double approximation_error = 0.0;
 };
 
 /// Proof of optimality of the part.
@@ -108,14 +108,14 @@ enum class Proof {
 struct Composition {
   std::vector<FamilyCell> catalogue;  ///< all cells that satisfy the constraints, in the order of their evaluation
   std::optional<PartOfZones> best;    ///< none if no mixture satisfies the bounds
-  std::string none_because;           ///< bounds that exclude all mixtures; empty if there is a best part
+  std::string infeasible_reason;      ///< bounds that exclude all mixtures; empty if there is a best part
   /// Indices of those bounds over the part (see ComposeRequest::of_part) that together exclude all mixtures. Empty if
   /// there is a best part, or if the mixtures are excluded for other reasons, such as limits on zones.
-  std::vector<std::size_t> excluding;
+  std::vector<std::size_t> infeasible_bounds;
   std::optional<FamilyCell> single;  ///< cell of the best part that has only one kind of cell
   Proof proof = Proof::none;
   bool has_converged = false;         ///< true if the last search by dual prices found no cell with a positive gain
-  double unlimited = 0.0;             ///< merit without limits on the number and the areas of zones
+  double unlimited_merit = 0.0;       ///< merit without limits on the number and the areas of zones
   std::vector<PartOfZones> by_zones;  ///< best parts of at most 1, 2, ... zones, up to one zone more than `best` has
   std::vector<FrontPart> front;
   std::optional<ErrorEffects> errors;
@@ -127,7 +127,7 @@ struct Composition {
 
 /// Returns the zones of the composition that is optimized for the worst random parts. Returns an empty list if there is
 /// none.
-std::vector<Zone> zones_for_worst(const Composition& composition);
+std::vector<Zone> robust_zones(const Composition& composition);
 
 compute::StoreLayout compose_layout(const Study& study);
 

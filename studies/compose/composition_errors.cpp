@@ -16,16 +16,16 @@ namespace {
 /// for polynomials up to the fifth degree.
 const double kStepOfSpread = std::sqrt(3.0);
 /// Minimum step, in minutes of arc, used if the errors have no spread.
-constexpr double kLeastStep = 0.1;
+constexpr double kMinStep = 0.1;
 /// Number of random sets of errors per zone at which the polynomials are compared with computed goals.
 constexpr std::size_t kChecked = 2;
 /// Maximum number of cells that are candidates for the composition optimized for the worst random parts. The number is
 /// small because all sets of candidates are tried.
-constexpr std::size_t kMostCells = 8;
+constexpr std::size_t kMaxCells = 8;
 
 /// Returns the largest angle error, in minutes of arc, for which goals are computed.
 double step_of(const ErrorSpread& spread) {
-  return std::max(kLeastStep, kStepOfSpread * std::max(spread.cell_sigma_arcmin, spread.zone_sigma_arcmin));
+  return std::max(kMinStep, kStepOfSpread * std::max(spread.cell_sigma_arcmin, spread.zone_sigma_arcmin));
 }
 
 /// Returns random angle errors between minus and plus `step_arcmin`.
@@ -70,7 +70,7 @@ std::vector<FamilyCell> cells_for_worst(const Composition& composition) {
   std::vector<FamilyCell> cells;
   const auto take = [&](const PartOfZones& part) {
     for (const Zone& zone : part.zones)
-      if (cells.size() < kMostCells &&
+      if (cells.size() < kMaxCells &&
           std::ranges::none_of(cells, [&](const FamilyCell& cell) { return cell.point == zone.cell.point; }))
         cells.push_back(zone.cell);
   };
@@ -98,19 +98,20 @@ std::vector<std::vector<double>> slopes_of(const std::vector<ErrorResponse>& res
     slopes.emplace_back(responses[z].angles(), 0.0);
     for (std::size_t angle = 0; angle < responses[z].angles(); ++angle)
       for (std::size_t g = 0; g < part.mixture.goals.size(); ++g)
-        slopes[z][angle] += part.zones[z].share * part.mixture.prices.goals[g] * responses[z].slope(angle, g);
+        slopes[z][angle] += part.zones[z].area_fraction * part.mixture.prices.goals[g] * responses[z].slope(angle, g);
   }
   return slopes;
 }
 
-PartYield yield_of(const DrawnParts& parts, const ComposeRequest& request, const std::vector<double>& shares) {
+PartYield yield_of(const RandomParts& parts, const ComposeRequest& request, const std::vector<double>& shares) {
   PartYield yield;
-  yield.leasts = leasts_of(parts, shares);
-  std::ranges::sort(yield.leasts);
-  if (request.least_goal)
+  yield.min_goals = min_goals_of(parts, shares);
+  std::ranges::sort(yield.min_goals);
+  if (request.min_goal)
     yield.good = static_cast<std::size_t>(
-        std::ranges::count_if(yield.leasts, [&](double least) { return least >= *request.least_goal; }));
-  if (request.errors->worst_share) yield.mean_of_worst = mean_of_worst(yield.leasts, *request.errors->worst_share);
+        std::ranges::count_if(yield.min_goals, [&](double least) { return least >= *request.min_goal; }));
+  if (request.errors->worst_fraction)
+    yield.mean_of_worst = mean_of_worst(yield.min_goals, *request.errors->worst_fraction);
   return yield;
 }
 
@@ -130,20 +131,21 @@ ErrorEffects effects_of_errors(const Study& study, const ComposeRequest& request
   };
   std::vector<double> shares;
   for (const Zone& zone : part.zones) {
-    effects.missed_by += zone.share * respond(zone.cell);
-    shares.push_back(zone.share);
+    effects.approximation_error += zone.area_fraction * respond(zone.cell);
+    shares.push_back(zone.area_fraction);
   }
   effects.goals = mean_goals(responses, shares);
   effects.slopes = slopes_of(responses, part);
-  effects.yield = yield_of(drawn_parts(responses, spread.zone_sigma_arcmin, spread.parts, study.seed), request, shares);
-  if (!spread.worst_share) return effects;
+  effects.yield =
+      yield_of(random_parts(responses, spread.zone_sigma_arcmin, spread.parts, study.seed), request, shares);
+  if (!spread.worst_fraction) return effects;
   const std::vector<FamilyCell> cells = cells_for_worst(composition);
   for (std::size_t k = part.zones.size(); k < cells.size(); ++k) respond(cells[k]);
-  const DrawnParts parts = drawn_parts(responses, spread.zone_sigma_arcmin, spread.parts, study.seed);
-  const auto set = best_set(parts, *spread.worst_share, request.most_zones.value_or(cells.size()),
-                            {request.least_share, request.most_share}, cancel);
+  const RandomParts parts = random_parts(responses, spread.zone_sigma_arcmin, spread.parts, study.seed);
+  const auto set = best_set(parts, *spread.worst_fraction, request.max_zones.value_or(cells.size()),
+                            {request.min_area_fraction, request.max_area_fraction}, cancel);
   if (!set) throw Interrupted{};
-  PartForWorst& for_worst = effects.for_worst.emplace();
+  RobustPart& for_worst = effects.robust_part.emplace();
   std::vector<std::size_t> members;
   std::vector<double> of_members;
   for (const auto& [cell, share] : *set) {

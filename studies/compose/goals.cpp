@@ -37,8 +37,8 @@ bool are_margins(const Study& study, const ComposeRequest& request) {
   return true;
 }
 
-double given_by(const Zone& zone, std::size_t goal, bool is_margin) {
-  return zone.share * (zone.cell.mixed.goals[goal] + (is_margin ? 1.0 : 0.0));
+double contribution_of(const Zone& zone, std::size_t goal, bool is_margin) {
+  return zone.area_fraction * (zone.cell.mixed.goals[goal] + (is_margin ? 1.0 : 0.0));
 }
 
 bool is_price(double price) {

@@ -20,7 +20,7 @@ bool are_margins(const Study& study, const ComposeRequest& request);
 
 /// Returns the contribution of a zone to a goal. For margins, it is the contribution to value / limit, so that the sum
 /// over all zones is 1 + margin.
-double given_by(const Zone& zone, std::size_t goal, bool is_margin);
+double contribution_of(const Zone& zone, std::size_t goal, bool is_margin);
 
 /// Returns true if a price differs from zero by more than rounding errors.
 bool is_price(double price);

@@ -10,7 +10,7 @@ namespace retrace::studies {
 namespace {
 
 /// Fraction of the area below which a cell is not part of a mixture.
-constexpr double kNoShare = 1e-12;
+constexpr double kMinFraction = 1e-12;
 /// Minimum improvement of the merit that counts, relative to 1 + |merit|.
 constexpr double kAsGood = 1e-10;
 
@@ -21,15 +21,16 @@ double as_good(double merit) {
 /// Set of cells of a mixture, with the minimum fraction that each cell must have.
 struct CellSet {
   std::vector<std::size_t> cells;
-  double least_share = 0.0;
+  double min_fraction = 0.0;
 };
 
 /// Returns the linear programme of a set of cells. Its variables (columns) are the fractions of the cells and the
 /// minimum goal. It has a constraint (row) for each goal, for each mean, and for the sum of the fractions.
-compute::LinearProgramme programme_of(const std::vector<MixedCell>& cells, const CellSet& set,
+compute::LinearProgramme test_plan_of(const std::vector<MixedCell>& cells, const CellSet& set,
                                       const MixtureRules& rules) {
   compute::LinearProgramme programme;
-  for (const std::size_t cell : set.cells) programme.add_column({set.least_share, rules.most_share}, -cells[cell].cost);
+  for (const std::size_t cell : set.cells)
+    programme.add_column({set.min_fraction, rules.max_fraction}, -cells[cell].cost);
   const std::size_t least = programme.add_column({}, 1.0);
   using Terms = std::vector<compute::LinearProgramme::Term>;
   const auto weighted = [&](auto value) {
@@ -40,7 +41,7 @@ compute::LinearProgramme programme_of(const std::vector<MixedCell>& cells, const
   for (std::size_t goal = 0; goal < cells.front().goals.size(); ++goal) {
     Terms terms = weighted([&](const MixedCell& cell) { return cell.goals[goal]; });
     terms.emplace_back(least, -1.0);
-    programme.add_row({.least = 0.0}, std::move(terms));
+    programme.add_row({.lower = 0.0}, std::move(terms));
   }
   for (std::size_t mean = 0; mean < rules.means.size(); ++mean)
     programme.add_row(rules.means[mean], weighted([&](const MixedCell& cell) { return cell.means[mean]; }));
@@ -52,7 +53,7 @@ MixturePrices prices_of(const std::vector<double>& of_rows, std::size_t goals, s
   MixturePrices prices;
   for (std::size_t k = 0; k < goals; ++k) prices.goals.push_back(-of_rows[k]);
   for (std::size_t k = 0; k < means; ++k) prices.means.push_back(of_rows[goals + k]);
-  prices.share = of_rows[goals + means];
+  prices.fraction = of_rows[goals + means];
   return prices;
 }
 
@@ -67,22 +68,22 @@ void add_up(const std::vector<MixedCell>& cells, const CellSet& set, const std::
   mixture.means.assign(cells.front().means.size(), 0.0);
   double cost = 0.0;
   for (std::size_t k = 0; k < set.cells.size(); ++k) {
-    if (!(shares[k] > kNoShare)) continue;
+    if (!(shares[k] > kMinFraction)) continue;
     const MixedCell& cell = cells[set.cells[k]];
     mixture.zones.push_back({set.cells[k], shares[k]});
     cost += shares[k] * cell.cost;
     for (std::size_t goal = 0; goal < mixture.goals.size(); ++goal) mixture.goals[goal] += shares[k] * cell.goals[goal];
     for (std::size_t mean = 0; mean < mixture.means.size(); ++mean) mixture.means[mean] += shares[k] * cell.means[mean];
   }
-  std::ranges::stable_sort(mixture.zones, std::ranges::greater{}, &ZoneShare::share);
-  mixture.least = *std::ranges::min_element(mixture.goals);
-  mixture.merit = mixture.least - cost;
+  std::ranges::stable_sort(mixture.zones, std::ranges::greater{}, &ZoneFraction::fraction);
+  mixture.min_goal = *std::ranges::min_element(mixture.goals);
+  mixture.merit = mixture.min_goal - cost;
 }
 
 /// Returns the best mixture of a set of cells, without a limit on their number.
 Mixture mixture_of(const std::vector<MixedCell>& cells, const CellSet& set, const MixtureRules& rules,
                    const Cancellation* cancel) {
-  const compute::LinearOptimum optimum = solve(programme_of(cells, set, rules), cancel);
+  const compute::LinearOptimum optimum = solve(test_plan_of(cells, set, rules), cancel);
   Mixture mixture;
   if (optimum.kind == compute::LinearOptimum::Kind::interrupted) {
     mixture.kind = Mixture::Kind::interrupted;
@@ -103,10 +104,10 @@ class PriceBound {
   PriceBound(const std::vector<MixedCell>& cells, const MixtureRules& rules, const MixturePrices& prices) {
     // Part of the merit that is equal for all cells: the price of each active bound on a mean times this bound, and the
     // price of the whole area.
-    double constant = prices.share;
+    double constant = prices.fraction;
     for (std::size_t k = 0; k < rules.means.size(); ++k)
       if (prices.means[k] != 0.0)
-        constant += prices.means[k] * (prices.means[k] > 0.0 ? rules.means[k].most : rules.means[k].least);
+        constant += prices.means[k] * (prices.means[k] > 0.0 ? rules.means[k].upper : rules.means[k].lower);
     for (const MixedCell& cell : cells) merits_.push_back(constant + gain(prices, cell));
     order_.resize(cells.size());
     std::iota(order_.begin(), order_.end(), std::size_t{0});
@@ -126,7 +127,7 @@ class PriceBound {
     return std::ranges::any_of(set, [&](std::size_t cell) { return merits_[cell] > merit; });
   }
   /// Returns the upper bound of the merit for mixtures of the set.
-  double most_of(const std::vector<std::size_t>& set) const {
+  double max_of(const std::vector<std::size_t>& set) const {
     double most = -std::numeric_limits<double>::infinity();
     for (const std::size_t cell : set) most = std::max(most, merits_[cell]);
     return most;
@@ -144,9 +145,9 @@ class SetSearch {
  public:
   SetSearch(const std::vector<MixedCell>& cells, const MixtureRules& rules, const Cancellation* cancel,
             std::size_t most_sets)
-      : cells_(cells), rules_(rules), cancel_(cancel), most_sets_(most_sets), is_out_(cells.size(), false) {
-    most_zones_ = std::min(rules.most_zones, cells.size());
-    while (static_cast<double>(most_zones_) * rules.least_share > 1.0 + 1e-9) --most_zones_;
+      : cells_(cells), rules_(rules), cancel_(cancel), max_sets_(most_sets), is_out_(cells.size(), false) {
+    max_zones_ = std::min(rules.max_zones, cells.size());
+    while (static_cast<double>(max_zones_) * rules.min_fraction > 1.0 + 1e-9) --max_zones_;
     for (std::size_t goal = 0; goal < cells.front().goals.size(); ++goal) {
       MixturePrices alone{std::vector<double>(cells.front().goals.size(), 0.0), std::vector<double>(rules.means.size()),
                           0.0};
@@ -163,31 +164,32 @@ class SetSearch {
     improve();
     grow({}, {});
     if (is_cancelled(cancel_)) best_.kind = Mixture::Kind::interrupted;
-    if (!best_.is_there()) return best_;
-    const bool is_all = sets_ <= most_sets_;
+    if (!best_.is_feasible()) return best_;
+    const bool is_all = sets_ <= max_sets_;
     best_.kind = is_all ? Mixture::Kind::optimal : Mixture::Kind::best_found;
     best_.bound = is_all ? best_.merit : relaxed.merit;
     return best_;
   }
 
  private:
-  static constexpr std::size_t kMostBounds = 400;  ///< maximum number of stored bounds
-  static constexpr std::size_t kMostBeside = 200;  ///< maximum number of cells that are tried as an addition to a set
+  static constexpr std::size_t kMaxBounds = 400;  ///< maximum number of stored bounds
+  static constexpr std::size_t kMaxAddedCells =
+      200;  ///< maximum number of cells that are tried as an addition to a set
 
-  bool is_over() const { return sets_ > most_sets_ || is_cancelled(cancel_); }
+  bool is_over() const { return sets_ > max_sets_ || is_cancelled(cancel_); }
   double to_beat() const {
-    return best_.is_there() ? best_.merit + as_good(best_.merit) : -std::numeric_limits<double>::infinity();
+    return best_.is_feasible() ? best_.merit + as_good(best_.merit) : -std::numeric_limits<double>::infinity();
   }
 
   /// Searches for a good first mixture, because it shortens the search. The search begins with the relaxed mixture and
   /// removes the cells with the smallest fractions one by one.
   void begin_with(const Mixture& relaxed) {
-    std::vector<ZoneShare> zones = relaxed.zones;
+    std::vector<ZoneFraction> zones = relaxed.zones;
     while (zones.size() > 1) {
       CellSet set;
-      for (const ZoneShare& zone : zones) set.cells.push_back(zone.cell);
+      for (const ZoneFraction& zone : zones) set.cells.push_back(zone.cell);
       const Mixture mixture = mixture_of(cells_, set, rules_, cancel_);
-      if (!mixture.is_there()) return;
+      if (!mixture.is_feasible()) return;
       keep_bound(mixture.prices);
       take(mixture);
       zones = mixture.zones;
@@ -197,11 +199,11 @@ class SetSearch {
 
   /// Replaces single cells of the best mixture by other cells as long as the mixture becomes better.
   void improve() {
-    for (double before = -std::numeric_limits<double>::infinity(); best_.is_there() && best_.merit > before;) {
+    for (double before = -std::numeric_limits<double>::infinity(); best_.is_feasible() && best_.merit > before;) {
       before = best_.merit;
       std::vector<std::size_t> set;
-      for (const ZoneShare& zone : best_.zones) set.push_back(zone.cell);
-      if (set.size() < most_zones_) try_beside(set);
+      for (const ZoneFraction& zone : best_.zones) set.push_back(zone.cell);
+      if (set.size() < max_zones_) try_beside(set);
       for (std::size_t k = 0; k < set.size() && set.size() > 1; ++k) {
         std::vector<std::size_t> others = set;
         others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
@@ -213,7 +215,7 @@ class SetSearch {
   /// Tries sets with one additional cell. The cells with the highest upper bounds of the merit are tried first.
   void try_beside(const std::vector<std::size_t>& set) {
     const Mixture mixture = mixture_of(cells_, {set}, rules_, cancel_);
-    if (!mixture.is_there()) return;
+    if (!mixture.is_feasible()) return;
     keep_bound(mixture.prices);
     std::vector<std::pair<double, std::size_t>> next;
     for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
@@ -221,44 +223,44 @@ class SetSearch {
       std::vector<std::size_t> larger = set;
       larger.push_back(cell);
       double most = mixture.merit + gain(mixture.prices, cells_[cell]);
-      for (const PriceBound& bound : bounds_) most = std::min(most, bound.most_of(larger));
+      for (const PriceBound& bound : bounds_) most = std::min(most, bound.max_of(larger));
       if (most > to_beat()) next.emplace_back(most, cell);
     }
     std::ranges::stable_sort(next, [](const auto& a, const auto& b) { return a.first > b.first; });
-    if (next.size() > kMostBeside) next.resize(kMostBeside);
+    if (next.size() > kMaxAddedCells) next.resize(kMaxAddedCells);
     for (const auto& [most, cell] : next) {
       if (is_over()) return;
       std::vector<std::size_t> larger = set;
       larger.push_back(cell);
       ++sets_;
       const Mixture grown = mixture_of(cells_, {larger}, rules_, cancel_);
-      if (!grown.is_there()) continue;
+      if (!grown.is_feasible()) continue;
       keep_bound(grown.prices);
       take(grown);
     }
   }
 
   void keep_bound(const MixturePrices& prices) {
-    if (bounds_.size() < kMostBounds) bounds_.emplace_back(cells_, rules_, prices);
+    if (bounds_.size() < kMaxBounds) bounds_.emplace_back(cells_, rules_, prices);
   }
 
   /// Keeps a mixture as the best if it satisfies the rules and is better. Fractions that are too small are first raised
   /// to the minimum.
   void take(Mixture mixture) {
-    if (mixture.zones.size() > most_zones_) return;
-    if (rules_.least_share > 0.0 && mixture.zones.back().share < rules_.least_share - kNoShare) {
-      CellSet set{{}, rules_.least_share};
-      for (const ZoneShare& zone : mixture.zones) set.cells.push_back(zone.cell);
+    if (mixture.zones.size() > max_zones_) return;
+    if (rules_.min_fraction > 0.0 && mixture.zones.back().fraction < rules_.min_fraction - kMinFraction) {
+      CellSet set{{}, rules_.min_fraction};
+      for (const ZoneFraction& zone : mixture.zones) set.cells.push_back(zone.cell);
       mixture = mixture_of(cells_, set, rules_, cancel_);
     }
-    if (mixture.is_there() && mixture.merit > to_beat()) best_ = std::move(mixture);
+    if (mixture.is_feasible() && mixture.merit > to_beat()) best_ = std::move(mixture);
   }
 
   /// Searches all sets that contain this set and no cell that is marked in is_out_. Sets that cannot be better than the
   /// best mixture according to the bounds are left out.
   /// \param mixture best mixture of the set; without cells for an empty set
   void grow(const std::vector<std::size_t>& set, const Mixture& mixture) {
-    if (set.size() >= most_zones_) return;
+    if (set.size() >= max_zones_) return;
     const std::vector<std::size_t> next = candidates(set, mixture);
     std::vector<std::size_t> larger = set;
     larger.push_back(0);
@@ -277,7 +279,7 @@ class SetSearch {
     ++sets_;
     const Mixture mixture = mixture_of(cells_, {set}, rules_, cancel_);
     if (mixture.kind == Mixture::Kind::interrupted) return;
-    if (mixture.is_there()) {
+    if (mixture.is_feasible()) {
       if (set.size() > 1) keep_bound(mixture.prices);
       take(mixture);
     }
@@ -287,7 +289,7 @@ class SetSearch {
   /// Returns false if one of the stored bounds shows that a set is not better than the best mixture. Always returns
   /// true for sets that can still be extended.
   bool may_beat(const std::vector<std::size_t>& set) const {
-    if (set.size() < most_zones_) return true;
+    if (set.size() < max_zones_) return true;
     return std::ranges::all_of(bounds_, [&](const PriceBound& bound) { return bound.lets_pass(set, to_beat()); });
   }
 
@@ -297,7 +299,7 @@ class SetSearch {
     const PriceBound* fewest = nullptr;
     std::size_t least = cells_.size() + 1;
     std::optional<PriceBound> own;
-    if (mixture.is_there()) own.emplace(cells_, rules_, mixture.prices);
+    if (mixture.is_feasible()) own.emplace(cells_, rules_, mixture.prices);
     const auto consider = [&](const PriceBound& bound) {
       const std::size_t count = bound.count_above(to_beat());
       if (count >= least || bound.lets_pass(set, to_beat())) return;
@@ -318,8 +320,8 @@ class SetSearch {
   const std::vector<MixedCell>& cells_;
   const MixtureRules& rules_;
   const Cancellation* cancel_;
-  std::size_t most_sets_;
-  std::size_t most_zones_ = 0;
+  std::size_t max_sets_;
+  std::size_t max_zones_ = 0;
   std::vector<bool> is_out_;
   std::vector<PriceBound> bounds_;
   std::size_t sets_ = 0;
@@ -329,19 +331,19 @@ class SetSearch {
 }  // namespace
 
 double gain(const MixturePrices& prices, const MixedCell& cell) {
-  return weighted_sum(prices.goals, cell.goals) - cell.cost - weighted_sum(prices.means, cell.means) - prices.share;
+  return weighted_sum(prices.goals, cell.goals) - cell.cost - weighted_sum(prices.means, cell.means) - prices.fraction;
 }
 
 Mixture best_mixture(const std::vector<MixedCell>& cells, const MixtureRules& rules, const Cancellation* cancel,
-                     std::size_t most_sets) {
+                     std::size_t max_sets) {
   CellSet all;
   all.cells.resize(cells.size());
   std::iota(all.cells.begin(), all.cells.end(), std::size_t{0});
   Mixture relaxed = mixture_of(cells, all, rules, cancel);
-  const bool holds_all = relaxed.zones.size() <= rules.most_zones &&
-                         (relaxed.zones.empty() || relaxed.zones.back().share >= rules.least_share - kNoShare);
-  if (!relaxed.is_there() || holds_all) return relaxed;
-  return SetSearch(cells, rules, cancel, most_sets).run(relaxed);
+  const bool holds_all = relaxed.zones.size() <= rules.max_zones &&
+                         (relaxed.zones.empty() || relaxed.zones.back().fraction >= rules.min_fraction - kMinFraction);
+  if (!relaxed.is_feasible() || holds_all) return relaxed;
+  return SetSearch(cells, rules, cancel, max_sets).run(relaxed);
 }
 
 }  // namespace retrace::studies

@@ -21,10 +21,10 @@ struct MixedCell {
 
 /// Rules for the fractions of the area.
 struct MixtureRules {
-  std::vector<compute::Bounds> means = {};                           ///< bounds of the part's means
-  double least_share = 0.0;                                          ///< minimum fraction of a cell that is used; 0..1
-  double most_share = 1.0;                                           ///< maximum fraction of each cell; above 0
-  std::size_t most_zones = std::numeric_limits<std::size_t>::max();  ///< maximum number of cells that are used
+  std::vector<compute::Bounds> means = {};                          ///< bounds of the part's means
+  double min_fraction = 0.0;                                        ///< minimum fraction of a cell that is used; 0..1
+  double max_fraction = 1.0;                                        ///< maximum fraction of each cell; above 0
+  std::size_t max_zones = std::numeric_limits<std::size_t>::max();  ///< maximum number of cells that are used
 };
 
 /// Dual prices of a mixture: the change of its merit per unit of a constraint. They show which other cell would improve
@@ -32,7 +32,7 @@ struct MixtureRules {
 struct MixturePrices {
   std::vector<double> goals;  ///< price of each goal of the part; the sum is 1
   std::vector<double> means;  ///< price of each active bound of a mean; 0 if no bound is active
-  double share = 0.0;         ///< price of the constraint that the fractions add up to 1
+  double fraction = 0.0;      ///< price of the constraint that the fractions add up to 1
 };
 
 /// Returns the gain of a cell: the increase of the mixture's merit per unit of area that the cell replaces, at the
@@ -40,9 +40,9 @@ struct MixturePrices {
 /// positive gain, no mixture of the cells is better.
 double gain(const MixturePrices& prices, const MixedCell& cell);
 
-struct ZoneShare {
+struct ZoneFraction {
   std::size_t cell = 0;
-  double share = 0.0;
+  double fraction = 0.0;
 };
 
 struct Mixture {
@@ -53,24 +53,24 @@ struct Mixture {
     interrupted
   };
   Kind kind = Kind::infeasible;
-  std::vector<ZoneShare> zones;  ///< the largest first
-  double least = 0.0;            ///< minimum goal
-  double merit = 0.0;            ///< minimum goal minus the cost of the cells
-  double bound = 0.0;            ///< upper bound of the merit of any allowed mixture of these cells
-  std::vector<double> goals;     ///< goals of the mixture
+  std::vector<ZoneFraction> zones;  ///< the largest first
+  double min_goal = 0.0;            ///< minimum goal
+  double merit = 0.0;               ///< minimum goal minus the cost of the cells
+  double bound = 0.0;               ///< upper bound of the merit of any allowed mixture of these cells
+  std::vector<double> goals;        ///< goals of the mixture
   std::vector<double> means;
   /// Dual prices of the linear programme that has only the cells of the mixture. If the rules have no limit on zones
   /// and no minimum fraction, they are also dual prices of the linear programme with all cells.
   MixturePrices prices;
-  bool is_there() const { return kind == Kind::optimal || kind == Kind::best_found; }
+  bool is_feasible() const { return kind == Kind::optimal || kind == Kind::best_found; }
 };
 
 /// Computes the mixture with the largest merit: the minimum goal minus the cost. A limit on zones and a minimum
 /// fraction are enforced by branch and bound over sets of cells. The search uses that, at any prices, a set that is
 /// better than the best set found so far contains a cell with a positive gain.
-/// \param most_sets maximum number of tried sets
+/// \param max_sets maximum number of tried sets
 /// \pre all cells have the same number of goals, at least one, and as many means as the rules
 Mixture best_mixture(const std::vector<MixedCell>& cells, const MixtureRules& rules,
-                     const Cancellation* cancel = nullptr, std::size_t most_sets = 10'000);
+                     const Cancellation* cancel = nullptr, std::size_t max_sets = 10'000);
 
 }  // namespace retrace::studies

@@ -38,9 +38,9 @@ std::size_t worst_goal(const std::vector<std::vector<double>>& zones, const std:
   return worst;
 }
 
-/// Returns the linear programme of best_shares(). Its variables (columns) are the fractions of the area, the value
+/// Returns the linear programme of best_fractions(). Its variables (columns) are the fractions of the area, the value
 /// below which a part is among the worst, and the shortfall of each part below this value.
-compute::LinearProgramme yield_programme(const DrawnParts& parts, double worst_share, const compute::Bounds& bounds,
+compute::LinearProgramme yield_programme(const RandomParts& parts, double worst_share, const compute::Bounds& bounds,
                                          const std::set<PartGoal>& rows) {
   compute::LinearProgramme programme;
   const std::size_t zones = parts.front().size();
@@ -49,25 +49,25 @@ compute::LinearProgramme yield_programme(const DrawnParts& parts, double worst_s
   const std::size_t threshold = programme.add_column({}, 1.0);
   const double weight = -1.0 / (worst_share * static_cast<double>(parts.size()));
   const std::size_t first = threshold + 1;
-  for (std::size_t part = 0; part < parts.size(); ++part) programme.add_column({.least = 0.0}, weight);
+  for (std::size_t part = 0; part < parts.size(); ++part) programme.add_column({.lower = 0.0}, weight);
   programme.add_row({1.0, 1.0}, whole);
   for (const auto& [part, goal] : rows) {
     std::vector<compute::LinearProgramme::Term> terms = {{threshold, -1.0}, {first + part, 1.0}};
     for (std::size_t z = 0; z < zones; ++z) terms.emplace_back(z, parts[part][z][goal]);
-    programme.add_row({.least = 0.0}, std::move(terms));
+    programme.add_row({.lower = 0.0}, std::move(terms));
   }
   return programme;
 }
 
 }  // namespace
 
-DrawnParts drawn_parts(const std::vector<ErrorResponse>& responses, double sigma_arcmin, std::size_t parts,
-                       std::uint32_t seed) {
+RandomParts random_parts(const std::vector<ErrorResponse>& responses, double sigma_arcmin, std::size_t parts,
+                         std::uint32_t seed) {
   std::size_t angles = 0;
   for (const ErrorResponse& response : responses) angles += response.angles();
   const compute::UnitSamples samples(compute::UnitSamples::Kind::sobol, std::max<std::size_t>(1, angles), parts, seed);
   const boost::math::normal_distribution<double> normal;
-  DrawnParts drawn;
+  RandomParts drawn;
   for (std::size_t part = 0; part < parts; ++part) {
     const std::vector<double> unit = samples.at(part);
     auto next = unit.begin();
@@ -82,23 +82,23 @@ DrawnParts drawn_parts(const std::vector<ErrorResponse>& responses, double sigma
   return drawn;
 }
 
-std::vector<double> leasts_of(const DrawnParts& parts, const std::vector<double>& shares) {
+std::vector<double> min_goals_of(const RandomParts& parts, const std::vector<double>& fractions) {
   std::vector<double> leasts;
-  for (const auto& zones : parts) leasts.push_back(value_of(zones, shares, worst_goal(zones, shares)));
+  for (const auto& zones : parts) leasts.push_back(value_of(zones, fractions, worst_goal(zones, fractions)));
   return leasts;
 }
 
-double mean_of_worst(std::vector<double> values, double share) {
+double mean_of_worst(std::vector<double> values, double fraction) {
   std::ranges::sort(values);
-  const double count = share * static_cast<double>(values.size());
+  const double count = fraction * static_cast<double>(values.size());
   double sum = 0.0;
   for (std::size_t k = 0; k < values.size() && static_cast<double>(k) < count; ++k)
     sum += values[k] * std::min(1.0, count - static_cast<double>(k));
   return sum / count;
 }
 
-std::optional<std::vector<double>> best_shares(const DrawnParts& parts, double worst_share,
-                                               const compute::Bounds& bounds, const Cancellation* cancel) {
+std::optional<std::vector<double>> best_fractions(const RandomParts& parts, double worst_fraction,
+                                                  const compute::Bounds& bounds, const Cancellation* cancel) {
   const std::size_t zones = parts.front().size();
   std::vector<double> shares(zones, 1.0 / static_cast<double>(zones));
   std::set<PartGoal> rows;
@@ -106,7 +106,7 @@ std::optional<std::vector<double>> best_shares(const DrawnParts& parts, double w
   // Rows that the current solution violates are added until there are none. The solution then satisfies all rows,
   // including those that were never added.
   for (;;) {
-    const compute::LinearOptimum optimum = solve(yield_programme(parts, worst_share, bounds, rows), cancel);
+    const compute::LinearOptimum optimum = solve(yield_programme(parts, worst_fraction, bounds, rows), cancel);
     if (optimum.kind != compute::LinearOptimum::Kind::optimal) return std::nullopt;
     shares.assign(optimum.values.begin(), optimum.values.begin() + static_cast<std::ptrdiff_t>(zones));
     const std::size_t before = rows.size();
@@ -120,8 +120,8 @@ std::optional<std::vector<double>> best_shares(const DrawnParts& parts, double w
   }
 }
 
-DrawnParts parts_of(const DrawnParts& parts, const std::vector<std::size_t>& zones) {
-  DrawnParts of_zones;
+RandomParts parts_of(const RandomParts& parts, const std::vector<std::size_t>& zones) {
+  RandomParts of_zones;
   for (const auto& part : parts) {
     auto& made = of_zones.emplace_back();
     for (const std::size_t zone : zones) made.push_back(part[zone]);
@@ -129,21 +129,21 @@ DrawnParts parts_of(const DrawnParts& parts, const std::vector<std::size_t>& zon
   return of_zones;
 }
 
-std::optional<CellShares> best_set(const DrawnParts& parts, double worst_share, std::size_t most_zones,
-                                   const compute::Bounds& bounds, const Cancellation* cancel) {
+std::optional<CellFractions> best_set(const RandomParts& parts, double worst_fraction, std::size_t max_zones,
+                                      const compute::Bounds& bounds, const Cancellation* cancel) {
   const std::size_t cells = parts.front().size();
-  std::optional<CellShares> best;
+  std::optional<CellFractions> best;
   double most = -std::numeric_limits<double>::infinity();
   for (std::size_t set = 1; set < std::size_t{1} << cells; ++set) {
     std::vector<std::size_t> members;
     for (std::size_t cell = 0; cell < cells; ++cell)
       if ((set >> cell & 1U) != 0) members.push_back(cell);
-    if (members.size() > most_zones) continue;
+    if (members.size() > max_zones) continue;
     if (is_cancelled(cancel)) return std::nullopt;
-    const DrawnParts of_set = parts_of(parts, members);
-    const auto shares = best_shares(of_set, worst_share, bounds, cancel);
+    const RandomParts of_set = parts_of(parts, members);
+    const auto shares = best_fractions(of_set, worst_fraction, bounds, cancel);
     if (!shares) continue;
-    const double mean = mean_of_worst(leasts_of(of_set, *shares), worst_share);
+    const double mean = mean_of_worst(min_goals_of(of_set, *shares), worst_fraction);
     if (mean <= most) continue;
     most = mean;
     best.emplace();

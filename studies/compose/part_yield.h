@@ -16,39 +16,39 @@
 namespace retrace::studies {
 
 /// Goals of the cells in random parts, indexed by part, zone and goal.
-using DrawnParts = std::vector<std::vector<std::vector<double>>>;
+using RandomParts = std::vector<std::vector<std::vector<double>>>;
 
 /// Returns random parts. Each zone has random angle errors, Gaussian and independent. All cells of a zone have the same
 /// errors.
 /// \param responses response of each zone; it includes the effect of errors from cell to cell
-DrawnParts drawn_parts(const std::vector<ErrorResponse>& responses, double sigma_arcmin, std::size_t parts,
-                       std::uint32_t seed);
+RandomParts random_parts(const std::vector<ErrorResponse>& responses, double sigma_arcmin, std::size_t parts,
+                         std::uint32_t seed);
 
 /// Returns the minimum goal of each part for the given fractions of the area.
-std::vector<double> leasts_of(const DrawnParts& parts, const std::vector<double>& shares);
+std::vector<double> min_goals_of(const RandomParts& parts, const std::vector<double>& fractions);
 
 /// Returns the mean of the worst values.
-/// \param share fraction of the values that counts as the worst, above 0 and at most 1
-double mean_of_worst(std::vector<double> values, double share);
+/// \param fraction fraction of the values that counts as the worst, above 0 and at most 1
+double mean_of_worst(std::vector<double> values, double fraction);
 
 /// Computes the fractions of the area for which the mean minimum goal of the worst parts is largest. This is a linear
 /// programme (Rockafellar and Uryasev 2000) with a row for each part and each goal that may be the minimum.
 /// \param bounds bounds of each fraction
 /// \return nothing if the computation was cancelled or no fractions are allowed
-std::optional<std::vector<double>> best_shares(const DrawnParts& parts, double worst_share,
-                                               const compute::Bounds& bounds, const Cancellation* cancel);
+std::optional<std::vector<double>> best_fractions(const RandomParts& parts, double worst_fraction,
+                                                  const compute::Bounds& bounds, const Cancellation* cancel);
 
 /// Cells and their fractions of the area, the largest first.
-using CellShares = std::vector<std::pair<std::size_t, double>>;
+using CellFractions = std::vector<std::pair<std::size_t, double>>;
 
-/// Searches for the set of at most `most_zones` cells, and their fractions of the area, for which the mean minimum goal
+/// Searches for the set of at most `max_zones` cells, and their fractions of the area, for which the mean minimum goal
 /// of the worst parts is largest. The number of cells must be small, because all sets are tried.
 /// \param parts random parts with one zone for each cell
 /// \return nothing if the computation was cancelled or no set is allowed
-std::optional<CellShares> best_set(const DrawnParts& parts, double worst_share, std::size_t most_zones,
-                                   const compute::Bounds& bounds, const Cancellation* cancel);
+std::optional<CellFractions> best_set(const RandomParts& parts, double worst_fraction, std::size_t max_zones,
+                                      const compute::Bounds& bounds, const Cancellation* cancel);
 
 /// Returns a copy of the random parts that has only the given zones, in the given order.
-DrawnParts parts_of(const DrawnParts& parts, const std::vector<std::size_t>& zones);
+RandomParts parts_of(const RandomParts& parts, const std::vector<std::size_t>& zones);
 
 }  // namespace retrace::studies

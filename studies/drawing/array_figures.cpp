@@ -34,7 +34,7 @@ std::optional<Vec2> first_element_there(const Part& part, const Vec2& size) {
   return first;
 }
 
-void measure_prisms(ArrayFigures& a, const Design& design, const Part& part) {
+void measure_prisms(ArrayFigures& a, const design::Design& design, const Part& part) {
   const PartSpec& spec = part.spec;
   const auto& element = std::get<RtpElement>(spec.element);
   geometry::PrismBlock block = geometry::prism_block(spec.array, element);
@@ -75,7 +75,7 @@ void measure_cubes(ArrayFigures& a, const Part& part) {
     a.element_mm = a.extent_mm.lower - box.lower;
   } else if (spec.array.extent == Extent::finite) {
     a.block_mm = {a.extent_mm.lower + margin, a.extent_mm.upper - margin};
-    a.element_mm = a.extent_mm.middle();
+    a.element_mm = a.extent_mm.centre();
     a.count = a.block_mm.size().cwiseQuotient(a.size_mm);
     a.has_neighbours = (a.element_mm + a.pitch_mm).x() < a.block_mm.upper.x();
   } else {
@@ -86,13 +86,13 @@ void measure_cubes(ArrayFigures& a, const Part& part) {
 
 }  // namespace
 
-ArrayFigures array_figures(const Design& design, const Part& part) {
+ArrayFigures array_figures(const design::Design& design, const Part& part) {
   ArrayFigures a;
   a.extent_mm = extent_of(part);
   if (!design.elements()) {
     a.block_mm = a.extent_mm;
     a.size_mm = a.extent_mm.size();
-    a.root_mm = a.extent_mm.middle();
+    a.root_mm = a.extent_mm.centre();
   } else if (std::holds_alternative<RtpElement>(part.spec.element)) {
     measure_prisms(a, design, part);
   } else {

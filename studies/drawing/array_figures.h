@@ -2,8 +2,8 @@
 
 // Positions and pitches of an array that its drawing shows and dimensions.
 
+#include "design/design.h"
 #include "geometry/part/part.h"
-#include "studies/design/design.h"
 
 namespace retrace::studies {
 
@@ -27,6 +27,6 @@ struct ArrayFigures {
 
 /// Returns the figures of an array.
 /// \param part part of the design
-ArrayFigures array_figures(const Design& design, const geometry::Part& part);
+ArrayFigures array_figures(const design::Design& design, const geometry::Part& part);
 
 }  // namespace retrace::studies

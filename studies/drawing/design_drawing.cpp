@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "studies/design/io/design_json.h"
+#include "design/io/design_json.h"
 #include "studies/drawing/array_figures.h"
 
 namespace retrace::studies {
@@ -105,10 +105,10 @@ PlanPanel panel_of(const Part& part, const Rectangle& window, const char* title)
   PlanPanel panel;
   panel.title = title;
   panel.outline_mm = part.outline;
-  if (faces_near(part, window) <= kMostPlanFaces)
+  if (faces_near(part, window) <= kMaxPlanFaces)
     panel.view = plan_view(part, window);
   else
-    panel.faces_are_left_out = true;
+    panel.omits_faces = true;
   panel.view.window_mm = window;
   return panel;
 }
@@ -167,7 +167,7 @@ AngleDimension apex_angle(const PartSpec& spec, const Vec2& root) {
   return angle;
 }
 
-void add_section(DesignDrawing& drawing, const Design& design, const Part& part, const ArrayFigures& a) {
+void add_section(DesignDrawing& drawing, const design::Design& design, const Part& part, const ArrayFigures& a) {
   const bool whole = part.spec.array.arrangement == Arrangement::single || !design.elements();
   double from = a.extent_mm.lower.x();
   double to = a.extent_mm.upper.x();
@@ -189,7 +189,7 @@ void add_section(DesignDrawing& drawing, const Design& design, const Part& part,
   panel.title = "Section B\u2013B";
   panel.view = *view;
   panel.thickness_mm = part.thickness_mm;
-  panel.goes_on = !whole;
+  panel.is_continued = !whole;
   const double left = view->x_from_mm;
   const double right = view->x_to_mm;
   const double deepest = -part.element_depth_mm;
@@ -228,9 +228,9 @@ std::string zones_text(const Part& part) {
 
 }  // namespace
 
-DesignDrawing draw_design(const Design& design, const Part& part) {
+DesignDrawing draw_design(const design::Design& design, const Part& part) {
   DesignDrawing drawing;
-  drawing.title = short_name(design);
+  drawing.title = design::short_name(design);
   const ArrayFigures a = array_figures(design, part);
   if (!design.elements()) {
     drawing.remarks.push_back(design.zoned() ? zones_text(part) : "part read from a mesh");

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/warning.h"
-#include "studies/design/design.h"
+#include "design/design.h"
 #include "studies/drawing/part_views.h"
 
 namespace retrace::studies {
@@ -33,8 +33,8 @@ struct AngleDimension {
 struct PlanPanel {
   std::string title;
   PlanView view;
-  bool faces_are_left_out = false;  ///< true: there are too many faces to draw
-  geometry::Polygon outline_mm;     ///< outline of the part; empty if the part continues in all directions
+  bool omits_faces = false;      ///< true: there are too many faces to draw
+  geometry::Polygon outline_mm;  ///< outline of the part; empty if the part continues in all directions
   std::optional<geometry::Rectangle> period_mm;
   std::optional<geometry::Rectangle> detail_mm;  ///< window of the detail that another panel shows
   std::optional<double> circle_radius_mm;  ///< radius of the circle around the aperture of the dimensioned element
@@ -47,7 +47,7 @@ struct SectionPanel {
   std::string title;
   SectionView view;
   double thickness_mm = 0.0;
-  bool goes_on = false;               ///< true: the part continues beyond the left and right end
+  bool is_continued = false;          ///< true: the part continues beyond the left and right end
   std::vector<Dimension> dimensions;  ///< dimensions in (x, z)
   std::optional<AngleDimension> angle;
 };
@@ -62,10 +62,10 @@ struct DesignDrawing {
 };
 
 /// Maximum number of faces that a plan draws individually.
-inline constexpr std::size_t kMostPlanFaces = 16'000;
+inline constexpr std::size_t kMaxPlanFaces = 16'000;
 
 /// Returns the drawing of a design.
 /// \param part part of the design
-DesignDrawing draw_design(const Design& design, const geometry::Part& part);
+DesignDrawing draw_design(const design::Design& design, const geometry::Part& part);
 
 }  // namespace retrace::studies

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <map>
 
+#include "design/io/design_json.h"
+#include "design/part_of_design.h"
 #include "geometry/part/mesh_part.h"
-#include "studies/design/io/design_json.h"
-#include "studies/design/part_of_design.h"
 
 namespace retrace::studies {
 namespace {
@@ -72,8 +72,8 @@ void add_patch(DesignView& view, const SurfacePatch& patch, const std::vector<Ed
 }
 
 /// Returns a design with fewer elements of the same kind: the first ones of a large or infinite array.
-Design piece_of(const Design& design, std::vector<std::string>& remarks) {
-  Design piece = design;
+design::Design piece_of(const design::Design& design, std::vector<std::string>& remarks) {
+  design::Design piece = design;
   if (!design.elements() || design.mask() || design.facet_planes()) return piece;
   geometry::PartSpec& spec = piece.part();
   if (spec.array.arrangement == geometry::Arrangement::single) return piece;
@@ -81,8 +81,8 @@ Design piece_of(const Design& design, std::vector<std::string>& remarks) {
   const Vec2 pitch = size + Vec2(spec.array.x_gap_mm, spec.array.y_gap_mm);
   const bool infinite = spec.array.extent == geometry::Extent::infinite;
   const Vec2 count = Vec2(spec.array.x_length_mm, spec.array.y_length_mm).cwiseQuotient(pitch);
-  if (!infinite && count.maxCoeff() <= kMostElementsAcross) return piece;
-  const Vec2 wanted = kPieceElements * pitch;
+  if (!infinite && count.maxCoeff() <= kMaxElementsAcross) return piece;
+  const Vec2 wanted = kExcerptElements * pitch;
   spec.array.extent = geometry::Extent::finite;
   spec.array.x_length_mm = infinite ? wanted.x() : std::min(spec.array.x_length_mm, wanted.x());
   spec.array.y_length_mm = infinite ? wanted.y() : std::min(spec.array.y_length_mm, wanted.y());
@@ -96,9 +96,9 @@ Design piece_of(const Design& design, std::vector<std::string>& remarks) {
   return piece;
 }
 
-DesignView view_of_mesh(const Design& design) {
+DesignView view_of_mesh(const design::Design& design) {
   DesignView view;
-  view.mesh = geometry::boundary_of(mesh_of_design(design, nullptr));
+  view.mesh = geometry::boundary_of(design::mesh_of_design(design, nullptr));
   view.edges = edges_of(view.mesh.vertices, view.mesh.triangles);
   return view;
 }
@@ -125,16 +125,16 @@ DesignView view_of(const Part& part) {
   return view;
 }
 
-DesignView view_of(const Design& design) {
+DesignView view_of(const design::Design& design) {
   std::vector<std::string> remarks;
   DesignView view;
   if (!design.elements() && !design.zoned()) {
     view = view_of_mesh(design);
   } else {
-    const Design piece = piece_of(design, remarks);
-    view = view_of(part_of_design(piece, nullptr));
+    const design::Design piece = piece_of(design, remarks);
+    view = view_of(design::part_of_design(piece, nullptr));
   }
-  view.title = short_name(design);
+  view.title = design::short_name(design);
   view.remarks = std::move(remarks);
   return view;
 }

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "design/design.h"
 #include "geometry/part/closed_boundary.h"
-#include "studies/design/design.h"
 
 namespace retrace::studies {
 
@@ -27,11 +27,11 @@ DesignView view_of(const geometry::Part& part);
 /// Returns the view of a design. Of infinite arrays, and of arrays with very small elements, it shows only a few
 /// elements.
 /// \throw InputError under the same conditions as part_of_design()
-DesignView view_of(const Design& design);
+DesignView view_of(const design::Design& design);
 
 /// Number of elements along a side if an array is not shown as a whole.
-inline constexpr double kPieceElements = 8.0;
+inline constexpr double kExcerptElements = 8.0;
 /// Maximum number of elements along a side of an array that is shown as a whole.
-inline constexpr double kMostElementsAcross = 60.0;
+inline constexpr double kMaxElementsAcross = 60.0;
 
 }  // namespace retrace::studies

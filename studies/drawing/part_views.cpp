@@ -14,7 +14,7 @@ using geometry::Part, geometry::PatchFacet, geometry::Placement, geometry::Recta
     geometry::Vec2, geometry::Vec3;
 
 // Vertical component of the unit normal below which faces count as walls, which a plan shows as lines.
-constexpr double kLevelShare = 1e-6;
+constexpr double kMaxWallNormalZ = 1e-6;
 // Tolerance of lengths, as a fraction of an element. Shorter lines are omitted, and closer lines are merged.
 constexpr double kSame = 1e-7;
 // Tolerance of the cosine between normals. Within it, neighbours are one face, for example triangles of a mesh.
@@ -120,7 +120,7 @@ class CellDrawer {
   void for_each_level_facet(const Action& action) const {
     for (std::uint32_t f = 0; f < cell_.facet_count; ++f) {
       const PatchFacet& facet = patch_.facets[cell_.first_facet + f];
-      if (std::abs(facet.normal.z()) > kLevelShare) action(facet);
+      if (std::abs(facet.normal.z()) > kMaxWallNormalZ) action(facet);
     }
   }
   std::pair<std::uint32_t, std::uint32_t> edge(const PatchFacet& facet, std::uint32_t k) const {
@@ -134,13 +134,13 @@ class CellDrawer {
 };
 
 /// Segment of the section's lower border, from left to right.
-struct Piece {
+struct DesignExcerpt {
   Vec2 left;
   Vec2 right;
 };
 
 /// Returns the intersection of a facet with the plane at `y`. Heights are those of the facet's plane.
-std::optional<Piece> cut_of(const SurfacePatch& patch, const PatchFacet& facet, const Vec2& offset, double y) {
+std::optional<DesignExcerpt> cut_of(const SurfacePatch& patch, const PatchFacet& facet, const Vec2& offset, double y) {
   double low = INFINITY;
   double high = -INFINITY;
   for (std::uint32_t k = 0; k < facet.corner_count; ++k) {
@@ -157,10 +157,10 @@ std::optional<Piece> cut_of(const SurfacePatch& patch, const PatchFacet& facet, 
   const auto height = [&](double x) {
     return (facet.offset_mm - facet.normal.x() * x - facet.normal.y() * (y - offset.y())) / facet.normal.z();
   };
-  return Piece{{low + offset.x(), height(low)}, {high + offset.x(), height(high)}};
+  return DesignExcerpt{{low + offset.x(), height(low)}, {high + offset.x(), height(high)}};
 }
 
-Piece within(const Piece& piece, double from, double to) {
+DesignExcerpt within(const DesignExcerpt& piece, double from, double to) {
   const auto at = [&](double x) {
     const double share = (x - piece.left.x()) / (piece.right.x() - piece.left.x());
     return Vec2(x, piece.left.y() + share * (piece.right.y() - piece.left.y()));
@@ -169,20 +169,21 @@ Piece within(const Piece& piece, double from, double to) {
 }
 
 /// Returns the intersection of the back surface with the plane between two values of x, from left to right.
-std::vector<Piece> pieces_of(const Part& part, double y_mm, double from, double to) {
+std::vector<DesignExcerpt> pieces_of(const Part& part, double y_mm, double from, double to) {
   const std::vector<Rectangle> boxes = boxes_of(part);
-  std::vector<Piece> pieces;
+  std::vector<DesignExcerpt> pieces;
   for (const Placement& placement : part.placements) {
     const SurfacePatch& patch = part.patches[placement.patch];
     if (!overlap(moved(boxes[placement.patch], placement.offset_mm), {{from, y_mm}, {to, y_mm}})) continue;
     for (const PatchFacet& facet : patch.facets) {
-      if (std::abs(facet.normal.z()) <= kLevelShare) continue;
+      if (std::abs(facet.normal.z()) <= kMaxWallNormalZ) continue;
       const auto piece = cut_of(patch, facet, placement.offset_mm, y_mm);
       if (!piece || piece->right.x() <= from || piece->left.x() >= to) continue;
       pieces.push_back(within(*piece, from, to));
     }
   }
-  std::sort(pieces.begin(), pieces.end(), [](const Piece& a, const Piece& b) { return a.left.x() < b.left.x(); });
+  std::sort(pieces.begin(), pieces.end(),
+            [](const DesignExcerpt& a, const DesignExcerpt& b) { return a.left.x() < b.left.x(); });
   return pieces;
 }
 
@@ -217,7 +218,7 @@ std::size_t faces_near(const Part& part, const Rectangle& window_mm) {
 std::optional<SectionView> section_view(const Part& part, double y_mm, double x_from_mm, double x_to_mm) {
   const double same_mm = kSame * part.size_mm;
   // The section is shifted a little from the borders of facets, so that each facet is either hit or missed.
-  const std::vector<Piece> pieces = pieces_of(part, y_mm + 0.1 * same_mm, x_from_mm, x_to_mm);
+  const std::vector<DesignExcerpt> pieces = pieces_of(part, y_mm + 0.1 * same_mm, x_from_mm, x_to_mm);
   if (pieces.empty()) return std::nullopt;
   SectionView view{y_mm, pieces.front().left.x(), pieces.back().right.x(), {}};
   const auto add = [&](const Vec2& p) {

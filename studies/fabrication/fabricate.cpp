@@ -27,7 +27,7 @@ fabrication::PlanOptions plan_options(const FabricationRequest& request) {
 
 /// Returns the position of the tool tip in the section of an element, in the coordinates of SectionMove.
 geometry::Vec2 in_section(const FabricationResult& result, const fabrication::CutElement& element,
-                          const fabrication::Words& at) {
+                          const fabrication::AxisWords& at) {
   const auto mm = [&](fabrication::Axis axis) { return 1e-6 * static_cast<double>(at[axis].value_or(0)); };
   const auto deg = [&](fabrication::Axis axis) { return 1e-7 * static_cast<double>(at[axis].value_or(0)); };
   fabrication::AxisPositions axes{mm(fabrication::kX), mm(fabrication::kY), mm(fabrication::kZ), 0.0,
@@ -35,7 +35,7 @@ geometry::Vec2 in_section(const FabricationResult& result, const fabrication::Cu
   (result.machine.tilt == fabrication::Tilt::table ? axes.a_deg : axes.b_deg) = deg(fabrication::kTilt);
   const Vec3 tip = fabrication::forward(result.machine, axes).reference_mm;
   const Vec3 root(0.0, 0.0, -geometry::element_depth_mm(fabrication::blank_element(result.job, element.zone)));
-  const Vec3 from_root = element.turn.transpose() * (tip - element.foot_mm) - root;
+  const Vec3 from_root = element.workpiece_from_element.transpose() * (tip - element.origin_mm) - root;
   if (!cuts_prisms(result.job)) {
     const fabrication::CubeCorner corner = fabrication::blank_corner(result.job, element.zone, element.rotated);
     const auto& [first, second, third] = corner.edges;
@@ -58,10 +58,11 @@ FabricationResult fabricate(const std::filesystem::path& job, const FabricationR
   result.machine = fabrication::load_machine(result.job.machine, result.job.where("machine"));
   result.warnings = result.job.warnings;
   append(result.warnings, result.machine.warnings);
-  result.machine.increments = fabrication::word_increments(result.dialect, result.machine.control);
+  result.machine.increments = fabrication::position_increments(result.dialect, result.machine.control);
   result.machine.shortest_axes = fabrication::shortest_axes(result.dialect, result.machine.control);
   result.plan = fabrication::make_plan(result.job, result.machine, plan_options(request));
-  for (const fabrication::Program& program : result.plan.programs) fabrication::check_words(program, result.dialect);
+  for (const fabrication::Program& program : result.plan.programs)
+    fabrication::check_supported(program, result.dialect);
   return result;
 }
 
@@ -82,7 +83,7 @@ std::vector<SectionMove> section_moves(const FabricationResult& result, bool rou
     for (const fabrication::Item& item : program.items) {
       const auto* const move = std::get_if<fabrication::Move>(&item);
       if (move != nullptr && move->to[fabrication::kC]) first_only.items.push_back(item);
-      const auto* const visit = std::get_if<fabrication::Visit>(&item);
+      const auto* const visit = std::get_if<fabrication::CycleCall>(&item);
       if (visit == nullptr || !wanted.contains(program.subroutines[visit->subroutine].title)) continue;
       const bool rotated = result.plan.elements[static_cast<std::size_t>(visit->element)].rotated;
       if (!element && !rotated) element = visit->element;
@@ -103,12 +104,12 @@ std::vector<SectionMove> section_moves(const FabricationResult& result, bool rou
   return moves;
 }
 
-std::vector<std::int64_t> cutting_places(const FabricationResult& result) {
+std::vector<std::int64_t> cutting_order_numbers(const FabricationResult& result) {
   std::vector<std::int64_t> places(result.plan.elements.size(), 0);
   std::int64_t next = 0;
   for (const fabrication::Program& program : result.plan.programs)
     for (const fabrication::Item& item : program.items)
-      if (const auto* const visit = std::get_if<fabrication::Visit>(&item)) {
+      if (const auto* const visit = std::get_if<fabrication::CycleCall>(&item)) {
         std::int64_t& place = places[static_cast<std::size_t>(visit->element)];
         if (place == 0) place = ++next;
       }

@@ -49,6 +49,6 @@ std::vector<SectionMove> section_moves(const FabricationResult& result, bool rou
 
 /// Returns, for each element, its number in the order of cutting, counted from 1. If several programs cut an element,
 /// the first one counts.
-std::vector<std::int64_t> cutting_places(const FabricationResult& result);
+std::vector<std::int64_t> cutting_order_numbers(const FabricationResult& result);
 
 }  // namespace retrace::studies

@@ -12,7 +12,8 @@
 #include "core/named_file.h"
 #include "core/number_format.h"
 #include "core/schema/document.h"
-#include "fabrication/chisel/check/workpiece.h"
+#include "design/zone_elements.h"
+#include "fabrication/chisel/check/verification_model.h"
 #include "fabrication/chisel/check/zone_overcut.h"
 #include "fabrication/job/io/job_files.h"
 #include "fabrication/job/io/process_files.h"
@@ -24,7 +25,6 @@
 #include "geometry/part/part.h"
 #include "geometry/part/zones.h"
 #include "requests/descriptions.h"
-#include "studies/design/zone_elements.h"
 #include "studies/fabrication/reachable.h"
 
 namespace retrace::studies {
@@ -73,7 +73,7 @@ void check_upright(const geometry::Element& element, const InputLocation& where)
 
 /// Returns the element of the design. The dihedral error of a prism is included in its apex angle.
 /// \throw InputError for an element that the strategy does not cut
-geometry::Element element_of(const Design& design, const JobRequest& request) {
+geometry::Element element_of(const design::Design& design, const JobRequest& request) {
   if (design.part().array.extent == geometry::Extent::infinite)
     throw InputError({design.source_name(), 0, "array.extent"}, "must be \"finite\" to be cut, got \"infinite\"");
   if (const auto* const rtp = std::get_if<geometry::RtpElement>(&design.part().element)) {
@@ -90,7 +90,7 @@ geometry::Element element_of(const Design& design, const JobRequest& request) {
         Field{"strategy"},
         fmt::format("a chisel with a straight edge reaches only {} % of the facets of this cube corner, and not its "
                     "apex: use dmc, or give {} FILE to write the design of the part that a chisel can cut, got {}",
-                    fixed(100.0 * reachable_share(design.part().element, request.tool_width_mm), 2),
+                    fixed(100.0 * reachable_fraction(design.part().element, request.tool_width_mm), 2),
                     reference({"reachable"}), request.strategy));
   check_upright(design.part().element, {design.source_name(), 0, "element.cant_deg"});
   return design.part().element;
@@ -107,7 +107,7 @@ bool has_errors(const PartSpec& part) {
          (is_prism(part) && part.angle_errors.facet_tilt_arcmin != none);
 }
 
-void warn_of_errors(const PartSpec& part, const std::string& name, MadeJob& made) {
+void warn_of_errors(const PartSpec& part, const std::string& name, GeneratedJob& made) {
   if (has_errors(part))
     made.warnings.push_back(
         {"surface_errors_not_cut", fmt::format("{}: {}random errors, edges and scratches of [surface] are not cut",
@@ -133,7 +133,7 @@ std::string cut_warning(const std::string& name, std::int64_t partial) {
       name, partial);
 }
 
-void add_warnings(const Design& design, MadeJob& made) {
+void add_warnings(const design::Design& design, GeneratedJob& made) {
   const std::string name = design.source_name();
   made.partial_elements = partial_elements(design.part());
   if (made.partial_elements > 0) {
@@ -149,7 +149,7 @@ void add_warnings(const Design& design, MadeJob& made) {
 /// Checks that all zones can be cut in one job. Zones may differ in size, angles, positions and rotation of their cube
 /// corners.
 /// \throw InputError for zones with other differences, or for prisms
-void check_zones(const Design& design, const JobRequest& request) {
+void check_zones(const design::Design& design, const JobRequest& request) {
   const std::vector<geometry::PartZone>& zones = design.zoned()->spec.zones;
   for (std::size_t z = 0; z < zones.size(); ++z) {
     const InputLocation where = design.where(schema::path_of_entry("zone", z));
@@ -175,20 +175,20 @@ double aperture_mm(const geometry::Element& element) {
 
 /// Adds the elements of each zone of the design to the job. Elements of a zone with different rotations form separate
 /// zones of the job.
-void add_zones(const Design& design, MadeJob& made) {
+void add_zones(const design::Design& design, GeneratedJob& made) {
   Job& job = made.job;
-  const geometry::ZonedSpec spec = zones_of(design);
+  const geometry::ZonedSpec spec = design::zones_of(design);
   const PartSpec& first = spec.zones.front().elements;
   job.element = first.element;
   job.angle_errors = first.angle_errors;
   job.array.arrangement = first.array.arrangement;
   job.array.x_length_mm = spec.size_mm.x();
   job.array.y_length_mm = spec.size_mm.y();
-  const std::vector<std::vector<geometry::StandingElement>> whole = geometry::whole_elements(spec);
+  const std::vector<std::vector<geometry::ElementPlacement>> whole = geometry::whole_elements(spec);
   for (std::size_t z = 0; z < spec.zones.size(); ++z) {
     const PartSpec& elements = spec.zones[z].elements;
     std::map<double, fabrication::CutZone> by_turn;
-    for (const geometry::StandingElement& at : whole[z])
+    for (const geometry::ElementPlacement& at : whole[z])
       by_turn[std::remainder(at.rotation_deg, 360.0)].apexes_mm.emplace_back(rounded_mm(at.apex_mm.x()),
                                                                              rounded_mm(at.apex_mm.y()));
     if (by_turn.empty())
@@ -218,23 +218,25 @@ void add_zones(const Design& design, MadeJob& made) {
 
 /// Adds a warning if cavities remove parts of elements in other zones.
 /// \pre the job has zones and is valid
-void tell_overcut(MadeJob& made) {
+void tell_overcut(GeneratedJob& made) {
   Job& job = made.job;
   if (!std::holds_alternative<geometry::HexagonalCube>(job.element)) return;
   job.notes.push_back("cavities are triangular: at borders of zones, they extend beyond the elements' outlines");
-  const fabrication::Workpiece3d workpiece = fabrication::workpiece_of(job, machine_at_field(job.machine));
+  const fabrication::VerificationModel workpiece =
+      fabrication::verification_model_of(job, machine_at_field(job.machine));
   const fabrication::ZoneOvercut overcut =
-      fabrication::zone_overcut(workpiece, std::vector<bool>(workpiece.grooves.size(), true));
+      fabrication::zone_overcut(workpiece, std::vector<bool>(workpiece.cavities.size(), true));
   if (overcut.elements == 0) return;
-  made.warnings.push_back({"zones_overcut", fmt::format("cavities extend into other zones, and remove {} mm2 of the "
-                                                        "apertures of {} of {} elements, at most {} um deep",
-                                                        fixed(overcut.area_mm2, 4), overcut.elements,
-                                                        workpiece.grooves.size(), fixed(1e3 * overcut.deepest_mm, 1))});
+  made.warnings.push_back(
+      {"zones_overcut", fmt::format("cavities extend into other zones, and remove {} mm2 of the "
+                                    "apertures of {} of {} elements, at most {} um deep",
+                                    fixed(overcut.area_mm2, 4), overcut.elements, workpiece.cavities.size(),
+                                    fixed(1e3 * overcut.deepest_mm, 1))});
 }
 
 }  // namespace
 
-void check_making(const JobRequest& request) {
+void check_job_request(const JobRequest& request) {
   requests::check(request);
   const fabrication::Machine machine = machine_at_field(machine_of(request));
   if (is_dmc(request) != (machine.tilt == fabrication::Tilt::head))
@@ -250,7 +252,7 @@ void check_cuts_zones(const JobRequest& request) {
                      fmt::format("must be dmc for a part of zones, got {}", in_quotes(request.strategy)));
 }
 
-void check_element(const Design& design, const JobRequest& request) {
+void check_element(const design::Design& design, const JobRequest& request) {
   if (design.zoned())
     check_zones(design, request);
   else
@@ -285,7 +287,7 @@ namespace {
 
 /// Checks that a design with a base can be cut. Pins are refused, because they are ground one by one and then bundled.
 /// Other elements on a substrate can only be cut in a mould.
-void check_substrate(const Design& design, const JobRequest& request) {
+void check_substrate(const design::Design& design, const JobRequest& request) {
   if (design.zoned() || !design.part().substrate) return;
   if (design.part().is_pin_bundle)
     throw InputError({design.source_name(), 0, "array.arrangement"},
@@ -297,21 +299,21 @@ void check_substrate(const Design& design, const JobRequest& request) {
 
 }  // namespace
 
-MadeJob make_job(const Design& design, const JobRequest& request) {
+GeneratedJob make_job(const design::Design& design, const JobRequest& request) {
   requests::check(request);
-  check_taken(design, {.what = "retrace job", .zones = true, .wet_backs = true});
+  design::require_supported(design, {.what = "retrace job", .zones = true, .wet_backs = true});
   check_substrate(design, request);
   if (design.facet_planes())
     throw InputError(design.where("part.facets"),
                      "not allowed for a job: individual facet planes cannot be cut in this version");
-  MadeJob made;
+  GeneratedJob made;
   Job& job = made.job;
   job.title = design.title;
   if (design.source != "-") made.design_file = design.source;
   job.design = made.design_file.filename().string();
   job.strategy = enumerator_of<fabrication::Strategy>(request.strategy, fabrication::kStrategyWords);
   check_element(design, request);
-  check_making(request);
+  check_job_request(request);
   if (design.zoned()) {
     add_zones(design, made);
   } else {

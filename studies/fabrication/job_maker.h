@@ -6,13 +6,13 @@
 
 #include "core/error.h"
 #include "core/warning.h"
+#include "design/design.h"
 #include "fabrication/job/job.h"
 #include "requests/job.h"
-#include "studies/design/design.h"
 
 namespace retrace::studies {
 
-struct MadeJob {
+struct GeneratedJob {
   fabrication::Job job;               ///< job, which contains only the file name of its design, without the folder
   std::filesystem::path design_file;  ///< path of the design; empty if it was read from standard input
   std::int64_t elements = 0;          ///< number of elements that are cut
@@ -22,7 +22,7 @@ struct MadeJob {
 
 /// Checks everything in a request that does not depend on a design: its fields, its machine and its process.
 /// \throw InputError for an invalid value
-void check_making(const JobRequest& request);
+void check_job_request(const JobRequest& request);
 
 /// Checks that the requested strategy can cut designs with zones.
 /// \throw InputError at the field `strategy` if the strategy cannot cut them
@@ -31,12 +31,12 @@ void check_cuts_zones(const JobRequest& request);
 /// Checks that the requested strategy can cut the elements of the design.
 /// \throw InputError at the field `strategy` if only another strategy can cut them
 /// \throw InputError at a key of the design if no strategy can cut them
-void check_element(const Design& design, const JobRequest& request);
+void check_element(const design::Design& design, const JobRequest& request);
 
 /// Returns the fabrication job of a design, which is an array of elements or has zones of cube corners. The job
 /// contains the dihedral errors of the design and, for cube corners, its facet tilts. It omits partial elements, and
 /// the random errors, edge radii and scratches of [surface]. Warnings list all omissions.
 /// \throw InputError for designs and requests that cannot be cut
-MadeJob make_job(const Design& design, const JobRequest& request);
+GeneratedJob make_job(const design::Design& design, const JobRequest& request);
 
 }  // namespace retrace::studies

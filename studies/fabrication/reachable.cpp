@@ -8,11 +8,11 @@
 #include "core/json_text.h"
 #include "core/named_file.h"
 #include "core/number_format.h"
+#include "design/io/design_document.h"
 #include "geometry/elements/element_cells.h"
 #include "geometry/elements/facet_planes.h"
 #include "geometry/elements/whole_elements.h"
-#include "studies/design/io/design_document.h"
-#include "studies/design/io/facet_planes_reader.h"
+#include "geometry/io/facet_planes_reader.h"
 
 namespace retrace::studies {
 namespace {
@@ -51,29 +51,29 @@ Vec2 middle_of(const geometry::PartSpec& part) {
 
 /// Returns a design that contains only what a chisel can cut: whole elements of the same material, with facet planes
 /// from a table.
-Design reached(const Design& design, const std::string& facets_file) {
+design::Design reached(const design::Design& design, const std::string& facets_file) {
   const geometry::PartSpec& part = design.part();
-  Design reached;
+  design::Design reached;
   reached.title = (design.title.empty() ? "Part" : design.title) + ", as far as a chisel with a straight edge reaches";
-  ElementArray array;
+  design::ElementArray array;
   array.part.element = part.element;
   array.part.array.arrangement = part.array.arrangement;
   array.part.array.partial_elements = geometry::PartialElements::omit;
   array.part.array.x_length_mm = part.array.x_length_mm;
   array.part.array.y_length_mm = part.array.y_length_mm;
   array.part.thickness_mm = part.thickness_mm;
-  array.facet_planes = FacetPlanesFile{facets_file, facets_file};
+  array.facet_planes = design::FacetPlanesFile{facets_file, facets_file};
   reached.shape = std::move(array);
   reached.substance.material = design.substance.material;
-  reached.substance.catalogue = from_anywhere(design.substance.catalogue);
+  reached.substance.catalogue = design::with_absolute_path(design.substance.catalogue);
   reached.substance.refractive_index = design.substance.refractive_index;
   reached.substance.temperature_c = design.substance.temperature_c;
   reached.substance.absorption_per_mm = design.substance.absorption_per_mm;
   return reached;
 }
 
-void check_design(const Design& design, const JobRequest& request) {
-  check_taken(design, {.what = "retrace job --reachable", .wet_backs = true});
+void check_design(const design::Design& design, const JobRequest& request) {
+  design::require_supported(design, {.what = "retrace job --reachable", .wet_backs = true});
   const geometry::PartSpec& part = design.part();
   if (std::holds_alternative<geometry::RtpElement>(part.element))
     throw InputError(Field{"reachable"}, "is only for cube corners, because a chisel reaches every point of a prism");
@@ -92,13 +92,13 @@ void check_design(const Design& design, const JobRequest& request) {
 
 }  // namespace
 
-double reachable_share(const geometry::Element& element, double tool_width_mm) {
+double reachable_fraction(const geometry::Element& element, double tool_width_mm) {
   return std::max(0.0, 1.0 - 0.25 * tool_width_mm * tool_width_mm / fabrication::facet_area_mm2(element));
 }
 
-ReachablePart reachable_part(const Design& design, const JobRequest& request, const std::string& facets_file) {
+ReachablePart reachable_part(const design::Design& design, const JobRequest& request, const std::string& facets_file) {
   check_design(design, request);
-  check_making(request);
+  check_job_request(request);
   const geometry::PartSpec& part = design.part();
   fabrication::Tool tool;
   tool.width_mm = request.tool_width_mm;
@@ -115,8 +115,8 @@ ReachablePart reachable_part(const Design& design, const JobRequest& request, co
   const auto* const hexagonal = std::get_if<geometry::HexagonalCube>(&part.element);
   if (hexagonal != nullptr && part.array.arrangement != geometry::Arrangement::single)
     geometry::add_flares(planes, 0.5 * hexagonal->aperture_mm);
-  result.facets = facet_planes_text({std::move(planes), geometry::cube_spacing_mm(part.element)});
-  result.design = design_text(reached(design, facets_file));
+  result.facets = geometry::facet_planes_text({std::move(planes), geometry::cube_spacing_mm(part.element)});
+  result.design = design::design_text(reached(design, facets_file));
   return result;
 }
 
@@ -126,8 +126,8 @@ std::string reach_json(const ReachablePart& part, const JobRequest& request) {
                                        {"strategy", request.strategy},
                                        {"tool_width_mm", request.tool_width_mm},
                                        {"facet_area_mm2", r.facet_area_mm2},
-                                       {"reached_fraction", r.share},
-                                       {"reached_fraction_cut", r.cut_share},
+                                       {"reached_fraction", r.fraction},
+                                       {"reached_fraction_cut", r.cut_fraction},
                                        {"core_mm", r.core_mm},
                                        {"core_mm_cut", r.cut_core_mm}};
   return result_text("retrace.reach/2", json, {});
@@ -136,8 +136,8 @@ std::string reach_json(const ReachablePart& part, const JobRequest& request) {
 std::string reach_table(const ReachablePart& part) {
   const fabrication::ChiselReach& r = part.reach;
   std::string text = fmt::format("  elements            {}\n", part.elements);
-  text += fmt::format("  facets reached      {} % of their area, {} % in simulated cuts\n", fixed(100.0 * r.share, 2),
-                      fixed(100.0 * r.cut_share, 2));
+  text += fmt::format("  facets reached      {} % of their area, {} % in simulated cuts\n",
+                      fixed(100.0 * r.fraction, 2), fixed(100.0 * r.cut_fraction, 2));
   text += fmt::format("  uncut above apex    {} mm high, {} mm in simulated cuts\n", fixed(r.core_mm, 6),
                       fixed(r.cut_core_mm, 6));
   return text;

@@ -5,8 +5,8 @@
 
 #include <string>
 
+#include "design/design.h"
 #include "fabrication/chisel/check/chisel_reach.h"
-#include "studies/design/design.h"
 #include "studies/fabrication/job_maker.h"
 
 namespace retrace::studies {
@@ -23,10 +23,10 @@ struct ReachablePart {
 /// Computes the part that the chisel of a request can cut.
 /// \param facets_file file name of the table of facet planes
 /// \throw InputError for prisms, for `dmc`, and for tools that are too wide
-ReachablePart reachable_part(const Design& design, const JobRequest& request, const std::string& facets_file);
+ReachablePart reachable_part(const design::Design& design, const JobRequest& request, const std::string& facets_file);
 
 /// Returns the fraction of the facets' area that a chisel reaches, or 0 if it reaches nothing.
-double reachable_share(const geometry::Element& element, double tool_width_mm);
+double reachable_fraction(const geometry::Element& element, double tool_width_mm);
 
 /// These functions return the result as JSON (retrace.reach/2) and as a table.
 std::string reach_json(const ReachablePart& part, const JobRequest& request);

@@ -13,9 +13,9 @@
 
 #include "core/error.h"
 #include "core/number_format.h"
+#include "design/engine_facts.h"
 #include "raytrace/observers/photometric_geometry.h"
 #include "requests/descriptions.h"
-#include "studies/design/engine_facts.h"
 #include "studies/image/io/lamp_reader.h"
 
 namespace retrace::studies {
@@ -27,7 +27,7 @@ using geometry::Vec2, geometry::Vec3;
 constexpr double kMargin = 1.15;
 
 std::array<double, 2> film_of(const CameraRequest& r) {
-  return r.film_mm.value_or(kUsualFilmMm);
+  return r.film_mm.value_or(kDefaultFilmMm);
 }
 
 /// Checks the size of the sheet and the radius of the cylinder on which the sheet is mounted. The sheet may cover at
@@ -65,7 +65,7 @@ std::string text_of(const Vec3& p) {
 bool is_inside(const geometry::Part& part, const Vec3& p) {
   if (p.z() > part.thickness_mm || p.z() < -part.element_depth_mm) return false;
   const geometry::Rectangle box = geometry::bounding_box(part.outline);
-  const Vec2 at = p.head<2>() + box.middle();
+  const Vec2 at = p.head<2>() + box.centre();
   for (std::size_t k = 0; k < part.outline.size(); ++k) {
     const Vec2& a = part.outline[k];
     const Vec2 along = part.outline[(k + 1) % part.outline.size()] - a;
@@ -136,7 +136,7 @@ bool is_unpolarised(const raytrace::Stokes& s) {
 
 }  // namespace
 
-CameraStudy::CameraStudy(Design design, CameraRequest request, raytrace::DiscAverage discs)
+CameraStudy::CameraStudy(design::Design design, CameraRequest request, raytrace::DiscAverage discs)
     : design_(std::move(design)), request_(std::move(request)) {
   requests::check(request_);
   lamp_ = lamp_of(request_);
@@ -147,8 +147,8 @@ CameraStudy::CameraStudy(Design design, CameraRequest request, raytrace::DiscAve
     throw InputError(design_.where_entrance_scatters(),
                      "camera images do not support entrance faces that scatter light: use retrace rre, photometry or "
                      "image --detector");
-  check_film(request_, design_.is_endless());
-  model_ = make_model(design_, materials::MaterialLibrary::shipped());
+  check_film(request_, design_.is_infinite());
+  model_ = design::make_model(design_, materials::MaterialLibrary::shipped());
   scene_ = scene_of(request_, lamp_, model_.part);
   scene_.discs = discs;
   check_place(model_.part, scene_, scene_.view.eye_mm, {request_.eye_mm ? "eye_mm" : "observation_deg"}, "camera");
@@ -174,13 +174,13 @@ class PassLedger : public TaskLedger {
         image_(image),
         progress_(progress),
         after_pass_(after_pass),
-        goal_(request.passes.value_or(CameraStudy::kMostPasses)),
-        most_ahead_(std::max(kFewestAhead, kBytesAhead / (image.luminance.size() * 2 * sizeof(double)))) {}
+        goal_(request.passes.value_or(CameraStudy::kMaxPasses)),
+        max_ahead_(std::max(kFewestAhead, kBytesAhead / (image.luminance.size() * 2 * sizeof(double)))) {}
 
   std::optional<std::uint64_t> take() override {
     if (is_finished_) return std::nullopt;
     if (!given_back_.empty()) return given_back_.extract(given_back_.begin()).value();
-    if (next_ >= goal_ || next_ >= image_.passes + most_ahead_) return std::nullopt;
+    if (next_ >= goal_ || next_ >= image_.passes + max_ahead_) return std::nullopt;
     return next_++;
   }
   void give_back(std::uint64_t pass) override { given_back_.insert(pass); }
@@ -202,8 +202,8 @@ class PassLedger : public TaskLedger {
     if (!request_.passes) {
       const double noise = image_.passes > 1 ? image_.relative_noise() : 1.0;
       is_finished_ =
-          is_finished_ || (image_.passes >= CameraStudy::kFewestPasses && noise <= request_.noise) ||
-          (image_.passes >= CameraStudy::kPassesToJudge && passes_needed(image_, request_) > CameraStudy::kMostPasses);
+          is_finished_ || (image_.passes >= CameraStudy::kMinPasses && noise <= request_.noise) ||
+          (image_.passes >= CameraStudy::kPassesToJudge && passes_needed(image_, request_) > CameraStudy::kMaxPasses);
       share = image_.passes > 1 ? std::min(0.99, std::pow(request_.noise / std::max(noise, 1e-300), 2.0)) : 0.0;
     }
     furthest_ = std::max(furthest_, share);
@@ -219,7 +219,7 @@ class PassLedger : public TaskLedger {
   Progress* progress_;
   const std::function<void(const raytrace::CameraImage&)>& after_pass_;
   std::uint32_t goal_;
-  std::size_t most_ahead_;  ///< maximum number of passes that are traced before an earlier one is finished
+  std::size_t max_ahead_;  ///< maximum number of passes that are traced before an earlier one is finished
   std::uint64_t next_ = 0;
   std::set<std::uint64_t> given_back_;
   std::map<std::uint64_t, std::string> ahead_;
@@ -237,9 +237,9 @@ ComputeTask passes_by(const std::shared_ptr<const raytrace::CameraTracer>& trace
 }  // namespace
 
 std::shared_ptr<const raytrace::CameraTracer> CameraStudy::tracer() const {
-  std::vector<raytrace::WeighedOptics> light;
-  for (const SpectralOptics& at : model_.spectral) light.push_back({at.optics, at.weight});
-  const bool by_cells = !raytrace::why_not(raytrace::Engine::cell, engine_facts(design_, &model_.optics));
+  std::vector<raytrace::WeightedOptics> light;
+  for (const design::SpectralOptics& at : model_.spectral) light.push_back({at.optics, at.weight});
+  const bool by_cells = !raytrace::obstacle_for(raytrace::Engine::cell, design::engine_facts(design_, &model_.optics));
   return std::make_shared<const raytrace::CameraTracer>(
       model_.part, light, scene_, raytrace::kCameraPolicy, request_.seed,
       by_cells ? raytrace::CameraEngine::fastest : raytrace::CameraEngine::embree);
@@ -251,7 +251,7 @@ ComputeTask CameraStudy::passes() const {
 
 CameraResult CameraStudy::run(Progress* progress, const Cancellation* cancel,
                               const std::function<void(const raytrace::CameraImage&)>& after_pass,
-                              const ShareTasks& share) const {
+                              const DistributeTasks& distribute) const {
   const auto start = std::chrono::steady_clock::now();
   const std::shared_ptr<const raytrace::CameraTracer> tracing = tracer();
   CameraResult result;
@@ -268,8 +268,8 @@ CameraResult CameraStudy::run(Progress* progress, const Cancellation* cancel,
   result.engine = tracing->is_by_cells() ? "cell" : "embree";
   result.image = tracing->empty_image();
   PassLedger ledger(request_, result.image, progress, after_pass);
-  if (share) share(passes_by(tracing), ledger);
-  while (!share && !ledger.is_finished()) {
+  if (distribute) distribute(passes_by(tracing), ledger);
+  while (!distribute && !ledger.is_finished()) {
     const auto pass = tracing->pass(result.image.passes, cancel);
     if (!pass) break;
     ledger.add(*pass);
@@ -281,7 +281,7 @@ CameraResult CameraStudy::run(Progress* progress, const Cancellation* cancel,
          fmt::format("{}: the noise of {} is above the target of {} after {} passes. The target needs about {:.2g} "
                      "passes, but at most {} are made unless you set the number of passes",
                      design_.source_name(), fixed(result.image.relative_noise(), 4), shortest(request_.noise),
-                     result.image.passes, passes_needed(result.image, request_), kMostPasses)});
+                     result.image.passes, passes_needed(result.image, request_), kMaxPasses)});
   if (result.complete && result.image.part_mean() == 0.0)
     result.warnings.push_back(
         {"no_light_found",

@@ -22,7 +22,7 @@ constexpr double kTruncatedGoal = 1e-5;
 // Maximum number of beams up to which the engine `auto` uses exact tracing. Tracing this number takes some seconds.
 constexpr std::uint64_t kBeamsOfAutomatic = 1'000'000;
 
-raytrace::Illumination illumination_of(const Design& design, const DetectorRequest& request) {
+raytrace::Illumination illumination_of(const design::Design& design, const DetectorRequest& request) {
   return {Angle::from_deg(request.incidence_deg), Angle::from_deg(request.azimuth_deg), design.light.polarisation};
 }
 
@@ -72,31 +72,32 @@ void add(raytrace::DetectorMaps& sum, const raytrace::DetectorMaps& more, double
 
 }  // namespace
 
-DetectorStudy::DetectorStudy(Design design, DetectorRequest request)
+DetectorStudy::DetectorStudy(design::Design design, DetectorRequest request)
     : design_(std::move(design)), request_(std::move(request)) {
   requests::check(request_);
   engine_ = raytrace::engine_from_name(request_.engine);
-  model_ = make_model(design_, materials::MaterialLibrary::shipped());
-  facts_ = engine_facts(design_, &model_.optics);
-  if (const auto obstacle = raytrace::why_not(Engine::exact, facts_); obstacle && engine_ == Engine::exact)
-    throw InputError(position_of(design_, *obstacle),
+  model_ = design::make_model(design_, materials::MaterialLibrary::shipped());
+  facts_ = design::engine_facts(design_, &model_.optics);
+  if (const auto obstacle = raytrace::obstacle_for(raytrace::Engine::exact, facts_);
+      obstacle && engine_ == raytrace::Engine::exact)
+    throw InputError(design::position_of(design_, *obstacle),
                      fmt::format("{} cannot be traced exactly: use {} montecarlo", raytrace::subject_of(*obstacle),
                                  reference({"engine"})));
 }
 
-raytrace::DetectorMaps DetectorStudy::trace(const SpectralOptics& light, const raytrace::DetectorSetting& setting,
-                                            std::size_t number, bool exact, Progress* progress,
-                                            const Cancellation* cancel) const {
+raytrace::DetectorMaps DetectorStudy::trace(const design::SpectralOptics& light,
+                                            const raytrace::DetectorSetting& setting, std::size_t number, bool exact,
+                                            Progress* progress, const Cancellation* cancel) const {
   const raytrace::Illumination illumination = illumination_of(design_, request_);
   if (!exact)
     return raytrace::sampled_detector_maps(
         model_.part, light.optics, illumination, setting,
-        std::max<std::uint64_t>(1, request_.samples.value_or(kUsualDetectorRays) / model_.spectral.size()),
+        std::max<std::uint64_t>(1, request_.samples.value_or(kDefaultDetectorRays) / model_.spectral.size()),
         raytrace::seed_at(request_.seed, number), {}, progress, cancel);
   raytrace::BeamPolicy policy;
   policy.cutoff = request_.cutoff;
   policy.truncated_goal = kTruncatedGoal;
-  if (engine_ == Engine::automatic) policy.max_beams = kBeamsOfAutomatic;
+  if (engine_ == raytrace::Engine::automatic) policy.max_beams = kBeamsOfAutomatic;
   return raytrace::exact_detector_maps(model_.part, light.optics, illumination, setting, policy, cancel);
 }
 
@@ -129,7 +130,7 @@ DetectorResult DetectorStudy::run(Progress* progress, const Cancellation* cancel
   try {
     trace_all();
   } catch (const BudgetError&) {
-    if (!exact || engine_ == Engine::exact) throw;
+    if (!exact || engine_ == raytrace::Engine::exact) throw;
     exact = false;  // the exact engine needs too many beams
     attempt.begin_again();
     trace_all();

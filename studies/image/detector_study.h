@@ -7,18 +7,18 @@
 
 #include "core/progress.h"
 #include "core/warning.h"
+#include "design/engine_facts.h"
+#include "design/optical_model.h"
 #include "raytrace/observers/detector.h"
 #include "requests/image.h"
-#include "studies/design/engine_facts.h"
-#include "studies/design/optical_model.h"
 
 namespace retrace::studies {
 
 /// Default number of rays for a detector.
-inline constexpr std::uint64_t kUsualDetectorRays = std::uint64_t{1} << 22;
+inline constexpr std::uint64_t kDefaultDetectorRays = std::uint64_t{1} << 22;
 
 struct DetectorResult {
-  Design design;
+  design::Design design;
   DetectorRequest request;
   std::string engine;
   double acceptance_half_angle_deg = 0.0;
@@ -35,20 +35,20 @@ class DetectorStudy {
  public:
   /// \throw InputError if a number is out of range, if a material is unknown, or if the engine cannot trace the light
   /// or the facets
-  DetectorStudy(Design design, DetectorRequest request);
+  DetectorStudy(design::Design design, DetectorRequest request);
 
   /// Computes the maps.
   /// \throw BudgetError if power was lost, or if too many beams are needed
   DetectorResult run(Progress* progress = nullptr, const Cancellation* cancel = nullptr) const;
 
  private:
-  raytrace::DetectorMaps trace(const SpectralOptics& light, const raytrace::DetectorSetting& setting,
+  raytrace::DetectorMaps trace(const design::SpectralOptics& light, const raytrace::DetectorSetting& setting,
                                std::size_t number, bool exact, Progress* progress, const Cancellation* cancel) const;
 
-  Design design_;
+  design::Design design_;
   DetectorRequest request_;
-  Engine engine_;
-  OpticalModel model_;
+  raytrace::Engine engine_;
+  design::OpticalModel model_;
   raytrace::EngineFacts facts_;
 };
 

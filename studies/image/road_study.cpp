@@ -193,8 +193,9 @@ void draw_road(const RoadScene& s, RoadView& view) {
   });
 }
 
-RoadStudy::RoadStudy(Design design, RoadRequest request) : design_(std::move(design)), request_(std::move(request)) {
-  check_taken(design_, {.what = "retrace image", .solids = true, .wet_backs = true});
+RoadStudy::RoadStudy(design::Design design, RoadRequest request)
+    : design_(std::move(design)), request_(std::move(request)) {
+  design::require_supported(design_, {.what = "retrace image", .solids = true, .wet_backs = true});
   requests::check(request_);
   scene_.lamp_height = request_.lamp_height_m;
   scene_.lamp_cd = request_.lamp_cd;
@@ -232,7 +233,7 @@ std::optional<std::vector<PhotometerReading>> measured(Photometer& photometer,
     return photometer.measure(settings, &attempt, cancel);
   } catch (const BudgetError&) {
     if (!photometer.is_exact()) throw;
-    photometer.leave_exact();
+    photometer.use_monte_carlo();
     attempt.begin_again();
     return photometer.measure(settings, &attempt, cancel);
   }
@@ -261,7 +262,7 @@ RoadResult RoadStudy::run(Progress* progress, const Cancellation* cancel) const 
       settings.push_back(setting_of({(lamps[lamp] - reflector).normalized(), (eye - reflector).normalized()}));
     }
     const auto done = static_cast<double>(result.views.size());
-    PartOfProgress part(progress, share * done, share * (done + 1.0));
+    PartProgress part(progress, share * done, share * (done + 1.0));
     const auto readings = measured(photometer, settings, &part, cancel);
     if (!readings) {
       result.complete = false;

@@ -10,9 +10,9 @@
 
 #include "core/progress.h"
 #include "core/warning.h"
+#include "design/design.h"
 #include "materials/spectrum.h"
 #include "requests/image.h"
-#include "studies/design/design.h"
 #include "studies/image/lamp.h"
 
 namespace retrace::studies {
@@ -59,7 +59,7 @@ struct RoadView {
 };
 
 struct RoadResult {
-  Design design;
+  design::Design design;
   RoadRequest request;
   RoadScene scene;
   std::string engine;
@@ -73,12 +73,12 @@ struct RoadResult {
 class RoadStudy {
  public:
   /// \throw InputError for numbers out of range, and for designs that Photometer refuses
-  RoadStudy(Design design, RoadRequest request);
+  RoadStudy(design::Design design, RoadRequest request);
 
   RoadResult run(Progress* progress = nullptr, const Cancellation* cancel = nullptr) const;
 
  private:
-  Design design_;
+  design::Design design_;
   RoadRequest request_;
   RoadScene scene_;
   materials::SpectralCurve dye_absorption_per_mm_;

@@ -5,15 +5,15 @@
 #include <optional>
 #include <vector>
 
-#include "studies/design/design.h"
-#include "studies/design/optical_model.h"
+#include "design/design.h"
+#include "design/optical_model.h"
 
 namespace retrace::studies {
 
 /// Coating of one face, with fractions of unpolarised power at normal incidence, averaged over the light. The light
 /// hits facets from inside the body and the entrance face from the air. The facets of balls are their mirrors.
 struct CoatingReport {
-  std::vector<CoatingLayer> layers;
+  std::vector<design::CoatingLayer> layers;
   materials::LayerStack stack;  ///< layers at the traced wavelength that is nearest to OpticalModel::wavelength_nm
   double reflectance = 0.0;
   double transmittance = 0.0;
@@ -26,6 +26,6 @@ struct CoatingReports {
   std::optional<CoatingReport> entrance;
 };
 
-CoatingReports report_coating(const Design& design, const OpticalModel& model);
+CoatingReports report_coating(const design::Design& design, const design::OpticalModel& model);
 
 }  // namespace retrace::studies

@@ -26,7 +26,7 @@ EntranceReport::Profile profile_along(Eigen::Index axis, const raytrace::Entranc
     ray.direction = -Vec3::UnitZ();
     ray.inside = false;
     const auto hit = face.first_hit(ray);
-    profile.place_mm.push_back(place[axis]);
+    profile.position_mm.push_back(place[axis]);
     profile.height_mm.push_back(hit ? ray.origin.z() - hit->hit.t : std::numeric_limits<double>::quiet_NaN());
   }
   return profile;

@@ -15,7 +15,7 @@ struct EntranceReport {
   double steepest_deg = 0.0;      ///< maximum slope of sampled points
   /// Heights along x and along y, through the centre of the part. NaN outside the outline.
   struct Profile {
-    std::vector<double> place_mm;
+    std::vector<double> position_mm;
     std::vector<double> height_mm;
   };
   Profile along_x;

@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-#include "raytrace/faces/soiled_entrance.h"
+#include "raytrace/faces/contaminated_entrance.h"
 #include "raytrace/light/light_setup.h"
 
 namespace retrace::studies {
@@ -26,8 +26,8 @@ double diffuse_reflectance(const raytrace::Optics& optics) {
 /// passes the dust two times, with all reflections between dust and face.
 double dust_reflectance(const raytrace::Optics& optics) {
   const raytrace::Dust& dust = optics.entrance.dust;
-  const double back = dust.albedo * (1.0 - dust.forward_share);
-  const double forward = dust.albedo * dust.forward_share;
+  const double back = dust.albedo * (1.0 - dust.forward_fraction);
+  const double forward = dust.albedo * dust.forward_fraction;
   const double face = diffuse_reflectance(optics);
   return dust.coverage * (back + forward * forward * face / (1.0 - back * face));
 }
@@ -37,23 +37,24 @@ double specular_transmittance(const raytrace::Optics& optics, const materials::F
   if (!optics.entrance.is_rough()) return std::norm(f.t_s);
   const raytrace::Optics facet = entrance_as_facet(optics);
   return std::norm(mean_field(facet, false, 1.0, f).t_s) *
-         mean_field_share(facet, false, 1.0, surface_models::Lobe::transmission);
+         mean_field_fraction(facet, false, 1.0, surface_models::Lobe::transmission);
 }
 
 }  // namespace
 
-std::optional<EntranceStateReport> report_entrance_state(const Design& design, const OpticalModel& model) {
+std::optional<EntranceStateReport> report_entrance_state(const design::Design& design,
+                                                         const design::OpticalModel& model) {
   if (design.surface.entrance.is_clean()) return std::nullopt;
   EntranceStateReport report;
   const raytrace::EntranceCondition& face = model.optics.entrance;
-  report.clean_share = 1.0 - face.spots();
-  report.haze_share = face.haze.share;
-  for (const SpectralOptics& at : model.spectral) {
+  report.clean_fraction = 1.0 - face.covered_fraction();
+  report.haze_fraction = face.haze.fraction;
+  for (const design::SpectralOptics& at : model.spectral) {
     const materials::FresnelCoefficients f = fresnel_at_entrance(at.optics, false, 1.0);
     report.reflectance += at.weight * std::norm(f.r_s);
     report.transmittance += at.weight * std::norm(f.t_s);
     report.specular_transmittance +=
-        at.weight * report.clean_share * (1.0 - report.haze_share) * specular_transmittance(at.optics, f);
+        at.weight * report.clean_fraction * (1.0 - report.haze_fraction) * specular_transmittance(at.optics, f);
     if (face.dust.coverage > 0.0)
       report.dust_cd_per_lx_m2 += at.weight * dust_reflectance(at.optics) / std::numbers::pi;
   }

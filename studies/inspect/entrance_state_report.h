@@ -5,22 +5,23 @@
 
 #include <optional>
 
-#include "studies/design/optical_model.h"
+#include "design/optical_model.h"
 
 namespace retrace::studies {
 
 /// Figures for light from the air at normal incidence, averaged over the light.
 struct EntranceStateReport {
-  double clean_share = 1.0;             ///< fraction of the area without drops, dust or scratches
+  double clean_fraction = 1.0;          ///< fraction of the area without drops, dust or scratches
   double reflectance = 0.0;             ///< reflectance of the clean face with its layers and film
   double transmittance = 0.0;           ///< transmittance of the clean face with its layers and film
   double absorptance = 0.0;             ///< absorptance of the clean face with its layers and film
   double specular_transmittance = 0.0;  ///< fraction of all light that is transmitted without being scattered
-  double haze_share = 0.0;              ///< fraction of the light that haze deflects in one passage, by any angle
+  double haze_fraction = 0.0;           ///< fraction of the light that haze deflects in one passage, by any angle
   double dust_cd_per_lx_m2 = 0.0;       ///< R_A of dust and the face under it, along the normal
 };
 
 /// Returns the figures of an entrance face, or nothing for a clean face.
-std::optional<EntranceStateReport> report_entrance_state(const Design& design, const OpticalModel& model);
+std::optional<EntranceStateReport> report_entrance_state(const design::Design& design,
+                                                         const design::OpticalModel& model);
 
 }  // namespace retrace::studies

@@ -8,12 +8,12 @@
 
 #include "core/angle.h"
 #include "core/number_format.h"
+#include "design/design_part.h"
+#include "design/optical_model.h"
 #include "geometry/check/boundary_check.h"
 #include "geometry/elements/edges.h"
 #include "geometry/elements/lattice.h"
 #include "raytrace/balls/ball_forms.h"
-#include "studies/design/design_part.h"
-#include "studies/design/optical_model.h"
 
 namespace retrace::studies {
 namespace {
@@ -56,17 +56,19 @@ std::string finding_of(const geometry::Part& part) {
                                : "crosses itself";
 }
 
-std::string boundary_finding(const Design& design, double element_mm) {
+std::string boundary_finding(const design::Design& design, double element_mm) {
   bool is_whole = design.facet_planes() != nullptr || design.mask() != nullptr;
   const geometry::Part part =
-      is_whole ? part_of(design) : geometry::build_part(part_to_check(design.part(), element_mm, is_whole));
+      is_whole ? design::part_of(design) : geometry::build_part(part_to_check(design.part(), element_mm, is_whole));
   if (part.placements.size() != 1) return "not checked: the elements are too small compared with the array";
   const std::string finding = finding_of(part);
   return is_whole ? finding : finding + " (checked on a smaller array of the same elements)";
 }
 
-double least_index(const std::vector<SpectralOptics>& light) {
-  const auto smaller = [](const SpectralOptics& a, const SpectralOptics& b) { return a.optics.index < b.optics.index; };
+double min_refractive_index(const std::vector<design::SpectralOptics>& light) {
+  const auto smaller = [](const design::SpectralOptics& a, const design::SpectralOptics& b) {
+    return a.optics.index < b.optics.index;
+  };
   return std::min_element(light.begin(), light.end(), smaller)->optics.index;
 }
 
@@ -75,9 +77,9 @@ double back_index(const Inspection& result) {
   return result.light.front().optics.back_index;
 }
 
-double mean_index(const std::vector<SpectralOptics>& light) {
+double mean_index(const std::vector<design::SpectralOptics>& light) {
   double mean = 0.0;
-  for (const SpectralOptics& at : light) mean += at.weight * at.optics.index;
+  for (const design::SpectralOptics& at : light) mean += at.weight * at.optics.index;
   return mean;
 }
 
@@ -96,8 +98,8 @@ std::string where_it_begins(const Inspection& result) {
   const geometry::PartSpec& part = result.design.part();
   if (std::holds_alternative<geometry::RtpElement>(part.element)) return {};
   const double away_deg = std::fmod(*result.tir_limit_azimuth_deg + 180.0, 360.0);
-  const auto from_deg =
-      total_reflection_from_deg(part, least_index(result.light), back_index(result), Angle::from_deg(away_deg));
+  const auto from_deg = design::total_reflection_from_deg(part, min_refractive_index(result.light), back_index(result),
+                                                          Angle::from_deg(away_deg));
   if (!from_deg) return {};
   return fmt::format("; total reflection begins at {:.2f} degrees of incidence at azimuth {:.1f}", *from_deg, away_deg);
 }
@@ -118,7 +120,7 @@ void tell_early_end(Inspection& result) {
        fmt::format(
            "{}: total reflection at the facets ends at {} degrees of incidence at azimuth {:.1f} (n = {:.4f}{}){}",
            result.design.source_name(), fixed_visible(*result.tir_limit_deg, 2), *result.tir_limit_azimuth_deg,
-           least_index(result.light), circumstances(result), of_turned_elements(part))});
+           min_refractive_index(result.light), circumstances(result), of_turned_elements(part))});
 }
 
 /// Adds a warning if light at normal incidence is not totally reflected at some wavelengths.
@@ -131,8 +133,8 @@ void warn_of_lost_reflection(Inspection& result) {
   double share = 0.0;
   double from_nm = 0.0;  // range of the wavelengths without total reflection
   double to_nm = 0.0;
-  for (const SpectralOptics& at : result.light) {
-    if (tir_limit_deg(result.design.part(), at.optics.index, at.optics.back_index)) continue;
+  for (const design::SpectralOptics& at : result.light) {
+    if (design::tir_limit_deg(result.design.part(), at.optics.index, at.optics.back_index)) continue;
     if (share == 0.0) from_nm = at.wavelength_nm;
     to_nm = at.wavelength_nm;
     share += at.weight;
@@ -146,7 +148,7 @@ void warn_of_lost_reflection(Inspection& result) {
     result.warnings.push_back(
         {"no_total_reflection",
          fmt::format("{} for {:.0f} % of the light, {:.0f} to {:.0f} nm (n from {:.4f}{}){}", lost, 100.0 * share,
-                     from_nm, to_nm, least_index(result.light), circumstances(result), ends)});
+                     from_nm, to_nm, min_refractive_index(result.light), circumstances(result), ends)});
 }
 
 /// Adds the report on the base. The depth of an element is measured along its own axis; the depth of the part includes
@@ -160,7 +162,7 @@ void add_base(Inspection& result, const geometry::Part& part) {
   result.substrate = report;
   result.element_depth_mm = geometry::element_depth_mm(spec.element, spec.angle_errors);
   if (spec.substrate->element_axes == geometry::ElementAxes::normal)
-    result.full_element_share *= part.entrance_area_mm2 / report.measures.area_mm2;
+    result.full_element_area_fraction *= part.entrance_area_mm2 / report.measures.area_mm2;
 }
 
 void add_warnings(Inspection& result, const geometry::Part& part) {
@@ -172,9 +174,9 @@ void add_warnings(Inspection& result, const geometry::Part& part) {
                                          result.design.source_name(), part.elements_partial)});
 }
 
-Inspection inspect_balls(const Design& design, const materials::MaterialLibrary& library) {
+Inspection inspect_balls(const design::Design& design, const materials::MaterialLibrary& library) {
   const raytrace::BallLayer& layer = *design.balls();
-  const OpticalModel model = make_light_model(design, library);
+  const design::OpticalModel model = design::make_light_model(design, library);
   Inspection result;
   result.design = design;
   result.warnings = model.warnings;
@@ -189,9 +191,9 @@ Inspection inspect_balls(const Design& design, const materials::MaterialLibrary&
   result.facet_area_mm2 = static_cast<double>(result.elements_full) * 2.0 * std::numbers::pi *
                           std::pow(layer.mirror_radius_mm(), 2.0) * (1.0 - cosine);
   BallFigures figures;
-  figures.packing_share = raytrace::packing_share(layer);
-  result.full_element_share = figures.packing_share;
-  result.entrance_area_mm2 = static_cast<double>(result.elements_full) * ball_mm2 / figures.packing_share;
+  figures.packing_fraction = raytrace::packing_fraction(layer);
+  result.full_element_area_fraction = figures.packing_fraction;
+  result.entrance_area_mm2 = static_cast<double>(result.elements_full) * ball_mm2 / figures.packing_fraction;
   const double index = result.refractive_index;
   const double spacer = layer.mirror_offset_mm > 0.0 ? model.optics.back_index : 1.0;
   const double rho = layer.mirror_radius_mm() / layer.radius_mm();
@@ -200,7 +202,7 @@ Inspection inspect_balls(const Design& design, const materials::MaterialLibrary&
     figures.focal_offset_mm = *offset * layer.radius_mm();
   figures.largest_return_error_deg = Angle::from_rad(raytrace::largest_return_error_rad(index, spacer, rho)).deg();
   const double acceptance_rad = Angle::from_deg(design.detector.acceptance_half_angle_deg.front()).rad();
-  figures.share_within_acceptance = raytrace::share_within(acceptance_rad, index, spacer, rho);
+  figures.fraction_within_acceptance = raytrace::fraction_within(acceptance_rad, index, spacer, rho);
   figures.mirror_half_angle_deg = layer.mirror_half_angle_deg;
   result.balls = figures;
   return result;
@@ -210,7 +212,7 @@ Inspection inspect_balls(const Design& design, const materials::MaterialLibrary&
 
 namespace {
 
-void add_zones(Inspection& result, const OpticalModel& model) {
+void add_zones(Inspection& result, const design::OpticalModel& model) {
   const geometry::Part& part = model.part;
   result.zones = report_zones(result.design, model);
   result.boundary = static_cast<double>(part.elements_full + part.elements_partial) <= kElementsToCheck
@@ -220,18 +222,19 @@ void add_zones(Inspection& result, const OpticalModel& model) {
 
 /// Returns the report on the elements that have another medium behind them.
 /// \pre model.wet_elements
-WetReport report_wet_back(const Design& design, const OpticalModel& model) {
+WetReport report_wet_back(const design::Design& design, const design::OpticalModel& model) {
   WetReport wet{model.wet_elements->count(), model.wet_elements->of_all(), {}};
   if (!design.entrance)
-    wet.tir_limit_deg = tir_limit_deg(design.part(), least_index(model.spectral), design.wet_back->index);
+    wet.tir_limit_deg =
+        design::tir_limit_deg(design.part(), min_refractive_index(model.spectral), design.wet_back->index);
   return wet;
 }
 
 }  // namespace
 
-Inspection inspect(const Design& design, const materials::MaterialLibrary& library) {
+Inspection inspect(const design::Design& design, const materials::MaterialLibrary& library) {
   if (design.balls()) return inspect_balls(design, library);
-  const OpticalModel model = make_model(design, library, Entrances::any);
+  const design::OpticalModel model = design::make_model(design, library, design::Entrances::any);
   const geometry::Part& part = model.part;
   Inspection result;
   result.design = design;
@@ -259,17 +262,18 @@ Inspection inspect(const Design& design, const materials::MaterialLibrary& libra
     result.boundary = is_mended ? "see warnings" : "closed, free of self-intersections";
     return result;
   }
-  if (!model.optics.facet_form.is_plane()) result.form = report_form(design, model.optics.facet_form);
+  if (!model.optics.facet_form.is_plane()) result.form = design::report_form(design, model.optics.facet_form);
   const double aperture = geometry::area(geometry::aperture_outline(design.part().element));
-  result.full_element_share = static_cast<double>(part.elements_full) * aperture / part.entrance_area_mm2;
+  result.full_element_area_fraction = static_cast<double>(part.elements_full) * aperture / part.entrance_area_mm2;
   if (design.part().substrate) {
     add_base(result, part);
   } else if (!design.entrance) {
-    result.tir_limit_deg = tir_limit_deg(design.part(), least_index(model.spectral), model.optics.back_index);
-    if (design.needs_total_reflection()) result.tir_limit_azimuth_deg = tir_limit_azimuth_deg(design.part());
+    result.tir_limit_deg =
+        design::tir_limit_deg(design.part(), min_refractive_index(model.spectral), model.optics.back_index);
+    if (design.needs_total_reflection()) result.tir_limit_azimuth_deg = design::tir_limit_azimuth_deg(design.part());
   }
   if (model.wet_elements) result.wet_back = report_wet_back(design, model);
-  result.dead_zone_share = geometry::edge_share(geometry::finished_cell(
+  result.dead_zone_fraction = geometry::edge_fraction(geometry::finished_cell(
       geometry::element_cell(design.part().element, design.part().angle_errors), design.part()));
   result.boundary = boundary_finding(design, part.size_mm);
   add_warnings(result, part);

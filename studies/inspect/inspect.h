@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "core/warning.h"
+#include "design/design.h"
+#include "design/form_of_design.h"
+#include "design/optical_model.h"
+#include "design/total_reflection.h"
 #include "geometry/elements/substrate_checks.h"
 #include "materials/io/material_library.h"
-#include "studies/design/design.h"
-#include "studies/design/form_of_design.h"
-#include "studies/design/optical_model.h"
-#include "studies/design/total_reflection.h"
 #include "studies/inspect/coating_report.h"
 #include "studies/inspect/entrance_report.h"
 #include "studies/inspect/entrance_state_report.h"
@@ -24,7 +24,7 @@ namespace retrace::studies {
 
 /// Figures of a layer of balls, or of a single ball, for light along its axis, in closed form (docs/theory/beads.md).
 struct BallFigures {
-  double packing_share = 0.0;  ///< fraction of the plan that balls cover
+  double packing_fraction = 0.0;  ///< fraction of the plan that balls cover
   /// Derivative of the return error with respect to h / radius at h = 0, in rad. h is the distance of the light from
   /// the axis of the ball. If the derivative is 0, light near the axis returns parallel to it.
   double paraxial_error = 0.0;
@@ -32,7 +32,7 @@ struct BallFigures {
   double largest_return_error_deg = 0.0;  ///< maximum over the aperture, due to spherical aberration
   /// Fraction of the aperture whose light returns within the narrowest acceptance cone of the detector. It follows from
   /// geometry only, without Fresnel losses.
-  double share_within_acceptance = 0.0;
+  double fraction_within_acceptance = 0.0;
   double mirror_half_angle_deg = 0.0;
 };
 
@@ -54,17 +54,17 @@ struct WetReport {
 
 /// Properties of a design before tracing. Areas and counts of an infinite array are those of one period.
 struct Inspection {
-  Design design;
+  design::Design design;
   std::int64_t elements_full = 0;
   std::int64_t elements_partial = 0;
   double element_depth_mm = 0.0;
   double facet_area_mm2 = 0.0;  ///< area of all retro facets, including partial elements
   double entrance_area_mm2 = 0.0;
   double thickness_mm = 0.0;
-  double full_element_share = 0.0;    ///< fraction of the entrance area
-  double wavelength_nm = 0.0;         ///< wavelength of the light; for a spectrum, its centroid
-  double refractive_index = 1.0;      ///< refractive index; for a spectrum, its mean
-  std::vector<SpectralOptics> light;  ///< traced wavelengths of a spectrum, or the only wavelength
+  double full_element_area_fraction = 0.0;    ///< fraction of the entrance area
+  double wavelength_nm = 0.0;                 ///< wavelength of the light; for a spectrum, its centroid
+  double refractive_index = 1.0;              ///< refractive index; for a spectrum, its mean
+  std::vector<design::SpectralOptics> light;  ///< traced wavelengths of a spectrum, or the only wavelength
   /// Maximum incidence up to which every facet reflects the retroreflected light totally: across the roof edge for
   /// prisms, at every azimuth for cube corners. For a spectrum, it is that of the wavelength with the smallest index.
   /// None if there is no total reflection even at normal incidence. Also none if facets are mirrors or have an opaque
@@ -78,11 +78,11 @@ struct Inspection {
   /// Curved entrance face. Limits of total reflection are nevertheless those of light that enters through a plane.
   std::optional<EntranceReport> entrance;
   std::optional<WetReport> wet_back;
-  std::optional<ZonesReport> zones;  ///< zones of the part; empty if it has none
-  std::optional<FormReport> form;    ///< form of the facets; empty for plane facets
+  std::optional<ZonesReport> zones;        ///< zones of the part; empty if it has none
+  std::optional<design::FormReport> form;  ///< form of the facets; empty for plane facets
   CoatingReports coating;
   std::optional<EntranceStateReport> entrance_state;  ///< state of a face that is not clean
-  double dead_zone_share = 0.0;  ///< fraction of an element's plan that rounded and chamfered edges occupy
+  double dead_zone_fraction = 0.0;  ///< fraction of an element's plan that rounded and chamfered edges occupy
   /// Figures for kind = "ball". If they are set, only this member, the light, the counts and the areas are valid.
   std::optional<BallFigures> balls;
   std::string boundary;  ///< result of the boundary check
@@ -91,6 +91,6 @@ struct Inspection {
 
 /// Returns the properties of a design.
 /// \throw InputError under the same conditions as make_model()
-Inspection inspect(const Design& design, const materials::MaterialLibrary& library);
+Inspection inspect(const design::Design& design, const materials::MaterialLibrary& library);
 
 }  // namespace retrace::studies

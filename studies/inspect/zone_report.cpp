@@ -20,9 +20,9 @@ constexpr int kAzimuths = 4;
 /// acceptance cone, because angle errors may deflect light beyond the cone.
 constexpr double kBackDeg = 5.0;
 
-class Wanderer {
+class LateralShiftSampler {
  public:
-  Wanderer(const Design& design, const OpticalModel& model)
+  LateralShiftSampler(const design::Design& design, const design::OpticalModel& model)
       : zones_(model.part.zones),
         model_(model),
         optics_(model.optics),
@@ -83,7 +83,7 @@ class Wanderer {
   }
 
   const std::vector<geometry::ZoneElements>& zones_;
-  const OpticalModel& model_;
+  const design::OpticalModel& model_;
   raytrace::Optics optics_;
   Vec2 size_mm_;
   raytrace::BackSurface surface_;
@@ -91,8 +91,8 @@ class Wanderer {
 
 }  // namespace
 
-ZonesReport report_zones(const Design& design, const OpticalModel& model) {
-  const Wanderer wanderer(design, model);
+ZonesReport report_zones(const design::Design& design, const design::OpticalModel& model) {
+  const LateralShiftSampler wanderer(design, model);
   ZonesReport report;
   for (const geometry::ZoneElements& zone : model.part.zones) report.zones.push_back({zone, std::nullopt});
   if (design.entrance) return report;  // the paths are computed only behind a plane entrance face
@@ -101,12 +101,12 @@ ZonesReport report_zones(const Design& design, const OpticalModel& model) {
     double changed = 0.0;
     const int azimuths = incidence_deg == 0.0 ? 1 : kAzimuths;
     for (int a = 0; a < azimuths; ++a) {
-      const std::vector<Wanderer::Way> ways = wanderer.follow(incidence_deg, 360.0 * a / azimuths);
+      const std::vector<LateralShiftSampler::Way> ways = wanderer.follow(incidence_deg, 360.0 * a / azimuths);
       for (std::size_t z = 0; z < ways.size(); ++z) {
         power += ways[z].power;
         changed += ways[z].power_that_changes;
         if (incidence_deg == 0.0 && ways[z].power > 0.0)
-          report.zones[z].wander_mm = ways[z].power_times_mm / ways[z].power;
+          report.zones[z].lateral_shift_mm = ways[z].power_times_mm / ways[z].power;
       }
     }
     report.crossings.push_back({incidence_deg, power > 0.0 ? changed / power : 0.0});

@@ -6,9 +6,9 @@
 #include <optional>
 #include <vector>
 
+#include "design/design.h"
+#include "design/optical_model.h"
 #include "geometry/part/part.h"
-#include "studies/design/design.h"
-#include "studies/design/optical_model.h"
 
 namespace retrace::studies {
 
@@ -18,13 +18,13 @@ struct ZoneReport {
   /// Mean distance, in plan, between the first and the last point at which returned light hits the back of the part. It
   /// refers to light that enters along the normal and hits this zone first. None if no light returns, and for a curved
   /// entrance face.
-  std::optional<double> wander_mm;
+  std::optional<double> lateral_shift_mm;
 };
 
 /// Light at one incidence, averaged over azimuths.
 struct ZoneCrossing {
   double incidence_deg = 0.0;
-  double share = 0.0;  ///< fraction of the returned light whose first and last point are in different zones
+  double fraction = 0.0;  ///< fraction of the returned light whose first and last point are in different zones
 };
 
 struct ZonesReport {
@@ -36,6 +36,6 @@ struct ZonesReport {
 /// interface, only the stronger branch is traced. The figures are accurate to a few percent of their values. Rough
 /// facets are treated as smooth.
 /// \pre design.zoned()
-ZonesReport report_zones(const Design& design, const OpticalModel& model);
+ZonesReport report_zones(const design::Design& design, const design::OpticalModel& model);
 
 }  // namespace retrace::studies

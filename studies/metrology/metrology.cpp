@@ -18,11 +18,11 @@ using namespace surface_models;
 
 /// Maximum number of rows of a map to which an edge is fitted. Of more rows, evenly spaced ones are selected. The fit
 /// of one row takes some milliseconds.
-constexpr std::size_t kMostEdgeProfiles = 256;
+constexpr std::size_t kMaxEdgeProfiles = 256;
 /// Minimum number of points per cut-off length. With fewer points, the filter is not sampled.
-constexpr double kLeastPointsPerCutoff = 2.0;
-constexpr double kMissingShareToTell = 0.05;
-constexpr double kLeastPointsPerLength = 2.0;
+constexpr double kMinPointsPerCutoff = 2.0;
+constexpr double kMaxMissingFraction = 0.05;
+constexpr double kMinPointsPerLength = 2.0;
 /// Range on each side of a scratch with which the scratch is compared, in cut-off lengths.
 constexpr double kBesideScratch = 0.25;
 
@@ -30,7 +30,7 @@ constexpr double kBesideScratch = 0.25;
 /// \param name name of the map, for error messages
 void check_spacing(const std::string& name, double cutoff_um, const HeightMap& map) {
   const double coarser = map.is_profile() ? map.x_pixel_um : std::max(map.x_pixel_um, map.y_pixel_um);
-  if (cutoff_um < kLeastPointsPerCutoff * coarser)
+  if (cutoff_um < kMinPointsPerCutoff * coarser)
     throw InputError(
         {name, 0, reference({"cutoff_um"})},
         fmt::format("must be at least twice the spacing of {} um, got {}", shortest(coarser), shortest(cutoff_um)));
@@ -41,11 +41,11 @@ void check_spacing(const std::string& name, double cutoff_um, const HeightMap& m
 int degree_of(const std::string& form) {
   return form == "none" ? 0 : form == "plane" ? 1 : form.back() - '0';
 }
-static_assert(kMostFormDegree < 10, "the degree of a form is one digit");
+static_assert(kMaxFormDegree < 10, "the degree of a form is one digit");
 
-/// Returns every n-th row of a map, with the smallest n for which at most kMostEdgeProfiles rows remain.
+/// Returns every n-th row of a map, with the smallest n for which at most kMaxEdgeProfiles rows remain.
 HeightMap thinned(const HeightMap& map) {
-  const std::size_t stride = (map.rows + kMostEdgeProfiles - 1) / kMostEdgeProfiles;
+  const std::size_t stride = (map.rows + kMaxEdgeProfiles - 1) / kMaxEdgeProfiles;
   HeightMap thin{map.columns, 0, map.x_pixel_um, map.y_pixel_um * static_cast<double>(stride), {}};
   for (std::size_t row = 0; row < map.rows; row += stride, ++thin.rows)
     for (std::size_t column = 0; column < map.columns; ++column) thin.heights_nm.push_back(map.at(column, row));
@@ -93,7 +93,7 @@ void measure_edge(MetrologyResult& result, const HeightMap& whole) {
 
 void warn(MetrologyResult& result, const HeightMap& map) {
   const double missing = static_cast<double>(result.missing) / static_cast<double>(map.heights_nm.size());
-  if (missing > kMissingShareToTell)
+  if (missing > kMaxMissingFraction)
     result.warnings.push_back(
         {"missing_points", fmt::format("{} % of the points are missing", fixed(100.0 * missing, 1))});
   const double x_um = static_cast<double>(map.columns) * map.x_pixel_um;
@@ -108,7 +108,7 @@ void warn(MetrologyResult& result, const HeightMap& map) {
     result.warnings.push_back(
         {"no_correlation_length",
          "no correlation length: the autocorrelation of the roughness does not fall to 1/e within the cut-off"});
-  if (length && *length < kLeastPointsPerLength * map.x_pixel_um)
+  if (length && *length < kMinPointsPerLength * map.x_pixel_um)
     result.warnings.push_back(
         {"correlation_length_unresolved",
          fmt::format("the correlation length of {} um is not resolved by the point spacing of {} um", fixed(*length, 3),

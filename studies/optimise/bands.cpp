@@ -14,7 +14,7 @@ namespace retrace::studies {
 namespace {
 
 /// Returns the value of a key in a design; for a list, its first value. Returns nothing for a key without a value.
-std::optional<double> nominal_of(const std::string& key, const Design& design) {
+std::optional<double> nominal_of(const std::string& key, const design::Design& design) {
   const schema::Value value = design.document->value(key);
   if (const auto* const numbers = std::get_if<std::vector<double>>(&value)) return numbers->front();
   return design.document->number_if(key);

@@ -46,7 +46,7 @@ Evaluator::Evaluator(const Study& study, const OptimiseRequest& request, compute
   for (compute::StoredPoint& point : store.points()) {
     std::string key;
     for (const compute::StoredValue& value : point.inputs) key += text_of(value) + '\n';
-    taken_.insert(point.point);
+    used_numbers_.insert(point.point);
     stored_.emplace(std::move(key), std::move(point));
   }
 }
@@ -54,11 +54,11 @@ Evaluator::Evaluator(const Study& study, const OptimiseRequest& request, compute
 /// Returns the lowest point number that no stored point has. A search evaluates its designs in a fixed order.
 /// Therefore, each point of a resumed run has the same number as in an uninterrupted run.
 std::uint64_t Evaluator::free_number() {
-  while (taken_.contains(next_)) ++next_;
+  while (used_numbers_.contains(next_)) ++next_;
   return next_++;
 }
 
-std::vector<Variant> Evaluator::look_at(const std::vector<PointValues>& designs) {
+std::vector<Variant> Evaluator::evaluate(const std::vector<PointValues>& designs) {
   std::vector<PointValues> open;
   std::vector<std::string> keys;
   std::set<std::string> asked;
@@ -95,24 +95,24 @@ std::vector<Variant> Evaluator::look_at(const std::vector<PointValues>& designs)
     if (points[k] && !has_run_out) store_.record(*points[k]);
   });
   for (std::size_t k = 0; k < open.size(); ++k)
-    if (ran_out[k] != 0 && ran_out_++ == 0) ran_out_because_ = points[k]->reason;
+    if (ran_out[k] != 0 && budget_failures_++ == 0) budget_failure_reason_ = points[k]->reason;
   for (std::size_t k = 0; k < open.size(); ++k) {
     if (!points[k]) throw Interrupted{};
-    numbers_[keys[k]] = seen_.size();
-    seen_.push_back(variant_of(*points[k], open[k]));
+    numbers_[keys[k]] = evaluated_.size();
+    evaluated_.push_back(variant_of(*points[k], open[k]));
   }
-  if (observer_ != nullptr) observer_->at(seen_.size());
+  if (observer_ != nullptr) observer_->at(evaluated_.size());
   if (cancel_ != nullptr && cancel_->requested()) throw Interrupted{};
   std::vector<Variant> found;
-  for (const PointValues& design : designs) found.push_back(seen_[numbers_.at(key_of(design))]);
+  for (const PointValues& design : designs) found.push_back(evaluated_[numbers_.at(key_of(design))]);
   return found;
 }
 
-void Evaluator::take_in(const std::vector<Variant>& seen) {
+void Evaluator::add_evaluated(const std::vector<Variant>& seen) {
   for (Variant variant : seen) {
-    if (!numbers_.try_emplace(key_of(variant.values), seen_.size()).second) continue;
-    judge(variant);
-    seen_.push_back(std::move(variant));
+    if (!numbers_.try_emplace(key_of(variant.values), evaluated_.size()).second) continue;
+    check_constraints(variant);
+    evaluated_.push_back(std::move(variant));
   }
 }
 
@@ -123,7 +123,7 @@ Variant Evaluator::variant_of(const compute::StoredPoint& point, const PointValu
   variant.failed = point.failed;
   variant.reason = point.reason;
   variant.outputs = point.outputs;
-  judge(variant);
+  check_constraints(variant);
   return variant;
 }
 
@@ -133,7 +133,7 @@ std::optional<double> Evaluator::value(const Variant& variant, const std::string
   return std::nullopt;
 }
 
-void Evaluator::judge(Variant& variant) const {
+void Evaluator::check_constraints(Variant& variant) const {
   variant.objective.reset();
   variant.broken.clear();
   if (variant.failed) return;
@@ -147,7 +147,7 @@ void Evaluator::judge(Variant& variant) const {
     sum += weight * *term;
     least = std::min(least, weight * *term);
   }
-  if (has_all) variant.objective = request_.objective.is_least ? least : sum;
+  if (has_all) variant.objective = request_.objective.uses_minimum ? least : sum;
   for (std::size_t k = 0; k < request_.constraints.size(); ++k)
     if (request_.constraints[k].violation(value(variant, request_.constraints[k].quantity)) > 0.0)
       variant.broken.push_back(k);
@@ -157,7 +157,7 @@ namespace {
 
 /// Returns the RRE parameter that a parameter of a study corresponds to, and its change per unit of the study's
 /// parameter.
-std::optional<std::pair<RreParameter, double>> rre_parameter(const Parameter& parameter, const Design& design) {
+std::optional<std::pair<RreParameter, double>> rre_parameter(const Parameter& parameter, const design::Design& design) {
   constexpr double deg_per_arcmin = 1.0 / 60.0;
   const std::set<std::string> varied(parameter.keys.begin(), parameter.keys.end());
   // For a prism, the error of the angle between the facets is an error of the apex angle.
@@ -174,7 +174,7 @@ std::optional<std::pair<RreParameter, double>> rre_parameter(const Parameter& pa
 }  // namespace
 
 std::optional<double> Evaluator::slope(const PointValues& design, std::size_t parameter) const {
-  if (request_.objective.is_least) return std::nullopt;
+  if (request_.objective.uses_minimum) return std::nullopt;
   try {
     const Candidate candidate = make_candidate(study_, design);
     if (!candidate.design().elements()) return std::nullopt;

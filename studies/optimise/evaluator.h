@@ -24,18 +24,18 @@ class Evaluator {
   /// Evaluates designs and returns the results in the given order. Several designs are computed in parallel.
   /// \throw Interrupted if the search was cancelled
   /// \throw OutputError if a result cannot be stored
-  std::vector<Variant> look_at(const std::vector<PointValues>& designs);
-  Variant look_at(const PointValues& design) { return look_at(std::vector<PointValues>{design}).front(); }
+  std::vector<Variant> evaluate(const std::vector<PointValues>& designs);
+  Variant evaluate(const PointValues& design) { return evaluate(std::vector<PointValues>{design}).front(); }
   /// Adds designs that another search of this study has evaluated. They are not evaluated again.
-  void take_in(const std::vector<Variant>& seen);
+  void add_evaluated(const std::vector<Variant>& seen);
 
   /// Returns all designs evaluated so far, in the order of their first evaluation.
-  const std::vector<Variant>& seen() const { return seen_; }
+  const std::vector<Variant>& evaluated() const { return evaluated_; }
   /// Returns the number of designs that failed because the budget of memory or beams was exhausted. Such designs are
   /// not stored, so that a resumed search with a larger budget evaluates them again.
-  std::size_t ran_out() const { return ran_out_; }
+  std::size_t budget_failures() const { return budget_failures_; }
   /// Returns the error message of the first design that exhausted the budget. Empty if there is none.
-  const std::string& ran_out_because() const { return ran_out_because_; }
+  const std::string& budget_failure_reason() const { return budget_failure_reason_; }
   /// Returns the value of a quantity, or nothing if the quantity has no value for this design.
   std::optional<double> value(const Variant& variant, const std::string& quantity) const;
   /// Returns the derivative (slope) of the objective with respect to a parameter. Returns nothing if the derivative of
@@ -45,7 +45,7 @@ class Evaluator {
  private:
   static std::string key_of(const PointValues& design);
   std::uint64_t free_number();
-  void judge(Variant& variant) const;
+  void check_constraints(Variant& variant) const;
   Variant variant_of(const compute::StoredPoint& point, const PointValues& design) const;
 
   const Study& study_;
@@ -57,10 +57,10 @@ class Evaluator {
   std::map<std::string, std::size_t> numbers_;
   std::map<std::string, compute::StoredPoint>
       stored_;  ///< points of an earlier run; the key is a text of the parameter values
-  std::vector<Variant> seen_;
-  std::set<std::uint64_t> taken_;  ///< numbers of the points in the store
-  std::size_t ran_out_ = 0;
-  std::string ran_out_because_;
+  std::vector<Variant> evaluated_;
+  std::set<std::uint64_t> used_numbers_;  ///< numbers of the points in the store
+  std::size_t budget_failures_ = 0;
+  std::string budget_failure_reason_;
   std::uint64_t next_ = 0;
 };
 

@@ -24,7 +24,7 @@ constexpr double kNearlyAsGood = 0.01;
 /// Minimum gain of a cheaper design in the quantity for which it is proposed, as a fraction of the chosen design's
 /// value.
 constexpr double kWorthIt = 1e-3;
-constexpr std::uint64_t kMostCombinations = 10'000;
+constexpr std::uint64_t kMaxCombinations = 10'000;
 constexpr const char* kStoreKind = "retrace.optimum/1";
 
 }  // namespace
@@ -72,9 +72,9 @@ class Scan {
           longer.back().push_back(value);
         }
       }
-      if (longer.size() > kMostCombinations)
+      if (longer.size() > kMaxCombinations)
         throw InputError(parameter.location,
-                         fmt::format("the study has more than {} combinations of discrete values", kMostCombinations));
+                         fmt::format("the study has more than {} combinations of discrete values", kMaxCombinations));
       all = std::move(longer);
     }
     return all;
@@ -143,7 +143,7 @@ class Search {
   std::optional<Variant> run(Optimum& optimum) {
     std::vector<Variant> starts;
     for (const PointValues& combination : scan_.combinations()) {
-      const std::vector<Variant> scanned = evaluator_.look_at(scan_.of(combination));
+      const std::vector<Variant> scanned = evaluator_.evaluate(scan_.of(combination));
       look_at_edges(scanned);
       std::optional<Variant> best;
       for (const Variant& variant : scanned)
@@ -169,7 +169,7 @@ class Search {
         if (!value) continue;
         PointValues design = best.values;
         design[k] = *value;
-        found.push_back({evaluator_.look_at(design),
+        found.push_back({evaluator_.evaluate(design),
                          fmt::format("{} {}", step < 0 ? "lower" : "higher", study_.parameters[k].name), ""});
       }
     return found;
@@ -177,7 +177,7 @@ class Search {
 
   std::optional<Variant> best_seen() const {
     std::optional<Variant> best;
-    for (const Variant& variant : evaluator_.seen())
+    for (const Variant& variant : evaluator_.evaluated())
       if (variant.feasible() && (!best || is_better(variant, *best))) best = variant;
     return best;
   }
@@ -197,10 +197,10 @@ class Search {
     const std::size_t k = continuous_.front();
     const Interval& interval = *study_.parameters[k].interval;
     for (int bisection = 0; bisection < most_bisections; ++bisection) {
-      const double a = share_of(interval, std::get<double>(inside.values[k].shown));
-      const double b = share_of(interval, std::get<double>(outside.values[k].shown));
+      const double a = fraction_of(interval, std::get<double>(inside.values[k].shown));
+      const double b = fraction_of(interval, std::get<double>(outside.values[k].shown));
       if (std::abs(a - b) < 1e-9) return;
-      const Variant middle = evaluator_.look_at(scan_.with(inside.values, {0.5 * (a + b)}));
+      const Variant middle = evaluator_.evaluate(scan_.with(inside.values, {0.5 * (a + b)}));
       (middle.feasible() ? inside : outside) = middle;
     }
   }
@@ -216,7 +216,7 @@ class Search {
         const double value = std::stod(fmt::format("{:.{}e}", std::get<double>(design[k].shown), digits - 1));
         design[k] = Parameter::value_of(std::clamp(value, interval.from, interval.to));
       }
-      const Variant variant = evaluator_.look_at(design);
+      const Variant variant = evaluator_.evaluate(design);
       if (variant.feasible() && *variant.objective >= *best.objective - kForRoundness * std::abs(*best.objective))
         return variant;
     }
@@ -226,7 +226,7 @@ class Search {
   std::optional<ParameterValue> beside(std::size_t parameter, const ParameterValue& value, int step) const {
     const Parameter& p = study_.parameters[parameter];
     if (p.interval) {
-      const double here = share_of(*p.interval, std::get<double>(value.shown));
+      const double here = fraction_of(*p.interval, std::get<double>(value.shown));
       const double there = std::clamp(here + step / static_cast<double>(request_.scan - 1), 0.0, 1.0);
       if (std::abs(there - here) < 1e-12) return std::nullopt;
       return Parameter::value_of(p.interval->at(there));
@@ -270,7 +270,7 @@ std::string why_not(const Variant& variant, const Variant& best, const OptimiseR
 template <class Excluded>
 std::optional<Variant> best_excluded(const Evaluator& evaluator, Excluded excluded) {
   std::optional<Variant> found;
-  for (const Variant& variant : evaluator.seen())
+  for (const Variant& variant : evaluator.evaluated())
     if (variant.objective && excluded(variant) && (!found || is_better(variant, *found))) found = variant;
   return found;
 }
@@ -298,7 +298,7 @@ std::optional<std::vector<double>> merits(const Variant& variant, const Optimise
   for (const FrontAxis& axis : request.front) {
     const std::optional<double> value = evaluator.value(variant, axis.quantity);
     if (!value) return std::nullopt;
-    merits.push_back(axis.largest ? *value : -*value);
+    merits.push_back(axis.is_maximized ? *value : -*value);
   }
   return merits;
 }
@@ -315,7 +315,7 @@ bool dominates(const std::vector<double>& a, const std::vector<double>& b) {
 
 std::vector<Variant> entrance_of(const OptimiseRequest& request, const Evaluator& evaluator) {
   std::vector<std::pair<std::vector<double>, const Variant*>> open;
-  for (const Variant& variant : evaluator.seen()) {
+  for (const Variant& variant : evaluator.evaluated()) {
     if (!variant.feasible()) continue;
     if (auto m = merits(variant, request, evaluator)) open.emplace_back(std::move(*m), &variant);
   }
@@ -343,7 +343,7 @@ std::optional<Variant> cheaper_than(const Optimum& optimum, const OptimiseReques
                         [&](const auto& weight) { return weight.first == a.quantity; });
   });
   if (axis == request.front.end()) return std::nullopt;
-  const double sign = axis->largest ? 1.0 : -1.0;
+  const double sign = axis->is_maximized ? 1.0 : -1.0;
   const auto merit = [&](const Variant& v) { return sign * evaluator.value(v, axis->quantity).value(); };
   const double least = *optimum.best->objective - kNearlyAsGood * std::abs(*optimum.best->objective);
   std::optional<Variant> found;
@@ -358,13 +358,13 @@ std::optional<Variant> cheaper_than(const Optimum& optimum, const OptimiseReques
 /// Returns, for each constraint, how many evaluated designs violate it, and the smallest violation.
 std::vector<Exclusion> exclusions_of(const OptimiseRequest& request, const Evaluator& evaluator) {
   std::vector<Exclusion> exclusions(request.constraints.size());
-  for (const Variant& variant : evaluator.seen()) {
+  for (const Variant& variant : evaluator.evaluated()) {
     if (variant.failed) continue;
     for (const std::size_t k : variant.broken) ++exclusions[k].designs;
     for (std::size_t k = 0; k < exclusions.size(); ++k) {
       const Constraint& constraint = request.constraints[k];
-      exclusions[k].least_violation =
-          std::min(exclusions[k].least_violation, constraint.violation(evaluator.value(variant, constraint.quantity)));
+      exclusions[k].min_violation =
+          std::min(exclusions[k].min_violation, constraint.violation(evaluator.value(variant, constraint.quantity)));
     }
   }
   return exclusions;
@@ -381,8 +381,8 @@ std::string why_none(const OptimiseRequest& request, const std::vector<Exclusion
     if (exclusions[k].designs == judged) {
       text += fmt::format("{}{} excludes all {} designs", text.empty() ? "" : ", and ", request.constraints[k].text(),
                           judged);
-      if (std::isfinite(exclusions[k].least_violation))
-        text += fmt::format(" (the closest design violates it by {:.3g})", exclusions[k].least_violation);
+      if (std::isfinite(exclusions[k].min_violation))
+        text += fmt::format(" (the closest design violates it by {:.3g})", exclusions[k].min_violation);
     }
   if (!text.empty()) return text;
   for (std::size_t k = 0; k < exclusions.size(); ++k)
@@ -398,7 +398,7 @@ void search(const Study& study, const OptimiseRequest& request, Evaluator& evalu
   optimum.best = searching.run(optimum);
   if (!optimum.best) {
     optimum.exclusions = exclusions_of(request, evaluator);
-    optimum.none_because = why_none(request, optimum.exclusions, evaluator.seen());
+    optimum.infeasible_reason = why_none(request, optimum.exclusions, evaluator.evaluated());
     return;
   }
   std::vector<Rejected> neighbours = searching.neighbours(*optimum.best);
@@ -414,7 +414,7 @@ void search(const Study& study, const OptimiseRequest& request, Evaluator& evalu
     rejected.why = why_not(rejected.variant, *optimum.best, request, evaluator);
   optimum.front = entrance_of(request, evaluator);
   optimum.cheaper = cheaper_than(optimum, request, evaluator);
-  for (const std::string& key : request.bands_of)
+  for (const std::string& key : request.band_keys)
     optimum.bands.push_back(tolerance_band(study, request, *optimum.best, key, cancel));
 }
 
@@ -438,9 +438,9 @@ Optimum optimise(const Study& study, const OptimiseRequest& request, Evaluator& 
     optimum = {};
     optimum.complete = false;
   }
-  optimum.evaluations = evaluator.seen().size();
-  optimum.ran_out = evaluator.ran_out();
-  optimum.ran_out_because = evaluator.ran_out_because();
+  optimum.evaluations = evaluator.evaluated().size();
+  optimum.budget_failures = evaluator.budget_failures();
+  optimum.budget_failure_reason = evaluator.budget_failure_reason();
   return optimum;
 }
 

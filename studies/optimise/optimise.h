@@ -22,22 +22,22 @@ namespace retrace::studies {
 /// Objective that is maximized: a weighted sum of quantities. Negative weights minimize a quantity.
 struct Objective {
   std::vector<std::pair<std::string, double>> weights;
-  bool is_least = false;  ///< true: the minimum of the weighted quantities replaces their sum
+  bool uses_minimum = false;  ///< true: the minimum of the weighted quantities replaces their sum
 };
 
 /// Axis of the Pareto front.
 struct FrontAxis {
   std::string quantity;
-  bool largest = true;  ///< true: large values are good; false: small values are good
+  bool is_maximized = true;  ///< true: large values are good; false: small values are good
 };
 
 struct OptimiseRequest {
   Objective objective;
   std::vector<Constraint> constraints;
   std::vector<FrontAxis> front;
-  std::size_t scan = 65;              ///< number of designs in the first scan, for each combination of discrete values
-  std::vector<std::string> bands_of;  ///< keys whose tolerance bands are requested
-  double band_loss = 0.01;            ///< relative loss of the objective at which a tolerance band ends
+  std::size_t scan = 65;               ///< number of designs in the first scan, for each combination of discrete values
+  std::vector<std::string> band_keys;  ///< keys whose tolerance bands are requested
+  double band_loss = 0.01;             ///< relative loss of the objective at which a tolerance band ends
 };
 
 /// Evaluated design with its results.
@@ -73,12 +73,12 @@ struct ToleranceBand {
 struct Exclusion {
   std::size_t designs = 0;  ///< number of designs that violate the constraint
   /// Smallest violation over all evaluated designs; infinite if the constrained quantity has no value for any design.
-  double least_violation = std::numeric_limits<double>::infinity();
+  double min_violation = std::numeric_limits<double>::infinity();
 };
 
 struct Optimum {
-  std::optional<Variant> best;  ///< none if no design is feasible
-  std::string none_because;     ///< text that explains why no design is feasible; empty if there is a best design
+  std::optional<Variant> best;    ///< none if no design is feasible
+  std::string infeasible_reason;  ///< text that explains why no design is feasible; empty if there is a best design
   /// Effect of each constraint, in the order of the constraints. Empty if there is a best design.
   std::vector<Exclusion> exclusions;
   std::vector<Variant> front;  ///< feasible designs that no other design dominates
@@ -89,8 +89,9 @@ struct Optimum {
   std::vector<ToleranceBand> bands;
   std::string method;  ///< method of the refinement: "exact slopes" or "no slopes"
   std::size_t evaluations = 0;
-  std::size_t ran_out = 0;      ///< number of designs that failed because the budget of memory or beams was exhausted
-  std::string ran_out_because;  ///< error message of the first of the designs that `ran_out` counts
+  std::size_t budget_failures =
+      0;  ///< number of designs that failed because the budget of memory or beams was exhausted
+  std::string budget_failure_reason;  ///< error message of the first of the designs that `ran_out` counts
   bool complete = true;
 };
 
@@ -100,10 +101,10 @@ class OptimiseObserver {
   virtual ~OptimiseObserver() = default;
   virtual void at(std::size_t evaluated) = 0;
   /// Reports the progress of a group of designs that are evaluated together.
-  /// \param share finished fraction of the group; 0 when the group begins
+  /// \param fraction finished fraction of the group; 0 when the group begins
   /// \param designs number of designs in the group
-  virtual void at_group(double share, std::size_t designs) {
-    static_cast<void>(share);
+  virtual void at_group(double fraction, std::size_t designs) {
+    static_cast<void>(fraction);
     static_cast<void>(designs);
   }
 };

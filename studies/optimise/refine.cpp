@@ -9,7 +9,7 @@
 
 namespace retrace::studies {
 
-double share_of(const Interval& interval, double value) {
+double fraction_of(const Interval& interval, double value) {
   if (interval.logarithmic) return std::log(value / interval.from) / std::log(interval.to / interval.from);
   return (value - interval.from) / (interval.to - interval.from);
 }
@@ -17,7 +17,7 @@ double share_of(const Interval& interval, double value) {
 namespace {
 
 /// Maximum number of computed derivatives (slopes). A derivative takes about as much time as a hundred evaluations.
-constexpr int kMostSlopes = 12;
+constexpr int kMaxSlopes = 12;
 constexpr double kSmallestStep = 1e-8;
 constexpr double kDifference = 1e-6;
 
@@ -42,11 +42,11 @@ class Problem {
 
   std::size_t dimensions() const { return continuous_.size(); }
 
-  std::vector<double> shares() const {
+  std::vector<double> fractions() const {
     std::vector<double> shares;
     for (const std::size_t k : continuous_)
       shares.push_back(
-          std::clamp(share_of(*study_.parameters[k].interval, std::get<double>(design_[k].shown)), 0.0, 1.0));
+          std::clamp(fraction_of(*study_.parameters[k].interval, std::get<double>(design_[k].shown)), 0.0, 1.0));
     return shares;
   }
 
@@ -59,7 +59,7 @@ class Problem {
 
   double objective(const std::vector<double>& shares, std::vector<double>& gradient) {
     const PointValues values = design(shares);
-    const Variant variant = evaluator_.look_at(values);
+    const Variant variant = evaluator_.evaluate(values);
     for (std::size_t k = 0; k < gradient.size(); ++k) {
       const std::optional<double> slope = evaluator_.slope(values, continuous_[k]);
       if (!slope) throw NoSlope{};
@@ -73,9 +73,9 @@ class Problem {
 
   /// Returns by how much a design exceeds one limit of a constraint; <= 0 if the limit is satisfied.
   double excess(const std::vector<double>& shares, const Constraint& constraint, bool most) {
-    const std::optional<double> value = evaluator_.value(evaluator_.look_at(design(shares)), constraint.quantity);
+    const std::optional<double> value = evaluator_.value(evaluator_.evaluate(design(shares)), constraint.quantity);
     if (!value) return 1.0;
-    return most ? *value - *constraint.most : *constraint.least - *value;
+    return most ? *value - *constraint.max : *constraint.min - *value;
   }
 
  private:
@@ -130,8 +130,8 @@ double excess_for_nlopt(const std::vector<double>& shares, std::vector<double>& 
 std::vector<Side> sides_of(const OptimiseRequest& request, Problem& problem) {
   std::vector<Side> sides;
   for (const Constraint& constraint : request.constraints) {
-    if (constraint.least) sides.push_back({&problem, &constraint, false});
-    if (constraint.most) sides.push_back({&problem, &constraint, true});
+    if (constraint.min) sides.push_back({&problem, &constraint, false});
+    if (constraint.max) sides.push_back({&problem, &constraint, true});
   }
   return sides;
 }
@@ -143,10 +143,10 @@ void run(nlopt::algorithm algorithm, const OptimiseRequest& request, Problem& pr
   optimiser.set_max_objective(objective_for_nlopt, &problem);
   std::vector<Side> sides = sides_of(request, problem);
   for (Side& side : sides) optimiser.add_inequality_constraint(excess_for_nlopt, &side, 1e-12);
-  optimiser.set_maxeval(algorithm == nlopt::LN_COBYLA ? limits.most_looks : kMostSlopes);
+  optimiser.set_maxeval(algorithm == nlopt::LN_COBYLA ? limits.max_evaluations : kMaxSlopes);
   optimiser.set_xtol_abs(kSmallestStep);
   if (algorithm == nlopt::LN_COBYLA) optimiser.set_initial_step(limits.first_step);
-  std::vector<double> shares = problem.shares();
+  std::vector<double> shares = problem.fractions();
   double best = 0.0;
   try {
     optimiser.optimize(shares, best);

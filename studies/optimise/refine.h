@@ -8,7 +8,7 @@ namespace retrace::studies {
 
 /// Limits of a refinement without derivatives.
 struct RefineLimits {
-  int most_looks = 60;
+  int max_evaluations = 60;
   double first_step = 0.02;  ///< as a fraction of each interval
 };
 
@@ -20,6 +20,6 @@ bool refine(const Study& study, const OptimiseRequest& request, Evaluator& evalu
             const RefineLimits& limits = {});
 
 /// Returns the position of a value in its interval as a fraction from 0 to 1.
-double share_of(const Interval& interval, double value);
+double fraction_of(const Interval& interval, double value);
 
 }  // namespace retrace::studies

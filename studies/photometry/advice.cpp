@@ -8,7 +8,7 @@
 
 #include "core/error.h"
 #include "core/schema/writer.h"
-#include "studies/design/io/design_reader.h"
+#include "design/io/design_reader.h"
 #include "studies/rre/derivatives.h"
 
 namespace retrace::studies {
@@ -23,36 +23,38 @@ constexpr std::array<double, 8> kSizeFactors = {0.7, 1.4, 0.5, 2.0, 0.35, 2.8, 0
 constexpr int kBisections = 4;
 // Maximum number of tables of readings that are measured. For each of the two parameters, these are the tables of all
 // tried values, of the bisections, and of the returned change.
-constexpr double kMostTables = kAngleSteps.size() + kSizeFactors.size() + 2.0 * (kBisections + 1);
+constexpr double kMaxTables = kAngleSteps.size() + kSizeFactors.size() + 2.0 * (kBisections + 1);
 // Minimum ratio of a reading to its limit that counts as passing during the search. It is above 1 because the search
 // uses few wavelengths and is therefore less accurate.
 constexpr double kEnough = 1.01;
-constexpr double kMostErrorArcmin = 300.0;
+constexpr double kMaxErrorArcmin = 300.0;
 constexpr double kNothingMade = -1.0;  // result of ratio_at() if the part cannot be made
 constexpr double kWholeTable = -std::numeric_limits<double>::infinity();
 
 /// Parameter of the design that is varied, with its start value and the values that are tried.
-struct Knob {
+struct VariedParameter {
   std::string key;
   double from = 0.0;
   std::vector<double> tries;
-  std::function<Design(double)> with;
+  std::function<design::Design(double)> with;
 };
 
-Knob angle_knob(const Design& design) {
+VariedParameter angle_knob(const design::Design& design) {
   const std::string key = keys_of(RreParameter::dihedral_error_deg, design).front();
   const auto& errors = design.part().angle_errors.dihedral_error_arcmin;
   const bool is_prism = std::holds_alternative<geometry::RtpElement>(design.part().element);
-  Knob knob{key, is_prism ? errors[0] : (errors[0] + errors[1] + errors[2]) / 3.0, {}, {}};
+  VariedParameter knob{key, is_prism ? errors[0] : (errors[0] + errors[1] + errors[2]) / 3.0, {}, {}};
   for (const double step : kAngleSteps)
-    if (std::abs(knob.from + step) <= kMostErrorArcmin) knob.tries.push_back(knob.from + step);
-  knob.with = [design, key](double value) { return with(design, std::vector{schema::override_text(key, value)}); };
+    if (std::abs(knob.from + step) <= kMaxErrorArcmin) knob.tries.push_back(knob.from + step);
+  knob.with = [design, key](double value) {
+    return design::with(design, std::vector{schema::override_text(key, value)});
+  };
   return knob;
 }
 
-Knob size_knob(const Design& design) {
+VariedParameter size_knob(const design::Design& design) {
   constexpr RreParameter size = RreParameter::size_mm;
-  Knob knob{keys_of(size, design).front(), value_of(design, size), {}, {}};
+  VariedParameter knob{keys_of(size, design).front(), value_of(design, size), {}, {}};
   for (const double factor : kSizeFactors) knob.tries.push_back(factor * knob.from);
   knob.with = [design](double value) { return with(design, size, value); };
   return knob;
@@ -60,7 +62,7 @@ Knob size_knob(const Design& design) {
 
 class Search {
  public:
-  Search(const Knob& knob, const TestProgramme& programme, const TableOfDesign& table)
+  Search(const VariedParameter& knob, const TestPlan& programme, const TableOfDesign& table)
       : knob_(knob), programme_(programme), table_(table) {}
 
   /// Searches for the smallest change that makes the design pass. If no change does, keeps the change with the best
@@ -110,7 +112,7 @@ class Search {
     try {
       const auto points = table_(knob_.with(value), kSearchParts, enough);
       is_cancelled_ = !points;
-      return points ? least_ratio(*points) : kNothingMade;
+      return points ? min_ratio(*points) : kNothingMade;
     } catch (const InputError&) {
       return kNothingMade;
     }
@@ -125,8 +127,8 @@ class Search {
     return passing;
   }
 
-  const Knob& knob_;
-  const TestProgramme& programme_;
+  const VariedParameter& knob_;
+  const TestPlan& programme_;
   const TableOfDesign& table_;
   double best_ = knob_.from;
   bool is_cancelled_ = false;
@@ -134,7 +136,7 @@ class Search {
 
 }  // namespace
 
-double least_ratio(const std::vector<PhotometricPoint>& points) {
+double min_ratio(const std::vector<PhotometricPoint>& points) {
   double least = std::numeric_limits<double>::infinity();
   for (const PhotometricPoint& point : points) {
     const double most = point.verdict() == Verdict::undetermined ? 1.0 : least;
@@ -143,20 +145,20 @@ double least_ratio(const std::vector<PhotometricPoint>& points) {
   return least;
 }
 
-std::optional<PhotometricChange> change_that_passes(const Design& design, const TestProgramme& programme,
+std::optional<PhotometricChange> change_that_passes(const design::Design& design, const TestPlan& test_plan,
                                                     const TableOfDesign& table, Progress* progress) {
   double measured = 0.0;
-  const TableOfDesign counted = [&](const Design& changed, std::size_t parts, double enough) {
+  const TableOfDesign counted = [&](const design::Design& changed, std::size_t parts, double enough) {
     auto points = table(changed, parts, enough);
-    if (progress != nullptr) progress->at(++measured / kMostTables);
+    if (progress != nullptr) progress->at(++measured / kMaxTables);
     return points;
   };
-  const std::array<Knob, 2> knobs = {angle_knob(design), size_knob(design)};
+  const std::array<VariedParameter, 2> knobs = {angle_knob(design), size_knob(design)};
   std::optional<Search> best;
   std::optional<PhotometricChange> told;
   double best_ratio = kNothingMade;
-  for (const Knob& knob : knobs) {
-    Search search(knob, programme, counted);
+  for (const VariedParameter& knob : knobs) {
+    Search search(knob, test_plan, counted);
     const double ratio = search.run(best_ratio);
     if (search.is_cancelled()) return std::nullopt;
     if (ratio <= best_ratio) continue;
@@ -166,7 +168,7 @@ std::optional<PhotometricChange> change_that_passes(const Design& design, const 
     if (ratio < kEnough) continue;
     told = search.told();
     if (!told || told->passes()) return told;
-    best_ratio = least_ratio(told->points);
+    best_ratio = min_ratio(told->points);
   }
   if (best && !told) told = best->told();
   return told;

@@ -29,7 +29,7 @@ struct MeasuredTristimulus {
 
 /// Measures the tristimulus values in each geometry of `settings`, in their order. Returns nothing if the measurement
 /// was cancelled.
-std::optional<std::vector<MeasuredTristimulus>> measured_tristimulus(const Design& design,
+std::optional<std::vector<MeasuredTristimulus>> measured_tristimulus(const design::Design& design,
                                                                      const PhotometrySettings& request,
                                                                      const Photometer& photometer,
                                                                      const std::vector<PhotometerSetting>& settings,
@@ -39,9 +39,9 @@ std::optional<std::vector<MeasuredTristimulus>> measured_tristimulus(const Desig
   std::vector<MeasuredTristimulus> measured(settings.size());
   for (std::size_t k = 0; k < sent.size(); ++k) {
     Photometer one(design, request_of_response(request, k), kColourParts, static_cast<PhotometricResponse>(k));
-    if (!photometer.is_exact()) one.leave_exact();
+    if (!photometer.is_exact()) one.use_monte_carlo();
     const auto count = static_cast<double>(sent.size());
-    PartOfProgress part(progress, static_cast<double>(k) / count, static_cast<double>(k + 1) / count);
+    PartProgress part(progress, static_cast<double>(k) / count, static_cast<double>(k + 1) / count);
     const auto readings = one.measure(settings, &part, cancel);
     if (!readings) return std::nullopt;
     for (std::size_t s = 0; s < settings.size(); ++s) {
@@ -76,7 +76,8 @@ PhotometricColour colour_of(const PhotometerSetting& setting, const MeasuredTris
     colour.chromaticity = at;
     colour.std_error = {error_of(1.0, 0.0, at, measured), error_of(0.0, 1.0, at, measured)};
     for (const ColourBoundary& b : boundaries)
-      colour.boundaries.push_back({b, b.most - b.of_x * at.x - b.of_y * at.y, error_of(b.of_x, b.of_y, at, measured)});
+      colour.boundaries.push_back({b, b.limit - b.x_coefficient * at.x - b.y_coefficient * at.y,
+                                   error_of(b.x_coefficient, b.y_coefficient, at, measured)});
   } else {
     for (const ColourBoundary& b : boundaries) colour.boundaries.push_back({b, 0.0, 0.0});
   }
@@ -84,7 +85,7 @@ PhotometricColour colour_of(const PhotometerSetting& setting, const MeasuredTris
 }
 
 /// Returns the minimum of the margins to all boundaries.
-double least_margin(const PhotometricColour& colour) {
+double min_margin(const PhotometricColour& colour) {
   double least = std::numeric_limits<double>::infinity();
   for (const ColourPoint& point : colour.boundaries) least = std::min(least, point.margin);
   return least;
@@ -95,15 +96,15 @@ bool is_near(const ColourPoint& point) {
 }
 
 /// Returns why the verdict on a colour is undetermined. Returns an empty reason for any other verdict.
-OpenReason reason_of(const PhotometricColour& colour, const Photometer& photometer) {
-  using Cause = OpenReason::Cause;
+UndeterminedReason reason_of(const PhotometricColour& colour, const Photometer& photometer) {
+  using Cause = UndeterminedReason::Cause;
   if (colour.verdict() != Verdict::undetermined) return {};
   if (!colour.chromaticity) return {Cause::no_light, std::nullopt, "no light is returned in this direction"};
   if (colour.lacks_diffraction) {
     const NoDiffraction why = photometer.why_undiffracted();
     return {Cause::diffraction, why, fmt::format("diffraction is not included, because {}", text_of(why))};
   }
-  if (colour.is_of_another_light)
+  if (colour.uses_other_illuminant)
     return {Cause::another_light, std::nullopt, "the boundaries are defined for CIE illuminant A only"};
   return {Cause::noise, std::nullopt,
           "the colour is within two standard errors of a boundary: " + photometer.remedy_for_noise()};
@@ -113,7 +114,7 @@ OpenReason reason_of(const PhotometricColour& colour, const Photometer& photomet
 
 PhotometrySettings request_of_response(const PhotometrySettings& request, std::size_t response) {
   PhotometrySettings one = request;
-  one.rays = std::max<std::uint64_t>(1, request.rays.value_or(kUsualRaysOfDirection) / 3);
+  one.rays = std::max<std::uint64_t>(1, request.rays.value_or(kDefaultRaysPerDirection) / 3);
   one.seed = request.seed + kSeedStep * static_cast<std::uint32_t>(response + 1);
   return one;
 }
@@ -121,18 +122,18 @@ PhotometrySettings request_of_response(const PhotometrySettings& request, std::s
 std::optional<Verdict> PhotometricColour::verdict() const {
   if (boundaries.empty()) return std::nullopt;
   const auto any = [&](const auto& holds) { return std::any_of(boundaries.begin(), boundaries.end(), holds); };
-  if (!chromaticity || lacks_diffraction || is_of_another_light) return Verdict::undetermined;
+  if (!chromaticity || lacks_diffraction || uses_other_illuminant) return Verdict::undetermined;
   if (any([](const ColourPoint& p) { return p.margin < 0.0 && !is_near(p); })) return Verdict::fail;
   if (any(is_near)) return Verdict::undetermined;
-  const bool is_recalled = any([](const ColourPoint& p) { return p.asked.status == LimitStatus::recalled; });
+  const bool is_recalled = any([](const ColourPoint& p) { return p.boundary.status == LimitStatus::recalled; });
   return is_recalled ? Verdict::unconfirmed : Verdict::pass;
 }
 
-std::optional<PhotometricColour> measured_colour(const Design& design, const PhotometrySettings& request,
+std::optional<PhotometricColour> measured_colour(const design::Design& design, const PhotometrySettings& request,
                                                  const Photometer& photometer, const std::vector<double>& v_deg,
                                                  Progress* progress, const Cancellation* cancel) {
-  const std::vector<ColourBoundary>& boundaries = request.programme.boundaries;
-  const TestPoint& first = request.programme.points.front();
+  const std::vector<ColourBoundary>& boundaries = request.test_plan.boundaries;
+  const TestPoint& first = request.test_plan.points.front();
   const double observation_deg = boundaries.empty() ? first.observation_deg : boundaries.front().observation_deg;
   const double h_deg = boundaries.empty() ? first.h_deg : boundaries.front().h_deg;
   std::vector<PhotometerSetting> settings;
@@ -144,8 +145,8 @@ std::optional<PhotometricColour> measured_colour(const Design& design, const Pho
   std::optional<PhotometricColour> worst;
   for (std::size_t s = 0; s < settings.size(); ++s) {
     PhotometricColour colour = colour_of(settings[s], (*measured)[s], boundaries);
-    colour.is_of_another_light = request.light != PhotometricLight::illuminant_a;
-    if (!worst || least_margin(colour) < least_margin(*worst)) worst = std::move(colour);
+    colour.uses_other_illuminant = request.light != PhotometricLight::illuminant_a;
+    if (!worst || min_margin(colour) < min_margin(*worst)) worst = std::move(colour);
   }
   worst->reason = reason_of(*worst, photometer);
   return worst;

@@ -21,7 +21,7 @@ PhotometrySettings request_of_response(const PhotometrySettings& request, std::s
 /// \param v_deg angles V at which the colour is measured; the result with the smallest margin is returned
 /// \param progress object that receives the finished fraction; may be null
 /// \pre the light is a CIE illuminant, and the test plan has points
-std::optional<PhotometricColour> measured_colour(const Design& design, const PhotometrySettings& request,
+std::optional<PhotometricColour> measured_colour(const design::Design& design, const PhotometrySettings& request,
                                                  const Photometer& photometer, const std::vector<double>& v_deg,
                                                  Progress* progress, const Cancellation* cancel);
 

@@ -34,7 +34,7 @@ bool is_of_class(const LimitLine& line, const std::string& name) {
 }
 
 /// Returns true if a line applies to a test plan. Lines without a colour apply to all colours.
-bool concerns(const LimitLine& line, const TestProgramme& programme) {
+bool concerns(const LimitLine& line, const TestPlan& programme) {
   return line.standard == programme.standard && is_of_class(line, programme.part_class) &&
          (line.colour.empty() || known_colour(line.colour) == programme.colour);
 }
@@ -95,7 +95,7 @@ void add_points(const LimitRow& row, const LimitFactor* by, std::vector<TestPoin
   const std::string source = has_two_sources ? fmt::format("{}; {}", row.source, by->source) : row.source;
   for (const double v : row.v_deg)
     for (const double h : row.h_deg)
-      points.push_back({row.observation_deg, v, h, minimum, row.unit, status, row.line, source, row.v_beside_deg});
+      points.push_back({row.observation_deg, v, h, minimum, row.unit, status, row.line, source, row.substitute_v_deg});
 }
 
 bool same_geometry(const TestPoint& a, const TestPoint& b) {
@@ -103,9 +103,9 @@ bool same_geometry(const TestPoint& a, const TestPoint& b) {
 }
 
 /// Adds a boundary of the colour. All boundaries must have one geometry, because the colour is measured only one time.
-void add_boundary(const LimitTable& table, const ColourBoundary& boundary, TestProgramme& programme) {
+void add_boundary(const LimitTable& table, const ColourBoundary& boundary, TestPlan& programme) {
   const auto geometry = [](const ColourBoundary& b) {
-    return std::tie(b.observation_deg, b.v_deg, b.v_beside_deg, b.h_deg);
+    return std::tie(b.observation_deg, b.v_deg, b.substitute_v_deg, b.h_deg);
   };
   if (!programme.boundaries.empty() && geometry(programme.boundaries.front()) != geometry(boundary))
     throw InputError(
@@ -144,7 +144,7 @@ std::string_view status_name(LimitStatus status) {
 }
 
 std::string LimitArea::text() const {
-  return fmt::format("{} {} cm2", is_most ? "at most" : "at least", shortest(area_cm2));
+  return fmt::format("{} {} cm2", is_maximum ? "at most" : "at least", shortest(area_cm2));
 }
 
 double in_mcd_per_lx(double value, PhotometricUnit unit, double area_cm2) {
@@ -157,11 +157,11 @@ double in_mcd_per_lx(double value, PhotometricUnit unit, double area_cm2) {
   return 0.0;
 }
 
-TestProgramme programme_of(const LimitTable& table, const std::optional<std::string>& standard,
-                           const std::optional<std::string>& part_class, const std::optional<std::string>& colour) {
+TestPlan test_plan_of(const LimitTable& table, const std::optional<std::string>& standard,
+                      const std::optional<std::string>& part_class, const std::optional<std::string>& colour) {
   std::vector<std::string> standards;
   for (const LimitRow& row : table.rows) add_once(standards, row.standard);
-  TestProgramme programme;
+  TestPlan programme;
   programme.standard = choice(standards, standard, {"standard"}, table.source);
   programme.part_class = choice(classes_of(table, programme.standard), part_class, {"part_class"}, programme.standard);
   const std::optional<std::string> asked = colour ? std::optional(known_colour(*colour)) : std::nullopt;
@@ -178,11 +178,11 @@ TestProgramme programme_of(const LimitTable& table, const std::optional<std::str
   for (const LimitFactor& factor : table.factors) {
     if (!concerns(factor, programme)) continue;
     const std::size_t before = programme.points.size();
-    add_rows(known_colour(factor.of_colour), &factor);
+    add_rows(known_colour(factor.reference_colour), &factor);
     if (programme.points.size() == before)
       throw InputError({printable(table.source, std::string::npos), factor.line, "minimum"},
                        fmt::format("must be a multiple of a colour that the table contains, got the colour {}",
-                                   in_quotes(factor.of_colour)));
+                                   in_quotes(factor.reference_colour)));
   }
   refuse_doubles(table, programme.points);
   for (const LimitArea& area : table.areas)

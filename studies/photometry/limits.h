@@ -44,8 +44,9 @@ struct LimitLine {
 /// Test point of a limits file. Its colour is always given.
 struct LimitRow : LimitLine {
   double observation_deg = 0.0;
-  std::vector<double> v_deg;           ///< one angle, or both signs of an angle
-  std::vector<double> v_beside_deg{};  ///< angles that replace v_deg if the face mirrors the lamp there; may be empty
+  std::vector<double> v_deg;  ///< one angle, or both signs of an angle
+  std::vector<double>
+      substitute_v_deg{};  ///< angles that replace v_deg if the face mirrors the lamp there; may be empty
   std::vector<double> h_deg;
   double minimum = 0.0;
   PhotometricUnit unit = PhotometricUnit::mcd_per_lx;
@@ -54,15 +55,15 @@ struct LimitRow : LimitLine {
 /// Line that defines the limits of a colour as multiples of the limits of another colour.
 struct LimitFactor : LimitLine {
   double factor = 1.0;
-  std::string of_colour;
+  std::string reference_colour;
 };
 
 /// Line that limits the area of a part.
 struct LimitArea : LimitLine {
-  bool is_most = true;  ///< true: maximum; false: minimum
+  bool is_maximum = true;  ///< true: maximum; false: minimum
   double area_cm2 = 0.0;
 
-  bool holds(double part_cm2) const { return is_most ? part_cm2 <= area_cm2 : part_cm2 >= area_cm2; }
+  bool holds(double part_cm2) const { return is_maximum ? part_cm2 <= area_cm2 : part_cm2 >= area_cm2; }
   std::string text() const;  ///< returns a text such as "at most 100 cm2"
 };
 
@@ -70,9 +71,9 @@ struct LimitArea : LimitLine {
 struct ColourBoundary : LimitLine {
   double observation_deg = 0.0;
   double v_deg = 0.0;
-  std::vector<double> v_beside_deg{};  ///< see LimitRow::v_beside_deg
+  std::vector<double> substitute_v_deg{};  ///< see LimitRow::substitute_v_deg
   double h_deg = 0.0;
-  double of_x = 0.0, of_y = 0.0, most = 0.0;
+  double x_coefficient = 0.0, y_coefficient = 0.0, limit = 0.0;
   std::string text;  ///< text of the limit in the file, such as "y <= 0.335"
 };
 
@@ -101,11 +102,11 @@ struct TestPoint {
   std::string source = {};  ///< source of the value; empty: not given
   /// Angles that replace v_deg if the face reflects the lamp directly to the receiver. The minimum of their readings
   /// counts.
-  std::vector<double> v_beside_deg{};
+  std::vector<double> substitute_v_deg{};
 };
 
 /// Test plan: requirements of a standard for one class and colour.
-struct TestProgramme {
+struct TestPlan {
   std::string standard;
   std::string part_class;  ///< empty if the standard has no classes
   std::string colour;
@@ -119,7 +120,7 @@ struct TestProgramme {
 /// \param standard name of the standard in the table; may be omitted if the table has only one
 /// \param part_class, colour may be omitted if the standard has only one
 /// \throw InputError at the field `standard`, `part_class` or `colour` of PhotometryRequest, with the available names
-TestProgramme programme_of(const LimitTable& table, const std::optional<std::string>& standard,
-                           const std::optional<std::string>& part_class, const std::optional<std::string>& colour);
+TestPlan test_plan_of(const LimitTable& table, const std::optional<std::string>& standard,
+                      const std::optional<std::string>& part_class, const std::optional<std::string>& colour);
 
 }  // namespace retrace::studies

@@ -7,11 +7,11 @@
 
 #include "core/error.h"
 #include "core/task_progress.h"
+#include "design/part_of_design.h"
 #include "materials/io/spectrum_reader.h"
 #include "raytrace/engines/wavelengths.h"
 #include "raytrace/faces/mirror_symmetry.h"
 #include "raytrace/observers/coefficients.h"
-#include "studies/design/part_of_design.h"
 
 namespace retrace::studies {
 namespace {
@@ -20,7 +20,7 @@ using geometry::Vec3, raytrace::PhotometricGeometry;
 
 // Maximum power whose diffraction may be omitted because the budget of polygons is exhausted, as a fraction of the
 // incident power. If more power is affected, the reading counts as lacking diffraction.
-constexpr double kMostBeyondBudget = 1e-4;
+constexpr double kMaxUndiffractedFraction = 1e-4;
 
 Angle deg(double value) {
   return Angle::from_deg(value);
@@ -28,10 +28,11 @@ Angle deg(double value) {
 
 /// Returns the spectral absorption of a design's body. Empty if the absorption is a single number or that of the
 /// material.
-materials::SpectralCurve absorption_per_mm(const Design& design) {
+materials::SpectralCurve absorption_per_mm(const design::Design& design) {
   materials::SpectralCurve curve;
-  if (const auto* const given = std::get_if<std::vector<SpectralAbsorption>>(&design.substance.absorption_per_mm))
-    for (const SpectralAbsorption& at : *given) {
+  if (const auto* const given =
+          std::get_if<std::vector<design::SpectralAbsorption>>(&design.substance.absorption_per_mm))
+    for (const design::SpectralAbsorption& at : *given) {
       curve.wavelengths_nm.push_back(at.wavelength_nm);
       curve.values.push_back(at.per_mm);
     }
@@ -40,18 +41,19 @@ materials::SpectralCurve absorption_per_mm(const Design& design) {
 
 /// Returns the path length, inside a design, of light that enters, is reflected at the elements and leaves. It
 /// determines the absorption by a dye.
-double way_through_mm(const Design& design) {
+double way_through_mm(const design::Design& design) {
   if (design.balls()) return 2.0 * design.balls()->diameter_mm;
-  const geometry::Part part = part_of_design(design, nullptr);
+  const geometry::Part part = design::part_of_design(design, nullptr);
   return 2.0 * (part.thickness_mm + part.element_depth_mm);
 }
 
-OpticalModel model_of(const Design& design, const materials::MaterialLibrary& library) {
-  return design.balls() ? make_light_model(design, library) : make_model(design, library, Entrances::any);
+design::OpticalModel model_of(const design::Design& design, const materials::MaterialLibrary& library) {
+  return design.balls() ? design::make_light_model(design, library)
+                        : design::make_model(design, library, design::Entrances::any);
 }
 
 /// Checks a design of balls. R_A requires an area, which a single ball does not have.
-void check_balls(const Design& design) {
+void check_balls(const design::Design& design) {
   if (!design.balls()->pitch_mm)
     throw InputError(design.where("element.kind"),
                      "photometry does not support a single ball: give array.arrangement = \"packed\"");
@@ -59,9 +61,9 @@ void check_balls(const Design& design) {
 
 /// Refuses an engine that cannot trace a design. Textures and entrance faces that scatter are refused by
 /// PhotometryStudy, because other studies measure them by rays.
-void check_engine(const Design& design, const raytrace::EngineFacts& facts, Engine engine) {
+void check_engine(const design::Design& design, const raytrace::EngineFacts& facts, raytrace::Engine engine) {
   using raytrace::Obstacle;
-  const std::optional<Obstacle> obstacle = raytrace::why_not(engine, facts);
+  const std::optional<Obstacle> obstacle = raytrace::obstacle_for(engine, facts);
   if (!obstacle) return;
   switch (*obstacle) {
     case Obstacle::balls: throw InputError(Field{"engine"}, "must be auto or montecarlo for balls");
@@ -83,7 +85,7 @@ void check_engine(const Design& design, const raytrace::EngineFacts& facts, Engi
 
 /// Returns the width of the cells whose edges diffract light. Returns 0 if the width is not known, for example for
 /// meshes. Also returns 0 for curved entrance faces, because they divide the light into cells of their own.
-double cell_width_mm(const Design& design) {
+double cell_width_mm(const design::Design& design) {
   if (design.balls()) return design.balls()->diameter_mm;
   if (!design.elements() || design.entrance) return 0.0;
   if (const auto* prism = std::get_if<geometry::RtpElement>(&design.part().element))
@@ -93,9 +95,9 @@ double cell_width_mm(const Design& design) {
 }
 
 /// Returns the design with the lamp of the photometer as its light.
-Design lit(Design design, const PhotometrySettings& request, const materials::Spectrum& light) {
-  LightSpectrum spectrum;
-  spectrum.kind = LightSpectrum::Kind::lines;
+design::Design lit(design::Design design, const PhotometrySettings& request, const materials::Spectrum& light) {
+  design::LightSpectrum spectrum;
+  spectrum.kind = design::LightSpectrum::Kind::lines;
   spectrum.photopic = false;
   for (const double w : light.wavelengths_nm) spectrum.lines.push_back({w, 1.0});
   design.light.colour = spectrum;
@@ -103,10 +105,10 @@ Design lit(Design design, const PhotometrySettings& request, const materials::Sp
   return design;
 }
 
-Design dyed(Design design, const PhotometrySettings& request) {
+design::Design dyed(design::Design design, const PhotometrySettings& request) {
   const materials::SpectralCurve& dye = request.dye_absorption_per_mm;
   if (dye.values.empty()) return design;
-  std::vector<SpectralAbsorption> curve;
+  std::vector<design::SpectralAbsorption> curve;
   for (std::size_t k = 0; k < dye.values.size(); ++k) curve.push_back({dye.wavelengths_nm[k], dye.values[k]});
   design.substance.absorption_per_mm = std::move(curve);
   return design;
@@ -164,15 +166,15 @@ raytrace::ReturnFrame frame_of(const PhotometerSetting& setting) {
   return raytrace::return_frame(geometry_of(setting, 0.0));
 }
 
-Photometer::Photometer(const Design& design, const PhotometrySettings& request, std::size_t parts,
+Photometer::Photometer(const design::Design& design, const PhotometrySettings& request, std::size_t parts,
                        PhotometricResponse response)
     : design_(dyed(design, request)), request_(request), kernel_(request.apertures) {
   const materials::MaterialLibrary library = materials::MaterialLibrary::shipped();
   if (design_.balls()) check_balls(design_);
-  check_engine(design_, engine_facts(design_, nullptr), request.engine);
+  check_engine(design_, design::engine_facts(design_, nullptr), request.engine);
   if (request.light == PhotometricLight::of_design) {
     model_ = model_of(design_, library);
-    for (const SpectralOptics& light : model_.spectral) weights_.push_back(light.weight);
+    for (const design::SpectralOptics& light : model_.spectral) weights_.push_back(light.weight);
   } else {
     lamp_ = Lamp{lamp_power(request.light), materials::shipped_colour_matching()[static_cast<std::size_t>(response)],
                  absorption_per_mm(design_), way_through_mm(design_), parts};
@@ -180,7 +182,7 @@ Photometer::Photometer(const Design& design, const PhotometrySettings& request, 
     model_ = model_of(lit(design_, request, light), library);
     weights_ = light.weights;
   }
-  facts_ = engine_facts(design_, &model_.optics);
+  facts_ = design::engine_facts(design_, &model_.optics);
   facts_.needs_phases = request.diffraction;
   check_engine(design_, facts_, request.engine);
   if (raytrace::is_exact(request.engine, facts_)) tracing_ = Tracing::beams;
@@ -192,10 +194,10 @@ materials::SpectralCurve lamp_power(PhotometricLight light) {
 }
 
 std::optional<Photometer> Photometer::mean_field() const {
-  const bool is_asked = request_.engine == Engine::automatic && request_.diffraction;
+  const bool is_asked = request_.engine == raytrace::Engine::automatic && request_.diffraction;
   raytrace::EngineFacts of_mean_field = facts_;
   of_mean_field.has_texture = false;
-  if (!is_asked || is_exact() || !facts_.has_texture || raytrace::why_not(Engine::exact, of_mean_field))
+  if (!is_asked || is_exact() || !facts_.has_texture || raytrace::obstacle_for(raytrace::Engine::exact, of_mean_field))
     return std::nullopt;
   Photometer bound = *this;
   bound.tracing_ = Tracing::mean_field;
@@ -210,22 +212,23 @@ std::string Photometer::engine_name() const {
 
 NoDiffraction Photometer::why_undiffracted() const {
   if (!request_.diffraction) return Undiffracted::not_requested;
-  if (const auto obstacle = raytrace::why_not(Engine::exact, facts_)) return *obstacle;
+  if (const auto obstacle = raytrace::obstacle_for(raytrace::Engine::exact, facts_)) return *obstacle;
   if (is_exact()) return Undiffracted::unequal_cells;
-  return request_.engine == Engine::automatic ? Undiffracted::too_many_beams : Undiffracted::monte_carlo;
+  return request_.engine == raytrace::Engine::automatic ? Undiffracted::too_many_beams : Undiffracted::monte_carlo;
 }
 
-double Photometer::least_undiffracted_mm() const {
+double Photometer::min_undiffracted_mm() const {
   return kWidthsWithoutDiffraction * 1e-6 * model_.spectral.back().wavelength_nm / kernel_.reach_rad();
 }
 
 std::vector<double> Photometer::wavelengths_nm() const {
   std::vector<double> all;
-  for (const SpectralOptics& light : model_.spectral) all.push_back(light.wavelength_nm);
+  for (const design::SpectralOptics& light : model_.spectral) all.push_back(light.wavelength_nm);
   return all;
 }
 
-PhotometerReading Photometer::reading_of(const PhotometerSetting& setting, const std::vector<Piece>& pieces) const {
+PhotometerReading Photometer::reading_of(const PhotometerSetting& setting,
+                                         const std::vector<WavelengthReading>& pieces) const {
   PhotometerReading reading;
   const raytrace::SourceAngles source = raytrace::source_angles(frame_of(setting).to_source);
   PhotometricDirection& at = reading.direction;
@@ -247,7 +250,7 @@ PhotometerReading Photometer::reading_of(const PhotometerSetting& setting, const
   }
   at.std_error = std::sqrt(variance);
   reading.lacks_diffraction =
-      has_diffraction() ? beyond_budget > kMostBeyondBudget : cell_width_mm(design_) < least_undiffracted_mm();
+      has_diffraction() ? beyond_budget > kMaxUndiffractedFraction : cell_width_mm(design_) < min_undiffracted_mm();
   const double cos_beta = std::cos(source.incidence.rad());
   for (std::size_t k = 0; k < setting.observation_deg.size(); ++k) {
     double per_sr = 0.0;
@@ -278,28 +281,29 @@ std::array<bool, 2> Photometer::mirrors() const {
   std::array<bool, 2> mirrors{};
   if (design_.balls() || facts_.has_form || light.u != 0.0 || light.v != 0.0) return mirrors;
   for (const std::size_t axis : {0U, 1U})
-    mirrors[axis] = raytrace::is_its_own_mirror_image(model_.part, static_cast<Eigen::Index>(axis));
+    mirrors[axis] = raytrace::is_mirror_symmetric(model_.part, static_cast<Eigen::Index>(axis));
   return mirrors;
 }
 
-std::vector<LitAlike> Photometer::settings_lit_alike(const std::vector<PhotometerSetting>& settings) const {
+std::vector<EquivalentDirections> Photometer::group_equivalent_settings(
+    const std::vector<PhotometerSetting>& settings) const {
   std::vector<Vec3> to_source;
   for (const PhotometerSetting& setting : settings) to_source.push_back(frame_of(setting).to_source);
-  return lit_alike(to_source, settings.size() > 1 ? mirrors() : std::array<bool, 2>{});
+  return group_equivalent_directions(to_source, settings.size() > 1 ? mirrors() : std::array<bool, 2>{});
 }
 
 std::optional<std::vector<PhotometerReading>> Photometer::measure_in_one_light(
     const std::vector<PhotometerSetting>& settings, Progress* progress, const Cancellation* cancel) const {
   const std::size_t wavelengths = model_.spectral.size();
-  std::vector<std::vector<Piece>> pieces(settings.size(), std::vector<Piece>(wavelengths));
+  std::vector<std::vector<WavelengthReading>> pieces(settings.size(), std::vector<WavelengthReading>(wavelengths));
   if (is_exact()) {
     const raytrace::BeamTracer tracer = make_tracer();
-    const std::vector<LitAlike> traced = settings_lit_alike(settings);
+    const std::vector<EquivalentDirections> traced = group_equivalent_settings(settings);
     TaskProgress all(progress, traced.size() * wavelengths);
     raytrace::trace_wavelengths(
         traced.size(), wavelengths, true, all, [&](std::size_t direction, std::size_t wavelength, Progress&) {
-          const LitAlike& alike = traced[direction];
-          const std::vector<Piece> seen = measure_exactly(settings, alike, wavelength, tracer, cancel);
+          const EquivalentDirections& alike = traced[direction];
+          const std::vector<WavelengthReading> seen = measure_exactly(settings, alike, wavelength, tracer, cancel);
           for (std::size_t s = 0; s < alike.size(); ++s) pieces[alike[s].index][wavelength] = seen[s];
           return true;
         });
@@ -308,7 +312,7 @@ std::optional<std::vector<PhotometerReading>> Photometer::measure_in_one_light(
   }
   std::vector<PhotometerReading> readings;
   for (std::size_t k = 0; k < settings.size(); ++k) {
-    for (const Piece& piece : pieces[k])
+    for (const WavelengthReading& piece : pieces[k])
       if (!piece.complete) return std::nullopt;
     readings.push_back(reading_of(settings[k], pieces[k]));
   }

@@ -10,10 +10,10 @@
 
 #include "core/progress.h"
 #include "core/warning.h"
+#include "design/optical_model.h"
 #include "raytrace/observers/far_field.h"
 #include "raytrace/observers/photometric_geometry.h"
-#include "studies/design/optical_model.h"
-#include "studies/photometry/lit_alike.h"
+#include "studies/photometry/equivalent_directions.h"
 #include "studies/photometry/photometry.h"
 
 namespace retrace::raytrace {
@@ -56,7 +56,7 @@ class Photometer {
   /// \param parts number of spans of the lamp's spectrum, with two wavelengths each
   /// \param response response of the receiver; values are relative to its response to the light that falls on the part
   /// \throw InputError in the same cases as make_model()
-  Photometer(const Design& design, const PhotometrySettings& request, std::size_t parts,
+  Photometer(const design::Design& design, const PhotometrySettings& request, std::size_t parts,
              PhotometricResponse response = PhotometricResponse::y_bar);
 
   /// Measures all settings. Returns the readings in the order of the settings, or nothing if the measurement was
@@ -65,7 +65,7 @@ class Photometer {
                                                         Progress* progress, const Cancellation* cancel) const;
 
   /// Far field at one wavelength, and the weight of this wavelength in the response of the receiver.
-  struct WeighedField {
+  struct WeightedField {
     raytrace::FarField field;
     double weight = 0.0;
   };
@@ -73,9 +73,9 @@ class Photometer {
   /// cancelled.
   /// \param tracer result of make_tracer()
   /// \pre is_exact()
-  std::optional<std::vector<WeighedField>> far_fields(const geometry::Vec3& to_source,
-                                                      const raytrace::BeamTracer& tracer,
-                                                      const Cancellation* cancel) const;
+  std::optional<std::vector<WeightedField>> far_fields(const geometry::Vec3& to_source,
+                                                       const raytrace::BeamTracer& tracer,
+                                                       const Cancellation* cancel) const;
   /// Returns a beam tracer that several threads may use at the same time. The tracer refers to this photometer, so the
   /// photometer must exist as long as the tracer.
   raytrace::BeamTracer make_tracer() const;
@@ -85,7 +85,7 @@ class Photometer {
   /// change when this axis is reversed.
   std::array<bool, 2> mirrors() const;
   /// Groups the settings. All settings of a group can be measured from one traced far field.
-  std::vector<LitAlike> settings_lit_alike(const std::vector<PhotometerSetting>& settings) const;
+  std::vector<EquivalentDirections> group_equivalent_settings(const std::vector<PhotometerSetting>& settings) const;
 
   const Warnings& warnings() const { return model_.warnings; }
   std::vector<double> wavelengths_nm() const;
@@ -100,7 +100,7 @@ class Photometer {
   /// \pre the readings do not include diffraction
   NoDiffraction why_undiffracted() const;
   /// Returns the smallest cell width, in mm, for which diffraction is not significant.
-  double least_undiffracted_mm() const;
+  double min_undiffracted_mm() const;
   /// Returns a photometer that measures, with diffraction, only the mean field of a part with rough facets: the field
   /// averaged over the random heights, without scattered light. The current photometer measures the part by rays,
   /// without diffraction. The mean field is nowhere brighter than the light that the part really returns. Readings of
@@ -109,14 +109,14 @@ class Photometer {
   /// another engine or no diffraction.
   std::optional<Photometer> mean_field() const;
   /// Makes later measurements use Monte Carlo.
-  void leave_exact() { tracing_ = Tracing::rays; }
+  void use_monte_carlo() { tracing_ = Tracing::rays; }
   bool is_exact() const { return tracing_ != Tracing::rays; }
   /// Trade-off between accuracy and duration of later measurements.
   enum class Effort {
     full,
     /// Fewer resampled beams represent the weak beams. Such values may guide a search, but must not be shown to the
     /// user.
-    guide,
+    search,
     /// Preliminary values that are shown with their errors. As with `guide`, fewer resampled beams are used. The
     /// cut-off power of beams is also higher. Another photometer measures the part at the same time, so that the search
     /// structures of the part may use at most half of their memory budget.
@@ -126,7 +126,7 @@ class Photometer {
   /// Ignores the mirror image of the light in later measurements. The mirror image is the light that the entrance face
   /// reflects, either at its outer side, or at its inner side between two retroreflections by elements.
   /// \pre is_exact()
-  void leave_out_mirror_image() { has_mirror_image_ = false; }
+  void ignore_mirror_image() { has_mirror_image_ = false; }
 
  private:
   /// Lamp of the measurement, with all data that determine the traced wavelengths.
@@ -142,7 +142,7 @@ class Photometer {
     materials::Spectrum light(const std::vector<double>& knees_nm) const;
   };
   /// Contribution of one wavelength to a reading.
-  struct Piece {
+  struct WavelengthReading {
     std::vector<double> per_sr;
     std::vector<double> error_per_sr;
     /// Estimate of the intensity that is missing in `per_sr`, for each observation angle. Light is missing if its beam
@@ -167,7 +167,7 @@ class Photometer {
   /// % of the light past the edge of a disc (docs/theory/photometry.md).
   static constexpr double kWidthsWithoutDiffraction = 64.0;
 
-  raytrace::FarFieldPolicy far_field_policy(const SpectralOptics& light, const Cancellation* cancel) const;
+  raytrace::FarFieldPolicy far_field_policy(const design::SpectralOptics& light, const Cancellation* cancel) const;
   /// Returns the settings of the beam tracer for one wavelength.
   /// \param coarseness factor by which the cut-off power is multiplied
   raytrace::BeamPolicy beam_policy(std::size_t wavelength, double coarseness) const;
@@ -183,25 +183,26 @@ class Photometer {
                                const raytrace::BeamTracer& tracer, const Cancellation* cancel,
                                double coarseness = 1.0) const;
   /// Measures all settings whose light comes from one direction, from a single traced far field. Returns one Piece for
-  /// each element of `alike`, in this order.
-  std::vector<Piece> measure_exactly(const std::vector<PhotometerSetting>& settings, const LitAlike& alike,
-                                     std::size_t wavelength, const raytrace::BeamTracer& tracer,
-                                     const Cancellation* cancel) const;
+  /// each element of `directions`, in this order.
+  std::vector<WavelengthReading> measure_exactly(const std::vector<PhotometerSetting>& settings,
+                                                 const EquivalentDirections& directions, std::size_t wavelength,
+                                                 const raytrace::BeamTracer& tracer, const Cancellation* cancel) const;
   /// Returns true if beams record random phases, which describe the light that rough facets scatter.
   bool keeps_phases() const { return tracing_ == Tracing::beams && facts_.has_texture; }
-  void estimate_missing(const std::vector<PhotometerSetting>& settings, const LitAlike& alike, std::size_t wavelength,
-                        const Traced& traced, const raytrace::BeamTracer& tracer, const Cancellation* cancel,
-                        std::vector<Piece>& pieces) const;
-  void look(const PhotometerSetting& setting, const SharedDirection& shared, const raytrace::FarField& field,
-            std::size_t wavelength, Piece& piece) const;
+  void estimate_missing(const std::vector<PhotometerSetting>& settings, const EquivalentDirections& directions,
+                        std::size_t wavelength, const Traced& traced, const raytrace::BeamTracer& tracer,
+                        const Cancellation* cancel, std::vector<WavelengthReading>& pieces) const;
+  void read_far_field(const PhotometerSetting& setting, const SharedDirection& shared, const raytrace::FarField& field,
+                      std::size_t wavelength, WavelengthReading& piece) const;
   /// Measures one setting at one wavelength by ray tracing.
   /// \param tracer ray tracer of the part; null for balls, which have their own tracer
-  Piece measure_by_rays(const PhotometerSetting& setting, std::size_t wavelength, const raytrace::MonteCarlo* tracer,
-                        Progress& progress, const Cancellation* cancel) const;
+  WavelengthReading measure_by_rays(const PhotometerSetting& setting, std::size_t wavelength,
+                                    const raytrace::MonteCarlo* tracer, Progress& progress,
+                                    const Cancellation* cancel) const;
   /// Measures all settings by ray tracing. Returns false if the measurement was cancelled.
   /// \param pieces receives the contributions of all wavelengths, with the indices [setting][wavelength]
   bool measure_by_rays(const std::vector<PhotometerSetting>& settings, Progress* progress, const Cancellation* cancel,
-                       std::vector<std::vector<Piece>>& pieces) const;
+                       std::vector<std::vector<WavelengthReading>>& pieces) const;
   /// Groups the settings by their knees and returns the indices of the settings in each group. Knees are the
   /// wavelengths at which total reflection begins or ends at a facet for light from the source of the setting.
   std::map<std::vector<double>, std::vector<std::size_t>> settings_by_knees(
@@ -212,15 +213,15 @@ class Photometer {
   std::optional<std::vector<PhotometerReading>> measure_in_one_light(const std::vector<PhotometerSetting>& settings,
                                                                      Progress* progress,
                                                                      const Cancellation* cancel) const;
-  PhotometerReading reading_of(const PhotometerSetting& setting, const std::vector<Piece>& pieces) const;
+  PhotometerReading reading_of(const PhotometerSetting& setting, const std::vector<WavelengthReading>& pieces) const;
   bool resamples_weak() const;   ///< true: beams below the cut-off power are resampled; false: they are truncated
   double element_count() const;  ///< number of elements over which the light is distributed, >= 1
   double cutoff() const;
   std::uint32_t replicates() const;
 
-  Design design_;
+  design::Design design_;
   PhotometrySettings request_;
-  OpticalModel model_;
+  design::OpticalModel model_;
   std::optional<Lamp> lamp_;  ///< empty if the spectrum of the design is used
   /// Weights of the wavelengths by flux. They do not include the absorption in the dye, because the tracer applies it.
   std::vector<double> weights_;

@@ -5,9 +5,9 @@
 
 #include "core/error.h"
 #include "core/task_progress.h"
+#include "design/total_reflection.h"
 #include "materials/io/material_library.h"
 #include "materials/knee_rule.h"
-#include "studies/design/total_reflection.h"
 #include "studies/photometry/photometer.h"
 
 namespace retrace::studies {
@@ -15,15 +15,15 @@ namespace {
 
 /// Minimum number of spans of the spectrum for which knees are computed. Pictures, searches and preliminary values use
 /// fewer spans and ignore knees.
-constexpr std::size_t kLeastPartsOfValues = 4;
+constexpr std::size_t kMinSpansForKnees = 4;
 /// Maximum wavelength step of the table of refractive indices. With this step, the error of linear interpolation is at
 /// most 5e-6.
 constexpr double kIndexStepNm = 10.0;
 /// Fraction of the flux at each end of the spectrum in which knees are ignored.
-constexpr double kLeastShare = 2e-3;
+constexpr double kIgnoredFluxFraction = 2e-3;
 /// Minimum distance between two knees. Knees that are closer are merged into one.
-constexpr double kLeastDistanceNm = 4.0;
-constexpr std::size_t kMostKnees = 4;
+constexpr double kMinDistanceNm = 4.0;
+constexpr std::size_t kMaxKnees = 4;
 /// Step to whose multiples knees are rounded, so that settings with almost equal knees are traced together.
 constexpr double kRoundingNm = 0.01;
 
@@ -37,20 +37,20 @@ struct IndexAt {
 /// of the spectrum, which have the fraction kLeastShare of the flux each. Wavelengths for which the material has no
 /// data are omitted.
 /// \param flux spectrum whose weights add up to 1
-std::vector<IndexAt> index_table(const Design& design, const materials::Spectrum& flux) {
+std::vector<IndexAt> index_table(const design::Design& design, const materials::Spectrum& flux) {
   double low_nm = flux.wavelengths_nm.front(), high_nm = flux.wavelengths_nm.back();
   double sum = 0.0;
   for (std::size_t k = 0; k < flux.size(); ++k) {
-    if (sum < kLeastShare) low_nm = flux.wavelengths_nm[k];
-    if (sum < 1.0 - kLeastShare) high_nm = flux.wavelengths_nm[k];
+    if (sum < kIgnoredFluxFraction) low_nm = flux.wavelengths_nm[k];
+    if (sum < 1.0 - kIgnoredFluxFraction) high_nm = flux.wavelengths_nm[k];
     sum += flux.weights[k];
   }
   const materials::MaterialLibrary library = materials::MaterialLibrary::shipped();
   Warnings ignored;
   // The model of a rough surface is slow to build and does not change the refractive indices.
-  Design smooth = design;
-  smooth.surface.texture = SmoothTexture{};
-  const OpticsOfDesign optics(smooth, library, ignored);
+  design::Design smooth = design;
+  smooth.surface.texture = design::SmoothTexture{};
+  const design::OpticsOfDesign optics(smooth, library, ignored);
   const auto steps = static_cast<int>(std::ceil((high_nm - low_nm) / kIndexStepNm));
   std::vector<IndexAt> table;
   for (int k = 0; k <= steps; ++k) try {
@@ -63,11 +63,11 @@ std::vector<IndexAt> index_table(const Design& design, const materials::Spectrum
   return table;
 }
 
-/// Merges knees that are closer than kLeastDistanceNm into one at their mean wavelength. The distance is doubled until
-/// at most kMostKnees remain.
+/// Merges knees that are closer than kMinDistanceNm into one at their mean wavelength. The distance is doubled until
+/// at most kMaxKnees remain.
 std::vector<double> joined(std::vector<double> knees_nm) {
   std::sort(knees_nm.begin(), knees_nm.end());
-  for (double distance_nm = kLeastDistanceNm;; distance_nm *= 2.0) {
+  for (double distance_nm = kMinDistanceNm;; distance_nm *= 2.0) {
     std::vector<double> joined;
     for (std::size_t first = 0; first < knees_nm.size();) {
       std::size_t last = first;
@@ -76,7 +76,7 @@ std::vector<double> joined(std::vector<double> knees_nm) {
       joined.push_back(kRoundingNm * std::round(sum / static_cast<double>(last - first) / kRoundingNm));
       first = last;
     }
-    if (joined.size() <= kMostKnees) return joined;
+    if (joined.size() <= kMaxKnees) return joined;
   }
 }
 
@@ -87,7 +87,8 @@ std::vector<double> knees_of(const geometry::PartSpec& part, const geometry::Vec
   std::vector<double> knees_nm;
   std::vector<double> before;
   for (std::size_t k = 0; k < table.size(); ++k) {
-    std::vector<double> margins = total_reflection_margins(part, to_source, table[k].index, table[k].back_index);
+    std::vector<double> margins =
+        design::total_reflection_margins(part, to_source, table[k].index, table[k].back_index);
     for (std::size_t m = 0; k > 0 && m < margins.size(); ++m)
       if ((before[m] < 0.0) != (margins[m] < 0.0))
         knees_nm.push_back(
@@ -126,7 +127,7 @@ materials::Spectrum Photometer::Lamp::light(const std::vector<double>& knees_nm)
 std::map<std::vector<double>, std::vector<std::size_t>> Photometer::settings_by_knees(
     const std::vector<PhotometerSetting>& settings) const {
   std::map<std::vector<double>, std::vector<std::size_t>> groups;
-  const bool may_have_knees = lamp_ && lamp_->parts >= kLeastPartsOfValues && effort_ == Effort::full &&
+  const bool may_have_knees = lamp_ && lamp_->parts >= kMinSpansForKnees && effort_ == Effort::full &&
                               design_.elements() && !design_.part().substrate && !design_.entrance &&
                               !design_.substance.refractive_index && design_.needs_total_reflection();
   std::vector<IndexAt> table;
@@ -144,7 +145,7 @@ Photometer Photometer::with_knees(const std::vector<double>& knees_nm) const try
   const materials::Spectrum light = lamp_->light(knees_nm);
   const materials::MaterialLibrary library = materials::MaterialLibrary::shipped();
   Warnings ignored;
-  const OpticsOfDesign optics(design_, library, ignored);
+  const design::OpticsOfDesign optics(design_, library, ignored);
   changed.weights_ = light.weights;
   changed.model_.spectral.clear();
   for (std::size_t k = 0; k < light.size(); ++k)
@@ -166,7 +167,7 @@ std::optional<std::vector<PhotometerReading>> Photometer::measure(const std::vec
     const auto share = [&](std::size_t count) {
       return static_cast<double>(count) / static_cast<double>(settings.size());
     };
-    PartOfProgress part(progress, share(done), share(done + own.size()));
+    PartProgress part(progress, share(done), share(done + own.size()));
     auto measured = knees_nm.empty() ? measure_in_one_light(own, &part, cancel)
                                      : with_knees(knees_nm).measure_in_one_light(own, &part, cancel);
     if (!measured) return std::nullopt;

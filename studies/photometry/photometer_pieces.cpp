@@ -35,17 +35,17 @@ constexpr double kCutoffOfGuide = 3.0;
 // Ratio of the cut-off power for preliminary values to the usual one.
 constexpr double kCutoffOfFirstAnswer = 10.0;
 // Maximum number of beams per direction and wavelength. If more beams are needed, the engine `auto` uses Monte Carlo.
-constexpr std::uint64_t kMostBeams = 4'000'000;
+constexpr std::uint64_t kMaxBeams = 4'000'000;
 // Minimum trace of the matrix ReturnedBeam::entry_from_exit (entry position as a function of exit position) for which a
 // beam counts as mirror image of the light. The trace is 2 for a plane mirror and at most 0 for retroreflection.
-constexpr double kLeastMirrorTrace = 1.0;
+constexpr double kMinMirrorTrace = 1.0;
 // Maximum number of grid points at which the far field is evaluated to integrate the power inside the window of
 // directions. If more points are needed, this power is not computed.
-constexpr double kMostLatticePoints = 300'000.0;
+constexpr double kMaxLatticePoints = 300'000.0;
 
 // Maximum truncated power, as a fraction of the incident power, that is neglected. If more power is truncated,
 // Piece::missing_per_sr is computed.
-constexpr double kLeastTruncated = 1e-9;
+constexpr double kMaxNeglectedPower = 1e-9;
 // Factor of the cut-off power for the coarse trace in estimate_missing().
 constexpr double kCoarseness = 20.0;
 // Memory, in bytes, that FarFieldCollector needs for each cell of a finite part.
@@ -53,7 +53,7 @@ constexpr double kBytesPerCell = 200.0;
 // Memory, in bytes, that FarFieldCollector needs for each returned beam of each cell.
 constexpr double kBytesPerBeamOfCell = 8.0;
 // Assumed number of returned beams per cell, a lower bound, with which the required memory is estimated before tracing.
-constexpr double kLeastBeamsOfCell = 10.0;
+constexpr double kMinBeamsPerCell = 10.0;
 
 [[noreturn]] void fail_on_memory() {
   throw TraceBudgetError(
@@ -68,9 +68,9 @@ class FarFieldMemory {
  public:
   /// Adds the memory of a returned beam.
   /// \throw TraceBudgetError if this far field exceeds the memory budget
-  /// \throw SharedMemoryShort in the same cases as BeamMemory::require_shared()
+  /// \throw SharedMemoryExceeded in the same cases as BeamMemory::require_shared()
   void add(const raytrace::ReturnedBeam& beam) {
-    const double count = beam.place_count();
+    const double count = beam.instance_count();
     const double new_cells = std::max(0.0, count - cells_);
     cells_ += new_cells;
     memory_.add(static_cast<std::uint64_t>(kBytesPerCell * new_cells + kBytesPerBeamOfCell * count));
@@ -107,7 +107,7 @@ double scattered_power(const raytrace::ReturnedBeam& beam) {
 /// Returns true if beams below the cut-off power are resampled instead of truncated. This requires the engine `auto`,
 /// plane facets, and that all light is traced.
 bool Photometer::resamples_weak() const {
-  return tracing_ == Tracing::beams && request_.engine == Engine::automatic && !facts_.has_form;
+  return tracing_ == Tracing::beams && request_.engine == raytrace::Engine::automatic && !facts_.has_form;
 }
 
 double Photometer::element_count() const {
@@ -127,14 +127,15 @@ double Photometer::cutoff() const {
   const bool is_finite = !model_.part.period_mm && resamples_weak();
   const double usual = is_finite ? std::max(kCutoffOfFinite / elements, kCutoffOfAll) : kCutoff / elements;
   if (is_first_answer) return std::max(given, kCutoffOfFirstAnswer * usual);
-  return is_finite && effort_ == Effort::guide ? kCutoffOfGuide * usual : usual;
+  return is_finite && effort_ == Effort::search ? kCutoffOfGuide * usual : usual;
 }
 
 std::uint32_t Photometer::replicates() const {
   return effort_ == Effort::full ? kReplicates : kReplicatesOfGuide;
 }
 
-raytrace::FarFieldPolicy Photometer::far_field_policy(const SpectralOptics& light, const Cancellation* cancel) const {
+raytrace::FarFieldPolicy Photometer::far_field_policy(const design::SpectralOptics& light,
+                                                      const Cancellation* cancel) const {
   raytrace::FarFieldPolicy policy;
   policy.diffraction = request_.diffraction;
   policy.wavelength_nm = light.wavelength_nm;
@@ -149,28 +150,29 @@ raytrace::FarFieldPolicy Photometer::far_field_policy(const SpectralOptics& ligh
 raytrace::BeamPolicy Photometer::beam_policy(std::size_t wavelength, double coarseness) const {
   raytrace::BeamPolicy beams;
   if (resamples_weak())
-    beams.weak = raytrace::WeakBeams{.seed = raytrace::seed_at(request_.seed, wavelength), .replicates = replicates()};
+    beams.population_control =
+        raytrace::PopulationControl{.seed = raytrace::seed_at(request_.seed, wavelength), .replicates = replicates()};
   beams.cutoff = coarseness * cutoff();
-  beams.by_cell = request_.diffraction;
+  beams.separate_cells = request_.diffraction;
   beams.keeps_phases = keeps_phases();
-  if (request_.engine != Engine::exact) beams.max_beams = kMostBeams;
+  if (request_.engine != raytrace::Engine::exact) beams.max_beams = kMaxBeams;
   return beams;
 }
 
 raytrace::BeamTracer Photometer::make_tracer() const {
   const double cells = model_.part.period_mm ? 0.0 : static_cast<double>(model_.part.elements_full);
-  const double bytes = cells * (kBytesPerCell + kLeastBeamsOfCell * kBytesPerBeamOfCell);
+  const double bytes = cells * (kBytesPerCell + kMinBeamsPerCell * kBytesPerBeamOfCell);
   if (request_.diffraction && bytes > static_cast<double>(beam_memory_bytes())) fail_on_memory();
   if (effort_ == Effort::first_answer &&
       2.0 * raytrace::element_cost(model_.part).bytes > static_cast<double>(element_memory_bytes()))
     throw TraceBudgetError("preliminary values do not fit into memory next to the measurement itself");
-  return raytrace::BeamTracer(model_.part, raytrace::BeamTracer::Elements::equal_at_once);
+  return raytrace::BeamTracer(model_.part, raytrace::BeamTracer::Elements::instanced);
 }
 
 std::optional<Photometer::Traced> Photometer::traced(const geometry::Vec3& to_source, std::size_t wavelength,
                                                      const raytrace::BeamTracer& tracer, const Cancellation* cancel,
                                                      double coarseness) const {
-  const SpectralOptics& light = model_.spectral[wavelength];
+  const design::SpectralOptics& light = model_.spectral[wavelength];
   const raytrace::SourceAngles source = raytrace::source_angles(to_source);
   const raytrace::Illumination illumination{source.incidence, source.azimuth, design_.light.polarisation};
   raytrace::FarFieldCollector collector(model_.part, illumination, far_field_policy(light, cancel));
@@ -181,9 +183,9 @@ std::optional<Photometer::Traced> Photometer::traced(const geometry::Vec3& to_so
                               [&](const raytrace::ReturnedBeam& beam) {
                                 const double trace = beam.entry_from_exit.linear().trace();
                                 if (request_.diffraction && !model_.part.period_mm) memory.add(beam);
-                                if (trace < kLeastMirrorTrace || has_mirror_image_) collector.add(beam);
+                                if (trace < kMinMirrorTrace || has_mirror_image_) collector.add(beam);
                                 if (beam.cone < cones.size())
-                                  traced.scattered_from_cone += beam.place_count() * scattered_power(beam) /
+                                  traced.scattered_from_cone += beam.instance_count() * scattered_power(beam) /
                                                                 (beam.replicate ? replicates() : 1.0);
                               });
   if (!traced.beams.complete) return std::nullopt;
@@ -191,10 +193,10 @@ std::optional<Photometer::Traced> Photometer::traced(const geometry::Vec3& to_so
   return traced;
 }
 
-std::optional<std::vector<Photometer::WeighedField>> Photometer::far_fields(const geometry::Vec3& to_source,
-                                                                            const raytrace::BeamTracer& tracer,
-                                                                            const Cancellation* cancel) const {
-  std::vector<WeighedField> fields;
+std::optional<std::vector<Photometer::WeightedField>> Photometer::far_fields(const geometry::Vec3& to_source,
+                                                                             const raytrace::BeamTracer& tracer,
+                                                                             const Cancellation* cancel) const {
+  std::vector<WeightedField> fields;
   for (std::size_t wavelength = 0; wavelength < model_.spectral.size(); ++wavelength) {
     std::optional<Traced> one = traced(to_source, wavelength, tracer, cancel);
     if (!one) return std::nullopt;
@@ -203,15 +205,16 @@ std::optional<std::vector<Photometer::WeighedField>> Photometer::far_fields(cons
   return fields;
 }
 
-std::vector<Photometer::Piece> Photometer::measure_exactly(const std::vector<PhotometerSetting>& settings,
-                                                           const LitAlike& alike, std::size_t wavelength,
-                                                           const raytrace::BeamTracer& tracer,
-                                                           const Cancellation* cancel) const {
-  const ReturnFrame frame = frame_of(settings[alike.front().index]);
+std::vector<Photometer::WavelengthReading> Photometer::measure_exactly(const std::vector<PhotometerSetting>& settings,
+                                                                       const EquivalentDirections& directions,
+                                                                       std::size_t wavelength,
+                                                                       const raytrace::BeamTracer& tracer,
+                                                                       const Cancellation* cancel) const {
+  const ReturnFrame frame = frame_of(settings[directions.front().index]);
   const std::optional<Traced> traced = this->traced(frame.to_source, wavelength, tracer, cancel);
-  if (!traced) return std::vector<Piece>(alike.size());
+  if (!traced) return std::vector<WavelengthReading>(directions.size());
   const raytrace::FarField& field = traced->field;
-  Piece common;
+  WavelengthReading common;
   common.beyond_budget = field.beyond_budget_power();
   common.rre = traced->beams.ledgers.back()[raytrace::Account::retroreflected];
   common.std_error = traced->beams.std_error.back();
@@ -223,13 +226,13 @@ std::vector<Photometer::Piece> Photometer::measure_exactly(const std::vector<Pho
     common.rre += field.scattered_within(frame, widest.rad()) - traced->scattered_from_cone;
     common.truncated += field.unplaced_power();
   }
-  std::vector<Piece> pieces(alike.size(), common);
-  for (std::size_t k = 0; k < alike.size() && !is_cancelled(cancel); ++k)
-    look(settings[alike[k].index], alike[k], field, wavelength, pieces[k]);
+  std::vector<WavelengthReading> pieces(directions.size(), common);
+  for (std::size_t k = 0; k < directions.size() && !is_cancelled(cancel); ++k)
+    read_far_field(settings[directions[k].index], directions[k], field, wavelength, pieces[k]);
   // After a cancellation, some contributions have no intensities. Empty contributions are therefore returned.
-  if (is_cancelled(cancel)) return std::vector<Piece>(alike.size());
-  if (tracing_ == Tracing::beams) estimate_missing(settings, alike, wavelength, *traced, tracer, cancel, pieces);
-  for (Piece& piece : pieces) piece.complete = !is_cancelled(cancel);
+  if (is_cancelled(cancel)) return std::vector<WavelengthReading>(directions.size());
+  if (tracing_ == Tracing::beams) estimate_missing(settings, directions, wavelength, *traced, tracer, cancel, pieces);
+  for (WavelengthReading& piece : pieces) piece.complete = !is_cancelled(cancel);
   return pieces;
 }
 
@@ -239,25 +242,27 @@ std::vector<Photometer::Piece> Photometer::measure_exactly(const std::vector<Pho
 /// The middle wavelength represents all wavelengths. This estimate is omitted if weak beams are resampled, because
 /// hardly any light is then truncated.
 /// (3) Scattered light of unknown direction is assumed to have the angular distribution of the other scattered light.
-void Photometer::estimate_missing(const std::vector<PhotometerSetting>& settings, const LitAlike& alike,
-                                  std::size_t wavelength, const Traced& traced, const raytrace::BeamTracer& tracer,
-                                  const Cancellation* cancel, std::vector<Piece>& pieces) const {
+void Photometer::estimate_missing(const std::vector<PhotometerSetting>& settings,
+                                  const EquivalentDirections& directions, std::size_t wavelength, const Traced& traced,
+                                  const raytrace::BeamTracer& tracer, const Cancellation* cancel,
+                                  std::vector<WavelengthReading>& pieces) const {
   const auto truncated_in = [](const Traced& t) { return t.beams.ledgers.back()[raytrace::Account::truncated]; };
   const raytrace::FarField& field = traced.field;
   const double truncated = truncated_in(traced);
   const double unplaced = field.scattered_power() > 0.0 ? field.unplaced_power() / field.scattered_power() : 0.0;
-  if (truncated <= kLeastTruncated && unplaced <= kLeastTruncated) return;
+  if (truncated <= kMaxNeglectedPower && unplaced <= kMaxNeglectedPower) return;
   std::optional<Traced> coarse;
-  if (truncated > kLeastTruncated && !resamples_weak() && wavelength == model_.nearest_wavelength()) {
-    coarse = this->traced(frame_of(settings[alike.front().index]).to_source, wavelength, tracer, cancel, kCoarseness);
+  if (truncated > kMaxNeglectedPower && !resamples_weak() && wavelength == model_.nearest_wavelength()) {
+    coarse =
+        this->traced(frame_of(settings[directions.front().index]).to_source, wavelength, tracer, cancel, kCoarseness);
     if (!coarse) return;
   }
   const double difference = coarse ? truncated_in(*coarse) - truncated : 0.0;
   const double all_weights = std::accumulate(weights_.begin(), weights_.end(), 0.0);
   const double returned = pieces.front().rre;
-  for (std::size_t k = 0; k < alike.size(); ++k) {
-    const PhotometerSetting& setting = settings[alike[k].index];
-    const ReturnFrame frame = shared_frame(setting, alike[k]);
+  for (std::size_t k = 0; k < directions.size(); ++k) {
+    const PhotometerSetting& setting = settings[directions[k].index];
+    const ReturnFrame frame = shared_frame(setting, directions[k]);
     for (std::size_t angle = 0; angle < setting.observation_deg.size(); ++angle) {
       const geometry::Vec3 receiver = receiver_in(frame, setting.observation_deg[angle]);
       const double seen = pieces[k].per_sr[angle];
@@ -273,8 +278,9 @@ void Photometer::estimate_missing(const std::vector<PhotometerSetting>& settings
 }
 
 /// Evaluates the far field for one of the settings that share it.
-void Photometer::look(const PhotometerSetting& setting, const SharedDirection& shared, const raytrace::FarField& field,
-                      std::size_t wavelength, Piece& piece) const {
+void Photometer::read_far_field(const PhotometerSetting& setting, const SharedDirection& shared,
+                                const raytrace::FarField& field, std::size_t wavelength,
+                                WavelengthReading& piece) const {
   const ReturnFrame frame = shared_frame(setting, shared);
   for (const double observation_deg : setting.observation_deg) {
     const raytrace::FarFieldIntensity seen = field.intensity(receiver_in(frame, observation_deg), kernel_);
@@ -290,7 +296,7 @@ void Photometer::look(const PhotometerSetting& setting, const SharedDirection& s
     for (std::size_t bin = 0; bin < grid.size(); ++bin) piece.map_per_sr[bin] /= grid.solid_angle_sr(bin);
   }
   const double points = std::numbers::pi * std::pow(1.5 * window_rad / field.detail_rad(), 2.0);
-  if (setting.split && wavelength == model_.nearest_wavelength() && points < kMostLatticePoints) {
+  if (setting.split && wavelength == model_.nearest_wavelength() && points < kMaxLatticePoints) {
     const raytrace::FarField::Split parts = field.split(frame, window_rad);
     piece.split = {model_.spectral[wavelength].wavelength_nm, parts.inside, parts.outside, field.total_power()};
   }

@@ -9,10 +9,10 @@
 
 namespace retrace::studies {
 
-Photometer::Piece Photometer::measure_by_rays(const PhotometerSetting& setting, std::size_t wavelength,
-                                              const raytrace::MonteCarlo* tracer, Progress& progress,
-                                              const Cancellation* cancel) const {
-  const SpectralOptics& light = model_.spectral[wavelength];
+Photometer::WavelengthReading Photometer::measure_by_rays(const PhotometerSetting& setting, std::size_t wavelength,
+                                                          const raytrace::MonteCarlo* tracer, Progress& progress,
+                                                          const Cancellation* cancel) const {
+  const design::SpectralOptics& light = model_.spectral[wavelength];
   const raytrace::ReturnFrame frame = frame_of(setting);
   const raytrace::SourceAngles source = raytrace::source_angles(frame.to_source);
   raytrace::DirectionScore score{frame, kernel_, {}, {}};
@@ -23,14 +23,14 @@ Photometer::Piece Photometer::measure_by_rays(const PhotometerSetting& setting, 
                        setting.map_columns, setting.map_columns);
   raytrace::Sampling sampling;
   sampling.seed = raytrace::seed_at(request_.seed, wavelength);
-  sampling.rays = std::max<std::uint64_t>(1, request_.rays.value_or(kUsualRaysOfDirection) / model_.spectral.size());
+  sampling.rays = std::max<std::uint64_t>(1, request_.rays.value_or(kDefaultRaysPerDirection) / model_.spectral.size());
   const raytrace::Illumination illumination{source.incidence, source.azimuth, design_.light.polarisation};
   const std::vector<double>& cones = design_.detector.acceptance_half_angle_deg;
   const raytrace::MonteCarloResult traced =
       tracer != nullptr ? tracer->trace(light.optics, illumination, cones, sampling, {}, cancel, &score, &progress)
                         : raytrace::BallTracer(*design_.balls())
                               .trace(light.optics, illumination, cones, sampling, {}, cancel, &score, &progress);
-  Piece piece;
+  WavelengthReading piece;
   if (!traced.complete) return piece;
   const auto receivers = static_cast<std::ptrdiff_t>(score.receivers.size());
   piece.rre = traced.cones.back().rre;
@@ -39,11 +39,11 @@ Photometer::Piece Photometer::measure_by_rays(const PhotometerSetting& setting, 
   piece.per_sr.assign(traced.score.begin(), traced.score.begin() + receivers);
   piece.error_per_sr.assign(traced.score_error.begin(), traced.score_error.begin() + receivers);
   // The standard error from the spread of the replicates does not cover light on paths that no ray has taken.
-  // with_unseen() adds an allowance for this light. A single ray contributes at most its power times the maximum of the
-  // receiver's kernel.
+  // with_unsampled_paths() adds an allowance for this light. A single ray contributes at most its power times the
+  // maximum of the receiver's kernel.
   for (double& error : piece.error_per_sr)
-    error = raytrace::with_unseen(raytrace::student_factor(raytrace::Sampling::kReplicates) * error,
-                                  static_cast<double>(traced.rays), kernel_.per_sr(0.0));
+    error = raytrace::with_unsampled_paths(raytrace::student_factor(raytrace::Sampling::kReplicates) * error,
+                                           static_cast<double>(traced.rays), kernel_.per_sr(0.0));
   if (score.grid)
     for (std::size_t bin = 0; bin < score.grid->size(); ++bin)
       piece.map_per_sr.push_back(traced.score[score.receivers.size() + bin] / score.grid->solid_angle_sr(bin));
@@ -52,7 +52,8 @@ Photometer::Piece Photometer::measure_by_rays(const PhotometerSetting& setting, 
 }
 
 bool Photometer::measure_by_rays(const std::vector<PhotometerSetting>& settings, Progress* progress,
-                                 const Cancellation* cancel, std::vector<std::vector<Piece>>& pieces) const {
+                                 const Cancellation* cancel,
+                                 std::vector<std::vector<WavelengthReading>>& pieces) const {
   std::optional<raytrace::MonteCarlo> tracer;
   if (!design_.balls())
     tracer.emplace(model_.part, raytrace::MonteCarlo::Engine::embree, model_.entrance ? &*model_.entrance : nullptr);

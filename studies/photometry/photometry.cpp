@@ -22,7 +22,7 @@ namespace {
 
 /// Minimum diameter of the larger of the two apertures, source and receiver. If both were points, computed intensities
 /// would be infinite or 0.
-constexpr double kLeastApertureArcmin = 0.006;
+constexpr double kMinApertureArcmin = 0.006;
 // Distance to a limit, in standard errors, below which a reading is undetermined.
 constexpr double kErrorsOfAMargin = 2.0;
 // Number of spans of the spectrum for pictures. Each span has two wavelengths.
@@ -32,7 +32,7 @@ constexpr std::size_t kFirstAnswerParts = 1;
 // Minimum number of rays for preliminary readings.
 constexpr double kMinRaysOfFirstAnswer = 4096.0;
 constexpr std::size_t kMapColumns = 97;
-constexpr std::size_t kMostMaps = 6;
+constexpr std::size_t kMaxMaps = 6;
 // Entrance angles of the curves over the observation angle.
 constexpr std::array<double, 4> kCurveEntranceDeg = {0.0, 10.0, 20.0, 30.0};
 // Number of observation angles of a curve.
@@ -40,23 +40,23 @@ constexpr std::size_t kCurvePoints = 41;
 
 void check_discs(const raytrace::PhotometricApertures& apertures) {
   const double source = arcmin_of(apertures.source), receiver = arcmin_of(apertures.receiver);
-  if (std::max(source, receiver) >= kLeastApertureArcmin) return;
+  if (std::max(source, receiver) >= kMinApertureArcmin) return;
   const std::string of_receiver = reference({"receiver_arcmin"});
   throw InputError(Field{"source_arcmin"},
                    fmt::format("must be at least {0} unless {1} is at least {0}: with a point source and a point "
                                "receiver, intensities are infinite or 0; got {2} and {1} {3}",
-                               shortest(kLeastApertureArcmin), of_receiver, shortest(source), shortest(receiver)));
+                               shortest(kMinApertureArcmin), of_receiver, shortest(source), shortest(receiver)));
 }
 
 void check(const PhotometrySettings& settings) {
   check_discs(settings.apertures);
   // Settings that come from sweeps and other studies may contain an engine or a cut-off that is valid for RRE but not
   // for photometry.
-  if (settings.engine == Engine::cell || settings.engine == Engine::stochastic)
+  if (settings.engine == raytrace::Engine::cell || settings.engine == raytrace::Engine::stochastic)
     throw InputError(Field{"engine"}, fmt::format("must be auto, exact, montecarlo or embree, got {}",
                                                   raytrace::engine_name(settings.engine)));
   if (settings.cutoff == 0.0) throw InputError(Field{"cutoff"}, "must be > 0 for photometry, got 0");
-  for (const TestPoint& point : settings.programme.points)
+  for (const TestPoint& point : settings.test_plan.points)
     if (!(point.observation_deg <= settings.window_deg))
       throw InputError({settings.limits_source, point.line, "observation_deg"},
                        fmt::format("must be within the computed far field ({} {}), got {}", reference({"window_deg"}),
@@ -78,14 +78,14 @@ std::size_t index_of(std::vector<double>& values, double value) {
 }
 
 /// Returns true if the entrance face reflects the lamp back to the lamp for perpendicular light.
-bool mirrors_source(const Design& design) {
+bool mirrors_source(const design::Design& design) {
   return !design.balls() && !design.entrance && !design.idealisation.lossless_entrance;
 }
 
 /// Returns the angles V at which a test point or a colour is measured.
 template <class Point>
 std::vector<double> measured_v_deg(const Point& point, bool mirrors) {
-  return mirrors && !point.v_beside_deg.empty() ? point.v_beside_deg : std::vector{point.v_deg};
+  return mirrors && !point.substitute_v_deg.empty() ? point.substitute_v_deg : std::vector{point.v_deg};
 }
 
 /// Returns the settings that are measured for the test points of a request.
@@ -93,7 +93,7 @@ std::vector<double> measured_v_deg(const Point& point, bool mirrors) {
 Plan plan_of(const PhotometrySettings& request, bool mirrors) {
   Plan plan;
   std::map<std::tuple<double, double, double>, std::size_t> known;
-  for (const TestPoint& point : request.programme.points) {
+  for (const TestPoint& point : request.test_plan.points) {
     auto& readings = plan.readings_of_point.emplace_back();
     for (const double v_deg : measured_v_deg(point, mirrors))
       for (const double rotation_deg : request.rotation_deg) {
@@ -112,13 +112,13 @@ using Readings = std::vector<std::optional<PhotometerReading>>;
 std::vector<std::vector<PhotometricPoint>> readings_of_points(const PhotometrySettings& request, const Plan& plan,
                                                               const Readings& readings) {
   std::vector<std::vector<PhotometricPoint>> of_points;
-  for (std::size_t k = 0; k < request.programme.points.size(); ++k) {
+  for (std::size_t k = 0; k < request.test_plan.points.size(); ++k) {
     std::vector<PhotometricPoint>& of_point = of_points.emplace_back();
     for (const auto& [setting, angle] : plan.readings_of_point[k]) {
       if (!readings[setting]) continue;
       const PhotometerReading& reading = *readings[setting];
       PhotometricPoint point;
-      point.asked = request.programme.points[k];
+      point.test_point = request.test_plan.points[k];
       point.v_deg = plan.settings[setting].v_deg;
       point.rotation_deg = plan.settings[setting].rotation_deg;
       point.r_a = reading.r_a[angle];
@@ -128,7 +128,7 @@ std::vector<std::vector<PhotometricPoint>> readings_of_points(const PhotometrySe
       };
       point.r_i_mcd_per_lx = in_mcd(point.r_a);
       point.std_error_mcd_per_lx = in_mcd(reading.r_a_error[angle]);
-      point.limit_mcd_per_lx = in_mcd_per_lx(point.asked.minimum, point.asked.unit, request.area_cm2);
+      point.limit_mcd_per_lx = in_mcd_per_lx(point.test_point.minimum, point.test_point.unit, request.area_cm2);
       point.lacks_diffraction = reading.lacks_diffraction;
       of_point.push_back(point);
     }
@@ -137,7 +137,7 @@ std::vector<std::vector<PhotometricPoint>> readings_of_points(const PhotometrySe
 }
 
 /// Returns the reading with the minimum value for each test point that was measured.
-std::vector<PhotometricPoint> least_of(const std::vector<std::vector<PhotometricPoint>>& readings) {
+std::vector<PhotometricPoint> min_of(const std::vector<std::vector<PhotometricPoint>>& readings) {
   std::vector<PhotometricPoint> points;
   for (const std::vector<PhotometricPoint>& of_point : readings) {
     if (of_point.empty()) continue;
@@ -149,11 +149,11 @@ std::vector<PhotometricPoint> least_of(const std::vector<std::vector<Photometric
 }
 
 /// Returns settings for the far-field maps: one for each measured direction of light at the first rotation of the part,
-/// up to kMostMaps.
+/// up to kMaxMaps.
 std::vector<PhotometerSetting> map_settings(const PhotometrySettings& request, const Plan& plan) {
   std::vector<PhotometerSetting> settings;
   for (const PhotometerSetting& measured : plan.settings)
-    if (measured.rotation_deg == request.rotation_deg.front() && settings.size() < kMostMaps)
+    if (measured.rotation_deg == request.rotation_deg.front() && settings.size() < kMaxMaps)
       settings.push_back({measured.v_deg, measured.h_deg, measured.rotation_deg, {}, kMapColumns, false});
   return settings;
 }
@@ -169,10 +169,10 @@ std::vector<PhotometerSetting> curve_settings(const PhotometrySettings& request)
   return settings;
 }
 
-bool add_pictures(const Design& design, const PhotometrySettings& request, const Plan& plan, bool exact,
+bool add_pictures(const design::Design& design, const PhotometrySettings& request, const Plan& plan, bool exact,
                   Progress* progress, const Cancellation* cancel, PhotometryResult& result) {
   Photometer photometer(design, request, kPictureParts);
-  if (!exact) photometer.leave_exact();
+  if (!exact) photometer.use_monte_carlo();
   const std::vector<PhotometerSetting> maps = map_settings(request, plan);
   const std::vector<PhotometerSetting> curves = curve_settings(request);
   std::vector<PhotometerSetting> all = maps;
@@ -193,7 +193,7 @@ std::optional<std::vector<PhotometricPoint>> table_of(const Photometer& photomet
   for (PhotometerSetting& setting : plan.settings) setting.split = false;
   const auto readings = photometer.measure(plan.settings, nullptr, cancel);
   if (!readings) return std::nullopt;
-  return least_of(readings_of_points(request, plan, {readings->begin(), readings->end()}));
+  return min_of(readings_of_points(request, plan, {readings->begin(), readings->end()}));
 }
 
 /// Measures the readings of changed designs. Directions of light are measured one after the other. Directions for which
@@ -207,20 +207,20 @@ class TablesOfChanges {
   }
 
   /// Measures the readings of a changed design as described for TableOfDesign.
-  std::optional<std::vector<PhotometricPoint>> table(const Design& design, std::size_t parts, double enough) {
+  std::optional<std::vector<PhotometricPoint>> table(const design::Design& design, std::size_t parts, double enough) {
     Photometer photometer(design, request_, parts);
-    if (!exact_) photometer.leave_exact();
-    if (std::isfinite(enough)) photometer.set_effort(Photometer::Effort::guide);
+    if (!exact_) photometer.use_monte_carlo();
+    if (std::isfinite(enough)) photometer.set_effort(Photometer::Effort::search);
     Readings readings(plan_.settings.size());
     std::vector<PhotometricPoint> points;
-    for (const LitAlike& alike : in_order(photometer.settings_lit_alike(plan_.settings))) {
+    for (const EquivalentDirections& alike : in_order(photometer.group_equivalent_settings(plan_.settings))) {
       std::vector<PhotometerSetting> settings;
       for (const SharedDirection& one : alike) settings.push_back(plan_.settings[one.index]);
       const auto measured = photometer.measure(settings, nullptr, cancel_);
       if (!measured) return std::nullopt;
       for (std::size_t k = 0; k < alike.size(); ++k) readings[alike[k].index] = (*measured)[k];
-      points = least_of(readings_of_points(request_, plan_, readings));
-      if (!(least_ratio(points) < enough)) continue;
+      points = min_of(readings_of_points(request_, plan_, readings));
+      if (!(min_ratio(points) < enough)) continue;
       put_first(alike.front().index);
       break;
     }
@@ -228,15 +228,15 @@ class TablesOfChanges {
   }
 
  private:
-  std::vector<LitAlike> in_order(std::vector<LitAlike> directions) const {
-    const auto rank = [this](const LitAlike& alike) {
+  std::vector<EquivalentDirections> in_order(std::vector<EquivalentDirections> directions) const {
+    const auto rank = [this](const EquivalentDirections& alike) {
       std::ptrdiff_t least = std::ssize(order_);
       for (const SharedDirection& one : alike)
         least = std::min(least, std::find(order_.begin(), order_.end(), one.index) - order_.begin());
       return least;
     };
     std::stable_sort(directions.begin(), directions.end(),
-                     [&](const LitAlike& a, const LitAlike& b) { return rank(a) < rank(b); });
+                     [&](const EquivalentDirections& a, const EquivalentDirections& b) { return rank(a) < rank(b); });
     return directions;
   }
 
@@ -303,20 +303,21 @@ Verdict PhotometricPoint::verdict() const {
   return reaches ? Verdict::pass : Verdict::fail;
 }
 
-Verdict verdict_of(const std::vector<PhotometricPoint>& points, const TestProgramme& programme) {
+Verdict verdict_of(const std::vector<PhotometricPoint>& points, const TestPlan& test_plan) {
   const auto any = [&](Verdict verdict) {
     return std::any_of(points.begin(), points.end(), [&](const PhotometricPoint& p) { return p.verdict() == verdict; });
   };
   for (const Verdict verdict : {Verdict::fail, Verdict::undetermined})
     if (any(verdict)) return verdict;
-  const bool is_confirmed = std::none_of(
-      points.begin(), points.end(), [](const PhotometricPoint& p) { return p.asked.status == LimitStatus::recalled; });
-  return is_confirmed && programme.is_complete ? Verdict::pass : Verdict::unconfirmed;
+  const bool is_confirmed = std::none_of(points.begin(), points.end(), [](const PhotometricPoint& p) {
+    return p.test_point.status == LimitStatus::recalled;
+  });
+  return is_confirmed && test_plan.is_complete ? Verdict::pass : Verdict::unconfirmed;
 }
 
-Verdict area_verdict(const TestProgramme& programme, double area_cm2) {
+Verdict area_verdict(const TestPlan& test_plan, double area_cm2) {
   Verdict verdict = Verdict::pass;
-  for (const LimitArea& limit : programme.areas) {
+  for (const LimitArea& limit : test_plan.areas) {
     if (!limit.holds(area_cm2)) return Verdict::fail;
     if (limit.status == LimitStatus::recalled) verdict = Verdict::unconfirmed;
   }
@@ -324,16 +325,17 @@ Verdict area_verdict(const TestProgramme& programme, double area_cm2) {
 }
 
 struct PhotometryStudy::Prepared {
-  Design design;
+  design::Design design;
   PhotometrySettings request;
   std::unique_ptr<Photometer> photometer;
   Plan plan;
 };
 
-PhotometryStudy::PhotometryStudy(Design design, PhotometrySettings settings) : prepared_(std::make_unique<Prepared>()) {
+PhotometryStudy::PhotometryStudy(design::Design design, PhotometrySettings settings)
+    : prepared_(std::make_unique<Prepared>()) {
   check(settings);
   prepared_->photometer = std::make_unique<Photometer>(design, settings, materials::kSpectralParts);
-  if (settings.engine == Engine::exact && !prepared_->photometer->is_exact())
+  if (settings.engine == raytrace::Engine::exact && !prepared_->photometer->is_exact())
     throw InputError(
         Field{"engine"},
         fmt::format("exact needs plane and smooth faces, but the faces of {} scatter light: use {} montecarlo",
@@ -349,7 +351,7 @@ double PhotometryStudy::cutoff() const {
   return prepared_->photometer->cutoff_of_element();
 }
 
-bool PhotometryStudy::follows_beams() const {
+bool PhotometryStudy::uses_beams() const {
   return prepared_->photometer->is_exact();
 }
 
@@ -377,16 +379,16 @@ bool raise_to_mean_field(const Photometer& photometer, const PhotometrySettings&
 }
 
 /// Returns why the verdict on some test points is undetermined. Returns an empty reason if there are no such points.
-OpenReason reason_of(const std::vector<PhotometricPoint>& points, const Photometer& photometer) {
+UndeterminedReason reason_of(const std::vector<PhotometricPoint>& points, const Photometer& photometer) {
   const auto is_open = [](const PhotometricPoint& p) { return p.verdict() == Verdict::undetermined; };
   if (std::none_of(points.begin(), points.end(), is_open)) return {};
   if (std::none_of(points.begin(), points.end(), [](const PhotometricPoint& p) { return p.lacks_diffraction; }))
-    return {OpenReason::Cause::noise, std::nullopt,
+    return {UndeterminedReason::Cause::noise, std::nullopt,
             "a value is within two standard errors of its limit: " + photometer.remedy_for_noise()};
   const NoDiffraction why = photometer.why_undiffracted();
-  return {OpenReason::Cause::diffraction, why,
+  return {UndeterminedReason::Cause::diffraction, why,
           fmt::format("diffraction is not included, because {}, but it is significant for cells narrower than {} mm",
-                      text_of(why), fixed(photometer.least_undiffracted_mm(), 1))};
+                      text_of(why), fixed(photometer.min_undiffracted_mm(), 1))};
 }
 
 /// Measures with the exact engine, or by Monte Carlo if the exact engine needs too many beams and the request allows
@@ -398,30 +400,30 @@ std::optional<std::vector<PhotometerReading>> readings_of(Photometer& photometer
   try {
     return photometer.measure(plan.settings, &attempt, cancel);
   } catch (const BudgetError&) {
-    if (request.engine == Engine::exact || !photometer.is_exact()) throw;
-    photometer.leave_exact();
+    if (request.engine == raytrace::Engine::exact || !photometer.is_exact()) throw;
+    photometer.use_monte_carlo();
     attempt.begin_again();
     return photometer.measure(plan.settings, &attempt, cancel);
   }
 }
 
 bool measures_colour(const PhotometrySettings& request) {
-  return request.colour && request.light != PhotometricLight::of_design && !request.programme.points.empty();
+  return request.colour && request.light != PhotometricLight::of_design && !request.test_plan.points.empty();
 }
 
 /// Returns true if the study searches for a change with which the design passes, in case the design fails. The search
 /// must be requested, and the design must have elements and a plane entrance face.
-bool may_search_change(const Design& design, const PhotometrySettings& request) {
+bool may_search_change(const design::Design& design, const PhotometrySettings& request) {
   return request.advice && design.elements() && !design.entrance;
 }
 
 /// Progress objects of the stages of PhotometryStudy::run(). Each stage fills a fraction of the whole progress.
 struct StageProgress {
-  PartOfProgress readings, colour, pictures, change;
+  PartProgress readings, colour, pictures, change;
 };
 
 /// Divides the progress of a run among its stages, in proportion to estimates of their durations.
-StageProgress stages_of(Progress* whole, const Design& design, const PhotometrySettings& request) {
+StageProgress stages_of(Progress* whole, const design::Design& design, const PhotometrySettings& request) {
   const double colour = 1.0 + (measures_colour(request) ? 0.3 : 0.0);
   const double pictures = colour + (request.pictures ? 0.3 : 0.0);
   const double change = pictures + (may_search_change(design, request) ? 1.0 : 0.0);
@@ -434,19 +436,21 @@ StageProgress stages_of(Progress* whole, const Design& design, const PhotometryS
 /// Adds a proposal for a change with which a failing design passes. Returns false if the computation was cancelled.
 bool add_change(const Photometer& photometer, const Plan& plan, Progress* progress, const Cancellation* cancel,
                 PhotometryResult& result) {
-  const Design& design = result.design;
+  const design::Design& design = result.design;
   const PhotometrySettings& request = result.request;
   const bool is_asked = may_search_change(design, request) &&
-                        verdict_of(result.points, request.programme) == Verdict::fail &&
-                        area_verdict(request.programme, request.area_cm2) != Verdict::fail;
+                        verdict_of(result.points, request.test_plan) == Verdict::fail &&
+                        area_verdict(request.test_plan, request.area_cm2) != Verdict::fail;
   if (!is_asked) return true;
   TablesOfChanges tables(request, plan, photometer.is_exact(), cancel);
   result.change = change_that_passes(
-      design, request.programme,
-      [&](const Design& changed, std::size_t parts, double enough) { return tables.table(changed, parts, enough); },
+      design, request.test_plan,
+      [&](const design::Design& changed, std::size_t parts, double enough) {
+        return tables.table(changed, parts, enough);
+      },
       progress);
   if (result.change)
-    result.change->verdict = std::max(result.change->verdict, area_verdict(request.programme, request.area_cm2));
+    result.change->verdict = std::max(result.change->verdict, area_verdict(request.test_plan, request.area_cm2));
   return !is_cancelled(cancel);
 }
 
@@ -454,7 +458,7 @@ bool add_change(const Photometer& photometer, const Plan& plan, Progress* progre
 bool add_colour(const Photometer& photometer, Progress* progress, const Cancellation* cancel,
                 PhotometryResult& result) {
   const PhotometrySettings& request = result.request;
-  const TestProgramme& programme = request.programme;
+  const TestPlan& programme = request.test_plan;
   if (!measures_colour(request)) return true;
   const bool mirrors = mirrors_source(result.design);
   const std::vector<double> v_deg = programme.boundaries.empty()
@@ -483,16 +487,16 @@ PhotometryResult PhotometryStudy::run(Progress* progress, const Cancellation* ca
     result.warnings.push_back(
         {"no_diffraction", fmt::format("{}: the Monte-Carlo engine does not include diffraction, which is significant "
                                        "for cells narrower than {} mm",
-                                       design.source_name(), fixed(photometer.least_undiffracted_mm(), 1))});
+                                       design.source_name(), fixed(photometer.min_undiffracted_mm(), 1))});
   result.complete = readings.has_value();
   if (readings) {
     for (const PhotometerReading& reading : *readings) result.directions.push_back(reading.direction);
     result.readings = readings_of_points(request, plan, {readings->begin(), readings->end()});
-    result.measured = least_of(result.readings);
+    result.measured = min_of(result.readings);
     result.points = result.measured;
     result.complete = raise_to_mean_field(photometer, request, plan, cancel, result.points);
     result.verdict =
-        std::max(verdict_of(result.points, request.programme), area_verdict(request.programme, request.area_cm2));
+        std::max(verdict_of(result.points, request.test_plan), area_verdict(request.test_plan, request.area_cm2));
     result.reason = reason_of(result.points, photometer);
   }
   if (result.complete) result.complete = add_colour(photometer, &stages.colour, cancel, result);
@@ -503,11 +507,11 @@ PhotometryResult PhotometryStudy::run(Progress* progress, const Cancellation* ca
   return result;
 }
 
-std::optional<PhotometricFirstAnswer> PhotometryStudy::first_answer(double ray_share,
+std::optional<PhotometricFirstAnswer> PhotometryStudy::first_answer(double ray_fraction,
                                                                     const Cancellation* cancel) const {
   PhotometrySettings request = prepared_->request;
-  const auto rays = static_cast<double>(request.rays.value_or(kUsualRaysOfDirection));
-  request.rays = static_cast<std::uint64_t>(std::min(rays, std::max(kMinRaysOfFirstAnswer, ray_share * rays)));
+  const auto rays = static_cast<double>(request.rays.value_or(kDefaultRaysPerDirection));
+  request.rays = static_cast<std::uint64_t>(std::min(rays, std::max(kMinRaysOfFirstAnswer, ray_fraction * rays)));
   Plan plan = prepared_->plan;
   for (PhotometerSetting& setting : plan.settings) setting.split = false;
   Photometer photometer(prepared_->design, request, kFirstAnswerParts);
@@ -515,7 +519,7 @@ std::optional<PhotometricFirstAnswer> PhotometryStudy::first_answer(double ray_s
   const auto readings = readings_of(photometer, request, plan, nullptr, cancel);
   if (!readings) return std::nullopt;
   PhotometricFirstAnswer answer;
-  answer.points = least_of(readings_of_points(request, plan, {readings->begin(), readings->end()}));
+  answer.points = min_of(readings_of_points(request, plan, {readings->begin(), readings->end()}));
   answer.wavelengths_nm = photometer.wavelengths_nm();
   answer.lacks_diffraction = request.diffraction && !photometer.has_diffraction();
   return answer;

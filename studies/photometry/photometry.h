@@ -13,11 +13,11 @@
 
 #include "core/progress.h"
 #include "core/warning.h"
+#include "design/design.h"
+#include "design/engine_facts.h"
 #include "materials/chromaticity.h"
 #include "materials/spectrum.h"
 #include "raytrace/light/aperture_kernel.h"
-#include "studies/design/design.h"
-#include "studies/design/engine_facts.h"
 #include "studies/photometry/limits.h"
 
 namespace retrace::studies {
@@ -35,12 +35,12 @@ std::string_view light_name(PhotometricLight light);
 PhotometricLight light_from_name(std::string_view name);
 
 /// Default number of rays per direction of incidence.
-inline constexpr std::uint64_t kUsualRaysOfDirection = std::uint64_t{1} << 20;
+inline constexpr std::uint64_t kDefaultRaysPerDirection = std::uint64_t{1} << 20;
 
 /// Settings of the study. resolve() in io/standard_reader.h makes them from a PhotometryRequest and reads the files of
 /// the standard and of the dye.
 struct PhotometrySettings {
-  TestProgramme programme;
+  TestPlan test_plan;
   std::string limits_source;  ///< origin of the limits: the name of a standard or a file
   /// Area of the real part, to which R_I refers; > 0. The design defines only the structure of the part.
   double area_cm2 = 0.0;
@@ -51,10 +51,10 @@ struct PhotometrySettings {
   std::string dye;                                 ///< name of the dye; empty: no dye
   materials::SpectralCurve dye_absorption_per_mm;  ///< absorption of the dye; empty: no dye
   bool diffraction = true;
-  Engine engine = Engine::automatic;  ///< any engine except stochastic and cell
+  raytrace::Engine engine = raytrace::Engine::automatic;  ///< any engine except stochastic and cell
   /// Minimum power of beams that are traced exactly, as a fraction of the power on one element.
   std::optional<double> cutoff;
-  std::optional<std::uint64_t> rays;  ///< Monte Carlo: number of rays per direction; empty: kUsualRaysOfDirection
+  std::optional<std::uint64_t> rays;  ///< Monte Carlo: number of rays per direction; empty: kDefaultRaysPerDirection
   std::uint32_t seed = 1;
   bool pictures = false;  ///< true: maps and curves are computed
   /// True: the power in directions inside and outside of the window (see window_deg) is integrated. This check is slow.
@@ -75,7 +75,7 @@ inline bool every_point_holds(Verdict verdict) {
 
 /// Test point with its reading.
 struct PhotometricPoint {
-  TestPoint asked;
+  TestPoint test_point;
   /// Angle V of the measurement. It differs from V of the test point if the entrance face reflects the lamp back to the
   /// lamp there.
   double v_deg = 0.0;
@@ -156,7 +156,7 @@ using NoDiffraction = std::variant<Undiffracted, raytrace::Obstacle>;
 std::string text_of(const NoDiffraction& reason);
 
 /// Reason of an undetermined verdict.
-struct OpenReason {
+struct UndeterminedReason {
   enum class Cause {
     none,           ///< there is no reason, because the verdict is determined
     noise,          ///< a value is within two standard errors of its limit
@@ -171,7 +171,7 @@ struct OpenReason {
 
 /// Boundary of the allowed colours, and distance of the returned light's colour from it.
 struct ColourPoint {
-  ColourBoundary asked;
+  ColourBoundary boundary;
   double margin = 0.0;     ///< most - of_x x - of_y y; the boundary is satisfied if it is >= 0
   double std_error = 0.0;  ///< standard error of the margin
 };
@@ -186,15 +186,15 @@ struct PhotometricColour {
   std::vector<ColourPoint> boundaries;                  ///< empty if the boundaries of the standard are not known
   /// True: diffraction is significant but not included in the result.
   bool lacks_diffraction = false;
-  bool is_of_another_light = false;  ///< true: the light is not CIE A, for which the boundaries are defined
-  OpenReason reason;
+  bool uses_other_illuminant = false;  ///< true: the light is not CIE A, for which the boundaries are defined
+  UndeterminedReason reason;
 
   /// Returns the verdict on all boundaries. Returns nothing if there are no boundaries.
   std::optional<Verdict> verdict() const;
 };
 
 struct PhotometryResult {
-  Design design;
+  design::Design design;
   PhotometrySettings request;
   std::string engine;
   std::vector<double> wavelengths_nm;
@@ -206,7 +206,7 @@ struct PhotometryResult {
   std::vector<std::vector<PhotometricPoint>> readings;
   std::vector<PhotometricDirection> directions;
   Verdict verdict = Verdict::fail;
-  OpenReason reason;                        ///< reason why points are undetermined; empty if all are determined
+  UndeterminedReason reason;                ///< reason why points are undetermined; empty if all are determined
   std::optional<PhotometricColour> colour;  ///< colour with its own verdict
   /// Proposed change of a failing design: one with which the design passes, or else the best one that was tried.
   std::optional<PhotometricChange> change;
@@ -234,11 +234,11 @@ struct PhotometricFirstAnswer {
 
 /// Returns the common verdict of several points. It is `fail` if any point fails, otherwise `undetermined` if any point
 /// is undetermined. If limits are unconfirmed or the test plan is incomplete, the verdict is at most `unconfirmed`.
-Verdict verdict_of(const std::vector<PhotometricPoint>& points, const TestProgramme& programme);
+Verdict verdict_of(const std::vector<PhotometricPoint>& points, const TestPlan& test_plan);
 
 /// Compares the area of a part with the limits of a test plan. Returns pass, fail, or `unconfirmed` if the part
 /// satisfies a limit that is unconfirmed.
-Verdict area_verdict(const TestProgramme& programme, double area_cm2);
+Verdict area_verdict(const TestPlan& test_plan, double area_cm2);
 
 /// Photometric study of a design. The constructor checks the settings, and run() computes the readings.
 class PhotometryStudy {
@@ -247,12 +247,12 @@ class PhotometryStudy {
   /// points, if the engine does not support the design, or if a material is unknown
   /// \pre All settings except the engine and the cut-off are in the ranges of the fields of PhotometryRequest. The
   /// constructor checks the engine and the cut-off itself.
-  PhotometryStudy(Design design, PhotometrySettings settings);
+  PhotometryStudy(design::Design design, PhotometrySettings settings);
   ~PhotometryStudy();
 
   /// Returns true if light is traced as beams, and false if it is traced as rays. If beam tracing needs too many beams,
   /// it may later be replaced by ray tracing.
-  bool follows_beams() const;
+  bool uses_beams() const;
   /// Returns the cut-off power of beams, as a fraction of the power that falls on one element. It is that of the
   /// request or the default.
   double cutoff() const;
@@ -264,9 +264,9 @@ class PhotometryStudy {
   /// Computes preliminary readings with fewer wavelengths and either fewer rays or a higher cut-off power of beams. The
   /// call may run in parallel with run() and does not change the result of run(). Returns nothing if the computation
   /// was cancelled.
-  /// \param ray_share number of rays divided by the number of rays of run(); > 0 and at most 1
+  /// \param ray_fraction number of rays divided by the number of rays of run(); > 0 and at most 1
   /// \throw BudgetError if the memory is not enough for both computations
-  std::optional<PhotometricFirstAnswer> first_answer(double ray_share, const Cancellation* cancel = nullptr) const;
+  std::optional<PhotometricFirstAnswer> first_answer(double ray_fraction, const Cancellation* cancel = nullptr) const;
 
  private:
   struct Prepared;

@@ -12,8 +12,8 @@ namespace retrace::studies {
 
 /// Standard whose limits are shipped.
 struct ShippedStandard {
-  std::string_view name;      ///< name on the command line
-  std::string_view in_table;  ///< name in data/photometry_limits.csv
+  std::string_view name;        ///< name on the command line
+  std::string_view table_name;  ///< name in data/photometry_limits.csv
   std::string_view description;
   raytrace::PhotometricApertures apertures;
   std::vector<double> rotation_deg;  ///< default rotations at which a part is measured

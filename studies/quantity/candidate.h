@@ -10,9 +10,9 @@
 #include <string>
 #include <utility>
 
+#include "design/design.h"
+#include "design/part_of_design.h"
 #include "geometry/part/part.h"
-#include "studies/design/design.h"
-#include "studies/design/part_of_design.h"
 #include "studies/quantity/machining.h"
 #include "studies/rre/rre.h"
 
@@ -23,7 +23,7 @@ struct AnalysisSettings {
   double incidence_deg = 0.0;
   double azimuth_deg = 0.0;
   double rotation_deg = 0.0;  ///< rotation of the part about its normal, counter-clockwise as seen from the source
-  Engine engine = Engine::automatic;
+  raytrace::Engine engine = raytrace::Engine::automatic;
   std::optional<double> target_error;  ///< see RreSettings::target_error
   std::optional<std::uint64_t> rays;
   std::optional<double> cutoff;
@@ -33,10 +33,10 @@ struct AnalysisSettings {
 /// Design at one point of a study, with everything that quantities need. Only one thread at a time may use it.
 class Candidate {
  public:
-  Candidate(Design design, const AnalysisSettings& analysis, const MachiningProcess& machining)
+  Candidate(design::Design design, const AnalysisSettings& analysis, const MachiningProcess& machining)
       : design_(std::move(design)), analysis_(analysis), machining_(machining) {}
 
-  const Design& design() const { return design_; }
+  const design::Design& design() const { return design_; }
   const AnalysisSettings& analysis() const { return analysis_; }
   const MachiningProcess& machining() const { return machining_; }
   /// Sets the object to which long computations report their progress.
@@ -47,7 +47,7 @@ class Candidate {
   /// Returns the part, which is built at the first call.
   /// \throw InputError in the same cases as part_of_design()
   const geometry::Part& part() const {
-    if (!part_) part_ = part_of_design(design_, nullptr);
+    if (!part_) part_ = design::part_of_design(design_, nullptr);
     return *part_;
   }
   /// Returns an intermediate result that several quantities need. It is made at the first call.
@@ -61,7 +61,7 @@ class Candidate {
   }
 
  private:
-  Design design_;
+  design::Design design_;
   AnalysisSettings analysis_;
   MachiningProcess machining_;
   Progress* progress_ = nullptr;

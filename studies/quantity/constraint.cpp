@@ -10,15 +10,15 @@ namespace retrace::studies {
 double Constraint::violation(const std::optional<double>& value) const {
   if (!value) return std::numeric_limits<double>::infinity();
   double violation = 0.0;
-  if (least) violation = std::max(violation, *least - *value);
-  if (most) violation = std::max(violation, *value - *most);
+  if (min) violation = std::max(violation, *min - *value);
+  if (max) violation = std::max(violation, *value - *max);
   return violation;
 }
 
 std::string Constraint::text() const {
   std::string text = quantity;
-  if (least) text = shortest(*least) + " <= " + text;
-  if (most) text += " <= " + shortest(*most);
+  if (min) text = shortest(*min) + " <= " + text;
+  if (max) text += " <= " + shortest(*max);
   return text;
 }
 

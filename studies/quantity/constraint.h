@@ -10,8 +10,8 @@ namespace retrace::studies {
 /// Constraint on a quantity of a study.
 struct Constraint {
   std::string quantity;
-  std::optional<double> least;
-  std::optional<double> most;
+  std::optional<double> min;
+  std::optional<double> max;
 
   /// Returns by how much a value violates the constraint; 0 if it is satisfied. A missing value violates it infinitely.
   double violation(const std::optional<double>& value) const;

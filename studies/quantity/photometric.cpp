@@ -41,27 +41,27 @@ class PhotometricQuantity final : public Quantity {
 
   std::string label() const override {
     if (!choice_.point) return name();
-    const TestPoint& point = table_->request.programme.points.at(*choice_.point);
+    const TestPoint& point = table_->request.test_plan.points.at(*choice_.point);
     double v_deg = point.v_deg;
     std::string turn;
     if (choice_.reading) {
-      if (!point.v_beside_deg.empty()) v_deg = point.v_beside_deg.at(choice_.reading->beside);
-      const double turn_deg = table_->request.rotation_deg.at(choice_.reading->turn);
+      if (!point.substitute_v_deg.empty()) v_deg = point.substitute_v_deg.at(choice_.reading->v_index);
+      const double turn_deg = table_->request.rotation_deg.at(choice_.reading->rotation_index);
       if (turn_deg != 0.0) turn = fmt::format(", rotated {:g}", turn_deg);
     }
     return fmt::format("{:.3g}' V {:g} H {:g}{}", 60.0 * point.observation_deg, v_deg, point.h_deg, turn);
   }
 
-  bool adds_up() const override {
+  bool is_additive() const override {
     if (choice_.reading) return true;
     const PhotometrySettings& request = table_->request;
     return choice_.point && request.rotation_deg.size() == 1 &&
-           request.programme.points.at(*choice_.point).v_beside_deg.size() < 2;
+           request.test_plan.points.at(*choice_.point).substitute_v_deg.size() < 2;
   }
 
   std::optional<QuantityLimit> limit() const override {
     if (!choice_.point || figure_ != PhotometricFigure::margin) return std::nullopt;
-    const TestPoint& point = table_->request.programme.points.at(*choice_.point);
+    const TestPoint& point = table_->request.test_plan.points.at(*choice_.point);
     return QuantityLimit{point.minimum, std::string(unit_name(point.unit))};
   }
 
@@ -100,8 +100,8 @@ class PhotometricQuantity final : public Quantity {
   Measured figure_of_reading(const Points& points) const {
     const std::vector<PhotometricPoint>& readings = points.readings.at(*choice_.point);
     const std::size_t turns = table_->request.rotation_deg.size();
-    const std::size_t beside = std::min(choice_.reading->beside, readings.size() / turns - 1);
-    const PhotometricPoint& reading = readings.at(beside * turns + choice_.reading->turn);
+    const std::size_t beside = std::min(choice_.reading->v_index, readings.size() / turns - 1);
+    const PhotometricPoint& reading = readings.at(beside * turns + choice_.reading->rotation_index);
     return figure_of(reading, reading, points.reason);
   }
 
@@ -131,8 +131,8 @@ Quantities make_photometric_readings(const std::string& name, const std::shared_
                                      PhotometricFigure figure) {
   Quantities all;
   const PhotometrySettings& request = table->request;
-  for (std::size_t point = 0; point < request.programme.points.size(); ++point) {
-    const std::size_t besides = std::max<std::size_t>(1, request.programme.points[point].v_beside_deg.size());
+  for (std::size_t point = 0; point < request.test_plan.points.size(); ++point) {
+    const std::size_t besides = std::max<std::size_t>(1, request.test_plan.points[point].substitute_v_deg.size());
     std::size_t number = 0;
     for (std::size_t beside = 0; beside < besides; ++beside)
       for (std::size_t turn = 0; turn < request.rotation_deg.size(); ++turn)

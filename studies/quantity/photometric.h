@@ -37,8 +37,8 @@ struct PhotometricChoice {
   /// the lamp directly to the receiver, so that readings are taken at angles beside 0. For a part without this mirror
   /// image, all these angles are equal to V of the point. `turn` is the index of the rotation of the part.
   struct Reading {
-    std::size_t beside = 0;
-    std::size_t turn = 0;
+    std::size_t v_index = 0;
+    std::size_t rotation_index = 0;
   };
   std::optional<Reading> reading;
 };

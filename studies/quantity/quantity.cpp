@@ -8,9 +8,9 @@
 
 #include "core/angle.h"
 #include "core/error.h"
+#include "design/design_part.h"
+#include "design/optical_model.h"
 #include "geometry/elements/element_cells.h"
-#include "studies/design/design_part.h"
-#include "studies/design/optical_model.h"
 #include "studies/inspect/inspect.h"
 #include "studies/rre/rre_request.h"
 
@@ -57,14 +57,14 @@ Share mean_of(const std::vector<Share>& shares, const std::vector<double>& weigh
   return {};
 }
 
-Share least_of(const std::vector<Share>& shares) {
+Share min_of(const std::vector<Share>& shares) {
   return *std::min_element(shares.begin(), shares.end(),
                            [](const Share& a, const Share& b) { return a.value < b.value; });
 }
 
-class ShareQuantity final : public Quantity {
+class FractionQuantity final : public Quantity {
  public:
-  ShareQuantity(std::string name, const ShareSpec& spec) : Quantity(std::move(name)), spec_(spec) {}
+  FractionQuantity(std::string name, const FractionSpec& spec) : Quantity(std::move(name)), spec_(spec) {}
 
   std::optional<Measured> measure(const Candidate& candidate, const Cancellation* cancel) const override {
     const RreStudy study({design_of(candidate)}, resolve(request_of(spec_.window, candidate.analysis())));
@@ -74,17 +74,17 @@ class ShareQuantity final : public Quantity {
     std::vector<Share> shares;
     std::vector<double> weights;
     for (std::size_t k = 0; k < result.points.size(); k += cones) {
-      shares.push_back(share_at(&result.points[k], cones));
+      shares.push_back(fraction_at(&result.points[k], cones));
       const double sine = std::sin(Angle::from_deg(result.points[k].incidence_deg).rad());
       weights.push_back(spec_.window.by_solid_angle ? std::abs(sine) : 1.0);
     }
-    const Share share = spec_.reduction == Reduction::least ? least_of(shares) : mean_of(shares, weights);
+    const Share share = spec_.reduction == Reduction::min ? min_of(shares) : mean_of(shares, weights);
     return Measured{share.value, share.std_error};
   }
 
   std::string tracing() const override { return "rre " + name(); }
 
-  bool adds_up() const override { return spec_.reduction != Reduction::least; }
+  bool is_additive() const override { return spec_.reduction != Reduction::min; }
 
   std::string label() const override {
     if (spec_.reduction != Reduction::each) return name();
@@ -97,10 +97,10 @@ class ShareQuantity final : public Quantity {
   std::optional<double> slope(const Candidate& candidate, RreParameter parameter,
                               const Cancellation* cancel) const override {
     const bool is_rre = spec_.account == static_cast<std::size_t>(raytrace::Account::retroreflected);
-    if (!is_rre || spec_.beyond_half_angle_deg || spec_.reduction == Reduction::least) return std::nullopt;
+    if (!is_rre || spec_.beyond_half_angle_deg || spec_.reduction == Reduction::min) return std::nullopt;
     RreRequest request = request_of(spec_.window, candidate.analysis());
     if (!raytrace::may_be_exact(candidate.analysis().engine)) return std::nullopt;
-    request.engine = raytrace::engine_name(Engine::exact);
+    request.engine = raytrace::engine_name(raytrace::Engine::exact);
     request.derivatives = true;
     // Resets those settings of the engine `auto` that the engine `exact` does not accept.
     request.samples.reset();
@@ -112,7 +112,7 @@ class ShareQuantity final : public Quantity {
     for (const RrePoint& point : result.points) {
       const auto found = std::find_if(point.derivatives.begin(), point.derivatives.end(),
                                       [&](const RreDerivative& d) { return d.parameter == parameter; });
-      if (found == point.derivatives.end() || found->left_out) return std::nullopt;
+      if (found == point.derivatives.end() || found->missing_reason) return std::nullopt;
       slopes.push_back({found->derivative.value, 0.0});
       const double sine = std::sin(Angle::from_deg(point.incidence_deg).rad());
       weights.push_back(spec_.window.by_solid_angle ? std::abs(sine) : 1.0);
@@ -122,25 +122,25 @@ class ShareQuantity final : public Quantity {
 
  private:
   /// Returns the design with the acceptance cones of the quantity, in ascending order.
-  Design design_of(const Candidate& candidate) const {
-    Design design = candidate.design();
+  design::Design design_of(const Candidate& candidate) const {
+    design::Design design = candidate.design();
     std::vector<double>& cones = design.detector.acceptance_half_angle_deg;
     cones = {spec_.acceptance_half_angle_deg.value_or(cones.front())};
     if (spec_.beyond_half_angle_deg) cones.insert(cones.begin(), *spec_.beyond_half_angle_deg);
     return design;
   }
 
-  Share share_at(const RrePoint* points, std::size_t cones) const {
+  Share fraction_at(const RrePoint* points, std::size_t cones) const {
     const RrePoint& widest = points[cones - 1];
     if (cones == 2) return {widest.rre - points[0].rre, widest.std_error + points[0].std_error};
     return {widest.ledger.power[spec_.account], widest.std_error};
   }
 
-  ShareSpec spec_;
+  FractionSpec spec_;
 };
 
 const geometry::RtpElement& prism_of(const Candidate& candidate) {
-  check_taken(candidate.design(), {.what = "machining time", .substrates = false, .wet_backs = true});
+  design::require_supported(candidate.design(), {.what = "machining time", .substrates = false, .wet_backs = true});
   const auto* prism = std::get_if<geometry::RtpElement>(&candidate.design().part().element);
   if (prism == nullptr) throw InputError("machining time can be computed only for prisms (element.kind = \"rtp\")");
   return *prism;
@@ -150,13 +150,13 @@ double full_element_area_mm2(const geometry::PartSpec& spec) {
   return geometry::area(geometry::aperture_outline(spec.element));
 }
 
-std::optional<double> total_reflection_limit_deg(const Design& design) {
+std::optional<double> total_reflection_limit_deg(const design::Design& design) {
   if (design.part().substrate) return std::nullopt;  // on a substrate, elements have different orientations
   const auto library = materials::MaterialLibrary::shipped();
-  const OpticalModel model = make_model(design, library);
+  const design::OpticalModel model = design::make_model(design, library);
   double least = model.spectral.front().optics.index;
-  for (const SpectralOptics& light : model.spectral) least = std::min(least, light.optics.index);
-  return tir_limit_deg(design.part(), least, model.optics.back_index);
+  for (const design::SpectralOptics& light : model.spectral) least = std::min(least, light.optics.index);
+  return design::tir_limit_deg(design.part(), least, model.optics.back_index);
 }
 
 /// Returns the machining time in hours. Only whole elements are machined.
@@ -174,8 +174,8 @@ double tool_fit_mm(const Candidate& candidate) {
 
 /// Returns the design of a candidate that is an array of equal elements, flat or on a substrate.
 /// \throw InputError for designs with balls, solids, zones or a curved entrance face
-const Design& elements_of(const Candidate& candidate, const std::string& name) {
-  check_taken(candidate.design(), {.what = name, .wet_backs = true});
+const design::Design& elements_of(const Candidate& candidate, const std::string& name) {
+  design::require_supported(candidate.design(), {.what = name, .wet_backs = true});
   return candidate.design();
 }
 
@@ -229,8 +229,8 @@ class PlainQuantityOf final : public Quantity {
 
 }  // namespace
 
-std::shared_ptr<const Quantity> make_share(std::string name, const ShareSpec& spec) {
-  return std::make_shared<ShareQuantity>(std::move(name), spec);
+std::shared_ptr<const Quantity> make_fraction(std::string name, const FractionSpec& spec) {
+  return std::make_shared<FractionQuantity>(std::move(name), spec);
 }
 
 std::shared_ptr<const Quantity> make_plain(std::string name, PlainQuantity which) {

@@ -47,7 +47,7 @@ class Quantity {
   virtual std::string label() const { return name_; }
   /// Returns true if the quantity of a part with several kinds of cells is the area-weighted mean of the cells' values.
   /// This is not the case for a minimum of several values.
-  virtual bool adds_up() const { return true; }
+  virtual bool is_additive() const { return true; }
   /// Returns the limit of a quantity that is a margin. Returns nothing for other quantities.
   virtual std::optional<QuantityLimit> limit() const { return std::nullopt; }
   /// Returns the derivative (slope) of the quantity with respect to a parameter of the design, in the unit of the
@@ -71,11 +71,11 @@ struct AngleWindow {
 
 /// Method by which the values for several directions are combined. With `each`, they are not combined: each direction
 /// becomes a quantity.
-enum class Reduction { mean, least, each };
+enum class Reduction { mean, min, each };
 
 /// Fraction of the incident light over a window of directions: RRE, or another account (category of power) of the
 /// ledger. With Reduction::each, every quantity has a window of one direction.
-struct ShareSpec {
+struct FractionSpec {
   AngleWindow window;
   Reduction reduction = Reduction::mean;
   std::size_t account = static_cast<std::size_t>(raytrace::Account::retroreflected);
@@ -84,7 +84,7 @@ struct ShareSpec {
   /// acceptance_half_angle_deg.
   std::optional<double> beyond_half_angle_deg;
 };
-std::shared_ptr<const Quantity> make_share(std::string name, const ShareSpec& spec);
+std::shared_ptr<const Quantity> make_fraction(std::string name, const FractionSpec& spec);
 
 /// Quantities that need no ray tracing; see docs/study_file.md.
 enum class PlainQuantity {

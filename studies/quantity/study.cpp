@@ -31,11 +31,11 @@ double triangular_quantile(double from, double mode, double to, double u) {
 
 }  // namespace
 
-double Interval::at(double share) const {
-  if (share <= 0.0) return from;
-  if (share >= 1.0) return to;
-  if (logarithmic) return from * std::pow(to / from, share);
-  return from + share * (to - from);
+double Interval::at(double fraction) const {
+  if (fraction <= 0.0) return from;
+  if (fraction >= 1.0) return to;
+  if (logarithmic) return from * std::pow(to / from, fraction);
+  return from + fraction * (to - from);
 }
 
 double Distribution::quantile(double u) const {
@@ -51,7 +51,7 @@ ParameterValue Parameter::value_of(double number) {
   return {shortest(number), number};
 }
 
-PointValues some_values(const Study& study) {
+PointValues example_values(const Study& study) {
   PointValues values;
   for (const Parameter& parameter : study.parameters) {
     if (!parameter.values.empty())

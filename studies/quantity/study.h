@@ -31,7 +31,7 @@ struct Interval {
   bool logarithmic = false;  ///< true: equal steps are equal ratios, and both ends are > 0
 
   /// Returns the value at a fraction (0..1) of the interval.
-  double at(double share) const;
+  double at(double fraction) const;
 };
 
 /// Distribution of a parameter in manufacture.
@@ -81,7 +81,7 @@ struct Study {
 using PointValues = std::vector<ParameterValue>;
 
 /// Returns one allowed value of each parameter, as an example.
-PointValues some_values(const Study& study);
+PointValues example_values(const Study& study);
 
 /// Returns the values of all parameters from the form in which tables show them. Returns nothing if a parameter does
 /// not have such a value.

@@ -57,13 +57,13 @@ EmitterSource::EmitterSource(const Emitter& emitter) : emitter_(emitter) {
   info_.text(RayText::light_source) = U"emitter of retrace, " + std::u32string(name.begin(), name.end());
 }
 
-double EmitterSource::share_read() const {
+double EmitterSource::fraction_read() const {
   return static_cast<double>(rays_read_) / static_cast<double>(emitter_.rays);
 }
 
-bool EmitterSource::read(std::size_t most, std::vector<SetRay>& rays) {
+bool EmitterSource::read(std::size_t max_rays, std::vector<SetRay>& rays) {
   rays.clear();
-  const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(most, emitter_.rays - rays_read_));
+  const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(max_rays, emitter_.rays - rays_read_));
   rays.reserve(count);
   for (std::size_t k = 0; k < count; ++k) rays.push_back(ray(rays_read_ + k));
   rays_read_ += count;
@@ -72,7 +72,7 @@ bool EmitterSource::read(std::size_t most, std::vector<SetRay>& rays) {
 
 /// Returns a random starting point of a ray, in the frame of the source.
 /// \param u, v independent random numbers, uniform in [0, 1)
-Vec3 EmitterSource::place(double u, double v) const {
+Vec3 EmitterSource::position(double u, double v) const {
   if (emitter_.period_mm) return (u - 0.5) * (*emitter_.period_mm)[0] + (v - 0.5) * (*emitter_.period_mm)[1];
   const double radius = emitter_.kind == EmitterKind::gaussian ? gaussian_radius(u) : std::sqrt(u);
   const geometry::Vec2 on_disc = polar(0.5 * emitter_.disc_mm * radius, v);
@@ -87,7 +87,7 @@ SetRay EmitterSource::ray(std::uint64_t number) const {
       polar_angle_rad(emitter_.kind, Angle::from_deg(emitter_.half_angle_deg).rad(), unit_interval(words[2]));
   const geometry::Vec2 across = polar(std::sin(angle), unit_interval(words[3]));
   SetRay ray;
-  ray.position_mm = place(unit_interval(words[0]), unit_interval(words[1]));
+  ray.position_mm = position(unit_interval(words[0]), unit_interval(words[1]));
   ray.direction = Vec3(across.x(), across.y(), std::cos(angle)).normalized();
   const double power = emitter_.power / static_cast<double>(emitter_.rays);
   (emitter_.is_luminous ? ray.luminous_lm : ray.radiant_w) = power;

@@ -54,11 +54,11 @@ class EmitterSource : public RaySource {
   explicit EmitterSource(const Emitter& emitter);
 
   const RaySetInfo& info() const override { return info_; }
-  bool read(std::size_t most, std::vector<SetRay>& rays) override;
-  double share_read() const override;
+  bool read(std::size_t max_rays, std::vector<SetRay>& rays) override;
+  double fraction_read() const override;
 
  private:
-  Vec3 place(double u, double v) const;
+  Vec3 position(double u, double v) const;
   SetRay ray(std::uint64_t number) const;
 
   Emitter emitter_;

@@ -28,7 +28,7 @@ Eigen::Matrix3d aimed(const Vec3& forward) {
 
 }  // namespace
 
-Vec3 middle_of_face(const geometry::Part& part) {
+Vec3 centre_of_face(const geometry::Part& part) {
   const geometry::Vec2 middle = raytrace::EntranceSampler(part).centre_mm();
   return {middle.x(), middle.y(), part.thickness_mm};
 }
@@ -41,7 +41,7 @@ RayPlacement placement_of(const RayPlacementRequest& request, const geometry::Pa
     const double incidence = request.incidence_deg.value_or(0.0);
     const double azimuth = request.azimuth_deg.value_or(0.0);
     const double distance = request.distance_mm.value_or(kUsualDistanceMm);
-    aim = middle_of_face(part);
+    aim = centre_of_face(part);
     const raytrace::Illumination light{Angle::from_deg(incidence), Angle::from_deg(azimuth), raytrace::kUnpolarised};
     way = -distance * raytrace::direction_to_source(light);
     placement.at_mm = *aim - *way;

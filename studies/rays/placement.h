@@ -40,7 +40,7 @@ struct RayPlacement {
 };
 
 /// Returns the centre of the entrance face, or of one period of it.
-Vec3 middle_of_face(const geometry::Part& part);
+Vec3 centre_of_face(const geometry::Part& part);
 
 /// Computes the placement of a source. The x axis of an aimed source is the part's x axis, projected perpendicular to
 /// the source's z axis. If the x axis of the part is parallel to this z axis, the part's y axis is used instead. If

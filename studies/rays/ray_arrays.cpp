@@ -67,13 +67,13 @@ ArraySource::ArraySource(const RaySpans& arrays) : arrays_(arrays), count_(array
     if (!is_wavelength(arrays.wavelengths_nm[k])) refuse("wavelength_nm", k, wavelength_text(arrays.wavelengths_nm[k]));
 }
 
-double ArraySource::share_read() const {
+double ArraySource::fraction_read() const {
   return count_ > 0 ? static_cast<double>(rays_read_) / static_cast<double>(count_) : 1.0;
 }
 
-bool ArraySource::read(std::size_t most, std::vector<SetRay>& rays) {
+bool ArraySource::read(std::size_t max_rays, std::vector<SetRay>& rays) {
   rays.clear();
-  const std::size_t end = std::min(count_, rays_read_ + most);
+  const std::size_t end = std::min(count_, rays_read_ + max_rays);
   for (; rays_read_ < end; ++rays_read_) {
     rays.push_back(ray(rays_read_));
     if (!total_.add(rays.back())) refuse("stokes", rays_read_, total_power_text(rays.back().radiant_w));
@@ -96,8 +96,8 @@ SetRay ArraySource::ray(std::size_t number) const {
     if (!std::isfinite(s)) refuse("stokes", number, "must be finite numbers");
     ray.stokes[k] = ray.radiant_w > 0.0 ? s / ray.radiant_w : 0.0;
   }
-  ray.axis = arrays_.axes.empty() ? axis_across(ray.direction) : three(arrays_.axes, number, "axes");
-  if (const char* const wrong = settle_stokes(ray)) refuse("stokes", number, wrong);
+  ray.axis = arrays_.axes.empty() ? perpendicular_axis(ray.direction) : three(arrays_.axes, number, "axes");
+  if (const char* const wrong = orthogonalize_stokes_axis(ray)) refuse("stokes", number, wrong);
   if (arrays_.wavelengths_nm.size() == count_) ray.wavelength_nm = arrays_.wavelengths_nm[number];
   return ray;
 }

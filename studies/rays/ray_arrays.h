@@ -29,8 +29,8 @@ class ArraySource : public RaySource {
   explicit ArraySource(const RaySpans& arrays);
 
   const RaySetInfo& info() const override { return info_; }
-  bool read(std::size_t most, std::vector<SetRay>& rays) override;
-  double share_read() const override;
+  bool read(std::size_t max_rays, std::vector<SetRay>& rays) override;
+  double fraction_read() const override;
 
  private:
   SetRay ray(std::size_t number) const;

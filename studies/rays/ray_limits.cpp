@@ -8,12 +8,12 @@
 namespace retrace::studies {
 namespace {
 
-constexpr double kLeastNm = 100.0;
-constexpr double kMostNm = 100'000.0;
+constexpr double kMinNm = 100.0;
+constexpr double kMaxNm = 100'000.0;
 // Tolerance of checks on Stokes parameters, which may be given in single precision.
 constexpr double kRounding = 1e-5;
 // Minimum sine of the angle between the polarisation axis and the direction of a ray.
-constexpr double kLeastAcross = 1e-3;
+constexpr double kMinAxisSine = 1e-3;
 
 /// Multiplies a finite vector by a power of two so that its largest coordinate is between 1 and 2. A power of two
 /// causes no rounding error.
@@ -27,11 +27,11 @@ Vec3 moderate(const Vec3& v) {
 }  // namespace
 
 bool is_wavelength(double nm) {
-  return nm >= kLeastNm && nm <= kMostNm;
+  return nm >= kMinNm && nm <= kMaxNm;
 }
 
 std::string wavelength_text(double nm) {
-  return fmt::format("a wavelength must be {} to {} nm, got {}", kLeastNm, kMostNm, nm);
+  return fmt::format("a wavelength must be {} to {} nm, got {}", kMinNm, kMaxNm, nm);
 }
 
 std::optional<Vec3> unit_along(const Vec3& direction) {
@@ -41,9 +41,9 @@ std::optional<Vec3> unit_along(const Vec3& direction) {
   return scaled / length;
 }
 
-Vec3 axis_across(const Vec3& direction) {
+Vec3 perpendicular_axis(const Vec3& direction) {
   const Vec3 across = Vec3::UnitX() - direction.x() * direction;
-  return across.norm() > kLeastAcross ? across.normalized() : direction.unitOrthogonal();
+  return across.norm() > kMinAxisSine ? across.normalized() : direction.unitOrthogonal();
 }
 
 bool TotalPower::add(const SetRay& ray) {
@@ -56,7 +56,7 @@ std::string total_power_text(double power) {
   return fmt::format("the powers of all rays must add up to at most {}, got {} here", kMaxTotalPower, power);
 }
 
-const char* settle_stokes(SetRay& ray) {
+const char* orthogonalize_stokes_axis(SetRay& ray) {
   double sum = 0.0;
   for (const double s : ray.stokes) sum += s * s;
   if (sum == 0.0) {
@@ -68,7 +68,7 @@ const char* settle_stokes(SetRay& ray) {
     for (double& s : ray.stokes) s /= std::sqrt(sum);
   const Vec3 axis = moderate(ray.axis);
   const Vec3 across = axis - axis.dot(ray.direction) * ray.direction;
-  if (!(across.norm() > kLeastAcross * axis.norm()))
+  if (!(across.norm() > kMinAxisSine * axis.norm()))
     return "the axis of polarisation must not be parallel to the direction";
   ray.axis = across.normalized();
   return nullptr;

@@ -19,7 +19,7 @@ std::string wavelength_text(double nm);
 std::optional<Vec3> unit_along(const Vec3& direction);
 
 /// Returns the x axis projected perpendicular to a direction. If the direction is parallel to x, another axis is used.
-Vec3 axis_across(const Vec3& direction);
+Vec3 perpendicular_axis(const Vec3& direction);
 
 /// Maximum total power of all rays, in W or lm. With this limit, the sum of the squares of the powers is finite, too.
 inline constexpr double kMaxTotalPower = 1e150;
@@ -39,6 +39,6 @@ std::string total_power_text(double power);
 
 /// Makes the polarisation axis of a ray perpendicular to its direction.
 /// \return error message on the Stokes parameters or the axis; null if they are valid
-const char* settle_stokes(SetRay& ray);
+const char* orthogonalize_stokes_axis(SetRay& ray);
 
 }  // namespace retrace::studies

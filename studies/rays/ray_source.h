@@ -19,9 +19,9 @@ class RaySource {
   /// Replaces `rays` by the next rays.
   /// \return false if there are no more rays
   /// \throw InputError with the position of an error in the source
-  virtual bool read(std::size_t most, std::vector<SetRay>& rays) = 0;
+  virtual bool read(std::size_t max_rays, std::vector<SetRay>& rays) = 0;
   /// Returns the fraction of the source that has been read, from 0 to 1.
-  virtual double share_read() const = 0;
+  virtual double fraction_read() const = 0;
   /// Returns warnings for the user. They are complete after the last ray.
   virtual Warnings warnings() const { return {}; }
 };
@@ -29,7 +29,7 @@ class RaySource {
 /// Data of leaving rays, which the sink receives before the first ray.
 struct RaySinkLayout {
   RaySetInfo info;
-  bool tells_wavelengths = false;  ///< true: each ray has a wavelength
+  bool has_wavelengths = false;  ///< true: each ray has a wavelength
 };
 
 /// Sink that receives leaving rays in order.

@@ -61,7 +61,7 @@ void settle_polarisation(const raytrace::Light& light, AccountedRay& ray) {
 /// Returns the distance from the centre of the entrance face to the corner farthest from it.
 /// \pre the part is finite
 double radius_of_face(const geometry::Part& part) {
-  const geometry::Vec2 middle = middle_of_face(part).head<2>();
+  const geometry::Vec2 middle = centre_of_face(part).head<2>();
   double reach2 = 0.0;
   for (const geometry::Vec2& corner : part.outline) reach2 = std::max(reach2, (corner - middle).squaredNorm());
   return std::sqrt(reach2);
@@ -81,21 +81,21 @@ void cover_face(const geometry::Part& part, const RayPlacement& placement, Emitt
 
 }  // namespace
 
-struct RayStudy::Hidden {
-  Hidden(Design d, RayRequest r)
+struct RayStudy::Impl {
+  Impl(design::Design d, RayRequest r)
       : design(std::move(d)),
         request(std::move(r)),
         library(materials::MaterialLibrary::shipped()),
-        model(make_model(design, library, Entrances::any)),
+        model(design::make_model(design, library, design::Entrances::any)),
         optics(design, library, ignored),
         placement(placement_of(request.placement, model.part)) {}
 
-  Design design;
+  design::Design design;
   RayRequest request;
   materials::MaterialLibrary library;
-  OpticalModel model;
+  design::OpticalModel model;
   Warnings ignored;  ///< warnings of `optics`; `model` contains the same warnings
-  OpticsOfDesign optics;
+  design::OpticsOfDesign optics;
   RayPlacement placement;
 };
 
@@ -127,37 +127,37 @@ RayRequest resolve(const TraceRequest& request) {
   return settings;
 }
 
-RayStudy::RayStudy(Design design, RayRequest request)
-    : hidden_(std::make_unique<const Hidden>(std::move(design), std::move(request))) {}
+RayStudy::RayStudy(design::Design design, RayRequest request)
+    : impl_(std::make_unique<const Impl>(std::move(design), std::move(request))) {}
 RayStudy::~RayStudy() = default;
 
 const geometry::Part& RayStudy::part() const {
-  return hidden_->model.part;
+  return impl_->model.part;
 }
 
-const Design& RayStudy::design() const {
-  return hidden_->design;
+const design::Design& RayStudy::design() const {
+  return impl_->design;
 }
 
 Emitter RayStudy::emitter_of(const EmitterRequest& request) const {
-  const LightSpectrum* const spectrum = hidden_->design.light.spectrum();
+  const design::LightSpectrum* const spectrum = impl_->design.light.spectrum();
   Emitter emitter;
   emitter.kind = request.kind;
   emitter.disc_mm = request.disc_mm.value_or(0.0);
   if (request.kind == EmitterKind::collimated && !request.disc_mm)
-    cover_face(hidden_->model.part, hidden_->placement, emitter);
+    cover_face(impl_->model.part, impl_->placement, emitter);
   emitter.half_angle_deg = request.half_angle_deg.value_or(request.kind == EmitterKind::lambertian ? 90.0 : 0.0);
   emitter.rays = request.rays;
   emitter.power = request.power;
   emitter.is_luminous = spectrum != nullptr && spectrum->photopic;
-  emitter.seed = hidden_->request.seed;
+  emitter.seed = impl_->request.seed;
   return emitter;
 }
 
 /// Traces one source through one part.
 class RayStudy::Run {
  public:
-  Run(const Hidden& hidden, RaySource& source, RaySink* sink)
+  Run(const Impl& hidden, RaySource& source, RaySink* sink)
       : hidden_(hidden),
         source_(source),
         sink_(sink),
@@ -175,7 +175,7 @@ class RayStudy::Run {
       const std::size_t leaving = trace(cancel);
       if (!result_.complete) break;
       most = std::clamp(kRaysAtATime * rays_.size() / std::max<std::size_t>(leaving, 1), kFewestAtATime, kRaysAtATime);
-      if (progress != nullptr) progress->at(source_.share_read());
+      if (progress != nullptr) progress->at(source_.fraction_read());
       result_.complete = !is_cancelled(cancel);
     }
     end();
@@ -193,7 +193,7 @@ class RayStudy::Run {
   }
 
   std::uint32_t add_optics(double wavelength_nm) {
-    if (!hidden_.optics.is_backed_at(wavelength_nm)) extrapolated_nm_.push_back(wavelength_nm);
+    if (!hidden_.optics.has_index_data_at(wavelength_nm)) extrapolated_nm_.push_back(wavelength_nm);
     return tracer_.add(hidden_.optics.at(wavelength_nm, hidden_.model.wet_elements));
   }
 
@@ -210,13 +210,13 @@ class RayStudy::Run {
 
   /// Returns the kinds of data that the leaving rays have.
   RaySinkLayout layout() const {
-    RaySinkLayout layout{source_.info(), wavelengths_.are_several()};
+    RaySinkLayout layout{source_.info(), wavelengths_.has_several()};
     RaySetInfo& info = layout.info;
     const raytrace::Stokes& light = hidden_.design.light.polarisation;
     info.has_stokes = info.has_stokes || hidden_.request.stokes || light.q != 0.0 || light.u != 0.0 || light.v != 0.0;
     if (!info.tables.empty() && info.has_radiant) info.has_luminous = info.has_tristimulus = false;
     info.tables.clear();
-    if (!layout.tells_wavelengths && info.spectrum == RaySpectrum::unknown) {
+    if (!layout.has_wavelengths && info.spectrum == RaySpectrum::unknown) {
       info.spectrum = RaySpectrum::one_wavelength;
       info.wavelength_nm = hidden_.model.spectral.front().wavelength_nm;
     }
@@ -236,7 +236,7 @@ class RayStudy::Run {
     for (std::size_t k = 0; k < rays_.size(); ++k) {
       SetRay& ray = rays_[k];
       hidden_.placement.apply(ray);
-      const std::uint32_t optics = wavelengths_.settle(ray, read_ + k);
+      const std::uint32_t optics = wavelengths_.assign(ray, read_ + k);
       incident_.push_back({ray.position_mm, ray.direction,
                            light_of(ray, power_of(ray), source_.info().has_stokes, hidden_.design.light.polarisation),
                            optics});
@@ -329,7 +329,7 @@ class RayStudy::Run {
           {"no_ray_meets_part", "no ray meets the part: change the position or the direction of the source"});
   }
 
-  const Hidden& hidden_;
+  const Impl& hidden_;
   RaySource& source_;
   RaySink* sink_;
   bool is_luminous_;
@@ -346,7 +346,7 @@ class RayStudy::Run {
 
 RayResult RayStudy::run(RaySource& source, RaySink* sink, Progress* progress, const Cancellation* cancel) const {
   const auto start = std::chrono::steady_clock::now();
-  RayResult result = Run(*hidden_, source, sink).run(progress, cancel);
+  RayResult result = Run(*impl_, source, sink).run(progress, cancel);
   result.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
 }

@@ -10,9 +10,9 @@
 
 #include "core/progress.h"
 #include "core/warning.h"
+#include "design/optical_model.h"
 #include "raytrace/paths/ray_tracer.h"
 #include "requests/rays.h"
-#include "studies/design/optical_model.h"
 #include "studies/rays/emitter.h"
 #include "studies/rays/placement.h"
 #include "studies/rays/ray_source.h"
@@ -42,7 +42,7 @@ RayRequest resolve(const TraceRequest& request);
 enum class RayPower { radiant_w, luminous_lm };
 
 struct RayResult {
-  Design design;
+  design::Design design;
   RayRequest request;
   /// Name of the source's file; empty if the source is not a file. The creator of the source sets this member and the
   /// next two.
@@ -68,13 +68,13 @@ class RayStudy {
  public:
   /// \pre each value of `request` is in its allowed range; resolve() ensures this
   /// \throw InputError if the elements are balls, or if the source would be aimed at its own position
-  RayStudy(Design design, RayRequest request);
+  RayStudy(design::Design design, RayRequest request);
   RayStudy(const RayStudy&) = delete;
   RayStudy& operator=(const RayStudy&) = delete;
   ~RayStudy();
 
   const geometry::Part& part() const;
-  const Design& design() const;
+  const design::Design& design() const;
   /// Returns the requested emitter for this part. Its power is in lm if the design's light is weighted by the response
   /// of the eye.
   Emitter emitter_of(const EmitterRequest& request) const;
@@ -86,10 +86,10 @@ class RayStudy {
   RayResult run(RaySource& source, RaySink* sink, Progress* progress, const Cancellation* cancel) const;
 
  private:
-  struct Hidden;
+  struct Impl;
   class Run;
 
-  std::unique_ptr<const Hidden> hidden_;
+  std::unique_ptr<const Impl> impl_;
 };
 
 }  // namespace retrace::studies

@@ -36,12 +36,12 @@ RayWavelengths::Choice RayWavelengths::choice_of(const materials::Spectrum& spec
   return choice;
 }
 
-RayWavelengths::RayWavelengths(const RaySetInfo& info, const std::vector<SpectralOptics>& light, bool by_eye,
+RayWavelengths::RayWavelengths(const RaySetInfo& info, const std::vector<design::SpectralOptics>& light, bool by_eye,
                                std::uint32_t seed, Add add)
     : kind_(info.spectrum), one_nm_(info.wavelength_nm), seed_(seed), add_(std::move(add)) {
   if (kind_ == RaySpectrum::unknown) {
     materials::Spectrum of_design;
-    for (const SpectralOptics& at : light) {
+    for (const design::SpectralOptics& at : light) {
       of_design.wavelengths_nm.push_back(at.wavelength_nm);
       of_design.weights.push_back(at.weight);
     }
@@ -56,7 +56,7 @@ RayWavelengths::RayWavelengths(const RaySetInfo& info, const std::vector<Spectra
     }
 }
 
-bool RayWavelengths::are_several() const {
+bool RayWavelengths::has_several() const {
   switch (kind_) {
     case RaySpectrum::one_wavelength: return false;
     case RaySpectrum::unknown: return choices_.front().wavelengths_nm.size() > 1;
@@ -76,7 +76,7 @@ std::uint32_t RayWavelengths::optics_at(double wavelength_nm) {
   return last_ = known_[wavelength_nm] = add_(wavelength_nm);
 }
 
-std::uint32_t RayWavelengths::settle(SetRay& ray, std::uint64_t number) {
+std::uint32_t RayWavelengths::assign(SetRay& ray, std::uint64_t number) {
   if (kind_ == RaySpectrum::one_wavelength) ray.wavelength_nm = one_nm_;
   if (kind_ == RaySpectrum::wavelength_of_each)
     return optics_at(std::round(ray.wavelength_nm * kStepsPerNm) / kStepsPerNm);

@@ -7,7 +7,7 @@
 #include <map>
 #include <vector>
 
-#include "studies/design/optical_model.h"
+#include "design/optical_model.h"
 #include "studies/rays/ray_source.h"
 
 namespace retrace::studies {
@@ -21,14 +21,14 @@ class RayWavelengths {
 
   /// \param light light of the design, for rays without wavelengths
   /// \param by_eye true: spectra are weighted by the response of the eye, because the power of rays is luminous flux
-  RayWavelengths(const RaySetInfo& info, const std::vector<SpectralOptics>& light, bool by_eye, std::uint32_t seed,
-                 Add add);
+  RayWavelengths(const RaySetInfo& info, const std::vector<design::SpectralOptics>& light, bool by_eye,
+                 std::uint32_t seed, Add add);
 
   /// Sets the wavelength of a ray. If each ray of the set has its own wavelength, it is rounded to 0.1 nm.
   /// \return index of the optical properties
-  std::uint32_t settle(SetRay& ray, std::uint64_t number);
+  std::uint32_t assign(SetRay& ray, std::uint64_t number);
   /// Returns true if the rays have more than one wavelength.
-  bool are_several() const;
+  bool has_several() const;
 
   double shortest_nm() const { return shortest_nm_; }
   double longest_nm() const { return longest_nm_; }

@@ -16,8 +16,8 @@
 namespace retrace::studies {
 namespace {
 
-void check(const Design& design) {
-  check_taken(design, {.what = "retrace roughness", .solids = true});
+void check(const design::Design& design) {
+  design::require_supported(design, {.what = "retrace roughness", .solids = true});
   if (!design.surface.is_smooth())
     throw InputError(design.where_texture(), "must be left out, because retrace roughness varies the roughness");
   if (design.detector.acceptance_half_angle_deg.size() != 1)
@@ -28,11 +28,11 @@ void check(const Design& design) {
 
 /// Returns the design with the facet texture of a point.
 /// \param where location for error messages about the texture
-Design textured(const Design& design, const RoughnessPoint& point, double waviness_length_um,
-                const InputLocation& where) {
-  Design rough = design;
-  rough.surface.texture = HarveyShackTexture{gaussian_sq_nm(point.roughness_sa_nm), point.correlation_length_um,
-                                             gaussian_sq_nm(point.waviness_sa_nm), waviness_length_um};
+design::Design textured(const design::Design& design, const RoughnessPoint& point, double waviness_length_um,
+                        const InputLocation& where) {
+  design::Design rough = design;
+  rough.surface.texture = design::HarveyShackTexture{gaussian_sq_nm(point.roughness_sa_nm), point.correlation_length_um,
+                                                     gaussian_sq_nm(point.waviness_sa_nm), waviness_length_um};
   rough.set_where("surface.model", where);
   return rough;
 }
@@ -61,7 +61,7 @@ double gaussian_sq_nm(double sa_nm) {
 }
 
 struct RoughnessStudy::Prepared {
-  Design design;
+  design::Design design;
   RoughnessRequest request;
   std::vector<FacetGroup> measured;
   std::vector<RoughnessPoint> points;
@@ -70,12 +70,12 @@ struct RoughnessStudy::Prepared {
   std::unique_ptr<RreStudy> rough_study;  ///< study of the rough points, in their order
 };
 
-RoughnessStudy::RoughnessStudy(Design design, RoughnessRequest request, std::vector<FacetGroup> measured)
+RoughnessStudy::RoughnessStudy(design::Design design, RoughnessRequest request, std::vector<FacetGroup> measured)
     : prepared_(std::make_unique<Prepared>()) {
   check(design);
   requests::check(request);
   Prepared& p = *prepared_;
-  std::vector<Design> rough;
+  std::vector<design::Design> rough;
   const auto add = [&](const RoughnessPoint& point, const InputLocation& where) {
     if (point.roughness_sa_nm > 0.0 || point.waviness_sa_nm > 0.0) {
       p.rough.push_back(p.points.size());
@@ -165,10 +165,10 @@ std::optional<std::string> RoughnessStudy::compute_shared(std::uint64_t number, 
                    point.missed_target ? 1.0 : 0.0, static_cast<double>(traced.rays)});
 }
 
-RreResult RoughnessStudy::trace_shared(Progress* progress, const ShareTasks& share) const {
+RreResult RoughnessStudy::trace_shared(Progress* progress, const DistributeTasks& distribute) const {
   const auto start = std::chrono::steady_clock::now();
   RoughnessLedger ledger(prepared_->rough.size(), prepared_->request, progress);
-  const bool complete = share(
+  const bool complete = distribute(
       [this](std::uint64_t number, const Cancellation* cancel) { return compute_shared(number, cancel); }, ledger);
   RreResult traced = prepared_->rough_study->result_of(ledger.points());
   traced.complete = complete;
@@ -177,7 +177,8 @@ RreResult RoughnessStudy::trace_shared(Progress* progress, const ShareTasks& sha
   return traced;
 }
 
-RoughnessResult RoughnessStudy::run(Progress* progress, const Cancellation* cancel, const ShareTasks& share) const {
+RoughnessResult RoughnessStudy::run(Progress* progress, const Cancellation* cancel,
+                                    const DistributeTasks& distribute) const {
   const Prepared& p = *prepared_;
   RoughnessResult result;
   result.design = p.design;
@@ -185,14 +186,15 @@ RoughnessResult RoughnessStudy::run(Progress* progress, const Cancellation* canc
   result.measured = p.measured;
   // All points, including the smooth one, are assumed to take equal time.
   const double smooth_share = 1.0 / static_cast<double>(1 + p.rough.size());
-  PartOfProgress smooth_part(progress, 0.0, smooth_share), rough_part(progress, smooth_share, 1.0);
+  PartProgress smooth_part(progress, 0.0, smooth_share), rough_part(progress, smooth_share, 1.0);
   const RreResult smooth = p.smooth_study->run(&smooth_part, cancel);
   add_warnings(result, smooth);
   if (smooth.points.empty()) return result;
   result.smooth_rre = smooth.points.front().rre;
   result.smooth_std_error = smooth.points.front().std_error;
   RreResult traced;
-  if (p.rough_study) traced = share ? trace_shared(&rough_part, share) : p.rough_study->run(&rough_part, cancel);
+  if (p.rough_study)
+    traced = distribute ? trace_shared(&rough_part, distribute) : p.rough_study->run(&rough_part, cancel);
   add_warnings(result, traced);
   std::vector<const RrePoint*> found(p.points.size(), nullptr);
   for (const RrePoint& point : traced.points) found[p.rough[point.design]] = &point;

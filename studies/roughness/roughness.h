@@ -12,8 +12,8 @@
 #include "core/progress.h"
 #include "core/shared_tasks.h"
 #include "core/warning.h"
+#include "design/design.h"
 #include "requests/roughness.h"
-#include "studies/design/design.h"
 #include "studies/rre/rre.h"
 
 namespace retrace::studies {
@@ -39,7 +39,7 @@ struct RoughnessPoint {
 };
 
 struct RoughnessResult {
-  Design design;
+  design::Design design;
   RoughnessRequest request;
   std::vector<FacetGroup> measured;
   double smooth_rre = 0.0;  ///< RRE for smooth facets, from the exact engine if this is fast
@@ -60,22 +60,23 @@ class RoughnessStudy {
   /// \param measured measured facets, each of which is a further point
   /// \throw InputError for a design with its own texture or several acceptance angles, for numbers out of range, and
   /// for facets for which no scatter model is valid
-  RoughnessStudy(Design design, RoughnessRequest request, std::vector<FacetGroup> measured = {});
+  RoughnessStudy(design::Design design, RoughnessRequest request, std::vector<FacetGroup> measured = {});
   ~RoughnessStudy();
 
   /// Computes all points.
-  /// \param share function that distributes the points among several processes with equal studies; none: this process
+  /// \param distribute function that distributes the points among several processes with equal studies; none: this
+  /// process
   ///        traces all
   /// \throw BudgetError if power is lost because a ray inside the part missed every face, or if a budget is exhausted
   RoughnessResult run(Progress* progress = nullptr, const Cancellation* cancel = nullptr,
-                      const ShareTasks& share = {}) const;
+                      const DistributeTasks& distribute = {}) const;
   /// Traces the point with this number, as a task of a computation that several processes share.
   /// \throw BudgetError if power is lost because a ray inside the part missed every face, or if a budget is exhausted
   std::optional<std::string> compute_shared(std::uint64_t number, const Cancellation* cancel) const;
 
  private:
   struct Prepared;
-  RreResult trace_shared(Progress* progress, const ShareTasks& share) const;
+  RreResult trace_shared(Progress* progress, const DistributeTasks& distribute) const;
 
   std::unique_ptr<Prepared> prepared_;
 };

@@ -11,7 +11,7 @@ namespace {
 
 /// Maximum number of known kinks. If there are more, as for many wavelengths at many azimuths, none of them is used.
 /// The search must then find the kinks.
-constexpr std::size_t kMostKinks = 64;
+constexpr std::size_t kMaxKinks = 64;
 
 double rounded(double value, double scale) {
   return std::round(value * scale) / scale + 0.0;  // -0 is 0
@@ -37,9 +37,9 @@ std::vector<CurveSpan> merged(std::vector<CurveSpan> spans) {
   return apart;
 }
 
-/// Inserts points until no gap between neighbours is wider than kWidestGapDeg.
+/// Inserts points until no gap between neighbours is wider than kMaxGapDeg.
 void fill(double low, double high, std::set<double>& places) {
-  if (high - low <= AdaptiveCurve::kWidestGapDeg) return;
+  if (high - low <= AdaptiveCurve::kMaxGapDeg) return;
   const double middle = middle_of(low, high);
   places.insert(middle);
   fill(low, middle, places);
@@ -50,7 +50,7 @@ void fill(double low, double high, std::set<double>& places) {
 std::vector<double> without_repeats(const std::vector<double>& kinks) {
   std::set<double> places;
   for (const double place : kinks) places.insert(rounded(place, 1e6));
-  if (places.size() > kMostKinks) return {};
+  if (places.size() > kMaxKinks) return {};
   return {places.begin(), places.end()};
 }
 
@@ -61,9 +61,9 @@ AdaptiveCurve::AdaptiveCurve(std::vector<CurveSpan> spans, const std::vector<dou
     : tolerance_(tolerance) {
   for (const double place : fixed) values_[place];
   spans = merged(std::move(spans));
-  most_places_ = fixed.size() + spans.size() * kMostPlaces;
+  max_points_ = fixed.size() + spans.size() * kMaxPoints;
   for (const CurveSpan& span : spans) begin(span, without_repeats(kinks));
-  look_at(std::exchange(gaps_, {}));
+  check_gaps(std::exchange(gaps_, {}));
 }
 
 void AdaptiveCurve::begin(const CurveSpan& span, const std::vector<double>& kinks) {
@@ -82,7 +82,7 @@ void AdaptiveCurve::begin(const CurveSpan& span, const std::vector<double>& kink
   }
 }
 
-double AdaptiveCurve::miss_of(const Gap& gap) const {
+double AdaptiveCurve::interpolation_error_of(const Gap& gap) const {
   const double middle = middle_of(gap.low, gap.high);
   const double share = (middle - gap.low) / (gap.high - gap.low);
   const auto& low = values_.at(gap.low);
@@ -98,12 +98,13 @@ double AdaptiveCurve::miss_of(const Gap& gap) const {
   return most;
 }
 
-void AdaptiveCurve::look_at(std::vector<Gap> gaps) {
-  std::erase_if(gaps, [](const Gap& gap) { return gap.high - gap.low < kNarrowestGapDeg; });
-  std::stable_sort(gaps.begin(), gaps.end(), [](const Gap& a, const Gap& b) { return a.miss > b.miss; });
-  const std::size_t room = most_places_ - std::min(most_places_, values_.size());
+void AdaptiveCurve::check_gaps(std::vector<Gap> gaps) {
+  std::erase_if(gaps, [](const Gap& gap) { return gap.high - gap.low < kMinGapDeg; });
+  std::stable_sort(gaps.begin(), gaps.end(),
+                   [](const Gap& a, const Gap& b) { return a.interpolation_error > b.interpolation_error; });
+  const std::size_t room = max_points_ - std::min(max_points_, values_.size());
   if (gaps.size() > room) {
-    worst_left_ = std::max(worst_left_, gaps[room].miss);
+    residual_error_ = std::max(residual_error_, gaps[room].interpolation_error);
     gaps.resize(room);
   }
   for (const Gap& gap : gaps) values_[middle_of(gap.low, gap.high)];
@@ -114,13 +115,13 @@ std::vector<double> AdaptiveCurve::next() {
   if (has_begun_) {
     std::vector<Gap> halves;
     for (const Gap& gap : gaps_) {
-      const double miss = miss_of(gap);
+      const double miss = interpolation_error_of(gap);
       const double middle = middle_of(gap.low, gap.high);
       const bool is_straight = miss <= 0.5 * tolerance_;
-      if (is_straight && gap.is_half_of_straight) continue;
+      if (is_straight && gap.parent_passed) continue;
       halves.insert(halves.end(), {{gap.low, middle, miss, is_straight}, {middle, gap.high, miss, is_straight}});
     }
-    look_at(std::move(halves));
+    check_gaps(std::move(halves));
   }
   has_begun_ = true;
   std::vector<double> places;

@@ -2,7 +2,7 @@
 
 namespace retrace::studies {
 
-BeamCollector::BeamCollector(const BeamQuestion& question, const geometry::Part& part, std::size_t cones,
+BeamCollector::BeamCollector(const BeamOutputRequest& question, const geometry::Part& part, std::size_t cones,
                              const raytrace::Illumination& illumination) {
   if (question.footprint) footprint_.emplace(part, cones);
   if (question.far_field) far_field_.emplace(illumination);
@@ -24,16 +24,16 @@ std::optional<FarField> BeamCollector::far_field() const {
   return far_field_ ? std::optional(far_field_->finish()) : std::nullopt;
 }
 
-raytrace::Illumination illumination_of(const RrePoint& at, const Design& design) {
+raytrace::Illumination illumination_of(const RrePoint& at, const design::Design& design) {
   return {Angle::from_deg(at.incidence_deg), Angle::from_deg(at.azimuth_deg), design.light.polarisation};
 }
 
-BeamAnswer follow_beams(const raytrace::BeamTracer& tracer, const geometry::Part& part, const raytrace::Optics& optics,
-                        const raytrace::Illumination& illumination, const std::vector<double>& cones_deg,
-                        const raytrace::BeamPolicy& policy, const BeamQuestion& question, const Cancellation* cancel,
-                        Progress* progress) {
+BeamOutputs trace_exact_beams(const raytrace::BeamTracer& tracer, const geometry::Part& part,
+                              const raytrace::Optics& optics, const raytrace::Illumination& illumination,
+                              const std::vector<double>& cones_deg, const raytrace::BeamPolicy& policy,
+                              const BeamOutputRequest& question, const Cancellation* cancel, Progress* progress) {
   BeamCollector collector(question, part, cones_deg.size(), illumination);
-  BeamAnswer answer;
+  BeamOutputs answer;
   answer.traced = tracer.trace(optics, illumination, cones_deg, policy, cancel, collector.observer(), progress);
   if (!answer.traced.complete) return answer;
   answer.footprint = collector.footprint();

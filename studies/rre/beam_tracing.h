@@ -7,17 +7,17 @@
 #include <vector>
 
 #include "core/progress.h"
+#include "design/design.h"
 #include "raytrace/exact/beam_tracer.h"
-#include "studies/design/design.h"
 #include "studies/rre/rre.h"
 
 namespace retrace::studies {
 
 /// Returns the illumination (direction and polarisation) for a point of RRE.
-raytrace::Illumination illumination_of(const RrePoint& at, const Design& design);
+raytrace::Illumination illumination_of(const RrePoint& at, const design::Design& design);
 
 /// Results that a request needs from returned beams in addition to RRE.
-struct BeamQuestion {
+struct BeamOutputRequest {
   bool footprint = false;
   bool far_field = false;
 };
@@ -26,7 +26,7 @@ struct BeamQuestion {
 class BeamCollector {
  public:
   /// \param cones number of acceptance cones into which beams are sorted
-  BeamCollector(const BeamQuestion& question, const geometry::Part& part, std::size_t cones,
+  BeamCollector(const BeamOutputRequest& question, const geometry::Part& part, std::size_t cones,
                 const raytrace::Illumination& illumination);
 
   /// Returns the observer that receives the beams. Empty if nothing is requested.
@@ -41,7 +41,7 @@ class BeamCollector {
 };
 
 /// Results of exact beams for one direction at one wavelength.
-struct BeamAnswer {
+struct BeamOutputs {
   raytrace::BeamResult traced;  ///< not complete if tracing was cancelled; the other members are then empty
   std::optional<Footprint> footprint;
   std::optional<FarField> far_field;
@@ -50,10 +50,10 @@ struct BeamAnswer {
 /// Traces the beams of one direction at one wavelength.
 /// \param part part for which `tracer` was made
 /// \throw BudgetError in the same cases as BeamTracer::trace()
-BeamAnswer follow_beams(const raytrace::BeamTracer& tracer, const geometry::Part& part, const raytrace::Optics& optics,
-                        const raytrace::Illumination& illumination, const std::vector<double>& cones_deg,
-                        const raytrace::BeamPolicy& policy, const BeamQuestion& question, const Cancellation* cancel,
-                        Progress* progress);
+BeamOutputs trace_exact_beams(const raytrace::BeamTracer& tracer, const geometry::Part& part,
+                              const raytrace::Optics& optics, const raytrace::Illumination& illumination,
+                              const std::vector<double>& cones_deg, const raytrace::BeamPolicy& policy,
+                              const BeamOutputRequest& question, const Cancellation* cancel, Progress* progress);
 
 /// Returns the points of a direction from exact beams, one for each acceptance cone.
 /// \param at point with the data that all cones have in common

@@ -10,7 +10,7 @@
 #include "core/error.h"
 #include "core/schema/writer.h"
 #include "core/threads.h"
-#include "studies/design/io/design_reader.h"
+#include "design/io/design_reader.h"
 
 namespace retrace::studies {
 namespace {
@@ -34,7 +34,7 @@ double mean_dihedral_error_deg(const PartSpec& spec) {
 }
 
 /// Returns the values of the keys that represent a parameter, in the order of the keys.
-std::vector<schema::Value> values_at(const Design& design, RreParameter parameter, double value) {
+std::vector<schema::Value> values_at(const design::Design& design, RreParameter parameter, double value) {
   const PartSpec& spec = design.part();
   if (parameter == RreParameter::dihedral_error_deg) {
     const double more_deg = value - mean_dihedral_error_deg(spec);
@@ -104,7 +104,7 @@ DifferenceRange range_of(const TracedDirection& at, RreParameter parameter) {
 
 /// Returns the numbers of full and partial elements for an element size. Returns nothing if the design with this size
 /// is invalid.
-std::optional<std::pair<std::int64_t, std::int64_t>> count_elements(const Design& design, double size_mm) {
+std::optional<std::pair<std::int64_t, std::int64_t>> count_elements(const design::Design& design, double size_mm) {
   try {
     const geometry::Part part = geometry::build_part(with(design, RreParameter::size_mm, size_mm).part());
     return std::pair{part.elements_full, part.elements_partial};
@@ -115,7 +115,7 @@ std::optional<std::pair<std::int64_t, std::int64_t>> count_elements(const Design
 
 /// Halves the first step until the array has the same elements at both ends of the step. Returns false if there is no
 /// such step, because RRE is discontinuous at this size.
-bool keep_elements(const Design& design, double size_mm, DifferenceRange& range) {
+bool keep_elements(const design::Design& design, double size_mm, DifferenceRange& range) {
   constexpr int kHalvings = 10;
   const auto here = count_elements(design, size_mm);
   const auto same_at = [&](double size) { return count_elements(design, size) == here; };
@@ -253,13 +253,13 @@ std::string_view parameter_name(RreParameter parameter) {
   return "";
 }
 
-std::vector<RreParameter> parameters_of(const Design& design) {
+std::vector<RreParameter> parameters_of(const design::Design& design) {
   const bool is_prism = std::holds_alternative<RtpElement>(design.part().element);
   return {RreParameter::size_mm, is_prism ? RreParameter::apex_angle_deg : RreParameter::dihedral_error_deg,
           RreParameter::refractive_index, RreParameter::thickness_mm, RreParameter::incidence_deg};
 }
 
-std::vector<std::string> keys_of(RreParameter parameter, const Design& design) {
+std::vector<std::string> keys_of(RreParameter parameter, const design::Design& design) {
   switch (parameter) {
     case RreParameter::size_mm:
       if (std::holds_alternative<RtpElement>(design.part().element)) return {"element.base_mm", "element.width_mm"};
@@ -273,7 +273,7 @@ std::vector<std::string> keys_of(RreParameter parameter, const Design& design) {
   return {};
 }
 
-double value_of(const Design& design, RreParameter parameter) {
+double value_of(const design::Design& design, RreParameter parameter) {
   const PartSpec& spec = design.part();
   if (parameter == RreParameter::size_mm) return size_of(spec.element);
   if (parameter == RreParameter::apex_angle_deg) return std::get<RtpElement>(spec.element).apex_angle_deg;
@@ -281,12 +281,12 @@ double value_of(const Design& design, RreParameter parameter) {
   return spec.thickness_mm;
 }
 
-Design with(const Design& design, RreParameter parameter, double value) {
+design::Design with(const design::Design& design, RreParameter parameter, double value) {
   const std::vector<std::string> keys = keys_of(parameter, design);
   const std::vector<schema::Value> values = values_at(design, parameter, value);
   std::vector<std::string> overrides;
   for (std::size_t k = 0; k < keys.size(); ++k) overrides.push_back(schema::override_text(keys[k], values[k]));
-  return with(design, overrides);
+  return design::with(design, overrides);
 }
 
 std::optional<std::vector<std::vector<RreDerivative>>> rre_derivatives(const TracedDirection& at,

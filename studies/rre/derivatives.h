@@ -9,9 +9,9 @@
 
 #include "core/math/derivative.h"
 #include "core/progress.h"
+#include "design/design.h"
+#include "design/optical_model.h"
 #include "raytrace/exact/beam_tracer.h"
-#include "studies/design/design.h"
-#include "studies/design/optical_model.h"
 
 namespace retrace::studies {
 
@@ -24,20 +24,20 @@ enum class RreParameter { size_mm, apex_angle_deg, dihedral_error_deg, refractiv
 std::string_view parameter_name(RreParameter parameter);
 
 /// Returns the parameters that apply to a design.
-std::vector<RreParameter> parameters_of(const Design& design);
+std::vector<RreParameter> parameters_of(const design::Design& design);
 
 /// Returns the keys of a design that together represent a parameter. Empty for the incidence.
-std::vector<std::string> keys_of(RreParameter parameter, const Design& design);
+std::vector<std::string> keys_of(RreParameter parameter, const design::Design& design);
 
 /// Returns the value of a parameter in a design.
 /// \pre the parameter applies to the design, and the design itself contains its value; this excludes the refractive
 /// index of a named material
-double value_of(const Design& design, RreParameter parameter);
+double value_of(const design::Design& design, RreParameter parameter);
 
 /// Returns the design with another value of a parameter.
 /// \pre see value_of()
 /// \throw InputError if the design with this value is invalid
-Design with(const Design& design, RreParameter parameter, double value);
+design::Design with(const design::Design& design, RreParameter parameter, double value);
 
 /// Reason why the derivative of RRE with respect to a parameter is not available.
 enum class NoDerivative {
@@ -54,13 +54,13 @@ std::string_view text_of(NoDerivative reason);
 struct RreDerivative {
   RreParameter parameter = RreParameter::incidence_deg;
   Derivative derivative;
-  std::optional<NoDerivative> left_out;  ///< reason why the derivative is missing; none if `derivative` is valid
+  std::optional<NoDerivative> missing_reason;  ///< reason why the derivative is missing; none if `derivative` is valid
 };
 
 /// Direction of incidence of a design, with the result of tracing it.
 struct TracedDirection {
-  const Design& design;
-  const OpticalModel& model;
+  const design::Design& design;
+  const design::OpticalModel& model;
   const raytrace::BeamTracer& tracer;  ///< tracer of model.part
   raytrace::Illumination illumination;
   raytrace::BeamPolicy policy;         ///< policy of every evaluation, with a limit of 20 times the point's beams

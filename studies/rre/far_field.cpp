@@ -19,25 +19,26 @@ bool is_stronger(const FarFieldSpot& a, const FarFieldSpot& b) {
 
 }  // namespace
 
-FarFieldBuilder::FarFieldBuilder(const raytrace::Illumination& illumination) : places_(FarField::kOneDirection_rad) {
+FarFieldBuilder::FarFieldBuilder(const raytrace::Illumination& illumination)
+    : spot_index_(FarField::kOneDirection_rad) {
   const Vec3 to_source = raytrace::direction_to_source(illumination);
   spots_.push_back({to_source, {}, std::numeric_limits<std::uint32_t>::max()});
-  places_.insert(to_source, 0);
+  spot_index_.insert(to_source, 0);
 }
 
 void FarFieldBuilder::add(const raytrace::ReturnedBeam& beam) {
   std::size_t index = spots_.size();
-  places_.visit(beam.direction, [&](std::size_t known) { index = std::min(index, known); });
+  spot_index_.visit(beam.direction, [&](std::size_t known) { index = std::min(index, known); });
   if (index == spots_.size()) {
     spots_.push_back({beam.direction, {}, beam.depth});
-    places_.insert(beam.direction, index);
+    spot_index_.insert(beam.direction, index);
   }
-  spots_[index].stokes += beam.place_count() * beam.stokes;
-  spots_[index].least_depth = std::min(spots_[index].least_depth, beam.depth);
+  spots_[index].stokes += beam.instance_count() * beam.stokes;
+  spots_[index].min_depth = std::min(spots_[index].min_depth, beam.depth);
 }
 
 FarFieldSpot FarFieldBuilder::seen_from_source(const Spot& spot) const {
-  FarFieldSpot seen{{}, {}, spot.stokes, spot.least_depth};
+  FarFieldSpot seen{{}, {}, spot.stokes, spot.min_depth};
   const Vec3& to_source = spots_.front().direction;
   if (&spot == &spots_.front()) return seen;
   seen.deviation = Angle::from_rad(std::atan2(spot.direction.cross(to_source).norm(), spot.direction.dot(to_source)));
@@ -53,7 +54,7 @@ FarField FarFieldBuilder::finish() const {
   FarField field;
   for (const Spot& spot : spots_) {
     field.total_power += spot.stokes.i;
-    if (spot.stokes.i < FarField::kLeastPower)
+    if (spot.stokes.i < FarField::kMinPower)
       field.other_power += spot.stokes.i;
     else
       field.spots.push_back(seen_from_source(spot));

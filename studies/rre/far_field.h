@@ -18,15 +18,15 @@ struct FarFieldSpot {
   Angle orientation;
   raytrace::Stokes stokes;  ///< Stokes parameters with respect to the axes of the spot's direction
   /// Number of interfaces on the shortest path inside the part; 0: reflected at the outside of the entrance face.
-  std::uint32_t least_depth = 0;
+  std::uint32_t min_depth = 0;
 };
 
 /// Directions in which light leaves the entrance face, for one direction of incidence.
 struct FarField {
-  static constexpr double kLeastPower = 1e-9;
+  static constexpr double kMinPower = 1e-9;
   static constexpr double kOneDirection_rad = 1e-9;
 
-  std::vector<FarFieldSpot> spots;  ///< spots with at least kLeastPower, in descending order of power
+  std::vector<FarFieldSpot> spots;  ///< spots with at least kMinPower, in descending order of power
   double other_power = 0.0;         ///< power of all other spots
   double total_power = 0.0;
 };
@@ -43,13 +43,13 @@ class FarFieldBuilder {
   struct Spot {
     geometry::Vec3 direction;
     raytrace::Stokes stokes;
-    std::uint32_t least_depth = 0;
+    std::uint32_t min_depth = 0;
   };
 
   FarFieldSpot seen_from_source(const Spot& spot) const;
 
   std::vector<Spot> spots_;  ///< the first spot is the direction back to the source, even if it has no light
-  geometry::PointLookup<std::size_t> places_;
+  geometry::PointLookup<std::size_t> spot_index_;
 };
 
 }  // namespace retrace::studies

@@ -14,7 +14,7 @@ using geometry::Polygon, geometry::Vec2;
 // Difference of efficiencies below which neighbouring polygons are merged into one region.
 constexpr double kEqualEfficiency = 1e-9;
 // Distance below which corners are merged, as a fraction of an element.
-constexpr double kMergeShare = 1e-11;
+constexpr double kMergeFraction = 1e-11;
 // Magnitude of the normal's z component below which a facet counts as a wall, which is seen edge-on from above.
 constexpr double kWall = 1e-6;
 
@@ -45,7 +45,7 @@ bool lies_before(const ActiveRegion& a, const ActiveRegion& b) {
 
 }  // namespace
 
-double Footprint::rre_shown() const {
+double Footprint::rre_contribution() const {
   double power = 0.0;
   for (const ActiveRegion& region : regions) power += geometry::area(region.outline_mm) * region.efficiency;
   return power / entrance_area_mm2;
@@ -59,14 +59,14 @@ FootprintBuilder::FootprintBuilder(const geometry::Part& part, std::size_t cones
       overlay_(part.size_mm) {}
 
 void FootprintBuilder::add(const raytrace::ReturnedBeam& beam) {
-  const bool is_shown = beam.depth > 0 && beam.cone < cones_ && beam.efficiency >= Footprint::kLeastEfficiency;
+  const bool is_shown = beam.depth > 0 && beam.cone < cones_ && beam.efficiency >= Footprint::kMinEfficiency;
   if (!is_shown) return;
-  const raytrace::FlatPolygon entered(beam.entered_mm.begin(), beam.entered_mm.end());
-  if (!beam.places) {
+  const raytrace::FlatPolygon entered(beam.entry_polygon_mm.begin(), beam.entry_polygon_mm.end());
+  if (!beam.instance_offsets) {
     overlay_.insert(entered, beam.efficiency);
     return;
   }
-  for (const Vec2& by : *beam.places) {
+  for (const Vec2& by : *beam.instance_offsets) {
     raytrace::FlatPolygon there = entered;
     for (Vec2& p : there) p += by;
     insert(there, beam.efficiency);
@@ -80,7 +80,7 @@ void FootprintBuilder::insert(const raytrace::FlatPolygon& entered, double effic
     overlay_.insert(entered, efficiency);
     return;
   }
-  const double merge_mm = kMergeShare * size_mm_;
+  const double merge_mm = kMergeFraction * size_mm_;
   for (const double i : {0.0, 1.0})
     for (const double j : {0.0, 1.0}) {
       const Vec2 from = Vec2(i, j).cwiseProduct(*period_mm_);
@@ -94,7 +94,7 @@ void FootprintBuilder::insert(const raytrace::FlatPolygon& entered, double effic
 Footprint FootprintBuilder::finish() const {
   Footprint footprint;
   footprint.entrance_area_mm2 = entrance_area_mm2_;
-  for (const raytrace::ValuedPolygon& piece : raytrace::fused(overlay_.pieces(), size_mm_, kEqualEfficiency)) {
+  for (const raytrace::ValuedPolygon& piece : raytrace::fused(overlay_.polygons(), size_mm_, kEqualEfficiency)) {
     footprint.regions.push_back({outline_of(piece.polygon), piece.value});
     footprint.active_area_mm2 += raytrace::area(piece.polygon);
   }

@@ -19,17 +19,17 @@ struct ActiveRegion {
 };
 
 /// Regions of the entrance face that return light into the widest acceptance cone, for one direction. Reflection by the
-/// face itself, and paths with an efficiency below kLeastEfficiency, are not included.
+/// face itself, and paths with an efficiency below kMinEfficiency, are not included.
 struct Footprint {
-  static constexpr double kLeastEfficiency = 1e-3;
+  static constexpr double kMinEfficiency = 1e-3;
 
   std::vector<ActiveRegion> regions;  ///< disjoint, ordered from bottom to top and from left to right
   double entrance_area_mm2 = 0.0;     ///< area of the entrance face, or of one period of it for infinite parts
   double active_area_mm2 = 0.0;
 
-  double active_share() const { return active_area_mm2 / entrance_area_mm2; }
+  double active_fraction() const { return active_area_mm2 / entrance_area_mm2; }
   /// Returns the contribution of the regions to RRE.
-  double rre_shown() const;
+  double rre_contribution() const;
 };
 
 /// Builds the footprint from the returned beams of one direction.

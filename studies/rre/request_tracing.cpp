@@ -7,14 +7,14 @@
 #include <tuple>
 #include <utility>
 
-#include "studies/design/total_reflection.h"
+#include "design/total_reflection.h"
 #include "studies/rre/adaptive_curve.h"
 #include "studies/rre/spectral_mean.h"
 
 namespace retrace::studies {
 namespace {
 
-std::vector<Direction> directions_of(const std::vector<OpticalModel>& models, const RreSettings& request,
+std::vector<Direction> directions_of(const std::vector<design::OpticalModel>& models, const RreSettings& request,
                                      const std::vector<double>& incidence_deg) {
   std::vector<Direction> directions;
   for (std::size_t d = 0; d < models.size(); ++d)
@@ -37,7 +37,7 @@ std::vector<Direction> directions_of(const std::vector<OpticalModel>& models, co
 }
 
 /// Computes the points of a direction if all its wavelengths have been traced.
-void finish(Direction& direction, const Design& design, const OpticalModel& model) {
+void finish(Direction& direction, const design::Design& design, const design::OpticalModel& model) {
   const auto& spectral = direction.spectral;
   if (std::any_of(spectral.begin(), spectral.end(), [](const auto& cones) { return cones.empty(); })) return;
   if (!design.light.spectrum()) {
@@ -57,20 +57,20 @@ void finish(Direction& direction, const Design& design, const OpticalModel& mode
 /// Returns the known kinks of RRE as a function of incidence. Kinks are angles at which total reflection begins or
 /// ends, at any of the requested azimuths and wavelengths. Another kink is at half of an acceptance angle. There, the
 /// light that the entrance face reflects leaves the acceptance cone, because it rotates twice as fast as the part.
-std::vector<double> kinks_of(const std::vector<Design>& designs, const std::vector<OpticalModel>& models,
-                             const RreSettings& request) {
+std::vector<double> kinks_of(const std::vector<design::Design>& designs,
+                             const std::vector<design::OpticalModel>& models, const RreSettings& request) {
   std::vector<double> kinks;
   for (std::size_t d = 0; d < designs.size(); ++d) {
-    const Design& design = designs[d];
+    const design::Design& design = designs[d];
     if (design.balls() || design.entrance) continue;
     for (const double cone_deg : design.detector.acceptance_half_angle_deg)
       kinks.insert(kinks.end(), {-0.5 * cone_deg, 0.5 * cone_deg});
     if (!design.elements() || design.part().substrate || !design.needs_total_reflection()) continue;
     for (const double azimuth : request.azimuth_deg)
-      for (const SpectralOptics& light : models[d].spectral) {
+      for (const design::SpectralOptics& light : models[d].spectral) {
         const auto add = [&](const raytrace::Optics& optics) {
-          const std::vector<double> edges =
-              total_reflection_edges_deg(design.part(), optics.index, optics.back_index, Angle::from_deg(azimuth));
+          const std::vector<double> edges = design::total_reflection_edges_deg(
+              design.part(), optics.index, optics.back_index, Angle::from_deg(azimuth));
           kinks.insert(kinks.end(), edges.begin(), edges.end());
         };
         add(light.optics);
@@ -95,7 +95,7 @@ class RoundProgress : public Progress {
 };
 
 /// Traces directions and computes their points.
-void trace_points(const std::vector<Design>& designs, const std::vector<OpticalModel>& models,
+void trace_points(const std::vector<design::Design>& designs, const std::vector<design::OpticalModel>& models,
                   DirectionTracing& tracing, std::vector<Direction>& directions, Progress* progress) {
   tracing.trace(directions, progress);
   for (Direction& direction : directions) finish(direction, designs[direction.at.design], models[direction.at.design]);
@@ -122,14 +122,14 @@ void put_in_order(std::vector<Direction>& directions, const std::vector<double>&
 }
 
 std::string told(const AdaptiveCurve& curve) {
-  if (curve.worst_left() == 0.0) return {};
+  if (curve.residual_error() == 0.0) return {};
   return fmt::format(
       "{} angles of incidence in each range do not resolve the curve: linear interpolation between them may deviate "
       "from RRE by {:.2g}",
-      AdaptiveCurve::kMostPlaces, curve.worst_left());
+      AdaptiveCurve::kMaxPoints, curve.residual_error());
 }
 
-TracedRequest trace_chosen(const std::vector<Design>& designs, const std::vector<OpticalModel>& models,
+TracedRequest trace_chosen(const std::vector<design::Design>& designs, const std::vector<design::OpticalModel>& models,
                            const RreSettings& request, Progress* progress, const Cancellation* cancel) {
   TracedRequest traced;
   DirectionTracing tracing(designs, models, request, cancel);
@@ -156,7 +156,7 @@ TracedRequest trace_chosen(const std::vector<Design>& designs, const std::vector
 
 }  // namespace
 
-TracedRequest trace_request(const std::vector<Design>& designs, const std::vector<OpticalModel>& models,
+TracedRequest trace_request(const std::vector<design::Design>& designs, const std::vector<design::OpticalModel>& models,
                             const RreSettings& request, std::optional<std::size_t> only, Progress* progress,
                             const Cancellation* cancel) {
   if (!request.incidence_spans.empty()) return trace_chosen(designs, models, request, progress, cancel);

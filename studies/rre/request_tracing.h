@@ -21,7 +21,7 @@ struct TracedRequest {
 /// \param only index of one of the designs; none: all designs
 /// \pre all designs are traced if incidences are chosen automatically
 /// \throw BudgetError in the same cases as DirectionTracing::trace()
-TracedRequest trace_request(const std::vector<Design>& designs, const std::vector<OpticalModel>& models,
+TracedRequest trace_request(const std::vector<design::Design>& designs, const std::vector<design::OpticalModel>& models,
                             const RreSettings& request, std::optional<std::size_t> only, Progress* progress,
                             const Cancellation* cancel);
 

@@ -29,17 +29,17 @@ void check(const RreSettings& request) {
   const std::string engine = reference({"engine"});
   raytrace::EngineFacts facts;
   facts.needs_plain_sampling = request.needs_plain_sampling();
-  if (raytrace::why_not(request.engine, facts))
+  if (raytrace::obstacle_for(request.engine, facts))
     throw InputError(Field{"sampling"}, fmt::format("plain sampling needs {} montecarlo or embree, got {}", engine,
                                                     engine_name(request.engine)));
   for (const Field result : exact_results(request))
-    if (!raytrace::may_be_exact(request.engine) || !may_follow_beams(request))
+    if (!raytrace::may_be_exact(request.engine) || !may_use_beams(request))
       throw InputError(result, fmt::format("needs {} exact", engine));
 }
 
 /// Refuses derivatives for parts with individual facet planes or a mask. Derivatives rebuild the part with changed
 /// sizes, but a table of facet planes or a mask does not change with the size.
-void check_planes(const Design& design, const RreSettings& request) {
+void check_planes(const design::Design& design, const RreSettings& request) {
   if (request.derivatives && design.facet_planes())
     throw InputError(design.where("part.facets"), "not allowed together with " + reference({"derivatives"}));
   if (request.derivatives && design.mask())
@@ -48,7 +48,7 @@ void check_planes(const Design& design, const RreSettings& request) {
 
 /// Refuses results that are defined at a single wavelength for light with a spectrum. Averaging them over a spectrum is
 /// meaningless.
-void check_light(const Design& design, const OpticalModel& model, const RreSettings& request) {
+void check_light(const design::Design& design, const design::OpticalModel& model, const RreSettings& request) {
   if (model.spectral.size() < 2) return;
   for (const Field result : exact_results(request))
     throw InputError(design.where("light.spectrum"),
@@ -57,7 +57,7 @@ void check_light(const Design& design, const OpticalModel& model, const RreSetti
                                  reference(result), model.spectral.size(), model.wavelength_nm));
 }
 
-std::string missed_target_text(const Design& design, const RrePoint& at, const RreSettings& request) {
+std::string missed_target_text(const design::Design& design, const RrePoint& at, const RreSettings& request) {
   return fmt::format("{}: the standard error at incidence {}, azimuth {} is above the target of {}",
                      design.source_name(), shortest(at.incidence_deg), shortest(at.azimuth_deg),
                      shortest(target_error_of(request)));
@@ -66,23 +66,24 @@ std::string missed_target_text(const Design& design, const RrePoint& at, const R
 }  // namespace
 
 double target_error_of(const RreSettings& request) {
-  return request.target_error.value_or(request.incidence_spans.empty() ? kUsualTargetError : 0.5 * kCurveTolerance);
+  return request.target_error.value_or(request.incidence_spans.empty() ? kDefaultTargetError : 0.5 * kCurveTolerance);
 }
 
 namespace {
 
 /// Refuses an engine that cannot trace a design.
-void check_engine(const Design& design, const raytrace::EngineFacts& facts, Engine engine, const RreSettings& request) {
+void check_engine(const design::Design& design, const raytrace::EngineFacts& facts, raytrace::Engine engine,
+                  const RreSettings& request) {
   using raytrace::Obstacle;
-  const std::optional<Obstacle> obstacle = raytrace::why_not(engine, facts);
+  const std::optional<Obstacle> obstacle = raytrace::obstacle_for(engine, facts);
   if (!obstacle) return;
   const std::string_view name = raytrace::engine_name(request.engine);
   const std::string source = design.source_name();
   const std::string option = reference({"engine"});
   const auto refused_beams = [&](std::string_view what) {
-    const bool may_resample = !raytrace::why_not(Engine::stochastic, facts);
+    const bool may_resample = !raytrace::obstacle_for(raytrace::Engine::stochastic, facts);
     return InputError(
-        position_of(design, *obstacle),
+        design::position_of(design, *obstacle),
         fmt::format("{} a beam into infinitely many directions: use {} {}montecarlo, without {}, {} and {}", what,
                     option, may_resample ? "stochastic or " : "", reference({"footprint"}), reference({"far_field"}),
                     reference({"derivatives"})));
@@ -109,50 +110,52 @@ void check_engine(const Design& design, const raytrace::EngineFacts& facts, Engi
     case Obstacle::form: throw refused_beams("facets with a form deflect");
     case Obstacle::scattering_entrance: throw refused_beams("contaminated or rough entrance faces scatter");
     default:
-      throw InputError(position_of(design, *obstacle),
+      throw InputError(design::position_of(design, *obstacle),
                        fmt::format("{} cannot trace {}: use {} embree", name, raytrace::subject_of(*obstacle), option));
   }
 }
 
 /// Refuses results that the exact engine does not compute for a kind of designs.
-void check_results(const Design& design, const raytrace::EngineFacts& facts, const RreSettings& request) {
+void check_results(const design::Design& design, const raytrace::EngineFacts& facts, const RreSettings& request) {
   for (const Field result : exact_results(request)) {
     if (facts.has_balls)
       throw InputError(design.where("element.kind"), "balls are not supported by " + reference(result));
     if (facts.has_curved_entrance || facts.has_unequal_backs)
-      check_taken(design, {.what = reference(result), .solids = true});
+      design::require_supported(design, {.what = reference(result), .solids = true});
   }
 }
 
 /// Returns the model of a design.
 /// \throw InputError if the engine does not support its shape
-OpticalModel model_of(const Design& design, const materials::MaterialLibrary& library, const RreSettings& request) {
+design::OpticalModel model_of(const design::Design& design, const materials::MaterialLibrary& library,
+                              const RreSettings& request) {
   const raytrace::EngineFacts facts = engine_facts(design, nullptr, request);
   check_engine(design, facts, request.engine, request);
   check_results(design, facts, request);
-  return design.balls() ? make_light_model(design, library) : make_model(design, library, Entrances::any);
+  return design.balls() ? design::make_light_model(design, library)
+                        : design::make_model(design, library, design::Entrances::any);
 }
 
 }  // namespace
 
 struct RreStudy::Prepared {
-  std::vector<Design> designs;
+  std::vector<design::Design> designs;
   RreSettings request;
-  std::vector<OpticalModel> models;
+  std::vector<design::OpticalModel> models;
 };
 
-RreStudy::RreStudy(std::vector<Design> designs, RreSettings request) : prepared_(std::make_unique<Prepared>()) {
+RreStudy::RreStudy(std::vector<design::Design> designs, RreSettings request) : prepared_(std::make_unique<Prepared>()) {
   check(request);
   const auto library = materials::MaterialLibrary::shipped();
-  for (const Design& design : designs) {
+  for (const design::Design& design : designs) {
     prepared_->models.push_back(model_of(design, library, request));
     check_light(design, prepared_->models.back(), request);
     check_planes(design, request);
     if (design.balls()) continue;
-    if (request.derivatives) check_taken(design, {.what = reference({"derivatives"})});
+    if (request.derivatives) design::require_supported(design, {.what = reference({"derivatives"})});
     const raytrace::EngineFacts facts = engine_facts(design, &prepared_->models.back(), request);
     check_results(design, facts, request);
-    check_engine(design, facts, must_be_exact(request) ? Engine::exact : request.engine, request);
+    check_engine(design, facts, must_be_exact(request) ? raytrace::Engine::exact : request.engine, request);
   }
   prepared_->designs = std::move(designs);
   prepared_->request = std::move(request);
@@ -198,14 +201,14 @@ RreResult RreStudy::begun() const {
   result.designs = designs;
   result.engine_requested = raytrace::engine_name(request.engine);
   result.seed = request.seed;
-  for (const OpticalModel& model : models) result.light.push_back(model.spectral);
-  for (const OpticalModel& model : models) append(result.warnings, model.warnings);
+  for (const design::OpticalModel& model : models) result.light.push_back(model.spectral);
+  for (const design::OpticalModel& model : models) append(result.warnings, model.warnings);
   return result;
 }
 
 void RreStudy::finish(RreResult& result) const {
   if (prepared_->request.footprint)
-    for (const OpticalModel& model : prepared_->models) result.faces.push_back(entrance_face_of(model.part));
+    for (const design::OpticalModel& model : prepared_->models) result.faces.push_back(entrance_face_of(model.part));
   result.engine = engine_of(result.points);
   warn_of_truncation(prepared_->request, result);
 }

@@ -12,11 +12,11 @@
 
 #include "core/progress.h"
 #include "core/warning.h"
+#include "design/design.h"
+#include "design/engine_facts.h"
+#include "design/optical_model.h"
 #include "raytrace/light/ledger.h"
 #include "raytrace/paths/monte_carlo.h"
-#include "studies/design/design.h"
-#include "studies/design/engine_facts.h"
-#include "studies/design/optical_model.h"
 #include "studies/rre/adaptive_curve.h"
 #include "studies/rre/derivatives.h"
 #include "studies/rre/far_field.h"
@@ -25,7 +25,7 @@
 namespace retrace::studies {
 
 /// Default value of RreSettings::target_error, as a fraction of the incident power.
-inline constexpr double kUsualTargetError = 1e-4;
+inline constexpr double kDefaultTargetError = 1e-4;
 /// Maximum error of linear interpolation between automatically chosen incidences, as a fraction of the incident power.
 /// It is used instead of target_error if target_error is smaller.
 inline constexpr double kCurveTolerance = 1e-3;
@@ -41,11 +41,11 @@ struct RreSettings {
   /// or kCurveTolerance, whichever is greater. All incidences are then sorted in ascending order.
   std::vector<CurveSpan> incidence_spans;
   std::vector<double> azimuth_deg = {0.0};
-  Engine engine = Engine::automatic;
+  raytrace::Engine engine = raytrace::Engine::automatic;
   std::optional<std::uint64_t> rays;  ///< number of rays per point; none: rays are traced until target_error is reached
   /// Maximum standard error (Monte Carlo) or maximum truncated power (exact engine), as a fraction of the incident
-  /// power. The default is kUsualTargetError, or half of kCurveTolerance if incidences are chosen automatically. It is
-  /// 1e-10 if the exact engine is requested by name or needed for other results.
+  /// power. The default is kDefaultTargetError, or half of kCurveTolerance if incidences are chosen automatically. It
+  /// is 1e-10 if the exact engine is requested by name or needed for other results.
   std::optional<double> target_error;
   raytrace::Sampling::Kind sampling = raytrace::Sampling::Kind::stratified;  ///< `plain` uses Embree
   bool needs_plain_sampling() const { return sampling == raytrace::Sampling::Kind::plain; }
@@ -99,8 +99,8 @@ struct ReturnedLight {
 };
 
 struct RreResult {
-  std::vector<Design> designs;
-  std::vector<std::vector<SpectralOptics>> light;  ///< traced wavelengths, for each design
+  std::vector<design::Design> designs;
+  std::vector<std::vector<design::SpectralOptics>> light;  ///< traced wavelengths, for each design
   std::string engine = "none";  ///< engine that was used; "montecarlo" or "mixed" if there were several
   std::string engine_requested;
   std::uint32_t seed = 1;
@@ -119,7 +119,7 @@ struct RreResult {
 class RreStudy {
  public:
   /// \throw InputError if the engine does not support a design or a requested result, or if a material is unknown
-  RreStudy(std::vector<Design> designs, RreSettings request);
+  RreStudy(std::vector<design::Design> designs, RreSettings request);
   ~RreStudy();
 
   /// Computes RRE of every design at every direction.

@@ -35,7 +35,7 @@ bool asks_for_more(const RreSettings& request) {
 raytrace::BeamPolicy beam_policy(const RreSettings& request) {
   raytrace::BeamPolicy policy;
   policy.cutoff = request.cutoff;
-  const bool is_free = request.engine == Engine::automatic && !asks_for_more(request);
+  const bool is_free = request.engine == raytrace::Engine::automatic && !asks_for_more(request);
   if (request.target_error || is_free) policy.truncated_goal = target_error_of(request);
   if (is_free) policy.spare_work = kSpareWork;
   return policy;
@@ -49,12 +49,12 @@ bool add_derivatives(const TracedDirection& traced, const Cancellation* cancel, 
   return true;
 }
 
-raytrace::PartEngines::Settings engine_settings(const Design& design, const raytrace::EngineFacts& facts,
+raytrace::PartEngines::Settings engine_settings(const design::Design& design, const raytrace::EngineFacts& facts,
                                                 const RreSettings& request) {
   using Elements = raytrace::BeamTracer::Elements;
   raytrace::PartEngines::Settings settings;
   settings.rays = raytrace::ray_engine(request.engine, facts);
-  settings.elements = must_be_exact(request) ? Elements::each_by_itself : Elements::equal_at_once;
+  settings.elements = must_be_exact(request) ? Elements::individual : Elements::instanced;
   settings.has_texture = facts.has_texture;
   settings.beams = beam_policy(request);
   settings.paths.cutoff = request.cutoff.value_or(settings.paths.cutoff);
@@ -73,13 +73,13 @@ std::size_t unit_count(const std::vector<Direction>& directions) {
 /// Traces the directions of one design at all its wavelengths.
 class DesignTracing {
  public:
-  DesignTracing(const Design& design, const OpticalModel& model, const RreSettings& request,
+  DesignTracing(const design::Design& design, const design::OpticalModel& model, const RreSettings& request,
                 const raytrace::EngineFacts& facts, const Cancellation* cancel)
       : design_(design),
         model_(model),
         request_(request),
         cancel_(cancel),
-        follows_beams_(may_follow_beams(request) && !raytrace::why_not(Engine::stochastic, facts)),
+        follows_beams_(may_use_beams(request) && !raytrace::obstacle_for(raytrace::Engine::stochastic, facts)),
         engines_(model.part, model.entrance ? &*model.entrance : nullptr, engine_settings(design, facts, request),
                  cancel) {}
 
@@ -95,13 +95,13 @@ class DesignTracing {
   /// Traces a direction at one wavelength. Returns false if tracing was cancelled; the direction then has no new point.
   /// \pre expect() was called
   bool trace(Direction& direction, std::size_t wavelength, Progress& progress) {
-    const SpectralOptics& light = model_.spectral[wavelength];
+    const design::SpectralOptics& light = model_.spectral[wavelength];
     const raytrace::PartEngines::Light traced{light.optics, illumination_of(direction.at, design_),
                                               raytrace::sampling_at(sampling_of(request_), light.weight, wavelength)};
     if (design_.balls()) return trace_balls(direction, wavelength, traced, progress);
     if (!follows_beams_) return keep(direction, wavelength, engines_.by_rays(traced, progress));
     if (must_be_exact(request_)) return trace_beams(direction, wavelength, traced, progress);
-    if (request_.engine == Engine::stochastic)
+    if (request_.engine == raytrace::Engine::stochastic)
       return keep(direction, wavelength, engines_.by_stochastic_beams(traced, progress));
     const std::optional<raytrace::EngineResult> fastest = engines_.by_fastest(traced, progress);
     return fastest && keep(direction, wavelength, *fastest);
@@ -130,7 +130,7 @@ class DesignTracing {
   bool keep(Direction& direction, std::size_t wavelength, const raytrace::BeamResult& traced) const {
     if (!traced.complete) return false;
     direction.spectral[wavelength] =
-        points_of(point_at(direction, wavelength, engine_name(Engine::exact)), cones(), traced);
+        points_of(point_at(direction, wavelength, engine_name(raytrace::Engine::exact)), cones(), traced);
     return true;
   }
 
@@ -154,7 +154,7 @@ class DesignTracing {
 
   bool trace_beams(Direction& direction, std::size_t wavelength, const raytrace::PartEngines::Light& light,
                    Progress& progress) {
-    BeamAnswer answer = follow_beams(
+    BeamOutputs answer = trace_exact_beams(
         engines_.beam_tracer(), model_.part, light.optics, light.illumination, cones(), engines_.settings().beams,
         {.footprint = request_.footprint, .far_field = request_.far_field}, cancel_, &progress);
     if (!keep(direction, wavelength, answer.traced)) return false;
@@ -165,33 +165,35 @@ class DesignTracing {
                                                     cancel_, direction.spectral[wavelength]);
   }
 
-  const Design& design_;
-  const OpticalModel& model_;
+  const design::Design& design_;
+  const design::OpticalModel& model_;
   const RreSettings& request_;
   const Cancellation* cancel_;
   bool follows_beams_;  ///< true: light may be traced as beams or rays; false: only as rays
   raytrace::PartEngines engines_;
 };
 
-bool may_follow_beams(const RreSettings& request) {
+bool may_use_beams(const RreSettings& request) {
   const bool asks_for_rays = request.rays || request.needs_plain_sampling();
-  return request.engine == Engine::exact || request.engine == Engine::stochastic ||
-         (request.engine == Engine::automatic && !asks_for_rays);
+  return request.engine == raytrace::Engine::exact || request.engine == raytrace::Engine::stochastic ||
+         (request.engine == raytrace::Engine::automatic && !asks_for_rays);
 }
 
 bool must_be_exact(const RreSettings& request) {
-  return request.engine == Engine::exact || asks_for_more(request);
+  return request.engine == raytrace::Engine::exact || asks_for_more(request);
 }
 
-raytrace::EngineFacts engine_facts(const Design& design, const OpticalModel* model, const RreSettings& request) {
-  raytrace::EngineFacts facts = engine_facts(design, model != nullptr ? &model->optics : nullptr);
-  facts.has_unequal_cells = model != nullptr && !facts.has_balls && !raytrace::MonteCarlo::cell_serves(model->part);
+raytrace::EngineFacts engine_facts(const design::Design& design, const design::OpticalModel* model,
+                                   const RreSettings& request) {
+  raytrace::EngineFacts facts = design::engine_facts(design, model != nullptr ? &model->optics : nullptr);
+  facts.has_unequal_cells = model != nullptr && !facts.has_balls && !raytrace::MonteCarlo::cell_supports(model->part);
   facts.needs_plain_sampling = request.needs_plain_sampling();
   return facts;
 }
 
-DirectionTracing::DirectionTracing(const std::vector<Design>& designs, const std::vector<OpticalModel>& models,
-                                   const RreSettings& request, const Cancellation* cancel)
+DirectionTracing::DirectionTracing(const std::vector<design::Design>& designs,
+                                   const std::vector<design::OpticalModel>& models, const RreSettings& request,
+                                   const Cancellation* cancel)
     : designs_(designs), models_(models), request_(request), cancel_(cancel), tracings_(designs.size()) {}
 
 DirectionTracing::~DirectionTracing() = default;

@@ -24,13 +24,14 @@ struct Direction {
 };
 
 /// Returns true if the request allows beam tracing. A number of rays or plain sampling excludes it.
-bool may_follow_beams(const RreSettings& request);
+bool may_use_beams(const RreSettings& request);
 /// Returns true if the request must be traced with the exact engine, however long this takes. This is the case if the
 /// engine is requested by name, or if results are requested that only this engine computes.
 bool must_be_exact(const RreSettings& request);
 /// Returns the facts about a design and a request on which the choice of the engine depends.
 /// \param model null: facts that depend on it are not set
-raytrace::EngineFacts engine_facts(const Design& design, const OpticalModel* model, const RreSettings& request);
+raytrace::EngineFacts engine_facts(const design::Design& design, const design::OpticalModel* model,
+                                   const RreSettings& request);
 
 class DesignTracing;
 
@@ -38,7 +39,7 @@ class DesignTracing;
 /// for the first time. They are kept if further directions may follow.
 class DirectionTracing {
  public:
-  DirectionTracing(const std::vector<Design>& designs, const std::vector<OpticalModel>& models,
+  DirectionTracing(const std::vector<design::Design>& designs, const std::vector<design::OpticalModel>& models,
                    const RreSettings& request, const Cancellation* cancel);
   ~DirectionTracing();
 
@@ -49,8 +50,8 @@ class DirectionTracing {
   void trace(std::vector<Direction>& directions, Progress* progress);
 
  private:
-  const std::vector<Design>& designs_;
-  const std::vector<OpticalModel>& models_;
+  const std::vector<design::Design>& designs_;
+  const std::vector<design::OpticalModel>& models_;
   const RreSettings& request_;
   const Cancellation* cancel_;
   std::vector<std::unique_ptr<DesignTracing>> tracings_;  ///< indexed by design

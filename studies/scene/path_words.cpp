@@ -25,7 +25,7 @@ std::string face_name(FacetRole role) {
 
 }  // namespace
 
-std::string words_of(const raytrace::PathStep& step) {
+std::string description_of(const raytrace::PathStep& step) {
   const std::string face = face_name(step.role);
   const std::string at = fmt::format("at {} deg", fixed_visible(step.incidence_deg, 1));
   const std::string left = fmt::format("{} % of the incident power continues", fixed(100.0 * step.power, 1));
@@ -45,7 +45,7 @@ std::string words_of(const raytrace::PathStep& step) {
   return "Ends, because the remaining power is negligible.";
 }
 
-std::string fate_of(const raytrace::LightPath& path) {
+std::string ending_text(const raytrace::LightPath& path) {
   const auto reflections = std::count_if(path.steps.begin(), path.steps.end(), [](const raytrace::PathStep& s) {
     return s.event == PathEvent::total_reflection;
   });

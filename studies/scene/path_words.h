@@ -9,9 +9,9 @@
 namespace retrace::studies {
 
 /// Returns a sentence about what happens at an interface.
-std::string words_of(const raytrace::PathStep& step);
+std::string description_of(const raytrace::PathStep& step);
 
 /// Returns a description of the end of a path, such as "comes back after 2 total reflections".
-std::string fate_of(const raytrace::LightPath& path);
+std::string ending_text(const raytrace::LightPath& path);
 
 }  // namespace retrace::studies

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "studies/scene/piece.h"
+#include "studies/scene/design_excerpt.h"
 
 namespace retrace::studies {
 
@@ -21,11 +21,11 @@ struct DesignScene {
 
 /// Returns a still picture of a Piece, with up to three kinds of paths for each direction.
 /// \throw InputError in the same cases as make_model()
-DesignScene make_scene(const Design& design, const std::vector<SceneLight>& lights);
+DesignScene make_scene(const design::Design& design, const std::vector<SceneLight>& lights);
 
 /// Returns the design from the JSON of a result (to_json()) for a picture. Texture, spectrum and polarisation are left
 /// out.
 /// \throw InputError if the JSON does not describe a design
-Design design_of_json(const nlohmann::ordered_json& json);
+design::Design design_of_json(const nlohmann::ordered_json& json);
 
 }  // namespace retrace::studies

@@ -11,7 +11,7 @@
 #include <set>
 #include <utility>
 
-#include "fabrication/chisel/check/groove.h"
+#include "fabrication/chisel/check/cavity.h"
 
 namespace retrace::studies {
 namespace {
@@ -24,7 +24,7 @@ constexpr double kArcminPerRad = 180.0 * 60.0 / std::numbers::pi;
 /// Cut of a facet, with the plane that it cuts.
 class PlacedCut {
  public:
-  PlacedCut(const Machine& machine, const FacetEdgeCut& cut, const Groove& groove)
+  PlacedCut(const Machine& machine, const FacetEdgeCut& cut, const Cavity& groove)
       : machine_(&machine), cut_(&cut), groove_(&groove) {
     plane_ = cut_plane(machine, cut.cut, design().normal);
   }
@@ -39,18 +39,18 @@ class PlacedCut {
   }
 
   const FacetEdgeCut& cut() const { return *cut_; }
-  const Groove& groove() const { return *groove_; }
+  const Cavity& groove() const { return *groove_; }
   const DesignFacet& design() const { return common(*groove_).facets[cut_->facet]; }
 
  private:
   const Machine* machine_;
   const FacetEdgeCut* cut_;
-  const Groove* groove_;
+  const Cavity* groove_;
   CutPlane plane_;
 };
 
 FacetEffect effect_of(const PlacedCut& placed, const PlaneChange& change) {
-  const Vec3 middle = facet_middle(placed.groove(), placed.cut().facet);
+  const Vec3 middle = facet_centre(placed.groove(), placed.cut().facet);
   FacetEffect effect;
   const double at_middle = placed.height_mm(change, middle);
   const auto slope = [&](const Vec3& along) { return placed.height_mm(change, middle + along) - at_middle; };
@@ -73,7 +73,7 @@ double chip_change_nm(const std::vector<PlacedCut>& cuts, const SetupQuantity& q
   double most = 0.0;
   std::optional<double> before;
   for (const PlacedCut& placed : cuts) {
-    const Vec3 middle = facet_middle(placed.groove(), placed.cut().facet);
+    const Vec3 middle = facet_centre(placed.groove(), placed.cut().facet);
     const double height = placed.height_mm(placed.change(quantity), middle);
     if (before) most = std::max(most, std::abs(*before - height));
     before = height;
@@ -102,7 +102,7 @@ void tell_root(const Machine& machine, const PlacedCut& ending, const PlacedCut&
   for (std::size_t k = 0; k < before.size(); ++k) {
     const double end = other.design().normal.dot(after[k] - before[k]);
     const double over_nm = kNmPerMm * (end - other.height_mm(change, before[k]));
-    row.root_left_nm = std::max(row.root_left_nm, over_nm);
+    row.root_residual_nm = std::max(row.root_residual_nm, over_nm);
     row.root_cut_nm = std::max(row.root_cut_nm, -over_nm);
   }
 }
@@ -123,7 +123,7 @@ std::vector<Vec3> wall_places(const Machine& machine, const Machine& planned, co
       machine_from_workpiece(machine, rotary_pose(machine, cut.at)).inverse().direction(edge_frame(machine).col(2));
   for (std::size_t k = 0; k < 2; ++k) places.push_back(places[k] + groove.facet_length_mm * up);
   for (const DesignFacet& facet : groove.facets) {
-    const auto words = words_along(planned, groove.facet_length_mm * motion.direction(facet.up_slope));
+    const auto words = axis_change_along(planned, groove.facet_length_mm * motion.direction(facet.up_slope));
     cut.at.y_mm = at_root.y_mm + words[1];
     cut.at.z_mm = at_root.z_mm + words[2];
     for (const Vec3& end : edge_ends(machine, cut, half_width_mm)) places.push_back(end);
@@ -196,7 +196,7 @@ double Sensitivity::farthest_nm() const {
 }
 
 double Sensitivity::largest_nm() const {
-  return std::max({farthest_nm(), chip_nm, root_left_nm, root_cut_nm});
+  return std::max({farthest_nm(), chip_nm, root_residual_nm, root_cut_nm});
 }
 
 std::vector<std::size_t> outermost_elements(const std::vector<CutElement>& elements) {
@@ -211,11 +211,11 @@ std::vector<std::size_t> outermost_elements(const std::vector<CutElement>& eleme
       chosen.insert(*std::min_element(alike.begin(), alike.end(),
                                       [&](std::size_t a, std::size_t b) { return measure(a) < measure(b); }));
     };
-    add_least([&](std::size_t k) { return elements[k].foot_mm.norm(); });
+    add_least([&](std::size_t k) { return elements[k].origin_mm.norm(); });
     for (int d = 0; d < kDirections; ++d) {
       const double azimuth = 2.0 * std::numbers::pi * d / kDirections;
       const geometry::Vec2 inwards(-std::cos(azimuth), -std::sin(azimuth));
-      add_least([&](std::size_t k) { return inwards.dot(elements[k].foot_mm.head<2>()); });
+      add_least([&](std::size_t k) { return inwards.dot(elements[k].origin_mm.head<2>()); });
     }
   }
   return {chosen.begin(), chosen.end()};
@@ -223,7 +223,7 @@ std::vector<std::size_t> outermost_elements(const std::vector<CutElement>& eleme
 
 Sensitivities sensitivities(const Job& job, const Machine& machine, const Plan& plan) {
   const std::vector<FacetEdgeCut> cuts = facet_edge_cuts(job, plan, outermost_elements(plan.elements));
-  const std::vector<Groove> grooves = designed_grooves(job);
+  const std::vector<Cavity> grooves = designed_cavities(job);
   CutsOfFacets by_facet;
   CutsOfFacets ways_up;
   for (const FacetEdgeCut& cut : cuts)

@@ -35,7 +35,7 @@ struct Sensitivity {
   const fabrication::SetupQuantity* quantity = nullptr;
   std::vector<FacetEffect> facets;  ///< effects on the kinds of facets in Sensitivities::kinds, in this order
   double chip_nm = 0.0;             ///< maximum change of the chip thickness of a cut
-  double root_left_nm = 0.0;        ///< maximum distance by which an end of the cutting edge stops above another facet
+  double root_residual_nm = 0.0;    ///< maximum distance by which an end of the cutting edge stops above another facet
   double root_cut_nm = 0.0;         ///< maximum depth by which an end of the cutting edge goes below another facet
   /// Maximum displacement, along the root, of the ends of the cutting edge and of points of the tool above these ends.
   /// Such a displacement moves the tool into the walls at the ends of the groove.

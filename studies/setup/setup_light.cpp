@@ -5,7 +5,7 @@
 #include <memory>
 #include <utility>
 
-#include "fabrication/chisel/check/groove.h"
+#include "fabrication/chisel/check/cavity.h"
 #include "fabrication/chisel/plan/edge_cuts.h"
 #include "fabrication/machine/setup.h"
 #include "geometry/elements/element_cells.h"
@@ -26,7 +26,7 @@ constexpr double kElementsAcross = 2.0;
 constexpr double kStillMm = 1e-12;
 
 /// Minimum power of traced beams, as a fraction of the power on the part (for R_A: on an element). The results are then
-/// accurate to SetupLight::kLeastChangeOfRre and kLeastChangeOfRa. Without this minimum, tilted facets would split
+/// accurate to SetupLight::kMinRreChange and kMinRaChange. Without this minimum, tilted facets would split
 /// beams into ever smaller ones without end.
 constexpr double kCutoff = 1e-6;
 
@@ -50,7 +50,7 @@ Job patch_of(Job job) {
 /// pass closest to the center of the facet.
 class LastCuts {
  public:
-  LastCuts(const Job& job, const Machine& machine) : grooves_(designed_grooves(job)) {
+  LastCuts(const Job& job, const Machine& machine) : grooves_(designed_cavities(job)) {
     cuts_.resize(grooves_.size());
     const Plan plan = make_plan(job, machine);
     for (std::size_t i = 0; i < grooves_.size(); ++i) cuts_[i].resize(common(grooves_[i]).facets.size());
@@ -77,16 +77,16 @@ class LastCuts {
     if (!known || cut.stage != known->stage || off_middle(cut) < off_middle(*known)) known = cut;
   }
 
-  std::vector<Groove> grooves_;
+  std::vector<Cavity> grooves_;
   std::vector<std::vector<std::optional<FacetEdgeCut>>> cuts_;
 };
 
 /// Returns the design of a part moulded from the patch, without its facet planes. It is smooth and clean, and it has
 /// the illumination of the job's design.
-Design patch_design(const Job& patch, const std::filesystem::path& job_file, Warnings& warnings) {
-  Design design;
-  ElementArray array{machined_elements(patch, true), {}, {}};
-  if (const std::optional<Design> given = design_beside(patch, job_file)) {
+design::Design patch_design(const Job& patch, const std::filesystem::path& job_file, Warnings& warnings) {
+  design::Design design;
+  design::ElementArray array{machined_elements(patch, true), {}, {}};
+  if (const std::optional<design::Design> given = design_of_job(patch, job_file)) {
     design.substance = given->substance;
     design.surface.coating = given->surface.coating;
     design.light = given->light;
@@ -104,18 +104,19 @@ Design patch_design(const Job& patch, const std::filesystem::path& job_file, War
 
 PhotometrySettings photometry_of_patch() {
   PhotometrySettings request;
-  request.engine = Engine::exact;
+  request.engine = raytrace::Engine::exact;
   request.cutoff = kCutoff;
   request.apertures = {Angle::from_deg(SetupLight::kApertureArcmin / 60.0),
                        Angle::from_deg(SetupLight::kApertureArcmin / 60.0)};
   return request;
 }
 
-PartLight light_of(Design design, geometry::FacetPlanes planes) {
-  auto& array = std::get<ElementArray>(design.shape);
-  array.facet_planes = FacetPlanesFile{{}, {}, std::make_shared<const geometry::FacetPlanes>(std::move(planes))};
+PartLight light_of(design::Design design, geometry::FacetPlanes planes) {
+  auto& array = std::get<design::ElementArray>(design.shape);
+  array.facet_planes =
+      design::FacetPlanesFile{{}, {}, std::make_shared<const geometry::FacetPlanes>(std::move(planes))};
   RreSettings request;
-  request.engine = Engine::exact;
+  request.engine = raytrace::Engine::exact;
   request.cutoff = kCutoff;
   PartLight light;
   for (const RrePoint& point : RreStudy({design}, request).run().points) light.rre.push_back(point.rre);
@@ -151,7 +152,7 @@ SetupLight setup_light(const Job& job, const std::filesystem::path& job_file, co
                        Warnings& warnings) {
   const Job patch = patch_of(job);
   const LastCuts cuts(patch, machine);
-  const Design design = patch_design(patch, job_file, warnings);
+  const design::Design design = patch_design(patch, job_file, warnings);
   const std::vector<ElementCutPlanes> nominal = cuts.planes_on(machine);
   SetupLight light;
   light.elements = cuts.size();

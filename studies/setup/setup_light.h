@@ -29,9 +29,9 @@ struct SetupLight {
 
   /// Minimum relative change of R_A that is significant. Smaller changes may be due to interference, because all
   /// elements of the computed array are equal.
-  static constexpr double kLeastChangeOfRa = 5e-4;
+  static constexpr double kMinRaChange = 5e-4;
   /// Minimum change of RRE that is significant. Smaller changes may be due to truncated beams.
-  static constexpr double kLeastChangeOfRre = 1e-5;
+  static constexpr double kMinRreChange = 1e-5;
 
   std::vector<double> cones_deg;
   PartLight nominal;

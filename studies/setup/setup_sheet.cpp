@@ -24,10 +24,10 @@ using geometry::Vec3;
 constexpr double kUmPerMm = 1e3;
 
 /// Returns the maximum or minimum Z of the machine bodies that move with the workpiece or with the tool (`carrier`).
-std::optional<double> end_of_bodies(const Machine& machine, Carrier carrier, bool highest) {
+std::optional<double> end_of_bodies(const Machine& machine, KinematicLink carrier, bool highest) {
   std::optional<double> end;
   for (const MachineBody& body : machine.bodies)
-    if (body.carrier == carrier)
+    if (body.link == carrier)
       for (const Vec3& p : body.points_mm.value)
         if (!end || (highest ? p.z() > *end : p.z() < *end)) end = p.z();
   return end;
@@ -79,7 +79,7 @@ BlankSetup blank_of(const FabricationResult& result) {
   if (result.job.substrate) blank.base = substrate_description(result.job);
   for (std::size_t zone = 0; zone < result.job.zones.size(); ++zone)
     blank.zones.push_back(zone_description(result.job, zone));
-  if (const auto top = end_of_bodies(result.machine, Carrier::workpiece, true); top && *top < 0.0)
+  if (const auto top = end_of_bodies(result.machine, KinematicLink::workpiece, true); top && *top < 0.0)
     blank.fixture_height_mm = -*top;
   if (result.machine.tilt == Tilt::table) blank.free_radius_mm = free_radius_mm(result);
   return blank;
@@ -87,7 +87,7 @@ BlankSetup blank_of(const FabricationResult& result) {
 
 ToolSetup tool_of(const FabricationResult& result) {
   ToolSetup tool;
-  if (const auto low = end_of_bodies(result.machine, Carrier::tool, false); low && *low > 0.0)
+  if (const auto low = end_of_bodies(result.machine, KinematicLink::tool, false); low && *low > 0.0)
     tool.free_length_mm = low;
   tool.plunge_rake_deg = plunge_angles(result.job.tool).rake_deg;
   if (cuts_prisms(result.job)) tool.plough_rake_deg = plough_angles(result.job.tool).rake_deg;
@@ -166,7 +166,7 @@ std::map<std::string, std::size_t> last_programs(const Plan& plan) {
   std::map<std::string, std::size_t> last;
   for (std::size_t k = 0; k < plan.programs.size(); ++k)
     for (const Item& item : plan.programs[k].items)
-      if (const auto* const visit = std::get_if<Visit>(&item))
+      if (const auto* const visit = std::get_if<CycleCall>(&item))
         last[plan.programs[k].subroutines[visit->subroutine].title] = k;
   return last;
 }
@@ -190,8 +190,8 @@ std::vector<StageCheck> checks_of(const FabricationResult& result) {
     check.stage = stage.name;
     check.program = program->second;
     check.ends_s = seconds;
-    check.left_um = kUmPerMm * stage.left_mm;
-    alike.cut(pose.facet.facet, stage.roughs && cuts_prisms(result.job), check.left_um);
+    check.remaining_um = kUmPerMm * stage.remaining_mm;
+    alike.cut(pose.facet.facet, stage.roughs && cuts_prisms(result.job), check.remaining_um);
     check.root_depth_mm = alike.root_depth_mm();
     checks.push_back(std::move(check));
   }

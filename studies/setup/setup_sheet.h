@@ -51,7 +51,7 @@ struct StageCheck {
   std::string stage;
   std::size_t program = 0;     ///< index of the program in which the stage ends
   double ends_s = 0.0;         ///< time from the start of the first program to the end of the stage
-  double left_um = 0.0;        ///< thickness of the material that remains on the cut facets
+  double remaining_um = 0.0;   ///< thickness of the material that remains on the cut facets
   double root_depth_mm = 0.0;  ///< depth of the root below the tops of the elements (rims)
 };
 

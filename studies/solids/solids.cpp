@@ -6,13 +6,13 @@
 #include <array>
 
 #include "core/error.h"
+#include "design/design_part.h"
+#include "design/part_of_design.h"
 #include "geometry/part/faceted_solid.h"
 #include "geometry/part/mesh_part.h"
 #include "geometry/part/mould_boundary.h"
 #include "geometry/part/welded_part.h"
 #include "requests/descriptions.h"
-#include "studies/design/design_part.h"
-#include "studies/design/part_of_design.h"
 
 namespace retrace::studies {
 namespace {
@@ -35,7 +35,7 @@ double estimated_elements(const geometry::PartSpec& spec) {
   return spec.array.x_length_mm * spec.array.y_length_mm / with_gaps_mm2;
 }
 
-geometry::PartSpec spec_of(const Design& design, SolidKind what) {
+geometry::PartSpec spec_of(const design::Design& design, SolidKind what) {
   geometry::PartSpec spec = design.part();
   if (what == SolidKind::element) {
     spec.array.arrangement = geometry::Arrangement::single;
@@ -47,10 +47,10 @@ geometry::PartSpec spec_of(const Design& design, SolidKind what) {
                      fmt::format("must be \"finite\" for {0} {1}, got \"infinite\"; {0} element has one element",
                                  reference({"what"}), name_of(what)));
   const double elements = estimated_elements(spec);
-  if (elements > static_cast<double>(kMostSolidElements))
+  if (elements > static_cast<double>(kMaxSolidElements))
     throw InputError({design.source_name(), 0, "array.x_length_mm"},
                      fmt::format("the solid would have about {:.0f} elements, but at most {} can be exported", elements,
-                                 kMostSolidElements));
+                                 kMaxSolidElements));
   return spec;
 }
 
@@ -81,14 +81,14 @@ void add_warnings(Solid& solid) {
         {"form_omitted", name + ": the form of the facets is not exported, because the facets of solids are plane"});
 }
 
-geometry::Part part_to_write(const Design& design, SolidKind what) {
+geometry::Part part_to_write(const design::Design& design, SolidKind what) {
   const geometry::PartSpec spec = spec_of(design, what);
   if (what == SolidKind::element && !design.facet_planes()) return geometry::build_welded_part(spec);
   if (!design.facet_planes() && !design.mask()) return geometry::build_welded_part(spec);
   if (what == SolidKind::element)
     throw InputError(design.where("part.facets"),
                      reference({"what"}) + " element does not support planes of individual facets: export the array");
-  geometry::Part part = part_of(design);
+  geometry::Part part = design::part_of(design);
   if (part.placements.size() != 1)
     throw InputError(design.where(design.mask() ? "array.mask" : "part.facets"),
                      "arrays with such elements can be exported only up to about 2000 elements");
@@ -99,15 +99,15 @@ geometry::Part part_to_write(const Design& design, SolidKind what) {
 /// mesh are reported in the warnings.
 Solid solid_of_mesh(Solid solid) {
   if (solid.what != SolidKind::array)
-    check_taken(solid.design,
-                {.what = fmt::format("{} {}", reference({"what"}), name_of(solid.what)), .wet_backs = true});
+    design::require_supported(
+        solid.design, {.what = fmt::format("{} {}", reference({"what"}), name_of(solid.what)), .wet_backs = true});
   if (solid.design.zoned()) {
-    const geometry::Part part = part_of_design(solid.design, &solid.warnings);
+    const geometry::Part part = design::part_of_design(solid.design, &solid.warnings);
     solid.elements_full = part.elements_full;
     solid.elements_partial = part.elements_partial;
     solid.mesh = geometry::closed_boundary(part);
   } else {
-    solid.mesh = geometry::boundary_of(mesh_of_design(solid.design, &solid.warnings));
+    solid.mesh = geometry::boundary_of(design::mesh_of_design(solid.design, &solid.warnings));
   }
   measure(solid);
   add_warnings(solid);
@@ -120,9 +120,9 @@ std::string name_of(SolidKind kind) {
   return std::string(kKinds[static_cast<std::size_t>(kind)]);
 }
 
-Solid make_solid(const Design& design, const SolidRequest& request) {
+Solid make_solid(const design::Design& design, const SolidRequest& request) {
   requests::check(request);
-  check_taken(design, {.what = "retrace export", .solids = true, .wet_backs = true});
+  design::require_supported(design, {.what = "retrace export", .solids = true, .wet_backs = true});
   Solid solid;
   solid.design = design;
   solid.what = kind_of(request.what);

@@ -6,9 +6,9 @@
 #include <string>
 
 #include "core/warning.h"
+#include "design/design.h"
 #include "geometry/part/closed_boundary.h"
 #include "requests/part.h"
-#include "studies/design/design.h"
 
 namespace retrace::studies {
 
@@ -22,11 +22,11 @@ enum class SolidKind {
 std::string name_of(SolidKind kind);
 
 /// Maximum number of elements of a solid. The whole boundary is one mesh in memory.
-inline constexpr std::int64_t kMostSolidElements = 200'000;
+inline constexpr std::int64_t kMaxSolidElements = 200'000;
 
 /// Closed boundary of a solid, with its measures.
 struct Solid {
-  Design design;
+  design::Design design;
   SolidKind what = SolidKind::array;
   double block_mm = 0.0;  ///< thickness of a mould below its deepest point; 0 for other solids
   geometry::BoundaryMesh mesh;
@@ -43,7 +43,7 @@ struct Solid {
 /// Builds the closed boundary of the requested solid. Its facets are plane and smooth: only the angle errors and the
 /// edges of the design's table [surface] are used.
 /// \throw InputError if the request is invalid, if a whole infinite array is requested, if the mask cannot be read, or
-/// if the solid has more than kMostSolidElements elements
-Solid make_solid(const Design& design, const SolidRequest& request);
+/// if the solid has more than kMaxSolidElements elements
+Solid make_solid(const design::Design& design, const SolidRequest& request);
 
 }  // namespace retrace::studies

@@ -105,9 +105,10 @@ ComputeTask compute_task(Sweep sweep) {
   };
 }
 
-bool share_sweep(const Sweep& sweep, compute::ResultStore& store, SweepObserver* observer, const ShareTasks& share) {
+bool distribute_sweep(const Sweep& sweep, compute::ResultStore& store, SweepObserver* observer,
+                      const DistributeTasks& distribute) {
   SweepLedger ledger(sweep, store, observer);
-  return share(
+  return distribute(
       [&sweep](std::uint64_t number, const Cancellation* cancel) { return compute_shared(sweep, number, cancel); },
       ledger);
 }

@@ -39,9 +39,9 @@ std::uint64_t grid_size(const Study& study) {
   std::uint64_t size = 1;
   for (const Parameter& parameter : study.parameters) {
     size *= parameter.values.size();
-    if (size > Sweep::most_points)
+    if (size > Sweep::max_points)
       throw InputError(parameter.location,
-                       fmt::format("with this parameter, the grid has more than {} points", Sweep::most_points));
+                       fmt::format("with this parameter, the grid has more than {} points", Sweep::max_points));
   }
   return size;
 }
@@ -88,17 +88,17 @@ PointValues Sweep::values(std::uint64_t point) const {
   return values;
 }
 
-PointValues values_at(const Study& study, const std::vector<double>& shares) {
+PointValues values_at(const Study& study, const std::vector<double>& fractions) {
   PointValues values;
-  for (std::size_t k = 0; k < shares.size(); ++k) {
+  for (std::size_t k = 0; k < fractions.size(); ++k) {
     const Parameter& parameter = study.parameters[k];
     if (parameter.distribution) {
-      values.push_back(Parameter::value_of(parameter.distribution->quantile(shares[k])));
+      values.push_back(Parameter::value_of(parameter.distribution->quantile(fractions[k])));
     } else if (parameter.interval) {
-      values.push_back(Parameter::value_of(parameter.interval->at(shares[k])));
+      values.push_back(Parameter::value_of(parameter.interval->at(fractions[k])));
     } else {
       const double count = static_cast<double>(parameter.values.size());
-      values.push_back(parameter.values[static_cast<std::size_t>(shares[k] * count)]);
+      values.push_back(parameter.values[static_cast<std::size_t>(fractions[k] * count)]);
     }
   }
   return values;
@@ -153,7 +153,7 @@ class QuantityProgress {
       if (!quantity->tracing().empty()) tracings_.insert(quantity->tracing());
   }
 
-  PartOfProgress of(const Quantity& quantity) {
+  PartProgress of(const Quantity& quantity) {
     const auto count = static_cast<double>(std::max<std::size_t>(1, tracings_.size()));
     const bool is_new = !quantity.tracing().empty() && begun_.insert(quantity.tracing()).second;
     const auto begun = static_cast<double>(begun_.size());
@@ -173,7 +173,7 @@ std::optional<std::vector<compute::StoredOutput>> measure_all(const Study& study
   QuantityProgress of_quantities(study.quantities, progress);
   std::vector<compute::StoredOutput> outputs;
   for (const auto& quantity : study.quantities) {
-    PartOfProgress part = of_quantities.of(*quantity);
+    PartProgress part = of_quantities.of(*quantity);
     candidate.report_to(&part);
     const std::optional<Measured> measured = quantity->measure(candidate, cancel);
     if (!measured) return std::nullopt;
@@ -226,7 +226,7 @@ struct SweepCount::Share : Progress {
         begin(its_state.total > 0 ? static_cast<double>(its_state.done) / static_cast<double>(its_state.total) : 0.0) {}
   void at(double share) override {
     const std::lock_guard lock(state.mutex);
-    if (state.observer != nullptr) state.observer->at_share(std::lerp(begin, 1.0, share));
+    if (state.observer != nullptr) state.observer->at_fraction(std::lerp(begin, 1.0, share));
   }
   State& state;
   double begin;

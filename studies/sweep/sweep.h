@@ -38,13 +38,13 @@ class PointPlan {
 
 /// Returns the values of the parameters at given fractions (0..1) of their distributions, intervals or lists.
 /// \pre there is one fraction for each parameter
-PointValues values_at(const Study& study, const std::vector<double>& shares);
+PointValues values_at(const Study& study, const std::vector<double>& fractions);
 
 /// Study whose points are all known before the first point is computed.
 class Sweep {
  public:
   /// \param samples number of points for `sobol`, `latin_hypercube` and `monte_carlo`
-  /// \throw InputError if the parameters cannot be combined in this manner, or if there are more than most_points
+  /// \throw InputError if the parameters cannot be combined in this manner, or if there are more than max_points
   /// points
   Sweep(Study study, Combine combine, std::uint64_t samples);
   /// Creates a sweep whose points are those of a plan.
@@ -52,7 +52,7 @@ class Sweep {
   /// \param plan plan of points for this study
   Sweep(Study study, std::string kind, std::shared_ptr<const PointPlan> plan);
 
-  static constexpr std::uint64_t most_points = 10'000'000;
+  static constexpr std::uint64_t max_points = 10'000'000;
 
   const Study& study() const { return study_; }
   std::uint64_t size() const { return size_; }
@@ -84,8 +84,8 @@ class SweepObserver {
   virtual ~SweepObserver() = default;
   virtual void at(std::uint64_t done, std::uint64_t total, std::uint64_t failed) = 0;
   /// Reports the finished fraction of all points. It is called while points are being computed, in addition to at().
-  /// \param share finished fraction; an unfinished point counts with its own progress
-  virtual void at_share(double share) { static_cast<void>(share); }
+  /// \param fraction finished fraction; an unfinished point counts with its own progress
+  virtual void at_fraction(double fraction) { static_cast<void>(fraction); }
 };
 
 /// Counts finished points and reports them to an observer, which may be null. Several threads may use one object at the
@@ -96,7 +96,7 @@ class SweepCount {
   ~SweepCount();
   void finished(bool failed);
   /// Returns the object that receives the progress of the unfinished points. The progress is passed on to
-  /// SweepObserver::at_share().
+  /// SweepObserver::at_fraction().
   TaskProgress& points();
 
  private:

@@ -114,7 +114,7 @@ QuantityTolerance tolerance_of(const Sweep& sweep, const Finished& finished, con
   for (const compute::StoredPoint* const part : finished.parts()) {
     const std::optional<double> value = value_of(part, quantity);
     if (!value) {
-      ++result.without;
+      ++result.missing_parts;
       continue;
     }
     result.values.push_back(*value);
@@ -151,7 +151,7 @@ void add_yields(const Sweep& sweep, const Finished& finished, const ToleranceReq
                        [&](const Constraint& limit) { return holds(sweep, *part, limit); });
   });
   result.yield = compute::yield_of(good, parts.size(), request.confidence);
-  result.is_enough = !request.least_yield || result.yield->value >= *request.least_yield;
+  result.is_enough = !request.min_yield || result.yield->value >= *request.min_yield;
   for (const Constraint& limit : request.constraints)
     result.limits.push_back({limit.text(), compute::yield_of(count([&](const compute::StoredPoint* part) {
                                                                return holds(sweep, *part, limit);
@@ -161,10 +161,10 @@ void add_yields(const Sweep& sweep, const Finished& finished, const ToleranceReq
 
 void add_warnings(const ToleranceRequest& request, ToleranceResult& result) {
   for (const QuantityTolerance& quantity : result.quantities) {
-    if (quantity.without > 0)
+    if (quantity.missing_parts > 0)
       result.warnings.push_back(
           {"parts_without_value", fmt::format("{}: {} of {} parts have no value and are left out of its spread",
-                                              quantity.quantity, quantity.without, result.parts)});
+                                              quantity.quantity, quantity.missing_parts, result.parts)});
     if (quantity.noise && *quantity.noise > kMuchNoise)
       result.warnings.push_back(
           {"noisy_values", fmt::format("{}: the standard error of the values is {:.2g} of their standard deviation, so "

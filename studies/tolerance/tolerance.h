@@ -23,7 +23,7 @@ struct ToleranceRequest {
   compute::UnitSamples::Kind sampling = compute::UnitSamples::Kind::sobol;
   bool indices = true;
   double confidence = 0.95;             ///< confidence level of all intervals
-  std::optional<double> least_yield;    ///< minimum yield; below it, the study fails
+  std::optional<double> min_yield;      ///< minimum yield; below it, the study fails
   std::vector<Constraint> constraints;  ///< limits that a good part must satisfy
 };
 
@@ -55,8 +55,8 @@ Sweep tolerance_sweep(Study study, const ToleranceRequest& request);
 struct QuantityTolerance {
   std::string quantity;
   std::optional<double> nominal;
-  std::size_t parts = 0;    ///< number of parts with a value
-  std::size_t without = 0;  ///< number of parts that could not be computed or have no value
+  std::size_t parts = 0;          ///< number of parts with a value
+  std::size_t missing_parts = 0;  ///< number of parts that could not be computed or have no value
   std::optional<compute::Spread> spread;
   /// Pairs: a fraction of the parts, and the value below which this fraction of the parts lies.
   std::vector<std::pair<double, double>> percentiles;

@@ -48,7 +48,7 @@ void write_programs(TurningResult& r) {
   if (r.cubics) {
     const std::vector<turning::CubicPoint>& points = r.cubics->path.points;
     double time_s = 0.0;
-    for (const turning::CubicPoint& point : points) time_s += point.place.seconds;
+    for (const turning::CubicPoint& point : points) time_s += point.point.seconds;
     by_cubics = turning::turning_program(r.cubics->path, r.part.path, name, header_of(r, points.size(), time_s));
   }
   for (const fabrication::Dialect& dialect : fabrication::dialects()) {
@@ -157,7 +157,7 @@ void find_profile(TurningResult& r, const turning::Envelope& envelope) {
 }  // namespace
 
 bool TurningResult::has_cubics(std::string_view dialect) const {
-  return cubics && fabrication::takes_cubics(dialect);
+  return cubics && fabrication::supports_cubics(dialect);
 }
 
 TurningResult turn(const std::string& part_file) {
@@ -207,7 +207,7 @@ TurningVerification verify_turning(const TurningRequest& request) {
     throw InputError(Field{"servo"}, request.part + " has no fast tool servo, so a table of strokes is not allowed");
   run.programs = fabrication::read_programs(request.programs, request.dialect);
   std::optional<turning::StrokeTable> strokes;
-  if (is_fast) strokes = {request.servo, read_file(request.servo, kMostDataBytes)};
+  if (is_fast) strokes = {request.servo, read_file(request.servo, kMaxDataBytes)};
   fabrication::FindingList findings;
   turning::TurningCuts cuts = turning::read_cuts(run.part, run.programs, findings);
   run.check = turning::check_turning(run.part, std::move(cuts), strokes, findings);

@@ -35,7 +35,7 @@ struct TurningStretch {
 };
 
 /// Tool path for controls that join points by cubics instead of straight moves.
-struct TurnedByCubics {
+struct CubicVariant {
   fabrication::turning::CubicPath path;
   fabrication::turning::TurningCheck check;
   std::string file;                ///< name of the first program that consists of cubics
@@ -58,7 +58,7 @@ struct TurningResult {
   std::string servo_csv;  ///< table of strokes of a fast tool servo; empty if the part has no such servo
   fabrication::turning::TurningCheck check;
   TurningStretch stretch;
-  std::optional<TurnedByCubics> cubics;        ///< path with cubics; none unless the part file requests it
+  std::optional<CubicVariant> cubics;          ///< path with cubics; none unless the part file requests it
   std::vector<fabrication::Finding> findings;  ///< findings of the checks; empty if the programs pass
 
   bool passes_inspection() const { return findings.empty(); }

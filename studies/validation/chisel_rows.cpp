@@ -304,7 +304,7 @@ void add_reach(std::vector<ValidationRow>& rows) {
        .expected = 100.0 * (1.0 - kWidthMm * kWidthMm / (4.0 * facet_mm2)),
        .allowed = 1.0,
        .why = "counted at 1830 points of a facet, up to 14 of them along the side of the triangle",
-       .compute = [reach](auto) { return 100.0 * reach().cut_share; }});
+       .compute = [reach](auto) { return 100.0 * reach().cut_fraction; }});
   add({.quantity = "height of the core over the apex, sqrt 3 w / (2 (sqrt 2 - cot rho)), by simulated plunges",
        .unit = "mm",
        .expected = std::numbers::sqrt3 * kWidthMm /

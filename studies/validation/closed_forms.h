@@ -34,7 +34,7 @@ inline std::array<double, 3> edge_cosines(double incidence_deg, double azimuth_d
 /// Returns the fraction of the aperture of a triangular cube corner that returns light. This is the projected active
 /// area for dihedral edges of length 1, divided by the projected aperture sqrt(3)/2 cos_inner. Eckhardt, Appl. Opt. 10,
 /// 1559 (1971); docs/theory/closed_forms.md, 3.
-inline double triangular_share(const std::array<double, 3>& cosines, double cos_inner) {
+inline double triangular_fraction(const std::array<double, 3>& cosines, double cos_inner) {
   const auto [l, m, k] = cosines;
   if (l <= 0.0) return 0.0;
   const double s = l + m + k;
@@ -43,7 +43,7 @@ inline double triangular_share(const std::array<double, 3>& cosines, double cos_
 }
 
 /// Returns the fraction of the hexagonal aperture of a full cube corner that returns light.
-inline double hexagonal_share(const std::array<double, 3>& cosines, double cos_inner) {
+inline double hexagonal_fraction(const std::array<double, 3>& cosines, double cos_inner) {
   const auto [l, m, k] = cosines;
   if (l <= 0.0) return 0.0;
   const double active = m <= 0.5 * k ? 4.0 * l * m / k : (4.0 - k / m) * l;
@@ -58,15 +58,15 @@ inline double cos_inner(double incidence_deg, double n) {
 
 /// Returns the RRE of an infinite honeycomb of cube corners with mirrors behind a lossless face.
 inline double honeycomb_rre(double incidence_deg, double azimuth_deg, double n) {
-  return hexagonal_share(edge_cosines(incidence_deg, azimuth_deg, n), cos_inner(incidence_deg, n));
+  return hexagonal_fraction(edge_cosines(incidence_deg, azimuth_deg, n), cos_inner(incidence_deg, n));
 }
 
 /// Returns the RRE of an infinite triangular array with mirrors behind a lossless face. Every second cell is rotated by
 /// 180 degrees.
 inline double triangular_rre(double incidence_deg, double azimuth_deg, double n) {
   const double c = cos_inner(incidence_deg, n);
-  return 0.5 * (triangular_share(edge_cosines(incidence_deg, azimuth_deg, n), c) +
-                triangular_share(edge_cosines(incidence_deg, azimuth_deg + 180.0, n), c));
+  return 0.5 * (triangular_fraction(edge_cosines(incidence_deg, azimuth_deg, n), c) +
+                triangular_fraction(edge_cosines(incidence_deg, azimuth_deg + 180.0, n), c));
 }
 
 /// Returns the diffracted intensity that an uncoated solid cube corner returns exactly towards the source, divided by

@@ -156,7 +156,7 @@ double on_axis_peak(const Optics& optics, const Cancellation* cancel) {
   FarFieldCollector collector(part, {}, policy);
   BeamPolicy beams;
   beams.truncated_goal = 1e-6;
-  beams.by_cell = true;
+  beams.separate_cells = true;
   BeamTracer(part).trace(optics, {}, {0.5}, beams, cancel, [&](const ReturnedBeam& beam) { collector.add(beam); });
   const double wavelength_mm = 1e-6 * kWavelengthNm;
   return collector.finish().diffracted_per_sr(Vec3::UnitZ()) * wavelength_mm * wavelength_mm / area(part.outline);
@@ -174,10 +174,10 @@ double dark_ring(const Cancellation*) {
   beam.stokes.i = beam.transmission = 1.0;
   for (int k = 0; k < 2000; ++k) {
     const double turn = 2.0 * std::numbers::pi * k / 2000.0;
-    beam.left_mm.push_back(0.5 * Vec2(std::cos(turn), std::sin(turn)));
+    beam.exit_polygon_mm.push_back(0.5 * Vec2(std::cos(turn), std::sin(turn)));
   }
-  beam.entered_mm = beam.left_mm;
-  beam.trail.first = CellPlace{};
+  beam.entry_polygon_mm = beam.exit_polygon_mm;
+  beam.trail.first = CellInstance{};
   collector.add(beam);
   const FarField field = collector.finish();
   const auto intensity = [&](double ring) {

@@ -17,18 +17,18 @@ class ByteReader {
  public:
   /// \param start offset of `bytes` in the file, for messages
   ByteReader(const Source& source, std::string_view bytes, std::size_t start)
-      : source_(&source), rest_(bytes), at_(start) {}
+      : source_(&source), remainder_(bytes), at_(start) {}
 
-  bool is_at_end() const { return rest_.empty(); }
+  bool is_at_end() const { return remainder_.empty(); }
   std::size_t at() const { return at_; }
-  std::size_t left() const { return rest_.size(); }
+  std::size_t remaining() const { return remainder_.size(); }
 
   std::string_view take(std::uint64_t count) {
-    if (count > rest_.size())
+    if (count > remainder_.size())
       source_->fail(0, fmt::format("the file is cut short: {} bytes are required at byte {}, but only {} follow", count,
-                                   at_, rest_.size()));
-    const std::string_view taken = rest_.substr(0, static_cast<std::size_t>(count));
-    rest_.remove_prefix(taken.size());
+                                   at_, remainder_.size()));
+    const std::string_view taken = remainder_.substr(0, static_cast<std::size_t>(count));
+    remainder_.remove_prefix(taken.size());
     at_ += taken.size();
     return taken;
   }
@@ -38,7 +38,7 @@ class ByteReader {
   double f64() { return std::bit_cast<double>(u64()); }
   /// Reads a text that ends with a zero byte.
   std::string_view text() {
-    const std::size_t end = rest_.find('\0');
+    const std::size_t end = remainder_.find('\0');
     if (end == std::string_view::npos)
       source_->fail(0, fmt::format("the file is cut short: the text at byte {} is not terminated by a zero byte", at_));
     return take(end + 1).substr(0, end);
@@ -57,7 +57,7 @@ class ByteReader {
   }
 
   const Source* source_;
-  std::string_view rest_;
+  std::string_view remainder_;
   std::size_t at_;
 };
 

@@ -15,9 +15,9 @@ namespace {
 
 constexpr std::string_view kFormats = "a text grid, a list of points, SDF in ASCII (ISO 25178-71), Gwyddion GSF or GWY";
 /// Maximum height: one kilometre. Larger values are caused by a wrong unit.
-constexpr double kMostHeightNm = 1e12;
-constexpr double kLeastPixelUm = 1e-6;
-constexpr double kMostPixelUm = 1e6;
+constexpr double kMaxHeightNm = 1e12;
+constexpr double kMinPixelUm = 1e-6;
+constexpr double kMaxPixelUm = 1e6;
 
 RawMap parse_known(const Source& source) {
   const std::string_view content = source.content;
@@ -44,14 +44,14 @@ double pixel_um(const Source& source, const std::optional<double>& option, const
                 const char* axis, Warnings& warnings) {
   if (!option && !in_file)
     source.fail(0, fmt::format("the spacing along {0} is not known: give {0}_pixel_um in the file{1}", axis,
-                               source.options.can_be_given ? ", or " + reference({"pixel_um"}) : ""));
+                               source.options.suggests_options ? ", or " + reference({"pixel_um"}) : ""));
   if (option && in_file && std::abs(*option - *in_file) > 1e-6 * *option)
     warnings.push_back(
         {"spacing_of_file_ignored",
          fmt::format("the given spacing of {} um is used instead of the file's spacing along {} of {} um",
                      shortest(*option), axis, shortest(*in_file))});
   const double pixel = option ? *option : *in_file;
-  if (!(pixel >= kLeastPixelUm && pixel <= kMostPixelUm))
+  if (!(pixel >= kMinPixelUm && pixel <= kMaxPixelUm))
     source.fail(0, fmt::format("the spacing along {} must be from 1e-6 to 1e6 um, got {}", axis, pixel));
   return pixel;
 }
@@ -59,9 +59,9 @@ double pixel_um(const Source& source, const std::optional<double>& option, const
 double nm_per_unit(const Source& source, RawMap& raw) {
   if (!source.options.height_unit) {
     if (!raw.nm_per_unit)
-      source.fail(
-          0, fmt::format("the unit of heights is not known: give height_unit = UNIT in the file{}; UNIT is {}",
-                         source.options.can_be_given ? ", or " + reference({"height_unit"}) + " UNIT" : "", kUnits));
+      source.fail(0, fmt::format("the unit of heights is not known: give height_unit = UNIT in the file{}; UNIT is {}",
+                                 source.options.suggests_options ? ", or " + reference({"height_unit"}) + " UNIT" : "",
+                                 kUnits));
     return *raw.nm_per_unit;
   }
   const std::optional<double> given = nm_per(*source.options.height_unit);
@@ -84,8 +84,8 @@ void lay_along_x(RawMap& raw) {
 
 HeightMapFile finish(const Source& source, RawMap raw) {
   lay_along_x(raw);
-  if (raw.columns < kLeastColumns)
-    source.fail(0, fmt::format("a map must have at least {} points along x, got {}", kLeastColumns, raw.columns));
+  if (raw.columns < kMinColumns)
+    source.fail(0, fmt::format("a map must have at least {} points along x, got {}", kMinColumns, raw.columns));
   HeightMapFile file;
   const bool is_profile = raw.rows == 1;
   file.map.columns = raw.columns;
@@ -96,12 +96,12 @@ HeightMapFile finish(const Source& source, RawMap raw) {
   const double scale = nm_per_unit(source, raw);
   for (double& height : raw.heights) {
     height *= scale;
-    if (std::isinf(height) || std::abs(height) > kMostHeightNm)
+    if (std::isinf(height) || std::abs(height) > kMaxHeightNm)
       source.fail(0, fmt::format("heights must be within 1 km, got {} nm; check the unit of heights", height));
   }
   file.map.heights_nm = std::move(raw.heights);
-  if (measured_points(file.map) < kLeastColumns)
-    source.fail(0, fmt::format("at least {} points must have a measured height, got {} of {}", kLeastColumns,
+  if (measured_points(file.map) < kMinColumns)
+    source.fail(0, fmt::format("at least {} points must have a measured height, got {} of {}", kMinColumns,
                                measured_points(file.map), file.map.heights_nm.size()));
   file.format = raw.format;
   file.warnings = std::move(raw.warnings);
@@ -111,7 +111,7 @@ HeightMapFile finish(const Source& source, RawMap raw) {
 }  // namespace
 
 HeightMapFile read_height_map(const std::filesystem::path& file, const HeightMapOptions& options) {
-  return parse_height_map(read_file(file, kMostDataBytes), file.string(), options);
+  return parse_height_map(read_file(file, kMaxDataBytes), file.string(), options);
 }
 
 HeightMapFile parse_height_map(std::string_view content, const std::string& name, const HeightMapOptions& options) {

@@ -21,7 +21,7 @@ struct HeightMapOptions {
   std::optional<std::string> lateral_unit;  ///< m, mm, um, nm or pm; for files that contain lengths without a unit
   std::optional<std::size_t> channel;       ///< channel of a Gwyddion file; default: the first
   /// true if an error message about a spacing or unit that the file lacks may suggest an option of `retrace metrology`
-  bool can_be_given = true;
+  bool suggests_options = true;
 };
 
 struct HeightMapFile {
@@ -31,9 +31,9 @@ struct HeightMapFile {
 };
 
 /// Maximum number of points in a map: 5000 x 5000. Larger files are refused.
-inline constexpr std::size_t kMostPoints = 25'000'000;
+inline constexpr std::size_t kMaxPoints = 25'000'000;
 /// Minimum number of points along x.
-inline constexpr std::size_t kLeastColumns = 8;
+inline constexpr std::size_t kMinColumns = 8;
 
 /// Reads a height map or profile: text grids, lists of points, SDF (ISO 25178-71, ASCII), and the Gwyddion formats GSF
 /// and GWY. The format is detected from the content. There is one exception: in a `.xyz` file, three columns are a list

@@ -24,17 +24,17 @@ std::optional<double> nm_per(std::string_view unit) {
 
 void check_size(const Source& source, int line, double columns, double rows) {
   const bool is_whole = columns == std::floor(columns) && rows == std::floor(rows);
-  if (!is_whole || columns < 1.0 || rows < 1.0 || columns * rows > static_cast<double>(kMostPoints))
-    source.fail(line, fmt::format("a map must have 1 to {} points in whole columns and rows, got {} x {}", kMostPoints,
+  if (!is_whole || columns < 1.0 || rows < 1.0 || columns * rows > static_cast<double>(kMaxPoints))
+    source.fail(line, fmt::format("a map must have 1 to {} points in whole columns and rows, got {} x {}", kMaxPoints,
                                   columns, rows));
 }
 
 std::optional<std::string_view> Lines::next() {
   if (ended_) return std::nullopt;
-  const std::size_t end = rest_.find('\n');
-  std::string_view line = rest_.substr(0, end);
+  const std::size_t end = remainder_.find('\n');
+  std::string_view line = remainder_.substr(0, end);
   ended_ = end == std::string_view::npos;
-  rest_ = ended_ ? std::string_view{} : rest_.substr(end + 1);
+  remainder_ = ended_ ? std::string_view{} : remainder_.substr(end + 1);
   ++number_;
   if (line.ends_with('\r')) line.remove_suffix(1);
   return line;

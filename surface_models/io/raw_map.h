@@ -53,13 +53,13 @@ void check_size(const Source& source, int line, double columns, double rows);
 /// Reads a text line by line. The end of a line (LF or CR LF) is removed.
 class Lines {
  public:
-  explicit Lines(std::string_view text) : rest_(text) {}
+  explicit Lines(std::string_view text) : remainder_(text) {}
   std::optional<std::string_view> next();
   int number() const { return number_; }  ///< number of the line that next() returned last
-  std::string_view rest() const { return rest_; }
+  std::string_view remainder() const { return remainder_; }
 
  private:
-  std::string_view rest_;
+  std::string_view remainder_;
   int number_ = 0;
   bool ended_ = false;
 };

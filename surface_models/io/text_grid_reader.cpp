@@ -178,7 +178,7 @@ class TextReader {
     std::size_t count = 0;
     bool ends_empty = false;
     for_each_value(line, [&](std::string_view word) {
-      if (values_.size() >= kMostPoints * 3)
+      if (values_.size() >= kMaxPoints * 3)
         check_size(source_, lines_.number(), static_cast<double>(values_.size()), 1.0);
       values_.push_back(height(word));
       ends_empty = word.empty();

@@ -14,7 +14,7 @@ using std::numbers::pi;
 constexpr double kLargestShift = 2.0;
 // Maximum total scatter of a smooth surface, approximately its squared phase: (4 pi n s / w)^2 << 1 (Stover, Optical
 // Scattering, 3rd ed., SPIE 2012).
-constexpr double kMostScatterOfSmooth = 0.1;
+constexpr double kMaxSmoothScatter = 0.1;
 
 }  // namespace
 
@@ -83,7 +83,7 @@ double Abg::scattered_density(const ScatterEvent& event, const Facet&, Lobe lobe
   return bsdf_per_sr((beta - specular->head<2>()).norm());
 }
 
-double Abg::specular_share(const ScatterEvent& event, const Facet& facet, Lobe lobe) const {
+double Abg::specular_fraction(const ScatterEvent& event, const Facet& facet, Lobe lobe) const {
   const auto specular = specular_direction(event, Vec3::UnitZ(), lobe);
   if (!specular) return 0.0;
   return 1.0 - integrate_over_disc(specular->head<2>(), shoulder_,
@@ -91,12 +91,12 @@ double Abg::specular_share(const ScatterEvent& event, const Facet& facet, Lobe l
 }
 
 Warnings Abg::warnings(double, double) const {
-  if (total_ <= kMostScatterOfSmooth) return {};
+  if (total_ <= kMaxSmoothScatter) return {};
   return {
       {"strong_scatter",
        "up to " + shortest(std::round(1e3 * total_) / 10.0) +
            " % of the light is scattered by the model abg, but this model is valid only for smooth surfaces (up to " +
-           shortest(100.0 * kMostScatterOfSmooth) +
+           shortest(100.0 * kMaxSmoothScatter) +
            " %): the scatter of rougher surfaces depends on the angle of incidence"}};
 }
 

@@ -26,13 +26,13 @@ class Abg {
 
   Facet sample_facet(const ScatterEvent&, RandomStream&) const { return {}; }
   /// Returns the specular fraction, computed by quadrature. This is for tests and tables; it is too slow for each ray.
-  double specular_share(const ScatterEvent& event, const Facet&, Lobe lobe) const;
-  /// Returns the minimum of specular_share() over all directions of incidence.
-  double least_specular_share() const { return 1.0 - total_; }
+  double specular_fraction(const ScatterEvent& event, const Facet&, Lobe lobe) const;
+  /// Returns the minimum of specular_fraction() over all directions of incidence.
+  double min_specular_fraction() const { return 1.0 - total_; }
   /// Draws the direction of scattered light. Returns nothing if the light is specular.
   std::optional<Vec2> sample_scattered(const ScatterEvent& event, const Facet&, Lobe lobe, RandomStream& random) const;
   double scattered_density(const ScatterEvent& event, const Facet&, Lobe lobe, const Vec2& beta) const;
-  double unmasked_share(const Vec3&) const { return 1.0; }
+  double unmasked_fraction(const Vec3&) const { return 1.0; }
   Warnings warnings(double index, double wavelength_nm) const;
 
  private:

@@ -49,7 +49,7 @@ struct Squares {
 };
 
 /// Returns the scattered power for one incident wave vector, integrated over both sides.
-std::array<double, 2> scattered_share(const DielectricInterface& interface, double length, double k_in) {
+std::array<double, 2> scattered_fraction(const DielectricInterface& interface, double length, double k_in) {
   using boost::math::quadrature::gauss;
   const double variance = 2.0 / (length * length);  // variance of the shift of k along each axis
   const double reach = 6.5 * std::sqrt(variance);   // less than 1e-9 is beyond this distance
@@ -160,7 +160,7 @@ double DielectricInterface::bound(double k_in, const Polarisation2& coherency) c
   return root * root * root * felt / across(k_in, Lobe::reflection).real();
 }
 
-struct FirstOrderShare::Table {
+struct FirstOrderFraction::Table {
   using Spline = boost::math::interpolators::cardinal_cubic_b_spline<double>;
   /// Range of k_in in which the fractions are smooth functions of an angle psi in 0..pi/2: k^2 = low2 + (high2 - low2)
   /// sin^2 psi.
@@ -181,7 +181,7 @@ struct FirstOrderShare::Table {
       const double sine = std::sin(kStep * static_cast<double>(n));
       const double k = std::sqrt(range.low2 + (range.high2 - range.low2) * sine * sine);
       if (k >= interface.index_from()) continue;  // light at grazing incidence is not scattered
-      const std::array<double, 2> found = scattered_share(interface, length, k);
+      const std::array<double, 2> found = scattered_fraction(interface, length, k);
       s[n] = found[0];
       p[n] = found[1];
     }
@@ -191,7 +191,7 @@ struct FirstOrderShare::Table {
   }
 };
 
-FirstOrderShare::FirstOrderShare(const DielectricInterface& interface, double correlation_length) {
+FirstOrderFraction::FirstOrderFraction(const DielectricInterface& interface, double correlation_length) {
   auto table = std::make_shared<Table>();
   const double least = std::min(interface.index_from(), interface.index_to());
   table->add(interface, correlation_length, 0.0, least);
@@ -199,7 +199,7 @@ FirstOrderShare::FirstOrderShare(const DielectricInterface& interface, double co
   table_ = std::move(table);
 }
 
-std::array<double, 2> FirstOrderShare::at(double k_in) const {
+std::array<double, 2> FirstOrderFraction::at(double k_in) const {
   const Table::Range& range =
       k_in * k_in <= table_->ranges.front().high2 ? table_->ranges.front() : table_->ranges.back();
   const double sine2 = (k_in * k_in - range.low2) / (range.high2 - range.low2);

@@ -61,10 +61,10 @@ class DielectricInterface {
 
 /// Fraction of the power that an interface with Gaussian roughness scatters, summed over both sides, as a function of
 /// the angle of incidence. The integrals are tabulated in the constructor.
-class FirstOrderShare {
+class FirstOrderFraction {
  public:
   /// \param correlation_length distance at which the autocorrelation is 1/e, in units of w / (2 pi), > 0
-  FirstOrderShare(const DielectricInterface& interface, double correlation_length);
+  FirstOrderFraction(const DielectricInterface& interface, double correlation_length);
 
   /// Returns the fractions for s and p, in units of (2 pi Sq / w)^2.
   /// \param k_in index times sine of the angle of incidence

@@ -13,7 +13,7 @@ using std::numbers::pi;
 
 // Maximum squared phase at normal incidence for first-order theory. At this value, 5 % of the scattered light is
 // diffracted more than once.
-constexpr double kMostPhase2OfFirstOrder = 0.1;
+constexpr double kMaxFirstOrderPhase2 = 0.1;
 
 void require(bool holds, const char* key, const char* allowed, double given) {
   if (!holds) throw InputError({"", 0, key}, std::string(allowed) + ", got " + shortest(given));
@@ -58,16 +58,16 @@ double mean_over_directions(const Vec2& lengths_um, double index, double wavelen
 }
 
 /// Returns the fraction of the variance of heights at spatial frequencies below n / w.
-double share_that_scatters(double correlation_um, double index, double wavelength_nm) {
+double fraction_that_scatters(double correlation_um, double index, double wavelength_nm) {
   const double x = length_in_waves(correlation_um, index, wavelength_nm);
   return -std::expm1(-x * x);
 }
 
-double share_that_scatters(const Vec2& lengths_um, double index, double wavelength_nm) {
+double fraction_that_scatters(const Vec2& lengths_um, double index, double wavelength_nm) {
   constexpr double kAll = 7.0;  // exp(-7^2) is below the rounding error
   const double shortest_um = lengths_um.minCoeff();
   if (lengths_um.x() == lengths_um.y() || length_in_waves(shortest_um, index, wavelength_nm) > kAll)
-    return share_that_scatters(shortest_um, index, wavelength_nm);
+    return fraction_that_scatters(shortest_um, index, wavelength_nm);
   return mean_over_directions(lengths_um, index, wavelength_nm, [](double t, double) { return -std::expm1(-t); });
 }
 
@@ -107,13 +107,13 @@ DiffractedOnce leaving_light(const Vec2& k_out, const Vec2& along, double index,
 
 struct HarveyShack::Side {
   DielectricInterface interface;
-  std::array<std::optional<FirstOrderShare>, 2> shares;  ///< for roughness and for waviness
+  std::array<std::optional<FirstOrderFraction>, 2> fractions;  ///< for roughness and for waviness
 
   Side(const Roughness& r, double from, double to, double wavelength_nm) : interface(from, to) {
     const double wave_number_per_um = 1e3 * wave_number_per_nm(wavelength_nm);
-    if (r.sq_nm > 0.0) shares[0].emplace(interface, wave_number_per_um * r.correlation_length_um);
+    if (r.sq_nm > 0.0) fractions[0].emplace(interface, wave_number_per_um * r.correlation_length_um);
     if (r.waviness_sq_nm > 0.0)
-      shares[1].emplace(interface, wave_number_per_um * equivalent_correlation_um(r.waviness_length_um));
+      fractions[1].emplace(interface, wave_number_per_um * equivalent_correlation_um(r.waviness_length_um));
   }
 };
 
@@ -138,7 +138,7 @@ std::array<HarveyShack::Part, 2> HarveyShack::parts(const Facet& facet) const {
                equivalent_correlation_um(roughness_.waviness_length_um)}};
 }
 
-std::array<double, 2> HarveyShack::first_order_shares(const ScatterEvent& event, const Facet& facet) const {
+std::array<double, 2> HarveyShack::first_order_fractions(const ScatterEvent& event, const Facet& facet) const {
   const Side& side = side_of(event);
   const double k = event.index_from * event.direction_in.head<2>().norm();
   const double wave_number = wave_number_per_nm(event.wavelength_nm);
@@ -146,7 +146,7 @@ std::array<double, 2> HarveyShack::first_order_shares(const ScatterEvent& event,
   std::array<double, 2> scattered{};
   for (std::size_t n = 0; n < heights.size(); ++n) {
     if (!(heights[n].sq_nm > 0.0)) continue;
-    const std::array<double, 2> share = side.shares[n]->at(k);
+    const std::array<double, 2> share = side.fractions[n]->at(k);
     const double height = wave_number * heights[n].sq_nm;
     for (std::size_t pol : {0U, 1U}) scattered[pol] += height * height * share[pol];
   }
@@ -155,7 +155,7 @@ std::array<double, 2> HarveyShack::first_order_shares(const ScatterEvent& event,
 
 DiffractionMeans HarveyShack::diffraction_means(const ScatterEvent& event, const Facet& facet,
                                                 const materials::FresnelCoefficients& fresnel) const {
-  const std::array<double, 2> scattered = first_order_shares(event, facet);
+  const std::array<double, 2> scattered = first_order_fractions(event, facet);
   // The scattered power is removed from the specular light on both sides: the reflected and the transmitted light. Each
   // loses power in proportion to its own power times its phase variance. For long correlation lengths, the losses are
   // divided in this ratio.
@@ -226,7 +226,7 @@ DiffractedOnce HarveyShack::diffracted_once_into(const ScatterEvent& event, cons
                                                  const Polarisation2& coherency, const Vec3& direction) const {
   const Lobe lobe = direction.z() > 0.0 ? Lobe::reflection : Lobe::transmission;
   const double index = event.index_of(lobe);
-  const std::array<double, 2> shares = first_order_shares(event, facet);
+  const std::array<double, 2> shares = first_order_fractions(event, facet);
   const double all = shares[0] * coherency(0, 0).real() + shares[1] * coherency(1, 1).real();
   DiffractedOnce into = scattered_once(event, facet, lobe, s_axis, coherency, index * direction.head<2>());
   into.coherency *= all > 0.0 ? index * index / all : 0.0;
@@ -252,7 +252,7 @@ HarveyShack::HarveyShack(const Roughness& roughness)
   require(r.waviness_sq_nm >= 0.0, "waviness_sq_nm", "must be >= 0", r.waviness_sq_nm);
   require(r.waviness_sq_nm == 0.0 || r.waviness_length_um > 0.0, "waviness_length_um",
           "must be > 0 if waviness_sq_nm is > 0", r.waviness_length_um);
-  require_modelled_slope(slopes_.rms_slope(), "waviness");
+  require_slope_in_range(slopes_.rms_slope(), "waviness");
 }
 
 Facet HarveyShack::sample_facet(const ScatterEvent& event, RandomStream& random) const {
@@ -269,28 +269,28 @@ HarveyShack::Band HarveyShack::band(const ScatterEvent& event, const Facet& face
   double rough2 = 0.0, wavy2 = 0.0;
   if (roughness_.sq_nm > 0.0) {
     const Vec2 lengths_um = correlation_lengths_um(roughness_);
-    rough2 = square(roughness_.sq_nm) * share_that_scatters(lengths_um, index, event.wavelength_nm);
+    rough2 = square(roughness_.sq_nm) * fraction_that_scatters(lengths_um, index, event.wavelength_nm);
     made.roughness_variance = {shift_variance(lengths_um.x(), index, event.wavelength_nm),
                                shift_variance(lengths_um.y(), index, event.wavelength_nm)};
   }
   if (roughness_.waviness_sq_nm > 0.0 && !facet.is_tilted) {
     const double length = equivalent_correlation_um(roughness_.waviness_length_um);
-    wavy2 = square(roughness_.waviness_sq_nm) * share_that_scatters(length, index, event.wavelength_nm);
+    wavy2 = square(roughness_.waviness_sq_nm) * fraction_that_scatters(length, index, event.wavelength_nm);
     made.waviness_variance.setConstant(shift_variance(length, index, event.wavelength_nm));
   }
   made.sq_nm = std::sqrt(rough2 + wavy2);
-  made.roughness_share = rough2 > 0.0 ? rough2 / (rough2 + wavy2) : 0.0;
+  made.roughness_fraction = rough2 > 0.0 ? rough2 / (rough2 + wavy2) : 0.0;
   return made;
 }
 
-double HarveyShack::specular_share(const ScatterEvent& event, const Facet& facet, Lobe lobe) const {
+double HarveyShack::specular_fraction(const ScatterEvent& event, const Facet& facet, Lobe lobe) const {
   const auto phase_lobe = PhaseLobe::make(event, lobe, band(event, facet, lobe).sq_nm);
-  return phase_lobe ? phase_lobe->specular_share() : 0.0;
+  return phase_lobe ? phase_lobe->specular_fraction() : 0.0;
 }
 
-double HarveyShack::scattered_share(const ScatterEvent& event, const Facet& facet, Lobe lobe) const {
+double HarveyShack::scattered_fraction(const ScatterEvent& event, const Facet& facet, Lobe lobe) const {
   const auto phase_lobe = PhaseLobe::make(event, lobe, band(event, facet, lobe).sq_nm);
-  return phase_lobe ? phase_lobe->scattered_share() : 0.0;
+  return phase_lobe ? phase_lobe->scattered_fraction() : 0.0;
 }
 
 PhaseTexture HarveyShack::phase_texture(const ScatterEvent& event, Lobe lobe) const {
@@ -305,16 +305,16 @@ PhaseTexture HarveyShack::phase_texture(const ScatterEvent& event, Lobe lobe) co
   const double outwards = event.inside_material ? 1.0 : -1.0;
   const double rms_rad = outwards * 2.0 * pi * length_per_height * what.sq_nm / event.wavelength_nm;
   PhaseTexture phases;
-  if (what.roughness_share > 0.0)
-    phases.terms[0] = {rms_rad * std::sqrt(what.roughness_share), 1e-3 * roughness_.correlation_length_um};
+  if (what.roughness_fraction > 0.0)
+    phases.terms[0] = {rms_rad * std::sqrt(what.roughness_fraction), 1e-3 * roughness_.correlation_length_um};
   if (roughness_.waviness_sq_nm > 0.0)
-    phases.terms[1] = {rms_rad * std::sqrt(std::max(0.0, 1.0 - what.roughness_share)),
+    phases.terms[1] = {rms_rad * std::sqrt(std::max(0.0, 1.0 - what.roughness_fraction)),
                        1e-3 * equivalent_correlation_um(roughness_.waviness_length_um)};
   return phases;
 }
 
 std::optional<Vec2> HarveyShack::draw_scattered(const ScatterEvent& event, const Facet& facet, Lobe lobe,
-                                                RandomStream& random, int least_orders) const {
+                                                RandomStream& random, int min_orders) const {
   const Band what = band(event, facet, lobe);
   const auto phase_lobe = PhaseLobe::make(event, lobe, what.sq_nm);
   if (!phase_lobe) return std::nullopt;
@@ -322,14 +322,14 @@ std::optional<Vec2> HarveyShack::draw_scattered(const ScatterEvent& event, const
       random,
       [&](int order, RandomStream& numbers) -> Vec2 {
         int rough = order;
-        if (what.roughness_share < 1.0) {
+        if (what.roughness_fraction < 1.0) {
           rough = 0;
-          for (int k = 0; k < order; ++k) rough += numbers.next() < what.roughness_share ? 1 : 0;
+          for (int k = 0; k < order; ++k) rough += numbers.next() < what.roughness_fraction ? 1 : 0;
         }
         const Vec2 variance = rough * what.roughness_variance + (order - rough) * what.waviness_variance;
         return variance.cwiseSqrt().cwiseProduct(normal_pair(numbers));
       },
-      least_orders);
+      min_orders);
 }
 
 /// Returns the density of the sum of `order` shifts at `shift`.
@@ -337,11 +337,11 @@ double HarveyShack::shift_density(const Band& band, int order, const Vec2& shift
   const auto gaussian = [&shift](const Vec2& variance) {
     return std::exp(-0.5 * shift.cwiseAbs2().cwiseQuotient(variance).sum()) / (2.0 * pi * std::sqrt(variance.prod()));
   };
-  if (band.roughness_share == 1.0) return gaussian(order * band.roughness_variance);
-  if (band.roughness_share == 0.0) return gaussian(order * band.waviness_variance);
+  if (band.roughness_fraction == 1.0) return gaussian(order * band.roughness_variance);
+  if (band.roughness_fraction == 0.0) return gaussian(order * band.waviness_variance);
   // Each of the `order` shifts is caused either by roughness or by waviness. The number of shifts by roughness
   // therefore has a binomial distribution.
-  const double log_rough = std::log(band.roughness_share), log_wavy = std::log1p(-band.roughness_share);
+  const double log_rough = std::log(band.roughness_fraction), log_wavy = std::log1p(-band.roughness_fraction);
   double sum = 0.0;
   for (int rough = 0; rough <= order; ++rough) {
     const int wavy = order - rough;
@@ -368,12 +368,12 @@ double HarveyShack::scattered_density(const ScatterEvent& event, const Facet& fa
   const double width = std::sqrt(std::max(what.roughness_variance.maxCoeff(), what.waviness_variance.maxCoeff()));
   const double sum = integrate_over_disc(phase_lobe->specular_beta(), width,
                                          [&](const Vec2& at) { return unscaled_density(event, facet, lobe, at); });
-  return sum > 0.0 ? phase_lobe->scattered_share() * unscaled_density(event, facet, lobe, beta) / sum : 0.0;
+  return sum > 0.0 ? phase_lobe->scattered_fraction() * unscaled_density(event, facet, lobe, beta) / sum : 0.0;
 }
 
 void HarveyShack::require_in_range(double index, double wavelength_nm) const {
   if (roughness_.sq_nm > 0.0)
-    require_modelled_slope(roughness_rms_slope(roughness_, index, wavelength_nm), "roughness");
+    require_slope_in_range(roughness_rms_slope(roughness_, index, wavelength_nm), "roughness");
 }
 
 Warnings HarveyShack::warnings(double index, double wavelength_nm) const {
@@ -389,26 +389,26 @@ Warnings HarveyShack::warnings(double index, double wavelength_nm) const {
       found.push_back({"lay_beyond_model", "correlation length " + shortest(shortest_um) +
                                                " um of roughness with a lay is below " + shortest(kLongOfLay) +
                                                " um: at total reflection the phase model overestimates its scatter"});
-    if (shortest_um < wave_um && (media_ == nullptr || phase * phase > kMostPhase2OfFirstOrder))
+    if (shortest_um < wave_um && (media_ == nullptr || phase * phase > kMaxFirstOrderPhase2))
       found.push_back({"correlation_below_wavelength",
                        "correlation length " + shortest(shortest_um) +
                            " um is below the wavelength in the material: the phase model of roughness is not valid" +
                            (media_ == nullptr ? "" : ", and the heights are too large for first-order theory")});
     const double slope = roughness_rms_slope(r, index, wavelength_nm);
-    if (slope > kLargestSlope)
+    if (slope > kMaxSlopeWithoutWarning)
       found.push_back(
-          {"steep_roughness", "rms slope of the roughness " + fixed_apart(slope, kLargestSlope, 3) + " is above " +
-                                  shortest(kLargestSlope) +
+          {"steep_roughness", "rms slope of the roughness " + fixed_apart(slope, kMaxSlopeWithoutWarning, 3) +
+                                  " is above " + shortest(kMaxSlopeWithoutWarning) +
                                   ": light that is reflected several times on the surface is not modelled"});
     if (reflection_phase_rad(r.sq_nm, index, 1.0, wavelength_nm) > 2.0 * pi)
       found.push_back(
           {"roughness_beyond_model", "roughness " + shortest(std::round(100.0 * r.sq_nm) / 100.0) +
                                          " nm is above half a wavelength in the material: use the model microfacet"});
   }
-  if (slopes_.rms_slope() > kLargestSlope)
+  if (slopes_.rms_slope() > kMaxSlopeWithoutWarning)
     found.push_back({"steep_waviness", "rms slope of the waviness " +
-                                           fixed_apart(slopes_.rms_slope(), kLargestSlope, 3) + " is above " +
-                                           shortest(kLargestSlope) +
+                                           fixed_apart(slopes_.rms_slope(), kMaxSlopeWithoutWarning, 3) + " is above " +
+                                           shortest(kMaxSlopeWithoutWarning) +
                                            ": light that is reflected several times on the surface is not modelled"});
   if (r.waviness_sq_nm > 0.0 && r.waviness_length_um < 5.0 * wave_um)
     found.push_back(

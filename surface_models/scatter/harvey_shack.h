@@ -71,7 +71,7 @@ struct DiffractedOnce {
 /// Events are in the frame of the facet. Directions are given by their cosines along its x and y.
 class HarveyShack {
  public:
-  /// \throw InputError if a value is out of range, or if the rms slope of the waviness is above kSlopeOfNoModel, the
+  /// \throw InputError if a value is out of range, or if the rms slope of the waviness is above kMaxModelledSlope, the
   ///     limit above which no scatter model is valid
   explicit HarveyShack(const Roughness& roughness);
   /// Creates a model between two dielectrics. First-order theory is used where it applies; roughness with a lay always
@@ -104,25 +104,25 @@ class HarveyShack {
 
   /// \param event in the frame of the mean surface
   Facet sample_facet(const ScatterEvent& event, RandomStream& random) const;
-  double specular_share(const ScatterEvent& event, const Facet& facet, Lobe lobe) const;
-  /// Returns 1 - specular_share(), with full precision even if the result is small.
-  double scattered_share(const ScatterEvent& event, const Facet& facet, Lobe lobe) const;
+  double specular_fraction(const ScatterEvent& event, const Facet& facet, Lobe lobe) const;
+  /// Returns 1 - specular_fraction(), with full precision even if the result is small.
+  double scattered_fraction(const ScatterEvent& event, const Facet& facet, Lobe lobe) const;
   /// Returns the random phase that the heights add to a lobe. The specular fraction is exp(-variance).
   PhaseTexture phase_texture(const ScatterEvent& event, Lobe lobe) const;
   /// Draws the direction of light, given that it is scattered. Returns nothing if no direction is found.
-  /// \param least_orders minimum number of diffractions
+  /// \param min_orders minimum number of diffractions
   std::optional<Vec2> draw_scattered(const ScatterEvent& event, const Facet& facet, Lobe lobe, RandomStream& random,
-                                     int least_orders = 1) const;
+                                     int min_orders = 1) const;
   /// Returns the density of scattered light over direction cosines, as a fraction of the lobe's power. This is the
   /// lobe's BSDF without its Fresnel factor, per sr. Computed by quadrature: for tests and tables, but too slow for
   /// each ray.
   double scattered_density(const ScatterEvent& event, const Facet& facet, Lobe lobe, const Vec2& beta) const;
   /// Returns the fraction of light into `direction` that the waviness does not mask. The direction is in the frame of
   /// the mean surface.
-  double unmasked_share(const Vec3& direction) const { return slopes_.visible_share(direction); }
+  double unmasked_fraction(const Vec3& direction) const { return slopes_.visible_fraction(direction); }
   /// Checks that a scatter model is valid for the rms slope of the roughness. Only spatial frequencies that scatter
   /// count.
-  /// \throw InputError if this slope is above kSlopeOfNoModel
+  /// \throw InputError if this slope is above kMaxModelledSlope
   void require_in_range(double index, double wavelength_nm) const;
   /// Returns a warning for each condition of the model that is violated at this wavelength. The index is that of the
   /// denser side.
@@ -140,7 +140,7 @@ class HarveyShack {
   /// cosines that roughness and waviness cause.
   struct Band {
     double sq_nm = 0.0;
-    double roughness_share = 0.0;            ///< fraction of sq_nm^2 that is due to roughness
+    double roughness_fraction = 0.0;         ///< fraction of sq_nm^2 that is due to roughness
     Vec2 roughness_variance = Vec2::Zero();  ///< variance of the shift by one diffraction, along x and along y
     Vec2 waviness_variance = Vec2::Zero();
   };
@@ -160,7 +160,7 @@ class HarveyShack {
   std::array<Part, 2> parts(const Facet& facet) const;
   /// Returns the fractions of the power of s and of p that are scattered according to first-order theory, summed over
   /// both sides.
-  std::array<double, 2> first_order_shares(const ScatterEvent& event, const Facet& facet) const;
+  std::array<double, 2> first_order_fractions(const ScatterEvent& event, const Facet& facet) const;
   /// Returns light whose coherency is scaled: its trace is the density over wave vectors along the facet, as a fraction
   /// of the incident power.
   DiffractedOnce scattered_once(const ScatterEvent& event, const Facet& facet, Lobe lobe, const Vec3& s_axis,

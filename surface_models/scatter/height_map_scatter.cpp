@@ -16,18 +16,18 @@ namespace retrace::surface_models {
 namespace {
 
 using std::numbers::pi;
-constexpr std::size_t kLeastPoints = 8;
+constexpr std::size_t kMinPoints = 8;
 constexpr int kMaxTries = 10000;
 
 /// Cell in the plane of spatial frequencies.
 struct Cell {
   Vec2 frequency_per_um = Vec2::Zero();  ///< centre of the cell
-  double share = 0.0;                    ///< fraction of the variance of heights
+  double fraction = 0.0;                 ///< fraction of the variance of heights
 };
 
 /// Cumulative values over all cells up to this cell. Cells are sorted by distance from the frequency 0.
 struct Cumulative {
-  double share = 0.0;
+  double fraction = 0.0;
   Eigen::Matrix2d moment = Eigen::Matrix2d::Zero();  ///< sum of share * f f^T
 };
 
@@ -45,7 +45,7 @@ std::ptrdiff_t signed_index(std::size_t k, std::size_t count) {
 /// Returns the fractions of the variance over the plane of frequencies, row by row in the order of the discrete
 /// transform. The value at the frequency 0 is 0. A Hann window is applied, because opposite borders of a map do not
 /// match.
-std::vector<double> variance_shares(const HeightMap& levelled) {
+std::vector<double> variance_fractions(const HeightMap& levelled) {
   const std::size_t rows = levelled.rows, columns = levelled.columns;
   RealFft fft(rows, columns);
   for (std::size_t r = 0; r < rows; ++r)
@@ -98,7 +98,7 @@ struct HeightMapScatter::Texture {
   std::size_t rows = 0, columns = 0;
   Vec2 pixel_um, frequency_step_per_um;
   double sq_nm = 0.0, kurtosis = 3.0;
-  std::vector<double> shares;          ///< variance_shares()
+  std::vector<double> fractions;       ///< variance_fractions()
   std::vector<Cell> cells;             ///< sorted by distance from frequency 0
   std::vector<Cumulative> cumulative;  ///< cumulative values of the cells
   std::vector<Vec2> facet_gradients;   ///< in the axes of the map
@@ -111,11 +111,11 @@ struct HeightMapScatter::Texture {
     pixel_um = {levelled.x_pixel_um, levelled.y_pixel_um};
     frequency_step_per_um = {1.0 / (static_cast<double>(columns) * pixel_um.x()),
                              1.0 / (static_cast<double>(rows) * pixel_um.y())};
-    shares = variance_shares(levelled);
+    fractions = variance_fractions(levelled);
     for (std::size_t r = 0; r < rows; ++r)
       for (std::size_t c = 0; c < columns; ++c) {
         const Vec2 steps(static_cast<double>(signed_index(c, columns)), static_cast<double>(signed_index(r, rows)));
-        const double share = shares[r * columns + c];
+        const double share = fractions[r * columns + c];
         if (share > 0.0) cells.push_back({steps.cwiseProduct(frequency_step_per_um), share});
       }
     std::stable_sort(cells.begin(), cells.end(), [](const Cell& a, const Cell& b) {
@@ -123,8 +123,8 @@ struct HeightMapScatter::Texture {
     });
     Cumulative sum;
     for (const Cell& cell : cells) {
-      sum.share += cell.share;
-      sum.moment += cell.share * cell.frequency_per_um * cell.frequency_per_um.transpose();
+      sum.fraction += cell.fraction;
+      sum.moment += cell.fraction * cell.frequency_per_um * cell.frequency_per_um.transpose();
       cumulative.push_back(sum);
     }
   }
@@ -139,7 +139,7 @@ struct HeightMapScatter::Texture {
     if (!facet_gradients.empty()) rms_slope = std::sqrt(squares / static_cast<double>(facet_gradients.size()));
   }
 
-  double share_at(const Vec2& frequency_per_um) const {
+  double fraction_at(const Vec2& frequency_per_um) const {
     const double column = std::round(frequency_per_um.x() / frequency_step_per_um.x());
     const double row = std::round(frequency_per_um.y() / frequency_step_per_um.y());
     const auto in_range = [](double k, std::size_t n) {
@@ -149,7 +149,7 @@ struct HeightMapScatter::Texture {
     const auto wrapped = [](double k, std::size_t n) {
       return static_cast<std::size_t>(k < 0.0 ? k + static_cast<double>(n) : k);
     };
-    return shares[wrapped(row, rows) * columns + wrapped(column, columns)];
+    return fractions[wrapped(row, rows) * columns + wrapped(column, columns)];
   }
 };
 
@@ -173,8 +173,8 @@ struct HeightMapScatter::Band {
     cells = static_cast<std::size_t>(end - texture.cells.begin());
     if (cells == 0) return;
     sum = texture.cumulative[cells - 1];
-    sq_nm = texture.sq_nm * std::sqrt(sum.share);
-    covariance = sum.moment / sum.share * (wave_um * wave_um);
+    sq_nm = texture.sq_nm * std::sqrt(sum.fraction);
+    covariance = sum.moment / sum.fraction * (wave_um * wave_um);
     covariance(0, 1) = covariance(1, 0) *= y_sign;
   }
 
@@ -182,10 +182,10 @@ struct HeightMapScatter::Band {
     if (order > 1) {
       return std::sqrt(static_cast<double>(order)) * (root_of_covariance() * normal_pair(random));
     }
-    const double drawn = random.next() * sum.share;
+    const double drawn = random.next() * sum.fraction;
     const auto last = texture.cumulative.begin() + static_cast<std::ptrdiff_t>(cells) - 1;
     const auto found = std::upper_bound(texture.cumulative.begin(), last, drawn,
-                                        [](double value, const Cumulative& upto) { return value < upto.share; });
+                                        [](double value, const Cumulative& upto) { return value < upto.fraction; });
     const Cell& cell = texture.cells[static_cast<std::size_t>(found - texture.cumulative.begin())];
     const Vec2 within(random.next() - 0.5, random.next() - 0.5);
     const Vec2 frequency = cell.frequency_per_um + within.cwiseProduct(texture.frequency_step_per_um);
@@ -203,7 +203,7 @@ struct HeightMapScatter::Band {
     const Vec2 step = texture.frequency_step_per_um;
     const Vec2 centre(std::round(frequency.x() / step.x()) * step.x(), std::round(frequency.y() / step.y()) * step.y());
     if (centre.squaredNorm() * wave_um * wave_um >= 1.0) return 0.0;
-    return texture.share_at(frequency) / (sum.share * step.x() * step.y() * wave_um * wave_um);
+    return texture.fraction_at(frequency) / (sum.fraction * step.x() * step.y() * wave_um * wave_um);
   }
 
   /// Returns a matrix whose product with its transpose is the covariance.
@@ -218,11 +218,11 @@ struct HeightMapScatter::Band {
 };
 
 HeightMapScatter::HeightMapScatter(const HeightMap& map, double wavelength_nm) {
-  if (map.rows < kLeastPoints || map.columns < kLeastPoints)
+  if (map.rows < kMinPoints || map.columns < kMinPoints)
     throw InputError("a height map that scatters light needs at least 8 x 8 points, got " +
                      std::to_string(map.columns) + " x " + std::to_string(map.rows));
-  if (map.rows * map.columns > kMostScatterPoints)
-    throw InputError("a height map that scatters light may have at most " + std::to_string(kMostScatterPoints) +
+  if (map.rows * map.columns > kMaxScatterPoints)
+    throw InputError("a height map that scatters light may have at most " + std::to_string(kMaxScatterPoints) +
                      " points, got " + std::to_string(map.columns) + " x " + std::to_string(map.rows) +
                      ": use a section of the map");
   if (measured_points(map) == 0) throw InputError("the height map contains no measured point");
@@ -233,7 +233,7 @@ HeightMapScatter::HeightMapScatter(const HeightMap& map, double wavelength_nm) {
   texture->kurtosis = heights.sku;
   texture->set_spectrum(levelled);
   texture->set_facets(gradients(levelled, 1e-3 * wavelength_nm));
-  require_modelled_slope(texture->rms_slope, "height map (is the unit of heights right?)");
+  require_slope_in_range(texture->rms_slope, "height map (is the unit of heights right?)");
   texture_ = std::move(texture);
 }
 
@@ -259,16 +259,16 @@ Facet HeightMapScatter::sample_facet(const ScatterEvent& event, RandomStream& ra
   return {};
 }
 
-double HeightMapScatter::specular_share(const ScatterEvent& event, const Facet& facet, Lobe lobe) const {
+double HeightMapScatter::specular_fraction(const ScatterEvent& event, const Facet& facet, Lobe lobe) const {
   if (facet.is_tilted) return 1.0;
   const auto phase_lobe = PhaseLobe::make(event, lobe, Band(*texture_, event, lobe).sq_nm);
-  return phase_lobe ? phase_lobe->specular_share() : 0.0;
+  return phase_lobe ? phase_lobe->specular_fraction() : 0.0;
 }
 
-double HeightMapScatter::scattered_share(const ScatterEvent& event, const Facet& facet, Lobe lobe) const {
+double HeightMapScatter::scattered_fraction(const ScatterEvent& event, const Facet& facet, Lobe lobe) const {
   if (facet.is_tilted) return 0.0;
   const auto phase_lobe = PhaseLobe::make(event, lobe, Band(*texture_, event, lobe).sq_nm);
-  return phase_lobe ? phase_lobe->scattered_share() : 0.0;
+  return phase_lobe ? phase_lobe->scattered_fraction() : 0.0;
 }
 
 std::optional<Vec2> HeightMapScatter::draw_scattered(const ScatterEvent& event, const Facet& facet, Lobe lobe,
@@ -303,12 +303,12 @@ double HeightMapScatter::scattered_density(const ScatterEvent& event, const Face
     const Cell& cell = texture_->cells[k];
     const Vec2 at = specular + band.wave_um * Vec2(cell.frequency_per_um.x(), band.y_sign * cell.frequency_per_um.y());
     if (at.squaredNorm() < 1.0)
-      sum += cell.share / band.sum.share * PhaseLobe::order_probability(1, phase_lobe->variance(at));
+      sum += cell.fraction / band.sum.fraction * PhaseLobe::order_probability(1, phase_lobe->variance(at));
   }
   sum += integrate_over_disc(specular, std::sqrt(band.covariance.trace()), [&](const Vec2& at) {
     return phase_lobe->density(at, 2, [&](int order) { return band.shift_density(order, at - specular); });
   });
-  return sum > 0.0 ? phase_lobe->scattered_share() * unscaled_density(event, facet, lobe, beta) / sum : 0.0;
+  return sum > 0.0 ? phase_lobe->scattered_fraction() * unscaled_density(event, facet, lobe, beta) / sum : 0.0;
 }
 
 Warnings HeightMapScatter::warnings(double index, double wavelength_nm) const {
@@ -319,10 +319,10 @@ Warnings HeightMapScatter::warnings(double index, double wavelength_nm) const {
     found.push_back({"coarse_height_map",
                      "points of the height map are " + shortest(pixel) +
                          " um apart, more than half a wavelength in the material: finer roughness is missing"});
-  if (t.rms_slope > kLargestSlope)
+  if (t.rms_slope > kMaxSlopeWithoutWarning)
     found.push_back({"steep_height_map",
-                     "rms slope of the height map " + fixed_apart(t.rms_slope, kLargestSlope, 3) + " is above " +
-                         shortest(kLargestSlope) +
+                     "rms slope of the height map " + fixed_apart(t.rms_slope, kMaxSlopeWithoutWarning, 3) +
+                         " is above " + shortest(kMaxSlopeWithoutWarning) +
                          ": masking, and light that is reflected several times on the surface, are not modelled"});
   if (t.sq_nm > 0.0 && std::abs(t.kurtosis - 3.0) > 1.0)
     found.push_back(

@@ -12,7 +12,7 @@
 namespace retrace::surface_models {
 
 /// Maximum number of points of a map that scatters light: 2048 x 2048. The spectrum needs about 100 bytes per point.
-inline constexpr std::size_t kMostScatterPoints = std::size_t{1} << 22;
+inline constexpr std::size_t kMaxScatterPoints = std::size_t{1} << 22;
 
 /// Scatter from a measured surface. The map is a sample of a larger surface: only its statistics are used, not its
 /// position on the part.
@@ -29,8 +29,8 @@ inline constexpr std::size_t kMostScatterPoints = std::size_t{1} << 22;
 /// (ScatterEvent). Weights are 1 if light leaves to the correct side.
 class HeightMapScatter {
  public:
-  /// \param map areal map with at least 8 x 8 and at most kMostScatterPoints points, and an rms slope of at most
-  ///     kSlopeOfNoModel; missing points are replaced by the mean
+  /// \param map areal map with at least 8 x 8 and at most kMaxScatterPoints points, and an rms slope of at most
+  ///     kMaxModelledSlope; missing points are replaced by the mean
   /// \param wavelength_nm minimum distance over which slopes of facets are computed, > 0
   /// \throw InputError if the map is outside these limits
   HeightMapScatter(const HeightMap& map, double wavelength_nm);
@@ -39,16 +39,16 @@ class HeightMapScatter {
 
   /// \param event in the frame of the mean surface
   Facet sample_facet(const ScatterEvent& event, RandomStream& random) const;
-  double specular_share(const ScatterEvent& event, const Facet& facet, Lobe lobe) const;
-  /// Returns 1 - specular_share(), with full precision even if the result is small.
-  double scattered_share(const ScatterEvent& event, const Facet& facet, Lobe lobe) const;
+  double specular_fraction(const ScatterEvent& event, const Facet& facet, Lobe lobe) const;
+  /// Returns 1 - specular_fraction(), with full precision even if the result is small.
+  double scattered_fraction(const ScatterEvent& event, const Facet& facet, Lobe lobe) const;
   /// Draws the direction of light, given that it is scattered. Returns nothing if no direction is found.
   std::optional<Vec2> draw_scattered(const ScatterEvent& event, const Facet& facet, Lobe lobe,
                                      RandomStream& random) const;
   double scattered_density(const ScatterEvent& event, const Facet& facet, Lobe lobe, const Vec2& beta) const;
   /// Returns the density before it is scaled to the scattered fraction.
   double unscaled_density(const ScatterEvent& event, const Facet& facet, Lobe lobe, const Vec2& beta) const;
-  double unmasked_share(const Vec3&) const { return 1.0; }
+  double unmasked_fraction(const Vec3&) const { return 1.0; }
   Warnings warnings(double index, double wavelength_nm) const;
 
  private:

@@ -8,7 +8,7 @@ namespace retrace::surface_models {
 
 Microfacet::Microfacet(SlopeShape shape, double rms_slope) : slopes_(shape, rms_slope) {
   if (!(rms_slope >= 0.0)) throw InputError({"", 0, "rms_slope"}, "must be >= 0, got " + shortest(rms_slope));
-  require_modelled_slope(rms_slope, "facets");
+  require_slope_in_range(rms_slope, "facets");
 }
 
 Microfacet Microfacet::of_waviness(SlopeShape shape, double waviness_sq_nm, double waviness_length_um) {
@@ -51,8 +51,8 @@ double Microfacet::jacobian(const ScatterEvent& event, Lobe lobe, const Vec3& di
 double Microfacet::bsdf_per_sr(const ScatterEvent& event, Lobe lobe, const Vec3& direction) const {
   const auto normal = facet_towards(event, lobe, direction);
   if (!normal) return 0.0;
-  return slopes_.normal_density_per_sr(*normal) * slopes_.visible_share(event.direction_in) *
-         slopes_.visible_share(direction) * -event.direction_in.dot(*normal) *
+  return slopes_.normal_density_per_sr(*normal) * slopes_.visible_fraction(event.direction_in) *
+         slopes_.visible_fraction(direction) * -event.direction_in.dot(*normal) *
          jacobian(event, lobe, direction, *normal) / (event.cos_in() * std::abs(direction.z()));
 }
 
@@ -64,9 +64,9 @@ double Microfacet::pdf_per_sr(const ScatterEvent& event, Lobe lobe, const Vec3& 
 
 Warnings Microfacet::warnings(double index, double wavelength_nm) const {
   Warnings found;
-  if (slopes_.rms_slope() > kLargestSlope)
-    found.push_back({"steep_facets", "rms slope " + fixed_apart(slopes_.rms_slope(), kLargestSlope, 3) + " is above " +
-                                         shortest(kLargestSlope) +
+  if (slopes_.rms_slope() > kMaxSlopeWithoutWarning)
+    found.push_back({"steep_facets", "rms slope " + fixed_apart(slopes_.rms_slope(), kMaxSlopeWithoutWarning, 3) +
+                                         " is above " + shortest(kMaxSlopeWithoutWarning) +
                                          ": light that is reflected several times on the surface is not modelled"});
   const double phase = reflection_phase_rad(waviness_sq_nm_, index, 1.0, wavelength_nm);
   if (waviness_sq_nm_ > 0.0 && phase * phase < kSlopePhase2)

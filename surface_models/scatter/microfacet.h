@@ -24,10 +24,10 @@ class Microfacet {
   static Microfacet of_waviness(SlopeShape shape, double waviness_sq_nm, double waviness_length_um);
 
   Facet sample_facet(const ScatterEvent& event, RandomStream& random) const;
-  double specular_share(const ScatterEvent&, const Facet&, Lobe) const { return 1.0; }
+  double specular_fraction(const ScatterEvent&, const Facet&, Lobe) const { return 1.0; }
   std::optional<Vec2> sample_scattered(const ScatterEvent&, const Facet&, Lobe, RandomStream&) const { return {}; }
   double scattered_density(const ScatterEvent&, const Facet&, Lobe, const Vec2&) const { return 0.0; }
-  double unmasked_share(const Vec3& direction) const { return slopes_.visible_share(direction); }
+  double unmasked_fraction(const Vec3& direction) const { return slopes_.visible_fraction(direction); }
   Warnings warnings(double index, double wavelength_nm) const;
 
   /// Returns the normal of facets that send the event's light to `direction`, or nothing if there is none.

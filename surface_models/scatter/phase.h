@@ -18,12 +18,12 @@ inline double reflection_phase_rad(double sq_nm, double index, double cos_incide
 }
 
 /// Returns the specular fraction of a lobe's power for Gaussian heights.
-inline double specular_share_of_phase(double phase_rad) {
+inline double specular_fraction_of_phase(double phase_rad) {
   return std::exp(-phase_rad * phase_rad);
 }
 
 /// Returns the total integrated scatter: 1 minus the specular fraction.
-inline double scattered_share_of_phase(double phase_rad) {
+inline double scattered_fraction_of_phase(double phase_rad) {
   return -std::expm1(-phase_rad * phase_rad);
 }
 

@@ -36,12 +36,12 @@ std::optional<PhaseLobe> PhaseLobe::make(const ScatterEvent& event, Lobe lobe, d
   return made;
 }
 
-double PhaseLobe::specular_share() const {
-  return specular_share_of_phase(std::sqrt(variance(specular_beta())));
+double PhaseLobe::specular_fraction() const {
+  return specular_fraction_of_phase(std::sqrt(variance(specular_beta())));
 }
 
-double PhaseLobe::scattered_share() const {
-  return scattered_share_of_phase(std::sqrt(variance(specular_beta())));
+double PhaseLobe::scattered_fraction() const {
+  return scattered_fraction_of_phase(std::sqrt(variance(specular_beta())));
 }
 
 double PhaseLobe::variance(const Vec2& beta) const {

@@ -31,8 +31,8 @@ class PhaseLobe {
   /// \return nothing if the lobe has no specular direction (total reflection)
   static std::optional<PhaseLobe> make(const ScatterEvent& event, Lobe lobe, double sq_nm);
 
-  double specular_share() const;
-  double scattered_share() const;
+  double specular_fraction() const;
+  double scattered_fraction() const;
   const Vec3& specular() const { return specular_; }
   Vec2 specular_beta() const { return specular_.head<2>(); }
 

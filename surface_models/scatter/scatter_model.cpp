@@ -25,8 +25,8 @@ class FacetFrame {
 template <class Model>
 std::optional<Vec2> sample_scattered(const Model& model, const ScatterEvent& event, const Facet& facet, Lobe lobe,
                                      RandomStream& random) {
-  if constexpr (requires { model.scattered_share(event, facet, lobe); }) {
-    if (random.next() >= model.scattered_share(event, facet, lobe)) return std::nullopt;
+  if constexpr (requires { model.scattered_fraction(event, facet, lobe); }) {
+    if (random.next() >= model.scattered_fraction(event, facet, lobe)) return std::nullopt;
     return model.draw_scattered(event, facet, lobe, random);
   } else {
     return model.sample_scattered(event, facet, lobe, random);
@@ -61,29 +61,29 @@ std::optional<ScatterSample> sample(const ScatterModel& model, const ScatterEven
           drawn.is_specular = false;
         }
         if (!is_on_side(drawn.direction, lobe)) return std::nullopt;
-        if (facet.is_tilted) drawn.weight = m.unmasked_share(drawn.direction);
+        if (facet.is_tilted) drawn.weight = m.unmasked_fraction(drawn.direction);
         return drawn;
       },
       model);
 }
 
 std::optional<ScatterSplit> sample_split(const ScatterModel& model, const ScatterEvent& event, const Facet& facet,
-                                         Lobe lobe, double least_share, RandomStream& random) {
+                                         Lobe lobe, double min_fraction, RandomStream& random) {
   const auto specular = specular_direction(event, facet.normal, lobe);
   if (!specular) return std::nullopt;
   return std::visit(
       [&](const auto& m) -> std::optional<ScatterSplit> {
-        if constexpr (requires { m.scattered_share(event, facet, lobe); }) {
+        if constexpr (requires { m.scattered_fraction(event, facet, lobe); }) {
           const FacetFrame frame(facet);
           const ScatterEvent seen = frame.to_facet(event);
-          const double share = m.scattered_share(seen, facet, lobe);
-          if (share < least_share || 1.0 - share < least_share) return std::nullopt;
+          const double share = m.scattered_fraction(seen, facet, lobe);
+          if (share < min_fraction || 1.0 - share < min_fraction) return std::nullopt;
           const auto beta = m.draw_scattered(seen, facet, lobe, random);
           if (!beta) return std::nullopt;
           const auto part = [&](const Vec3& direction, double weight,
                                 bool is_specular) -> std::optional<ScatterSample> {
             if (!is_on_side(direction, lobe)) return std::nullopt;
-            const double unmasked = facet.is_tilted ? m.unmasked_share(direction) : 1.0;
+            const double unmasked = facet.is_tilted ? m.unmasked_fraction(direction) : 1.0;
             return ScatterSample{direction, *specular, weight * unmasked, is_specular};
           };
           return ScatterSplit{part(*specular, 1.0 - share, true),
@@ -114,7 +114,7 @@ std::optional<DiffractedOnce> sample_diffracted_once(const HarveyShack& model, c
   drawn->direction = frame.to_mean(drawn->direction);
   drawn->s_axis = frame.to_mean(drawn->s_axis);
   if (!is_on_side(drawn->direction, drawn->lobe)) return std::nullopt;
-  unmasked = facet.is_tilted ? model.unmasked_share(drawn->direction) : 1.0;
+  unmasked = facet.is_tilted ? model.unmasked_fraction(drawn->direction) : 1.0;
   return drawn;
 }
 
@@ -129,20 +129,20 @@ std::optional<ScatterSample> sample_diffracted_again(const HarveyShack& model, c
     drawn.is_specular = false;
   }
   if (!is_on_side(drawn.direction, lobe)) return std::nullopt;
-  if (facet.is_tilted) drawn.weight = model.unmasked_share(drawn.direction);
+  if (facet.is_tilted) drawn.weight = model.unmasked_fraction(drawn.direction);
   return drawn;
 }
 
-double specular_share(const ScatterModel& model, const ScatterEvent& event, const Facet& facet, Lobe lobe) {
+double specular_fraction(const ScatterModel& model, const ScatterEvent& event, const Facet& facet, Lobe lobe) {
   if (!specular_direction(event, facet.normal, lobe)) return 0.0;
-  return std::visit([&](const auto& m) { return m.specular_share(FacetFrame(facet).to_facet(event), facet, lobe); },
+  return std::visit([&](const auto& m) { return m.specular_fraction(FacetFrame(facet).to_facet(event), facet, lobe); },
                     model);
 }
 
-double mean_field_share(const ScatterModel& model, const ScatterEvent& event, Lobe lobe) {
+double mean_field_fraction(const ScatterModel& model, const ScatterEvent& event, Lobe lobe) {
   if (std::holds_alternative<Microfacet>(model)) return 0.0;
-  if (const auto* abg = std::get_if<Abg>(&model)) return abg->least_specular_share();
-  return specular_share(model, event, {}, lobe);
+  if (const auto* abg = std::get_if<Abg>(&model)) return abg->min_specular_fraction();
+  return specular_fraction(model, event, {}, lobe);
 }
 
 bool has_phases(const ScatterModel& model) {
@@ -159,7 +159,7 @@ double evaluate(const ScatterModel& model, const ScatterEvent& event, const Face
   if (!is_on_side(direction, lobe)) return 0.0;
   return std::visit(
       [&](const auto& m) {
-        const double unmasked = facet.is_tilted ? m.unmasked_share(direction) : 1.0;
+        const double unmasked = facet.is_tilted ? m.unmasked_fraction(direction) : 1.0;
         return unmasked * density(m, event, facet, lobe, direction);
       },
       model);

@@ -42,10 +42,10 @@ struct ScatterSplit {
 };
 
 /// Draws both the specular and the scattered light. This replaces sample() with equal expectation and lower variance.
-/// Returns nothing if one of the fractions is below `least_share`, and for the models abg and microfacet, because they
+/// Returns nothing if one of the fractions is below `min_fraction`, and for the models abg and microfacet, because they
 /// cannot compute the fractions of an event quickly.
 std::optional<ScatterSplit> sample_split(const ScatterModel& model, const ScatterEvent& event, const Facet& facet,
-                                         Lobe lobe, double least_share, RandomStream& random);
+                                         Lobe lobe, double min_fraction, RandomStream& random);
 
 /// Returns the model if it is a texture between dielectrics that uses first-order theory. For such a model, light that
 /// is diffracted once belongs to both lobes. Returns null for other models.
@@ -71,12 +71,12 @@ std::optional<ScatterSample> sample_diffracted_again(const HarveyShack& model, c
 
 /// Returns the fraction of a lobe's power that leaves in the facet's specular direction, without masking. Returns 0 if
 /// there is no such direction.
-double specular_share(const ScatterModel& model, const ScatterEvent& event, const Facet& facet, Lobe lobe);
+double specular_fraction(const ScatterModel& model, const ScatterEvent& event, const Facet& facet, Lobe lobe);
 
 /// Returns the fraction of a lobe's power in the mean field over all realisations of the texture: light that is
 /// specular relative to the mean surface. Tilted facets (microfacet) have less than 5e-5, which is treated as 0. For
 /// abg this is a lower bound, the power that its BSDF does not scatter.
-double mean_field_share(const ScatterModel& model, const ScatterEvent& event, Lobe lobe);
+double mean_field_fraction(const ScatterModel& model, const ScatterEvent& event, Lobe lobe);
 
 /// Returns true if a model determines the phase of light, so that fields can be added. This holds only for harvey_shack
 /// without a lay (equal correlation lengths along x and y). The measured scatter of abg and the slopes of microfacet

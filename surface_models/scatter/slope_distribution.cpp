@@ -48,11 +48,11 @@ Vec3 visible_ggx_normal(const Vec3& towards_light, double width, RandomStream& r
 
 }  // namespace
 
-void require_modelled_slope(double rms_slope, const char* what) {
-  if (rms_slope > kSlopeOfNoModel)
-    throw InputError(std::string("rms slope of the ") + what + " must be at most " + shortest(kSlopeOfNoModel) +
+void require_slope_in_range(double rms_slope, const char* what) {
+  if (rms_slope > kMaxModelledSlope)
+    throw InputError(std::string("rms slope of the ") + what + " must be at most " + shortest(kMaxModelledSlope) +
                      " because no scatter model is valid for steeper surfaces, got " +
-                     fixed_apart(rms_slope, kSlopeOfNoModel, 3));
+                     fixed_apart(rms_slope, kMaxModelledSlope, 3));
 }
 
 double waviness_rms_slope(double waviness_sq_nm, double waviness_length_um) {
@@ -74,7 +74,7 @@ double SlopeDistribution::normal_density_per_sr(const Vec3& normal) const {
   return peak / ((1.0 + scaled2) * (1.0 + scaled2));
 }
 
-double SlopeDistribution::visible_share(const Vec3& direction) const {
+double SlopeDistribution::visible_fraction(const Vec3& direction) const {
   const double tan = tangent(direction);
   if (tan * width_ == 0.0) return 1.0;
   const double a = 1.0 / (width_ * tan);
@@ -95,7 +95,7 @@ Vec3 SlopeDistribution::sample_visible_normal(const Vec3& towards_light, RandomS
 }
 
 double SlopeDistribution::visible_normal_pdf_per_sr(const Vec3& towards_light, const Vec3& normal) const {
-  return visible_share(towards_light) * std::max(0.0, towards_light.dot(normal)) * normal_density_per_sr(normal) /
+  return visible_fraction(towards_light) * std::max(0.0, towards_light.dot(normal)) * normal_density_per_sr(normal) /
          towards_light.z();
 }
 

@@ -15,10 +15,10 @@ enum class SlopeShape {
 
 /// Maximum rms slope without a warning. Light that hits the surface more than once is neglected. Its fraction
 /// increases with the square of the slope and is about a tenth at this value.
-inline constexpr double kLargestSlope = 0.3;
+inline constexpr double kMaxSlopeWithoutWarning = 0.3;
 /// Maximum areal rms slope, 45 degrees, for which there is a model. On steeper surfaces, most light hits the surface
 /// more than once.
-inline constexpr double kSlopeOfNoModel = 1.0;
+inline constexpr double kMaxModelledSlope = 1.0;
 
 /// Isotropic distribution of the slopes of a surface, with Smith's masking. Smith's masking assumes that heights and
 /// slopes of facets are independent (Walter, Marschner, Li, Torrance, Microfacet Models for Refraction through Rough
@@ -34,7 +34,7 @@ class SlopeDistribution {
   /// Returns the density of facets with `normal` (z > 0), per sr and per area of the mean surface: D of Walter et al.
   double normal_density_per_sr(const Vec3& normal) const;
   /// Returns the fraction of facets that are visible along `direction`, in either sense: Smith's G1.
-  double visible_share(const Vec3& direction) const;
+  double visible_fraction(const Vec3& direction) const;
   /// Draws the normal of a facet that is hit by light from `towards_light` (z > 0).
   Vec3 sample_visible_normal(const Vec3& towards_light, RandomStream& random) const;
   /// Returns the density of sample_visible_normal(), per sr of normals.
@@ -48,7 +48,7 @@ class SlopeDistribution {
 /// Checks that a slope is within the range of the models.
 /// \param what name of the texture for the message, such as "roughness"
 /// \throw InputError if the slope is too large
-void require_modelled_slope(double rms_slope, const char* what);
+void require_slope_in_range(double rms_slope, const char* what);
 
 /// Returns the areal rms slope of waves with one period in all directions: 2 pi Sq / L. Returns 0 if the height is 0.
 double waviness_rms_slope(double waviness_sq_nm, double waviness_length_um);

@@ -12,10 +12,10 @@ namespace retrace::surface_models {
 class Smooth {
  public:
   Facet sample_facet(const ScatterEvent&, RandomStream&) const { return {}; }
-  double specular_share(const ScatterEvent&, const Facet&, Lobe) const { return 1.0; }
+  double specular_fraction(const ScatterEvent&, const Facet&, Lobe) const { return 1.0; }
   std::optional<Vec2> sample_scattered(const ScatterEvent&, const Facet&, Lobe, RandomStream&) const { return {}; }
   double scattered_density(const ScatterEvent&, const Facet&, Lobe, const Vec2&) const { return 0.0; }
-  double unmasked_share(const Vec3&) const { return 1.0; }
+  double unmasked_fraction(const Vec3&) const { return 1.0; }
   Warnings warnings(double, double) const { return {}; }
 };
 

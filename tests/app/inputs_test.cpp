@@ -253,7 +253,7 @@ constexpr std::size_t kData = std::size_t{1} << 30;
 struct Endless {
   Arguments command;
   std::string file;
-  std::size_t most_bytes;
+  std::size_t max_bytes;
 };
 
 // The files are one byte longer than their limit. They are sparse and take no disk space.
@@ -291,12 +291,12 @@ TEST(Inputs, LongFilesAreRefusedWithTheirLimit) {
   }
   for (const Endless& c : cases) {
     folder.write(c.file, "");
-    fs::resize_file(folder.path() / c.file, c.most_bytes + 1);
+    fs::resize_file(folder.path() / c.file, c.max_bytes + 1);
     Arguments arguments = with(c.command, {"--quiet", "--json", "r.json"});
     const Outcome outcome = retrace(folder, arguments);
     refused_at(outcome);
     EXPECT_NE(outcome.err.find(c.file + ": "), std::string::npos) << c.command.front() << outcome.err;
-    EXPECT_NE(outcome.err.find(" " + std::to_string(c.most_bytes) + " "), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find(" " + std::to_string(c.max_bytes) + " "), std::string::npos) << outcome.err;
     EXPECT_FALSE(fs::exists(folder.path() / "r.json"));
     fs::remove(folder.path() / c.file);
     // A folder with the name of the file is also refused, like a file that is too long.

@@ -30,7 +30,7 @@ TEST(Estimate, IsThatOfTheNormalEquations) {
     const MatrixXd inverse = (all.transpose() * all).inverse();
     const VectorXd expected = inverse * all.transpose() * r;
     const LeastSquaresEstimate found = estimate(a, nuisance, r, 1e6);
-    EXPECT_EQ(found.told.cols(), 4);
+    EXPECT_EQ(found.observable.cols(), 4);
     EXPECT_LT((found.value - expected.head(4)).norm(), 1e-10);
     EXPECT_LT((found.covariance - inverse.topLeftCorner(4, 4)).norm(), 1e-9);
     EXPECT_LT((found.residual - (r - all * expected)).norm(), 1e-10);
@@ -48,15 +48,15 @@ TEST(Estimate, SaysWhatIsNotTold) {
   nuisance << 0, 0, 2, 2;
   const VectorXd r = a * VectorXd::LinSpaced(4, 3.0, 3.0) + 5.0 * nuisance.col(0);
   const LeastSquaresEstimate found = estimate(a, nuisance, r, 1e6);
-  EXPECT_EQ(found.told.cols(), 2);
-  EXPECT_FALSE(found.is_told(0));
-  EXPECT_FALSE(found.is_told(1));
-  EXPECT_FALSE(found.is_told(2));
-  EXPECT_TRUE(found.is_told(3));
+  EXPECT_EQ(found.observable.cols(), 2);
+  EXPECT_FALSE(found.is_observable(0));
+  EXPECT_FALSE(found.is_observable(1));
+  EXPECT_FALSE(found.is_observable(2));
+  EXPECT_TRUE(found.is_observable(3));
   EXPECT_NEAR(found.value[3], 3.0, 1e-10);
   EXPECT_NEAR(found.value[0], 3.0, 1e-10) << "the shortest: shared";
   EXPECT_NEAR(found.value[2], 0.0, 1e-10);
-  const MatrixXd words = reduced_combinations(found.untold);
+  const MatrixXd words = reduced_combinations(found.unobservable);
   ASSERT_EQ(words.cols(), 2);
   EXPECT_LT((a * words - nuisance * (nuisance.transpose() * a * words) / 8.0).norm(), 1e-12);
   for (Index k = 0; k < 2; ++k) EXPECT_NEAR(words.col(k).cwiseAbs().maxCoeff(), 1.0, 1e-12);
@@ -65,8 +65,8 @@ TEST(Estimate, SaysWhatIsNotTold) {
 TEST(Estimate, WhatIsTooUncertainIsNotTold) {
   const MatrixXd a = Eigen::Vector2d(1.0, 1e-3).asDiagonal();
   const LeastSquaresEstimate found = estimate(a, MatrixXd(2, 0), VectorXd::Ones(2), 500.0);
-  EXPECT_TRUE(found.is_told(0));
-  EXPECT_FALSE(found.is_told(1));
+  EXPECT_TRUE(found.is_observable(0));
+  EXPECT_FALSE(found.is_observable(1));
   EXPECT_EQ(found.value[1], 0.0);
 }
 

@@ -17,8 +17,8 @@ TEST(LinearProgramme, FindsTheOptimumAndItsPrices) {
   // Maximise 3 a + 5 b with a <= 4, 2 b <= 12 and 3 a + 2 b <= 18 (Hillier and Lieberman, Introduction to Operations
   // Research, section 3.1).
   LinearProgramme programme;
-  const std::size_t a = programme.add_column({.least = 0.0}, 3.0);
-  const std::size_t b = programme.add_column({.least = 0.0}, 5.0);
+  const std::size_t a = programme.add_column({.lower = 0.0}, 3.0);
+  const std::size_t b = programme.add_column({.lower = 0.0}, 5.0);
   programme.add_row({-kInfinity, 4.0}, {{a, 1.0}});
   programme.add_row({-kInfinity, 12.0}, {{b, 2.0}});
   programme.add_row({-kInfinity, 18.0}, {{a, 3.0}, {b, 2.0}});
@@ -37,9 +37,9 @@ TEST(LinearProgramme, SaysWhichRowsExcludeEachOther) {
   LinearProgramme programme;
   const std::size_t x = programme.add_column({0.0, 2.0}, 1.0);
   const std::size_t y = programme.add_column({0.0, 1.0}, 0.0);
-  programme.add_row({.least = 3.0}, {{x, 1.0}, {y, 1.0}});
-  programme.add_row({.least = 2.0}, {{x, 1.0}, {y, -1.0}});
-  programme.add_row({.least = -5.0}, {{x, 1.0}});
+  programme.add_row({.lower = 3.0}, {{x, 1.0}, {y, 1.0}});
+  programme.add_row({.lower = 2.0}, {{x, 1.0}, {y, -1.0}});
+  programme.add_row({.lower = -5.0}, {{x, 1.0}});
   const LinearOptimum optimum = solve(programme);
   ASSERT_EQ(optimum.kind, LinearOptimum::Kind::infeasible);
   // The sum of the rows times their Farkas multipliers requires more than the bounds of the columns allow.
@@ -54,8 +54,8 @@ TEST(LinearProgramme, SaysWhichRowsExcludeEachOther) {
 
 TEST(LinearProgramme, TellsTheUnboundedAndTheInterrupted) {
   LinearProgramme programme;
-  const std::size_t x = programme.add_column({.least = 0.0}, 1.0);
-  programme.add_row({.least = 1.0}, {{x, 1.0}});
+  const std::size_t x = programme.add_column({.lower = 0.0}, 1.0);
+  programme.add_row({.lower = 1.0}, {{x, 1.0}});
   EXPECT_EQ(solve(programme).kind, LinearOptimum::Kind::unbounded);
   Cancellation cancel;
   cancel.request();

@@ -164,8 +164,8 @@ TEST(Spread, OfFiveValues) {
   const Spread spread = spread_of({5.0, 1.0, 2.0, 4.0, 3.0}, 0.95);
   EXPECT_EQ(spread.mean, 3.0);
   EXPECT_NEAR(spread.deviation, std::sqrt(2.5), 1e-12);
-  EXPECT_EQ(spread.least, 1.0);
-  EXPECT_EQ(spread.most, 5.0);
+  EXPECT_EQ(spread.min, 1.0);
+  EXPECT_EQ(spread.max, 5.0);
   // According to tables, the 97.5 % quantile of Student's t distribution with four degrees of freedom is 2.7764.
   EXPECT_NEAR(spread.mean_interval.high - 3.0, 2.7764 * std::sqrt(2.5 / 5.0), 1e-4);
   EXPECT_NEAR(3.0 - spread.mean_interval.low, 2.7764 * std::sqrt(2.5 / 5.0), 1e-4);

@@ -126,7 +126,7 @@ TEST_F(AtomicFile, AReplacedFileKeepsItsMode) {
     fs::permissions(file, fs::perms(mode));
     write_file_atomically(file, "second");
     EXPECT_EQ(mode_of(file), mode);
-    GrowingFile growing(file);
+    AtomicFileWriter growing(file);
     growing.append("third");
     for (const auto& entry : fs::directory_iterator(folder_))
       EXPECT_EQ(mode_of(entry.path()) & ~mode, 0) << "the content is readable for others before it has its name";
@@ -165,9 +165,9 @@ TEST_F(AtomicFile, WritersOfOneFileDoNotMixAndTheLastOneWins) {
   // Processes in different containers may have the same process id. Two files that are open in this process simulate
   // this case.
   const fs::path file = folder_ / "a.txt";
-  GrowingFile first(file);
+  AtomicFileWriter first(file);
   first.append("first");
-  GrowingFile second(file);
+  AtomicFileWriter second(file);
   second.append("second, longer");
   write_file_atomically(file, "third");
   EXPECT_EQ(read_file(file), "third");
@@ -184,7 +184,7 @@ TEST_F(AtomicFile, WhatAKilledProcessLeftIsRemovedByTheNextRun) {
   for (int k = 0; k < 3; ++k) {
     const pid_t child = ::fork();
     if (child == 0) {
-      GrowingFile growing(file);
+      AtomicFileWriter growing(file);
       growing.append(std::string(1 << 20, 'x'));
       ::kill(::getpid(), SIGKILL);
     }
@@ -225,7 +225,7 @@ TEST_F(AtomicFile, AGrowingFileAppearsWhenItIsFinished) {
   const fs::path file = folder_ / "file";
   write_file_atomically(file, "before");
   {
-    GrowingFile growing(file);
+    AtomicFileWriter growing(file);
     growing.append("head");
     for (int k = 0; k < 100'000; ++k) growing.append("0123456789");
     growing.overwrite(0, "HE");
@@ -243,13 +243,13 @@ TEST_F(AtomicFile, AGrowingFileAppearsWhenItIsFinished) {
 TEST_F(AtomicFile, NothingIsLeftOfAGrowingFileThatIsNotFinished) {
   const fs::path file = folder_ / "file";
   write_file_atomically(file, "before");
-  GrowingFile(file).append(std::string(1 << 20, 'x'));
+  AtomicFileWriter(file).append(std::string(1 << 20, 'x'));
   EXPECT_EQ(read_file(file), "before");
   EXPECT_EQ(names(), std::set<std::string>{"file"});
-  EXPECT_THROW(GrowingFile("/dev/null"), OutputError);
-  EXPECT_THROW(GrowingFile(folder_ / "no" / "file"), OutputError);
+  EXPECT_THROW(AtomicFileWriter("/dev/null"), OutputError);
+  EXPECT_THROW(AtomicFileWriter(folder_ / "no" / "file"), OutputError);
   const FileSizeLimit limit(1000);
-  GrowingFile growing(folder_ / "full");
+  AtomicFileWriter growing(folder_ / "full");
   growing.append(std::string(2000, 'x'));
   EXPECT_THROW(growing.finish(), OutputError);
 }

@@ -16,7 +16,7 @@ using namespace std::string_literals;
 
 constexpr std::array<std::string_view, 3> kColumns = {"name", "size_mm", "kind"};
 constexpr std::array<std::string_view, 2> kKinds = {"round", "flat"};
-constexpr std::size_t kMostBytes = 200;
+constexpr std::size_t kMaxBytes = 200;
 const std::string kHead = "name,size_mm,kind\n";
 
 struct Item {
@@ -28,7 +28,7 @@ struct Item {
 
 std::vector<Item> items_of(std::string_view text) {
   std::vector<Item> items;
-  CsvReader table(text, "t.csv", kMostBytes, kColumns);
+  CsvReader table(text, "t.csv", kMaxBytes, kColumns);
   while (table.next())
     items.push_back({std::string(table[0]), table.number(1, {.low = 0.0, .low_included = false}),
                      table.one_of(2, kKinds), table.line()});
@@ -68,8 +68,8 @@ TEST(CsvReader, RefusesRaggedRowsAndTablesThatAreTooLong) {
   EXPECT_EQ(refused(kHead + "a,1,round,\n"), "t.csv:2");
   EXPECT_EQ(refused(kHead + "a\n"), "t.csv:2");
   EXPECT_EQ(refused(kHead), "t.csv");
-  EXPECT_EQ(refused(kHead + std::string(kMostBytes, '#')), "t.csv");
-  EXPECT_EQ(refused(kHead + "a,1,round\n" + std::string(kMostBytes - kHead.size() - 10, '#')), "accepted");
+  EXPECT_EQ(refused(kHead + std::string(kMaxBytes, '#')), "t.csv");
+  EXPECT_EQ(refused(kHead + "a,1,round\n" + std::string(kMaxBytes - kHead.size() - 10, '#')), "accepted");
 }
 
 TEST(CsvReader, RefusesWhatIsNoNumberOfTheRange) {
@@ -78,13 +78,13 @@ TEST(CsvReader, RefusesWhatIsNoNumberOfTheRange) {
   EXPECT_EQ(refused(kHead + "a,1\0,round\n"s), "t.csv:2: size_mm");
   EXPECT_EQ(refused(kHead + "a,1e999,round\n"), "t.csv:2: size_mm");
   EXPECT_EQ(refused(kHead + "a,1,square\n"), "t.csv:2: kind");
-  CsvReader table("x\n?\n", "t.csv", kMostBytes);
+  CsvReader table("x\n?\n", "t.csv", kMaxBytes);
   ASSERT_TRUE(table.next());
   EXPECT_THROW(table.number(0), InputError);
 }
 
 TEST(CsvReader, ColumnsOfOtherTablesAreFoundByTheirNames) {
-  CsvReader table("a,b,a\n1,,3\n", "t.csv", kMostBytes);
+  CsvReader table("a,b,a\n1,,3\n", "t.csv", kMaxBytes);
   EXPECT_EQ(table.find("b"), 1U);
   EXPECT_EQ(table.find("c"), std::nullopt);
   EXPECT_THROW(table.find("a"), InputError);
@@ -93,7 +93,7 @@ TEST(CsvReader, ColumnsOfOtherTablesAreFoundByTheirNames) {
   EXPECT_EQ(table.number_or_none(1), std::nullopt);
   EXPECT_FALSE(table.next());
   EXPECT_EQ(table.rows(), 1U);
-  EXPECT_THROW(CsvReader("# nothing\n", "t.csv", kMostBytes), InputError);
+  EXPECT_THROW(CsvReader("# nothing\n", "t.csv", kMaxBytes), InputError);
 }
 
 TEST(CsvWriter, QuotesAndLeavesOutAsSpreadsheetsDo) {

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/schema/conditions.h"
+#include "core/schema/json.h"
 #include "core/schema/json_schema.h"
 #include "core/schema/reader.h"
 #include "core/schema/writer.h"
@@ -42,7 +43,7 @@ constexpr const char* kFormer =
     "'least'}\n";
 
 Document read(const std::string& text, const std::vector<std::string>& overrides = {}) {
-  return read_document(kThing, text, "f.toml", kMostTextBytes, overrides);
+  return read_document(kThing, text, "f.toml", kMaxTextBytes, overrides);
 }
 
 std::vector<std::string> facts(const Document& document) {
@@ -91,7 +92,7 @@ TEST(FormerNames, KeepLinesInMessages) {
 }
 
 TEST(FormerNames, ArePathsOfTheCurrentNames) {
-  const std::vector<FormerName> names = former_names(kThing);
+  const std::vector<TomlRename> names = former_names(kThing);
   EXPECT_EQ(current_path("front.surface", names), "face.finish");
   EXPECT_EQ(current_path("face.surface", names), "face.finish");
   EXPECT_EQ(current_path("front", names), "face");

@@ -11,7 +11,7 @@
 namespace retrace::jets::jets_test {
 namespace {
 
-Series<double> line(double x, double slope, int order = kMostOrder) {
+Series<double> line(double x, double slope, int order = kMaxOrder) {
   return line_series(x, slope, order);
 }
 
@@ -33,7 +33,7 @@ TEST(Jet, IdentitiesHoldToEveryOrder) {
 TEST(Jet, ExponentialHasInverseFactorials) {
   const Series<double> e = exp(line(0.0, 1.0));
   double factorial = 1.0;
-  for (int k = 0; k <= kMostOrder; ++k) {
+  for (int k = 0; k <= kMaxOrder; ++k) {
     if (k > 0) factorial *= k;
     EXPECT_NEAR(e[k], 1.0 / factorial, 1e-16);
   }

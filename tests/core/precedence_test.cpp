@@ -24,13 +24,13 @@ constexpr Words kDye = {"dye"};
 constexpr Words kSize = {"size_mm"};
 constexpr Rule kPartRules[] = {
     Precedence{is("colour", kAny), kDye, "on the colour", "A part of any colour has no dye."},
-    Precedence{beside("length_mm"), kSize, "on the length", "A length takes precedence over the size.", true}};
+    Precedence{is_given("length_mm"), kSize, "on the length", "A length takes precedence over the size.", true}};
 constexpr Table kTables[] = {
     {.name = "part", .meaning = "A part.", .rows = kPartRows, .rules = kPartRules, .presence = Presence::list}};
 constexpr Format kThing = {"thing", "retrace.thing/1", "Thing", {"", "A thing.", {}, kTables}, true};
 
 Warnings warnings(const std::string& text, const std::vector<std::string>& overrides = {}) {
-  const Document document = read_document(kThing, text, "f.toml", kMostTextBytes, overrides);
+  const Document document = read_document(kThing, text, "f.toml", kMaxTextBytes, overrides);
   return superseded_keys(document);
 }
 

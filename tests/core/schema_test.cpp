@@ -76,7 +76,7 @@ constexpr Row kThingRows[] = {
      kOfCone},
     {"tip_um", Number{{.low = 0.0, .high = 1.0}}, 0.0, "Radius of the tip.", access<&Thing::tip_um>, kOfCone},
     {"tip_um", Number{{.low = 5.0}}, 7.0, "Radius of the ball.", access<&Thing::tip_um>, kOfBall},
-    {"count", Whole{{.low = 1.0, .high = 9.0}}, 3.0, "How many there are.", access<&Thing::count>},
+    {"count", Integer{{.low = 1.0, .high = 9.0}}, 3.0, "How many there are.", access<&Thing::count>},
     {"is_open", Flag{}, false, "Whether it is open.", access<&Thing::is_open>},
     {"place_mm", Numbers{2, {.high = 9.0}}, std::span<const double>(kOrigin), "Where it is.", access<&Thing::place_mm>},
     {"points_mm", NumberRows{2, {}, 2, 3, "points"}, Computed{"what the size gives"}, "Its corners.",

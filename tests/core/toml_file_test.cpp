@@ -24,7 +24,7 @@ TEST(TomlFile, HandsOutWhatIsThere) {
       "n = 3\nr = 1.5\nt = 'a'\nb = true\nl = [1, 2]\ns = ['x', 'y']\n[in.ner]\nk = 'two'\n"
       "[[row]]\nv = 1\n[[row]]\nv = 2\n",
       "f.toml");
-  EXPECT_EQ(root.whole("n", {}), 3);
+  EXPECT_EQ(root.integer("n", {}), 3);
   EXPECT_EQ(root.number("r"), 1.5);
   EXPECT_EQ(root.text("t"), "a");
   EXPECT_EQ(root.flag("b"), true);
@@ -49,7 +49,7 @@ TEST(TomlFile, RefusesWithFileLineAndKey) {
   EXPECT_EQ(refusal("", number), "f.toml: a");
   EXPECT_EQ(refusal("a = 1\nab = 2\n", number), "f.toml:2: ab");
   EXPECT_EQ(refusal("a = = 1\n", number), "f.toml:1");
-  EXPECT_EQ(refusal("[t]\n\nk = 2.5\n", [](TomlTable& t) { t.table("t").whole("k", {}); }), "f.toml:3: t.k");
+  EXPECT_EQ(refusal("[t]\n\nk = 2.5\n", [](TomlTable& t) { t.table("t").integer("k", {}); }), "f.toml:3: t.k");
   EXPECT_EQ(refusal("t = 1\n", [](TomlTable& t) { t.table("t"); }), "f.toml:1: t");
   EXPECT_EQ(refusal("l = [1]\n", [](TomlTable& t) { t.numbers("l", 3); }), "f.toml:1: l");
   EXPECT_EQ(refusal("[t]\nx = 1\n", [](TomlTable& t) { t.table("t"); }).substr(0, 24), "f.toml:2: t.x");

@@ -11,8 +11,8 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "fabrication/chisel/check/verification_model.h"
 #include "fabrication/chisel/check/verify.h"
-#include "fabrication/chisel/check/workpiece.h"
 #include "fabrication/chisel/plan/plan.h"
 #include "fabrication/job/v_tool.h"
 #include "fabrication/machine/io/machine_files.h"
@@ -41,7 +41,7 @@ class DexelFacet {
   /// \param low_mm lower bounds of the field, measured from the root: along the root, up the facet and along the normal
   /// \param high_mm upper bounds of the field
   /// \param lines number of lines along the longer side
-  DexelFacet(const Groove& groove, std::size_t facet, const Vec3& low_mm, const Vec3& high_mm, std::size_t lines)
+  DexelFacet(const Cavity& groove, std::size_t facet, const Vec3& low_mm, const Vec3& high_mm, std::size_t lines)
       : root_mm_(common(groove).root_mm),
         normal_(common(groove).facets[facet].normal),
         is_cube_(std::holds_alternative<CubeCavity>(groove)),
@@ -127,7 +127,7 @@ class DexelFacet {
 };
 
 /// Returns the maximum ratio of chip thickness to depth of cut, by the formulas of docs/theory/verification.md.
-double most_share(const Job& job) {
+double max_chip_ratio(const Job& job) {
   if (job.strategy == Strategy::dmc) {
     const Vec3 spine = v_tool_edges(job.tool).spine;
     return std::max({1.0, spine.z() / spine.x(), spine.z() / spine.y()});
@@ -141,8 +141,8 @@ double most_share(const Job& job) {
 double true_excess_um(const Job& job, const Machine& m, const std::string& text) {
   SweptVolumeSink moves(m);
   run_nc(parse_nc(text, "p.ngc", NcDialect::rs274ngc), moves);
-  const Workpiece3d workpiece = workpiece_of(job, m);
-  const Groove& groove = workpiece.grooves.front();
+  const VerificationModel workpiece = verification_model_of(job, m);
+  const Cavity& groove = workpiece.cavities.front();
   const ToolWedge wedge = wedge_of(job, m);
   const double length_mm = common(groove).facet_length_mm;
   const double allowance_um = job.strategy == Strategy::two_step || job.strategy == Strategy::dmc
@@ -169,7 +169,7 @@ double true_excess_um(const Job& job, const Machine& m, const std::string& text)
       const double left_um = 1e3 * chip.left_mm;
       const double depth_um =
           left_um < allowance_um - 0.1 ? job.process.finishing_depth_um : job.process.roughing_depth_um;
-      excess_um = std::max(excess_um, 1e3 * chip.length_mm - most_share(job) * depth_um);
+      excess_um = std::max(excess_um, 1e3 * chip.length_mm - max_chip_ratio(job) * depth_um);
     }
   return excess_um;
 }
@@ -260,12 +260,12 @@ TEST_P(ChipFaults, EveryLineWhoseLossOrChangeThickensAChipIsFound) {
 std::string changed_stage(const Plan& plan, std::size_t subroutine, std::optional<Nanometres> by_nm) {
   Program program = plan.programs.front();
   const auto is_of_it = [&](const Item& item) {
-    const auto* const visit = std::get_if<Visit>(&item);
+    const auto* const visit = std::get_if<CycleCall>(&item);
     return visit != nullptr && visit->subroutine == subroutine;
   };
   if (!by_nm) std::erase_if(program.items, is_of_it);
   for (Item& item : program.items)
-    if (is_of_it(item)) std::get<Visit>(item).start.z() += by_nm.value_or(0);
+    if (is_of_it(item)) std::get<CycleCall>(item).start.z() += by_nm.value_or(0);
   return nc_text(program, "rs274ngc");
 }
 

@@ -10,7 +10,7 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "fabrication/chisel/check/chip_check.h"
-#include "fabrication/chisel/check/simulation/convex_pieces.h"
+#include "fabrication/chisel/check/simulation/convex_polygons.h"
 #include "fabrication/chisel/check/verify.h"
 #include "fabrication/chisel/plan/plan.h"
 #include "fabrication/job/v_tool.h"
@@ -39,7 +39,7 @@ Verification verified(const Job& job, const Machine& m) {
   return verify_programs(job, m, programs, {}, {});
 }
 
-double area(const ConvexPiece& piece) {
+double area(const ConvexPolygon& piece) {
   double sum = 0.0;
   for (std::size_t i = 0; i < piece.size(); ++i) {
     const Vec2& a = piece[i];
@@ -49,7 +49,7 @@ double area(const ConvexPiece& piece) {
   return sum;
 }
 
-bool holds(const ConvexPiece& piece, const Vec2& p) {
+bool holds(const ConvexPolygon& piece, const Vec2& p) {
   bool inside = !piece.empty();
   for (std::size_t i = 0; i < piece.size(); ++i) {
     const Vec2 side = piece[(i + 1) % piece.size()] - piece[i];
@@ -58,7 +58,7 @@ bool holds(const ConvexPiece& piece, const Vec2& p) {
   return inside;
 }
 
-int count_of(const std::vector<ConvexPiece>& pieces, const Vec2& p) {
+int count_of(const std::vector<ConvexPolygon>& pieces, const Vec2& p) {
   return static_cast<int>(
       std::count_if(pieces.begin(), pieces.end(), [&](const auto& piece) { return holds(piece, p); }));
 }
@@ -67,7 +67,7 @@ int count_of(const std::vector<ConvexPiece>& pieces, const Vec2& p) {
 /// the body.
 RC_GTEST_PROP(Chips, TakingAwayKeepsTheArea, ()) {
   const auto number = [] { return 1e-4 * *rc::gen::inRange(-10000, 10001); };
-  std::vector<ConvexPiece> pieces = {{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
+  std::vector<ConvexPolygon> pieces = {{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
   double taken_area = 0.0;
   for (int cut = 0; cut < 6; ++cut) {
     std::vector<HalfPlane> body;
@@ -77,23 +77,23 @@ RC_GTEST_PROP(Chips, TakingAwayKeepsTheArea, ()) {
       const Vec2 outward(std::cos(angle), std::sin(angle));
       body.push_back({outward, outward.dot(middle) + 0.3 * std::abs(number())});
     }
-    const std::vector<ConvexPiece> before = pieces;
-    const std::vector<ConvexPiece> taken = take_away(pieces, body);
-    for (const ConvexPiece& piece : taken) taken_area += area(piece);
+    const std::vector<ConvexPolygon> before = pieces;
+    const std::vector<ConvexPolygon> taken = subtract(pieces, body);
+    for (const ConvexPolygon& piece : taken) taken_area += area(piece);
     for (int k = 0; k < 20; ++k) {
       const Vec2 p(number(), number());
       const double nearest = std::abs(std::max_element(body.begin(), body.end(), [&](const auto& a, const auto& b) {
-                                        return a.over_mm(p) < b.over_mm(p);
-                                      })->over_mm(p));
+                                        return a.signed_distance_mm(p) < b.signed_distance_mm(p);
+                                      })->signed_distance_mm(p));
       if (nearest < 1e-7 || count_of(before, p) == 0) continue;
       const bool in_body =
-          std::all_of(body.begin(), body.end(), [&](const auto& side) { return side.over_mm(p) < 0.0; });
+          std::all_of(body.begin(), body.end(), [&](const auto& side) { return side.signed_distance_mm(p) < 0.0; });
       RC_ASSERT(count_of(in_body ? taken : pieces, p) >= 1);
       RC_ASSERT(count_of(in_body ? pieces : taken, p) == 0);
     }
   }
   double left_area = 0.0;
-  for (const ConvexPiece& piece : pieces) left_area += area(piece);
+  for (const ConvexPolygon& piece : pieces) left_area += area(piece);
   RC_ASSERT(std::abs(left_area + taken_area - 4.0) < 1e-7);
 }
 
@@ -168,14 +168,14 @@ RC_GTEST_PROP(Chips, RightProgramsOfAnyPrismsPass, ()) {
   const Job job = any_prisms();
   const Machine m = machine(*rc::gen::element<std::string>("ideal", "paper", "thesis"));
   const Verification v = verified(job, m);
-  RC_TAG(v.chip_share_max > 0.99 ? "at the limit" : "below it");
+  RC_TAG(v.chip_ratio_max > 0.99 ? "at the limit" : "below it");
   if (!v.passes())
     RC_FAIL(fmt::format("apex {} clearance {} wedge {} radius {} width {} strategy {} d {} f {} x {} machine {}\n{}",
                         prism_of(job).apex_angle_deg, job.tool.clearance_deg, job.tool.wedge_deg,
                         job.tool.edge_radius_um, job.tool.width_mm, static_cast<int>(job.strategy),
                         job.process.roughing_depth_um, job.process.finishing_cuts, job.process.finishing_depth_um,
                         m.name, listed(v)));
-  RC_ASSERT(v.chip_share_max <= 1.0 + 1e-9);
+  RC_ASSERT(v.chip_ratio_max <= 1.0 + 1e-9);
 }
 
 /// Correct programs pass on blanks with curved or inclined faces. If the axes of the elements are parallel, such a
@@ -213,7 +213,7 @@ RC_GTEST_PROP(Chips, RightProgramsOfAnyCubesPass, ()) {
   job.tool.wedge_deg = *rc::gen::inRange(60, 67);
   const Verification v = verified(job, machine("ideal-dmc"));
   if (!v.passes()) RC_FAIL(listed(v));
-  RC_ASSERT(v.chip_share_max <= 1.0 + 1e-9);
+  RC_ASSERT(v.chip_ratio_max <= 1.0 + 1e-9);
 }
 
 }  // namespace

@@ -213,7 +213,7 @@ struct SweptVolumeSink : NcSink {
     cut.sweeps.push_back(sweep_of(machine_point(machine_of, m.from), machine_point(machine_of, m.to),
                                   static_cast<std::uint32_t>(cut.poses.size() - 1)));
   }
-  void dwell(double, const NcPlace&, const AxisPositions&) override {}
+  void dwell(double, const NcLocation&, const AxisPositions&) override {}
   const Machine& machine_of;
   Cut cut;
 };
@@ -267,7 +267,7 @@ TEST(Cutting, TheErrorFieldShowsFaultsWhereTheyAre) {
   // 0.
   for (Program& program : programs)
     for (Item& item : program.items)
-      if (auto* visit = std::get_if<Visit>(&item))
+      if (auto* visit = std::get_if<CycleCall>(&item))
         if (visit->element == 1) visit->start.y() += 200;
   const ErrorField wrong = field_of();
   double inside_nm = 0.0;

@@ -48,7 +48,8 @@ RotaryAxis rotary_axis(const Vec3& near) {
           sourced(real(1e-3, 1e6))};
 }
 MachineBody body() {
-  MachineBody result = {some_text(), *rc::gen::element(Carrier::workpiece, Carrier::cradle, Carrier::tool), {}};
+  MachineBody result = {
+      some_text(), *rc::gen::element(KinematicLink::workpiece, KinematicLink::cradle, KinematicLink::tool), {}};
   result.points_mm = sourced<std::vector<Vec3>>(
       {Vec3(real(-1e3, 0), 0, 0), Vec3(1, real(-1, 1), 0), Vec3(0, 1, 0), Vec3(0, 0, real(1, 1e4))});
   return result;
@@ -65,7 +66,7 @@ Machine machine() {
   m.c = rotary_axis({0, 0, 1});
   if (*rc::gen::arbitrary<bool>()) {
     m.mount.offset_mm = sourced<Vec3>(Vec3(real(-10, 10), real(-1, 1), 0));
-    m.mount.turn_deg = sourced<Vec3>(Vec3(real(-5, 5), 0, real(-1, 1)));
+    m.mount.rotation_deg = sourced<Vec3>(Vec3(real(-5, 5), 0, real(-1, 1)));
   }
   for (int k = *rc::gen::inRange(0, 3); k > 0; --k) m.bodies.push_back(body());
   return m;
@@ -84,9 +85,9 @@ bool same(const RotaryAxis& a, const RotaryAxis& b) {
 bool same(const Machine& a, const Machine& b) {
   bool is_same = a.name == b.name && a.title == b.title && a.tilt == b.tilt && same(a.x, b.x) && same(a.y, b.y) &&
                  same(a.z, b.z) && same(a.a, b.a) && same(a.c, b.c) && same(a.mount.offset_mm, b.mount.offset_mm) &&
-                 same(a.mount.turn_deg, b.mount.turn_deg) && a.bodies.size() == b.bodies.size();
+                 same(a.mount.rotation_deg, b.mount.rotation_deg) && a.bodies.size() == b.bodies.size();
   for (std::size_t i = 0; is_same && i < a.bodies.size(); ++i)
-    is_same = a.bodies[i].name == b.bodies[i].name && a.bodies[i].carrier == b.bodies[i].carrier &&
+    is_same = a.bodies[i].name == b.bodies[i].name && a.bodies[i].link == b.bodies[i].link &&
               same(a.bodies[i].points_mm, b.bodies[i].points_mm);
   return is_same;
 }
@@ -120,9 +121,9 @@ RC_GTEST_PROP(ProcessFile, ReadsBackToTheSameProcess, ()) {
   p.finishing_cuts = *rc::gen::inRange(1, 1001);
   p.plough_length_mm = real(1.0, 100.0);
   p.dwell_s = real(0.0, 60.0);
-  p.roughing_feed_mm_per_min = real(kLeastFeedMmPerMin, 1e5);
-  p.finishing_feed_mm_per_min = real(kLeastFeedMmPerMin, 1e5);
-  p.retract_feed_mm_per_min = real(kLeastFeedMmPerMin, 1e5);
+  p.roughing_feed_mm_per_min = real(kMinFeedMmPerMin, 1e5);
+  p.finishing_feed_mm_per_min = real(kMinFeedMmPerMin, 1e5);
+  p.retract_feed_mm_per_min = real(kMinFeedMmPerMin, 1e5);
   p.shortest_plough = *rc::gen::arbitrary<bool>();
   p.plough_lift_um = real(0.0, 1000.0);
   p.slow_retract_um = real(0.0, 1000.0);

@@ -146,7 +146,7 @@ RC_GTEST_PROP(JobFile, ReadsBackToTheSameJob, ()) {
   if (*rc::gen::arbitrary<bool>()) {
     job.tool.edge_life_mm = real(1.0, 1e6);
     job.tool.next_edge = *rc::gen::element(NextEdge::stop, NextEdge::program);
-    job.process.least_chip_um = real(0.01, 0.5);
+    job.process.min_chip_um = real(0.01, 0.5);
     job.process.stop_every_min = real(1.0, 600.0);
     job.process.stop_before_finishing = job.strategy == Strategy::two_step;
   }
@@ -235,7 +235,7 @@ TEST(JobFile, BasesReadBackEqual) {
     const std::string again = job_text(job);
     EXPECT_NE(again.find(std::string("\n[substrate]\n") + substrate), std::string::npos) << again;
     EXPECT_EQ(job_text(parse_job(again, "j.toml")), again);
-    EXPECT_EQ(cut_elements(job).front().foot_mm, cut_elements(parse_job(again, "j.toml")).front().foot_mm);
+    EXPECT_EQ(cut_elements(job).front().origin_mm, cut_elements(parse_job(again, "j.toml")).front().origin_mm);
   }
 }
 

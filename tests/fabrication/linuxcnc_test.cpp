@@ -47,7 +47,7 @@ void expect_planned(const Plan& plan, const std::string& what) {
     ASSERT_EQ(moves.size(), planned.size());
     constexpr double kPrinted = 1e-4;  // the interpreter prints four decimals
     for (std::size_t k = 0; k < moves.size(); ++k) {
-      const Words& to = planned[k].at;
+      const AxisWords& to = planned[k].at;
       ASSERT_EQ(moves[k].rapid, planned[k].is_rapid()) << "move " << k;
       // After a stop, the program does not know the positions of the axes. The interpreter always knows them. Axes that
       // are unknown to the program are therefore not compared.
@@ -273,7 +273,7 @@ TEST(Dialects, WriteNumbersInFixedPoint) {
   Move turn;
   turn.to[kTilt] = -1;
   turn.to[kC] = 450000000;
-  program.items = {up, turn, Visit{3, 0, {-123, 1000000000, 7}}};
+  program.items = {up, turn, CycleCall{3, 0, {-123, 1000000000, 7}}};
   const std::string text = nc_text(program, "rs274ngc");
   EXPECT_NE(text.find("G1 Y-0.000001 Z2.000000 F12.500\n"), std::string::npos) << text;
   EXPECT_NE(text.find("G0 A-0.0000001 C45.0000000\n"), std::string::npos) << text;

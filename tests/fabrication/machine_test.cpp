@@ -51,7 +51,7 @@ RC_GTEST_PROP(Machine, ForwardUndoesInverse, ()) {
   machine.c.sign.value = *rc::gen::element(1.0, -1.0);
   machine.y.direction.value = Vec3(1e-3, 1, -2e-3).normalized();
   machine.mount.offset_mm.value = point_within(1);
-  machine.mount.turn_deg.value = point_within(1);
+  machine.mount.rotation_deg.value = point_within(1);
   const Vec3 point = point_within(100);
   const AxisPositions axes = inverse(machine, point, any_pose());
   RC_ASSERT((forward(machine, axes).reference_mm - point).norm() < 1e-12);
@@ -65,7 +65,7 @@ RC_GTEST_PROP(Machine, SolvedPoseStandsTheFacet, ()) {
   machine.c.direction.value = (Vec3(0, 0, 1) + 1e-2 * point_within(1)).normalized();
   machine.a.sign.value = *rc::gen::element(1.0, -1.0);
   machine.c.sign.value = *rc::gen::element(1.0, -1.0);
-  machine.mount.turn_deg.value = point_within(0.5);
+  machine.mount.rotation_deg.value = point_within(0.5);
   const double half_apex = (30.0 + 1e-4 * *rc::gen::inRange(0, 300000)) * std::numbers::pi / 180.0;
   const double azimuth = 1e-6 * *rc::gen::inRange(0, 6283185);
   const Vec3 root(std::cos(azimuth), std::sin(azimuth), 0);
@@ -74,7 +74,7 @@ RC_GTEST_PROP(Machine, SolvedPoseStandsTheFacet, ()) {
                            -machine.c.sign.value * azimuth * 180.0 / std::numbers::pi};
   const PlungePose solved = solve_plunge_pose(machine, normal, root, near);
   const RigidMotion motion = machine_from_workpiece(machine, solved.pose);
-  const Vec3 edge = tool_turn(machine) * Vec3(1, 0, 0);
+  const Vec3 edge = tool_rotation(machine) * Vec3(1, 0, 0);
   const Vec3 plunged = edge.cross(Vec3(0, 0, 1)).normalized();
   RC_ASSERT((motion.direction(normal) - plunged).norm() < 1e-14);
   // The root remains in the plane of the facet. Its rotation is measured from the projection of the tool's edge onto
@@ -219,7 +219,7 @@ TEST(MachineFile, BodiesAreBoxesOrHulls) {
   const Machine m = parse_machine(text, "m.toml");
   ASSERT_EQ(m.bodies.back().points_mm.value.size(), 4U);
   EXPECT_EQ(m.bodies.back().points_mm.value[3], Vec3(0, 0, 2.5));
-  EXPECT_EQ(m.bodies.back().carrier, Carrier::cradle);
+  EXPECT_EQ(m.bodies.back().link, KinematicLink::cradle);
 }
 
 TEST(MachineFile, UnknownKeysAreRefused) {

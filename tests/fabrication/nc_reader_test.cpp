@@ -116,11 +116,11 @@ TEST(NcReader, OneProgramInEveryLanguage) {
 
 TEST(NcReader, MovesKnowTheirLineAndTheCallThatLedThere) {
   const Record record = record_of(sample(NcDialect::rs274ngc), NcDialect::rs274ngc);
-  EXPECT_EQ(record.motions[4].place.line, 5);
-  EXPECT_EQ(record.motions[4].place.call_line, 19);
-  EXPECT_EQ(record.motions[10].place.call_line, 23);
-  EXPECT_EQ(record.motions[0].place.line, 14);
-  EXPECT_EQ(record.motions[0].place.call_line, 0);
+  EXPECT_EQ(record.motions[4].location.line, 5);
+  EXPECT_EQ(record.motions[4].location.call_line, 19);
+  EXPECT_EQ(record.motions[10].location.call_line, 23);
+  EXPECT_EQ(record.motions[0].location.line, 14);
+  EXPECT_EQ(record.motions[0].location.call_line, 0);
 }
 
 /// One move of a random program.
@@ -286,7 +286,7 @@ TEST(NcReader, FeedsOfAllAxesSayTimes) {
 
 struct NoSink : NcSink {
   void motion(const NcMotion&, const NcSettings&) override {}
-  void dwell(double, const NcPlace&, const AxisPositions&) override {}
+  void dwell(double, const NcLocation&, const AxisPositions&) override {}
 };
 
 NcSettings settings_after(const std::string& text, NcDialect dialect, const NcTexts& spindle = {}) {

@@ -13,14 +13,14 @@ namespace retrace::fabrication::test {
 struct Record : NcSink {
   struct Dwell {
     double seconds = 0.0;
-    NcPlace place;
+    NcLocation place;
   };
 
   void motion(const NcMotion& motion, const NcSettings& now) override {
     motions.push_back(motion);
     settings = now;
   }
-  void dwell(double seconds, const NcPlace& place, const AxisPositions&) override {
+  void dwell(double seconds, const NcLocation& place, const AxisPositions&) override {
     dwells.push_back({seconds, place});
   }
 

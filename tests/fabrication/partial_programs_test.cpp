@@ -66,7 +66,7 @@ class PartialPrograms : public ::testing::TestWithParam<NcDialect> {
   }
   Verification verified(const Case& c, const std::vector<NcProgram>& programs, std::size_t standing = 0) const {
     VerifyOptions options;
-    options.standing = standing;
+    options.unchecked_programs = standing;
     return verify_programs(c.job, machine_of(c), programs, options, {});
   }
 };
@@ -108,7 +108,7 @@ TEST_P(PartialPrograms, AProgramGoesOnWhereAnotherWasStopped) {
       const Plan rest = make_plan(c.job, machine_of(c), options);
       std::vector<std::int32_t> visited;
       for (const Item& item : rest.programs.front().items)
-        if (const auto* const visit = std::get_if<Visit>(&item)) visited.push_back(visit->element);
+        if (const auto* const visit = std::get_if<CycleCall>(&item)) visited.push_back(visit->element);
       options.from_element = visited[1];
       const std::string next = texts(c, options).front();
       // The first item of the next program must be in the first program, after the line at which it stopped.
@@ -116,7 +116,7 @@ TEST_P(PartialPrograms, AProgramGoesOnWhereAnotherWasStopped) {
       for (std::size_t k = 0; k < stage; ++k)
         passed += static_cast<std::size_t>(std::count_if(whole.programs.front().items.begin(),
                                                          whole.programs.front().items.end(), [&](const Item& item) {
-                                                           const auto* const visit = std::get_if<Visit>(&item);
+                                                           const auto* const visit = std::get_if<CycleCall>(&item);
                                                            return visit != nullptr && visit->element == visited[0] &&
                                                                   visit->subroutine == whole.stages[k].subroutine;
                                                          }));

@@ -47,12 +47,12 @@ Verification verified(const Job& job, const Machine& machine, const Program& pro
 std::vector<std::size_t> visits_of(const Program& program) {
   std::vector<std::size_t> visits;
   for (std::size_t i = 0; i < program.items.size(); ++i)
-    if (std::holds_alternative<Visit>(program.items[i])) visits.push_back(i);
+    if (std::holds_alternative<CycleCall>(program.items[i])) visits.push_back(i);
   return visits;
 }
 
-const Visit& visit_at(const Program& program, std::size_t item) {
-  return std::get<Visit>(program.items[item]);
+const CycleCall& visit_at(const Program& program, std::size_t item) {
+  return std::get<CycleCall>(program.items[item]);
 }
 
 RC_GTEST_PROP(Passes, AMissingPassAndAPassThatIsTooHighAreFound, ()) {
@@ -76,7 +76,7 @@ RC_GTEST_PROP(Passes, AMissingPassAndAPassThatIsTooHighAreFound, ()) {
   // Raise each visit of the last cycle, which forms the final surface.
   for (std::size_t k = visits.size() - passes; k < visits.size(); ++k) {
     Program wrong = right;
-    std::get<Visit>(wrong.items[visits[k]]).start.z() += 1000;
+    std::get<CycleCall>(wrong.items[visits[k]]).start.z() += 1000;
     RC_LOG() << "with visit " << k << " raised by 1 um\n";
     RC_ASSERT(!verified(job, machine, wrong).passes());
   }
@@ -93,7 +93,7 @@ TEST(Passes, AnElementThatIsTooDeepOrTooHighIsFoundBeyondTheTolerance) {
   for (const double tolerances : {-1.5, -0.5, 0.5, 1.5}) {
     Program moved = right;
     for (const std::size_t visit : visits_of(right))
-      std::get<Visit>(moved.items[visit]).start.z() += std::llround(tolerances * tolerance_nm * std::sqrt(2.0));
+      std::get<CycleCall>(moved.items[visit]).start.z() += std::llround(tolerances * tolerance_nm * std::sqrt(2.0));
     const Verification v = verified(job, machine, moved);
     const std::string kind = tolerances < 0.0 ? "gouge" : "excess";
     const bool is_found = std::ranges::any_of(v.findings, [&](const Finding& f) { return f.kind == kind; });
@@ -114,7 +114,7 @@ TEST(Passes, TheVolumeOfAMissingPassIsThatOfItsPrism) {
   for (int pass = 1; pass <= 3; ++pass) {
     Program wrong = right;
     std::erase_if(wrong.items, [&](const Item& item) {
-      const auto* const visit = std::get_if<Visit>(&item);
+      const auto* const visit = std::get_if<CycleCall>(&item);
       return visit != nullptr && visit->pass == pass;
     });
     const double removed_mm3 = verified(job, machine, wrong).removed_volume_mm3;

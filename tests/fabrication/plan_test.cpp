@@ -42,7 +42,7 @@ Job job_of(double base_mm, double depth_um, Strategy strategy) {
   return job;
 }
 
-AxisPositions axes_of(const Words& p) {
+AxisPositions axes_of(const AxisWords& p) {
   return {millimetres(*p[kX]), millimetres(*p[kY]), millimetres(*p[kZ]), degrees(*p[kTilt]), degrees(*p[kC])};
 }
 
@@ -53,11 +53,11 @@ std::vector<PlannedMove> moves_of(const Plan& plan) {
   return moves;
 }
 
-std::vector<Visit> visits_of(const Plan& plan) {
-  std::vector<Visit> visits;
+std::vector<CycleCall> visits_of(const Plan& plan) {
+  std::vector<CycleCall> visits;
   for (const Program& program : plan.programs)
     for (const Item& item : program.items)
-      if (const auto* visit = std::get_if<Visit>(&item)) visits.push_back(*visit);
+      if (const auto* visit = std::get_if<CycleCall>(&item)) visits.push_back(*visit);
   return visits;
 }
 
@@ -156,7 +156,7 @@ double distance_nm(const Job& job, const CutElement& element, int facet, const V
 }
 
 /// Returns both ends of the tool's edge in the workpiece frame at the given axis words.
-std::array<Vec3, 2> edge_ends(const Job& job, const Machine& m, const Words& at) {
+std::array<Vec3, 2> edge_ends(const Job& job, const Machine& m, const AxisWords& at) {
   const ToolPose tool = forward(m, axes_of(at));
   const Vec3 half = tool.workpiece_from_machine * Vec3(0.5 * job.tool.width_mm, 0.0, 0.0);
   return {Vec3(tool.reference_mm - half), Vec3(tool.reference_mm + half)};
@@ -289,7 +289,7 @@ TEST(Order, TravelBetweenElementsIsShort) {
     double travel_mm = 0.0;
     int lines = 0;
     std::optional<geometry::Vec2> last;
-    for (const Visit& visit : visits_of(plan)) {
+    for (const CycleCall& visit : visits_of(plan)) {
       const geometry::Vec2& at = plan.elements[static_cast<std::size_t>(visit.element)].centre_mm;
       if (last) travel_mm += (at - *last).norm();
       last = at;
@@ -370,7 +370,7 @@ TEST(Time, MovesSettle) {
 }
 
 /// Returns the height of the tool reference point above the face of the blank, in mm.
-double height_mm(const Machine& m, const Words& at) {
+double height_mm(const Machine& m, const AxisWords& at) {
   return forward(m, axes_of(at)).reference_mm.z();
 }
 
@@ -384,9 +384,9 @@ RC_GTEST_PROP(Moves, AreSafe, ()) {
   job.tool.edge_radius_um = *rc::gen::element(0.0, 0.2, 2.0);
   const Machine m = machine(*rc::gen::elementOf(kMachines));
   const Plan plan = make_plan(job, m);
-  Words at{};
+  AxisWords at{};
   for (const PlannedMove& move : moves_of(plan)) {
-    const Words& to = move.at;
+    const AxisWords& to = move.at;
     if (move.is_rotary()) {
       RC_ASSERT(at[kZ] >= std::llround(plan.safe_z_mm * 1e6));
     } else if (move.is_rapid() && at[kZ] && at[kX] && to[kX]) {
@@ -409,7 +409,7 @@ RC_GTEST_PROP(Positions, DoNotDrift, ()) {
   Job job = square_job(*rc::gen::inRange(2, 9), Arrangement::offset);
   const Machine m = machine(*rc::gen::elementOf(kMachines));
   const Plan plan = make_plan(job, m);
-  for (const Visit& visit : visits_of(plan)) {
+  for (const CycleCall& visit : visits_of(plan)) {
     const Stage& stage = plan.stages[0].subroutine == visit.subroutine
                              ? plan.stages[0]
                              : *std::find_if(plan.stages.begin(), plan.stages.end(),
@@ -419,37 +419,37 @@ RC_GTEST_PROP(Positions, DoNotDrift, ()) {
     const AxisPositions root = inverse(m, Vec3(centre.x(), centre.y(), -pose.section.depth_mm), pose.rounded);
     // The start of a routine relative to its element is equal for all elements, except for the rounding errors of two
     // positions.
-    const Visit first = visits_of(plan).front();
+    const CycleCall first = visits_of(plan).front();
     if (visit.subroutine != first.subroutine) continue;
     const geometry::Vec2 centre0 = plan.elements[static_cast<std::size_t>(first.element)].centre_mm;
     const AxisPositions root0 = inverse(m, Vec3(centre0.x(), centre0.y(), -pose.section.depth_mm), pose.rounded);
-    const Vec3 moved = millimetres(Place(visit.start - first.start));
+    const Vec3 moved = millimetres(LinearPosition(visit.start - first.start));
     const Vec3 wanted(root.x_mm - root0.x_mm, root.y_mm - root0.y_mm, root.z_mm - root0.z_mm);
     RC_ASSERT((moved - wanted).cwiseAbs().maxCoeff() < 1.01e-6);
   }
 }
 
-bool same_visit(const Visit& a, const Visit& b) {
+bool same_visit(const CycleCall& a, const CycleCall& b) {
   return a.element == b.element && a.subroutine == b.subroutine && a.start == b.start;
 }
 
 TEST(LongJobs, PartsAddUpToTheWhole) {
   const Job job = square_job(6);
   const Machine m = machine("paper");
-  const std::vector<Visit> whole = visits_of(make_plan(job, m));
+  const std::vector<CycleCall> whole = visits_of(make_plan(job, m));
   PlanOptions hours;
   hours.split_hours = 0.1;
   const Plan split = make_plan(job, m, hours);
   EXPECT_GT(split.programs.size(), 2U);
   for (const double seconds : split.program_times_s) EXPECT_LE(seconds, 360.0);
-  const std::vector<Visit> parts = visits_of(split);
+  const std::vector<CycleCall> parts = visits_of(split);
   ASSERT_EQ(parts.size(), whole.size());
   EXPECT_TRUE(std::equal(parts.begin(), parts.end(), whole.begin(), same_visit));
 
   PlanOptions rest;
   rest.phase = "finishing-1-facet-2+";
   rest.from_element = 7;
-  const std::vector<Visit> tail = visits_of(make_plan(job, m, rest));
+  const std::vector<CycleCall> tail = visits_of(make_plan(job, m, rest));
   ASSERT_LT(tail.size(), whole.size());
   EXPECT_EQ(tail.front().element, 7);
   EXPECT_TRUE(std::equal(tail.rbegin(), tail.rend(), whole.rbegin(), same_visit));
@@ -470,7 +470,7 @@ TEST(LongJobs, StopsComeAsAsked) {
   int visits = 0;
   int stops = 0;
   for (const Item& item : plan.programs.front().items) {
-    if (std::holds_alternative<Visit>(item)) ++visits;
+    if (std::holds_alternative<CycleCall>(item)) ++visits;
     if (!std::holds_alternative<OptionalStop>(item)) continue;
     ++stops;
     EXPECT_EQ(visits % 10, 0);

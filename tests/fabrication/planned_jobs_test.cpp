@@ -54,7 +54,7 @@ std::vector<Program> raised(std::vector<Program> programs, std::int32_t element,
   int moved = 0;
   for (Program& program : programs)
     for (Item& item : program.items)
-      if (auto* visit = std::get_if<Visit>(&item))
+      if (auto* visit = std::get_if<CycleCall>(&item))
         if (visit->element == element && program.subroutines[visit->subroutine].title.starts_with(title)) {
           visit->start.z() += by_nm;
           ++moved;

@@ -10,8 +10,8 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "fabrication/chisel/check/verification_model.h"
 #include "fabrication/chisel/check/verify.h"
-#include "fabrication/chisel/check/workpiece.h"
 #include "fabrication/chisel/plan/plan.h"
 #include "fabrication/machine/edge_cut.h"
 #include "fabrication/machine/io/machine_files.h"
@@ -45,7 +45,7 @@ Verification verified(const Job& job, const Machine& m, Nanometres along_x_nm = 
   std::vector<NcProgram> programs;
   for (Program& program : make_plan(job, m).programs) {
     for (Item& item : program.items)
-      if (auto* const visit = std::get_if<Visit>(&item)) visit->start.x() += along_x_nm;
+      if (auto* const visit = std::get_if<CycleCall>(&item)) visit->start.x() += along_x_nm;
     programs.push_back(parse_nc(nc_text(program, "rs274ngc"), "p.ngc", NcDialect::rs274ngc));
   }
   return verify_programs(job, m, programs, {}, {});
@@ -61,7 +61,7 @@ Job prism(Strategy strategy) {
 struct Lean {
   const char* key;
   Strategy strategy;
-  double least_share;  ///< minimum ratio of the simulated to the predicted cut into a wall
+  double min_ratio;  ///< minimum ratio of the simulated to the predicted cut into a wall
 };
 
 /// If a slide or the edge is tilted, the tool cuts into a wall at one end of its edge. The depth of this cut is the
@@ -177,7 +177,7 @@ TEST(RandomMachines, ATurnedToolCutsWhereItWasTouchedOff) {
   std::uniform_real_distribution<double> share(-1.0, 1.0);
   for (int k = 0; k < 100; ++k) {
     Machine m = any_machine(bits, "ideal", 2000.0);
-    m.mount.turn_deg.value = Vec3(3.0 * share(bits), share(bits), share(bits));
+    m.mount.rotation_deg.value = Vec3(3.0 * share(bits), share(bits), share(bits));
     Tool tool;
     tool.width_mm = 0.5;
     tool.edge_radius_um = 5.0 + 4.0 * share(bits);
@@ -200,7 +200,7 @@ TEST(RandomMachines, ATurnAboutTheEdgeMovesNoFacet) {
   for (const double turn_deg : {-1.0, 1.0})
     for (const double apex_deg : {80.0, 90.0, 100.0}) {
       Machine m = machine("ideal");
-      m.mount.turn_deg.value = Vec3(turn_deg, 0.0, 0.0);
+      m.mount.rotation_deg.value = Vec3(turn_deg, 0.0, 0.0);
       Job job = prism(Strategy::two_step);
       prism_of(job).apex_angle_deg = apex_deg;
       job.tool.edge_radius_um = 5.0;

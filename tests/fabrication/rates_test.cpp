@@ -291,11 +291,11 @@ class TimeSink : public NcSink {
     if (moving_s > 0.0) moves_s += moving_s + machine_.settling_s.value;
     known_ = static_cast<std::uint8_t>(known_ | motion.absolute | motion.shortest);
   }
-  void dwell(double seconds, const NcPlace&, const AxisPositions&) override {
+  void dwell(double seconds, const NcLocation&, const AxisPositions&) override {
     time.dwell_s += seconds;
     moves_s += seconds;
   }
-  void stop(NcStop kind, const NcSettings&, const NcPlace&) override {
+  void stop(NcStop kind, const NcSettings&, const NcLocation&) override {
     if (kind == NcStop::always) known_ = 0;
   }
 

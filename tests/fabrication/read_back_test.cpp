@@ -62,7 +62,7 @@ ReadBack read_back(const Program& program, NcDialect dialect) {
     const NcMotion& read = record.motions[i];
     require((read.move == NcMove::rapid) == planned[i].is_rapid(), "rapid and feed are mixed up");
     require(std::abs(read.feed_mm_per_min - planned[i].move.feed_mm_per_min) < 1e-9, "a feed differs");
-    const Words& to = planned[i].at;
+    const AxisWords& to = planned[i].at;
     for (const double d :
          {distance_mm(read.to.x_mm, to[kX]), distance_mm(read.to.y_mm, to[kY]), distance_mm(read.to.z_mm, to[kZ])})
       result.worst_linear_mm = std::max(result.worst_linear_mm, d);
@@ -188,7 +188,7 @@ TEST(ReadBack, TimesOfAnAerotechsPathAreThoseOfItsWays) {
 /// The minimum feed of a job is the minimum that every dialect can express.
 TEST(ReadBack, TheLeastFeedIsNoneOfZero) {
   Job job = square_job(1);
-  for (const auto& [feed, is_said] : {std::pair{kLeastFeedMmPerMin, true}, {0.999 * kLeastFeedMmPerMin, false}}) {
+  for (const auto& [feed, is_said] : {std::pair{kMinFeedMmPerMin, true}, {0.999 * kMinFeedMmPerMin, false}}) {
     job.process.finishing_feed_mm_per_min = feed;
     const Plan plan = make_plan(job, for_dialect(machine("ideal"), ""));
     for (const char* dialect : {"rs274ngc", "sinumerik", "fanuc", "pmac", "a3200", "automation1"})

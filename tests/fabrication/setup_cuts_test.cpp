@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/atomic_file.h"
+#include "fabrication/chisel/check/verification_model.h"
 #include "fabrication/chisel/check/verify.h"
-#include "fabrication/chisel/check/workpiece.h"
 #include "fabrication/chisel/plan/edge_cuts.h"
 #include "fabrication/chisel/plan/plan.h"
 #include "fabrication/machine/io/machine_files.h"
@@ -78,7 +78,7 @@ void expect_effects(const Made& made, const SetupQuantity& quantity, double amou
   const Machine real = with_error(made.taken_for, quantity, amount);
   const Verification without = cut_on(made, made.taken_for);
   const Verification with = cut_on(made, real);
-  const Workpiece3d workpiece = workpiece_of(made.job, made.taken_for);
+  const VerificationModel workpiece = verification_model_of(made.job, made.taken_for);
   for (const auto& [place, cut] : made.last) {
     SCOPED_TRACE(fmt::format("element {} facet {}", cut.element, cut.facet + 1));
     const DesignElement& groove = workpiece.design(cut.element);
@@ -117,7 +117,7 @@ TEST(SetupCuts, VerifiedFacetsOnAMachineThatLeansAreAsPredicted) {
   Machine m = machine("paper");
   m.a.point_mm.value = Vec3(0, 20, -10);
   m.c.point_mm.value = Vec3(3, -4, 0);
-  m.mount.turn_deg.value = Vec3(0.01, -0.01, 0.02);
+  m.mount.rotation_deg.value = Vec3(0.01, -0.01, 0.02);
   m.mount.offset_mm.value = Vec3(0.002, -0.003, 0.001);
   const Made cut = made(job, m);
   for (const SetupQuantity& quantity : setup_quantities(Tilt::table))
@@ -141,7 +141,7 @@ TEST(SetupCuts, VerifiedFacetsOfCubeCornersAreAsPredicted) {
 TEST(SetupCuts, AMountThatIsKnownIsPlannedFor) {
   Machine m = machine("paper");
   m.mount.offset_mm.value = Vec3(0.02, -0.03, 0.01);
-  m.mount.turn_deg.value = Vec3(0.3, 0.0, -0.02);
+  m.mount.rotation_deg.value = Vec3(0.3, 0.0, -0.02);
   for (const auto strategy : {Strategy::unidirectional, Strategy::bidirectional, Strategy::two_step}) {
     Job job = square_job(2, Arrangement::checker);
     job.strategy = strategy;

@@ -162,7 +162,7 @@ TEST(Setup, KeysAreDistinctAndFound) {
     std::set<std::string_view> keys;
     for (const SetupQuantity& quantity : setup_quantities(tilt)) {
       EXPECT_TRUE(keys.insert(quantity.key).second) << quantity.key;
-      EXPECT_EQ(setup_quantity(tilt, quantity.key)->words, quantity.words);
+      EXPECT_EQ(setup_quantity(tilt, quantity.key)->description, quantity.description);
       EXPECT_TRUE(quantity.key.ends_with(quantity.unit())) << quantity.key;
     }
     EXPECT_EQ(keys.size(), 17U);

@@ -128,7 +128,7 @@ TEST_P(Stops, EdgesCutNoMoreThanTheirLifeAndNoLess) {
       const Plan plan = make_plan(c.job, machine);
       EXPECT_EQ(next == NextEdge::stop, plan.programs.size() == 1) << c.name;
       std::vector<double> cut_mm;
-      for (const PlannedStop& stop : plan.stops) cut_mm.push_back(stop.used.cut_mm);
+      for (const PlannedStop& stop : plan.stops) cut_mm.push_back(stop.wear.cut_mm);
       double last_mm = 0.0;
       for (const double mm : plan.program_cuts_mm) last_mm += mm;
       EXPECT_NEAR(last_mm, all_mm, 1e-5 * all_mm) << c.name;
@@ -279,7 +279,7 @@ std::int32_t line_of_visit(const Lines& lines, std::int64_t n) {
 TEST_P(Stops, RestartsFromAnyVisit) {
   for (Case c : cases()) {
     const Machine machine = machine_of(c, 5.0);
-    c.job.process.least_chip_um = 2.0;
+    c.job.process.min_chip_um = 2.0;
     c.job.tool.edge_life_mm = 2.5 * longest_visit_mm(c, machine);
     const Plan whole = make_plan(c.job, machine);
     const std::string text = nc_text(whole.programs.front(), word());
@@ -288,11 +288,11 @@ TEST_P(Stops, RestartsFromAnyVisit) {
     for (std::size_t k = 0; k < whole.stages.size(); ++k) {
       PlanOptions options;
       options.phase = whole.stages[k].name + "+";
-      std::vector<Visit> order;
+      std::vector<CycleCall> order;
       const Plan partial = make_plan(c.job, machine, options);
       for (const Item& item : partial.programs.front().items)
-        if (const auto* const visit = std::get_if<Visit>(&item)) order.push_back(*visit);
-      const std::int64_t passes = whole.stages[k].visits * whole.passes;
+        if (const auto* const visit = std::get_if<CycleCall>(&item)) order.push_back(*visit);
+      const std::int64_t passes = whole.stages[k].cycle_calls * whole.passes;
       for (std::int64_t n = 0; n < passes; ++n, ++behind) {
         if (behind == 0 || (c.name == "dmc" && n > 1)) continue;
         options.from_element = order[static_cast<std::size_t>(n)].element;
@@ -359,7 +359,7 @@ RC_GTEST_PROP(LeastChip, NoCutOfARightProgramRubs, ()) {
   job.process.finishing_depth_um = *rc::gen::inRange(3, 8);
   const Machine machine = shipped(*rc::gen::element(std::string("ideal"), std::string("paper"), std::string("thesis")));
   const Plan without = make_plan(job, machine);
-  job.process.least_chip_um = 0.5 * job.process.finishing_depth_um;
+  job.process.min_chip_um = 0.5 * job.process.finishing_depth_um;
   const Plan plan = make_plan(job, machine);
   const Verification v = verified(job, machine, plan);
   if (!v.passes()) RC_FAIL(listed(v));
@@ -370,7 +370,7 @@ RC_GTEST_PROP(LeastChip, NoCutOfARightProgramRubs, ()) {
   // machines with a tilted edge, the plan also allows for the different depths at both ends of the edge.
   if (machine.name != "ideal" || is_same) return;
   constexpr double kAllowedUm = 4e-3;
-  job.process.least_chip_um = *job.process.least_chip_um + kAllowedUm;
+  job.process.min_chip_um = *job.process.min_chip_um + kAllowedUm;
   RC_ASSERT(!verified(job, machine, without).passes());
 }
 
@@ -388,7 +388,7 @@ RC_GTEST_PROP(LeastChip, OfAnyPrisms, ()) {
   job.process.finishing_depth_um = *rc::gen::inRange(3, 8);
   Machine machine = shipped(*rc::gen::element(std::string("ideal"), std::string("paper"), std::string("thesis")));
   machine.increments.linear_nm = *rc::gen::element(1, 10);
-  job.process.least_chip_um = 0.5 * job.process.finishing_depth_um;
+  job.process.min_chip_um = 0.5 * job.process.finishing_depth_um;
   const Verification v = verified(job, machine, make_plan(job, machine));
   if (!v.passes())
     RC_FAIL(fmt::format("apex {} clearance {} wedge {} radius {} strategy {} d {} f {} machine {} step {}\n{}",
@@ -401,7 +401,7 @@ TEST(LeastChip, OfCubeCorners) {
   for (const double depth_um : {15.0, 15.3, 15.6, 15.9, 16.2, 17.0, 18.0, 19.0, 20.0, 21.0}) {
     Job job = cube_job(true, 0.15);
     job.process.roughing_depth_um = depth_um;
-    job.process.least_chip_um = 0.5 * job.process.finishing_depth_um;
+    job.process.min_chip_um = 0.5 * job.process.finishing_depth_um;
     const Machine machine = shipped("ideal-dmc");
     const Verification v = verified(job, machine, make_plan(job, machine));
     EXPECT_TRUE(v.passes()) << depth_um << "\n" << listed(v);
@@ -421,7 +421,7 @@ TEST(LeastChip, OnABase) {
                         {"cubes", cubes_on(sphere_substrate(-20.0, ElementAxes::normal), true), "ideal-dmc"}};
   for (const OnBase& c : all) {
     Job job = c.job;
-    job.process.least_chip_um = 0.5 * job.process.finishing_depth_um;
+    job.process.min_chip_um = 0.5 * job.process.finishing_depth_um;
     job.tool.edge_life_mm = c.name == "cubes" ? 2.0 : 20.0;
     const Machine machine = shipped(c.machine);
     const Plan plan = make_plan(job, machine);
@@ -429,7 +429,7 @@ TEST(LeastChip, OnABase) {
     EXPECT_TRUE(v.passes()) << c.name << "\n" << listed(v);
     ASSERT_FALSE(plan.stops.empty()) << c.name;
     double most_mm = 0.0;
-    for (const PlannedStop& stop : plan.stops) most_mm = std::max(most_mm, stop.used.cut_mm);
+    for (const PlannedStop& stop : plan.stops) most_mm = std::max(most_mm, stop.wear.cut_mm);
     job.tool.edge_life_mm = most_mm * (1.0 - 2e-4);
     EXPECT_FALSE(verified(job, machine, plan).passes()) << c.name;
   }
@@ -448,7 +448,7 @@ TEST(StopsRefused, WhatCannotBe) {
   EXPECT_EQ(refusal(), "j.toml: process.stop_every_min");
   job.process.stop_every_min.reset();
   job.strategy = Strategy::unidirectional;
-  job.process.least_chip_um = 7.0;
+  job.process.min_chip_um = 7.0;
   EXPECT_EQ(refusal(), "j.toml: process.min_chip_um");
 }
 

@@ -12,8 +12,8 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "fabrication/chisel/check/simulation/dexel.h"
+#include "fabrication/chisel/check/verification_model.h"
 #include "fabrication/chisel/check/verify.h"
-#include "fabrication/chisel/check/workpiece.h"
 #include "fabrication/chisel/plan/plan.h"
 #include "fabrication/job/io/job_files.h"
 #include "fabrication/job/substrate_cells.h"
@@ -82,9 +82,9 @@ TEST(OnSubstrate, ElementsStandWhereThePartHasThem) {
     const std::vector<CutElement> elements = cut_elements(named.job);
     EXPECT_EQ(static_cast<std::int64_t>(elements.size()), part.elements_full);
     const auto* const prism = std::get_if<geometry::RtpElement>(&named.job.element);
-    std::vector<Groove> grooves;
+    std::vector<Cavity> grooves;
     for (const CutElement& element : elements)
-      grooves.push_back(prism != nullptr ? Groove(groove_of(element, *prism)) : cavity_of(element, named.job.element));
+      grooves.push_back(prism != nullptr ? Cavity(groove_of(element, *prism)) : cavity_of(element, named.job.element));
     const geometry::BoundaryMesh mesh = geometry::closed_boundary(part);
     std::set<std::pair<std::size_t, std::size_t>> seen;
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -392,10 +392,10 @@ TEST(OnSubstrate, RimsAreCutAsDeepAsNeighboursStandLower) {
 /// Returns the height of the lowest cut of all elements at a point, and 0 where no element is cut. Each cut is extended
 /// upwards without limit.
 /// \param is_beside_an_end set to true if the point is at the end of a groove, and to false otherwise
-double lowest_cut_mm(const std::vector<Groove>& grooves, double x_mm, double y_mm, bool& is_beside_an_end) {
+double lowest_cut_mm(const std::vector<Cavity>& grooves, double x_mm, double y_mm, bool& is_beside_an_end) {
   double lowest_mm = 0.0;
   is_beside_an_end = false;
-  for (const Groove& groove : grooves) {
+  for (const Cavity& groove : grooves) {
     double height_mm = -1e9;
     for (const DesignFacet& facet : common(groove).facets)
       height_mm =
@@ -417,10 +417,10 @@ TEST(OnSubstrate, WhatIsLeftIsTheLowestOfAllCavities) {
     const Machine m = machine_of(named.job);
     SweptVolumeSink sink(m);
     run_nc(parse_nc(text_of(named.job), "p", NcDialect::rs274ngc), sink);
-    const Workpiece3d workpiece = workpiece_of(named.job, m);
+    const VerificationModel workpiece = verification_model_of(named.job, m);
     const Vec2 half = 0.45 * blank_extent_mm(named.job);
     double lowest_mm = 0.0;
-    for (const Groove& groove : workpiece.grooves) lowest_mm = std::min(lowest_mm, common(groove).root_mm.z());
+    for (const Cavity& groove : workpiece.cavities) lowest_mm = std::min(lowest_mm, common(groove).root_mm.z());
     const DexelBox box{{-half.x(), -half.y(), lowest_mm - 0.1}, {half.x(), half.y(), 0.0}};
     const DexelField field = cut_dexels(sink.sweeps, sink.poses, wedge_of(named.job, m), box, 2, 41);
     double worst_mm = 0.0;
@@ -432,7 +432,7 @@ TEST(OnSubstrate, WhatIsLeftIsTheLowestOfAllCavities) {
         const double y =
             box.low_mm.y() + (static_cast<double>(row) + 0.5) / static_cast<double>(field.rows) * 2.0 * half.y();
         bool is_beside_an_end = false;
-        const double expected_mm = lowest_cut_mm(workpiece.grooves, x, y, is_beside_an_end);
+        const double expected_mm = lowest_cut_mm(workpiece.cavities, x, y, is_beside_an_end);
         if (is_beside_an_end) continue;
         ++compared;
         worst_mm = std::max(worst_mm, std::abs(field.lowest_mm[row * field.columns + column] - expected_mm));
@@ -465,7 +465,7 @@ TEST(OnSubstrate, HoldersAreSeenToReachIntoHollowBlanks) {
   Machine m = machine("ideal");
   MachineBody holder;
   holder.name = "shank";
-  holder.carrier = Carrier::tool;
+  holder.link = KinematicLink::tool;
   for (const double x : {-0.1, 0.1})
     for (const double y : {-0.2, 0.75})
       for (const double z : {1.2, 3.0}) holder.points_mm.value.emplace_back(x, y, z);

@@ -259,7 +259,7 @@ Machine machine_with(const std::string& moves_with, const std::vector<Vec3>& poi
   Machine m = machine("paper");
   MachineBody body;
   body.name = "clamp";
-  body.carrier = moves_with == "cradle" ? Carrier::cradle : Carrier::workpiece;
+  body.link = moves_with == "cradle" ? KinematicLink::cradle : KinematicLink::workpiece;
   body.points_mm.value = points;
   m.bodies.push_back(body);
   return m;
@@ -301,7 +301,7 @@ TEST_F(Faults, TheDiamondRunsIntoAFixtureWithinTheArray) {
   // The fixture is a pin, 0.1 mm wide, next to the last element. It reaches up to the clearance plane. All bodies that
   // move with the tool are removed, so that only the diamond can collide with the pin.
   Machine m = machine_with("workpiece", box({0.2, 0.2, 0.0}, {0.3, 0.3, 0.3}));
-  std::erase_if(m.bodies, [](const MachineBody& body) { return body.carrier == Carrier::tool; });
+  std::erase_if(m.bodies, [](const MachineBody& body) { return body.link == KinematicLink::tool; });
   const Verification v = verify_texts(job_, m, {text_of(lines_)});
   EXPECT_TRUE(has_kind(v, "fixture_collision")) << listed(v);
   for (const Finding& f : v.findings) record_message(f.message);

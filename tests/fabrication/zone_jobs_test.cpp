@@ -172,7 +172,7 @@ struct TipWays : NcSink {
     ways.push_back(
         {back.point(machine_point(machine_of, motion.from)), back.point(machine_point(machine_of, motion.to))});
   }
-  void dwell(double, const NcPlace&, const AxisPositions&) override {}
+  void dwell(double, const NcLocation&, const AxisPositions&) override {}
   const Machine& machine_of;
   std::vector<std::pair<Vec3, Vec3>> ways;
 };
@@ -288,8 +288,8 @@ double removed_by_squares_mm3(const Job& job, double step_mm) {
   for (const CutElement& element : cut_elements(job)) {
     Cavity& cavity = cavities.emplace_back();
     const CubeCorner corner = blank_corner(job, element.zone, element.rotated);
-    cavity.root = element.foot_mm - Vec3(0.0, 0.0, corner.depth_mm);
-    for (std::size_t k = 0; k < 3; ++k) cavity.normals[k] = element.turn * corner.normals[k];
+    cavity.root = element.origin_mm - Vec3(0.0, 0.0, corner.depth_mm);
+    for (std::size_t k = 0; k < 3; ++k) cavity.normals[k] = element.workpiece_from_element * corner.normals[k];
   }
   double sum_mm3 = 0.0;
   for (double x = -1.2; x < 1.2; x += step_mm)

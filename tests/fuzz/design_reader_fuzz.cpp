@@ -11,7 +11,7 @@
 #include <string_view>
 
 #include "core/error.h"
-#include "studies/design/io/design_reader.h"
+#include "design/io/design_reader.h"
 
 namespace {
 

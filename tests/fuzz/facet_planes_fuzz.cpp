@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "core/error.h"
-#include "studies/design/io/facet_planes_reader.h"
+#include "geometry/io/facet_planes_reader.h"
 
 namespace {
 

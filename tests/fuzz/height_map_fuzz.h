@@ -24,7 +24,7 @@ inline void read_height_map(const std::string& begin, const std::uint8_t* data, 
   try {
     const surface_models::HeightMap map = surface_models::parse_height_map(content, name, {}).map;
     const bool is_sound =
-        map.columns >= surface_models::kLeastColumns && map.rows >= 1 &&
+        map.columns >= surface_models::kMinColumns && map.rows >= 1 &&
         map.columns * map.rows == map.heights_nm.size() && map.x_pixel_um > 0.0 && map.y_pixel_um > 0.0 &&
         std::none_of(map.heights_nm.begin(), map.heights_nm.end(), [](double z) { return std::isinf(z); });
     if (!is_sound) std::abort();

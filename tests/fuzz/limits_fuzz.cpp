@@ -27,7 +27,7 @@ void check_programme(const retrace::studies::LimitTable& table, const retrace::s
   try {
     const std::optional<std::string> part_class =
         row.classes.empty() ? std::nullopt : std::optional(row.classes.front());
-    const TestProgramme programme = programme_of(table, row.standard, part_class, row.colour);
+    const TestPlan programme = test_plan_of(table, row.standard, part_class, row.colour);
     for (const TestPoint& point : programme.points)
       if (!(point.minimum > 0.0) || !std::isfinite(point.minimum) || !(std::abs(point.v_deg) <= 85.0) ||
           !(std::abs(point.h_deg) <= 85.0) || !(point.observation_deg >= 0.0 && point.observation_deg <= 20.0))

@@ -20,7 +20,7 @@ struct CheckingSink : NcSink {
     if (!std::isfinite(motion.to.x_mm) || motion.place.line < 1 || motion.feed_mm_per_min < 0) std::abort();
     if (++motions > 100000) throw retrace::InputError("enough");
   }
-  void dwell(double seconds, const NcPlace&, const AxisPositions&) override {
+  void dwell(double seconds, const NcLocation&, const AxisPositions&) override {
     if (!(seconds >= 0)) std::abort();
   }
   int motions = 0;

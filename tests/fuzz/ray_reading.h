@@ -45,7 +45,7 @@ void read_rays(const std::uint8_t* data, std::size_t size, const char* file) {
       require(!rays.empty() && rays.size() <= kAtATime);
       for (const studies::SetRay& ray : rays) check_ray(ray);
       count += rays.size();
-      require(source.share_read() >= 0.0 && source.share_read() <= 1.0);
+      require(source.fraction_read() >= 0.0 && source.fraction_read() <= 1.0);
     }
     require(!source.info().rays || *source.info().rays == count);
   } catch (const InputError& error) {

@@ -18,7 +18,7 @@ const InputLocation kHere{"part.toml", 9, "boundary.points_mm"};
 /// Sets `sites` to unevenly spaced angles and `values` to the radii of a wavy curve at these angles.
 void wavy(int count, std::vector<double>& sites, std::vector<double>& values) {
   for (int i = 0; i < count; ++i) {
-    sites.push_back(kTurn * (i + 0.3 * std::sin(2.1 * i)) / count - 1.0);
+    sites.push_back(kTwoPi * (i + 0.3 * std::sin(2.1 * i)) / count - 1.0);
     values.push_back(2.0 + 0.4 * std::cos(3.0 * sites.back()) + 0.1 * std::sin(7.0 * i));
   }
 }
@@ -48,7 +48,7 @@ TEST(PeriodicSpline, IsAsSmoothAsItsDegreeSaysAtEveryKnotAndTheSeam) {
     double jump = 0.0;
     for (std::size_t i = 0; i < knots.size(); ++i) {
       const std::size_t next = (i + 1) % knots.size();
-      const double width = knots[next] + (next == 0 ? kTurn : 0.0) - knots[i];
+      const double width = knots[next] + (next == 0 ? kTwoPi : 0.0) - knots[i];
       for (int k = 0; k <= degree; ++k) {
         const double left = derivative_of(spline.piece(i), degree, k, width);
         const double right = derivative_of(spline.piece(next), degree, k, 0.0);
@@ -61,8 +61,8 @@ TEST(PeriodicSpline, IsAsSmoothAsItsDegreeSaysAtEveryKnotAndTheSeam) {
     }
     EXPECT_GT(jump, 1.0) << "the derivative of order " << degree << " is known to jump";
     for (std::size_t i = 0; i < sites.size(); ++i) EXPECT_NEAR(spline.evaluate(sites[i]), values[i], 1e-12);
-    EXPECT_NEAR(spline.evaluate(0.3), spline.evaluate(0.3 + kTurn), 1e-13);
-    EXPECT_NEAR(spline.evaluate(0.3), spline.evaluate(0.3 - 3 * kTurn), 1e-13);
+    EXPECT_NEAR(spline.evaluate(0.3), spline.evaluate(0.3 + kTwoPi), 1e-13);
+    EXPECT_NEAR(spline.evaluate(0.3), spline.evaluate(0.3 - 3 * kTwoPi), 1e-13);
   }
 }
 
@@ -71,7 +71,7 @@ TEST(PeriodicSpline, ConvergesWithItsOrder) {
     std::vector<double> sites;
     std::vector<double> values;
     for (int i = 0; i < count; ++i) {
-      sites.push_back(kTurn * i / count);
+      sites.push_back(kTwoPi * i / count);
       values.push_back(std::cos(2.0 * sites.back()));
     }
     const PeriodicSpline spline(sites, values, degree);
@@ -94,7 +94,7 @@ TEST(PeriodicSpline, RefusesWhatItCannotInterpolate) {
 std::vector<Vec2> ellipse_points(int count, Vec2 centre) {
   std::vector<Vec2> points;
   for (int i = 0; i < count; ++i)
-    points.push_back(centre + Vec2(3.0 * std::cos(kTurn * i / count), 2.0 * std::sin(kTurn * i / count)));
+    points.push_back(centre + Vec2(3.0 * std::cos(kTwoPi * i / count), 2.0 * std::sin(kTwoPi * i / count)));
   return points;
 }
 
@@ -132,7 +132,7 @@ TEST(Boundary, RefusesCurvesThatAreNotOne) {
   std::vector<Vec2> dented = ellipse_points(30, Vec2::Zero());
   dented[4] = {2.0, 0.1};  // the angle about the centre decreases here
   for (int i = 0; i < 40; ++i) {
-    const double t = kTurn * i / 40.0;
+    const double t = kTwoPi * i / 40.0;
     eight.push_back({std::sin(t), std::sin(2.0 * t) + 1e-3});
     twice.push_back({(2.0 + 0.1 * std::cos(0.5 * t)) * std::cos(2.0 * t), 2.0 * std::sin(2.0 * t)});
   }

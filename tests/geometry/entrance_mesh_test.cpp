@@ -101,7 +101,7 @@ TEST(EntranceMesh, SheetsAtRandomPass) {
       outline.push_back(move.head<2>() + Vec2(4.0, 4.0) + radius * Vec2(std::cos(angle), std::sin(angle)));
     }
     EXPECT_TRUE(cover(sheet.mesh, outline, MeshSide::top, move).is_exact()) << k;
-    EXPECT_TRUE(cover(turned_over(sheet.mesh), outline, MeshSide::bottom, move).is_exact()) << k;
+    EXPECT_TRUE(cover(with_reversed_orientation(sheet.mesh), outline, MeshSide::bottom, move).is_exact()) << k;
   }
 }
 
@@ -203,13 +203,13 @@ TriangleMesh stepped(double overhang_mm, bool with_wall) {
 
 TEST(EntranceMesh, StepsAreRefused) {
   const Polygon outline = to_polygon({Vec2(0.0, 0.0), Vec2(2.0, 2.0)});
-  expect_gap(cover(stepped(0.0, true), outline), {TilingFault::upright_triangle}, {1.0, 1.0}, 1e-3);
+  expect_gap(cover(stepped(0.0, true), outline), {TilingFault::vertical_triangle}, {1.0, 1.0}, 1e-3);
   expect_gap(cover(stepped(0.0, false), outline), {TilingFault::height_jump}, {1.0, 1.0}, 1e-3);
   expect_gap(cover(stepped(0.2, true), outline), {TilingFault::overhang}, {0.9, 1.0}, 0.2);
   EXPECT_TRUE(cover(stepped(-0.2, true), outline).is_exact()) << "a slope";
   // Only the entrance surface is checked. Here the side with the steps is not the entrance surface, because a
   // horizontal lid covers the steps.
-  TriangleMesh body = turned_over(stepped(0.0, true));
+  TriangleMesh body = with_reversed_orientation(stepped(0.0, true));
   for (const Vec2& p : outline) body.vertices.emplace_back(p.x(), p.y(), 2.0);
   body.triangles.insert(body.triangles.end(), {{8, 9, 10}, {8, 10, 11}});
   EXPECT_TRUE(cover(body, outline).is_exact());
@@ -219,11 +219,11 @@ TEST(EntranceMesh, StepsAreRefused) {
 TEST(EntranceMesh, PositionsAreInTheFrameOfTheMesh) {
   const Vec3 move(5.0, -3.0, 1.0);
   const Polygon outline = to_polygon({Vec2(5.0, -3.0), Vec2(7.0, -1.0)});
-  expect_gap(cover(stepped(0.0, true), outline, MeshSide::top, move), {TilingFault::upright_triangle}, {1.0, 1.0},
+  expect_gap(cover(stepped(0.0, true), outline, MeshSide::top, move), {TilingFault::vertical_triangle}, {1.0, 1.0},
              1e-3);
-  const TriangleMesh body = turned_over(stepped(0.0, true));
+  const TriangleMesh body = with_reversed_orientation(stepped(0.0, true));
   const MeshCover below = cover(body, outline, MeshSide::bottom, move);
-  expect_gap(below, {TilingFault::upright_triangle}, {1.0, 1.0}, 1e-3);
+  expect_gap(below, {TilingFault::vertical_triangle}, {1.0, 1.0}, 1e-3);
   EXPECT_NEAR(below.fraction, 1.0, 1e-12);
   expect_refused(body, outline, MeshSide::bottom, move);
 }

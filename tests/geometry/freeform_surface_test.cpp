@@ -47,7 +47,7 @@ TEST(Extrapolation, HasTheOrderItIsAskedFor) {
     const auto base = [&](const Series<double>& x, const Series<double>& y) { return surface.base().evaluate(x, y); };
     const auto whole = [&](const Series<double>& x, const Series<double>& y) { return surface.evaluate(x, y); };
     double jump = 0.0;
-    for (double angle = 0.05; angle < kTurn; angle += 0.37) {
+    for (double angle = 0.05; angle < kTwoPi; angle += 0.37) {
       const double edge = extrapolation.boundary.radius_mm.evaluate(angle);
       const Series<double> inside = along_radius(base, centre, angle, edge, 7);
       const double beyond = 1e-10;
@@ -137,7 +137,7 @@ TEST(Extrapolation, IsAsSmoothInAzimuthAsItsBoundary) {
 
 TEST(Blend, SolvesTheHermiteSystem) {
   // Reference: the system of linear equations of Naples and Yi, eq. 5, for a centred and scaled variable.
-  for (int d = 0; d <= kMostBlendOrder; ++d) {
+  for (int d = 0; d <= kMaxBlendOrder; ++d) {
     const int size = 2 * d + 2;
     const double r1 = 0.7;
     const double r2 = 1.15;
@@ -185,7 +185,7 @@ FreeformSurface lens_on_base(int d, bool tilted = true) {
 
 TEST(Blend, HasItsOrderAtBothBoundaries) {
   const Vec2 centre(1.2, -0.7);
-  for (int d = 1; d <= kMostBlendOrder; ++d) {
+  for (int d = 1; d <= kMaxBlendOrder; ++d) {
     const FreeformSurface surface = lens_on_base(d);
     const Lenslet& lenslet = surface.lenslets().front();
     const auto on_lenslet = [&](const Series<double>& x, const Series<double>& y) { return lenslet.evaluate(x, y); };
@@ -194,7 +194,7 @@ TEST(Blend, HasItsOrderAtBothBoundaries) {
     };
     const auto whole = [&](const Series<double>& x, const Series<double>& y) { return surface.evaluate(x, y); };
     double jump = 0.0;
-    for (double angle = 0.1; angle < kTurn; angle += 0.5) {
+    for (double angle = 0.1; angle < kTwoPi; angle += 0.5) {
       const double r = lenslet.inner.radius_mm.evaluate(angle);
       const double R = lenslet.outer.radius_mm.evaluate(angle);
       const double step = 1e-11;
@@ -252,7 +252,7 @@ TEST(Blend, ReachesAnExtrapolatedBase) {
   const auto whole = [&](const Series<double>& x, const Series<double>& y) { return surface.evaluate(x, y); };
   int extrapolated = 0;
   for (const Vec2& at : places)
-    for (double angle = 0.05; angle < kTurn; angle += 0.37) {
+    for (double angle = 0.05; angle < kTwoPi; angle += 0.37) {
       const double beyond = 1e-10;
       const Series<double> inside = along_radius(whole, at, angle, 0.15 - beyond, 3);
       const Series<double> outside = along_radius(whole, at, angle, 0.15 + beyond, 3);

@@ -16,7 +16,7 @@ using namespace jets;
 
 const InputLocation kHere{"part.toml", 7, "base.formula"};
 
-Series<double> line(double x, double slope, int order = kMostOrder) {
+Series<double> line(double x, double slope, int order = kMaxOrder) {
   return line_series(x, slope, order);
 }
 

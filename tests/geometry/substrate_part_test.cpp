@@ -136,9 +136,9 @@ void expect_placed(const PartSpec& spec) {
   std::int64_t whole = 0;
   std::int64_t cut = 0;
   double lowest = 0.0;
-  for (const PlacedElement& at : place(spec)) {
-    ++(at.standing == Standing::whole ? whole : cut);
-    if (at.standing != Standing::whole) continue;
+  for (const PlacedElement& at : place_elements(spec)) {
+    ++(at.border_relation == BorderRelation::inside ? whole : cut);
+    if (at.border_relation != BorderRelation::inside) continue;
     lowest = std::min(lowest, (at.frame.origin - element_depth_mm(spec.element) * at.frame.normal).z());
   }
   EXPECT_EQ(whole, part.elements_full);
@@ -398,7 +398,7 @@ TEST(SubstrateCheck, MeasuresASphere) {
   spec.substrate = Substrate{SphereSubstrate{10.0}, ElementAxes::normal};
   const SubstrateMeasures measures = check_substrate(spec);
   // The curvature is computed with the square root of a small difference, which increases its rounding error.
-  EXPECT_NEAR(measures.least_radius_mm, 10.0, 1e-6);
+  EXPECT_NEAR(measures.min_radius_mm, 10.0, 1e-6);
   EXPECT_NEAR(measures.highest_mm - measures.lowest_mm, 10.0 - std::sqrt(100.0 - 18.0), 1e-9);
   EXPECT_NEAR(measures.steepest_deg, std::asin(std::sqrt(18.0) / 10.0) / kDeg, 1e-9);
   // Area of a sphere over a square: integral of R / sqrt(R^2 - x^2 - y^2), by the midpoint rule with Richardson

@@ -215,7 +215,7 @@ TEST(Zones, PartialElementsAreLeftOutIfTheyAreNotWanted) {
 }
 
 /// Expects that a part has the three facets of a whole element at the given position and rotation.
-void expect_standing(const Part& part, const StandingElement& at, const PartSpec& kind) {
+void expect_standing(const Part& part, const ElementPlacement& at, const PartSpec& kind) {
   const Cell cell = element_cell(kind.element, kind.angle_errors);
   const Vec3 apex(at.apex_mm.x(), at.apex_mm.y(), -element_depth_mm(kind.element, kind.angle_errors));
   const Eigen::AngleAxisd turn(at.rotation_deg * std::numbers::pi / 180.0, Vec3::UnitZ());
@@ -256,7 +256,7 @@ TEST(Zones, WholeElementsStandWhereThePartHasThem) {
     ASSERT_EQ(elements.size(), 3U);
     for (std::size_t z = 0; z < 3; ++z) {
       EXPECT_EQ(static_cast<std::int64_t>(elements[z].size()), part.zones[z].full);
-      for (const StandingElement& at : elements[z]) expect_standing(part, at, spec.zones[z].elements);
+      for (const ElementPlacement& at : elements[z]) expect_standing(part, at, spec.zones[z].elements);
     }
   }
 }
@@ -318,7 +318,7 @@ TEST(Zones, WholeElementsByCellStandWhereThePartHasThem) {
     const auto elements = whole_elements(spec);
     for (std::size_t z = 0; z < 2; ++z) {
       EXPECT_EQ(static_cast<std::int64_t>(elements[z].size()), part.zones[z].full);
-      for (const StandingElement& at : elements[z]) expect_standing(part, at, kind);
+      for (const ElementPlacement& at : elements[z]) expect_standing(part, at, kind);
     }
   }
 }

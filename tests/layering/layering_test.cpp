@@ -101,12 +101,12 @@ TEST_F(SyntheticTree, PlannersAndJudgesDoNotSeeEachOther) {
                    "fabrication/turning/plan/path.h"}));
 }
 
-TEST_F(SyntheticTree, DesignsKnowNothingOfHowTheyAreMade) {
+TEST_F(SyntheticTree, DesignsAndStudiesOfLightDoNotDependOnFabrication) {
   add("fabrication/job/job.h", "#pragma once\n");
   add("studies/fabrication/job_maker.h", "#pragma once\n#include \"fabrication/job/job.h\"\n");
-  add("studies/design/mask.cpp", "#include \"fabrication/job/job.h\"\n");
+  add("design/mask.cpp", "#include \"fabrication/job/job.h\"\n");
   add("studies/rre/rre.cpp", "#include \"studies/fabrication/job_maker.h\"\n");
-  EXPECT_EQ(found(), (Lines{"studies/design/mask.cpp:1: studies/design/ may not see fabrication/job/job.h",
+  EXPECT_EQ(found(), (Lines{"design/mask.cpp:1: design/ may not include fabrication/job/job.h",
                             "studies/rre/rre.cpp:1: studies/rre/ may not include studies/fabrication/job_maker.h",
                             "studies/rre/rre.cpp:1: studies/rre/ may not see fabrication/job/job.h"}));
 }
@@ -116,8 +116,8 @@ TEST_F(SyntheticTree, InOrderPasses) {
   add("geometry/check/closed.cpp", "#include <CGAL/Surface_mesh.h>\n#include \"geometry/check/closed.h\"\n");
   add("core/io/toml_file.cpp", "#include <toml++/toml.h>\n");
   add("raytrace/scene.cpp", "#include <embree3/rtcore.h>\n#include \"geometry/part/part.h\"\n");
-  add("studies/design/reader.cpp", "#include \"studies/design/design.h\"\n");
-  add("studies/rre/rre.cpp", "#include \"studies/design/design.h\"\n#include \"raytrace/scene.h\"\n");
+  add("design/reader.cpp", "#include \"design/design.h\"\n");
+  add("studies/rre/rre.cpp", "#include \"design/design.h\"\n#include \"raytrace/scene.h\"\n");
   add("report/plot.cpp", "#include <cairo.h>\n");
   add("app/main.cpp", "#include <CLI/CLI.hpp>\n#include \"report/plot.h\"\n#include \"studies/rre/rre.h\"\n");
   add("tests/anything.cpp", "#include <CGAL/Surface_mesh.h>\n#include \"app/main.h\"\n");
@@ -135,10 +135,10 @@ TEST_F(SyntheticTree, UpwardIncludesAreNamedWithFileAndLine) {
 }
 
 TEST_F(SyntheticTree, RoomsSeeOnlyWhatTheyMay) {
-  add("studies/design/reader.cpp", "#include \"studies/rre/rre.h\"\n");
+  add("design/reader.cpp", "#include \"studies/rre/rre.h\"\n");
   add("studies/inspect/inspect.cpp", "#include \"studies/rre/rre.h\"\n");
-  add("studies/novel/novel.cpp", "#include \"studies/design/design.h\"\n");
-  EXPECT_EQ(found(), (Lines{"studies/design/reader.cpp:1: studies/design/ may not include studies/rre/rre.h",
+  add("studies/novel/novel.cpp", "#include \"design/design.h\"\n");
+  EXPECT_EQ(found(), (Lines{"design/reader.cpp:1: design/ may not include studies/rre/rre.h",
                             "studies/inspect/inspect.cpp:1: studies/inspect/ may not include studies/rre/rre.h",
                             "studies/novel/novel.cpp:1: room studies/novel/ has no place in the order of rooms"}));
 }

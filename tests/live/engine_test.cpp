@@ -7,11 +7,11 @@
 #include <nlohmann/json.hpp>
 
 #include "core/schema/reader.h"
+#include "design/azimuth_symmetry.h"
+#include "design/io/design_format.h"
+#include "design/io/design_reader.h"
+#include "design/io/init_templates.h"
 #include "raytrace/light/ledger.h"
-#include "studies/design/azimuth_symmetry.h"
-#include "studies/design/io/design_format.h"
-#include "studies/design/io/design_reader.h"
-#include "studies/design/io/init_templates.h"
 #include "studies/rre/rre.h"
 #include "tests/support/refusals.h"
 
@@ -76,7 +76,7 @@ TEST(LiveEngine, FormHasEveryKeyOfTheFormat) {
       EXPECT_FALSE(row["meaning"].get<std::string>().empty()) << row;
     }
   }
-  for (const std::string& key : schema::keys_of(studies::design_format())) EXPECT_TRUE(paths.contains(key)) << key;
+  for (const std::string& key : schema::keys_of(design::design_format())) EXPECT_TRUE(paths.contains(key)) << key;
 }
 
 TEST(LiveEngine, TellsWhatAppliesToTheShape) {
@@ -106,7 +106,7 @@ TEST(LiveEngine, SaysWhatTheProgramSaysOfBadDesigns) {
   EXPECT_EQ(error["line"], 3);
   EXPECT_EQ(error["key"], "element.base_mm");
   try {
-    studies::parse_design("[element]\nkind = \"rtp\"\nbase_mm = -3\n", "design.toml");
+    design::parse_design("[element]\nkind = \"rtp\"\nbase_mm = -3\n", "design.toml");
     FAIL();
   } catch (const InputError& expected) {
     EXPECT_EQ(error["text"], expected.what());
@@ -120,12 +120,12 @@ TEST(LiveEngine, ChangesKeys) {
                                    {"design", before["design"]},
                                    {"changes", {{"element.aperture_mm", 2.5}, {"body.material", "PC"}}}});
   EXPECT_NE(after["design"], before["design"]);
-  const studies::Design design = studies::parse_design(after["toml"].get<std::string>(), "design.toml");
+  const design::Design design = design::parse_design(after["toml"].get<std::string>(), "design.toml");
   EXPECT_EQ(std::get<geometry::HexagonalCube>(design.part().element).aperture_mm, 2.5);
   EXPECT_EQ(design.substance.material, "PC");
   const Json back =
       told(engine, {{"ask", "set"}, {"design", after["design"]}, {"changes", {{"body.material", nullptr}}}});
-  EXPECT_EQ(studies::parse_design(back["toml"].get<std::string>(), "").substance.material, "PMMA");
+  EXPECT_EQ(design::parse_design(back["toml"].get<std::string>(), "").substance.material, "PMMA");
   // The warning names a key that has no effect because another key takes precedence.
   EXPECT_TRUE(after["warnings"].empty()) << after["warnings"];
   const Json both =
@@ -156,8 +156,8 @@ TEST(LiveEngine, RefusesChangesThatMakeNoDesign) {
 /// design.
 TEST(LiveEngine, AdaptsWhatIsLeftOfAnotherKind) {
   live::Engine engine;
-  for (const std::string_view from : studies::design_kinds())
-    for (const std::string_view to : studies::design_kinds())
+  for (const std::string_view from : design::design_kinds())
+    for (const std::string_view to : design::design_kinds())
       for (const char* const extent : {"finite", "infinite"}) {
         const Json before =
             opened(engine, told(engine, {{"ask", "template"}, {"kind", from}, {"extent", extent}})["toml"]);
@@ -176,7 +176,7 @@ TEST(LiveEngine, MakesTablesAndListsOfTables) {
   const Json after = told(
       engine,
       {{"ask", "set"}, {"design", design["design"]}, {"changes", {{"coating.facets", {{{"material", "aluminium"}}}}}}});
-  EXPECT_TRUE(studies::parse_design(after["toml"].get<std::string>(), "").surface.coating.has_opaque_facets());
+  EXPECT_TRUE(design::parse_design(after["toml"].get<std::string>(), "").surface.coating.has_opaque_facets());
   ASSERT_NE(key_of(after, "coating.facets[0].material"), nullptr);
   EXPECT_EQ((*key_of(after, "coating.facets[0].material"))["value"], "aluminium");
 }
@@ -184,12 +184,12 @@ TEST(LiveEngine, MakesTablesAndListsOfTables) {
 studies::RreResult rre_of(const std::string& toml, double incidence_deg, double azimuth_deg, double target_error,
                           bool footprint) {
   studies::RreSettings request;
-  request.engine = studies::Engine::exact;
+  request.engine = raytrace::Engine::exact;
   request.target_error = target_error;
   request.incidence_deg = {incidence_deg};
   request.azimuth_deg = {azimuth_deg};
   request.footprint = request.far_field = footprint;
-  return studies::RreStudy({studies::parse_design(toml, "design.toml")}, request).run();
+  return studies::RreStudy({design::parse_design(toml, "design.toml")}, request).run();
 }
 
 /// The live engine gives the same results for a direction as `retrace rre --engine exact`. Both truncate a small
@@ -212,11 +212,11 @@ TEST(LiveEngine, TellsWhatTheStudyTells) {
     for (std::size_t k = 0; k < expected.ledger.power.size(); ++k)
       EXPECT_NEAR(told_of["ledger"][k].get<double>(), expected.ledger.power[k], kLeft) << raytrace::kAccountNames[k];
     const studies::Footprint& footprint = *study.returned[0].footprint;
-    EXPECT_NEAR(told_of["footprint"]["active_fraction"].get<double>(), footprint.active_share(), kLeft);
-    EXPECT_NEAR(told_of["footprint"]["shown"].get<double>(), footprint.rre_shown(), kLeft);
+    EXPECT_NEAR(told_of["footprint"]["active_fraction"].get<double>(), footprint.active_fraction(), kLeft);
+    EXPECT_NEAR(told_of["footprint"]["shown"].get<double>(), footprint.rre_contribution(), kLeft);
     const studies::FarFieldSpot& spot = study.returned[0].far_field->spots.front();
     EXPECT_NEAR(told_of["far_field"]["spots"][0]["power"].get<double>(), spot.stokes.i, kLeft);
-    EXPECT_EQ(told_of["far_field"]["spots"][0]["depth"], spot.least_depth);
+    EXPECT_EQ(told_of["far_field"]["spots"][0]["depth"], spot.min_depth);
     const Json points = told(engine, {{"ask", "rre"},
                                       {"design", design["design"]},
                                       {"directions", {{incidence_deg, azimuth_deg}}},
@@ -317,7 +317,7 @@ TEST(LiveEngine, GivesTheSolidOfOneElement) {
   const double side = std::sqrt(0.75);  // side of the triangle in a circle of 1 mm diameter
   EXPECT_NEAR(volume_of("[element]\nkind = \"triangular_icc\"\naperture_mm = 1\n" + endless),
               std::sqrt(3.0) / 4.0 * side * side * (2.0 + side / std::sqrt(6.0) / 3.0), 1e-5);
-  for (const std::string_view kind : studies::design_kinds())
+  for (const std::string_view kind : design::design_kinds())
     for (const char* const extent : {"finite", "infinite"})
       EXPECT_GT(volume_of(told(engine, {{"ask", "template"}, {"kind", kind}, {"extent", extent}})["toml"]), 0.0)
           << kind;
@@ -353,7 +353,7 @@ TEST(AzimuthSymmetry, IsThatOfRre) {
                                      {prism + "arrangement = \"checker\"\n", 90.0},
                                      {kHoneycomb, 120.0},
                                      {triangle, 60.0}}) {
-    const auto symmetry = studies::azimuth_symmetry(studies::parse_design(toml, "design.toml"));
+    const auto symmetry = design::azimuth_symmetry(design::parse_design(toml, "design.toml"));
     ASSERT_TRUE(symmetry) << toml;
     EXPECT_EQ(symmetry->period_deg, period) << toml;
     // Fraction of the light that may be truncated. It differs slightly between azimuths.
@@ -370,7 +370,7 @@ TEST(AzimuthSymmetry, IsThatOfRre) {
   }
   for (const char* const without :
        {"[surface]\nfacet_tilt_arcmin = [1, 0, 0]\n", "[light]\npolarisation = \"linear\"\n"})
-    EXPECT_FALSE(studies::azimuth_symmetry(studies::parse_design(kHoneycomb + without, ""))) << without;
+    EXPECT_FALSE(design::azimuth_symmetry(design::parse_design(kHoneycomb + without, ""))) << without;
 }
 
 }  // namespace

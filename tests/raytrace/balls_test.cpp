@@ -167,7 +167,7 @@ TEST(Balls, ShareWithinAConeByAngles) {
   const double one_ray = static_cast<double>(Sampling::kReplicates) / static_cast<double>(rays);
   for (const double index : {1.8, 1.9, 2.0, 2.1}) {
     const MonteCarloResult result = traced(single(), ideal(index), at(0.0), 1.0, rays);
-    EXPECT_NEAR(result.cones[0].rre, share_within(pi / 180.0, index, 1.0, 1.0), one_ray) << index;
+    EXPECT_NEAR(result.cones[0].rre, fraction_within(pi / 180.0, index, 1.0, 1.0), one_ray) << index;
   }
 }
 
@@ -205,7 +205,7 @@ TEST(Balls, SharesOfTheApertureByIndex) {
         within += std::abs(traced_error_rad(std::sqrt((k + 0.5) / rays), index)) <= cone_deg * pi / 180.0 ? 1 : 0;
       const double share = static_cast<double>(within) / rays;
       EXPECT_NEAR(100.0 * share, percent, 0.05 + 1e-3) << index << ' ' << cone_deg;
-      EXPECT_NEAR(share_within(cone_deg * pi / 180.0, index, 1.0, 1.0), share, 3e-5) << index << ' ' << cone_deg;
+      EXPECT_NEAR(fraction_within(cone_deg * pi / 180.0, index, 1.0, 1.0), share, 3e-5) << index << ' ' << cone_deg;
       EXPECT_NEAR(traced(single(), ideal(index), at(0.0), cone_deg).cones[0].rre, share, one_ray) << index;
     }
 }
@@ -305,7 +305,7 @@ TEST(Balls, FarApartHaveShadowsOfTheirOwn) {
   for (const double incidence_deg : {0.0, 30.0, 60.0}) {
     const double cosine = std::cos(incidence_deg * pi / 180.0);
     // In the projection along the light, the visible part of a ball consists of half a disc and half an ellipse.
-    EXPECT_NEAR(share_on_balls(layer, at(incidence_deg, 11.0)), packing_share(layer) * 0.5 * (1.0 + 1.0 / cosine),
+    EXPECT_NEAR(share_on_balls(layer, at(incidence_deg, 11.0)), packing_fraction(layer) * 0.5 * (1.0 + 1.0 / cosine),
                 5e-4);
   }
   const MonteCarloResult alone = traced(single(), glass(1.9), at(60.0), 0.5, 1U << 14);
@@ -313,9 +313,9 @@ TEST(Balls, FarApartHaveShadowsOfTheirOwn) {
 }
 
 TEST(Balls, PackedSendBackTheirShareOfThePlan) {
-  EXPECT_NEAR(packing_share(packed()), 0.9068996821171089, 1e-15);
+  EXPECT_NEAR(packing_fraction(packed()), 0.9068996821171089, 1e-15);
   const MonteCarloResult result = traced(packed(), ideal(1.95), at(0.0), 1.0);
-  EXPECT_NEAR(result.cones[0].rre, packing_share(packed()) * share_within(pi / 180.0, 1.95, 1.0, 1.0),
+  EXPECT_NEAR(result.cones[0].rre, packing_fraction(packed()) * fraction_within(pi / 180.0, 1.95, 1.0, 1.0),
               5.0 * result.cones[0].spread + 1e-6);
 }
 

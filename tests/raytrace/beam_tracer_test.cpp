@@ -212,7 +212,7 @@ TEST(BeamTracer, AgreesWithMonteCarlo) {
              t95 * traced.spread + exact[Account::truncated] + 1e-9;
     };
     within += agrees(MonteCarlo::Engine::embree) ? 1 : 0;
-    if (!MonteCarlo::cell_serves(part)) continue;
+    if (!MonteCarlo::cell_supports(part)) continue;
     ++cell_cases;
     cell_within += agrees(MonteCarlo::Engine::cell) ? 1 : 0;
   }

@@ -21,7 +21,7 @@ constexpr std::uint64_t kEmbreeRays = 1U << 14;
 
 /// Returns four standard deviations of a fraction of the power. The fraction is estimated from `count` independent
 /// random rays.
-double most_error(std::uint64_t count) {
+double max_error(std::uint64_t count) {
   return 4.0 * 0.5 / std::sqrt(static_cast<double>(count));
 }
 
@@ -137,7 +137,7 @@ TEST_P(CellEngine, AgreesWithTheExactEngineAndWithEmbree) {
   Illumination light = from(c.incidence_deg, c.azimuth_deg);
   light.stokes = c.stokes;
   const std::vector<double> cones = {0.5, 8.0};
-  ASSERT_TRUE(MonteCarlo::cell_serves(part)) << c.name;
+  ASSERT_TRUE(MonteCarlo::cell_supports(part)) << c.name;
   const MonteCarloResult cell =
       MonteCarlo(part, MonteCarlo::Engine::cell).trace(c.optics, light, cones, rays(kCellRays), {});
   const MonteCarloResult embree = MonteCarlo(part).trace(c.optics, light, cones, rays(kEmbreeRays), {});
@@ -152,15 +152,15 @@ TEST_P(CellEngine, AgreesWithTheExactEngineAndWithEmbree) {
         << c.name;
     EXPECT_NEAR(cell.cones[k].ledger.total(), 1.0, 1e-9) << c.name;
     for (std::size_t a = 0; a < kAccountCount; ++a) {
-      EXPECT_NEAR(cell.cones[k].ledger.power[a], exact.ledgers[k].power[a], most_error(kCellRays) + left_behind)
+      EXPECT_NEAR(cell.cones[k].ledger.power[a], exact.ledgers[k].power[a], max_error(kCellRays) + left_behind)
           << c.name << ", " << kAccountNames[a];
-      EXPECT_NEAR(cell.cones[k].ledger.power[a], embree.cones[k].ledger.power[a], most_error(kEmbreeRays))
+      EXPECT_NEAR(cell.cones[k].ledger.power[a], embree.cones[k].ledger.power[a], max_error(kEmbreeRays))
           << c.name << ", " << kAccountNames[a];
     }
     const auto exact_stokes = exact.stokes[k].values();
     const auto cell_stokes = cell.cones[k].stokes.values();
     for (std::size_t n = 0; n < exact_stokes.size(); ++n)
-      EXPECT_NEAR(cell_stokes[n], exact_stokes[n], 2.0 * most_error(kCellRays) + left_behind) << c.name << ' ' << n;
+      EXPECT_NEAR(cell_stokes[n], exact_stokes[n], 2.0 * max_error(kCellRays) + left_behind) << c.name << ' ' << n;
   }
 }
 
@@ -226,7 +226,7 @@ TEST_P(CellEngineOfRough, AgreesWithEmbree) {
   const auto trace = [&](MonteCarlo::Engine engine, std::uint64_t count, std::uint32_t seed) {
     return MonteCarlo(part, engine).trace(optics, from(8.0, 35.0), cones, rays(count, seed), {});
   };
-  ASSERT_TRUE(MonteCarlo::cell_serves(part)) << c.name;
+  ASSERT_TRUE(MonteCarlo::cell_supports(part)) << c.name;
   const MonteCarloResult cell = trace(MonteCarlo::Engine::cell, 1U << 16, 1);
   const MonteCarloResult embree = trace(MonteCarlo::Engine::embree, 1U << 16, 2);
   EXPECT_EQ(cell.misses, 0U) << c.name;
@@ -237,7 +237,7 @@ TEST_P(CellEngineOfRough, AgreesWithEmbree) {
         << c.name;
     EXPECT_NEAR(cell.cones[k].ledger.total(), 1.0, 1e-9) << c.name;
     for (std::size_t a = 0; a < kAccountCount; ++a)
-      EXPECT_NEAR(cell.cones[k].ledger.power[a], embree.cones[k].ledger.power[a], most_error(1U << 16))
+      EXPECT_NEAR(cell.cones[k].ledger.power[a], embree.cones[k].ledger.power[a], max_error(1U << 16))
           << c.name << ", " << kAccountNames[a];
   }
 }
@@ -283,14 +283,14 @@ TEST(CellKernel, EntryPointsAreTheSobolPoints) {
 
 TEST(CellKernel, ServesEqualElementsFarFromBorders) {
   const RtpElement prism{0.5, 0.5, 90.0};
-  EXPECT_TRUE(MonteCarlo::cell_serves(build_part(infinite(prism, Arrangement::aligned, 0.5))));
-  EXPECT_FALSE(MonteCarlo::cell_serves(build_part(single(prism, 0.5))));
+  EXPECT_TRUE(MonteCarlo::cell_supports(build_part(infinite(prism, Arrangement::aligned, 0.5))));
+  EXPECT_FALSE(MonteCarlo::cell_supports(build_part(single(prism, 0.5))));
   PartSpec few = finite(prism, Arrangement::aligned, 2.5, 2.5, 0.5);
-  EXPECT_TRUE(MonteCarlo::cell_serves(build_part(few)));
+  EXPECT_TRUE(MonteCarlo::cell_supports(build_part(few)));
   few.random_tilts.sigma_arcmin = 1.0;
-  EXPECT_FALSE(MonteCarlo::cell_serves(build_part(few)));
-  EXPECT_FALSE(MonteCarlo::cell_serves(build_part(finite(prism, Arrangement::aligned, 2.0, 2.5, 0.5))));
-  EXPECT_FALSE(MonteCarlo::cell_serves(
+  EXPECT_FALSE(MonteCarlo::cell_supports(build_part(few)));
+  EXPECT_FALSE(MonteCarlo::cell_supports(build_part(finite(prism, Arrangement::aligned, 2.0, 2.5, 0.5))));
+  EXPECT_FALSE(MonteCarlo::cell_supports(
       build_part(rounded(infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 1.0), 0.0, 0.02))));
 }
 

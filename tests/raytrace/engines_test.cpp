@@ -29,7 +29,7 @@ EngineFacts facts_with(std::initializer_list<Flag> flags) {
 std::set<Engine> refused(const EngineFacts& facts, Obstacle obstacle) {
   std::set<Engine> engines;
   for (const Engine engine : kEngines)
-    if (const auto found = why_not(engine, facts)) {
+    if (const auto found = obstacle_for(engine, facts)) {
       EXPECT_EQ(*found, obstacle) << engine_name(engine);
       engines.insert(engine);
     }
@@ -42,7 +42,7 @@ TEST(Engines, HaveNames) {
 }
 
 TEST(Engines, EachOfThemTracesASmoothPlanePart) {
-  for (const Engine engine : kEngines) EXPECT_FALSE(why_not(engine, {})) << engine_name(engine);
+  for (const Engine engine : kEngines) EXPECT_FALSE(obstacle_for(engine, {})) << engine_name(engine);
 }
 
 TEST(Engines, RefuseWhatTheyCannotTrace) {
@@ -64,8 +64,8 @@ TEST(Engines, RefuseWhatTheyCannotTrace) {
 
 TEST(Engines, BallsAreNotTracedWithPlainSampling) {
   const EngineFacts facts = facts_with({&EngineFacts::has_balls, &EngineFacts::needs_plain_sampling});
-  EXPECT_EQ(why_not(Engine::montecarlo, facts), Obstacle::plain_sampling);
-  EXPECT_EQ(why_not(Engine::embree, facts), Obstacle::balls);
+  EXPECT_EQ(obstacle_for(Engine::montecarlo, facts), Obstacle::plain_sampling);
+  EXPECT_EQ(obstacle_for(Engine::embree, facts), Obstacle::balls);
 }
 
 TEST(Engines, PhasesAreFollowedThroughFormsOrTexturesButNotBoth) {
@@ -73,7 +73,7 @@ TEST(Engines, PhasesAreFollowedThroughFormsOrTexturesButNotBoth) {
   const auto why = [](std::initializer_list<Flag> flags) {
     EngineFacts facts = facts_with(flags);
     facts.needs_phases = true;
-    return why_not(Engine::exact, facts);
+    return obstacle_for(Engine::exact, facts);
   };
   EXPECT_EQ(why({&F::has_form}), std::nullopt);
   EXPECT_EQ(why({&F::has_texture, &F::texture_has_phases}), std::nullopt);

@@ -62,7 +62,7 @@ struct Exits : ExitObserver {
     double power;
   };
   std::vector<Exit> all;
-  void leaves(const Departure& departure) override {
+  void on_exit(const ExitEvent& departure) override {
     if (departure.is_through_entrance())
       all.push_back({departure.position, departure.direction, departure.light.power()});
   }
@@ -383,7 +383,7 @@ TEST(Entrance, FindsTheFirstCrossing) {
     // Some rays start on the borders of grid cells, for any number of cells.
     if (k % 5 == 0) from.x() = std::round(32.0 * from.x()) / 32.0;
     if (k % 7 == 0) from.y() = std::round(32.0 * from.y()) / 32.0;
-    const EntranceSurface::Place place = surface.at(from.head<2>());
+    const EntranceSurface::SurfaceSample place = surface.at(from.head<2>());
     from.z() = starts_on ? place.height_mm : place.height_mm + (inside ? -0.3 : 0.3) * std::abs(uniform(random));
     Vec3 direction = Vec3(uniform(random), uniform(random), 0.4 * uniform(random)).normalized();
     const Vec3 out = Vec3(-place.slope.x(), -place.slope.y(), 1.0);
@@ -400,7 +400,7 @@ TEST(Entrance, FindsTheFirstCrossing) {
     if (starts_on) ++found_again;
     EXPECT_NEAR(hit->hit.t, t, 1e-9) << k;
     const Vec3 at = from + hit->hit.t * direction;
-    const EntranceSurface::Place there = surface.at(at.head<2>());
+    const EntranceSurface::SurfaceSample there = surface.at(at.head<2>());
     EXPECT_NEAR(at.z(), there.height_mm, 1e-14) << k;
     EXPECT_NEAR(hit->normal.dot(Vec3(1.0, 0.0, there.slope.x())), 0.0, 1e-12);
   }

@@ -9,7 +9,7 @@
 #include "geometry/elements/lattice.h"
 #include "geometry/part/zones.h"
 #include "raytrace/exact/beam_tracer.h"
-#include "raytrace/exact/equal_places.h"
+#include "raytrace/exact/translational_symmetry.h"
 #include "raytrace/observers/far_field.h"
 #include "tests/support/designs.h"
 #include "tests/support/return_frames.h"
@@ -85,11 +85,11 @@ std::vector<Question> questions() {
 BeamPolicy policy_at(double cutoff) {
   BeamPolicy policy;
   policy.cutoff = cutoff;
-  policy.by_cell = true;
+  policy.separate_cells = true;
   return policy;
 }
 
-TEST(EqualPlaces, LedgersAreThoseOfEachByItself) {
+TEST(TranslationalSymmetry, LedgersAreThoseOfEachByItself) {
   Optics optics = pmma();
   optics.absorption_per_mm = 0.02;
   for (const Question& question : questions()) {
@@ -97,7 +97,7 @@ TEST(EqualPlaces, LedgersAreThoseOfEachByItself) {
     const std::vector<double> cones = {0.5, 60.0};
     const BeamPolicy policy = policy_at(1e-8);
     const BeamResult alone = BeamTracer(part).trace(optics, question.light, cones, policy);
-    const BeamResult shared = BeamTracer(part, Elements::equal_at_once).trace(optics, question.light, cones, policy);
+    const BeamResult shared = BeamTracer(part, Elements::instanced).trace(optics, question.light, cones, policy);
     EXPECT_LT(shared.beams, alone.beams) << question.name;
     for (std::size_t cone = 0; cone < cones.size(); ++cone) {
       EXPECT_NEAR(shared.ledgers[cone].total(), 1.0, 1e-12) << question.name;
@@ -118,7 +118,7 @@ struct Seen {
 
 Seen seen(const Part& part, const Illumination& light, BeamPolicy beams, Elements elements) {
   FarFieldPolicy policy;
-  if (beams.weak) policy.replicates = beams.weak->replicates;
+  if (beams.population_control) policy.replicates = beams.population_control->replicates;
   FarFieldCollector collector(part, light, policy);
   Seen result;
   result.result = BeamTracer(part, elements).trace(pmma(), light, {0.5}, beams, nullptr, [&](const ReturnedBeam& beam) {
@@ -142,11 +142,11 @@ const ApertureKernel& discs() {
 }
 
 /// The far field must be the same if each element is traced separately and if equal elements are traced only one time.
-TEST(EqualPlaces, FarFieldsAreThoseOfEachByItself) {
+TEST(TranslationalSymmetry, FarFieldsAreThoseOfEachByItself) {
   for (const Question& question : questions()) {
     const Part& part = question.part;
-    const Seen alone = seen(part, question.light, policy_at(1e-8), Elements::each_by_itself);
-    const Seen shared = seen(part, question.light, policy_at(1e-8), Elements::equal_at_once);
+    const Seen alone = seen(part, question.light, policy_at(1e-8), Elements::individual);
+    const Seen shared = seen(part, question.light, policy_at(1e-8), Elements::instanced);
     EXPECT_NEAR(shared.field.total_power(), alone.field.total_power(), 1e-3) << question.name;
     for (const Vec3& direction : receivers(question.light)) {
       const double expected = alone.field.intensity(direction, discs()).per_sr;
@@ -156,7 +156,7 @@ TEST(EqualPlaces, FarFieldsAreThoseOfEachByItself) {
 }
 
 /// Light that enters the first half of a period is equivalent to light that enters the second half.
-TEST(EqualPlaces, HalvesOfAPeriodAreAlike) {
+TEST(TranslationalSymmetry, HalvesOfAPeriodAreAlike) {
   PartSpec quarter = infinite(RtpElement{0.5, 0.4, 90.0}, Arrangement::offset, 1.0);
   quarter.array.overlap_percent = 25.0;
   const std::vector<std::pair<PartSpec, bool>> parts = {
@@ -169,9 +169,9 @@ TEST(EqualPlaces, HalvesOfAPeriodAreAlike) {
   const Illumination light = from(20.0, 25.0);
   for (const auto& [spec, is_alike] : parts) {
     const Part part = build_part(spec);
-    ASSERT_EQ(EqualPlaces::of(part, Vec2::Zero())->within_period_mm().has_value(), is_alike);
-    const Seen alone = seen(part, light, policy_at(1e-6), Elements::each_by_itself);
-    const Seen shared = seen(part, light, policy_at(1e-6), Elements::equal_at_once);
+    ASSERT_EQ(TranslationalSymmetry::of(part, Vec2::Zero())->within_period_mm().has_value(), is_alike);
+    const Seen alone = seen(part, light, policy_at(1e-6), Elements::individual);
+    const Seen shared = seen(part, light, policy_at(1e-6), Elements::instanced);
     EXPECT_LT(shared.result.beams, (is_alike ? 0.6 : 1.01) * static_cast<double>(alone.result.beams));
     EXPECT_NEAR(shared.result.ledgers[0].total(), 1.0, 1e-12);
     EXPECT_NEAR(shared.field.total_power(), alone.field.total_power(), 1e-4);
@@ -184,17 +184,17 @@ TEST(EqualPlaces, HalvesOfAPeriodAreAlike) {
 }
 
 /// If a resampled beam represents equal elements at several positions, its light counts at each of these positions.
-TEST(EqualPlaces, ResampledLightIsThatOfAllPlaces) {
+TEST(TranslationalSymmetry, ResampledLightIsThatOfAllPlaces) {
   const std::vector<Question> all = questions();
   for (const Question& question :
        {all[0], all[2], all[6],
         Question{"endless", build_part(infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 1.0)), from(20, 10)}}) {
     const Part& part = question.part;
     const double element = 1.0 / static_cast<double>(part.period_mm ? 1 : part.elements_full);
-    const Seen truth = seen(part, question.light, policy_at(1e-4 * element), Elements::each_by_itself);
+    const Seen truth = seen(part, question.light, policy_at(1e-4 * element), Elements::individual);
     BeamPolicy policy = policy_at(1e-3 * element);
-    policy.weak = WeakBeams{.seed = 1, .replicates = 16, .thinning = 4.0};
-    const Seen own = seen(part, question.light, policy, Elements::equal_at_once);
+    policy.population_control = PopulationControl{.seed = 1, .replicates = 16, .survivor_power_ratio = 4.0};
+    const Seen own = seen(part, question.light, policy, Elements::instanced);
     EXPECT_NEAR(own.result.ledgers[0].total(), 1.0, 1e-11) << question.name;
     EXPECT_NEAR(own.result.ledgers[0][Account::truncated], 0.0, 1e-11) << question.name;
     const double left = truth.result.ledgers[0][Account::truncated];
@@ -213,13 +213,13 @@ TEST(EqualPlaces, ResampledLightIsThatOfAllPlaces) {
 /// The RRE of a part with zones (regions with different elements) approaches the area-weighted sum of the RRE of
 /// infinite arrays as the part grows. The difference, caused by borders and by walls between zones, is inversely
 /// proportional to the size of the part.
-TEST(EqualPlaces, PartsOfZonesComeToTheSumOfTheirZones) {
+TEST(TranslationalSymmetry, PartsOfZonesComeToTheSumOfTheirZones) {
   PartSpec upright = infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 1.0);
   PartSpec opened = infinite(HexagonalCube{0.8}, Arrangement::honeycomb, 1.0);
   opened.angle_errors.dihedral_error_arcmin = {15.0, 15.0, 15.0};
   const Illumination light = from(0.0);
   const auto rre = [&](const Part& part, double cutoff) {
-    return BeamTracer(part, Elements::equal_at_once)
+    return BeamTracer(part, Elements::instanced)
         .trace(pmma(), light, {0.5}, policy_at(cutoff))
         .ledgers[0][Account::retroreflected];
   };
@@ -236,15 +236,15 @@ TEST(EqualPlaces, PartsOfZonesComeToTheSumOfTheirZones) {
   for (std::size_t k = 0; k < 2; ++k) EXPECT_NEAR(missing[k] / missing[k + 1], 2.0, 0.3);
 }
 
-TEST(EqualPlaces, AreNotThereWhereElementsDiffer) {
+TEST(TranslationalSymmetry, AreNotThereWhereElementsDiffer) {
   PartSpec tilted = finite(RtpElement{0.5, 0.4, 90.0}, Arrangement::aligned, 4.0, 4.0, 1.0);
   tilted.random_tilts = {1.0, 1};
   const PartSpec small = finite(HexagonalCube{1.0}, Arrangement::honeycomb, 2.0, 2.0, 1.0);
   for (const Part& part :
        {build_part(tilted), build_part(small), build_part(single(HexagonalCube{1.0}, 1.0)), columns(false)}) {
-    EXPECT_FALSE(EqualPlaces::of(part, Vec2::Zero()));
+    EXPECT_FALSE(TranslationalSymmetry::of(part, Vec2::Zero()));
     const BeamPolicy policy = policy_at(1e-6);
-    EXPECT_EQ(BeamTracer(part, Elements::equal_at_once).trace(pmma(), from(10.0), {0.5}, policy).beams,
+    EXPECT_EQ(BeamTracer(part, Elements::instanced).trace(pmma(), from(10.0), {0.5}, policy).beams,
               BeamTracer(part).trace(pmma(), from(10.0), {0.5}, policy).beams);
   }
 }

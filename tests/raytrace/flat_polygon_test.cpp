@@ -15,12 +15,12 @@ using namespace raytrace;
 using geometry::Vec2;
 
 constexpr double kMerge_mm = 1e-11;
-constexpr double kLeastArea = 1e-15;
+constexpr double kMinArea = 1e-15;
 
 /// Returns the area of the part of the polygon `of` that is outside the polygon `by`.
 double area_left(const FlatPolygon& of, const FlatPolygon& by) {
   FlatPolygons left;
-  subtract(of, by, kLeastArea, kMerge_mm, left);
+  subtract(of, by, kMinArea, kMerge_mm, left);
   double sum = 0.0;
   for (const FlatPolygon& piece : left) sum += area(piece);
   return sum;

@@ -48,12 +48,12 @@ std::vector<FacetFrame> frames_of(const SurfacePatch& patch, const PatchCell& ce
   std::vector<FacetFrame> frames;
   for (std::uint32_t f = cell.first_facet; f < cell.first_facet + cell.facet_count; ++f) {
     const PatchFacet& facet = patch.facets[f];
-    if (!facet.middle_mm) continue;
+    if (!facet.centroid_mm) continue;
     EXPECT_EQ(facet.role, FacetRole::retro_facet);
-    frames.emplace_back(facet.normal, facet.offset_mm, *facet.middle_mm);
+    frames.emplace_back(facet.normal, facet.offset_mm, *facet.centroid_mm);
     EXPECT_NEAR(facet.normal.dot(frames.back().origin_mm), facet.offset_mm, 1e-12);
-    EXPECT_NEAR((frames.back().level.cross(frames.back().down) - facet.normal).norm(), 0.0, 1e-12);
-    EXPECT_EQ(frames.back().level.z(), 0.0);
+    EXPECT_NEAR((frames.back().horizontal.cross(frames.back().down) - facet.normal).norm(), 0.0, 1e-12);
+    EXPECT_EQ(frames.back().horizontal.z(), 0.0);
     EXPECT_LT(frames.back().down.z(), 0.0);
   }
   return frames;
@@ -104,7 +104,7 @@ TEST(FormedFacets, MiddlesStayWithTheirElements) {
 
 struct Exits : ExitObserver {
   std::vector<Vec3> directions;
-  void leaves(const Departure& departure) override {
+  void on_exit(const ExitEvent& departure) override {
     if (departure.is_through_entrance() && departure.light.power() > 0.5) directions.push_back(departure.direction);
   }
 };
@@ -112,7 +112,7 @@ struct Exits : ExitObserver {
 /// Returns the directions in which rays from several points of the entrance face leave, one per ray.
 std::vector<Vec3> ways_of(const PartSpec& spec, const Optics& optics, const Illumination& light) {
   const Part part = build_part(spec);
-  const Vec2 centre = bounding_box(part.outline).middle();
+  const Vec2 centre = bounding_box(part.outline).centre();
   const BackSurface back(part, centre);
   const PathSetup setup(part, back, centre, optics, light, {0.5}, {});
   std::vector<Vec3> ways;

@@ -91,8 +91,8 @@ TEST(Layers, FrontReflection) {
           fresnel_layers(optics.entrance_layers, StackSide::outside, 1.0, kPmma, std::cos(light.incidence.rad()));
       const double expected = 0.5 * ((1.0 + q) * std::norm(f.r_s) + (1.0 - q) * std::norm(f.r_p));
       const LightSetup setup(part, Vec2::Zero(), optics, light, {0.5});
-      EXPECT_NEAR(setup.entry.front.i, expected, 1e-14) << degrees << ' ' << q;
-      EXPECT_NEAR(setup.entry.front.i + setup.entry.light.power() + setup.entry.absorbed, 1.0, 1e-14);
+      EXPECT_NEAR(setup.entry.reflected.i, expected, 1e-14) << degrees << ' ' << q;
+      EXPECT_NEAR(setup.entry.reflected.i + setup.entry.light.power() + setup.entry.absorbed, 1.0, 1e-14);
     }
 }
 

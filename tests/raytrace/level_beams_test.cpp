@@ -69,8 +69,7 @@ TEST_P(LevelBeams, BoundsOfBeamsMeetNextToAxes) {
   const Part part = build_part(c.spec);
   const bool is_prism = std::holds_alternative<RtpElement>(c.spec.element);
   BeamPolicy policy;
-  const BeamTracer tracer(part,
-                          part.period_mm ? BeamTracer::Elements::equal_at_once : BeamTracer::Elements::each_by_itself);
+  const BeamTracer tracer(part, part.period_mm ? BeamTracer::Elements::instanced : BeamTracer::Elements::individual);
   for (const double azimuth_deg : kAzimuths_deg) {
     double lower = 0.0, upper = 1.0;
     // Cube corners and infinite parts split light into many more beams, especially at azimuths that are not along an
@@ -94,7 +93,7 @@ TEST_P(LevelBeams, RaysAreContinuousNextToAxes) {
   const Case c = cases()[GetParam()];
   const Part part = build_part(c.spec);
   std::vector<MonteCarlo::Engine> engines = {MonteCarlo::Engine::embree};
-  if (MonteCarlo::cell_serves(part)) engines.push_back(MonteCarlo::Engine::cell);
+  if (MonteCarlo::cell_supports(part)) engines.push_back(MonteCarlo::Engine::cell);
   for (const MonteCarlo::Engine engine : engines) {
     const MonteCarlo tracer(part, engine);
     for (const double azimuth_deg : kAzimuths_deg) {

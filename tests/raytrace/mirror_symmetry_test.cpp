@@ -68,15 +68,15 @@ std::vector<Question> questions() {
 TEST(MirrorSymmetry, IsThatOfElementsErrorsAndBorders) {
   for (const Question& question : questions()) {
     const Part part = build_part(question.spec);
-    EXPECT_EQ(is_its_own_mirror_image(part, 0), question.along_x) << question.name;
-    EXPECT_EQ(is_its_own_mirror_image(part, 1), question.along_y) << question.name;
+    EXPECT_EQ(is_mirror_symmetric(part, 0), question.along_x) << question.name;
+    EXPECT_EQ(is_mirror_symmetric(part, 1), question.along_y) << question.name;
   }
 }
 
 FarField field_of(const Part& part, const Illumination& light) {
   BeamPolicy policy;
   policy.cutoff = 1e-7;
-  policy.by_cell = true;
+  policy.separate_cells = true;
   FarFieldCollector collector(part, light, {});
   BeamTracer(part).trace(pmma(), light, {0.5}, policy, nullptr, [&](const ReturnedBeam& beam) { collector.add(beam); });
   return collector.finish();
@@ -92,7 +92,7 @@ TEST(MirrorSymmetry, MirroredLightHasTheMirroredFarField) {
        {cubes, finite(RtpElement{0.5, 0.4, 90.0}, Arrangement::offset, 2.0, 2.0, 1.0),
         with_errors(infinite(TriangularCube{1.0}, Arrangement::triangular, 1.0), {1.0, 1.0, 1.0})}) {
     const Part part = build_part(spec);
-    ASSERT_TRUE(is_its_own_mirror_image(part, 1));
+    ASSERT_TRUE(is_mirror_symmetric(part, 1));
     const Illumination light = from(20.0, 14.0);
     const FarField own = field_of(part, light);
     const FarField mirrored = field_of(part, from(20.0, -14.0));

@@ -65,7 +65,7 @@ TEST(Overlay, ValuesAddWhereTwoOverlap) {
   Overlay overlay(1.0);
   overlay.insert(rectangle(0.0, 0.0, 2.0, 1.0), 0.5);
   overlay.insert(rectangle(1.0, 0.0, 3.0, 1.0), 0.25);
-  const auto pieces = overlay.pieces();
+  const auto pieces = overlay.polygons();
   ASSERT_EQ(pieces.size(), 3U);
   EXPECT_EQ(value_at(pieces, {0.5, 0.5}), 0.5);
   EXPECT_EQ(value_at(pieces, {1.5, 0.5}), 0.75);
@@ -78,7 +78,7 @@ TEST(Overlay, EqualPolygonsUpToRoundingAreOne) {
   const double third = 1.0 / 3.0;
   overlay.insert(rectangle(0.0, 0.0, third, third), 1.0);
   overlay.insert(rectangle(1e-16, -1e-16, third + 1e-16, std::nextafter(third, 1.0)), 2.0);
-  const auto pieces = overlay.pieces();
+  const auto pieces = overlay.polygons();
   ASSERT_EQ(pieces.size(), 1U);
   EXPECT_EQ(pieces[0].value, 3.0);
 }
@@ -88,7 +88,7 @@ TEST(Overlay, PolygonsWithoutAreaAreNothing) {
   overlay.insert({}, 1.0);
   overlay.insert({{0.0, 0.0}, {1.0, 0.0}}, 1.0);
   overlay.insert({{0.0, 0.0}, {1.0, 0.0}, {0.5, 1e-14}}, 1.0);
-  EXPECT_TRUE(overlay.pieces().empty());
+  EXPECT_TRUE(overlay.polygons().empty());
 }
 
 // Random polygons are overlaid. The resulting fragments are disjoint, their values are the sums of the overlaid values,
@@ -102,7 +102,7 @@ TEST(Overlay, RandomPolygonsKeepAreaAndValue) {
       given.push_back({random_polygon(random, 0.3), 1.0 + static_cast<double>(random() % 8)});
       overlay.insert(given.back().polygon, given.back().value);
     }
-    const auto pieces = overlay.pieces();
+    const auto pieces = overlay.polygons();
     EXPECT_NEAR(sum_of_values(pieces), sum_of_values(given), 1e-9);
     std::uniform_real_distribution<double> place(-0.3, 1.3);
     int covered = 0;
@@ -126,7 +126,7 @@ TEST(Overlay, ManySmallPolygonsTakeLittleTime) {
     overlay.insert(polygon, 1.0);
     given += area(polygon);
   }
-  EXPECT_NEAR(sum_of_values(overlay.pieces()), given, 1e-8);
+  EXPECT_NEAR(sum_of_values(overlay.polygons()), given, 1e-8);
 }
 
 TEST(Fused, TilesBecomeOne) {
@@ -154,7 +154,7 @@ TEST(Fused, RandomOverlaysKeepAreaValueAndPlace) {
   for (int round = 0; round < 20; ++round) {
     Overlay overlay(1.0);
     for (int k = 0; k < 12; ++k) overlay.insert(random_polygon(random, 0.4), 1.0);
-    const auto before = overlay.pieces();
+    const auto before = overlay.polygons();
     const auto after = fused(before, 1.0, 1e-9);
     EXPECT_LT(after.size(), before.size());
     EXPECT_NEAR(sum_of_areas(after), sum_of_areas(before), 1e-9);

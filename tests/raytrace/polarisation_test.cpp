@@ -201,7 +201,7 @@ void expect_six_sub_beams(const Optics& optics, double retardance) {
   for (const Stokes& light : {kUnpolarised, linear(0.0), linear(45.0), linear(77.0), Stokes{1.0, 0.0, 0.0, 1.0}}) {
     std::array<double, 6> share{};
     const auto compare = [&](const ReturnedBeam& beam) {
-      const Vec2 at = centroid(beam.entered_mm) - centre;
+      const Vec2 at = centroid(beam.entry_polygon_mm) - centre;
       double angle_deg = std::atan2(at.y(), at.x()) / kDeg;
       if (angle_deg < 0.0) angle_deg += 360.0;
       const auto sextant = static_cast<std::size_t>(angle_deg / 60.0);

@@ -56,12 +56,12 @@ TEST(ReturnedBeams, CubeCornerTurnsTheEntryAboutItsAxis) {
   for (const ReturnedBeam& beam : trace(part, pmma(), from(12.0, 40.0), 1e-3).beams) {
     if (beam.depth != 4 || beam.cone != 0) continue;
     ++seen;
-    EXPECT_NEAR(area(beam.entered_mm), area(beam.left_mm), 1e-12);
+    EXPECT_NEAR(area(beam.entry_polygon_mm), area(beam.exit_polygon_mm), 1e-12);
     // This center is the projection of the apex onto the face, along the direction of the light inside.
     const double shift =
         (part.thickness_mm + part.element_depth_mm) * std::tan(std::asin(std::sin(12.0 * kDeg) / kPmma));
     const Vec2 axis = centre + shift * Vec2(std::cos(40.0 * kDeg), std::sin(40.0 * kDeg));
-    EXPECT_NEAR((centroid(beam.entered_mm) + centroid(beam.left_mm) - 2.0 * axis).norm(), 0.0, 1e-12);
+    EXPECT_NEAR((centroid(beam.entry_polygon_mm) + centroid(beam.exit_polygon_mm) - 2.0 * axis).norm(), 0.0, 1e-12);
   }
   EXPECT_GE(seen, 6);
 }
@@ -74,7 +74,7 @@ TEST(ReturnedBeams, EnterWithinTheEffectiveAperture) {
     for (const ReturnedBeam& beam : trace(part, ideal(), from(t, 25.0)).beams) {
       if (beam.cone != 0) continue;
       EXPECT_NEAR(beam.efficiency, 1.0, 1e-12);
-      active += area(beam.entered_mm);
+      active += area(beam.entry_polygon_mm);
     }
     EXPECT_NEAR(active / part.entrance_area_mm2, honeycomb_rre(t, 25.0, kPmma), 1e-9) << t;
   }

@@ -28,7 +28,7 @@ TEST(ReplicateMeans, TheStokesParameterOfPowerIsTheEfficiency) {
   for (const std::uint32_t rays : {1U, 3U, 1000U, 4097U}) {
     std::vector<Tally> replicates(32, Tally(3));
     for (Tally& tally : replicates)
-      for (auto* const sums : {&tally.returned, &tally.scattered, &tally.front})
+      for (auto* const sums : {&tally.returned, &tally.scattered, &tally.entrance_reflected})
         for (Stokes& sum : *sums) sum.i = rays * power(random);
     for (const ConeResult& cone : result_of(replicates, rays, {0.1, 0.5, 2.0}).cones)
       EXPECT_EQ(cone.stokes.i, cone.rre) << rays << " rays";

@@ -1,6 +1,6 @@
 // Tests of entrance faces with layers, water, dust, scratches and haze: closed forms, an independent trace of a drop,
 // reciprocity, and ledgers that add up to 1 in every engine.
-#include "raytrace/faces/soiled_entrance.h"
+#include "raytrace/faces/contaminated_entrance.h"
 
 #include <gtest/gtest.h>
 
@@ -97,8 +97,8 @@ class Events {
   /// \param value returns the value of a ray after the event
   Events(const Optics& optics, std::uint32_t per_batch, const std::function<Ray(double, double)>& start,
          const std::function<double(const Ray&)>& value) {
-    const SoiledEntrance face(optics);
-    SoiledReturn result;
+    const ContaminatedEntrance face(optics);
+    EntranceScatter result;
     std::array<double, kBatches> batches{};
     for (std::uint32_t batch = 0; batch < kBatches; ++batch)
       for (std::uint32_t k = 0; k < per_batch; ++k) {
@@ -143,12 +143,12 @@ double diffuse_reflectance() {
 }
 
 // Every event conserves power, and the degree of polarisation is at most 1.
-TEST(SoiledEntrance, EveryEventKeepsItsPower) {
+TEST(ContaminatedEntrance, EveryEventKeepsItsPower) {
   for (const EntranceCondition& condition :
        {filthy(), rough(), dusty(1.0, 0.9, 0.5), dusty(0.5, 0.0, 0.5), hazy(1.0, 20.0), with_drops(1.0, 90.0)}) {
     const Optics optics = with_condition(condition);
-    const SoiledEntrance face(optics);
-    SoiledReturn result;
+    const ContaminatedEntrance face(optics);
+    EntranceScatter result;
     for (std::uint32_t n = 0; n < 20000; ++n) {
       RandomStream random({3, 7}, n, 0, 0);
       const bool inside = random.next() < 0.5;
@@ -174,7 +174,7 @@ TEST(SoiledEntrance, EveryEventKeepsItsPower) {
 
 // A plate has one hazy face, on either side. The fraction of the light beyond 2.5 degrees, as measured by a haze meter,
 // must equal the haze that the design specifies.
-TEST(SoiledEntrance, AHazeMeterReadsTheHaze) {
+TEST(ContaminatedEntrance, AHazeMeterReadsTheHaze) {
   constexpr double kHaze = 0.12;
   const double spread_deg = 6.0;
   const double beyond = std::exp(-std::pow(sin_deg(2.5) / sin_deg(spread_deg), 2.0));
@@ -198,7 +198,7 @@ TEST(SoiledEntrance, AHazeMeterReadsTheHaze) {
 
 // Scratches scatter light perpendicular to their direction. The fraction beyond an angle is given by the complementary
 // error function erfc. In the direction of the scratches, no light is scattered.
-TEST(SoiledEntrance, ScratchesThrowLightAcross) {
+TEST(ContaminatedEntrance, ScratchesThrowLightAcross) {
   EntranceCondition condition;
   condition.scratches = {0.25, sin_deg(8.0), 0.3};
   const Vec2 across(-std::sin(0.3), std::cos(0.3));
@@ -219,7 +219,7 @@ TEST(SoiledEntrance, ScratchesThrowLightAcross) {
 // Dust on a face returns the fraction rho = c (a b + (a f)^2 R / (1 - a b R)) of the light. R is the mean reflectance
 // of the face for Lambertian light. The fraction c a f (1 - R) / (1 - a b R) enters the part at any angle of incidence.
 // Both are proportional to the coverage c.
-TEST(SoiledEntrance, DustInClosedForm) {
+TEST(ContaminatedEntrance, DustInClosedForm) {
   const double face = diffuse_reflectance();
   const double albedo = 0.8;
   const double forward = 0.7;
@@ -242,7 +242,7 @@ TEST(SoiledEntrance, DustInClosedForm) {
 
 // The part behind the face returns no light, so that all returned light is from dust. In a cone of half-angle w around
 // the source at the incidence t, Lambertian light has the power rho cos t sin^2 w.
-TEST(SoiledEntrance, DustShinesInADarkField) {
+TEST(ContaminatedEntrance, DustShinesInADarkField) {
   const Part part = build_part(infinite(RtpElement{0.5, 0.5, 90.0}, Arrangement::offset, 0.5));
   Optics optics = with_condition(dusty(0.1, 0.9, 0.6));
   optics.back_index = optics.index;
@@ -334,7 +334,7 @@ struct MeridionalTrace {
 // For light along the normal, all paths are in the meridional plane. Three results are compared with a trace in this
 // plane: the fraction that enters, its tangential wave vector, and the returned light. With contact angles of up to 45
 // degrees, no light leaves the drop downwards.
-TEST(SoiledEntrance, ADropAgainstATraceInItsMeridionalPlane) {
+TEST(ContaminatedEntrance, ADropAgainstATraceInItsMeridionalPlane) {
   for (const double contact_deg : {10.0, 30.0, 44.0}) {
     MeridionalTrace trace{sin_deg(contact_deg)};
     trace.fall(4000);
@@ -354,7 +354,7 @@ TEST(SoiledEntrance, ADropAgainstATraceInItsMeridionalPlane) {
 }
 
 // Very flat drops act like a film.
-TEST(SoiledEntrance, FlatDropsAreAFilm) {
+TEST(ContaminatedEntrance, FlatDropsAreAFilm) {
   for (const double k : {0.0, 0.5}) {
     const Ray ray = ray_at({k, 0.0}, false);
     const Events drops(with_condition(with_drops(1.0, 1.0)), 4000, always(ray), power_in_body);
@@ -368,7 +368,7 @@ TEST(SoiledEntrance, FlatDropsAreAFilm) {
 
 // Summed over polarisations, the light from given directions in the air into given directions in the body equals the
 // light in the reverse direction.
-TEST(SoiledEntrance, Reciprocal) {
+TEST(ContaminatedEntrance, Reciprocal) {
   const Vec2 air(0.3, 0.0);
   const Vec2 body(-0.05, 0.15);
   const double radius = 0.15;
@@ -397,7 +397,7 @@ TEST(SoiledEntrance, Reciprocal) {
 
 // For roughness with a correlation length much longer than the wavelength, the fraction exp(-(4 pi s / w)^2) of the
 // reflection remains specular.
-TEST(SoiledEntrance, RoughnessOfTheFaceDims) {
+TEST(ContaminatedEntrance, RoughnessOfTheFaceDims) {
   EntranceCondition condition;
   condition.roughness = surface_models::HarveyShack({20.0, 30.0, 0.0, 0.0}, {kPmma, 1.0, 587.56});
   const Events specular(with_condition(condition), 2000, always(ray_at(Vec2::Zero(), false)),
@@ -409,7 +409,7 @@ TEST(SoiledEntrance, RoughnessOfTheFaceDims) {
 // An entrance face has layers and is half wet. Mirrors behind it return all light along the normal. The exact engine
 // and the ray tracer must give the RRE R + T^2 / (1 - R'). R and T are the reflectance and transmittance of the face
 // for light from outside, and R' is its reflectance for light from inside.
-TEST(SoiledEntrance, LayersAndFilmBeforeMirrors) {
+TEST(ContaminatedEntrance, LayersAndFilmBeforeMirrors) {
   const Part part = build_part(single(RtpElement{0.5, 0.5, 90.0}, 0.5));
   EntranceCondition condition = wet(0.5);
   condition.layers.insert(condition.layers.begin(), {1.6, 0.02, 3.0});
@@ -442,7 +442,7 @@ TEST(SoiledEntrance, LayersAndFilmBeforeMirrors) {
 
 // The Monte Carlo engines (Embree, and cell by cell) must agree for infinite and finite parts. Faces with only layers
 // and films are also traced by the exact engine.
-TEST(SoiledEntrance, EnginesAgreeAndLedgersClose) {
+TEST(ContaminatedEntrance, EnginesAgreeAndLedgersClose) {
   const std::vector<PartSpec> parts = {infinite(RtpElement{0.5, 0.5, 90.0}, Arrangement::offset, 0.5),
                                        finite(HexagonalCube{0.5}, Arrangement::honeycomb, 3.5, 3.0, 0.8)};
   for (const PartSpec& spec : parts) {
@@ -478,7 +478,7 @@ TEST(SoiledEntrance, EnginesAgreeAndLedgersClose) {
 
 // The effect of every kind of contamination is at most the contaminated fraction of the face. It vanishes as this
 // fraction goes to 0.
-TEST(SoiledEntrance, NothingIsLeftOfNothing) {
+TEST(ContaminatedEntrance, NothingIsLeftOfNothing) {
   const Part part = build_part(infinite(RtpElement{0.5, 0.5, 90.0}, Arrangement::offset, 0.5));
   const auto ledger = [&](const EntranceCondition& condition) {
     return MonteCarlo(part, MonteCarlo::Engine::cell)

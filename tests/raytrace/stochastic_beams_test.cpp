@@ -68,7 +68,7 @@ TEST(StochasticBeams, AgreeWithBeamsAndBookAllPower) {
     BeamPolicy policy;
     policy.truncated_goal = 1e-5;
     const BeamResult exact = BeamTracer(question.part).trace(optics, question.light, cones, policy);
-    for (const Elements elements : {Elements::each_by_itself, Elements::equal_at_once}) {
+    for (const Elements elements : {Elements::individual, Elements::instanced}) {
       const MonteCarloResult result =
           traced(BeamTracer(question.part, elements), optics, question.light, cones, until(error));
       EXPECT_TRUE(result.reached_target && result.complete) << question.name;
@@ -100,7 +100,7 @@ Optics rough(double sq_nm, double correlation_length_um) {
 /// Returns the results of 200 seeds in a long run, otherwise of 20 seeds.
 std::vector<ConeResult> answers(const Question& question, const Optics& optics, double target_error, bool one_round) {
   const std::size_t seeds = test::sample_size<std::size_t>(20, 200);
-  const BeamTracer tracer(question.part, Elements::equal_at_once);
+  const BeamTracer tracer(question.part, Elements::instanced);
   const BackSurface surface(question.part, tracer.centre_mm());
   const ScatteredLightByRays scattered(tracer, surface, optics, question.light, {0.5});
   std::vector<ConeResult> found(seeds);
@@ -170,7 +170,7 @@ TEST(StochasticBeams, IntervalsHoldWhereFewScatteredRaysReachTheCone) {
   const Part part = build_part(infinite(HexagonalCube{kCubeAperture}, Arrangement::honeycomb, 2.0));
   const Optics optics = rough(10.0, 1.0);
   const Illumination light = from(30.0);
-  const BeamTracer tracer(part, Elements::equal_at_once);
+  const BeamTracer tracer(part, Elements::instanced);
   const BackSurface scattering(part, tracer.centre_mm());
   const auto answer = [&](double target_error, std::uint32_t seed) {
     return traced(tracer, optics, light, {2.0}, until(target_error, seed), &scattering).cones[0];
@@ -189,7 +189,7 @@ TEST(StochasticBeams, IntervalsHoldWhereFewScatteredRaysReachTheCone) {
 
 TEST(StochasticBeams, SameAtAnyNumberOfThreads) {
   const Question question = questions()[1];
-  const BeamTracer tracer(question.part, Elements::equal_at_once);
+  const BeamTracer tracer(question.part, Elements::instanced);
   std::vector<MonteCarloResult> results;
   for (const unsigned threads : {1U, 2U, 5U})
     run_with_threads(threads, [&] { results.push_back(traced(tracer, pmma(), question.light, {0.5}, until(1e-4))); });
@@ -213,7 +213,7 @@ TEST(StochasticBeams, RoughFacetsAgreeWithRays) {
     const auto engine = question.part.period_mm ? MonteCarlo::Engine::cell : MonteCarlo::Engine::embree;
     const MonteCarloResult sampled =
         MonteCarlo(question.part, engine).trace(optics, question.light, cones, until(2.0 * error, 7), {});
-    const BeamTracer tracer(question.part, Elements::equal_at_once);
+    const BeamTracer tracer(question.part, Elements::instanced);
     const BackSurface scattering(question.part, tracer.centre_mm());
     const MonteCarloResult result = traced(tracer, optics, question.light, cones, until(error), &scattering);
     EXPECT_TRUE(result.reached_target && result.complete) << question.name;
@@ -282,7 +282,7 @@ TEST(StochasticBeams, EqualElementsTakeHalfTheWork) {
     for (int round = 0; round < 3; ++round) traced.advance();
     return static_cast<double>(traced.beams());
   };
-  EXPECT_LT(beams(Elements::equal_at_once), 0.75 * beams(Elements::each_by_itself));
+  EXPECT_LT(beams(Elements::instanced), 0.75 * beams(Elements::individual));
 }
 
 /// Equal rough elements of a finite array are followed together. The ledger must agree with a ledger from rays.
@@ -298,9 +298,9 @@ TEST(StochasticBeams, EqualRoughElementsOfAFinitePartAreFollowedOnce) {
     traced.advance();
     return static_cast<double>(traced.beams());
   };
-  EXPECT_LT(beams(Elements::equal_at_once), 0.5 * beams(Elements::each_by_itself));
+  EXPECT_LT(beams(Elements::instanced), 0.5 * beams(Elements::individual));
   const ConeResult shared =
-      traced(BeamTracer(part, Elements::equal_at_once), optics, light, {0.5}, until(1e-3), &surface).cones[0];
+      traced(BeamTracer(part, Elements::instanced), optics, light, {0.5}, until(1e-3), &surface).cones[0];
   const ConeResult sampled = MonteCarlo(part).trace(optics, light, {0.5}, rays(1U << 16), {}).cones[0];
   EXPECT_NEAR(shared.rre, sampled.rre, normal_bound(1) * std::hypot(shared.std_error, sampled.std_error));
   for (const Account account : {Account::scattered_out, Account::side_exit, Account::transmitted})

@@ -131,7 +131,7 @@ TEST(UnseenPaths, RandomDesignsContainTheExactAnswer) {
       const Part part = build_part(question.spec);
       BeamPolicy policy;
       policy.truncated_goal = 0.2 * target;
-      const Ledger exact = BeamTracer(part, BeamTracer::Elements::equal_at_once)
+      const Ledger exact = BeamTracer(part, BeamTracer::Elements::instanced)
                                .trace(question.optics, question.illumination, {0.5}, policy)
                                .ledgers[0];
       Sampling sampling;

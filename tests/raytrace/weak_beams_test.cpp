@@ -43,7 +43,7 @@ std::vector<Question> questions() {
 BeamPolicy resampled(double cutoff, double thinning, std::uint32_t seed = 1) {
   BeamPolicy policy;
   policy.cutoff = cutoff;
-  policy.weak = WeakBeams{.seed = seed, .replicates = 16, .thinning = thinning};
+  policy.population_control = PopulationControl{.seed = seed, .replicates = 16, .survivor_power_ratio = thinning};
   return policy;
 }
 
@@ -54,7 +54,7 @@ std::vector<Ledger> references(const Question& question, const Optics& optics, c
   return BeamTracer(question.part).trace(optics, question.light, cones_deg, policy).ledgers;
 }
 
-TEST(WeakBeams, AgreeWithBeamsAndBookAllPower) {
+TEST(PopulationControl, AgreeWithBeamsAndBookAllPower) {
   Optics optics = pmma();
   optics.absorption_per_mm = 0.01;
   for (const Question& question : questions()) {
@@ -80,7 +80,7 @@ TEST(WeakBeams, AgreeWithBeamsAndBookAllPower) {
 
 /// Expects that the mean is unbiased and that 1.96 standard errors contain the true value in 88 of 100 results. With
 /// fewer seeds, the observed fraction has a larger standard error, so that `min_coverage` lowers the required fraction.
-TEST(WeakBeams, AreUnbiasedAndIntervalsHoldOverSeeds) {
+TEST(PopulationControl, AreUnbiasedAndIntervalsHoldOverSeeds) {
   const std::uint32_t seeds = test::sample_size(20U, 100U);
   for (const Question& question : questions()) {
     const Ledger exact = references(question, pmma(), {0.5})[0];
@@ -110,7 +110,7 @@ TEST(WeakBeams, AreUnbiasedAndIntervalsHoldOverSeeds) {
 
 /// The beams above the cut-off are the same as in a run that truncates weak beams. The power of all returned beams,
 /// where each beam of one of the 16 replicates counts by 1/16, must equal the returned light of the ledger.
-TEST(WeakBeams, LeaveStrongBeamsAsTheyAre) {
+TEST(PopulationControl, LeaveStrongBeamsAsTheyAre) {
   for (const Question& question : questions()) {
     const BeamTracer tracer(question.part);
     std::vector<ReturnedBeam> strong;
@@ -118,7 +118,7 @@ TEST(WeakBeams, LeaveStrongBeamsAsTheyAre) {
     BeamPolicy policy = resampled(1e-4, 32.0);
     const BeamResult result = tracer.trace(pmma(), question.light, {0.5}, policy, nullptr,
                                            [&](const ReturnedBeam& beam) { all.push_back(beam); });
-    policy.weak.reset();
+    policy.population_control.reset();
     const BeamResult plain = tracer.trace(pmma(), question.light, {0.5}, policy, nullptr,
                                           [&](const ReturnedBeam& beam) { strong.push_back(beam); });
     EXPECT_EQ(plain.std_error[0], 0.0);
@@ -134,7 +134,7 @@ TEST(WeakBeams, LeaveStrongBeamsAsTheyAre) {
       ASSERT_LT(exact, strong.size());
       EXPECT_EQ(beam.stokes.i, strong[exact].stokes.i);
       EXPECT_EQ(beam.phase_mm, strong[exact].phase_mm);
-      EXPECT_EQ(beam.left_mm, strong[exact].left_mm);
+      EXPECT_EQ(beam.exit_polygon_mm, strong[exact].exit_polygon_mm);
       ++exact;
     }
     EXPECT_EQ(exact, strong.size()) << question.name;
@@ -148,14 +148,14 @@ TEST(WeakBeams, LeaveStrongBeamsAsTheyAre) {
 }
 
 /// If no beam is resampled, the standard error is 0.
-TEST(WeakBeams, NothingIsLeftToChanceWhereBeamsEnd) {
+TEST(PopulationControl, NothingIsLeftToChanceWhereBeamsEnd) {
   const Part part = build_part(single(RtpElement{0.6, 0.4, 90.0}, 0.7));
   const BeamResult result = BeamTracer(part).trace(ideal(), from(0.0), {0.5}, resampled(1e-3, 32.0));
   EXPECT_NEAR(result.ledgers[0][Account::retroreflected], 1.0, 1e-12);
   EXPECT_EQ(result.std_error[0], 0.0);
 }
 
-TEST(WeakBeams, StopWhenCancelled) {
+TEST(PopulationControl, StopWhenCancelled) {
   const Question question = questions()[1];
   Cancellation cancel;
   cancel.request();
@@ -168,10 +168,10 @@ struct Seen {
 };
 
 Seen seen(const Question& question, const BeamPolicy& beams, FarFieldPolicy policy) {
-  policy.replicates = beams.weak ? beams.weak->replicates : 0;
+  policy.replicates = beams.population_control ? beams.population_control->replicates : 0;
   FarFieldCollector collector(question.part, question.light, policy);
   BeamPolicy by_cell = beams;
-  by_cell.by_cell = true;
+  by_cell.separate_cells = true;
   Seen seen;
   seen.result =
       BeamTracer(question.part).trace(pmma(), question.light, {0.5}, by_cell, nullptr, [&](const ReturnedBeam& beam) {
@@ -200,7 +200,7 @@ Question wide_cubes() {
 
 /// Without interference, intensities are unbiased: their mean over many seeds is that of a trace with a lower cut-off.
 /// The reported errors agree with the spread over the seeds.
-TEST(WeakBeams, FarFieldIsUnbiased) {
+TEST(PopulationControl, FarFieldIsUnbiased) {
   constexpr std::uint32_t kSeeds = 60;
   const Question question = wide_cubes();
   FarFieldPolicy policy;
@@ -238,7 +238,7 @@ TEST(WeakBeams, FarFieldIsUnbiased) {
 }
 
 /// Resampled light does not interfere with other light. In the diffracted far field, the effect of this is small.
-TEST(WeakBeams, DiffractedFarFieldAgreesWithBeams) {
+TEST(PopulationControl, DiffractedFarFieldAgreesWithBeams) {
   const ApertureKernel kernel({Angle::from_deg(10.0 / 60.0), Angle::from_deg(10.0 / 60.0)});
   const Question question = wide_cubes();
   BeamPolicy further;
@@ -261,7 +261,7 @@ TEST(WeakBeams, DiffractedFarFieldAgreesWithBeams) {
 
 /// All integrals of a far field contain the resampled light. The sum over bins, and the power inside and outside of a
 /// cone, must equal the total power.
-TEST(WeakBeams, SumsOverDirectionsHoldAllReplicates) {
+TEST(PopulationControl, SumsOverDirectionsHoldAllReplicates) {
   const Question question = wide_cubes();
   const BeamPolicy beams = resampled(1e-4, 32.0);
   FarFieldPolicy geometric;

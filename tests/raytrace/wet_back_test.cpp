@@ -83,20 +83,20 @@ TEST(ChosenElements, EverythingAndNothingAreKnown) {
   for (const PartSpec& spec : arrays()) {
     const Part part = build_part(spec);
     const auto& [x, y] = std::pair(spec.array.x_length_mm, spec.array.y_length_mm);
-    for (const ElementChoice& all : {ElementChoice(Rectangle{{0.0, 0.0}, {x, y}}), ElementChoice(RandomShare{1.0, 9}),
-                                     ElementChoice(Disc{{0.0, 0.0}, 10.0})}) {
+    for (const ElementChoice& all : {ElementChoice(Rectangle{{0.0, 0.0}, {x, y}}),
+                                     ElementChoice(RandomFraction{1.0, 9}), ElementChoice(Disc{{0.0, 0.0}, 10.0})}) {
       const ChosenElements chosen(part, all);
-      EXPECT_TRUE(chosen.is_everything());
-      EXPECT_FALSE(chosen.is_nothing());
+      EXPECT_TRUE(chosen.contains_all());
+      EXPECT_FALSE(chosen.is_empty());
       EXPECT_EQ(chosen.count(), part.elements_full + part.elements_partial);
       EXPECT_EQ(chosen.of_all(), chosen.count());
     }
-    for (const ElementChoice& none : {ElementChoice(RandomShare{0.0, 9}), ElementChoice(Disc{{-9.0, 0.0}, 1.0})}) {
-      EXPECT_TRUE(ChosenElements(part, none).is_nothing());
-      EXPECT_FALSE(ChosenElements(part, none).is_everything());
+    for (const ElementChoice& none : {ElementChoice(RandomFraction{0.0, 9}), ElementChoice(Disc{{-9.0, 0.0}, 1.0})}) {
+      EXPECT_TRUE(ChosenElements(part, none).is_empty());
+      EXPECT_FALSE(ChosenElements(part, none).contains_all());
     }
     const ChosenElements half(part, geometry::HalfPlane{{0.5 * x, 0.0}, 0.0});
-    EXPECT_FALSE(half.is_everything() || half.is_nothing());
+    EXPECT_FALSE(half.contains_all() || half.is_empty());
   }
 }
 
@@ -107,7 +107,7 @@ TEST(ChosenElements, ASharesCountIsThatOfIndependentChances) {
     double sum = 0.0, square = 0.0;
     constexpr int kSeeds = 200;
     for (std::uint32_t seed = 1; seed <= kSeeds; ++seed) {
-      const auto count = static_cast<double>(ChosenElements(part, RandomShare{share, seed}).count());
+      const auto count = static_cast<double>(ChosenElements(part, RandomFraction{share, seed}).count());
       sum += count - 256.0 * share;
       square += std::pow(count - 256.0 * share, 2.0);
     }
@@ -124,7 +124,7 @@ bool is_wall(const PatchFacet& facet) {
 // An element is either wet or dry as a whole, including its facets and the outer walls at its ends.
 TEST(ChosenElements, FacetsOfAnElementAreChosenTogether) {
   const Part part = build_part(prisms(Arrangement::offset));
-  const ChosenElements chosen(part, RandomShare{0.5, 3});
+  const ChosenElements chosen(part, RandomFraction{0.5, 3});
   for (std::uint32_t p = 0; p < part.placements.size(); ++p)
     for (const PatchCell& cell : part.patches[part.placements[p].patch].cells)
       for (std::uint32_t f = 1; f < cell.facet_count; ++f) {
@@ -174,7 +174,7 @@ TEST(ChosenElements, WallsHaveTheMediumOfTheirNeighbour) {
   int unlike = 0;
   for (const PartSpec& spec : arrays()) {
     const Part part = build_part(spec);
-    const ChosenElements chosen(part, RandomShare{0.5, 3});
+    const ChosenElements chosen(part, RandomFraction{0.5, 3});
     for (std::uint32_t p = 0; p < part.placements.size(); ++p) {
       const SurfacePatch& patch = part.patches[part.placements[p].patch];
       for (const PatchCell& cell : patch.cells)
@@ -205,9 +205,9 @@ TEST(WetBack, OfAllElementsAndOfNoneAreTheBacksOwn) {
       Optics wet = dry;
       wet.back_index = kWater;
       for (const Illumination& at : {from(0.0), from(25.0, 20.0), from(60.0, 200.0)}) {
-        const ConeResult one_by_one = traced(part, wet_behind(dry, part, RandomShare{1.0, 1}, kWater), at, 1024);
+        const ConeResult one_by_one = traced(part, wet_behind(dry, part, RandomFraction{1.0, 1}, kWater), at, 1024);
         EXPECT_EQ(one_by_one.ledger.power, traced(part, wet, at, 1024).ledger.power);
-        const ConeResult of_none = traced(part, wet_behind(dry, part, RandomShare{0.0, 1}, kWater), at, 1024);
+        const ConeResult of_none = traced(part, wet_behind(dry, part, RandomFraction{0.0, 1}, kWater), at, 1024);
         EXPECT_EQ(of_none.ledger.power, traced(part, dry, at, 1024).ledger.power);
       }
     }
@@ -263,7 +263,7 @@ TEST(WetBack, LedgersAddUpToOne) {
     const Part part = build_part(spec);
     for (const Illumination& at : {from(0.0), from(21.0, 30.0), from(75.0, 211.0)}) {
       const MonteCarloResult result =
-          MonteCarlo(part).trace(wet_behind(pmma(), part, RandomShare{0.5, 4}, kWater), at, {0.5}, rays(4096), {});
+          MonteCarlo(part).trace(wet_behind(pmma(), part, RandomFraction{0.5, 4}, kWater), at, {0.5}, rays(4096), {});
       EXPECT_NEAR(result.cones[0].ledger.total(), 1.0, 1e-9);
       EXPECT_EQ(result.misses, 0U);
       for (const double power : result.cones[0].ledger.power) EXPECT_GE(power, 0.0);

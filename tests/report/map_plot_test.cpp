@@ -103,7 +103,7 @@ TEST(FootprintPlot, HasAPanelADirectionUpToItsCap) {
   EXPECT_EQ(plot.panels[1].title, "incidence \u22121°");
   EXPECT_EQ(plot.panels[1].remarks, (std::vector<std::string>{"50.0 % active, returns 25.0 %"}));
   EXPECT_EQ(plot.panels[1].regions.at(0).value, 50.0);
-  EXPECT_EQ(footprint_plot(result_of(30)).panels.size(), kMostFootprintPanels);
+  EXPECT_EQ(footprint_plot(result_of(30)).panels.size(), kMaxFootprintPanels);
 }
 
 TEST(FootprintPlot, NamesDesignsWhereThereAreSeveral) {

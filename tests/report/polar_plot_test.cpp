@@ -60,8 +60,8 @@ TEST(PhotometryPlot, MarksTheTestPointsOfEachDirection) {
   result.curves = {{20.0, {0.0, 1.0}, {1000.0, 0.0}}};
   for (const double v : {0.0, 10.0, 10.0}) {
     studies::PhotometricPoint point;
-    point.asked.v_deg = point.v_deg = v;
-    point.asked.observation_deg = 0.33;
+    point.test_point.v_deg = point.v_deg = v;
+    point.test_point.observation_deg = 0.33;
     point.r_i_mcd_per_lx = 12.3;
     point.limit_mcd_per_lx = 20.0;
     result.points.push_back(point);

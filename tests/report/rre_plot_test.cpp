@@ -10,7 +10,7 @@ namespace {
 studies::RreResult result_of(const std::vector<std::string>& titles, const std::vector<double>& incidences_deg) {
   studies::RreResult result;
   for (std::size_t d = 0; d < titles.size(); ++d) {
-    studies::Design design;
+    design::Design design;
     design.title = titles[d];
     result.designs.push_back(design);
     for (const double incidence_deg : incidences_deg) {

@@ -49,13 +49,13 @@ std::vector<Value> wrong_values(const schema::Kind& kind) {
         wrong.emplace_back(std::vector<double>(count, number));
   };
   std::visit(Overloaded{[&](const schema::Number& number) { add(outside(number.range, false), 0); },
-                        [&](const schema::Whole& whole) { add(outside(whole.range, true), 0); },
+                        [&](const schema::Integer& whole) { add(outside(whole.range, true), 0); },
                         [&](const schema::Numbers& numbers) {
-                          add(outside(numbers.range, numbers.is_whole), numbers.count);
+                          add(outside(numbers.range, numbers.is_integer), numbers.count);
                           wrong.emplace_back(std::vector<double>(numbers.count + 1, 1.0));
                         },
                         [&](const schema::NumberOrNumbers& numbers) {
-                          add(outside(numbers.range, numbers.is_whole), 1);
+                          add(outside(numbers.range, numbers.is_integer), 1);
                           if (!numbers.may_be_empty) wrong.emplace_back(std::vector<double>());
                         },
                         [&](const schema::Word&) { wrong.emplace_back(std::string("no such word")); },
@@ -140,7 +140,7 @@ TEST(Requests, TextsOfValuesAreRead) {
       if (is_flag || text.empty() || row.is_required) continue;
       set_text(row, object, text);
       EXPECT_EQ(text_of(row, object), text) << row.name;
-      if (!std::holds_alternative<schema::Number>(row.kind) && !std::holds_alternative<schema::Whole>(row.kind))
+      if (!std::holds_alternative<schema::Number>(row.kind) && !std::holds_alternative<schema::Integer>(row.kind))
         continue;
       for (const char* wrong : {"", "x", "1x", "1 2", "0x10", "1,5"})
         EXPECT_EQ(unrecorded_refusal_of([&] { set_text(row, object, wrong); }), std::string(row.name)) << wrong;

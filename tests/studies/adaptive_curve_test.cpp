@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "core/threads.h"
-#include "studies/design/io/design_reader.h"
-#include "studies/design/total_reflection.h"
+#include "design/io/design_reader.h"
+#include "design/total_reflection.h"
 #include "studies/rre/adaptive_curve.h"
 #include "studies/rre/io/rre_files.h"
 #include "studies/rre/rre.h"
@@ -23,28 +23,28 @@ std::string text(const std::string& element, const std::string& array) {
   return "[element]\n" + element + "\n[array]\n" + array + "\n[body]\nthickness_mm = 0.5\nrefractive_index = 1.4917\n";
 }
 
-Design design(const std::string& element, const std::string& array) {
-  return parse_design(text(element, array), "d.toml", kNoOverrides);
+design::Design design(const std::string& element, const std::string& array) {
+  return design::parse_design(text(element, array), "d.toml", kNoOverrides);
 }
 
-Design prisms() {
+design::Design prisms() {
   return design("kind = \"rtp\"\nbase_mm = 0.5\nwidth_mm = 0.5", "extent = \"infinite\"");
 }
 
-Design single_prism() {
+design::Design single_prism() {
   return design("kind = \"rtp\"\nbase_mm = 0.45\nwidth_mm = 0.45", "arrangement = \"single\"");
 }
 
-Design honeycomb() {
+design::Design honeycomb() {
   return design("kind = \"hexagonal_icc\"\naperture_mm = 0.5", "arrangement = \"honeycomb\"\nextent = \"infinite\"");
 }
 
-RreSettings chosen(double low, double high, Engine engine) {
+RreSettings chosen(double low, double high, raytrace::Engine engine) {
   RreSettings request;
   request.incidence_deg.clear();
   request.incidence_spans = {{low, high}};
   request.engine = engine;
-  if (engine == Engine::exact) request.target_error = 1e-5;
+  if (engine == raytrace::Engine::exact) request.target_error = 1e-5;
   return request;
 }
 
@@ -74,7 +74,7 @@ double line_at(const std::vector<RrePoint>& points, double incidence_deg) {
 
 /// Expects that linear interpolation between the chosen points agrees with a dense curve.
 /// \return number of chosen points
-std::size_t expect_followed(const Design& given, RreSettings request, double step_deg) {
+std::size_t expect_followed(const design::Design& given, RreSettings request, double step_deg) {
   const CurveSpan span = request.incidence_spans.front();
   const RreResult curve = RreStudy({given}, request).run();
   const RreResult dense = RreStudy({given}, fixed(request, grid(span.low, span.high, step_deg))).run();
@@ -91,22 +91,22 @@ std::size_t expect_followed(const Design& given, RreSettings request, double ste
 /// The knee is the incidence at which total reflection ends. Beyond it, the curve of infinite arrays of prisms has
 /// features narrower than 0.6 degrees. An equally spaced grid that is as accurate at the knee would have 1300 points.
 TEST(AdaptiveCurve, FollowsPrismsPastTheirKnee) {
-  EXPECT_LT(expect_followed(prisms(), chosen(-2, 11, Engine::exact), 0.05), 350U);
+  EXPECT_LT(expect_followed(prisms(), chosen(-2, 11, raytrace::Engine::exact), 0.05), 350U);
 }
 
 TEST(AdaptiveCurve, FollowsPrismsAtAnObliqueAzimuth) {
-  RreSettings request = chosen(-5, 40, Engine::exact);
+  RreSettings request = chosen(-5, 40, raytrace::Engine::exact);
   request.azimuth_deg = {25.0};
   request.target_error = 1e-4;
   expect_followed(prisms(), request, 0.25);
 }
 
 TEST(AdaptiveCurve, FollowsASinglePrism) {
-  expect_followed(single_prism(), chosen(-5, 40, Engine::exact), 0.2);
+  expect_followed(single_prism(), chosen(-5, 40, raytrace::Engine::exact), 0.2);
 }
 
 TEST(AdaptiveCurve, FollowsAHoneycomb) {
-  RreSettings request = chosen(-26, -18, Engine::montecarlo);
+  RreSettings request = chosen(-26, -18, raytrace::Engine::montecarlo);
   request.target_error = 5e-4;
   expect_followed(honeycomb(), request, 0.25);
 }
@@ -116,7 +116,7 @@ TEST(AdaptiveCurve, FollowsAHoneycomb) {
 TEST(AdaptiveCurve, KneeOfPrismsIsWhereTotalReflectionEnds) {
   const double limit_deg =
       std::asin(kIndex * std::sin(std::numbers::pi / 4.0 - std::asin(1.0 / kIndex))) / testing::kDeg;
-  const RreResult curve = RreStudy({prisms()}, chosen(0, 20, Engine::exact)).run();
+  const RreResult curve = RreStudy({prisms()}, chosen(0, 20, raytrace::Engine::exact)).run();
   // The steepest fall of the curve begins at the knee.
   double steepest = 0.0;
   double knee_deg = 0.0;
@@ -134,7 +134,7 @@ TEST(AdaptiveCurve, KneeOfPrismsIsWhereTotalReflectionEnds) {
 TEST(AdaptiveCurve, KinksOfPrismsComeInPairsAboutTheNormal) {
   const double limit_deg =
       std::asin(kIndex * std::sin(std::numbers::pi / 4.0 - std::asin(1.0 / kIndex))) / testing::kDeg;
-  const auto edges = total_reflection_edges_deg(prisms().part(), kIndex, 1.0, Angle{});
+  const auto edges = design::total_reflection_edges_deg(prisms().part(), kIndex, 1.0, Angle{});
   ASSERT_FALSE(edges.empty());
   for (const double edge : edges) EXPECT_NEAR(std::abs(edge), limit_deg, 1e-9);
   EXPECT_NEAR(edges.front(), -edges.back(), 1e-12);
@@ -143,11 +143,11 @@ TEST(AdaptiveCurve, KinksOfPrismsComeInPairsAboutTheNormal) {
 /// All designs and azimuths share the chosen incidences. The values equal those for a list of the same incidences, with
 /// any number of threads.
 TEST(AdaptiveCurve, ValuesAreThoseOfAList) {
-  RreSettings request = chosen(-3, 3, Engine::montecarlo);
+  RreSettings request = chosen(-3, 3, raytrace::Engine::montecarlo);
   request.azimuth_deg = {30.0, 0.0};
   request.rays = 4096;
   request.incidence_deg = {15.0, 2.3};
-  const std::vector<Design> designs = {single_prism(), prisms()};
+  const std::vector<design::Design> designs = {single_prism(), prisms()};
   RreResult curve = RreStudy(designs, request).run();
   std::vector<double> places;
   for (const RrePoint& p : curve.points)
@@ -177,14 +177,14 @@ TEST(AdaptiveCurve, InterruptedRunKeepsWhatIsFinishedInOrder) {
   Cancellation cancel;
   Watch watch;
   watch.cancel = &cancel;
-  const RreResult result = RreStudy({prisms()}, chosen(-12, 12, Engine::exact)).run(&watch, &cancel);
+  const RreResult result = RreStudy({prisms()}, chosen(-12, 12, raytrace::Engine::exact)).run(&watch, &cancel);
   EXPECT_FALSE(result.complete);
   EXPECT_GT(result.points.size(), 10U);
   EXPECT_LT(watch.last, 1.0);
 }
 
 TEST(AdaptiveCurve, FootprintsAndFarFieldsFollowThePoints) {
-  RreSettings request = chosen(-6, -3, Engine::exact);
+  RreSettings request = chosen(-6, -3, raytrace::Engine::exact);
   request.footprint = request.far_field = request.derivatives = true;
   const RreResult result = RreStudy({prisms()}, request).run();
   ASSERT_EQ(result.returned.size(), result.points.size());
@@ -212,15 +212,15 @@ TEST(AdaptiveCurve, NoPlaceIsLookedAtTwice) {
   for (const double place : {-10.0, 0.0, 1.0, 3.0, 20.0, 30.0, 31.0, 40.0})
     EXPECT_TRUE(std::binary_search(places.begin(), places.end(), place)) << place;
   EXPECT_EQ(std::count_if(places.begin(), places.end(), [](double x) { return x > 20.0 && x < 30.0; }), 0);
-  EXPECT_EQ(curve.worst_left(), 0.0);
+  EXPECT_EQ(curve.residual_error(), 0.0);
 }
 
 /// A function with 100 steps requires more points than allowed. The search ends and reports the remaining error.
 TEST(AdaptiveCurve, EndsAtTheMostPlacesAndSaysWhatIsLeft) {
   AdaptiveCurve curve({{0, 100}}, {}, {}, 1e-3);
   const auto places = places_for(curve, [](double x) { return CurveValue{std::floor(x + 0.05) / 100.0, 0.0}; });
-  EXPECT_EQ(places.size(), AdaptiveCurve::kMostPlaces);
-  EXPECT_GE(curve.worst_left(), 5e-4);
+  EXPECT_EQ(places.size(), AdaptiveCurve::kMaxPoints);
+  EXPECT_GE(curve.residual_error(), 5e-4);
 }
 
 TEST(AdaptiveCurve, NoiseIsNotFollowed) {

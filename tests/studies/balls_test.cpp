@@ -7,10 +7,10 @@
 #include <numbers>
 
 #include "core/error.h"
+#include "design/design_part.h"
+#include "design/io/design_json.h"
+#include "design/io/design_reader.h"
 #include "raytrace/balls/ball_forms.h"
-#include "studies/design/design_part.h"
-#include "studies/design/io/design_json.h"
-#include "studies/design/io/design_reader.h"
 #include "studies/inspect/inspect.h"
 #include "studies/inspect/io/inspect_files.h"
 #include "studies/photometry/photometry.h"
@@ -31,16 +31,16 @@ refractive_index = 1.93
 facets = "mirror"
 )";
 
-Design balls(const std::vector<std::string>& overrides = {}) {
-  return parse_design(kBalls, "balls.toml", overrides);
+design::Design balls(const std::vector<std::string>& overrides = {}) {
+  return design::parse_design(kBalls, "balls.toml", overrides);
 }
 
 std::string refusal(const std::vector<std::string>& overrides, const std::string& text = kBalls) {
-  return refusal_of([&] { parse_design(text, "balls.toml", overrides); }, "accepted");
+  return refusal_of([&] { design::parse_design(text, "balls.toml", overrides); }, "accepted");
 }
 
 TEST(BallDesign, DefaultsAreAPackedLayerWithAMirrorOnTheBalls) {
-  const Design design = balls();
+  const design::Design design = balls();
   ASSERT_TRUE(design.balls());
   EXPECT_EQ(design.balls()->diameter_mm, 0.05);
   EXPECT_EQ(design.balls()->pitch_mm, 0.05);
@@ -49,16 +49,16 @@ TEST(BallDesign, DefaultsAreAPackedLayerWithAMirrorOnTheBalls) {
 }
 
 TEST(BallDesign, BowlsReachAsFarAsTheirNeighboursLet) {
-  const Design design = balls({"element.mirror_offset_mm=0.025", "array.gap_mm=0.01"});
+  const design::Design design = balls({"element.mirror_offset_mm=0.025", "array.gap_mm=0.01"});
   EXPECT_NEAR(*design.balls()->pitch_mm, 0.06, 1e-15);
   EXPECT_NEAR(design.balls()->mirror_half_angle_deg, std::asin(0.03 / 0.05) * 180.0 / pi, 1e-12);
-  const Design single = balls({"element.mirror_offset_mm=0.025", "array.arrangement=single"});
+  const design::Design single = balls({"element.mirror_offset_mm=0.025", "array.arrangement=single"});
   EXPECT_EQ(single.balls()->mirror_half_angle_deg, 90.0);
   EXPECT_FALSE(single.balls()->pitch_mm);
 }
 
 TEST(BallDesign, JsonReadsBackAsTheSameDesign) {
-  const auto json = to_json(balls({"array.gap_mm=0.01"}));
+  const auto json = design::to_json(balls({"array.gap_mm=0.01"}));
   EXPECT_EQ(json["element"]["kind"], "ball");
   EXPECT_EQ(json["element"]["diameter_mm"], 0.05);
   EXPECT_EQ(json["array"]["arrangement"], "packed");
@@ -97,9 +97,9 @@ TEST(BallDesign, KeysOfBallsAreRefusedForPrisms) {
 TEST(BallDesign, WhatTakesNoBallsSaysWhatDoes) {
   const std::string text = "balls.toml:2: element.kind";
   const auto message = [](const auto& work) -> std::string { return refusal_of(work, "accepted"); };
-  EXPECT_EQ(message([] { make_model(balls(), materials::MaterialLibrary::shipped()); }), text);
-  EXPECT_EQ(message([] { part_of(balls()); }), text);
-  EXPECT_EQ(message([] { check_taken(balls(), {.what = "retrace job"}); }), text);
+  EXPECT_EQ(message([] { design::make_model(balls(), materials::MaterialLibrary::shipped()); }), text);
+  EXPECT_EQ(message([] { design::part_of(balls()); }), text);
+  EXPECT_EQ(message([] { design::require_supported(balls(), {.what = "retrace job"}); }), text);
 }
 
 RreSettings some_rays() {
@@ -109,18 +109,18 @@ RreSettings some_rays() {
 }
 
 TEST(BallStudies, RreIsThatOfTheTracerAndOfTheClosedForm) {
-  Design design = balls({"idealisation.entrance=lossless", "detector.acceptance_half_angle_deg=1"});
+  design::Design design = balls({"idealisation.entrance=lossless", "detector.acceptance_half_angle_deg=1"});
   const RreResult result = RreStudy({design}, some_rays()).run();
   EXPECT_EQ(result.engine, "balls");
   ASSERT_EQ(result.points.size(), 1U);
   EXPECT_NEAR(result.points[0].rre,
-              raytrace::packing_share(*design.balls()) * raytrace::share_within(pi / 180.0, 1.93, 1.0, 1.0),
+              raytrace::packing_fraction(*design.balls()) * raytrace::fraction_within(pi / 180.0, 1.93, 1.0, 1.0),
               5.0 * result.points[0].std_error + 1e-3);
   EXPECT_NEAR(result.points[0].ledger.total(), 1.0, 1e-9);
 }
 
 TEST(BallStudies, ASpectrumIsTheMeanOfItsLines) {
-  const Design design = balls({"light.spectrum=[[480,1],[620,1]]", "light.weighting=radiant"});
+  const design::Design design = balls({"light.spectrum=[[480,1],[620,1]]", "light.weighting=radiant"});
   const RreResult result = RreStudy({design}, some_rays()).run();
   ASSERT_EQ(result.points[0].by_wavelength.size(), 2U);
   EXPECT_NEAR(result.points[0].rre,
@@ -128,7 +128,7 @@ TEST(BallStudies, ASpectrumIsTheMeanOfItsLines) {
 }
 
 TEST(BallStudies, BallsAndPrismsStandInOneTable) {
-  const Design prism = parse_design(
+  const design::Design prism = design::parse_design(
       "[element]\nkind = \"rtp\"\nbase_mm = 1\nwidth_mm = 1\n[array]\nextent = \"infinite\"\n[body]\nthickness_mm = "
       "1\n",
       "rtp.toml", {});
@@ -141,22 +141,22 @@ TEST(BallStudies, BallsAndPrismsStandInOneTable) {
 TEST(BallStudies, OtherEnginesAreRefused) {
   RreSettings request = some_rays();
   request.rays.reset();
-  request.engine = Engine::exact;
+  request.engine = raytrace::Engine::exact;
   EXPECT_THROW(RreStudy({balls()}, request), InputError);
-  request.engine = Engine::automatic;
+  request.engine = raytrace::Engine::automatic;
   request.footprint = true;
   EXPECT_THROW(RreStudy({balls()}, request), InputError);
 }
 
-TestProgramme straight_back() {
-  TestProgramme programme;
+TestPlan straight_back() {
+  TestPlan programme;
   programme.points.push_back({0.0, 0.0, 0.0, 1.0, PhotometricUnit::cd_per_lx_per_m2, LimitStatus::confirmed, 2});
   return programme;
 }
 
 PhotometrySettings request_of(double receiver_deg) {
   PhotometrySettings request;
-  request.programme = straight_back();
+  request.test_plan = straight_back();
   request.area_cm2 = 10.0;
   request.apertures.source = Angle::from_deg(0.0);
   request.apertures.receiver = Angle::from_deg(receiver_deg);
@@ -170,7 +170,7 @@ PhotometrySettings request_of(double receiver_deg) {
 TEST(BallStudies, CoefficientOfAWideReceiverIsItsShareOfThePower) {
   // A receiver with a diameter of 1 degree around the source receives the light that returns within half a degree. R_A
   // is the power of this light divided by the solid angle of the receiver.
-  const Design design = balls();
+  const design::Design design = balls();
   const PhotometryResult result = PhotometryStudy(design, request_of(1.0)).run();
   EXPECT_EQ(result.engine, "balls");
   const RrePoint point = RreStudy({design}, some_rays()).run().points[0];
@@ -188,7 +188,7 @@ TEST(BallStudies, InspectionIsTheClosedForm) {
   ASSERT_TRUE(two.balls);
   EXPECT_NEAR(two.balls->paraxial_error, 0.0, 1e-15);
   EXPECT_FALSE(two.balls->focal_offset_mm);
-  EXPECT_NEAR(two.balls->packing_share, pi / (2.0 * std::sqrt(3.0)), 1e-14);
+  EXPECT_NEAR(two.balls->packing_fraction, pi / (2.0 * std::sqrt(3.0)), 1e-14);
   EXPECT_NEAR(two.balls->largest_return_error_deg, 60.0, 1e-9);
   EXPECT_NEAR(two.entrance_area_mm2, 0.05 * 0.05 * std::sqrt(3.0), 1e-15);
   EXPECT_NEAR(two.facet_area_mm2, 4.0 * pi * 0.025 * 0.025, 1e-15);

@@ -7,10 +7,10 @@
 #include <numbers>
 
 #include "core/infinity.h"
+#include "design/io/design_document.h"
+#include "design/optical_model.h"
 #include "materials/io/material_library.h"
 #include "materials/io/spectrum_reader.h"
-#include "studies/design/io/design_document.h"
-#include "studies/design/optical_model.h"
 #include "studies/inspect/inspect.h"
 #include "studies/inspect/io/inspect_files.h"
 #include "studies/rre/rre.h"
@@ -29,8 +29,8 @@ std::string coating(const std::string& lines) {
   return with_line(11, "[coating]\n" + lines);
 }
 
-Design read(const std::string& lines, const std::vector<std::string>& overrides = {}) {
-  return parse_design(coating(lines), "d.toml", overrides);
+design::Design read(const std::string& lines, const std::vector<std::string>& overrides = {}) {
+  return design::parse_design(coating(lines), "d.toml", overrides);
 }
 
 const std::string kProtected =
@@ -38,7 +38,7 @@ const std::string kProtected =
 const std::string kCoated = "entrance = [{ material = \"MgF2\", thickness_nm = 99.8 }]\n";
 
 TEST(Coating, LayersAreReadFromTheBodyOutwards) {
-  const Coating given = read(kProtected + kCoated).surface.coating;
+  const design::Coating given = read(kProtected + kCoated).surface.coating;
   ASSERT_EQ(given.facets.size(), 2U);
   EXPECT_EQ(given.facets[0].material, "aluminium");
   EXPECT_EQ(given.facets[0].thickness_nm, 90.0);
@@ -94,7 +94,7 @@ TEST(Coating, WhatWouldNotCountIsRefused) {
 
 TEST(Coating, UnknownMaterialsAreRefusedWithTheirPlace) {
   const auto refused = [](const std::string& lines) {
-    return refusal_of([&] { make_light_model(read(lines), library()); });
+    return refusal_of([&] { design::make_light_model(read(lines), library()); });
   };
   EXPECT_EQ(refused("facets = [{ material = \"gold\", thickness_nm = 5 }]"), "d.toml:12: coating.facets[1].material");
   EXPECT_EQ(refused("facets = [{ material = \"fused-silica\" }]"), "d.toml:12: coating.facets[1].thickness_nm");
@@ -104,20 +104,20 @@ TEST(Coating, UnknownMaterialsAreRefusedWithTheirPlace) {
 TEST(Coating, DesignsAreWrittenAsTheyWereRead) {
   for (const std::string& lines :
        {kProtected + kCoated, kCoated, std::string("facets = [{ material = \"silver\" }]\n")}) {
-    const Design design = read(lines);
-    const Design again = parse_design(design_text(design), "again.toml");
+    const design::Design design = read(lines);
+    const design::Design again = design::parse_design(design::design_text(design), "again.toml");
     EXPECT_EQ(again.surface.coating.facets, design.surface.coating.facets);
     EXPECT_EQ(again.surface.coating.entrance, design.surface.coating.entrance);
   }
   // A single layer of aluminium is always written with the key facet_coating.
-  const std::string text = design_text(read("facets = [{ material = \"aluminium\" }]\n" + kCoated));
+  const std::string text = design::design_text(read("facets = [{ material = \"aluminium\" }]\n" + kCoated));
   EXPECT_NE(text.find("facet_coating = \"aluminium\""), std::string::npos) << text;
   EXPECT_EQ(text.find("facets = "), std::string::npos) << text;
 }
 
 // Both ways to specify aluminium give the same results.
 TEST(Coating, AnOpaqueLayerOfAluminiumIsTheFacetCoating) {
-  const auto rre = [](const Design& design) {
+  const auto rre = [](const design::Design& design) {
     RreSettings request;
     request.incidence_deg = {0.0, 30.0};
     return RreStudy({design}, request).run();
@@ -133,10 +133,10 @@ TEST(Coating, AnOpaqueLayerOfAluminiumIsTheFacetCoating) {
 
 // Indices and thicknesses are converted for each wavelength, relative to the air around the part.
 TEST(Coating, OpticsAreThoseOfEachWavelength) {
-  const OpticalModel model =
-      make_light_model(read(kProtected + kCoated, {"light.spectrum=[[450, 1], [650, 1]]"}), library());
+  const design::OpticalModel model =
+      design::make_light_model(read(kProtected + kCoated, {"light.spectrum=[[450, 1], [650, 1]]"}), library());
   ASSERT_EQ(model.spectral.size(), 2U);
-  for (const SpectralOptics& at : model.spectral) {
+  for (const design::SpectralOptics& at : model.spectral) {
     const double air = materials::refractive_index(library().air().dispersion, at.wavelength_nm);
     const materials::LayerStack& facets = at.optics.facet_layers;
     ASSERT_EQ(facets.layers.size(), 2U);
@@ -149,9 +149,10 @@ TEST(Coating, OpticsAreThoseOfEachWavelength) {
     EXPECT_EQ(entrance.layers[0].index,
               materials::index_relative_to_air(library().find("MgF2"), library().air(), at.wavelength_nm));
   }
-  EXPECT_EQ(
-      make_light_model(read("facets = [{ material = \"silver\" }]"), library()).optics.facet_layers.layers[0].thickness,
-      kInfinity);
+  EXPECT_EQ(design::make_light_model(read("facets = [{ material = \"silver\" }]"), library())
+                .optics.facet_layers.layers[0]
+                .thickness,
+            kInfinity);
 }
 
 // Ten wavelengths give the mean over a lamp's spectrum with a thin layer as accurately as without a layer. The
@@ -162,26 +163,26 @@ TEST(Coating, SpectraOfThinAndThickLayers) {
     return std::norm(
         materials::fresnel_layers(optics.entrance_layers, materials::StackSide::outside, 1.0, optics.index, 1.0).r_s);
   };
-  const OpticalModel thin = make_light_model(read(kCoated, {"light.spectrum=D65"}), library());
+  const design::OpticalModel thin = design::make_light_model(read(kCoated, {"light.spectrum=D65"}), library());
   EXPECT_TRUE(thin.warnings.empty()) << thin.warnings.front().text;
   double mean = 0.0;
-  for (const SpectralOptics& at : thin.spectral) mean += at.weight * reflectance(at.optics);
+  for (const design::SpectralOptics& at : thin.spectral) mean += at.weight * reflectance(at.optics);
   const materials::CieTable cie = materials::shipped_cie_table();
   const materials::Spectrum flux = materials::resolved_spectrum(cie.illuminant_d65, &cie.photopic_efficiency);
   double fine = 0.0;
   for (std::size_t k = 0; k < flux.size(); ++k) {
-    const Design at = read(kCoated, {"light.wavelength_nm=" + std::to_string(flux.wavelengths_nm[k])});
-    fine += flux.weights[k] * reflectance(make_light_model(at, library()).optics);
+    const design::Design at = read(kCoated, {"light.wavelength_nm=" + std::to_string(flux.wavelengths_nm[k])});
+    fine += flux.weights[k] * reflectance(design::make_light_model(at, library()).optics);
   }
   EXPECT_NEAR(mean, fine, 2e-5 * fine);
-  const OpticalModel thick = make_light_model(
+  const design::OpticalModel thick = design::make_light_model(
       read("entrance = [{ refractive_index = 1.55, thickness_nm = 5000 }]", {"light.spectrum=D65"}), library());
   ASSERT_EQ(thick.warnings.size(), 1U);
   EXPECT_EQ(facts_of(thick.warnings[0]), "unresolved_fringes at d.toml");
 }
 
 TEST(Coating, ExtrapolatedLayersAreTold) {
-  const OpticalModel model = make_light_model(
+  const design::OpticalModel model = design::make_light_model(
       read("facets = [{ material = \"silver\", thickness_nm = 20 }, { material = \"silver\", thickness_nm = 5 }]",
            {"light.wavelength_nm=200", "body.refractive_index=1.5"}),
       library());

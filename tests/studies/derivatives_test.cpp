@@ -21,8 +21,8 @@ namespace {
 using namespace geometry;
 using namespace testing;
 
-Design design_of(const PartSpec& part, double index = kPmma) {
-  Design design;
+design::Design design_of(const PartSpec& part, double index = kPmma) {
+  design::Design design;
   design.source = "test.toml";
   design.part() = part;
   design.substance.refractive_index = index;
@@ -30,7 +30,7 @@ Design design_of(const PartSpec& part, double index = kPmma) {
   return design;
 }
 
-Design idealised(Design design) {
+design::Design idealised(design::Design design) {
   design.idealisation = {true, true};
   return design;
 }
@@ -39,12 +39,12 @@ RreSettings exactly(double incidence_deg, double azimuth_deg = 0.0) {
   RreSettings request;
   request.incidence_deg = {incidence_deg};
   request.azimuth_deg = {azimuth_deg};
-  request.engine = Engine::exact;
+  request.engine = raytrace::Engine::exact;
   request.derivatives = true;
   return request;
 }
 
-RrePoint point_of(const Design& design, const RreSettings& request) {
+RrePoint point_of(const design::Design& design, const RreSettings& request) {
   return RreStudy({design}, request).run().points.at(0);
 }
 
@@ -57,7 +57,7 @@ RreDerivative by(RreParameter parameter, const RrePoint& point) {
 
 /// Returns the reason why a derivative is missing, and records its text. Returns nothing if the derivative exists.
 std::optional<NoDerivative> reason(RreParameter parameter, const RrePoint& point) {
-  const std::optional<NoDerivative> found = by(parameter, point).left_out;
+  const std::optional<NoDerivative> found = by(parameter, point).missing_reason;
   if (found) record_message(text_of(*found));
   return found;
 }
@@ -65,7 +65,7 @@ std::optional<NoDerivative> reason(RreParameter parameter, const RrePoint& point
 /// Expects a derivative within the tolerance and within the reported error.
 void expect_derivative(const RrePoint& point, RreParameter parameter, double expected, double tolerance = 1e-6) {
   const RreDerivative found = by(parameter, point);
-  EXPECT_EQ(found.left_out, std::nullopt) << parameter_name(parameter);
+  EXPECT_EQ(found.missing_reason, std::nullopt) << parameter_name(parameter);
   const double error = std::abs(found.derivative.value - expected);
   EXPECT_LE(error, tolerance) << parameter_name(parameter);
   EXPECT_LE(error, found.derivative.error) << parameter_name(parameter);
@@ -86,7 +86,7 @@ PartSpec brick(double base_mm) {
 // RRE = f + (1 - f) 2R / (1 + R) with 2R / (1 + R) = (n - 1)^2 / (n^2 + 1).
 TEST(RreDerivatives, IndexOfABrickArray) {
   for (const double substrate : {5.0, 2.0}) {
-    const Design design = design_of(brick(substrate));
+    const design::Design design = design_of(brick(substrate));
     const double full = substrate == 5.0 ? 3.0 / 4.0 : 22.0 / 25.0;
     const double n2 = kPmma * kPmma;
     const double by_index = (1.0 - full) * 2.0 * (n2 - 1.0) / ((n2 + 1.0) * (n2 + 1.0));
@@ -98,7 +98,7 @@ TEST(RreDerivatives, IndexOfABrickArray) {
 }
 
 TEST(RreDerivatives, IndexAndIncidenceOfAnIdealHoneycomb) {
-  Design design = idealised(design_of(infinite(HexagonalCube{kCubeAperture}, Arrangement::honeycomb, 1.0)));
+  design::Design design = idealised(design_of(infinite(HexagonalCube{kCubeAperture}, Arrangement::honeycomb, 1.0)));
   design.detector.acceptance_half_angle_deg = {0.01};
   for (const auto& [t, p] : {std::pair{10.0, 10.0}, {30.0, 10.0}, {30.0, 47.0}, {-50.0, 25.0}, {70.0, 100.0}}) {
     const RrePoint point = point_of(design, exactly(t, p));
@@ -114,7 +114,7 @@ TEST(RreDerivatives, IndexAndIncidenceOfAnIdealHoneycomb) {
 // The fraction of returned light is 2 - (4/3) / cos^2 t' up to t' = 19.47 degrees, at any azimuth. t' is the angle
 // inside the plate.
 TEST(RreDerivatives, IncidenceOfAnIdealTriangularArray) {
-  Design design = idealised(design_of(infinite(TriangularCube{kCubeAperture}, Arrangement::triangular, 1.0)));
+  design::Design design = idealised(design_of(infinite(TriangularCube{kCubeAperture}, Arrangement::triangular, 1.0)));
   design.detector.acceptance_half_angle_deg = {0.01};
   for (const double t : {0.0, 12.0, -12.0}) {
     const double c = cos_inner(t, kPmma);
@@ -129,7 +129,7 @@ TEST(RreDerivatives, IncidenceOfAnIdealTriangularArray) {
 // RRE = exp(-a (2 h + base)) for any width of the prism: docs/theory/closed_forms.md, section 5.
 TEST(RreDerivatives, ThicknessAndSizeOfAnAbsorbingPrism) {
   for (const double a : {0.01, 0.3, 2.0}) {
-    Design design = idealised(design_of(single(RtpElement{0.6, 0.4, 90.0}, 0.7)));
+    design::Design design = idealised(design_of(single(RtpElement{0.6, 0.4, 90.0}, 0.7)));
     design.substance.absorption_per_mm = a;
     const RrePoint point = point_of(design, exactly(0.0));
     EXPECT_NEAR(point.rre, std::exp(-a * (2.0 * 0.7 + 0.6)), 1e-12);
@@ -142,7 +142,7 @@ TEST(RreDerivatives, ThicknessAndSizeOfAnAbsorbingPrism) {
 // For incidence along the roof edge, RRE is an even function of the incidence. It is smooth until light leaves the
 // cone.
 TEST(RreDerivatives, VanishesBySymmetry) {
-  Design design = design_of(infinite(RtpElement{1.0, 1.0, 90.0}, Arrangement::aligned, 1.0));
+  design::Design design = design_of(infinite(RtpElement{1.0, 1.0, 90.0}, Arrangement::aligned, 1.0));
   design.substance.absorption_per_mm = 0.05;
   expect_derivative(point_of(design, exactly(0.0, 90.0)), RreParameter::incidence_deg, 0.0);
   design = design_of(infinite(TriangularCube{1.0}, Arrangement::triangular, 0.7));
@@ -154,11 +154,11 @@ TEST(RreDerivatives, VanishesBySymmetry) {
 
 // The array is symmetric about x = 0. It therefore returns the same light for the incidences t and -t.
 TEST(RreDerivatives, IsOddInTheIncidence) {
-  Design design = design_of(infinite(RtpElement{1.0, 1.0, 90.0}, Arrangement::aligned, 1.0));
+  design::Design design = design_of(infinite(RtpElement{1.0, 1.0, 90.0}, Arrangement::aligned, 1.0));
   design.substance.absorption_per_mm = 0.5;  // limits the number of beams by absorbing light on long paths
   const RreDerivative from_right = by(RreParameter::incidence_deg, point_of(design, exactly(23.0)));
   const RreDerivative from_left = by(RreParameter::incidence_deg, point_of(design, exactly(-23.0)));
-  ASSERT_FALSE(from_right.left_out || from_left.left_out);
+  ASSERT_FALSE(from_right.missing_reason || from_left.missing_reason);
   EXPECT_NEAR(from_right.derivative.value, -from_left.derivative.value,
               from_right.derivative.error + from_left.derivative.error);
   EXPECT_GT(std::abs(from_right.derivative.value), 1e-4);
@@ -168,7 +168,7 @@ TEST(RreDerivatives, IsOddInTheIncidence) {
 void expect_in_proportion(const RrePoint& point, double size_mm, double thickness_mm) {
   const RreDerivative size = by(RreParameter::size_mm, point);
   const RreDerivative thickness = by(RreParameter::thickness_mm, point);
-  ASSERT_FALSE(size.left_out || thickness.left_out);
+  ASSERT_FALSE(size.missing_reason || thickness.missing_reason);
   EXPECT_NEAR(size_mm * size.derivative.value + thickness_mm * thickness.derivative.value, 0.0,
               size_mm * size.derivative.error + thickness_mm * thickness.derivative.error);
   EXPECT_GT(std::abs(size.derivative.value), 1e-3);
@@ -176,7 +176,7 @@ void expect_in_proportion(const RrePoint& point, double size_mm, double thicknes
 
 // RRE has no length scale. If all lengths of a transparent part are multiplied by one factor, RRE does not change.
 TEST(RreDerivatives, SizeAndThicknessAreInProportion) {
-  const Design design = design_of(single(RtpElement{0.45, 0.6, 90.0}, 0.5));
+  const design::Design design = design_of(single(RtpElement{0.45, 0.6, 90.0}, 0.5));
   const RrePoint point = point_of(design, exactly(-11.0, 20.0));
   expect_in_proportion(point, 0.45, 0.5);
 }
@@ -185,7 +185,8 @@ TEST(RreDerivatives, SizeAndThicknessAreInProportion) {
 // that does not depend on h.
 TEST(RreDerivatives, ThicknessAboveCantedCubes) {
   for (const double cant_deg : {4.0, 12.0}) {
-    Design design = idealised(design_of(infinite(HexagonalCube{1.0, {cant_deg, 25.0}}, Arrangement::honeycomb, 0.9)));
+    design::Design design =
+        idealised(design_of(infinite(HexagonalCube{1.0, {cant_deg, 25.0}}, Arrangement::honeycomb, 0.9)));
     design.substance.absorption_per_mm = 0.3;
     const RrePoint point = point_of(design, exactly(0.0));
     EXPECT_GT(point.rre, 0.2);
@@ -194,7 +195,7 @@ TEST(RreDerivatives, ThicknessAboveCantedCubes) {
 }
 
 TEST(RreDerivatives, SizeAndThicknessOfACantedCubeAreInProportion) {
-  const Design design = idealised(design_of(single(TriangularCube{0.8, {7.0, 40.0}}, 0.5)));
+  const design::Design design = idealised(design_of(single(TriangularCube{0.8, {7.0, 40.0}}, 0.5)));
   const RrePoint point = point_of(design, exactly(8.0, 70.0));
   expect_in_proportion(point, 0.8, 0.5);
 }
@@ -204,13 +205,13 @@ TEST(RreDerivatives, SizeAndThicknessOfACantedCubeAreInProportion) {
 TEST(RreDerivatives, EndAtPartsThatCannotBeBuilt) {
   const HexagonalCube cube{1.0, {10.0, 0.0}};
   const double top_mm = element_top_mm(cube, {});
-  const Design design = idealised(design_of(infinite(cube, Arrangement::honeycomb, top_mm * (1.0 + 1e-7))));
+  const design::Design design = idealised(design_of(infinite(cube, Arrangement::honeycomb, top_mm * (1.0 + 1e-7))));
   const RrePoint point = point_of(design, exactly(0.0));
   EXPECT_EQ(reason(RreParameter::size_mm, point), NoDerivative::count_changes) << "larger parts have no elements";
 }
 
 TEST(RreDerivatives, ApexAngleAgainstRoughDifferences) {
-  Design design = design_of(infinite(RtpElement{1.0, 1.0, 90.02}, Arrangement::aligned, 1.0));
+  design::Design design = design_of(infinite(RtpElement{1.0, 1.0, 90.02}, Arrangement::aligned, 1.0));
   const auto rre = [&](double apex) {
     std::get<RtpElement>(design.part().element).apex_angle_deg = apex;
     return point_of(design, exactly(3.0)).rre;
@@ -221,7 +222,7 @@ TEST(RreDerivatives, ApexAngleAgainstRoughDifferences) {
 }
 
 TEST(RreDerivatives, DihedralErrorAgainstRoughDifferences) {
-  Design design = idealised(design_of(infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 0.7)));
+  design::Design design = idealised(design_of(infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 0.7)));
   const auto rre = [&](double arcmin) {
     design.part().angle_errors.dihedral_error_arcmin = {1.0 + arcmin, 2.0 + arcmin, 3.0 + arcmin};
     return point_of(design, exactly(25.0, 10.0)).rre;
@@ -234,7 +235,7 @@ TEST(RreDerivatives, DihedralErrorAgainstRoughDifferences) {
 
 // Beyond the knee, where total reflection ends, RRE falls like the square root of the angle to the knee.
 TEST(RreDerivatives, KneeOfTotalReflectionIsLeftOut) {
-  const Design design = design_of(single(RtpElement{0.45, 0.45, 90.0}, 0.5));
+  const design::Design design = design_of(single(RtpElement{0.45, 0.45, 90.0}, 0.5));
   const double knee = std::asin(kPmma * std::sin(45.0 * kDeg - std::asin(1.0 / kPmma))) / kDeg;
   EXPECT_NEAR(knee, 4.33, 0.01);
   for (const double at : {knee, knee + 1e-6, -knee, -knee - 1e-6})
@@ -245,21 +246,21 @@ TEST(RreDerivatives, KneeOfTotalReflectionIsLeftOut) {
 
 // At any tilt from the normal, light is lost through the sides of the single prism, so that RRE has a kink.
 TEST(RreDerivatives, KinkAtNormalIncidenceIsLeftOut) {
-  const Design design = design_of(single(RtpElement{0.45, 0.45, 90.0}, 0.5));
+  const design::Design design = design_of(single(RtpElement{0.45, 0.45, 90.0}, 0.5));
   EXPECT_EQ(reason(RreParameter::incidence_deg, point_of(design, exactly(0.0))), NoDerivative::not_smooth);
 }
 
 // The reference derivatives are computed with a negligible cut-off.
 TEST(RreDerivatives, ErrorEstimateCoversTheCutOff) {
-  Design prism = design_of(single(RtpElement{0.45, 0.45, 90.0}, 0.5));
-  Design prisms = design_of(infinite(RtpElement{1.0, 1.0, 90.0}, Arrangement::aligned, 1.0));
-  Design cubes = design_of(infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 0.7));
+  design::Design prism = design_of(single(RtpElement{0.45, 0.45, 90.0}, 0.5));
+  design::Design prisms = design_of(infinite(RtpElement{1.0, 1.0, 90.0}, Arrangement::aligned, 1.0));
+  design::Design cubes = design_of(infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 0.7));
   prism.substance.absorption_per_mm = 0.01;
   prisms.substance.absorption_per_mm = 0.5;
   cubes.substance.absorption_per_mm = 3.0;
   int given = 0;
   int covered = 0;
-  for (const Design& design : {prism, prisms, cubes})
+  for (const design::Design& design : {prism, prisms, cubes})
     for (const auto& [t, p] : {std::pair{-11.0, 20.0}, {7.0, 50.0}, {23.0, 5.0}, {31.0, 80.0}}) {
       RreSettings request = exactly(t, p);
       request.cutoff = 1e-11;
@@ -271,7 +272,7 @@ TEST(RreDerivatives, ErrorEstimateCoversTheCutOff) {
           const RreDerivative& at_cutoff = coarse.derivatives[k];
           const Derivative& found = at_cutoff.derivative;
           const Derivative& expected = fine.derivatives[k].derivative;
-          if (at_cutoff.left_out || fine.derivatives[k].left_out) continue;
+          if (at_cutoff.missing_reason || fine.derivatives[k].missing_reason) continue;
           const double ratio = std::abs(found.value - expected.value) / (found.error + expected.error);
           ++given;
           covered += ratio <= 1.0 ? 1 : 0;
@@ -285,14 +286,15 @@ TEST(RreDerivatives, ErrorEstimateCoversTheCutOff) {
 }
 
 TEST(RreDerivatives, CutOffThatHidesThemIsSaid) {
-  const Design design = design_of(infinite(TriangularCube{1.0}, Arrangement::triangular, 0.7));
+  const design::Design design = design_of(infinite(TriangularCube{1.0}, Arrangement::triangular, 0.7));
   RreSettings request = exactly(20.0, 10.0);
   request.cutoff = 1e-3;
   EXPECT_EQ(reason(RreParameter::incidence_deg, point_of(design, request)), NoDerivative::truncated_power);
 }
 
 TEST(RreDerivatives, AtTheEndsOfARangeOneSideServes) {
-  Design design = idealised(design_of(infinite(HexagonalCube{kCubeAperture}, Arrangement::honeycomb, 1.0), 1.0));
+  design::Design design =
+      idealised(design_of(infinite(HexagonalCube{kCubeAperture}, Arrangement::honeycomb, 1.0), 1.0));
   design.detector.acceptance_half_angle_deg = {0.01};
   expect_derivative(point_of(design, exactly(15.0, 10.0)), RreParameter::refractive_index,
                     slope([](double n) { return honeycomb_rre(15.0, 10.0, n); }, 1.0));
@@ -302,7 +304,7 @@ TEST(RreDerivatives, AtTheEndsOfARangeOneSideServes) {
 }
 
 TEST(RreDerivatives, OneACone) {
-  Design design = idealised(design_of(single(RtpElement{0.6, 0.4, 90.0}, 0.7)));
+  design::Design design = idealised(design_of(single(RtpElement{0.6, 0.4, 90.0}, 0.7)));
   design.substance.absorption_per_mm = 0.3;
   design.detector.acceptance_half_angle_deg = {0.5, 2.0};
   const RreResult result = RreStudy({design, design}, exactly(0.0)).run();
@@ -312,7 +314,7 @@ TEST(RreDerivatives, OneACone) {
 
 TEST(RreDerivatives, NeedTheExactEngine) {
   RreSettings request = exactly(0.0);
-  request.engine = Engine::montecarlo;
+  request.engine = raytrace::Engine::montecarlo;
   EXPECT_THROW(RreStudy({design_of(brick(5.0))}, request), InputError);
 }
 

@@ -1,5 +1,5 @@
 // Tests of the keys of designs for elements and arrays.
-#include "studies/design/io/design_reader.h"
+#include "design/io/design_reader.h"
 
 #include <gtest/gtest.h>
 
@@ -15,9 +15,11 @@ using geometry::Arrangement;
 
 TEST(DesignReader, ArrangementDefaultsToTheOneOfItsKind) {
   const std::string lengths = "x_length_mm = 10; y_length_mm = 10";
-  EXPECT_EQ(parse_design(design_of(kRtp, lengths), "d", {}).part().array.arrangement, Arrangement::aligned);
-  EXPECT_EQ(parse_design(design_of(kHexagonal, lengths), "d", {}).part().array.arrangement, Arrangement::honeycomb);
-  EXPECT_EQ(parse_design(design_of(kTriangular, lengths), "d", {}).part().array.arrangement, Arrangement::triangular);
+  EXPECT_EQ(design::parse_design(design_of(kRtp, lengths), "d", {}).part().array.arrangement, Arrangement::aligned);
+  EXPECT_EQ(design::parse_design(design_of(kHexagonal, lengths), "d", {}).part().array.arrangement,
+            Arrangement::honeycomb);
+  EXPECT_EQ(design::parse_design(design_of(kTriangular, lengths), "d", {}).part().array.arrangement,
+            Arrangement::triangular);
 }
 
 TEST(DesignReader, ArrangementMustFitTheKind) {

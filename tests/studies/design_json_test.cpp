@@ -1,4 +1,4 @@
-#include "studies/design/io/design_json.h"
+#include "design/io/design_json.h"
 
 #include <gtest/gtest.h>
 
@@ -6,14 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "studies/design/io/design_reader.h"
-#include "studies/design/io/init_templates.h"
+#include "design/io/design_reader.h"
+#include "design/io/init_templates.h"
 
 namespace retrace::studies::design_json_test {
 namespace {
 
 nlohmann::ordered_json quoted(const std::string& kind, const std::vector<std::string>& overrides) {
-  return to_json(parse_design(design_template(kind), "d.toml", overrides));
+  return design::to_json(design::parse_design(design::design_template(kind), "d.toml", overrides));
 }
 
 TEST(DesignJson, PolarisationIsAWordOrStokesParameters) {

@@ -1,5 +1,5 @@
 // Tests of the keys of designs for light and absorption.
-#include "studies/design/io/design_reader.h"
+#include "design/io/design_reader.h"
 
 #include <gtest/gtest.h>
 
@@ -61,7 +61,7 @@ TEST(DesignReader, WhatIsNoPolarisationIsRefused) {
 }
 
 TEST(DesignReader, SpectrumIsANameAFileOrLines) {
-  using Kind = LightSpectrum::Kind;
+  using Kind = design::LightSpectrum::Kind;
   EXPECT_FALSE(set({}).light.spectrum());
   const auto spectrum = [](const std::string& value) { return *set({"light.spectrum=" + value}).light.spectrum(); };
   EXPECT_EQ(spectrum("A").kind, Kind::illuminant_a);
@@ -69,30 +69,32 @@ TEST(DesignReader, SpectrumIsANameAFileOrLines) {
   EXPECT_TRUE(spectrum("A").photopic);
   EXPECT_FALSE(set({"light.spectrum=A", "light.weighting=radiant"}).light.spectrum()->photopic);
   EXPECT_TRUE(set({"light.spectrum=A", "light.weighting=photopic"}).light.spectrum()->photopic);
-  const LightSpectrum file = spectrum("\"lamps/led.csv\"");
+  const design::LightSpectrum file = spectrum("\"lamps/led.csv\"");
   EXPECT_EQ(file.kind, Kind::file);
   EXPECT_EQ(file.name, "lamps/led.csv");
   EXPECT_EQ(file.file, "lamps/led.csv") << "of an override: from the working directory";
-  EXPECT_EQ(parse_design(joined(kLines) + "[light]\nspectrum = \"led.csv\"\n", "a/d.toml", {}).light.spectrum()->file,
-            "a/led.csv");
-  const LightSpectrum lines = spectrum("[[589.6, 1], [589.0, 2]]");
+  EXPECT_EQ(
+      design::parse_design(joined(kLines) + "[light]\nspectrum = \"led.csv\"\n", "a/d.toml", {}).light.spectrum()->file,
+      "a/led.csv");
+  const design::LightSpectrum lines = spectrum("[[589.6, 1], [589.0, 2]]");
   EXPECT_EQ(lines.kind, Kind::lines);
   ASSERT_EQ(lines.lines.size(), 2U);
   EXPECT_EQ(lines.lines[0].wavelength_nm, 589.0) << "ascending";
   EXPECT_EQ(lines.lines[0].power, 2.0);
   EXPECT_EQ(lines.lines[1].wavelength_nm, 589.6);
-  EXPECT_EQ(parse_design(joined(kLines) + "[light]\nspectrum = \"A\"\n", "d.toml", {}).where("light.spectrum").line,
-            12);
+  EXPECT_EQ(
+      design::parse_design(joined(kLines) + "[light]\nspectrum = \"A\"\n", "d.toml", {}).where("light.spectrum").line,
+      12);
 }
 
 TEST(DesignReader, AbsorptionIsANumberOrPairsOverTheWavelength) {
   const std::string key = "body.absorption_per_mm";
-  const Design red = set({key + "=[[400, 2], [600, 0.5], [800, 0]]"});
-  const auto curve = std::get<std::vector<SpectralAbsorption>>(red.substance.absorption_per_mm);
+  const design::Design red = set({key + "=[[400, 2], [600, 0.5], [800, 0]]"});
+  const auto curve = std::get<std::vector<design::SpectralAbsorption>>(red.substance.absorption_per_mm);
   ASSERT_EQ(curve.size(), 3U);
   EXPECT_EQ(curve[1].wavelength_nm, 600.0);
   EXPECT_EQ(curve[1].per_mm, 0.5);
-  EXPECT_EQ(set({key + "=0.1"}).substance.absorption_per_mm, Absorption(0.1));
+  EXPECT_EQ(set({key + "=0.1"}).substance.absorption_per_mm, design::Absorption(0.1));
   const auto refused = [&](const std::string& value) {
     return complaint(with_line(11, "absorption_per_mm = " + value));
   };

@@ -1,4 +1,4 @@
-#include "studies/design/io/design_reader.h"
+#include "design/io/design_reader.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "studies/design/io/init_templates.h"
+#include "design/io/init_templates.h"
 #include "tests/studies/design_texts.h"
 #include "tests/support/refusals.h"
 
@@ -27,7 +27,7 @@ using geometry::RowParity;
 using geometry::RtpElement;
 
 TEST(DesignReader, MinimalDesignHasTheDefaults) {
-  const Design design = parse_design(joined(kLines), "d.toml", {});
+  const design::Design design = design::parse_design(joined(kLines), "d.toml", {});
   const auto& rtp = std::get<RtpElement>(design.part().element);
   EXPECT_EQ(design.source, "d.toml");
   EXPECT_EQ(design.title, "");
@@ -47,7 +47,7 @@ TEST(DesignReader, MinimalDesignHasTheDefaults) {
   EXPECT_EQ(design.part().thickness_mm, 2.0);
   EXPECT_EQ(design.substance.material, "PMMA");
   EXPECT_FALSE(design.substance.refractive_index);
-  EXPECT_EQ(design.substance.absorption_per_mm, Absorption());
+  EXPECT_EQ(design.substance.absorption_per_mm, design::Absorption());
   EXPECT_EQ(design.light.wavelength_nm(), 587.56);
   EXPECT_EQ(design.light.polarisation.values(), raytrace::kUnpolarised.values());
   EXPECT_EQ(design.detector.acceptance_half_angle_deg, std::vector<double>{0.5});
@@ -56,7 +56,7 @@ TEST(DesignReader, MinimalDesignHasTheDefaults) {
 }
 
 TEST(DesignReader, EveryServedKeyArrives) {
-  const Design design = parse_design(R"(schema = "retrace.design/1"
+  const design::Design design = design::parse_design(R"(schema = "retrace.design/1"
 title = "all"
 [element]
 kind = "rtp"
@@ -98,7 +98,7 @@ facet_tilt_arcmin = [1, 2.5]
 facets = "mirror"
 entrance = "lossless"
 )",
-                                     "d.toml", {});
+                                                     "d.toml", {});
   EXPECT_EQ(design.title, "all");
   EXPECT_EQ(std::get<RtpElement>(design.part().element).apex_angle_deg, 91.5);
   EXPECT_EQ(design.part().array.shifted_rows, RowParity::odd);
@@ -113,7 +113,7 @@ entrance = "lossless"
   EXPECT_EQ(design.where("body.material").line, 22);
   EXPECT_EQ(design.where("body.material").key, "body.material");
   EXPECT_EQ(design.substance.refractive_index, 1.58);
-  EXPECT_EQ(design.substance.absorption_per_mm, Absorption(0.001));
+  EXPECT_EQ(design.substance.absorption_per_mm, design::Absorption(0.001));
   EXPECT_EQ(design.light.wavelength_nm(), 633.0);
   EXPECT_NEAR(design.light.polarisation.q, 0.5, 1e-15);
   EXPECT_EQ(design.part().angle_errors, (AngleErrors{{-0.5, 0.0, 0.0}, {1.0, 2.5, 0.0}}));
@@ -250,8 +250,8 @@ TEST(DesignReader, MessagesShowControlCharactersEscapedAndStayShort) {
 }
 
 TEST(DesignReader, OverridesTakePrecedenceAndTheLastOneWins) {
-  const Design design = set({"element.base_mm=0.3", "array.arrangement=aligned", "title=\"two words\"",
-                             "array.x_length_mm = 12", "element.base_mm=0.4"});
+  const design::Design design = set({"element.base_mm=0.3", "array.arrangement=aligned", "title=\"two words\"",
+                                     "array.x_length_mm = 12", "element.base_mm=0.4"});
   EXPECT_EQ(std::get<RtpElement>(design.part().element).base_mm, 0.4);
   EXPECT_EQ(design.part().array.arrangement, Arrangement::aligned);
   EXPECT_EQ(design.part().array.x_length_mm, 12.0);
@@ -271,7 +271,7 @@ TEST(DesignReader, AnOverrideMendsAFileThatIsWrongThere) {
 TEST(DesignReader, FilesAreNamedInTheOrderThatStoresOfStudiesHave) {
   const auto paths = [](const std::string& design) {
     std::vector<std::filesystem::path> files;
-    for (const NamedFile& named : files_named(design, "d/d.toml", {})) files.push_back(named.file);
+    for (const design::NamedFile& named : design::files_named(design, "d/d.toml", {})) files.push_back(named.file);
     return files;
   };
   const std::string text =
@@ -286,14 +286,16 @@ TEST(DesignReader, FilesAreNamedInTheOrderThatStoresOfStudiesHave) {
 // precedence.
 TEST(DesignReader, KeysAreUnset) {
   const std::string text = joined(kLines) + "refractive_index = 1.6\nmaterial = \"PC\"\n[form]\nsink_um = 0.1\n";
-  const auto read = [&](const std::vector<std::string>& overrides) { return parse_design(text, "d.toml", overrides); };
+  const auto read = [&](const std::vector<std::string>& overrides) {
+    return design::parse_design(text, "d.toml", overrides);
+  };
   EXPECT_EQ(read({}).substance.refractive_index, 1.6);
   EXPECT_EQ(read({"body.refractive_index="}).substance.refractive_index, std::nullopt);
   EXPECT_EQ(read({"body.material = "}).substance.material, "PMMA");
   EXPECT_TRUE(read({"form="}).surface.form.is_plane());
   EXPECT_EQ(read({"body.refractive_index=", "body.refractive_index=1.7"}).substance.refractive_index, 1.7);
   EXPECT_EQ(read({"body.refractive_index=1.7", "body.refractive_index="}).substance.refractive_index, std::nullopt);
-  EXPECT_EQ(with(read({"body.refractive_index=1.7"}), std::vector<std::string>{"body.refractive_index="})
+  EXPECT_EQ(design::with(read({"body.refractive_index=1.7"}), std::vector<std::string>{"body.refractive_index="})
                 .substance.refractive_index,
             std::nullopt);
   EXPECT_EQ(read({"light.spectrum="}).light.wavelength_nm(), read({}).light.wavelength_nm())
@@ -312,7 +314,7 @@ using Facts = std::vector<std::string>;
 TEST(DesignReader, KeysWithoutEffectAreTold) {
   const std::string index = joined(kLines) + "refractive_index = 1.6\n";  // line 11
   const auto warnings = [](const std::string& text, const std::vector<std::string>& overrides) {
-    return facts_of(parse_design(text, "d.toml", overrides).warnings());
+    return facts_of(design::parse_design(text, "d.toml", overrides).warnings());
   };
   EXPECT_EQ(warnings(index, {}), Facts{});
   EXPECT_EQ(warnings(index, {"body.material=PC"}), Facts{"superseded_key at --set body.material=PC: body.material"});
@@ -332,7 +334,7 @@ TEST(DesignReader, KeysWithoutEffectAreTold) {
 TEST(DesignReader, LengthsWithoutHeightsCauseAWarning) {
   const std::string text = joined(kLines);
   const auto warnings = [&](const std::string& more) {
-    return facts_of(parse_design(text + more, "d.toml").warnings());
+    return facts_of(design::parse_design(text + more, "d.toml").warnings());
   };
   EXPECT_EQ(warnings("[surface]\ncorrelation_length_um = 5\n"),
             Facts{"key_without_effect at d.toml:12: surface.correlation_length_um"});
@@ -359,7 +361,7 @@ TEST(DesignReader, ErrorsInOverridesNameTheOverride) {
 }
 
 TEST(DesignReader, UnreadablePathsAreRefused) {
-  const auto refused = [](const fs::path& path) { return refusal_of([&] { read_design(path); }); };
+  const auto refused = [](const fs::path& path) { return refusal_of([&] { design::read_design(path); }); };
   EXPECT_EQ(refused("no/such.toml"), "no/such.toml");
   EXPECT_EQ(refused("/"), "/");
   for (const std::string device : {"/dev/zero", "/dev/null"}) EXPECT_EQ(refused(device), device);
@@ -384,11 +386,11 @@ class StandardInput {
 TEST(DesignReader, DashIsStandardInput) {
   {
     const StandardInput input(joined(kLines));
-    EXPECT_EQ(read_design("-").source, "-");
+    EXPECT_EQ(design::read_design("-").source, "-");
   }
   const StandardInput input(with_line(3, "base_mm = -3"));
   try {
-    read_design("-");
+    design::read_design("-");
     FAIL();
   } catch (const InputError& error) {
     EXPECT_EQ(recorded_place_of(error), "standard input:3: element.base_mm");
@@ -405,7 +407,7 @@ TEST(DesignReader, EveryExampleIsValid) {
     // The folder also contains studies and jobs. Designs are recognized by their schema.
     if (text.str().find("schema = \"retrace.design/1\"") == std::string::npos) continue;
     ++count;
-    EXPECT_NO_THROW(read_design(entry.path())) << entry.path();
+    EXPECT_NO_THROW(design::read_design(entry.path())) << entry.path();
     EXPECT_EQ(text.str().substr(0, 2), "# ") << entry.path() << " has no head that says what it is";
   }
   EXPECT_GE(count, 9);
@@ -414,7 +416,7 @@ TEST(DesignReader, EveryExampleIsValid) {
 /// Expects that the reader accepts the text or throws an InputError whose message is one line.
 void expect_graceful(const std::string& text, const std::vector<std::string>& overrides) {
   try {
-    parse_design(text, "d.toml", overrides);
+    design::parse_design(text, "d.toml", overrides);
   } catch (const InputError& error) {
     RC_ASSERT(std::string(error.what()).find('\n') == std::string::npos);
   }
@@ -430,7 +432,7 @@ TEST(DesignReader, ArbitraryBytesNeverCrash) {
 
 TEST(DesignReader, DamagedDesignsNeverCrash) {
   EXPECT_TRUE(rc::check("a valid design with one stretch replaced", [] {
-    std::string text = design_template("rtp");
+    std::string text = design::design_template("rtp");
     const auto at = *rc::gen::inRange<std::size_t>(0, text.size());
     const auto length = *rc::gen::inRange<std::size_t>(0, 20);
     text.replace(at, length, *rc::gen::arbitrary<std::string>());

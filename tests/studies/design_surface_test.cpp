@@ -1,5 +1,5 @@
 // Tests of the keys of designs for facets: errors, textures, edges and scratches.
-#include "studies/design/io/design_reader.h"
+#include "design/io/design_reader.h"
 
 #include <gtest/gtest.h>
 
@@ -21,19 +21,19 @@ using geometry::AngleErrors;
 TEST(DesignReader, HeightMapIsFoundFromTheDesignsFolder) {
   const std::string text = with_line(11, "[surface]\nheight_map = \"maps/m.gsf\"");
   const auto texture_of = [&](const std::string& source, const std::vector<std::string>& overrides = {}) {
-    return std::get<HeightMapTexture>(parse_design(text, source, overrides).surface.texture);
+    return std::get<design::HeightMapTexture>(design::parse_design(text, source, overrides).surface.texture);
   };
-  const HeightMapTexture texture = texture_of("parts/d.toml");
+  const design::HeightMapTexture texture = texture_of("parts/d.toml");
   EXPECT_EQ(texture.name, "maps/m.gsf");
   EXPECT_EQ(texture.file, fs::path("parts/maps/m.gsf"));
-  EXPECT_EQ(texture.level_axis, HeightMapAxis::x);
+  EXPECT_EQ(texture.horizontal_axis, design::HeightMapAxis::x);
   EXPECT_EQ(texture.form_degree, 1);
   EXPECT_EQ(texture_of("standard input").file, fs::path("maps/m.gsf"));
   const std::vector<std::string> overrides = {"surface.height_map=m.txt", "surface.height_map_horizontal_axis=y",
                                               "surface.height_map_form=poly3"};
-  const HeightMapTexture other = texture_of("parts/d.toml", overrides);
+  const design::HeightMapTexture other = texture_of("parts/d.toml", overrides);
   EXPECT_EQ(other.file, fs::path("m.txt")) << "as typed, from the working directory";
-  EXPECT_EQ(other.level_axis, HeightMapAxis::y);
+  EXPECT_EQ(other.horizontal_axis, design::HeightMapAxis::y);
   EXPECT_EQ(other.form_degree, 3);
 }
 
@@ -55,12 +55,12 @@ TEST(DesignReader, PlanesOfSingleFacetsAreAFile) {
   const std::string text =
       "[element]\nkind = \"rtp\"\nbase_mm = 0.5\nwidth_mm = 0.5\n[array]\nx_length_mm = 1\ny_length_mm = 1\n"
       "[body]\nthickness_mm = 1\n[part]\nfacets = \"planes.csv\"\n";
-  const Design design = parse_design(text, "folder/d.toml");
+  const design::Design design = design::parse_design(text, "folder/d.toml");
   ASSERT_TRUE(design.facet_planes());
   EXPECT_EQ(design.facet_planes()->name, "planes.csv");
   EXPECT_EQ(design.facet_planes()->file, std::filesystem::path("folder/planes.csv"));
   const auto refused = [&](const std::vector<std::string>& sets) {
-    return refusal_of([&] { parse_design(text, "d.toml", sets); }, "accepted");
+    return refusal_of([&] { design::parse_design(text, "d.toml", sets); }, "accepted");
   };
   EXPECT_EQ(refused({"surface.facet_tilt_arcmin=[1,1]"}), "d.toml:11: part.facets");
   EXPECT_NE(refused({"surface.angle_error_sigma_arcmin=1"}), "accepted");
@@ -70,7 +70,7 @@ TEST(DesignReader, PlanesOfSingleFacetsAreAFile) {
 
 TEST(DesignReader, CantIsReadForCubeCornersAlone) {
   const auto read = [](const std::string& element, const std::vector<std::string>& overrides) {
-    return parse_design(design_of(element, "extent = \"infinite\""), "d", overrides).part();
+    return design::parse_design(design_of(element, "extent = \"infinite\""), "d", overrides).part();
   };
   const auto refused = [&](const std::string& element, const std::vector<std::string>& overrides) -> std::string {
     return refusal_of([&] { read(element, overrides); });
@@ -98,7 +98,7 @@ TEST(DesignReader, CantIsReadForCubeCornersAlone) {
 
 TEST(DesignReader, AngleErrorsAreReadForEveryKind) {
   const auto errors = [](const std::string& element, const std::vector<std::string>& overrides) {
-    return parse_design(design_of(element, "extent = \"infinite\""), "d", overrides).part().angle_errors;
+    return design::parse_design(design_of(element, "extent = \"infinite\""), "d", overrides).part().angle_errors;
   };
   EXPECT_EQ(errors(kRtp, {"surface.dihedral_error_arcmin=2"}), (AngleErrors{{2.0, 0.0, 0.0}, {}}));
   EXPECT_EQ(errors(kRtp, {"surface.facet_tilt_arcmin=[2, -300]"}), (AngleErrors{{}, {2.0, -300.0, 0.0}}));
@@ -113,8 +113,9 @@ TEST(DesignReader, AngleErrorsAreReadForEveryKind) {
 
 TEST(DesignReader, RandomTiltsNeedAFiniteArray) {
   const std::string key = "surface.angle_error_sigma_arcmin";
-  const Design design = parse_design(design_of(kHexagonal, "x_length_mm = 10\ny_length_mm = 10"), "d",
-                                     std::vector<std::string>{key + "=1.5", "surface.angle_error_seed=7"});
+  const design::Design design =
+      design::parse_design(design_of(kHexagonal, "x_length_mm = 10\ny_length_mm = 10"), "d",
+                           std::vector<std::string>{key + "=1.5", "surface.angle_error_seed=7"});
   EXPECT_EQ(design.part().random_tilts.sigma_arcmin, 1.5);
   EXPECT_EQ(design.part().random_tilts.seed, 7U);
   EXPECT_EQ(set_complaint({key + "=-1"}), "--set " + key + "=-1: " + key);
@@ -126,23 +127,25 @@ TEST(DesignReader, RandomTiltsNeedAFiniteArray) {
 
 TEST(DesignReader, TexturesOfFacetsAreRead) {
   const auto surface = [](const std::vector<std::string>& overrides) {
-    return parse_design(design_of(kRtp, "extent = \"infinite\""), "d", overrides).surface;
+    return design::parse_design(design_of(kRtp, "extent = \"infinite\""), "d", overrides).surface;
   };
-  const FacetTexture texture = surface({"surface.roughness_sq_nm=5", "surface.correlation_length_um=2"}).texture;
-  const auto* const rough = std::get_if<HarveyShackTexture>(&texture);
+  const design::SurfaceFinish texture =
+      surface({"surface.roughness_sq_nm=5", "surface.correlation_length_um=2"}).texture;
+  const auto* const rough = std::get_if<design::HarveyShackTexture>(&texture);
   ASSERT_NE(rough, nullptr) << "usual for a roughness";
   EXPECT_EQ(rough->roughness_sq_nm, 5.0);
   EXPECT_EQ(rough->correlation_length_um, 2.0);
   EXPECT_TRUE(surface({"surface.roughness_sq_nm=0"}).is_smooth());
   EXPECT_TRUE(surface({"surface.model=harvey_shack"}).is_smooth()) << "0 is the smooth answer";
-  EXPECT_EQ(std::get<AbgTexture>(
+  EXPECT_EQ(std::get<design::AbgTexture>(
                 surface({"surface.model=abg", "surface.abg_a=1e-4", "surface.abg_b=1e-4", "surface.abg_g=2"}).texture)
                 .g,
             2.0);
-  EXPECT_TRUE(std::get<MicrofacetTexture>(surface({"surface.model=microfacet", "surface.waviness_sq_nm=300",
+  EXPECT_TRUE(
+      std::get<design::MicrofacetTexture>(surface({"surface.model=microfacet", "surface.waviness_sq_nm=300",
                                                    "surface.waviness_length_um=80", "surface.slope_distribution=ggx"})
                                               .texture)
-                  .ggx);
+          .ggx);
   EXPECT_TRUE(surface({"surface.walls=absorbing"}).absorbing_walls);
 }
 
@@ -167,8 +170,9 @@ TEST(DesignReader, TexturesThatSayTooLittleOrTooMuchAreRefused) {
 }
 
 TEST(DesignReader, EdgesMustFitIntoTheFacets) {
-  const Design design = parse_design(design_of(kRtp, "extent = \"infinite\""), "d",
-                                     std::vector<std::string>{"surface.root_radius_um=5", "surface.rim_radius_um=2"});
+  const design::Design design =
+      design::parse_design(design_of(kRtp, "extent = \"infinite\""), "d",
+                           std::vector<std::string>{"surface.root_radius_um=5", "surface.rim_radius_um=2"});
   EXPECT_EQ(design.part().edges, (geometry::EdgeShape{5e-3, 0.0, 2e-3}));
   for (const std::string key :
        {"surface.root_radius_um", "surface.root_chamfer_um", "surface.rim_radius_um", "surface.rim_chamfer_um"})
@@ -189,7 +193,7 @@ TEST(DesignReader, ScratchesAreThoseOfPrisms) {
     return design_of(element, "extent = \"infinite\"") + "[surface]\nscratches = " + list + "\n";
   };
   const std::string other = "{ facet = \"+x\", position_um = 40, width_um = 3, depth_um = -0.5 }";
-  const Design design = parse_design(with(kRtp, "[{ " + good + " }, " + other + "]"), "d.toml", {});
+  const design::Design design = design::parse_design(with(kRtp, "[{ " + good + " }, " + other + "]"), "d.toml", {});
   ASSERT_EQ(design.part().scratches.size(), 2U);
   EXPECT_EQ(design.part().scratches[0].facet, 0U);
   EXPECT_DOUBLE_EQ(design.part().scratches[0].position_mm, 0.04);
@@ -212,7 +216,7 @@ TEST(DesignReader, ScratchesAreThoseOfPrisms) {
 
 TEST(DesignReader, RimsOfEveryKindAndWhatTheyNeed) {
   const auto rims = [](const std::string& element, const std::string& array, const std::string& lines) {
-    return parse_design(design_of(element, array) + "[surface]\n" + lines, "d.toml", {}).part().edges;
+    return design::parse_design(design_of(element, array) + "[surface]\n" + lines, "d.toml", {}).part().edges;
   };
   EXPECT_EQ(rims(kHexagonal, "extent = \"infinite\"", "rim_radius_um = 1"), (geometry::EdgeShape{0.0, 0.0, 1e-3}));
   EXPECT_EQ(rims(kTriangular, "extent = \"infinite\"", "rim_chamfer_um = 2\nedge_chords = 8"),

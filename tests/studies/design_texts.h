@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "studies/design/io/design_reader.h"
+#include "design/io/design_reader.h"
 #include "tests/support/refusals.h"
 
 namespace retrace::studies {
@@ -42,7 +42,7 @@ inline std::string with_line(std::size_t number, const std::string& line) {
 
 /// Returns the place of the error when `text` is read. Empty if there is no error.
 inline std::string complaint(const std::string& text, const std::vector<std::string>& overrides = {}) {
-  return refusal_of([&] { parse_design(text, "d.toml", overrides); });
+  return refusal_of([&] { design::parse_design(text, "d.toml", overrides); });
 }
 
 /// Returns the place of the error when the valid design is read with overrides of the form `key=value`.
@@ -50,8 +50,8 @@ inline std::string set_complaint(const std::vector<std::string>& overrides) {
   return complaint(joined(kLines), overrides);
 }
 
-inline Design set(const std::vector<std::string>& overrides) {
-  return parse_design(joined(kLines), "d.toml", overrides);
+inline design::Design set(const std::vector<std::string>& overrides) {
+  return design::parse_design(joined(kLines), "d.toml", overrides);
 }
 
 /// Returns a design with elements of one kind.

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core/threads.h"
-#include "studies/design/io/design_reader.h"
+#include "design/io/design_reader.h"
 #include "studies/rre/io/rre_files.h"
 #include "studies/rre/rre.h"
 
@@ -35,12 +35,12 @@ const std::string kBricks = prisms("arrangement = \"offset\"\nextent = \"infinit
 RreResult run(const std::string& text, const std::vector<std::string>& overrides, RreSettings request,
               unsigned threads = 0) {
   RreResult result;
-  const RreStudy study({parse_design(text, "design", overrides)}, std::move(request));
+  const RreStudy study({design::parse_design(text, "design", overrides)}, std::move(request));
   run_with_threads(threads, [&] { result = study.run(); });
   return result;
 }
 
-RreSettings at(std::vector<double> incidence_deg, Engine engine, std::optional<double> target_error) {
+RreSettings at(std::vector<double> incidence_deg, raytrace::Engine engine, std::optional<double> target_error) {
   RreSettings request;
   request.incidence_deg = std::move(incidence_deg);
   request.azimuth_deg = {17.0};
@@ -52,9 +52,9 @@ RreSettings at(std::vector<double> incidence_deg, Engine engine, std::optional<d
 TEST(EngineChoice, WhatIsTruncatedBoundsTheExactValue) {
   constexpr double left = 3e-5;
   for (const std::string& text : {kHoneycomb, kBricks}) {
-    const RreResult fine = run(text, {}, at({0.0, 12.0}, Engine::exact, left));
+    const RreResult fine = run(text, {}, at({0.0, 12.0}, raytrace::Engine::exact, left));
     for (const double goal : {1e-2, 1e-3, 1e-4}) {
-      const RreResult rough = run(text, {}, at({0.0, 12.0}, Engine::exact, goal));
+      const RreResult rough = run(text, {}, at({0.0, 12.0}, raytrace::Engine::exact, goal));
       for (std::size_t k = 0; k < rough.points.size(); ++k) {
         const RrePoint& p = rough.points[k];
         EXPECT_LE(p.ledger[Account::truncated], goal);
@@ -68,12 +68,12 @@ TEST(EngineChoice, WhatIsTruncatedBoundsTheExactValue) {
 }
 
 TEST(EngineChoice, ExactByNameLeavesNothingThatShows) {
-  for (const RrePoint& p : run(kSingle, {}, at({0.0, 5.0}, Engine::exact, std::nullopt)).points)
+  for (const RrePoint& p : run(kSingle, {}, at({0.0, 5.0}, raytrace::Engine::exact, std::nullopt)).points)
     EXPECT_LE(p.ledger[Account::truncated], 1e-10);
 }
 
 TEST(EngineChoice, OneHardDirectionLeavesTheOthersExact) {
-  const RreResult found = run(kHoneycomb, {}, at({0.0, 20.0}, Engine::automatic, 1e-3));
+  const RreResult found = run(kHoneycomb, {}, at({0.0, 20.0}, raytrace::Engine::automatic, 1e-3));
   EXPECT_EQ(found.points[0].engine, "exact");
   EXPECT_EQ(found.points[1].engine, "stochastic");
   EXPECT_EQ(found.engine, kMixedEngines);
@@ -84,8 +84,8 @@ TEST(EngineChoice, OneHardDirectionLeavesTheOthersExact) {
 TEST(EngineChoice, AgreesWithTheExactEngineWithinWhatItSays) {
   constexpr double left = 1e-4;
   for (const std::string& text : {kHoneycomb, kBricks}) {
-    const RreResult chosen = run(text, {}, at({3.0, 12.0, 30.0}, Engine::automatic, 1e-3));
-    const RreResult fine = run(text, {}, at({3.0, 12.0, 30.0}, Engine::exact, left));
+    const RreResult chosen = run(text, {}, at({3.0, 12.0, 30.0}, raytrace::Engine::automatic, 1e-3));
+    const RreResult fine = run(text, {}, at({3.0, 12.0, 30.0}, raytrace::Engine::exact, left));
     for (std::size_t k = 0; k < chosen.points.size(); ++k) {
       const RrePoint& p = chosen.points[k];
       EXPECT_GE(fine.points[k].rre + left, p.rre - 4.0 * p.std_error) << p.incidence_deg << p.engine;
@@ -98,7 +98,7 @@ TEST(EngineChoice, AgreesWithTheExactEngineWithinWhatItSays) {
 TEST(EngineChoice, IsTheSameAtAnyNumberOfThreads) {
   const std::vector<std::string> white = {"light.spectrum=A"};
   const auto text = [&](unsigned threads) {
-    RreResult found = run(kHoneycomb, white, at({0.0, 10.0, 25.0}, Engine::automatic, 1e-3), threads);
+    RreResult found = run(kHoneycomb, white, at({0.0, 10.0, 25.0}, raytrace::Engine::automatic, 1e-3), threads);
     found.elapsed_s = 0.0;
     return rre_json(found);
   };
@@ -111,12 +111,12 @@ TEST(EngineChoice, IsTheSameAtAnyNumberOfThreads) {
 // kilometres, so that an unlimited search for its next hit would not end.
 TEST(EngineChoice, AWetBackAtNormalIncidenceEnds) {
   for (const char* index : {"body.back_index=1.2", "body.back_index=1.333", "body.back_index=1.45"}) {
-    RreSettings beams = at({0.0}, Engine::exact, std::nullopt);
+    RreSettings beams = at({0.0}, raytrace::Engine::exact, std::nullopt);
     beams.azimuth_deg = {0.0};
     beams.cutoff = 3e-5;
     const RrePoint exact = run(kBricks, {index}, beams).points.front();
     RreSettings rays = beams;
-    rays.engine = Engine::montecarlo;
+    rays.engine = raytrace::Engine::montecarlo;
     rays.cutoff = std::nullopt;
     rays.target_error = 1e-4;
     const RrePoint sampled = run(kBricks, {index}, rays).points.front();

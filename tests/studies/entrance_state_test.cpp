@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "design/io/design_document.h"
+#include "design/optical_model.h"
 #include "materials/io/material_library.h"
-#include "studies/design/io/design_document.h"
-#include "studies/design/optical_model.h"
 #include "studies/inspect/inspect.h"
 #include "studies/inspect/io/inspect_files.h"
 #include "studies/photometry/photometry.h"
@@ -27,8 +27,8 @@ std::string entrance(const std::string& lines) {
   return with_line(11, "[entrance]\n" + lines);
 }
 
-Design read(const std::string& lines, const std::vector<std::string>& overrides = {}) {
-  return parse_design(entrance(lines), "d.toml", overrides);
+design::Design read(const std::string& lines, const std::vector<std::string>& overrides = {}) {
+  return design::parse_design(entrance(lines), "d.toml", overrides);
 }
 
 const std::string kDust = "dust_coverage = 0.1\ndust_albedo = 0.8\ndust_forward_fraction = 0.75\n";
@@ -83,43 +83,44 @@ TEST(EntranceState, WhatWouldNotCountIsRefused) {
 TEST(EntranceState, DesignsAreWrittenAsTheyWereRead) {
   for (const std::string& lines : {kFilthy, kDust, std::string("film_coverage = 1\n"),
                                    std::string("roughness_sq_nm = 8\ncorrelation_length_um = 3\n")}) {
-    const Design design = read(lines);
-    const std::string text = design_text(design);
-    EXPECT_EQ(design_text(parse_design(text, "again.toml")), text);
+    const design::Design design = read(lines);
+    const std::string text = design::design_text(design);
+    EXPECT_EQ(design::design_text(design::parse_design(text, "again.toml")), text);
     EXPECT_NE(text.find("[entrance]"), std::string::npos) << text;
-    const raytrace::Optics one = make_light_model(design, library()).optics;
-    const raytrace::Optics other = make_light_model(parse_design(text, "again.toml"), library()).optics;
-    EXPECT_EQ(one.entrance.spots(), other.entrance.spots());
-    EXPECT_EQ(one.entrance.haze.share, other.entrance.haze.share);
+    const raytrace::Optics one = design::make_light_model(design, library()).optics;
+    const raytrace::Optics other = design::make_light_model(design::parse_design(text, "again.toml"), library()).optics;
+    EXPECT_EQ(one.entrance.covered_fraction(), other.entrance.covered_fraction());
+    EXPECT_EQ(one.entrance.haze.fraction, other.entrance.haze.fraction);
     EXPECT_EQ(one.entrance.layers.size(), other.entrance.layers.size());
     EXPECT_EQ(one.entrance.is_rough(), other.entrance.is_rough());
   }
-  EXPECT_EQ(design_text(set({})).find("[entrance]"), std::string::npos);
+  EXPECT_EQ(design::design_text(set({})).find("[entrance]"), std::string::npos);
 }
 
 TEST(EntranceState, OpticsAreThoseOfTheKeys) {
-  const raytrace::EntranceCondition face = make_light_model(read(kFilthy), library()).optics.entrance;
+  const raytrace::EntranceCondition face = design::make_light_model(read(kFilthy), library()).optics.entrance;
   ASSERT_EQ(face.layers.size(), 2U);
   EXPECT_EQ(face.layers[0].index, 1.6);
   EXPECT_NEAR(face.layers[0].thickness_mm, 0.01, 1e-15);
   EXPECT_EQ(face.layers[1].index, 1.34);
   EXPECT_EQ(face.layers_under_film().size(), 1U);
-  EXPECT_NEAR(face.spots(), 0.35, 1e-15);
+  EXPECT_NEAR(face.covered_fraction(), 0.35, 1e-15);
   const auto sine = [](double deg) { return std::sin(deg * std::numbers::pi / 180.0); };
-  EXPECT_NEAR(face.haze.share, 0.05 * std::exp(std::pow(sine(2.5) / sine(5.0), 2.0)), 1e-14);
+  EXPECT_NEAR(face.haze.fraction, 0.05 * std::exp(std::pow(sine(2.5) / sine(5.0), 2.0)), 1e-14);
   EXPECT_NEAR(face.haze.spread, sine(5.0), 1e-15);
   EXPECT_NEAR(face.scratches.spread, sine(6.0), 1e-15);
   EXPECT_NEAR(*face.scratches.azimuth_rad, std::numbers::pi / 6.0, 1e-15);
   // An empty table [entrance], or fractions of 0, describe a clean face.
-  EXPECT_FALSE(make_light_model(read("dust_coverage = 0\ndust_albedo = 0.5\n"), library()).optics.entrance.scatters());
+  EXPECT_FALSE(
+      design::make_light_model(read("dust_coverage = 0\ndust_albedo = 0.5\n"), library()).optics.entrance.scatters());
   EXPECT_TRUE(make_light_model(read(""), library()).optics.has_bare_entrance());
 }
 
-RreResult rre(const Design& design, Engine engine = Engine::automatic) {
+RreResult rre(const design::Design& design, raytrace::Engine engine = raytrace::Engine::automatic) {
   RreSettings request;
   request.engine = engine;
   request.incidence_deg = {5.0};
-  if (engine != Engine::exact) request.rays = 1U << 12;
+  if (engine != raytrace::Engine::exact) request.rays = 1U << 12;
   return RreStudy({design}, request).run();
 }
 
@@ -129,16 +130,16 @@ TEST(EntranceState, EnginesThatServe) {
   const std::string infinite =
       "[element]\nkind = \"rtp\"\nbase_mm = 0.5\nwidth_mm = 0.5\n[array]\narrangement = \"offset\"\nextent = "
       "\"infinite\"\n[body]\nthickness_mm = 2.0\n[entrance]\n";
-  const auto design = [&](const std::string& lines) { return parse_design(infinite + lines, "d.toml", {}); };
-  EXPECT_EQ(rre(design("film_coverage = 0.5"), Engine::exact).points.at(0).engine, "exact");
+  const auto design = [&](const std::string& lines) { return design::parse_design(infinite + lines, "d.toml", {}); };
+  EXPECT_EQ(rre(design("film_coverage = 0.5"), raytrace::Engine::exact).points.at(0).engine, "exact");
   const RreResult soiled = rre(design(kFilthy));
   EXPECT_EQ(soiled.points.at(0).engine, "cell");
   EXPECT_NEAR(soiled.points[0].ledger.total(), 1.0, 1e-9);
   EXPECT_GT(soiled.points[0].ledger[raytrace::Account::scattered_out], 0.0);
-  EXPECT_EQ(refusal_of([&] { rre(design(kHaze), Engine::exact); }), "d.toml:11: entrance.haze");
+  EXPECT_EQ(refusal_of([&] { rre(design(kHaze), raytrace::Engine::exact); }), "d.toml:11: entrance.haze");
   // Photometry uses rays. It reports that diffraction is left out, and why.
   PhotometrySettings request;
-  request.programme.points.push_back(
+  request.test_plan.points.push_back(
       {0.2, 0.0, 0.0, 1.0, PhotometricUnit::cd_per_lx_per_m2, LimitStatus::confirmed, 2});
   request.area_cm2 = 10.0;
   request.apertures = {Angle::from_deg(1.0 / 6.0), Angle::from_deg(1.0 / 6.0)};
@@ -161,7 +162,7 @@ TEST(EntranceState, InspectionTellsTheFace) {
   const double r2 = r(1.333, n);
   EXPECT_NEAR(face.reflectance, r1 + (1.0 - r1) * (1.0 - r1) * r2 / (1.0 - r1 * r2), 1e-12);
   EXPECT_NEAR(face.transmittance, 1.0 - face.reflectance, 1e-12);
-  EXPECT_NEAR(face.clean_share, 0.9, 1e-15);
+  EXPECT_NEAR(face.clean_fraction, 0.9, 1e-15);
   EXPECT_NEAR(face.specular_transmittance, 0.9 * face.transmittance, 1e-12);
   EXPECT_EQ(face.absorptance, 0.0);
   // The expected R_A is rho / pi, where rho includes multiple reflections between dust and face. Without a film, the

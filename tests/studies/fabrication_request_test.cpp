@@ -62,7 +62,7 @@ TEST(FabricationRequests, WordsAreThoseOfThePrograms) {
 }
 
 std::string refusal(const JobRequest& request) {
-  return refusal_of([&] { check_making(request); });
+  return refusal_of([&] { check_job_request(request); });
 }
 
 TEST(FabricationRequests, ToolWidthsDependOnTheStrategy) {

@@ -1,4 +1,4 @@
-#include "studies/design/io/facet_planes_reader.h"
+#include "geometry/io/facet_planes_reader.h"
 
 #include <gtest/gtest.h>
 

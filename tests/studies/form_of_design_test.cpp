@@ -1,6 +1,6 @@
 // Tests of the table [form] in designs: keys, refused values, and results of studies. A form is the smooth deviation of
 // a facet from a plane.
-#include "studies/design/form_of_design.h"
+#include "design/form_of_design.h"
 
 #include <gtest/gtest.h>
 
@@ -13,8 +13,8 @@
 
 #include "core/error.h"
 #include "core/number_format.h"
+#include "design/io/design_document.h"
 #include "materials/io/material_library.h"
-#include "studies/design/io/design_document.h"
 #include "studies/inspect/inspect.h"
 #include "studies/inspect/io/inspect_files.h"
 #include "studies/photometry/photometer.h"
@@ -34,13 +34,13 @@ const std::string kCubes =
 
 FacetForm form_of(const std::string& text) {
   Warnings warnings;
-  return form_of_design(parse_design(text, "d.toml"), warnings);
+  return design::form_of_design(design::parse_design(text, "d.toml"), warnings);
 }
 
-FormReport report_of(const std::string& text) {
-  const Design design = parse_design(text, "d.toml");
+design::FormReport report_of(const std::string& text) {
+  const design::Design design = design::parse_design(text, "d.toml");
   Warnings warnings;
-  return report_form(design, form_of_design(design, warnings));
+  return design::report_form(design, design::form_of_design(design, warnings));
 }
 
 std::string refused(const std::string& text) {
@@ -50,13 +50,13 @@ std::string refused(const std::string& text) {
 // The slope of a polynomial is the derivative of its height.
 TEST(FacetForm, SlopeIsTheDerivativeOfTheHeight) {
   FacetForm form;
-  for (int i = 0; i <= FacetForm::kMostDegree; ++i)
-    for (int j = 0; i + j <= FacetForm::kMostDegree; ++j) form.add(i, j, std::sin(1.0 + 3.0 * i + 7.0 * j));
+  for (int i = 0; i <= FacetForm::kMaxDegree; ++i)
+    for (int j = 0; i + j <= FacetForm::kMaxDegree; ++j) form.add(i, j, std::sin(1.0 + 3.0 * i + 7.0 * j));
   EXPECT_NEAR(
       form.height_mm({1.0, 0.0}) - form.height_mm({0.0, 0.0}),
       [] {
         double sum = 0.0;
-        for (int i = 1; i <= FacetForm::kMostDegree; ++i) sum += std::sin(1.0 + 3.0 * i);
+        for (int i = 1; i <= FacetForm::kMaxDegree; ++i) sum += std::sin(1.0 + 3.0 * i);
         return sum;
       }(),
       1e-12);
@@ -74,7 +74,7 @@ TEST(FacetForm, SlopeIsTheDerivativeOfTheHeight) {
 // corners and a third of the sink below the mean height. The variance of the heights is 2 / 45 of the square of the
 // sink.
 TEST(FormOfDesign, SinkIsAParaboloidAboutItsMean) {
-  const FormReport report = report_of(kCubes + "[form]\nsink_um = 0.1\n");
+  const design::FormReport report = report_of(kCubes + "[form]\nsink_um = 0.1\n");
   EXPECT_NEAR(report.radius_mm, 0.5 / (2.0 * std::sqrt(2.0 / 3.0)) / std::sqrt(2.0), 1e-12);
   EXPECT_NEAR(report.lowest_um, -0.1 / 3.0, 1e-12);
   EXPECT_NEAR(report.highest_um, 0.2 / 3.0, 1e-12);
@@ -189,31 +189,32 @@ TEST(FormOfDesign, IsWrittenAsItWasRead) {
       kCubes +
       "[form]\nsink_um = 0.25\nterms = [{ x_power = 2, y_power = 1, height_um = -0.5 }]\nmap = \"m.gsf\"\n"
       "map_horizontal_axis = \"y\"\nmap_degree = 6\n";
-  const Design again = parse_design(design_text(parse_design(text, "d.toml")), "d.toml");
-  const FormOfFacets& form = again.surface.form;
+  const design::Design again =
+      design::parse_design(design::design_text(design::parse_design(text, "d.toml")), "d.toml");
+  const design::FormOfFacets& form = again.surface.form;
   EXPECT_EQ(form.sink_um, 0.25);
   ASSERT_EQ(form.terms.size(), 1U);
-  EXPECT_EQ(form.terms[0].level, 2);
-  EXPECT_EQ(form.terms[0].down, 1);
+  EXPECT_EQ(form.terms[0].x_power, 2);
+  EXPECT_EQ(form.terms[0].y_power, 1);
   EXPECT_EQ(form.terms[0].height_um, -0.5);
   ASSERT_TRUE(form.map);
   EXPECT_EQ(form.map->name, "m.gsf");
-  EXPECT_EQ(form.map->level_axis, HeightMapAxis::y);
+  EXPECT_EQ(form.map->horizontal_axis, design::HeightMapAxis::y);
   EXPECT_EQ(form.map->degree, 6);
-  EXPECT_TRUE(parse_design(kCubes, "d.toml").surface.form.is_plane());
+  EXPECT_TRUE(design::parse_design(kCubes, "d.toml").surface.form.is_plane());
 }
 
 TEST(FormOfDesign, InspectTellsIt) {
   const materials::MaterialLibrary library = materials::MaterialLibrary::shipped();
   const auto told = [&](const std::string& lines) {
-    return inspect_text(inspect(parse_design(kCubes + lines, "d.toml"), library));
+    return inspect_text(inspect(design::parse_design(kCubes + lines, "d.toml"), library));
   };
   EXPECT_NE(
       told("[form]\nsink_um = 0.1\n")
           .find("form of facets      -0.0333 to 0.0667 um from their planes, rms 0.0211 um, slopes up to 0.924 mrad\n"),
       std::string::npos);
   EXPECT_EQ(told("").find("form of facets"), std::string::npos);
-  EXPECT_NE(inspect_json(inspect(parse_design(kCubes + "[form]\nsink_um = 0.1\n", "d.toml"), library))
+  EXPECT_NE(inspect_json(inspect(design::parse_design(kCubes + "[form]\nsink_um = 0.1\n", "d.toml"), library))
                 .find("\"steepest_mrad\""),
             std::string::npos);
 }
@@ -221,14 +222,14 @@ TEST(FormOfDesign, InspectTellsIt) {
 // A facet with a form does not reflect a beam as a plane wave. Rays are used by default. Exact engines are refused with
 // a message that reports the key.
 TEST(FormOfDesign, ExactEnginesAreForPlanes) {
-  const Design sunk = parse_design(kCubes + "[form]\nsink_um = 0.1\n", "d.toml");
+  const design::Design sunk = design::parse_design(kCubes + "[form]\nsink_um = 0.1\n", "d.toml");
   const auto refusal = [&](const auto& change) {
     RreSettings request;
     change(request);
     return refusal_of([&] { RreStudy({sunk}, request); });
   };
   const std::string message = "d.toml:10: form.sink_um";
-  EXPECT_EQ(refusal([](RreSettings& r) { r.engine = Engine::exact; }), message);
+  EXPECT_EQ(refusal([](RreSettings& r) { r.engine = raytrace::Engine::exact; }), message);
   EXPECT_EQ(refusal([](RreSettings& r) { r.footprint = true; }), message);
   EXPECT_EQ(refusal([](RreSettings& r) { r.derivatives = true; }), message);
   RreSettings automatic;
@@ -241,11 +242,11 @@ using namespace photometric_requests;
 
 // As the sink goes to 0, its effect vanishes. A sink of 0.1 um has a large effect.
 TEST(FormOfDesign, PhotometryIsContinuousInTheSink) {
-  Design design = photometric_requests::design_of(honeycomb(0.0, 0.5));
+  design::Design design = photometric_requests::design_of(honeycomb(0.0, 0.5));
   PhotometrySettings request = request_of(points_at({0.2}, 100.0));
   request.diffraction = true;
   // With this engine, weak beams are truncated for plane facets, too, and not only for facets with a form.
-  request.engine = Engine::exact;
+  request.engine = raytrace::Engine::exact;
   const auto r_a = [&](double sink_um) {
     design.surface.form.sink_um = sink_um;
     const Photometer photometer(design, request, 1);
@@ -264,7 +265,7 @@ TEST(FormOfDesign, PhotometryIsContinuousInTheSink) {
 // corner. The effect of the errors must go to 0 as the errors go to 0.
 TEST(FormOfDesign, RreIsContinuousInUnequalDihedralErrors) {
   const auto rre = [](double arcmin, const std::string& lengths) {
-    Design design = parse_design(
+    design::Design design = design::parse_design(
         "[element]\nkind = \"hexagonal_icc\"\naperture_mm = 1\n[array]\n" + lengths +
             "[body]\nthickness_mm = 2\n[form]\nterms = [{ x_power = 1, y_power = 1, height_um = 1 }]\n[detector]\n"
             "acceptance_half_angle_deg = [0.03, 0.1, 0.2]\n",
@@ -272,7 +273,7 @@ TEST(FormOfDesign, RreIsContinuousInUnequalDihedralErrors) {
     design.part().angle_errors.dihedral_error_arcmin = {arcmin, 2.0 * arcmin, 3.0 * arcmin};
     RreSettings request;
     request.rays = 1U << 13;
-    request.engine = Engine::montecarlo;
+    request.engine = raytrace::Engine::montecarlo;
     std::vector<double> values;
     for (const RrePoint& point : RreStudy({design}, request).run().points) values.push_back(point.rre);
     return values;
@@ -288,11 +289,11 @@ TEST(FormOfDesign, RreIsContinuousInUnequalDihedralErrors) {
 }
 
 TEST(FormOfDesign, PhotometryIsContinuousInUnequalDihedralErrors) {
-  Design design = photometric_requests::design_of(honeycomb(0.0, 0.5));
+  design::Design design = photometric_requests::design_of(honeycomb(0.0, 0.5));
   design.surface.form.sink_um = 0.1;
   PhotometrySettings request = request_of(points_at({0.2}, 100.0));
   request.diffraction = true;
-  request.engine = Engine::exact;
+  request.engine = raytrace::Engine::exact;
   const auto r_a = [&](double arcmin) {
     design.part().angle_errors.dihedral_error_arcmin = {arcmin, 2.0 * arcmin, 3.0 * arcmin};
     return Photometer(design, request, 1)
@@ -305,22 +306,22 @@ TEST(FormOfDesign, PhotometryIsContinuousInUnequalDihedralErrors) {
 }
 
 TEST(FormOfDesign, PhotometryTakesRaysBesideATexture) {
-  Design design = photometric_requests::design_of(honeycomb(0.0, 0.5));
+  design::Design design = photometric_requests::design_of(honeycomb(0.0, 0.5));
   design.surface.form.sink_um = 0.1;
   PhotometrySettings request = request_of(points_at({0.2}, 1e6));
   request.rays = 1U << 12;
   EXPECT_EQ(run(design, request).engine, "embree") << "without diffraction";
-  request.engine = Engine::exact;
+  request.engine = raytrace::Engine::exact;
   request.rays.reset();
   EXPECT_EQ(refusal_of([&] { run(design, request); }), "form");
-  request.engine = Engine::automatic;
+  request.engine = raytrace::Engine::automatic;
   request.diffraction = true;
-  design.surface.texture = HarveyShackTexture{.roughness_sq_nm = 5.0, .correlation_length_um = 20.0};
+  design.surface.texture = design::HarveyShackTexture{.roughness_sq_nm = 5.0, .correlation_length_um = 20.0};
   const PhotometryResult rough = run(design, request);
   EXPECT_EQ(rough.engine, "embree");
   EXPECT_EQ(rough.reason.no_diffraction, NoDiffraction(raytrace::Obstacle::form_and_texture));
   record_message(rough.reason.text);
-  request.engine = Engine::exact;
+  request.engine = raytrace::Engine::exact;
   EXPECT_EQ(refusal_of([&] { run(design, request); }), "form");
 }
 

@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 
 #include "core/number_format.h"
-#include "studies/design/io/design_document.h"
-#include "studies/design/io/design_json.h"
-#include "studies/design/io/design_reader.h"
+#include "design/io/design_document.h"
+#include "design/io/design_json.h"
+#include "design/io/design_reader.h"
 #include "studies/inspect/inspect.h"
 #include "studies/rre/rre.h"
 #include "tests/support/refusals.h"
@@ -25,8 +25,8 @@ const std::string kPrisms =
     "[element]\nkind = \"rtp\"\nbase_mm = 0.5\nwidth_mm = 0.5\n[array]\nextent = \"infinite\"\n[body]\n"
     "thickness_mm = 2\n";
 
-Design design(const Overrides& overrides) {
-  return parse_design(kPrisms, "d.toml", overrides);
+design::Design design(const Overrides& overrides) {
+  return design::parse_design(kPrisms, "d.toml", overrides);
 }
 
 Overrides with_glass(const std::string& name, Overrides more = {}) {
@@ -54,7 +54,7 @@ TEST(GlassOfDesign, IsTheShippedGlassOfThatName) {
 TEST(GlassOfDesign, IsTraced) {
   RreSettings request;
   request.incidence_deg = {5.0};
-  request.engine = Engine::exact;
+  request.engine = raytrace::Engine::exact;
   const std::string index = shortest(inspected(with_glass("CAF2")).refractive_index);
   const RreStudy study({design(with_glass("CAF2")), design({"body.refractive_index=" + index})}, request);
   const std::vector<RrePoint> points = study.run().points;
@@ -62,11 +62,11 @@ TEST(GlassOfDesign, IsTraced) {
 }
 
 TEST(GlassOfDesign, ItsFileIsTheDesigns) {
-  const Design given = design(with_glass("CAF2"));
+  const design::Design given = design(with_glass("CAF2"));
   ASSERT_EQ(given.files().size(), 1U);
   EXPECT_TRUE(fs::equivalent(given.files().front(), kCatalogue));
-  EXPECT_EQ(to_json(given)["body"]["catalogue"], kCatalogue.string());
-  const Design again = parse_design(design_text(given), "again.toml", {});
+  EXPECT_EQ(design::to_json(given)["body"]["catalogue"], kCatalogue.string());
+  const design::Design again = design::parse_design(design::design_text(given), "again.toml", {});
   EXPECT_EQ(again.substance.catalogue->file, given.substance.catalogue->file);
   EXPECT_FALSE(design({}).substance.catalogue);
 }
@@ -82,7 +82,7 @@ TEST(GlassOfDesign, MayBeOfARecord) {
               design({"body.catalogue=" + record, "body.material=BASF5"});
             }),
             "--set body.material=BASF5: body.material");
-  const Design again = parse_design(design_text(design(from_record)), "again.toml", {});
+  const design::Design again = design::parse_design(design::design_text(design(from_record)), "again.toml", {});
   EXPECT_EQ(again.substance.material, "N-BK7");
 }
 
@@ -125,17 +125,17 @@ TEST(GlassOfDesign, LiesBesideTheDesign) {
   fs::create_directories(folder);
   fs::copy_file(kCatalogue, folder / "g.agf", fs::copy_options::overwrite_existing);
   std::ofstream(folder / "d.toml") << kPrisms << "material = \"CAF2\"\ncatalogue = \"g.agf\"\n";
-  const Design read = read_design(folder / "d.toml");
+  const design::Design read = design::read_design(folder / "d.toml");
   EXPECT_EQ(read.substance.catalogue->file, folder / "g.agf");
   EXPECT_NEAR(inspect(read, materials::MaterialLibrary::shipped()).refractive_index, 1.433849, 2e-6);
-  EXPECT_TRUE(from_anywhere(read.substance.catalogue)->file.is_absolute());
+  EXPECT_TRUE(design::with_absolute_path(read.substance.catalogue)->file.is_absolute());
   fs::remove_all(folder);
 }
 
 TEST(GlassOfDesign, BadInputIsRefused) {
   const auto complaint = [](const std::string& lines) {
     return refusal_of(
-        [&] { inspect(parse_design(kPrisms + lines, "d.toml", {}), materials::MaterialLibrary::shipped()); });
+        [&] { inspect(design::parse_design(kPrisms + lines, "d.toml", {}), materials::MaterialLibrary::shipped()); });
   };
   const std::string here = "catalogue = \"" + kCatalogue.string() + "\"\n";
   EXPECT_EQ(complaint("catalogue = \"no.agf\"\n"), "d.toml:9: body.catalogue");

@@ -1,5 +1,5 @@
 // Tests of the designs that `retrace init` writes.
-#include "studies/design/io/init_templates.h"
+#include "design/io/init_templates.h"
 
 #include <gtest/gtest.h>
 
@@ -18,24 +18,25 @@ using geometry::RtpElement;
 using geometry::TriangularCube;
 
 TEST(InitTemplates, EveryKindParsesAndIsCommented) {
-  ASSERT_EQ(design_kinds().size(), 3U);
-  for (const std::string_view kind : design_kinds()) {
-    const std::string text = design_template(kind);
-    EXPECT_NO_THROW(parse_design(text, "t.toml", {})) << kind;
+  ASSERT_EQ(design::design_kinds().size(), 3U);
+  for (const std::string_view kind : design::design_kinds()) {
+    const std::string text = design::design_template(kind);
+    EXPECT_NO_THROW(design::parse_design(text, "t.toml", {})) << kind;
     EXPECT_EQ(text.substr(0, 2), "# ");
   }
-  EXPECT_TRUE(std::holds_alternative<RtpElement>(parse_design(design_template("rtp"), "t", {}).part().element));
   EXPECT_TRUE(
-      std::holds_alternative<HexagonalCube>(parse_design(design_template("hexagonal_icc"), "t", {}).part().element));
-  EXPECT_TRUE(
-      std::holds_alternative<TriangularCube>(parse_design(design_template("triangular_icc"), "t", {}).part().element));
+      std::holds_alternative<RtpElement>(design::parse_design(design::design_template("rtp"), "t", {}).part().element));
+  EXPECT_TRUE(std::holds_alternative<HexagonalCube>(
+      design::parse_design(design::design_template("hexagonal_icc"), "t", {}).part().element));
+  EXPECT_TRUE(std::holds_alternative<TriangularCube>(
+      design::parse_design(design::design_template("triangular_icc"), "t", {}).part().element));
 }
 
 /// Lines with a default value are commented out. They must be valid, and equal to the default, when their "#" is
 /// removed.
 TEST(InitTemplates, CommentedDefaultsAreValidAndTheDefaults) {
-  for (const std::string_view kind : design_kinds()) {
-    std::istringstream lines(design_template(kind));
+  for (const std::string_view kind : design::design_kinds()) {
+    std::istringstream lines(design::design_template(kind));
     std::string text;
     int uncommented = 0;
     for (std::string line; std::getline(lines, line);) {
@@ -46,13 +47,13 @@ TEST(InitTemplates, CommentedDefaultsAreValidAndTheDefaults) {
       text += (is_setting && !needs_more ? line.substr(2) : line) + "\n";
     }
     EXPECT_GT(uncommented, 5);
-    EXPECT_NO_THROW(parse_design(text, "t.toml", {})) << text;
+    EXPECT_NO_THROW(design::parse_design(text, "t.toml", {})) << text;
   }
 }
 
 TEST(InitTemplates, UnknownKindIsRefused) {
   try {
-    design_template("cube");
+    design::design_template("cube");
     FAIL();
   } catch (const InputError& error) {
     EXPECT_EQ(recorded_place_of(error), "refused");

@@ -23,31 +23,31 @@ std::string message_of(const std::string& table) {
 }
 
 TEST(Limits, ShippedProgrammesHoldTheirPoints) {
-  const TestProgramme ia = r150("IA", "red");
+  const TestPlan ia = r150("IA", "red");
   ASSERT_EQ(ia.points.size(), 14U);
   EXPECT_TRUE(ia.is_complete);
   EXPECT_EQ(ia.points[0].minimum, 300.0);
   EXPECT_NEAR(ia.points[0].observation_deg, 1.0 / 3.0, 1e-6);
   EXPECT_EQ(ia.points[0].status, LimitStatus::read);
-  EXPECT_EQ(ia.points[0].v_beside_deg, (std::vector<double>{5.0, -5.0})) << "UN R3: where the face mirrors";
-  EXPECT_TRUE(ia.points[1].v_beside_deg.empty());
+  EXPECT_EQ(ia.points[0].substitute_v_deg, (std::vector<double>{5.0, -5.0})) << "UN R3: where the face mirrors";
+  EXPECT_TRUE(ia.points[1].substitute_v_deg.empty());
   // Test points are made for both signs of V, and for the four combinations of signs of V and H.
   EXPECT_EQ(ia.points[1].v_deg, 10.0);
   EXPECT_EQ(ia.points[2].v_deg, -10.0);
   EXPECT_EQ(ia.points[6].v_deg, -5.0);
   EXPECT_EQ(ia.points[6].h_deg, -20.0);
-  EXPECT_EQ(programme_of(shipped(), "SAE J594 / FMVSS 108 XVI-a", {}, "amber").points.size(), 10U);
-  const TestProgramme bicycle = programme_of(shipped(), "16 CFR 1512", {}, "white");
+  EXPECT_EQ(test_plan_of(shipped(), "SAE J594 / FMVSS 108 XVI-a", {}, "amber").points.size(), 10U);
+  const TestPlan bicycle = test_plan_of(shipped(), "16 CFR 1512", {}, "white");
   EXPECT_EQ(bicycle.part_class, "bicycle");
   EXPECT_TRUE(bicycle.is_complete);
   EXPECT_EQ(bicycle.points.size(), 22U) << "0, 10 and 20 degrees at both observation angles";
   for (const ShippedStandard& standard : shipped_standards())
-    EXPECT_THROW(programme_of(shipped(), std::string(standard.in_table), {}, "no such"), InputError) << standard.name;
+    EXPECT_THROW(test_plan_of(shipped(), std::string(standard.table_name), {}, "no such"), InputError) << standard.name;
 }
 
 /// Expects that the limits of a colour (`other`) are `factor` times the limits of another colour (`of`), at the same
 /// points.
-void expect_multiple(const TestProgramme& other, double factor, const TestProgramme& of) {
+void expect_multiple(const TestPlan& other, double factor, const TestPlan& of) {
   ASSERT_EQ(other.points.size(), of.points.size());
   for (std::size_t k = 0; k < of.points.size(); ++k) {
     EXPECT_DOUBLE_EQ(other.points[k].minimum, factor * of.points[k].minimum);
@@ -60,7 +60,7 @@ TEST(Limits, FactorsAreThoseOfTheStandards) {
     expect_multiple(r150(part_class, "amber"), 2.5, r150(part_class, "red"));
     expect_multiple(r150(part_class, "white"), 4.0, r150(part_class, "red"));
   }
-  const auto bicycle = [](const std::string& colour) { return programme_of(shipped(), "16 CFR 1512", {}, colour); };
+  const auto bicycle = [](const std::string& colour) { return test_plan_of(shipped(), "16 CFR 1512", {}, colour); };
   expect_multiple(bicycle("amber"), 0.625, bicycle("clear"));
   expect_multiple(bicycle("red"), 0.25, bicycle("clear"));
 }
@@ -74,7 +74,7 @@ TEST(Limits, TrianglesAreRedOnly) {
 }
 
 TEST(Limits, ClassIvaHasItsOwnLimitsByColour) {
-  const TestProgramme amber = r150("IVA", "amber");
+  const TestPlan amber = r150("IVA", "amber");
   ASSERT_EQ(amber.points.size(), 22U);
   EXPECT_EQ(amber.points.front().minimum, 1125.0);
   EXPECT_EQ(amber.points.back().minimum, 10.0);
@@ -88,12 +88,12 @@ TEST(Limits, ClassIvaHasItsOwnLimitsByColour) {
 TEST(Limits, FactorsAreNoBetterConfirmedThanTheirLine) {
   const std::string good = "S,A,red,0.2,0,0,10,mcd/lx,read\n";
   const LimitTable table = parse_limits(kHeader + good + "S,A,amber,,,,2 x red,factor,recalled\n", "l.csv");
-  EXPECT_EQ(programme_of(table, {}, {}, "amber").points[0].status, LimitStatus::recalled);
+  EXPECT_EQ(test_plan_of(table, {}, {}, "amber").points[0].status, LimitStatus::recalled);
 }
 
 // The limits of R_A, in cd/(lx m2), are for beta1 = -4 and 30 degrees, which are V = 4 and V = -30.
 TEST(Limits, SheetingIsMeasuredInTheCoplanarGeometry) {
-  const TestProgramme two = programme_of(shipped(), "ASTM D4956", "II", "white");
+  const TestPlan two = test_plan_of(shipped(), "ASTM D4956", "II", "white");
   ASSERT_EQ(two.points.size(), 4U);
   EXPECT_EQ(two.points[0].v_deg, 4.0);
   EXPECT_EQ(two.points[1].v_deg, -30.0);
@@ -101,42 +101,43 @@ TEST(Limits, SheetingIsMeasuredInTheCoplanarGeometry) {
   const std::vector<double> minima = {140.0, 60.0, 50.0, 28.0};
   for (std::size_t k = 0; k < minima.size(); ++k) EXPECT_EQ(two.points[k].minimum, minima[k]);
   EXPECT_TRUE(two.is_complete);
-  EXPECT_FALSE(programme_of(shipped(), "ASTM D4956", "III", "white").is_complete)
+  EXPECT_FALSE(test_plan_of(shipped(), "ASTM D4956", "III", "white").is_complete)
       << "the copy ends before its last row";
-  const TestProgramme clothing = programme_of(shipped(), "ISO 20471", "separate", "white");
+  const TestPlan clothing = test_plan_of(shipped(), "ISO 20471", "separate", "white");
   ASSERT_EQ(clothing.points.size(), 16U);
   EXPECT_EQ(clothing.points.front().minimum, 330.0);
   EXPECT_EQ(clothing.points.back().minimum, 4.0);
   EXPECT_EQ(clothing.points.back().v_deg, -40.0);
-  const TestProgramme sign = programme_of(shipped(), "StVZVO 1998", "2", "yellow");
+  const TestPlan sign = test_plan_of(shipped(), "StVZVO 1998", "2", "yellow");
   ASSERT_EQ(sign.points.size(), 9U);
   EXPECT_EQ(sign.points[5].minimum, 60.0);
 }
 
 /// Returns the minimum distance of a colour from its boundaries. It is negative outside of the boundaries.
-double least_margin(const TestProgramme& programme, double x, double y) {
+double min_margin(const TestPlan& programme, double x, double y) {
   double least = 1.0;
-  for (const ColourBoundary& b : programme.boundaries) least = std::min(least, b.most - b.of_x * x - b.of_y * y);
+  for (const ColourBoundary& b : programme.boundaries)
+    least = std::min(least, b.limit - b.x_coefficient * x - b.y_coefficient * y);
   return least;
 }
 
 TEST(Limits, ColoursLieWithinTheirBoundaries) {
-  const TestProgramme red = r150("IA", "red");
+  const TestPlan red = r150("IA", "red");
   ASSERT_EQ(red.boundaries.size(), 2U);
-  EXPECT_EQ(red.boundaries[0].v_beside_deg, (std::vector<double>{5.0, -5.0}));
-  EXPECT_NEAR(least_margin(red, 0.69, 0.305), 0.003, 1e-12) << "z = 0.005";
-  EXPECT_NEAR(least_margin(red, 0.66, 0.34), -0.005, 1e-12) << "towards yellow";
-  EXPECT_NEAR(least_margin(red, 0.68, 0.30), -0.012, 1e-12) << "towards purple";
-  const TestProgramme amber = r150("IVA", "amber");
-  EXPECT_GT(least_margin(amber, 0.585, 0.41), 0.0);
-  EXPECT_LT(least_margin(amber, 0.60, 0.395), 0.0) << "towards red";
-  EXPECT_LT(least_margin(amber, 0.565, 0.43), 0.0) << "towards yellow";
-  EXPECT_LT(least_margin(amber, 0.57, 0.42), 0.0) << "towards white";
-  const TestProgramme white = r150("IB", "white");
+  EXPECT_EQ(red.boundaries[0].substitute_v_deg, (std::vector<double>{5.0, -5.0}));
+  EXPECT_NEAR(min_margin(red, 0.69, 0.305), 0.003, 1e-12) << "z = 0.005";
+  EXPECT_NEAR(min_margin(red, 0.66, 0.34), -0.005, 1e-12) << "towards yellow";
+  EXPECT_NEAR(min_margin(red, 0.68, 0.30), -0.012, 1e-12) << "towards purple";
+  const TestPlan amber = r150("IVA", "amber");
+  EXPECT_GT(min_margin(amber, 0.585, 0.41), 0.0);
+  EXPECT_LT(min_margin(amber, 0.60, 0.395), 0.0) << "towards red";
+  EXPECT_LT(min_margin(amber, 0.565, 0.43), 0.0) << "towards yellow";
+  EXPECT_LT(min_margin(amber, 0.57, 0.42), 0.0) << "towards white";
+  const TestPlan white = r150("IB", "white");
   ASSERT_EQ(white.boundaries.size(), 4U);
-  EXPECT_GT(least_margin(white, 0.44757, 0.40745), 0.0) << "CIE A";
+  EXPECT_GT(min_margin(white, 0.44757, 0.40745), 0.0) << "CIE A";
   for (const auto& [x, y] : {std::pair{0.31271, 0.32902}, {0.54, 0.44}, {0.45, 0.35}, {0.40, 0.46}})
-    EXPECT_LT(least_margin(white, x, y), 0.0) << x << " " << y;
+    EXPECT_LT(min_margin(white, x, y), 0.0) << x << " " << y;
 }
 
 TEST(Limits, BoundariesAreLinesInThePlaneOfColours) {
@@ -146,7 +147,7 @@ TEST(Limits, BoundariesAreLinesInThePlaneOfColours) {
   };
   const auto margin = [&](const std::string& text, double x, double y) {
     const ColourBoundary b = boundary(text);
-    return b.most - b.of_x * x - b.of_y * y;
+    return b.limit - b.x_coefficient * x - b.y_coefficient * y;
   };
   EXPECT_NEAR(margin("x <= 0.3", 0.2, 0.5), 0.1, 1e-15);
   EXPECT_NEAR(margin("y >= 0.3", 0.2, 0.5), 0.2, 1e-15);
@@ -166,7 +167,7 @@ TEST(Limits, BoundariesAreLinesInThePlaneOfColours) {
   const LimitTable two = parse_limits(
       kHeader + good + "S,,red,0.3,0,0,y <= 0.3,chromaticity,read\n" + "S,,red,0.4,0,0,z <= 0.3,chromaticity,read\n",
       "l.csv");
-  EXPECT_EQ(refusal_of([&] { programme_of(two, {}, {}, {}); }), "l.csv:4");
+  EXPECT_EQ(refusal_of([&] { test_plan_of(two, {}, {}, {}); }), "l.csv:4");
 }
 
 // Every limit whose status is not `recalled` names its source.
@@ -188,7 +189,7 @@ TEST(Limits, EveryShippedLineNamesItsSource) {
 }
 
 TEST(Limits, AreasAreBoundedByTheStandards) {
-  const auto holds = [](const TestProgramme& programme, double area_cm2) {
+  const auto holds = [](const TestPlan& programme, double area_cm2) {
     return area_verdict(programme, area_cm2) == Verdict::pass;
   };
   for (const std::string part_class : {"IA", "IB"}) {
@@ -198,10 +199,10 @@ TEST(Limits, AreasAreBoundedByTheStandards) {
   EXPECT_TRUE(holds(r150("IIIA", "red"), 170.0)) << "triangles have sides, not areas";
   EXPECT_TRUE(holds(r150("IVA", "white"), 25.0));
   EXPECT_FALSE(holds(r150("IVA", "white"), 24.9));
-  const TestProgramme j594 = programme_of(shipped(), "SAE J594 / FMVSS 108 XVI-a", {}, "red");
+  const TestPlan j594 = test_plan_of(shipped(), "SAE J594 / FMVSS 108 XVI-a", {}, "red");
   EXPECT_TRUE(holds(j594, 77.4));
   EXPECT_FALSE(holds(j594, 77.5));
-  TestProgramme recalled = j594;
+  TestPlan recalled = j594;
   recalled.areas[0].status = LimitStatus::recalled;
   EXPECT_EQ(area_verdict(recalled, 30.0), Verdict::unconfirmed);
 }
@@ -250,21 +251,21 @@ TEST(Limits, MalformedLinesAreRefusedByTheirLine) {
   EXPECT_EQ(message_of(with_source + good), "l.csv:2");
   EXPECT_EQ(message_of(with_source.substr(0, with_source.size() - 1) + ",x\n"), "l.csv:1");
   const LimitTable twice = parse_limits(kHeader + good + good, "l.csv");
-  EXPECT_THROW(programme_of(twice, {}, {}, {}), InputError);
+  EXPECT_THROW(test_plan_of(twice, {}, {}, {}), InputError);
   const LimitTable nothing_to_multiply = parse_limits(kHeader + good + "S,B,amber,,,,2 x red,factor,read\n", "l.csv");
-  EXPECT_THROW(programme_of(nothing_to_multiply, {}, "B", "amber"), InputError);
+  EXPECT_THROW(test_plan_of(nothing_to_multiply, {}, "B", "amber"), InputError);
 }
 
 TEST(Limits, OnlyConfirmedAndCompleteProgrammesPass) {
   PhotometricPoint point;
   point.limit_mcd_per_lx = 10.0;
   point.r_i_mcd_per_lx = 10.0;
-  TestProgramme programme;
+  TestPlan programme;
   for (const auto& [status, complete, verdict] : {std::tuple{LimitStatus::confirmed, true, Verdict::pass},
                                                   {LimitStatus::read, true, Verdict::pass},
                                                   {LimitStatus::recalled, true, Verdict::unconfirmed},
                                                   {LimitStatus::read, false, Verdict::unconfirmed}}) {
-    point.asked.status = status;
+    point.test_point.status = status;
     programme.is_complete = complete;
     EXPECT_EQ(verdict_of({point}, programme), verdict);
     PhotometricPoint below = point;

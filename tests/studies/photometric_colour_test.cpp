@@ -28,7 +28,7 @@ PhotometrySettings colour_request(PhotometricLight light = PhotometricLight::ill
   return request;
 }
 
-materials::Chromaticity colour_of(const Design& design, const PhotometrySettings& request) {
+materials::Chromaticity colour_of(const design::Design& design, const PhotometrySettings& request) {
   return run(design, request).colour.value().chromaticity.value();
 }
 
@@ -36,15 +36,15 @@ ColourBoundary at_most(double of_x, double of_y, double most) {
   ColourBoundary boundary;
   boundary.status = LimitStatus::read;
   boundary.observation_deg = 0.05;
-  boundary.of_x = of_x;
-  boundary.of_y = of_y;
-  boundary.most = most;
+  boundary.x_coefficient = of_x;
+  boundary.y_coefficient = of_y;
+  boundary.limit = most;
   return boundary;
 }
 
 /// Returns a design whose RRE is the same at all wavelengths: mirrors behind a lossless entrance face, with a constant
 /// index.
-Design colourless(double base_mm = 0.5) {
+design::Design colourless(double base_mm = 0.5) {
   return design_of(infinite(geometry::RtpElement{base_mm, base_mm, 90.0}, geometry::Arrangement::aligned, 2.0), true);
 }
 
@@ -77,8 +77,8 @@ TEST(PhotometricColour, OfADyedPartIsTheSumOverTheTable) {
     EXPECT_NEAR(found.y, expected.y, 1e-5) << name;
     EXPECT_NEAR(found.z(), expected.z(), 1e-5) << name;
     // The key `absorption_per_mm` of the design gives the same result as the absorption of the dye in the request.
-    Design coloured = colourless();
-    std::vector<SpectralAbsorption> own;
+    design::Design coloured = colourless();
+    std::vector<design::SpectralAbsorption> own;
     for (std::size_t k = 0; k < dye.values.size(); ++k) own.push_back({dye.wavelengths_nm[k], dye.values[k]});
     coloured.substance.absorption_per_mm = own;
     const materials::Chromaticity again = colour_of(coloured, colour_request());
@@ -90,12 +90,12 @@ TEST(PhotometricColour, OfADyedPartIsTheSumOverTheTable) {
 // The part has the dispersion of PMMA, Fresnel reflection, and diffraction of cells of half a millimetre. The reference
 // is a set of runs with one wavelength every 10 nm.
 TEST(PhotometricColour, WithDispersionAndDiffractionIsThatOfItsSpectrum) {
-  Design design = design_of(honeycomb(0.75, 0.5));
+  design::Design design = design_of(honeycomb(0.75, 0.5));
   design.substance.refractive_index.reset();
   design.substance.material = "PMMA";
   PhotometrySettings request = colour_request(PhotometricLight::illuminant_a, 1.0 / 3.0);
   request.diffraction = true;
-  request.engine = Engine::exact;  // without the noise of resampled weak beams
+  request.engine = raytrace::Engine::exact;  // without the noise of resampled weak beams
   const materials::Chromaticity found = colour_of(design, request);
   const materials::ColourMatching functions = materials::read_colour_matching(kData + "cie_xyz_1931_5nm.csv");
   materials::SpectralCurve back = materials::read_cie_table(kData + "cie_v_a_d65_5nm.csv").illuminant_a;
@@ -120,14 +120,15 @@ TEST(PhotometricColour, WithDispersionAndDiffractionIsThatOfItsSpectrum) {
 TEST(PhotometricColour, IsExactWhereTotalReflectionEnds) {
   const materials::SpectralCurve lamp = lamp_power(PhotometricLight::illuminant_a);
   const materials::ColourMatching functions = materials::shipped_colour_matching();
-  Design design = design_of(infinite(geometry::RtpElement{3.0, 3.0, 90.0}, geometry::Arrangement::aligned, 2.0));
+  design::Design design =
+      design_of(infinite(geometry::RtpElement{3.0, 3.0, 90.0}, geometry::Arrangement::aligned, 2.0));
   design.substance.refractive_index.reset();
   design.substance.material = "N-BK7";
   const PhotometrySettings request = colour_request();
   for (const double h_deg : {5.7, 5.9}) {
-    const auto r_a = [&](const Design& lit, PhotometricLight light, std::size_t response) {
+    const auto r_a = [&](const design::Design& lit, PhotometricLight light, std::size_t response) {
       PhotometrySettings of_light = request;
-      of_light.engine = Engine::exact;
+      of_light.engine = raytrace::Engine::exact;
       of_light.light = light;
       return Photometer(lit, of_light, 4, static_cast<PhotometricResponse>(response))
           .measure({{0.0, h_deg, 0.0, {0.05}, 0, false}}, nullptr, nullptr)
@@ -136,15 +137,15 @@ TEST(PhotometricColour, IsExactWhereTotalReflectionEnds) {
     };
     materials::Tristimulus found{}, expected{};
     for (std::size_t k = 0; k < 3; ++k) {
-      LightSpectrum lines;
-      lines.kind = LightSpectrum::Kind::lines;
+      design::LightSpectrum lines;
+      lines.kind = design::LightSpectrum::Kind::lines;
       lines.photopic = false;
       double sent = 0.0;
       for (double w = 400.0; w <= 720.0; w += 2.0) {
         lines.lines.push_back({w, lamp.at(w) * functions[k].at(w)});
         sent += lines.lines.back().power;
       }
-      Design of_lines = design;
+      design::Design of_lines = design;
       of_lines.light.colour = lines;
       expected[k] = sent * r_a(of_lines, PhotometricLight::of_design, k);
       found[k] = sent * r_a(design, PhotometricLight::illuminant_a, k);
@@ -158,9 +159,9 @@ TEST(PhotometricColour, IsExactWhereTotalReflectionEnds) {
 TEST(PhotometricColour, HasTheErrorOfItsRays) {
   PhotometrySettings request = colour_request();
   request.dye_absorption_per_mm = materials::read_spectral_absorption(kData + "dye_amber.csv");
-  const Design design = design_of(honeycomb(0.0, 20.0));
+  const design::Design design = design_of(honeycomb(0.0, 20.0));
   const materials::Chromaticity exact = colour_of(design, request);
-  request.engine = Engine::montecarlo;
+  request.engine = raytrace::Engine::montecarlo;
   request.rays = 1U << 14;
   double chi_squared = 0.0;
   constexpr int kSeeds = 12;
@@ -178,10 +179,10 @@ TEST(PhotometricColour, HasTheErrorOfItsRays) {
 }
 
 TEST(PhotometricColour, VerdictIsThatOfTheBoundaries) {
-  const Design wide = colourless(20.0);  // traced by rays; diffraction is negligible
+  const design::Design wide = colourless(20.0);  // traced by rays; diffraction is negligible
   PhotometrySettings request = colour_request();
   const auto verdict = [&](std::vector<ColourBoundary> boundaries) {
-    request.programme.boundaries = std::move(boundaries);
+    request.test_plan.boundaries = std::move(boundaries);
     return run(wide, request).colour.value().verdict();
   };
   EXPECT_EQ(verdict({}), std::nullopt);
@@ -193,7 +194,7 @@ TEST(PhotometricColour, VerdictIsThatOfTheBoundaries) {
   EXPECT_EQ(run(wide, request).verdict, Verdict::pass) << "that of the points is another";
   request.light = PhotometricLight::illuminant_d65;
   EXPECT_EQ(verdict({at_most(1.0, 0.0, 0.448)}), Verdict::undetermined);
-  EXPECT_EQ(run(wide, request).colour.value().reason.cause, OpenReason::Cause::another_light);
+  EXPECT_EQ(run(wide, request).colour.value().reason.cause, UndeterminedReason::Cause::another_light);
 }
 
 TEST(PhotometricColour, NearABoundaryOrWithoutDiffractionIsUndetermined) {
@@ -209,12 +210,12 @@ TEST(PhotometricColour, NearABoundaryOrWithoutDiffractionIsUndetermined) {
   EXPECT_EQ(colour.verdict(), Verdict::undetermined);
   // Cells of half a millimetre are traced by rays, without diffraction.
   PhotometrySettings request = colour_request();
-  request.programme.boundaries = {at_most(1.0, 0.0, 0.9)};
-  request.engine = Engine::montecarlo;
+  request.test_plan.boundaries = {at_most(1.0, 0.0, 0.9)};
+  request.engine = raytrace::Engine::montecarlo;
   request.rays = 1U << 10;
   const PhotometryResult result = run(design_of(honeycomb(0.0, 0.5)), request);
   EXPECT_EQ(result.colour->verdict(), Verdict::undetermined);
-  EXPECT_EQ(result.colour->reason.cause, OpenReason::Cause::diffraction);
+  EXPECT_EQ(result.colour->reason.cause, UndeterminedReason::Cause::diffraction);
   EXPECT_EQ(result.colour->reason.no_diffraction, NoDiffraction(Undiffracted::not_requested));
   record_message(result.colour->reason.text);
   EXPECT_NE(photometry_table(result).find(result.colour->reason.text), std::string::npos);
@@ -223,12 +224,12 @@ TEST(PhotometricColour, NearABoundaryOrWithoutDiffractionIsUndetermined) {
 // Perfect cube corners return no light at an observation angle of 1 degree.
 TEST(PhotometricColour, OfNoLightIsUndetermined) {
   PhotometrySettings request = colour_request(PhotometricLight::illuminant_a, 1.0);
-  request.programme.boundaries = {at_most(1.0, 0.0, 0.9)};
-  request.programme.boundaries[0].observation_deg = 1.0;
+  request.test_plan.boundaries = {at_most(1.0, 0.0, 0.9)};
+  request.test_plan.boundaries[0].observation_deg = 1.0;
   const PhotometryResult result = run(design_of(honeycomb(0.0, 20.0), true), request);
   EXPECT_FALSE(result.colour->chromaticity);
   EXPECT_EQ(result.colour->verdict(), Verdict::undetermined);
-  EXPECT_EQ(result.colour->reason.cause, OpenReason::Cause::no_light);
+  EXPECT_EQ(result.colour->reason.cause, UndeterminedReason::Cause::no_light);
   record_message(result.colour->reason.text);
   EXPECT_EQ(photometry_json(result).find("\"x\""), std::string::npos);
 }
@@ -236,8 +237,8 @@ TEST(PhotometricColour, OfNoLightIsUndetermined) {
 // The colour is measured at V = 5 and V = -5, away from the mirror image. The worse value counts.
 TEST(PhotometricColour, IsMeasuredBesideTheMirrorImage) {
   PhotometrySettings request = colour_request();
-  request.programme.boundaries = {at_most(1.0, 0.0, 0.448)};
-  request.programme.boundaries[0].v_beside_deg = {5.0, -5.0};
+  request.test_plan.boundaries = {at_most(1.0, 0.0, 0.448)};
+  request.test_plan.boundaries[0].substitute_v_deg = {5.0, -5.0};
   EXPECT_EQ(run(colourless(), request).colour->v_deg, 0.0);
   EXPECT_EQ(std::abs(run(design_of(honeycomb()), request).colour->v_deg), 5.0);
 }
@@ -248,8 +249,8 @@ TEST(PhotometricColour, IsMeasuredBesideTheMirrorImage) {
 TEST(PhotometricColour, SmallestMarginDeterminesTheGeometry) {
   PhotometrySettings request = colour_request();
   const auto v_deg = [&](std::vector<ColourBoundary> boundaries) {
-    request.programme.boundaries = std::move(boundaries);
-    request.programme.boundaries[0].v_beside_deg = {5.0, 20.0};
+    request.test_plan.boundaries = std::move(boundaries);
+    request.test_plan.boundaries[0].substitute_v_deg = {5.0, 20.0};
     return run(design_of(honeycomb()), request).colour->v_deg;
   };
   const double of_larger_x = v_deg({at_most(1.0, 0.0, 0.448)});

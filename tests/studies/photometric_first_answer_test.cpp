@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "studies/design/io/design_reader.h"
+#include "design/io/design_reader.h"
 #include "studies/photometry/io/photometry_files.h"
 #include "studies/photometry/photometry.h"
 #include "tests/studies/photometric_requests.h"
@@ -23,19 +23,19 @@ using namespace photometric_requests;
 /// Number of rays of the preliminary readings, divided by that of the measurement.
 constexpr double kRayShare = 1.0 / 32.0;
 
-Design cubes() {
+design::Design cubes() {
   return design_of(honeycomb(2.0));
 }
 
 /// Returns a photometry request with two observation angles, at an entrance angle at which some light is trapped in the
 /// part. The Monte Carlo engine uses one wavelength without diffraction. All other engines use diffraction and the
 /// wavelengths of illuminant A.
-PhotometrySettings request_by(Engine engine) {
-  TestProgramme programme = points_at({0.1, 0.2}, 1.0);
+PhotometrySettings request_by(raytrace::Engine engine) {
+  TestPlan programme = points_at({0.1, 0.2}, 1.0);
   for (TestPoint& point : programme.points) point.h_deg = 20.0;
   PhotometrySettings request = request_of(programme);
   request.engine = engine;
-  if (engine == Engine::montecarlo) {
+  if (engine == raytrace::Engine::montecarlo) {
     request.rays = std::uint64_t{1} << 19U;
   } else {
     request.diffraction = true;
@@ -45,7 +45,7 @@ PhotometrySettings request_by(Engine engine) {
 }
 
 TEST(PhotometricFirstAnswer, AgreesWithTheFinalReadingsWithinItsErrors) {
-  for (const Engine engine : {Engine::montecarlo, Engine::automatic}) {
+  for (const raytrace::Engine engine : {raytrace::Engine::montecarlo, raytrace::Engine::automatic}) {
     const PhotometryStudy study(cubes(), request_by(engine));
     const PhotometryResult result = study.run();
     const auto first = study.first_answer(kRayShare);
@@ -70,10 +70,10 @@ TEST(PhotometricFirstAnswer, AgreesWithTheFinalReadingsWithinItsErrors) {
 }
 
 TEST(PhotometricFirstAnswer, CostsLess) {
-  const PhotometryStudy by_beams(cubes(), request_by(Engine::automatic));
+  const PhotometryStudy by_beams(cubes(), request_by(raytrace::Engine::automatic));
   EXPECT_LT(3 * by_beams.first_answer(kRayShare)->wavelengths_nm.size(), by_beams.run().wavelengths_nm.size());
   // The preliminary readings use 1/32 of the rays. Their expected standard error is sqrt(32) = 5.7 times as large.
-  const PhotometryStudy by_rays(cubes(), request_by(Engine::montecarlo));
+  const PhotometryStudy by_rays(cubes(), request_by(raytrace::Engine::montecarlo));
   const PhotometryResult result = by_rays.run();
   EXPECT_GT(by_rays.first_answer(kRayShare)->points[0].std_error_mcd_per_lx,
             2.0 * result.points[0].std_error_mcd_per_lx);
@@ -90,8 +90,8 @@ class Shares : public Progress {
 // If only readings are requested, they take the progress to 1. Otherwise a part of the progress is reserved for the
 // colour and for the search for a change with which the design passes.
 TEST(PhotometricFirstAnswer, ProgressCoversEveryStage) {
-  PhotometrySettings request = request_by(Engine::automatic);
-  for (TestPoint& point : request.programme.points) point.minimum = 1e6;
+  PhotometrySettings request = request_by(raytrace::Engine::automatic);
+  for (TestPoint& point : request.test_plan.points) point.minimum = 1e6;
   request.light = PhotometricLight::illuminant_a;
   const auto shares_of = [&](bool has_colour, bool has_advice) {
     request.colour = has_colour;
@@ -142,7 +142,7 @@ class Meanwhile : public Progress {
 };
 
 TEST(PhotometricFirstAnswer, ChangesNothingOfTheMeasurementThatRunsMeanwhile) {
-  for (const Engine engine : {Engine::montecarlo, Engine::automatic}) {
+  for (const raytrace::Engine engine : {raytrace::Engine::montecarlo, raytrace::Engine::automatic}) {
     const PhotometryStudy study(cubes(), request_by(engine));
     PhotometryResult alone = study.run();
     const auto first = study.first_answer(kRayShare);
@@ -157,7 +157,7 @@ TEST(PhotometricFirstAnswer, ChangesNothingOfTheMeasurementThatRunsMeanwhile) {
 }
 
 TEST(PhotometricFirstAnswer, StopsWithTheMeasurementThatItBelongsTo) {
-  for (const Engine engine : {Engine::montecarlo, Engine::automatic}) {
+  for (const raytrace::Engine engine : {raytrace::Engine::montecarlo, raytrace::Engine::automatic}) {
     const PhotometryStudy study(cubes(), request_by(engine));
     Cancellation whole;
     const Cancellation part(&whole);
@@ -170,14 +170,14 @@ TEST(PhotometricFirstAnswer, StopsWithTheMeasurementThatItBelongsTo) {
 /// A user may stop a run at any time. A rough finite part is used because most of its time is spent on far fields.
 TEST(PhotometricFirstAnswer, MeasurementsStopAtAnyMoment) {
   using Clock = std::chrono::steady_clock;
-  const Design rough = parse_design(
+  const design::Design rough = design::parse_design(
       "[element]\nkind = \"hexagonal_icc\"\naperture_mm = 2.5\n[array]\narrangement = \"honeycomb\"\n"
       "x_length_mm = 5\ny_length_mm = 5\n[body]\nthickness_mm = 2\nrefractive_index = 1.49\n"
       "[surface]\ndihedral_error_arcmin = 0.75\nroughness_sq_nm = 0.1\ncorrelation_length_um = 2\n",
       "rough.toml");
   PhotometrySettings request = request_of(points_at({0.1, 0.2, 0.5}, 1.0));
   request.diffraction = true;
-  for (const Design& design : {rough, cubes()}) {
+  for (const design::Design& design : {rough, cubes()}) {
     const PhotometryStudy study(design, request);
     const Clock::time_point begin = Clock::now();
     ASSERT_TRUE(study.run().complete);

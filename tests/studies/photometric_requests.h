@@ -17,12 +17,12 @@ inline LimitTable shipped() {
   return read_limits(std::string(RETRACE_SOURCE_DIR) + "/data/photometry_limits.csv");
 }
 
-inline TestProgramme r150(const std::string& part_class, const std::string& colour) {
-  return programme_of(shipped(), "UN R3 / R150", part_class, colour);
+inline TestPlan r150(const std::string& part_class, const std::string& colour) {
+  return test_plan_of(shipped(), "UN R3 / R150", part_class, colour);
 }
 
-inline Design design_of(const geometry::PartSpec& part, bool is_ideal = false) {
-  Design design;
+inline design::Design design_of(const geometry::PartSpec& part, bool is_ideal = false) {
+  design::Design design;
   design.part() = part;
   design.substance.refractive_index = retrace::testing::kPmma;
   design.idealisation = {is_ideal, is_ideal};
@@ -37,8 +37,8 @@ inline geometry::PartSpec honeycomb(double error_arcmin = 0.0, double aperture_m
 }
 
 /// Returns a test plan with one limit of R_A for each observation angle, at normal incidence.
-inline TestProgramme points_at(const std::vector<double>& observation_deg, double minimum_r_a) {
-  TestProgramme programme;
+inline TestPlan points_at(const std::vector<double>& observation_deg, double minimum_r_a) {
+  TestPlan programme;
   for (const double a : observation_deg)
     programme.points.push_back(
         {a, 0.0, 0.0, minimum_r_a, PhotometricUnit::cd_per_lx_per_m2, LimitStatus::confirmed, 2});
@@ -46,9 +46,9 @@ inline TestProgramme points_at(const std::vector<double>& observation_deg, doubl
 }
 
 /// Returns a request with the design's own light, without diffraction.
-inline PhotometrySettings request_of(TestProgramme programme) {
+inline PhotometrySettings request_of(TestPlan programme) {
   PhotometrySettings request;
-  request.programme = std::move(programme);
+  request.test_plan = std::move(programme);
   request.area_cm2 = 10.0;
   request.apertures = default_apertures();
   request.light = PhotometricLight::of_design;
@@ -57,7 +57,7 @@ inline PhotometrySettings request_of(TestProgramme programme) {
   return request;
 }
 
-inline PhotometryResult run(const Design& design, const PhotometrySettings& request) {
+inline PhotometryResult run(const design::Design& design, const PhotometrySettings& request) {
   return PhotometryStudy(design, request).run();
 }
 

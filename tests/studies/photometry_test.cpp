@@ -9,9 +9,9 @@
 #include <tuple>
 
 #include "core/threads.h"
+#include "design/io/design_reader.h"
 #include "materials/io/spectrum_reader.h"
 #include "requests/descriptions.h"
-#include "studies/design/io/design_reader.h"
 #include "studies/photometry/io/photometry_files.h"
 #include "studies/photometry/io/standard_reader.h"
 #include "studies/photometry/standards.h"
@@ -34,7 +34,7 @@ using std::numbers::pi;
 // at 0.2 degrees that is smaller than the source sees the lamp in one spot, so that R_A = 1 / (6 Omega_source). If the
 // part is rotated by 30 degrees, the receiver is between two spots.
 TEST(Photometry, ReceiverSeesOneOfSixSpots) {
-  Design design = design_of(honeycomb(2.46), true);
+  design::Design design = design_of(honeycomb(2.46), true);
   design.substance.refractive_index = 1.49;
   PhotometrySettings request = request_of(points_at({0.2}, 1.0));
   request.apertures = {Angle::from_deg(0.1), Angle::from_deg(0.05)};
@@ -64,7 +64,7 @@ TEST(Photometry, ReceiverSeesOneOfSixSpots) {
 TEST(Photometry, VhGridAgreesWithRre) {
   for (const geometry::PartSpec& spec :
        {honeycomb(), infinite(geometry::TriangularCube{1.0}, Arrangement::triangular, 1.0)}) {
-    const Design design = design_of(spec, true);
+    const design::Design design = design_of(spec, true);
     PhotometrySettings request = request_of(r150("IA", "red"));
     request.cutoff = 1e-9;
     const PhotometryResult result = run(design, request);
@@ -75,7 +75,7 @@ TEST(Photometry, VhGridAgreesWithRre) {
       RreSettings asked;
       asked.incidence_deg = {std::acos(std::cos(v) * std::cos(h)) / kDeg};
       asked.azimuth_deg = {std::atan2(std::sin(v), std::sin(h) * std::cos(v)) / kDeg};
-      asked.engine = Engine::exact;
+      asked.engine = raytrace::Engine::exact;
       asked.cutoff = 1e-9;
       const RreResult rre = RreStudy({design}, asked).run();
       EXPECT_NEAR(at.rre, rre.points[0].rre, 1e-8) << at.v_deg << " " << at.h_deg;
@@ -87,9 +87,9 @@ TEST(Photometry, VhGridAgreesWithRre) {
 // UN R3: if the entrance face returns the mirror image of the lamp, the smaller of the values at V = 5 and V = -5
 // counts.
 TEST(Photometry, IsMeasuredBesideTheMirrorImage) {
-  TestProgramme beside = points_at({0.2}, 1.0);
-  beside.points[0].v_beside_deg = {5.0, -5.0};
-  TestProgramme both = points_at({0.2, 0.2}, 1.0);
+  TestPlan beside = points_at({0.2}, 1.0);
+  beside.points[0].substitute_v_deg = {5.0, -5.0};
+  TestPlan both = points_at({0.2, 0.2}, 1.0);
   both.points[0].v_deg = 5.0;
   both.points[1].v_deg = -5.0;
   // The dihedral errors are unequal, so that V = 5 and V = -5 give different values.
@@ -102,7 +102,7 @@ TEST(Photometry, IsMeasuredBesideTheMirrorImage) {
   ASSERT_GT(std::abs(up.r_a - down.r_a), 1e-3 * up.r_a);
   EXPECT_EQ(found.points[0].r_a, std::min(up.r_a, down.r_a));
   EXPECT_EQ(found.points[0].v_deg, up.r_a < down.r_a ? 5.0 : -5.0);
-  EXPECT_EQ(found.points[0].asked.v_deg, 0.0);
+  EXPECT_EQ(found.points[0].test_point.v_deg, 0.0);
   EXPECT_NE(photometry_table(found).find("away from the mirror image of the lamp"), std::string::npos);
   // A face without reflection has no mirror image.
   const PhotometryResult lossless = run(design_of(spec, true), request_of(beside));
@@ -113,21 +113,21 @@ TEST(Photometry, IsMeasuredBesideTheMirrorImage) {
 // Some directions share one trace: rotations at normal incidence, and mirrored directions. Their values must equal
 // those of separate traces.
 TEST(Photometry, DirectionsThatShareTheirLightHaveTheirOwnValues) {
-  TestProgramme all = points_at({0.2, 0.33, 0.33, 0.33}, 1.0);
+  TestPlan all = points_at({0.2, 0.33, 0.33, 0.33}, 1.0);
   const std::vector<std::pair<double, double>> v_and_h = {{0.0, 0.0}, {5.0, 20.0}, {-5.0, 20.0}, {-5.0, -20.0}};
   for (std::size_t k = 0; k < v_and_h.size(); ++k) std::tie(all.points[k].v_deg, all.points[k].h_deg) = v_and_h[k];
   PhotometrySettings request = request_of(all);
   request.diffraction = true;
-  request.engine = Engine::exact;
+  request.engine = raytrace::Engine::exact;
   request.cutoff = 1e-6;
-  const Design design = design_of(honeycomb(2.0));
+  const design::Design design = design_of(honeycomb(2.0));
   for (const double turn : {0.0, 40.0}) {
     request.rotation_deg = {turn};
-    request.programme = all;
+    request.test_plan = all;
     const PhotometryResult together = run(design, request);
     for (std::size_t k = 0; k < v_and_h.size(); ++k) {
-      request.programme = all;
-      request.programme.points = {all.points[k]};
+      request.test_plan = all;
+      request.test_plan.points = {all.points[k]};
       const PhotometryResult alone = run(design, request);
       EXPECT_NEAR(together.points[k].r_a, alone.points[0].r_a, 1e-4 * alone.points[0].r_a) << k << ", turned " << turn;
       EXPECT_EQ(together.points[k].v_deg, alone.points[0].v_deg);
@@ -137,8 +137,8 @@ TEST(Photometry, DirectionsThatShareTheirLightHaveTheirOwnValues) {
 }
 
 /// Returns a request with diffraction at an angle of 20 degrees, at which light is trapped in the part.
-PhotometrySettings diffracted(Engine engine) {
-  TestProgramme programme = points_at({0.0, 0.2, 0.33, 0.5}, 1.0);
+PhotometrySettings diffracted(raytrace::Engine engine) {
+  TestPlan programme = points_at({0.0, 0.2, 0.33, 0.5}, 1.0);
   for (TestPoint& point : programme.points) point.h_deg = 20.0;
   PhotometrySettings request = request_of(programme);
   request.diffraction = true;
@@ -152,12 +152,12 @@ TEST(Photometry, ResamplesWeakBeams) {
   geometry::PartSpec small = finite(geometry::HexagonalCube{1.0}, Arrangement::honeycomb, 4.0, 4.0, 1.0);
   small.angle_errors.dihedral_error_arcmin.fill(2.0);
   for (const geometry::PartSpec& spec : {honeycomb(2.0), small}) {
-    const Design design = design_of(spec);
-    PhotometrySettings request = diffracted(Engine::exact);
+    const design::Design design = design_of(spec);
+    PhotometrySettings request = diffracted(raytrace::Engine::exact);
     const PhotometryResult exact = run(design, request);
     request.cutoff = 1e-7;
     const PhotometryResult further = run(design, request);
-    const PhotometryResult resampled = run(design, diffracted(Engine::automatic));
+    const PhotometryResult resampled = run(design, diffracted(raytrace::Engine::automatic));
     EXPECT_EQ(exact.engine, "exact");
     EXPECT_EQ(resampled.engine, "stochastic");
     EXPECT_GT(exact.directions[0].truncated, 1e-5);
@@ -182,8 +182,8 @@ TEST(Photometry, ResamplesWeakBeams) {
   }
 }
 
-Design rough(Design design, double sq_nm) {
-  design.surface.texture = HarveyShackTexture{.roughness_sq_nm = sq_nm, .correlation_length_um = 5.0};
+design::Design rough(design::Design design, double sq_nm) {
+  design.surface.texture = design::HarveyShackTexture{.roughness_sq_nm = sq_nm, .correlation_length_um = 5.0};
   return design;
 }
 
@@ -191,13 +191,13 @@ Design rough(Design design, double sq_nm) {
 TEST(Photometry, InvisibleRoughnessChangesNoReading) {
   geometry::PartSpec small = finite(geometry::HexagonalCube{1.0}, Arrangement::honeycomb, 4.0, 4.0, 1.0);
   small.angle_errors.dihedral_error_arcmin.fill(2.0);
-  PhotometrySettings request = diffracted(Engine::automatic);
+  PhotometrySettings request = diffracted(raytrace::Engine::automatic);
   for (TestPoint& point : points_at({0.8, 1.5}, 1.0).points) {
     point.h_deg = 20.0;
-    request.programme.points.push_back(point);
+    request.test_plan.points.push_back(point);
   }
   for (const geometry::PartSpec& spec : {honeycomb(2.0), small}) {
-    const Design design = design_of(spec);
+    const design::Design design = design_of(spec);
     const PhotometryResult smooth = run(design, request);
     const PhotometryResult after = run(rough(design, 1e-3), request);
     EXPECT_EQ(after.engine, smooth.engine);
@@ -213,11 +213,11 @@ TEST(Photometry, InvisibleRoughnessChangesNoReading) {
 // Readings and their errors include the light that resampled beams scatter at rough facets. The readings are compared
 // with those of a run that follows beams exactly down to a lower cut-off.
 TEST(Photometry, ResampledBeamsOfRoughFacetsScatterAsFollowedOnesDo) {
-  const Design design = rough(design_of(honeycomb(2.0)), 20.0);
-  PhotometrySettings request = diffracted(Engine::exact);
+  const design::Design design = rough(design_of(honeycomb(2.0)), 20.0);
+  PhotometrySettings request = diffracted(raytrace::Engine::exact);
   request.cutoff = 1e-6;
   const PhotometryResult further = run(design, request);
-  const PhotometryResult resampled = run(design, diffracted(Engine::automatic));
+  const PhotometryResult resampled = run(design, diffracted(raytrace::Engine::automatic));
   EXPECT_EQ(resampled.engine, "stochastic");
   EXPECT_LT(resampled.directions[0].truncated, further.directions[0].truncated);
   EXPECT_NEAR(resampled.directions[0].rre, further.directions[0].rre,
@@ -236,9 +236,9 @@ TEST(Photometry, ResampledBeamsOfRoughFacetsScatterAsFollowedOnesDo) {
 // Beams of facets with a form are not resampled but truncated. The standard errors cover the truncated light, and are
 // small enough for a verdict.
 TEST(Photometry, StandardErrorsOfFormsCoverTruncatedLight) {
-  const Design design = read_design(std::string(RETRACE_SOURCE_DIR) + "/examples/sunk_reflector.toml",
-                                    std::vector<std::string>{"light.wavelength_nm=620"});
-  PhotometrySettings request = diffracted(Engine::automatic);
+  const design::Design design = design::read_design(std::string(RETRACE_SOURCE_DIR) + "/examples/sunk_reflector.toml",
+                                                    std::vector<std::string>{"light.wavelength_nm=620"});
+  PhotometrySettings request = diffracted(raytrace::Engine::automatic);
   const PhotometryResult found = run(design, request);
   request.cutoff = 1e-7;
   const PhotometryResult further = run(design, request);
@@ -251,8 +251,8 @@ TEST(Photometry, StandardErrorsOfFormsCoverTruncatedLight) {
 }
 
 TEST(Photometry, ResampledBeamsDependOnTheSeedAndNotOnThreads) {
-  const Design design = design_of(honeycomb(2.0));
-  PhotometrySettings request = diffracted(Engine::automatic);
+  const design::Design design = design_of(honeycomb(2.0));
+  PhotometrySettings request = diffracted(raytrace::Engine::automatic);
   std::vector<PhotometryResult> results;
   for (const unsigned threads : {1U, 3U}) run_with_threads(threads, [&] { results.push_back(run(design, request)); });
   request.seed = 2;
@@ -270,9 +270,9 @@ TEST(Photometry, APartOfTheWrongAreaFails) {
   LimitArea most;
   most.area_cm2 = 5.0;
   most.status = LimitStatus::read;
-  request.programme.areas = {most};
+  request.test_plan.areas = {most};
   request.advice = true;
-  const Design design = design_of(honeycomb(0.0, 20.0), true);
+  const design::Design design = design_of(honeycomb(0.0, 20.0), true);
   const PhotometryResult large = run(design, request);
   EXPECT_EQ(large.verdict, Verdict::fail);
   EXPECT_EQ(large.points[0].verdict(), Verdict::pass);
@@ -285,7 +285,8 @@ TEST(Photometry, APartOfTheWrongAreaFails) {
 
 // A grey dye transmits exp(-a L) at normal incidence, where L = 2 (plate + depth) in a perfect array of prisms.
 TEST(Photometry, DyeTakesItsShareOfTheFlux) {
-  const Design design = design_of(infinite(geometry::RtpElement{0.5, 0.5, 90.0}, Arrangement::aligned, 2.0), true);
+  const design::Design design =
+      design_of(infinite(geometry::RtpElement{0.5, 0.5, 90.0}, Arrangement::aligned, 2.0), true);
   PhotometrySettings request = request_of(points_at({0.05}, 1.0));
   request.light = PhotometricLight::illuminant_a;
   const double clear = run(design, request).points[0].r_a;
@@ -310,8 +311,8 @@ TEST(Photometry, DyeTakesItsShareOfTheFlux) {
     const double dyed = run(design, request).points[0].r_a;
     EXPECT_NEAR(dyed / clear, behind / all, 2e-3 * behind / all) << name;
     // The key `absorption_per_mm` of the design gives the same result as the absorption of the dye in the request.
-    Design coloured = design;
-    std::vector<SpectralAbsorption> curve;
+    design::Design coloured = design;
+    std::vector<design::SpectralAbsorption> curve;
     for (std::size_t k = 0; k < request.dye_absorption_per_mm.values.size(); ++k)
       curve.push_back({request.dye_absorption_per_mm.wavelengths_nm[k], request.dye_absorption_per_mm.values[k]});
     coloured.substance.absorption_per_mm = curve;
@@ -325,12 +326,12 @@ TEST(Photometry, DyeTakesItsShareOfTheFlux) {
 
 // Monte Carlo agrees with the exact engine for equal apertures of source and receiver, within its standard error.
 TEST(Photometry, MonteCarloAgreesWithTheExactEngine) {
-  const Design design = design_of(honeycomb(4.0));
+  const design::Design design = design_of(honeycomb(4.0));
   PhotometrySettings request = request_of(r150("IA", "red"));
-  request.programme.points.resize(4);
-  request.engine = Engine::exact;
+  request.test_plan.points.resize(4);
+  request.engine = raytrace::Engine::exact;
   const PhotometryResult exact = run(design, request);
-  request.engine = Engine::montecarlo;
+  request.engine = raytrace::Engine::montecarlo;
   request.rays = 1U << 17;
   const PhotometryResult found = run(design, request);
   EXPECT_EQ(exact.engine, "exact");
@@ -345,7 +346,7 @@ TEST(Photometry, MonteCarloAgreesWithTheExactEngine) {
 
 // Diffracted light reaches the region between the spots. The power outside of the window is reported.
 TEST(Photometry, DiffractionReachesWhereRaysDoNot) {
-  const Design design = design_of(honeycomb(0.0, 0.4));
+  const design::Design design = design_of(honeycomb(0.0, 0.4));
   PhotometrySettings request = request_of(points_at({1.0 / 3.0}, 1.0));
   EXPECT_EQ(run(design, request).points[0].r_a, 0.0);
   request.diffraction = true;
@@ -362,7 +363,7 @@ TEST(Photometry, DiffractionReachesWhereRaysDoNot) {
 // Perfect cube corners return no light to a driver above the lamps. The program finds a dihedral error with which the
 // part returns enough light, and reports the table of the changed design.
 TEST(Photometry, FindsTheAngleErrorThatPasses) {
-  const Design design = design_of(honeycomb(0.0, 10.0), true);
+  const design::Design design = design_of(honeycomb(0.0, 10.0), true);
   PhotometrySettings request = request_of(points_at({1.0 / 3.0}, 300.0));
   request.rotation_deg = {0.0, 30.0};
   // The source has an angular diameter of half a degree, so that one ring of six spots is sufficient for both
@@ -375,7 +376,7 @@ TEST(Photometry, FindsTheAngleErrorThatPasses) {
   const PhotometricChange& change = *result.change;
   EXPECT_EQ(change.key, "surface.dihedral_error_arcmin");
   EXPECT_EQ(change.verdict, Verdict::pass);
-  Design changed = design;
+  design::Design changed = design;
   changed.part().angle_errors.dihedral_error_arcmin.fill(change.to);
   request.advice = false;
   const PhotometryResult again = run(changed, request);
@@ -406,7 +407,7 @@ TEST(Photometry, AnInterruptedSearchForWhatToChangeIsNotComplete) {
 }
 
 TEST(Photometry, WhatCannotPassIsToldWithTheBestThatWasTried) {
-  const Design design = design_of(honeycomb(0.0, 60.0), true);
+  const design::Design design = design_of(honeycomb(0.0, 60.0), true);
   PhotometrySettings request = request_of(points_at({1.0 / 3.0}, 1e8));
   request.advice = true;
   const PhotometryResult result = run(design, request);
@@ -434,14 +435,14 @@ TEST(Photometry, ReportsItsCutoff) {
   const double elements = static_cast<double>(geometry::build_part(large).elements_full);
   ASSERT_GT(elements, 100.0);
   EXPECT_DOUBLE_EQ(cutoff(large), 5e-7 * elements);
-  request.engine = Engine::exact;
+  request.engine = raytrace::Engine::exact;
   EXPECT_DOUBLE_EQ(cutoff(finite(4.0)), 1e-5);
   request.cutoff = 3e-4;
   EXPECT_DOUBLE_EQ(cutoff(finite(4.0)), 3e-4);
 }
 
 TEST(Photometry, RefusesWhatItCannotMeasure) {
-  const Design design = design_of(honeycomb(), true);
+  const design::Design design = design_of(honeycomb(), true);
   const auto refusal = [&](const std::function<void(PhotometrySettings&)>& spoil) -> std::string {
     PhotometrySettings settings = request_of(points_at({0.2, 1.5}, 1.0));
     settings.limits_source = "l.csv";
@@ -454,7 +455,7 @@ TEST(Photometry, RefusesWhatItCannotMeasure) {
   for (const double arcmin : {0.0, 0.005, 0.0059})
     EXPECT_EQ(refusal([&](auto& s) { s.apertures = {Angle::from_deg(arcmin / 60.0), {}}; }), "source_arcmin");
   EXPECT_EQ(refusal([](auto& s) { s.apertures = {Angle::from_deg(0.006 / 60.0), {}}; }), "accepted");
-  EXPECT_EQ(refusal([](auto& s) { s.engine = Engine::cell; }), "engine");
+  EXPECT_EQ(refusal([](auto& s) { s.engine = raytrace::Engine::cell; }), "engine");
   EXPECT_EQ(refusal([](auto& s) { s.cutoff = 0.0; }), "cutoff");
 }
 

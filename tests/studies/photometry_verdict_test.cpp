@@ -17,7 +17,7 @@ namespace {
 using namespace photometric_requests;
 using retrace::testing::kPmma;
 using std::numbers::pi;
-using Cause = OpenReason::Cause;
+using Cause = UndeterminedReason::Cause;
 
 PhotometricPoint point_of(double value, double std_error) {
   PhotometricPoint point;
@@ -47,19 +47,19 @@ TEST(PhotometryVerdict, WhatLacksDiffractionNeitherPassesNorFailsAndALowerBoundN
 }
 
 TEST(PhotometryVerdict, AFailDecidesThenAnUndeterminedPoint) {
-  TestProgramme programme;
+  TestPlan programme;
   const PhotometricPoint pass = point_of(20.0, 1.0);
   const PhotometricPoint open = point_of(11.0, 1.0);
   const PhotometricPoint fail = point_of(5.0, 1.0);
   EXPECT_EQ(verdict_of({pass, open}, programme), Verdict::undetermined);
   EXPECT_EQ(verdict_of({open, fail, pass}, programme), Verdict::fail);
   PhotometricPoint recalled = pass;
-  recalled.asked.status = LimitStatus::recalled;
+  recalled.test_point.status = LimitStatus::recalled;
   EXPECT_EQ(verdict_of({recalled, open}, programme), Verdict::undetermined);
 }
 
-Design rough(Design design, double sq_nm) {
-  design.surface.texture = HarveyShackTexture{.roughness_sq_nm = sq_nm, .correlation_length_um = 20.0};
+design::Design rough(design::Design design, double sq_nm) {
+  design.surface.texture = design::HarveyShackTexture{.roughness_sq_nm = sq_nm, .correlation_length_um = 20.0};
   return design;
 }
 
@@ -67,8 +67,8 @@ Design rough(Design design, double sq_nm) {
 /// light.
 constexpr double kAbgA = 1e-3, kAbgB = 1e-3;
 
-Design scattering_by_abg(Design design, double a = kAbgA) {
-  design.surface.texture = AbgTexture{a, kAbgB, 2.0};
+design::Design scattering_by_abg(design::Design design, double a = kAbgA) {
+  design.surface.texture = design::AbgTexture{a, kAbgB, 2.0};
   return design;
 }
 
@@ -76,8 +76,8 @@ Design scattering_by_abg(Design design, double a = kAbgA) {
 /// Smooth cube corners with errors of 0.75 arcmin reach the limits of the regulation.
 PhotometrySettings diffracted_request(double share_of_limits) {
   PhotometrySettings request = request_of(r150("IA", "red"));
-  request.programme.points.resize(2);
-  for (TestPoint& point : request.programme.points) point.minimum *= share_of_limits;
+  request.test_plan.points.resize(2);
+  for (TestPoint& point : request.test_plan.points) point.minimum *= share_of_limits;
   request.area_cm2 = 30.0;
   request.diffraction = true;
   request.advice = true;
@@ -87,10 +87,10 @@ PhotometrySettings diffracted_request(double share_of_limits) {
 
 // A roughness of 0.1 nm must not change the readings measurably.
 TEST(PhotometryVerdict, IsContinuousInTheRoughness) {
-  const Design smooth = design_of(honeycomb(0.75, 0.5));
+  const design::Design smooth = design_of(honeycomb(0.75, 0.5));
   PhotometrySettings request = diffracted_request(0.5);
   // With this engine, weak beams are truncated for smooth as well as for rough facets.
-  request.engine = Engine::exact;
+  request.engine = raytrace::Engine::exact;
   request.rays.reset();
   const PhotometryResult before = run(smooth, request);
   const PhotometryResult after = run(rough(smooth, 0.1), request);
@@ -106,7 +106,7 @@ TEST(PhotometryVerdict, IsContinuousInTheRoughness) {
 
 // Machined and moulded parts have a diffracted value of their own, and therefore a verdict of pass or fail.
 TEST(PhotometryVerdict, RoughPartsPassAndFailByTheirDiffractedValue) {
-  const Design part = rough(design_of(honeycomb(0.75, 0.5)), 20.0);
+  const design::Design part = rough(design_of(honeycomb(0.75, 0.5)), 20.0);
   for (const auto& [share_of_limits, verdict] : {std::pair{0.5, Verdict::pass}, {1e3, Verdict::fail}}) {
     PhotometrySettings request = diffracted_request(share_of_limits);
     request.advice = false;
@@ -123,7 +123,7 @@ TEST(PhotometryVerdict, RoughPartsPassAndFailByTheirDiffractedValue) {
 // scattered light, R_A in every direction would be that of smooth facets times the three specular fractions. Scattered
 // light increases R_A above this value.
 TEST(PhotometryVerdict, RoughPartsShowTheirSpecularShareAndWhatTheyScatter) {
-  const Design smooth = design_of(honeycomb(0.0, 0.5), true);
+  const design::Design smooth = design_of(honeycomb(0.0, 0.5), true);
   PhotometrySettings request = request_of(points_at({0.05}, 1e-3));
   request.diffraction = true;
   const PhotometryResult before = run(smooth, request);
@@ -140,7 +140,7 @@ TEST(PhotometryVerdict, RoughPartsShowTheirSpecularShareAndWhatTheyScatter) {
 
 // Textures that contain no information on phases are traced by rays, and diffraction includes only the mean field.
 TEST(PhotometryVerdict, MeanFieldIsTheSmoothPatternTimesTheSpecularShares) {
-  const Design smooth = design_of(honeycomb(0.0, 0.5), true);
+  const design::Design smooth = design_of(honeycomb(0.0, 0.5), true);
   PhotometrySettings request = request_of(points_at({0.1, 1.0 / 3.0}, 1e-3));
   request.diffraction = true;
   request.rays = 1U << 12;
@@ -167,20 +167,20 @@ TEST(PhotometryVerdict, TexturesWithoutPhasesThatTheBoundDoesNotLiftAreUndetermi
 }
 
 TEST(PhotometryVerdict, ReasonsForMissingDiffraction) {
-  const Design smooth = design_of(honeycomb(0.0, 0.5));
+  const design::Design smooth = design_of(honeycomb(0.0, 0.5));
   PhotometrySettings request = diffracted_request(1e-6);
-  const auto reason = [&](const Design& design) {
+  const auto reason = [&](const design::Design& design) {
     const PhotometryResult result = run(design, request);
     EXPECT_EQ(result.verdict, Verdict::undetermined);
     EXPECT_EQ(result.reason.cause, Cause::diffraction);
     record_message(result.reason.text);
     return result.reason.no_diffraction;
   };
-  request.engine = Engine::montecarlo;
+  request.engine = raytrace::Engine::montecarlo;
   EXPECT_EQ(reason(smooth), NoDiffraction(Undiffracted::monte_carlo));
   EXPECT_EQ(reason(rough(smooth, 0.1)), NoDiffraction(Undiffracted::monte_carlo));
   EXPECT_EQ(reason(scattering_by_abg(smooth)), NoDiffraction(raytrace::Obstacle::texture_without_phases));
-  request.engine = Engine::automatic;
+  request.engine = raytrace::Engine::automatic;
   request.diffraction = false;
   EXPECT_EQ(reason(smooth), NoDiffraction(Undiffracted::not_requested));
 }
@@ -191,7 +191,7 @@ TEST(PhotometryVerdict, WideCellsNeedNoDiffraction) {
   for (const auto& [aperture_mm, limit, verdict] :
        {std::tuple{13.0, 1e9, Verdict::fail}, {13.0, 1.0, Verdict::pass}, {12.8, 1e9, Verdict::undetermined}}) {
     PhotometrySettings request = request_of(points_at({0.05}, limit));
-    request.engine = Engine::montecarlo;
+    request.engine = raytrace::Engine::montecarlo;
     request.rays = 1U << 14;
     EXPECT_EQ(run(design_of(honeycomb(0.0, aperture_mm)), request).verdict, verdict) << aperture_mm << " " << limit;
   }
@@ -200,7 +200,7 @@ TEST(PhotometryVerdict, WideCellsNeedNoDiffraction) {
 // The receiver is between the spots, and none of the few rays hits it. This does not prove that it receives no light.
 TEST(PhotometryVerdict, AReceiverThatNoRayMetHasTheErrorOfOne) {
   PhotometrySettings request = request_of(points_at({1.0}, 100.0));
-  request.engine = Engine::montecarlo;
+  request.engine = raytrace::Engine::montecarlo;
   request.rays = 1U << 10;
   const PhotometryResult result = run(design_of(honeycomb(0.0, 20.0)), request);
   EXPECT_EQ(result.points[0].r_a, 0.0);

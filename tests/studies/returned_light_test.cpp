@@ -18,20 +18,20 @@ using namespace testing;
 using geometry::Arrangement;
 using Json = nlohmann::ordered_json;
 
-Design design_of(const geometry::PartSpec& part, bool is_ideal = false) {
-  Design design;
+design::Design design_of(const geometry::PartSpec& part, bool is_ideal = false) {
+  design::Design design;
   design.part() = part;
   design.substance.refractive_index = kPmma;
   design.idealisation = {is_ideal, is_ideal};
   return design;
 }
 
-RreResult run(const Design& design, std::vector<double> incidence_deg, std::vector<double> azimuth_deg = {0.0},
+RreResult run(const design::Design& design, std::vector<double> incidence_deg, std::vector<double> azimuth_deg = {0.0},
               std::optional<double> cutoff = {}) {
   RreSettings request;
   request.incidence_deg = std::move(incidence_deg);
   request.azimuth_deg = std::move(azimuth_deg);
-  request.engine = Engine::exact;
+  request.engine = raytrace::Engine::exact;
   request.cutoff = cutoff;
   request.footprint = true;
   request.far_field = true;
@@ -62,8 +62,8 @@ TEST(Footprint, OfIdealCubesIsTheEffectiveAperture) {
   ASSERT_EQ(result.returned.size(), 8U);
   for (const ReturnedLight& light : result.returned) {
     const double expected = honeycomb_rre(light.at.incidence_deg, light.at.azimuth_deg, kPmma);
-    EXPECT_NEAR(light.footprint->active_share(), expected, 1e-9);
-    EXPECT_NEAR(light.footprint->rre_shown(), expected, 1e-9);
+    EXPECT_NEAR(light.footprint->active_fraction(), expected, 1e-9);
+    EXPECT_NEAR(light.footprint->rre_contribution(), expected, 1e-9);
     for (const ActiveRegion& region : light.footprint->regions) EXPECT_NEAR(region.efficiency, 1.0, 1e-9);
   }
 }
@@ -76,24 +76,24 @@ TEST(Footprint, OfCantedCubesTurnsWithThem) {
     const RreResult result =
         run(design_of(infinite(cube, Arrangement::honeycomb, 1.5), true), {incidence_deg}, {azimuth_deg});
     const Footprint& shown = *result.returned.at(0).footprint;
-    EXPECT_NEAR(shown.rre_shown(), result.points.at(0).rre, 2e-3) << "faint paths are left out";
-    EXPECT_GT(shown.active_share(), 0.3);
+    EXPECT_NEAR(shown.rre_contribution(), result.points.at(0).rre, 2e-3) << "faint paths are left out";
+    EXPECT_GT(shown.active_fraction(), 0.3);
     return shown;
   };
   const Footprint here = footprint(20.0, 9.0, 50.0);
   const Footprint turned = footprint(140.0, 9.0, 170.0);
-  EXPECT_NEAR(here.active_share(), turned.active_share(), 1e-9);
-  EXPECT_NEAR(here.rre_shown(), turned.rre_shown(), 1e-9);
-  EXPECT_GT(std::abs(here.active_share() - footprint(80.0, 9.0, 110.0).active_share()), 1e-3)
+  EXPECT_NEAR(here.active_fraction(), turned.active_fraction(), 1e-9);
+  EXPECT_NEAR(here.rre_contribution(), turned.rre_contribution(), 1e-9);
+  EXPECT_GT(std::abs(here.active_fraction() - footprint(80.0, 9.0, 110.0).active_fraction()), 1e-3)
       << "not by 60 degrees, which takes roots to rims";
-  EXPECT_NEAR(footprint(25.0, 9.0, 70.0).active_share(), footprint(-25.0, 9.0, -70.0).active_share(), 1e-9);
+  EXPECT_NEAR(footprint(25.0, 9.0, 70.0).active_fraction(), footprint(-25.0, 9.0, -70.0).active_fraction(), 1e-9);
 }
 
 TEST(Footprint, OfPrismsAtNormalIncidenceIsTheWholeFace) {
   for (const geometry::PartSpec& spec : {single(geometry::RtpElement{0.45, 0.45, 90.0}, 0.5),
                                          infinite(geometry::RtpElement{0.5, 0.4, 90.0}, Arrangement::offset, 0.6)}) {
     const Footprint footprint = *run(design_of(spec), {0.0}).returned.at(0).footprint;
-    EXPECT_NEAR(footprint.active_share(), 1.0, 1e-9);
+    EXPECT_NEAR(footprint.active_fraction(), 1.0, 1e-9);
     EXPECT_EQ(footprint.regions.size(), 1U) << "neighbours of one efficiency are joined";
   }
 }
@@ -130,8 +130,8 @@ TEST(Footprint, HalvesAreDeadOffTheNormal) {
     EXPECT_FALSE(covers(9.5 + shift, y));
     EXPECT_TRUE(covers(4.5 + shift, y));
   }
-  EXPECT_LE(footprint.active_share(), 0.88);
-  EXPECT_GT(footprint.active_share(), 0.85);
+  EXPECT_LE(footprint.active_fraction(), 0.88);
+  EXPECT_GT(footprint.active_fraction(), 0.85);
 }
 
 /// Returns the efficiency at a point of the entrance face.
@@ -163,19 +163,19 @@ TEST(Footprint, OfElementsFollowedOnceIsThatOfAll) {
     raytrace::BeamPolicy policy;
     policy.cutoff = 1e-7;
     const auto answer = [&](Elements elements) {
-      return follow_beams(raytrace::BeamTracer(part, elements), part, pmma(), light, cones, policy, {true, true},
-                          nullptr, nullptr);
+      return trace_exact_beams(raytrace::BeamTracer(part, elements), part, pmma(), light, cones, policy, {true, true},
+                               nullptr, nullptr);
     };
-    const BeamAnswer each = answer(Elements::each_by_itself);
-    const BeamAnswer once = answer(Elements::equal_at_once);
+    const BeamOutputs each = answer(Elements::individual);
+    const BeamOutputs once = answer(Elements::instanced);
     if (part.period_mm) {
       EXPECT_LT(once.traced.beams, 0.7 * static_cast<double>(each.traced.beams));
     }
     // The two runs truncate different beams, because the light enters in different polygons.
-    const auto truncated = [](const BeamAnswer& of) { return of.traced.ledgers[0][raytrace::Account::truncated]; };
+    const auto truncated = [](const BeamOutputs& of) { return of.traced.ledgers[0][raytrace::Account::truncated]; };
     const double left = truncated(once) + truncated(each);
     EXPECT_LT(left, 2e-3);
-    EXPECT_NEAR(once.footprint->rre_shown(), each.footprint->rre_shown(), left);
+    EXPECT_NEAR(once.footprint->rre_contribution(), each.footprint->rre_contribution(), left);
     EXPECT_NEAR(once.far_field->total_power, each.far_field->total_power, left);
     const geometry::Rectangle face = geometry::bounding_box(
         part.period_mm ? geometry::to_polygon({geometry::Vec2::Zero(), *part.period_mm}) : part.outline);
@@ -193,8 +193,8 @@ TEST(Footprint, AddsUpToWhatIsReturnedAndStaysOnTheFace) {
     const RreResult result = run(design_of(spec), {4.0, 15.0}, {10.0}, 1e-6);
     for (const ReturnedLight& light : result.returned) {
       const Footprint& footprint = *light.footprint;
-      EXPECT_LE(footprint.rre_shown(), light.at.rre + 1e-9);
-      EXPECT_NEAR(footprint.rre_shown(), light.at.rre, 5e-3);
+      EXPECT_LE(footprint.rre_contribution(), light.at.rre + 1e-9);
+      EXPECT_NEAR(footprint.rre_contribution(), light.at.rre, 5e-3);
       const geometry::Rectangle face = geometry::bounding_box(result.faces.at(0).outline_mm);
       double sum = 0.0;
       for (const ActiveRegion& region : footprint.regions) {
@@ -274,7 +274,7 @@ TEST(FarField, KnowsWhereTheFaceReflectsTo) {
   const double t = 10.0;
   const RreResult result = run(design_of(bricks()), {t}, {90.0});
   for (const FarFieldSpot& spot : result.returned.at(0).far_field->spots) {
-    if (spot.least_depth != 0) continue;
+    if (spot.min_depth != 0) continue;
     EXPECT_NEAR(spot.deviation.deg(), 2.0 * t, 1e-9);
     // The source is above +y. The first axis of its frame is +x, and the second axis points away from +y.
     EXPECT_NEAR(std::abs(spot.orientation.deg()), 90.0, 1e-9);
@@ -334,14 +334,14 @@ TEST(ReturnedLight, IsTheSameAtAnyNumberOfThreads) {
 
 TEST(ReturnedLight, NeedsTheExactEngine) {
   RreSettings request;
-  request.engine = Engine::montecarlo;
+  request.engine = raytrace::Engine::montecarlo;
   request.footprint = true;
   EXPECT_THROW(RreStudy({design_of(bricks())}, request), InputError);
 }
 
 TEST(ReturnedLight, IsNotGatheredUnasked) {
   RreSettings request;
-  request.engine = Engine::exact;
+  request.engine = raytrace::Engine::exact;
   const RreResult result = RreStudy({design_of(bricks())}, request).run();
   EXPECT_TRUE(result.returned.empty());
   EXPECT_TRUE(result.faces.empty());

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "studies/design/io/design_reader.h"
-#include "studies/design/optical_model.h"
+#include "design/io/design_reader.h"
+#include "design/optical_model.h"
 #include "studies/roughness/io/facet_table_reader.h"
 #include "studies/rre/rre.h"
 #include "tests/support/refusals.h"
@@ -69,8 +69,8 @@ double phase2(double index, double sa_nm) {
 // Light is reflected two times at 45 degrees. The specular fraction of each reflection is exp(-g), where g is the
 // variance of the phase (closed form 7 in docs/theory/closed_forms.md), with Sq = sqrt(pi / 2) Sa.
 TEST(RoughnessStudy, SpecularShareIsTheClosedFormOfSa) {
-  const Design design = parse_design(kPrism, "d.toml");
-  const double index = make_model(design, materials::MaterialLibrary::shipped()).optics.index;
+  const design::Design design = design::parse_design(kPrism, "d.toml");
+  const double index = design::make_model(design, materials::MaterialLibrary::shipped()).optics.index;
   RoughnessRequest request = request_of({0.0, 4.0, 9.0, 20.0});
   FacetGroup wavy;
   wavy.name = "wavy";
@@ -102,7 +102,7 @@ TEST(RoughnessStudy, ReportsTheProgressOfTheSmoothPointAsWell) {
     RoughnessRequest request = request_of(sa_nm);
     request.samples = 4096;
     Reports progress;
-    EXPECT_TRUE(RoughnessStudy(parse_design(kPrism, "d.toml"), request).run(&progress, nullptr).complete);
+    EXPECT_TRUE(RoughnessStudy(design::parse_design(kPrism, "d.toml"), request).run(&progress, nullptr).complete);
     ASSERT_FALSE(progress.shares.empty());
     EXPECT_TRUE(std::ranges::is_sorted(progress.shares));
     EXPECT_GE(std::ranges::count(progress.shares, 1.0 / static_cast<double>(sa_nm.size())), 1);
@@ -115,7 +115,7 @@ TEST(RoughnessStudy, ReportsTheProgressOfTheSmoothPointAsWell) {
 TEST(RoughnessStudy, FallsWithSaAndRisesWithTheCorrelationLength) {
   RoughnessRequest request = request_of({0.0, 5.0, 10.0, 20.0, 40.0});
   request.correlation_length_um = {2.0, 20.0, 60.0};
-  const RoughnessResult result = RoughnessStudy(parse_design(kArray, "d.toml"), request).run();
+  const RoughnessResult result = RoughnessStudy(design::parse_design(kArray, "d.toml"), request).run();
   ASSERT_EQ(result.points.size(), 15U);
   for (std::size_t k = 0; k < result.points.size(); ++k) {
     const RoughnessPoint& at = result.points[k];
@@ -134,7 +134,7 @@ TEST(RoughnessStudy, FallsWithSaAndRisesWithTheCorrelationLength) {
 TEST(RoughnessStudy, RefusesWhatItCannotVary) {
   const auto said = [](const std::string& design, const RoughnessRequest& request,
                        const std::vector<FacetGroup>& measured = {}) -> std::string {
-    return refusal_of([&] { RoughnessStudy(parse_design(design, "d.toml"), request, measured); });
+    return refusal_of([&] { RoughnessStudy(design::parse_design(design, "d.toml"), request, measured); });
   };
   EXPECT_EQ(said(kArray + "[surface]\nroughness_sq_nm = 3\ncorrelation_length_um = 5\n", request_of({1.0})),
             "d.toml:11: surface.roughness_sq_nm");

@@ -9,8 +9,8 @@
 
 #include "core/error.h"
 #include "core/number_format.h"
+#include "design/io/design_reader.h"
 #include "materials/io/spectrum_reader.h"
-#include "studies/design/io/design_reader.h"
 #include "studies/inspect/inspect.h"
 #include "studies/rre/io/rre_files.h"
 #include "studies/rre/rre.h"
@@ -34,22 +34,22 @@ extent = "infinite"
 thickness_mm = 2
 )";
 
-Design design(const Overrides& overrides) {
-  return parse_design(kPrisms, "d.toml", overrides);
+design::Design design(const Overrides& overrides) {
+  return design::parse_design(kPrisms, "d.toml", overrides);
 }
 
 RreSettings exactly(double incidence_deg, double azimuth_deg = 0.0) {
   RreSettings request;
   request.incidence_deg = {incidence_deg};
   request.azimuth_deg = {azimuth_deg};
-  request.engine = Engine::exact;
+  request.engine = raytrace::Engine::exact;
   return request;
 }
 
 RreSettings sampled(double incidence_deg, std::uint64_t rays, std::uint32_t seed) {
   RreSettings request;
   request.incidence_deg = {incidence_deg};
-  request.engine = Engine::montecarlo;
+  request.engine = raytrace::Engine::montecarlo;
   request.rays = rays;
   request.seed = seed;
   return request;
@@ -59,7 +59,7 @@ RrePoint point(const Overrides& overrides, const RreSettings& request) {
   return RreStudy({design(overrides)}, request).run().points.at(0);
 }
 
-std::string complaint(const Design& given, const RreSettings& request) {
+std::string complaint(const design::Design& given, const RreSettings& request) {
   return refusal_of([&] { RreStudy({given}, request); });
 }
 
@@ -300,7 +300,7 @@ TEST(SpectrumOfLight, AFileIsReadFromTheFolderOfTheDesign) {
       csv << shortest(cie.illuminant_a.wavelengths_nm[k]) << ',' << shortest(cie.illuminant_a.values[k]) << '\n';
   }
   const std::string text = kPrisms + "[light]\nspectrum = \"a.csv\"\n";
-  const Design of_file = parse_design(text, (folder / "d.toml").string(), {});
+  const design::Design of_file = design::parse_design(text, (folder / "d.toml").string(), {});
   EXPECT_EQ(RreStudy({of_file}, exactly(5.0)).run().points.at(0).rre, point({"light.spectrum=A"}, exactly(5.0)).rre);
   std::ofstream(folder / "a.csv") << "wavelength_nm,power\n500,1\n490,1\n";
   EXPECT_EQ(complaint(of_file, exactly(5.0)), "TMP/d.toml:10: light.spectrum");

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/error.h"
-#include "studies/design/io/design_json.h"
-#include "studies/design/io/design_reader.h"
+#include "design/io/design_json.h"
+#include "design/io/design_reader.h"
 #include "tests/support/refusals.h"
 
 // Tests of the table [substrate]: allowed values, and errors at the key of a base that cannot carry the elements.
@@ -23,8 +23,8 @@ std::string design(const std::string& element, const std::string& substrate) {
 const std::string kPrisms = "[element]\nkind = \"rtp\"\nbase_mm = 0.5\nwidth_mm = 0.5\n[array]\n";
 const std::string kPins = "[element]\nkind = \"hexagonal_icc\"\naperture_mm = 2\n[array]\narrangement = \"pins\"\n";
 
-Design read(const std::string& text) {
-  return parse_design(text, "d.toml", {});
+design::Design read(const std::string& text) {
+  return design::parse_design(text, "d.toml", {});
 }
 
 std::string complaint(const std::string& text) {
@@ -46,17 +46,17 @@ TEST(SubstrateReader, ReadsEveryKind) {
   EXPECT_EQ(cylinder.element_axes, geometry::ElementAxes::parallel);
   const geometry::Substrate sphere = *read(design(kPrisms, "kind = \"sphere\"\nradius_mm = 25")).part().substrate;
   EXPECT_EQ(std::get<geometry::SphereSubstrate>(sphere.shape).radius_mm, 25.0);
-  const Design formula = read(design(kPrisms, "kind = \"formula\"\nsag_mm = \"-x^2 / 50\""));
-  EXPECT_EQ(to_json(formula)["substrate"]["sag_mm"], "-x^2 / 50");
-  EXPECT_EQ(to_json(formula)["substrate"]["element_axes"], "normal");
+  const design::Design formula = read(design(kPrisms, "kind = \"formula\"\nsag_mm = \"-x^2 / 50\""));
+  EXPECT_EQ(design::to_json(formula)["substrate"]["sag_mm"], "-x^2 / 50");
+  EXPECT_EQ(design::to_json(formula)["substrate"]["element_axes"], "normal");
 }
 
 TEST(SubstrateReader, PinsShareOneAxis) {
-  const Design pins = read(design(kPins, "kind = \"plane\"\nincline_deg = 10"));
+  const design::Design pins = read(design(kPins, "kind = \"plane\"\nincline_deg = 10"));
   EXPECT_TRUE(pins.part().is_pin_bundle);
   EXPECT_EQ(pins.part().array.arrangement, geometry::Arrangement::honeycomb);
   EXPECT_EQ(pins.part().substrate->element_axes, geometry::ElementAxes::parallel);
-  EXPECT_EQ(to_json(pins)["array"]["arrangement"], "pins");
+  EXPECT_EQ(design::to_json(pins)["array"]["arrangement"], "pins");
   EXPECT_EQ(complaint(design(kPins, "kind = \"plane\"\nincline_deg = 10\nelement_axes = \"normal\"")),
             "d.toml:11: substrate.element_axes");
   EXPECT_FALSE(read(kPins + "x_length_mm = 6\ny_length_mm = 6\n[body]\nthickness_mm = 3\n").part().substrate);
@@ -106,10 +106,11 @@ TEST(SubstrateReader, RefusesWhatASubstrateCannotHave) {
   EXPECT_EQ(complaint(balls), "d.toml:4: substrate");
   const std::string rounded = design(kPrisms, "kind = \"sphere\"\nradius_mm = 30") + "[surface]\nrim_radius_um = 20\n";
   EXPECT_EQ(complaint(rounded), "d.toml:10: substrate.radius_mm");
-  const Design inclined = read(design(kPrisms, "kind = \"plane\"\nincline_deg = 5"));
-  EXPECT_THROW(check_taken(inclined, {.what = "x", .substrates = false}), InputError);
-  EXPECT_NO_THROW(check_taken(read(kPrisms + "x_length_mm = 6\ny_length_mm = 6\n[body]\nthickness_mm = 3\n"),
-                              {.what = "x", .substrates = false}));
+  const design::Design inclined = read(design(kPrisms, "kind = \"plane\"\nincline_deg = 5"));
+  EXPECT_THROW(design::require_supported(inclined, {.what = "x", .substrates = false}), InputError);
+  EXPECT_NO_THROW(
+      design::require_supported(read(kPrisms + "x_length_mm = 6\ny_length_mm = 6\n[body]\nthickness_mm = 3\n"),
+                                {.what = "x", .substrates = false}));
 }
 
 }  // namespace

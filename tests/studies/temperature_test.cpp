@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "core/number_format.h"
-#include "studies/design/io/design_json.h"
-#include "studies/design/io/design_reader.h"
+#include "design/io/design_json.h"
+#include "design/io/design_reader.h"
 #include "studies/inspect/inspect.h"
 #include "studies/inspect/io/inspect_files.h"
 #include "studies/rre/rre.h"
@@ -27,8 +27,8 @@ const std::string kCubes =
     "[element]\nkind = \"hexagonal_icc\"\naperture_mm = 0.5\n[array]\narrangement = \"honeycomb\"\nextent = "
     "\"infinite\"\n[body]\nthickness_mm = 1\n";
 
-Design design(const Overrides& overrides, const std::string& text = kPrisms) {
-  return parse_design(text, "d.toml", overrides);
+design::Design design(const Overrides& overrides, const std::string& text = kPrisms) {
+  return design::parse_design(text, "d.toml", overrides);
 }
 
 Inspection inspected(const Overrides& overrides, const std::string& text = kPrisms) {
@@ -56,25 +56,25 @@ TEST(Temperature, IndexOfPmmaIsTheClosedForm) {
 TEST(Temperature, OfTheDataIsTheDefault) {
   for (const std::string temperature : {"20", "20.0"})
     EXPECT_EQ(inspected({"body.temperature_c=" + temperature}).refractive_index, inspected({}).refractive_index);
-  EXPECT_FALSE(to_json(design({}))["body"].contains("temperature_c"));
-  EXPECT_EQ(to_json(design({"body.temperature_c=60"}))["body"]["temperature_c"], 60.0);
+  EXPECT_FALSE(design::to_json(design({}))["body"].contains("temperature_c"));
+  EXPECT_EQ(design::to_json(design({"body.temperature_c=60"}))["body"]["temperature_c"], 60.0);
 }
 
 // A given index must have exactly the same effect as an equal index that follows from a temperature.
 TEST(Temperature, IsTheSameIndexInEveryEngine) {
   struct Case {
     const std::string& text;
-    Engine engine;
+    raytrace::Engine engine;
   };
-  for (const auto& [text, engine] :
-       {Case{kPrisms, Engine::exact}, Case{kPrisms, Engine::cell}, Case{kPrisms, Engine::embree},
-        Case{kCubes, Engine::cell}, Case{kBall, Engine::automatic}}) {
+  for (const auto& [text, engine] : {Case{kPrisms, raytrace::Engine::exact}, Case{kPrisms, raytrace::Engine::cell},
+                                     Case{kPrisms, raytrace::Engine::embree}, Case{kCubes, raytrace::Engine::cell},
+                                     Case{kBall, raytrace::Engine::automatic}}) {
     const Overrides warm = {"body.temperature_c=75", "body.material=PC"};
     const Overrides given = {"body.refractive_index=" + shortest(inspected(warm, text).refractive_index)};
     RreSettings request;
     request.incidence_deg = {12.0};
     request.engine = engine;
-    if (engine != Engine::exact) request.rays = 1U << 11;
+    if (engine != raytrace::Engine::exact) request.rays = 1U << 11;
     const RreStudy study({design(warm, text), design(given, text), design({"body.material=PC"}, text)}, request);
     const std::vector<RrePoint> points = study.run().points;
     ASSERT_EQ(points.size(), 3U);
@@ -125,7 +125,7 @@ TEST(Temperature, BeyondTheDataIsAWarning) {
 TEST(Temperature, BadInputIsRefused) {
   const auto complaint = [](const std::string& line) {
     return refusal_of(
-        [&] { inspect(parse_design(kPrisms + line, "d.toml", {}), materials::MaterialLibrary::shipped()); });
+        [&] { inspect(design::parse_design(kPrisms + line, "d.toml", {}), materials::MaterialLibrary::shipped()); });
   };
   expect_refusals(complaint, {{"temperature_c = -201\n", "d.toml:9: body.temperature_c"},
                               {"temperature_c = 1e3\n", "d.toml:9: body.temperature_c"},

@@ -16,8 +16,8 @@ retrace_test(studies_tests
           ${CMAKE_CURRENT_LIST_DIR}/entrance_state_test.cpp ${CMAKE_CURRENT_LIST_DIR}/photometric_first_answer_test.cpp
   LIBRARIES retrace::photometry retrace::inspect retrace::rre nlohmann_json::nlohmann_json)
 retrace_test(studies_tests
-  SOURCES ${CMAKE_CURRENT_LIST_DIR}/zones_test.cpp
-  LIBRARIES retrace::sweep retrace::rre retrace::inspect retrace::solids retrace::scene nlohmann_json::nlohmann_json)
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/zones_test.cpp ${CMAKE_CURRENT_LIST_DIR}/former_keys_test.cpp
+  LIBRARIES retrace::sweep retrace::job retrace::machine retrace::planing retrace::turning retrace::rre retrace::inspect retrace::solids retrace::scene nlohmann_json::nlohmann_json)
 retrace_test(studies_tests
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/balls_test.cpp
   LIBRARIES retrace::inspect retrace::photometry retrace::rre nlohmann_json::nlohmann_json)

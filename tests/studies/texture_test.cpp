@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "core/number_format.h"
-#include "studies/design/io/design_reader.h"
-#include "studies/design/optical_model.h"
+#include "design/io/design_reader.h"
+#include "design/optical_model.h"
 #include "studies/rre/rre.h"
 #include "surface_models/form.h"
 #include "surface_models/height_parameters.h"
@@ -75,7 +75,7 @@ class Folder {
 
 struct Question {
   double incidence_deg = 0.0;
-  Engine engine = Engine::montecarlo;
+  raytrace::Engine engine = raytrace::Engine::montecarlo;
   std::uint64_t rays = 1U << 17;
 };
 
@@ -84,17 +84,17 @@ RrePoint rre_of(const std::string& design, const std::vector<std::string>& overr
   RreSettings request;
   request.incidence_deg = {asked.incidence_deg};
   request.engine = asked.engine;
-  if (asked.engine == Engine::montecarlo) request.rays = asked.rays;
-  if (asked.engine == Engine::exact) request.cutoff = kExactCutoff;
-  return RreStudy({parse_design(design, source, overrides)}, request).run().points.at(0);
+  if (asked.engine == raytrace::Engine::montecarlo) request.rays = asked.rays;
+  if (asked.engine == raytrace::Engine::exact) request.cutoff = kExactCutoff;
+  return RreStudy({design::parse_design(design, source, overrides)}, request).run().points.at(0);
 }
 
 RrePoint exact(const std::string& design, std::vector<std::string> overrides, double incidence_deg = 0.0) {
-  return rre_of(design, overrides, {incidence_deg, Engine::exact});
+  return rre_of(design, overrides, {incidence_deg, raytrace::Engine::exact});
 }
 
 double index_of(const std::string& design) {
-  return make_model(parse_design(design, "d.toml"), materials::MaterialLibrary::shipped()).optics.index;
+  return design::make_model(design::parse_design(design, "d.toml"), materials::MaterialLibrary::shipped()).optics.index;
 }
 
 /// Allowed rounding error of specular light, which is traced without sampling.
@@ -113,8 +113,8 @@ double specular_share_of_two(double index, double sq_nm, double incidence_deg) {
 /// \param surface content of the design's table [surface]
 /// \param file file name of the design
 std::vector<std::string> warnings_of(const std::string& surface, const std::string& file) {
-  const Design design = parse_design(kPrism + "[surface]\n" + surface, file);
-  return facts_of(make_model(design, materials::MaterialLibrary::shipped()).warnings);
+  const design::Design design = design::parse_design(kPrism + "[surface]\n" + surface, file);
+  return facts_of(design::make_model(design, materials::MaterialLibrary::shipped()).warnings);
 }
 
 // Every texture model warns if its parameters are outside the range in which the model is valid.
@@ -289,7 +289,8 @@ TEST(DesignTexture, FormAndTiltOfTheMapAreRemoved) {
   folder.write("formed.txt", map);
   const std::string source = (folder.path() / "d.toml").string();
   const auto rre = [&](const std::string& surface) {
-    return rre_of(kPrism + "[surface]\n" + surface, {kNarrow}, {0.0, Engine::montecarlo, 1U << 14}, source).rre;
+    return rre_of(kPrism + "[surface]\n" + surface, {kNarrow}, {0.0, raytrace::Engine::montecarlo, 1U << 14}, source)
+        .rre;
   };
   const double bare = rre("height_map = \"bare.txt\"\n");
   EXPECT_NEAR(rre("height_map = \"formed.txt\"\nheight_map_form = \"poly2\"\n"), bare, 1e-3);
@@ -315,7 +316,7 @@ TEST(DesignTexture, VanishingRoughnessGivesTheExactAnswer) {
 
 /// Request of the two tests below. The smallest change of the RRE between two values is about ten standard errors, so
 /// that more rays are not necessary.
-const Question kSteps{0.0, Engine::montecarlo, 1U << 14};
+const Question kSteps{0.0, raytrace::Engine::montecarlo, 1U << 14};
 
 // The values of Sa differ so much that the RRE changes by more than the statistical error.
 TEST(DesignTexture, RreFallsMonotonicallyWithSa) {
@@ -355,7 +356,7 @@ TEST(DesignTexture, VanishingRadiusGivesTheExactAnswer) {
   for (const auto& [design, key] : edges()) {
     const double sharp = exact(design, {}).rre;
     // A radius of 0.001 um makes 3e-6 of the smallest element ineffective.
-    const RrePoint round = rre_of(design, {"surface." + key + "=0.001"}, {0.0, Engine::montecarlo, 1U << 18});
+    const RrePoint round = rre_of(design, {"surface." + key + "=0.001"}, {0.0, raytrace::Engine::montecarlo, 1U << 18});
     EXPECT_NEAR(round.rre, sharp, testing::student_bound(6) * round.std_error + 2e-5) << key;
   }
 }
@@ -366,7 +367,7 @@ TEST(DesignTexture, WavyFacetsWithAChamferCloseTheLedger) {
       rre_of(kArray,
              {"surface.root_chamfer_um=60", "surface.waviness_sq_nm=400", "surface.waviness_length_um=60",
               "surface.roughness_sq_nm=10", "surface.correlation_length_um=2"},
-             {5.0, Engine::montecarlo, 1U << 15});
+             {5.0, raytrace::Engine::montecarlo, 1U << 15});
   EXPECT_NEAR(point.ledger.total(), 1.0, 1e-9);
   EXPECT_LT(point.ledger[raytrace::Account::lost], 1e-9);
 }

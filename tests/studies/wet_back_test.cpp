@@ -4,8 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "design/io/design_document.h"
 #include "materials/io/material_library.h"
-#include "studies/design/io/design_document.h"
 #include "studies/inspect/inspect.h"
 #include "studies/inspect/io/inspect_files.h"
 #include "studies/rre/rre.h"
@@ -18,11 +18,11 @@ std::string wet(const std::string& lines) {
   return with_line(11, "[wet_back]\n" + lines);
 }
 
-Design read(const std::string& lines, const std::vector<std::string>& overrides = {}) {
-  return parse_design(wet(lines), "d.toml", overrides);
+design::Design read(const std::string& lines, const std::vector<std::string>& overrides = {}) {
+  return design::parse_design(wet(lines), "d.toml", overrides);
 }
 
-RreResult rre(const Design& design, Engine engine = Engine::automatic) {
+RreResult rre(const design::Design& design, raytrace::Engine engine = raytrace::Engine::automatic) {
   RreSettings request;
   request.incidence_deg = {0.0, 20.0};
   request.azimuth_deg = {0.0, 40.0};
@@ -69,9 +69,9 @@ TEST(WetBackDesign, ArraysAreFiniteAndStandOnAPlane) {
 TEST(WetBackDesign, DesignsAreWrittenAsTheyWereRead) {
   for (const std::string where : {"fraction = 0.25\nseed = 7\n", "rectangle_mm = [1, 2, 3.5, 4]\n",
                                   "disc_mm = [1, 2, 0.3]\n", "half_plane = [1, 2, 30]\n"}) {
-    const std::string text = design_text(read("index = 1.333\n" + where));
+    const std::string text = design::design_text(read("index = 1.333\n" + where));
     EXPECT_NE(text.find("[wet_back]\nindex = 1.333\n" + where), std::string::npos) << text;
-    EXPECT_EQ(design_text(parse_design(text, "again.toml")), text);
+    EXPECT_EQ(design::design_text(design::parse_design(text, "again.toml")), text);
   }
 }
 
@@ -85,14 +85,14 @@ TEST(WetBackDesign, NoShareAndAllAreTheWholeBack) {
 }
 
 TEST(WetBackDesign, PartlyWetBacksAreTracedByRays) {
-  const Design design = read("index = 1.333\nhalf_plane = [5, 5, 0]");
+  const design::Design design = read("index = 1.333\nhalf_plane = [5, 5, 0]");
   const RreResult result = rre(design);
   for (const RrePoint& point : result.points) EXPECT_EQ(point.engine, "embree");
   // Half of the 20 columns of elements return light like dry elements, and half like wet ones. Near the border, this is
   // only approximate, because rows are shifted.
   const double dry = rre(set({})).points[0].rre, wet = rre(set({"body.back_index=1.333"})).points[0].rre;
   EXPECT_NEAR(result.points[0].rre, 0.5 * (dry + wet), 0.03 * (dry - wet));
-  for (const Engine engine : {Engine::exact, Engine::cell})
+  for (const raytrace::Engine engine : {raytrace::Engine::exact, raytrace::Engine::cell})
     EXPECT_EQ(refusal_of([&, e = engine] { rre(design, e); }), "engine");
   RreSettings footprint;
   footprint.footprint = true;

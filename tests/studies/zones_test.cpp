@@ -12,11 +12,11 @@
 #include <string>
 #include <vector>
 
+#include "design/file_names.h"
+#include "design/io/design_document.h"
+#include "design/io/design_json.h"
+#include "design/part_of_design.h"
 #include "materials/io/material_library.h"
-#include "studies/design/io/design_document.h"
-#include "studies/design/io/design_json.h"
-#include "studies/design/io/file_names.h"
-#include "studies/design/part_of_design.h"
 #include "studies/inspect/inspect.h"
 #include "studies/inspect/io/inspect_files.h"
 #include "studies/photometry/photometry.h"
@@ -38,9 +38,9 @@ std::string zoned(const std::string& zones, const std::string& element = kHexago
   return design_of(element, array) + zones;  // zones start at line 9
 }
 
-Design read(const std::string& zones, const std::string& element = kHexagonal,
-            const std::string& array = "x_length_mm = 20; y_length_mm = 10") {
-  return parse_design(zoned(zones, element, array), "d.toml");
+design::Design read(const std::string& zones, const std::string& element = kHexagonal,
+                    const std::string& array = "x_length_mm = 20; y_length_mm = 10") {
+  return design::parse_design(zoned(zones, element, array), "d.toml");
 }
 
 TEST(ZonedDesign, WhatIsWrongIsRefusedWithItsPlace) {
@@ -114,31 +114,31 @@ TEST(ZonedDesign, WholePartsAreFiniteWithoutMargins) {
 }
 
 TEST(ZonedDesign, AnEmptyListIsNone) {
-  EXPECT_EQ(parse_design("zone = []\n" + joined(kLines), "d.toml").zoned(), nullptr);
+  EXPECT_EQ(design::parse_design("zone = []\n" + joined(kLines), "d.toml").zoned(), nullptr);
 }
 
 TEST(ZonedDesign, DesignsAreWrittenAsTheyWereRead) {
-  const Design design = read(
+  const design::Design design = read(
       "[[zone]]\narea_fraction = 0.25\nrotation_deg = 30\n[[zone]]\narea_fraction = 0.75\n"
       "set = [\"element.cant_deg=5\", \"surface.dihedral_error_arcmin=[1, 2, 3]\"]\n");
-  const std::string text = design_text(design);
+  const std::string text = design::design_text(design);
   EXPECT_NE(text.find("[[zone]]\nrectangles_mm = [[0, 0, 5, 10]]\nrotation_deg = 30\n"), std::string::npos) << text;
-  const Design again = parse_design(text, "again.toml");
-  EXPECT_EQ(design_text(again), text);
-  const ZonedPart& part = *again.zoned();
+  const design::Design again = design::parse_design(text, "again.toml");
+  EXPECT_EQ(design::design_text(again), text);
+  const design::ZonedPart& part = *again.zoned();
   ASSERT_EQ(part.spec.zones.size(), 2U);
   EXPECT_EQ(geometry::cant_of(part.spec.zones[1].elements.element).deg, 5.0);
   EXPECT_EQ(geometry::cant_of(part.spec.zones[0].elements.element).deg, 0.0);
   EXPECT_EQ(part.spec.zones[1].elements.angle_errors.dihedral_error_arcmin[2], 3.0);
-  EXPECT_EQ(design_text(design_of_json(to_json(design))), text);
-  const Design thicker = with(design, std::vector<std::string>{"body.thickness_mm=3"});
+  EXPECT_EQ(design::design_text(design_of_json(design::to_json(design))), text);
+  const design::Design thicker = design::with(design, std::vector<std::string>{"body.thickness_mm=3"});
   EXPECT_EQ(thicker.zoned()->spec.thickness_mm, 3.0);
 }
 
 TEST(ZonedDesign, TheSameKindKeepsWhatTheDesignSays) {
   const auto aperture_mm = [](const std::string& kind) {
-    const Design design = read("[[zone]]\narea_fraction = 0.5\nset = [" + kind +
-                               ", \"array.partial_elements=omit\"]\n" + "[[zone]]\narea_fraction = 0.5\n");
+    const design::Design design = read("[[zone]]\narea_fraction = 0.5\nset = [" + kind +
+                                       ", \"array.partial_elements=omit\"]\n" + "[[zone]]\narea_fraction = 0.5\n");
     const geometry::Element& element = design.zoned()->spec.zones[0].elements.element;
     return geometry::bounding_box(geometry::aperture_outline(element)).size().maxCoeff();
   };
@@ -153,14 +153,14 @@ TEST(ZonedDesign, TheSameKindKeepsWhatTheDesignSays) {
 }
 
 TEST(ZonedDesign, ZonesOfSingleElementsAreWrittenAsTheyWereRead) {
-  const Design design = read(
+  const design::Design design = read(
       "[[zone]]\nrows = [1, 2]\nevery = 3\n[[zone]]\nrest = true\nrotation_deg = 180\n"
       "set = [\"element.cant_deg=5\"]\n");
-  const std::string text = design_text(design);
+  const std::string text = design::design_text(design);
   EXPECT_NE(text.find("[[zone]]\nrows = [1, 2]\nevery = 3\n"), std::string::npos) << text;
   EXPECT_NE(text.find("[[zone]]\nrest = true\nrotation_deg = 180\n"), std::string::npos) << text;
-  EXPECT_EQ(design_text(parse_design(text, "again.toml")), text);
-  EXPECT_EQ(design_text(design_of_json(to_json(design))), text);
+  EXPECT_EQ(design::design_text(design::parse_design(text, "again.toml")), text);
+  EXPECT_EQ(design::design_text(design_of_json(design::to_json(design))), text);
 }
 
 /// A temporary folder with mask images in PGM format. The images have dark and light halves.
@@ -182,9 +182,11 @@ class MaskFolder {
   MaskFolder(const MaskFolder&) = delete;
   MaskFolder& operator=(const MaskFolder&) = delete;
 
-  Design design(const std::string& zones) const { return parse_design(zoned(zones), (path_ / "d.toml").string()); }
+  design::Design design(const std::string& zones) const {
+    return design::parse_design(zoned(zones), (path_ / "d.toml").string());
+  }
   std::string complaint_of(const std::string& zones) const {
-    return refusal_of([&] { part_of_design(design(zones), nullptr); });
+    return refusal_of([&] { design::part_of_design(design(zones), nullptr); });
   }
 
  private:
@@ -194,7 +196,9 @@ class MaskFolder {
 
 TEST(ZonedDesign, MasksChooseTheElementsUnderTheirDarkPixels) {
   const MaskFolder folder;
-  const auto zones = [&](const std::string& text) { return part_of_design(folder.design(text), nullptr).zones; };
+  const auto zones = [&](const std::string& text) {
+    return design::part_of_design(folder.design(text), nullptr).zones;
+  };
   const std::string rest = "[[zone]]\nrest = true\nrotation_deg = 180\n";
   const auto left = zones("[[zone]]\nmask = \"left.pgm\"\n" + rest);
   const auto right = zones("[[zone]]\nmask = \"left.pgm\"\n[[zone]]\nmask = \"right.pgm\"\n");
@@ -205,7 +209,7 @@ TEST(ZonedDesign, MasksChooseTheElementsUnderTheirDarkPixels) {
   EXPECT_EQ(right[1].full, left[1].full);
   const auto above = zones("[[zone]]\nmask = \"above.pgm\"\n" + rest);
   EXPECT_NEAR(above[0].area_mm2, 100.0, 10.0);
-  const geometry::Part part = part_of_design(folder.design("[[zone]]\nmask = \"above.pgm\"\n" + rest), nullptr);
+  const geometry::Part part = design::part_of_design(folder.design("[[zone]]\nmask = \"above.pgm\"\n" + rest), nullptr);
   const geometry::PatchCell& last = part.patches[0].cells[part.zones[0].cells - 1];
   EXPECT_GT(0.5 * (last.lower.y() + last.upper.y()), 5.0);
 }
@@ -221,12 +225,12 @@ TEST(ZonedDesign, MasksThatDoNotServeAreRefused) {
   EXPECT_EQ(refused("[[zone]]\nmask = \"negative.pgm\"\n"), "TMP/d.toml:10: zone[1].mask");
   EXPECT_EQ(refused("[[zone]]\nmask = \"corner.pgm\"\n[[zone]]\nrest = true\n"), "TMP/d.toml:9: zone[1]");
   EXPECT_EQ(refused("[[zone]]\nmask = \"none.pgm\"\n"), "TMP/d.toml:10: zone[1].mask");
-  EXPECT_EQ(refusal_of([&] { check_names_no_file(folder.design(left), "which nobody reads"); }),
+  EXPECT_EQ(refusal_of([&] { design::require_no_files(folder.design(left), "which nobody reads"); }),
             "TMP/d.toml:10: zone[1].mask");
 }
 
 TEST(ZonedDesign, QuestionsOfOneKindOfElementAreRefused) {
-  const Design design = read(kHalves);
+  const design::Design design = read(kHalves);
   RreSettings footprint;
   footprint.derivatives = true;
   EXPECT_EQ(refusal_of([&] { RreStudy({design}, footprint); }), "d.toml:9: zone");
@@ -245,10 +249,10 @@ TEST(ZonedDesign, StudiesVaryWhatIsAllOverThePart) {
   };
   const auto shares = swept("rre");
   for (std::size_t k = 0; k < 2; ++k) {
-    const Design design =
-        with(read(kHalves), std::vector<std::string>{k == 0 ? "body.thickness_mm=2" : "body.thickness_mm=3"});
+    const design::Design design =
+        design::with(read(kHalves), std::vector<std::string>{k == 0 ? "body.thickness_mm=2" : "body.thickness_mm=3"});
     RreSettings request;
-    request.engine = Engine::exact;
+    request.engine = raytrace::Engine::exact;
     ASSERT_FALSE(shares.at(k).failed) << shares[k].reason;
     EXPECT_EQ(shares[k].outputs.at(0).value, RreStudy({design}, request).run().points.at(0).rre);
   }
@@ -256,13 +260,14 @@ TEST(ZonedDesign, StudiesVaryWhatIsAllOverThePart) {
   EXPECT_EQ(recorded_place_of(swept("tir_limit_deg").at(0).reason), "d.toml:9: zone");
 }
 
-RreResult rre(const Design& design, Engine engine, double incidence_deg, std::optional<std::uint64_t> rays = {}) {
+RreResult rre(const design::Design& design, raytrace::Engine engine, double incidence_deg,
+              std::optional<std::uint64_t> rays = {}) {
   RreSettings request;
   request.incidence_deg = {incidence_deg};
   request.azimuth_deg = {30.0};
   request.engine = engine;
   request.rays = rays;
-  if (engine == Engine::exact) request.cutoff = 1e-5;
+  if (engine == raytrace::Engine::exact) request.cutoff = 1e-5;
   return RreStudy({design}, request).run();
 }
 
@@ -270,16 +275,17 @@ RreResult rre(const Design& design, Engine engine, double incidence_deg, std::op
 // prism to its other facet.
 TEST(ZonedDesign, PrismsTurnedInAZoneReturnWhatTheyDoAlone) {
   const std::string lengths = "x_length_mm = 8; y_length_mm = 4";
-  const Design plain = parse_design(design_of(kRtp, lengths), "d.toml");
-  const Design turned =
+  const design::Design plain = design::parse_design(design_of(kRtp, lengths), "d.toml");
+  const design::Design turned =
       read("[[zone]]\narea_fraction = 0.5\n[[zone]]\narea_fraction = 0.5\nrotation_deg = 90\n", kRtp, lengths);
-  EXPECT_NEAR(rre(turned, Engine::exact, 0.0).points[0].rre, rre(plain, Engine::exact, 0.0).points[0].rre, 1e-9);
+  EXPECT_NEAR(rre(turned, raytrace::Engine::exact, 0.0).points[0].rre,
+              rre(plain, raytrace::Engine::exact, 0.0).points[0].rre, 1e-9);
   const Inspection inspection = inspect(turned, materials::MaterialLibrary::shipped());
   EXPECT_EQ(inspection.elements_full, 32);
-  EXPECT_EQ(inspection.zones->crossings[0].share, 0.0);
+  EXPECT_EQ(inspection.zones->crossings[0].fraction, 0.0);
   // Light leaves a prism on the other side of the roof edge, at the same distance from it. It has moved by twice this
   // distance, and the mean of this movement is half of the base.
-  for (const ZoneReport& zone : inspection.zones->zones) EXPECT_NEAR(zone.wander_mm.value(), 0.5, 0.01);
+  for (const ZoneReport& zone : inspection.zones->zones) EXPECT_NEAR(zone.lateral_shift_mm.value(), 0.5, 0.01);
 }
 
 // A part has two zones of equal size with different cube corners, and light is at oblique incidence. The exact engine
@@ -288,16 +294,18 @@ TEST(ZonedDesign, PrismsTurnedInAZoneReturnWhatTheyDoAlone) {
 TEST(ZonedDesign, TheSumOfZonesIsThePartAsFarAsTheyAreWide) {
   const std::string set = "set = [\"element.cant_deg=8\", \"element.cant_azimuth_deg=40\"]\n";
   const std::string one = "[[zone]]\narea_fraction = 1\n";
-  const Design part = read("[[zone]]\narea_fraction = 0.5\nrotation_deg = 20\n[[zone]]\narea_fraction = 0.5\n" + set);
-  const RrePoint beams = rre(part, Engine::exact, 15.0).points[0];
-  const RrePoint rays = rre(part, Engine::embree, 15.0, 400'000).points[0];
+  const design::Design part =
+      read("[[zone]]\narea_fraction = 0.5\nrotation_deg = 20\n[[zone]]\narea_fraction = 0.5\n" + set);
+  const RrePoint beams = rre(part, raytrace::Engine::exact, 15.0).points[0];
+  const RrePoint rays = rre(part, raytrace::Engine::embree, 15.0, 400'000).points[0];
   const double exact = beams.rre;
   EXPECT_GT(rays.rre, exact - 4.0 * rays.std_error);
   EXPECT_LT(rays.rre,
             exact + beams.ledger.power[static_cast<std::size_t>(raytrace::Account::truncated)] + 4.0 * rays.std_error);
   const std::string half = "x_length_mm = 10; y_length_mm = 10";
-  const double left = rre(read(one + "rotation_deg = 20\n", kHexagonal, half), Engine::exact, 15.0).points[0].rre;
-  const double right = rre(read(one + set, kHexagonal, half), Engine::exact, 15.0).points[0].rre;
+  const double left =
+      rre(read(one + "rotation_deg = 20\n", kHexagonal, half), raytrace::Engine::exact, 15.0).points[0].rre;
+  const double right = rre(read(one + set, kHexagonal, half), raytrace::Engine::exact, 15.0).points[0].rre;
   EXPECT_NEAR(exact, 0.5 * (left + right), 0.05 * exact);
   EXPECT_GT(std::abs(left - right), 0.05 * exact);
 }
@@ -311,13 +319,14 @@ TEST(ZonedDesign, ColumnsInTurnAreTheArrayAndTurnWithIt) {
   const std::string odd = "[[zone]]\ncolumns = 1\nevery = 2\n";
   const std::string rest = "[[zone]]\nrest = true\n";
   const std::string turn = "rotation_deg = 180\n";
-  const Design alike = read(odd + rest, kHexagonal, lengths);
-  const Design plain = parse_design(design_of(kHexagonal, lengths), "d.toml");
-  EXPECT_NEAR(rre(alike, Engine::exact, 12.0).points[0].rre, rre(plain, Engine::exact, 12.0).points[0].rre, 1e-4);
-  const auto at = [](const Design& design, double incidence_deg) {
-    return rre(design, Engine::embree, incidence_deg, 200'000).points[0];
+  const design::Design alike = read(odd + rest, kHexagonal, lengths);
+  const design::Design plain = design::parse_design(design_of(kHexagonal, lengths), "d.toml");
+  EXPECT_NEAR(rre(alike, raytrace::Engine::exact, 12.0).points[0].rre,
+              rre(plain, raytrace::Engine::exact, 12.0).points[0].rre, 1e-4);
+  const auto at = [](const design::Design& design, double incidence_deg) {
+    return rre(design, raytrace::Engine::embree, incidence_deg, 200'000).points[0];
   };
-  const Design one_way = parse_design(design_of(kHexagonal + canted, lengths), "d.toml");
+  const design::Design one_way = design::parse_design(design_of(kHexagonal + canted, lengths), "d.toml");
   EXPECT_GT(std::abs(at(one_way, 25.0).rre - at(one_way, -25.0).rre), 0.1);
   const RrePoint rest_turned = at(read(odd + rest + turn, kHexagonal + canted, lengths), 25.0);
   const RrePoint odd_turned = at(read(odd + turn + rest, kHexagonal + canted, lengths), -25.0);
@@ -328,7 +337,7 @@ TEST(ZonedDesign, ColumnsInTurnAreTheArrayAndTurnWithIt) {
 // fraction is larger for narrow zones.
 TEST(ZonedDesign, TellHowMuchLightMeetsTwoOfThem) {
   const auto share = [](const std::string& zones) {
-    return inspect(read(zones, kTriangular), materials::MaterialLibrary::shipped()).zones->crossings[1].share;
+    return inspect(read(zones, kTriangular), materials::MaterialLibrary::shipped()).zones->crossings[1].fraction;
   };
   const double wide = share(kHalves);
   const std::string fifth = "[[zone]]\narea_fraction = 0.2\n";
@@ -339,7 +348,7 @@ TEST(ZonedDesign, TellHowMuchLightMeetsTwoOfThem) {
 }
 
 TEST(ZonedDesign, AreInspectedAndExported) {
-  const Design design = read(
+  const design::Design design = read(
       "[[zone]]\npolygon_mm = [[0, 0], [20, 0], [0, 10]]\nrotation_deg = 10\n"
       "[[zone]]\npolygon_mm = [[20, 0], [20, 10], [0, 10]]\n"
       "set = [\"element.kind='rtp'\", \"element.base_mm=1\", \"element.width_mm=0.8\", \"array.x_gap_mm=0.2\"]\n");
@@ -357,7 +366,7 @@ TEST(ZonedDesign, AreInspectedAndExported) {
   EXPECT_NE(text.find("; element.kind='rtp'; "), std::string::npos) << text;
   const Solid solid = make_solid(design, {});
   EXPECT_TRUE(solid.is_manifold);
-  const geometry::Part part = part_of_design(design, nullptr);
+  const geometry::Part part = design::part_of_design(design, nullptr);
   EXPECT_NEAR(solid.volume_mm3, 200.0 * part.thickness_mm, 0.5 * 200.0 * part.element_depth_mm);
   EXPECT_EQ(refusal_of([&] { make_solid(design, {"mould", {}}); }), "d.toml:9: zone");
 }

@@ -8,10 +8,10 @@ namespace retrace::testing {
 
 using studies::closed_forms::cos_inner;
 using studies::closed_forms::edge_cosines;
-using studies::closed_forms::hexagonal_share;
+using studies::closed_forms::hexagonal_fraction;
 using studies::closed_forms::honeycomb_rre;
 using studies::closed_forms::kDeg;
 using studies::closed_forms::triangular_rre;
-using studies::closed_forms::triangular_share;
+using studies::closed_forms::triangular_fraction;
 
 }  // namespace retrace::testing

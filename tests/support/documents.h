@@ -52,8 +52,8 @@ inline Named some_named(const ByName& kind) {
 
 inline Value some_value(const Kind& kind) {
   return std::visit(
-      Overloaded{[](const Number& number) { return Value(number_in(number.range, number.sane)); },
-                 [](const Whole& whole) { return Value(std::ceil(number_in(whole.range))); },
+      Overloaded{[](const Number& number) { return Value(number_in(number.range, number.plausible)); },
+                 [](const Integer& whole) { return Value(std::ceil(number_in(whole.range))); },
                  [](const Flag&) { return Value(*rc::gen::arbitrary<bool>()); },
                  [](const Word& word) { return Value(word_of(word.words)); },
                  [](const Text&) { return Value(some_text()); }, [](const File&) { return Value(some_text()); },
@@ -63,14 +63,14 @@ inline Value some_value(const Kind& kind) {
                  },
                  [](const NumberOrNumbers& list) {
                    std::vector<double> numbers = numbers_in(list.range, 1, 4);
-                   if (list.is_whole)
+                   if (list.is_integer)
                      for (double& number : numbers) number = std::ceil(number);
                    return *rc::gen::arbitrary<bool>() ? Value(numbers.front()) : Value(std::move(numbers));
                  },
                  [](const Numbers& list) { return Value(numbers_in(list.range, list.count, list.count)); },
                  [](const Terms& terms) { return Value(numbers_in({}, terms.count, terms.count)); },
                  [](const NumberRows& rows) {
-                   return Value(std::vector(rows.least, numbers_in(rows.range, rows.columns, rows.columns)));
+                   return Value(std::vector(rows.min_rows, numbers_in(rows.range, rows.columns, rows.columns)));
                  },
                  [](const Pairs& pairs) {
                    std::vector<std::vector<double>> list(*rc::gen::inRange<std::size_t>(1, 5));
@@ -107,7 +107,7 @@ inline void fill(Document& document, const Table& table, const std::string& path
     if (document.has(key) || !document.holds(row.when, path)) continue;
     const auto choice = chosen.find(row.key);
     if (choice != chosen.end() && !choice->second) continue;
-    const bool is_required = std::holds_alternative<Required>(row.otherwise) || choice != chosen.end();
+    const bool is_required = std::holds_alternative<Required>(row.default_spec) || choice != chosen.end();
     if (is_required || *rc::gen::arbitrary<bool>()) document.set(key, some_value(row.kind));
   }
   for (const Table& inner : table.tables) {

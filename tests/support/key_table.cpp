@@ -49,31 +49,32 @@ std::string with_range(std::string text, const NumberRange& range) {
 
 std::string allowed_words(const Kind& kind) {
   return std::visit(
-      Overloaded{
-          [](const Number& number) {
-            const std::string sane = range_text(number.sane);
-            const std::string limits = sane.empty() ? range_text(number.range) : sane;
-            return limits.empty() ? std::string("a number") : limits;
-          },
-          [](const Whole& whole) { return with_range("a whole number", whole.range); },
-          [](const Flag&) { return std::string("true or false"); },
-          [](const Word& word) { return codes(word.words, ", "); }, [](const Text&) { return std::string("a text"); },
-          [](const File& file) { return "the name of " + std::string(file.what); },
-          [](const WordOrFile& either) {
-            return fmt::format("{}, or a file that ends in {}", codes(either.words, ", "), either.ending);
-          },
-          [](const NumberOrNumbers& list) { return with_range(allowed(Kind(list)), list.range); },
-          [](const Pairs& pairs) { return fmt::format("a list of pairs `{}`", pairs.shape); },
-          [](const Numbers& list) { return with_range(fmt::format("{} numbers", list.count), list.range); },
-          [](const Terms& terms) { return fmt::format("a list of numbers, {} for each term", terms.count); },
-          [](const NumberRows& rows) {
-            return with_range(fmt::format("{} to {} {} of {} numbers", rows.least, rows.most, rows.what, rows.columns),
-                              rows.range);
-          },
-          [](const Texts&) { return std::string("a list of texts"); },
-          [](const TextOrTexts& texts) { return std::string(texts.what); },
-          [](const Anything&) { return std::string("a list of numbers, texts or lists"); },
-          [](const ByName& named) { return std::string(named.what); }},
+      Overloaded{[](const Number& number) {
+                   const std::string sane = range_text(number.plausible);
+                   const std::string limits = sane.empty() ? range_text(number.range) : sane;
+                   return limits.empty() ? std::string("a number") : limits;
+                 },
+                 [](const Integer& whole) { return with_range("a whole number", whole.range); },
+                 [](const Flag&) { return std::string("true or false"); },
+                 [](const Word& word) { return codes(word.words, ", "); },
+                 [](const Text&) { return std::string("a text"); },
+                 [](const File& file) { return "the name of " + std::string(file.what); },
+                 [](const WordOrFile& either) {
+                   return fmt::format("{}, or a file that ends in {}", codes(either.words, ", "), either.ending);
+                 },
+                 [](const NumberOrNumbers& list) { return with_range(allowed(Kind(list)), list.range); },
+                 [](const Pairs& pairs) { return fmt::format("a list of pairs `{}`", pairs.shape); },
+                 [](const Numbers& list) { return with_range(fmt::format("{} numbers", list.count), list.range); },
+                 [](const Terms& terms) { return fmt::format("a list of numbers, {} for each term", terms.count); },
+                 [](const NumberRows& rows) {
+                   return with_range(
+                       fmt::format("{} to {} {} of {} numbers", rows.min_rows, rows.max_rows, rows.what, rows.columns),
+                       rows.range);
+                 },
+                 [](const Texts&) { return std::string("a list of texts"); },
+                 [](const TextOrTexts& texts) { return std::string(texts.what); },
+                 [](const Anything&) { return std::string("a list of numbers, texts or lists"); },
+                 [](const ByName& named) { return std::string(named.what); }},
       kind);
 }
 
@@ -100,7 +101,7 @@ std::string presence_words(const Table& inner, const Table& table) {
     if (one_of == nullptr || std::count(one_of->keys.begin(), one_of->keys.end(), inner.name) == 0) continue;
     return "one of these";
   }
-  return inner.presence == Presence::always ? "required" : std::string(inner.otherwise);
+  return inner.presence == Presence::always ? "required" : std::string(inner.default_text);
 }
 
 /// Returns the conditions under which a key has an effect. Conditions that exclude a key are not listed, because
@@ -143,7 +144,7 @@ std::string rows_text(const Table& table) {
   std::string text;
   for (const Row& row : table.rows)
     if (&row == &table.rows.front() || (&row - 1)->key != row.key || (&row - 1)->when.data() != row.when.data())
-      text += line(row.key, default_words(row.otherwise),
+      text += line(row.key, default_words(row.default_spec),
                    fmt::format("{}. {}{}", allowed_words(row.kind), row.meaning, conditions_words(row.when)));
   for (const Table& inner : table.tables)
     if (inner.layout == Layout::in_line)

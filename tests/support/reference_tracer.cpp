@@ -19,8 +19,8 @@ using geometry::FacetRole;
 using raytrace::Account;
 using raytrace::Ledger;
 
-constexpr double kLeastDistance = 1e-9;
-constexpr double kLeastPower = 1e-5;
+constexpr double kMinDistance = 1e-9;
+constexpr double kMinPower = 1e-5;
 constexpr int kBatches = 32;
 
 struct Ray {
@@ -123,7 +123,7 @@ class Reference {
       const Vec3 q = s.cross(tri.ab);
       const double v = ray.direction.dot(q) / det;
       const double t = tri.ac.dot(q) / det;
-      if (v < 0.0 || u + v > 1.0 || t < kLeastDistance || t >= t_hit) continue;
+      if (v < 0.0 || u + v > 1.0 || t < kMinDistance || t >= t_hit) continue;
       t_hit = t;
       hit = &tri;
     }
@@ -131,7 +131,7 @@ class Reference {
   }
 
   void follow(Ray ray) {
-    if (ray.power() < kLeastPower) {
+    if (ray.power() < kMinPower) {
       ledger_[Account::truncated] += ray.power();
       return;
     }

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "fabrication/chisel/check/groove.h"
+#include "fabrication/chisel/check/cavity.h"
 #include "fabrication/chisel/check/verify.h"
 #include "studies/calibration/correction.h"
 #include "tests/support/prism_jobs.h"
@@ -27,7 +27,7 @@ inline const studies::FabricationResult& four_prisms() {
 /// Returns the grooves of a job that cuts prisms.
 inline std::vector<fabrication::PrismGroove> prism_grooves(const fabrication::Job& job) {
   std::vector<fabrication::PrismGroove> grooves;
-  for (const fabrication::Groove& groove : fabrication::designed_grooves(job))
+  for (const fabrication::Cavity& groove : fabrication::designed_cavities(job))
     grooves.push_back(std::get<fabrication::PrismGroove>(groove));
   return grooves;
 }
@@ -69,7 +69,7 @@ class CutSurface {
 
   /// Returns the maximum deviations of the facets from the design. A common rotation or displacement of the whole part
   /// is removed first, because it cannot be observed.
-  studies::FacetOutlook off() const {
+  studies::DeviationPrediction off() const {
     constexpr double kTiltNm = 250.0;  // converts a rotation to the deviation over half a facet
     const auto facets = static_cast<Eigen::Index>(planes_.size());
     Eigen::MatrixXd of_pose(3 * facets, 5);
@@ -87,7 +87,7 @@ class CutSurface {
       off.segment<3>(3 * k) << 1e-6 * f.mean_nm, kTiltNm * 1e-6 * f.slope_up, kTiltNm * 1e-6 * f.slope_along;
     }
     const Eigen::VectorXd left = off - of_pose * of_pose.colPivHouseholderQr().solve(off);
-    studies::FacetOutlook most;
+    studies::DeviationPrediction most;
     for (Eigen::Index k = 0; k < left.size(); ++k)
       if (k % 3 == 0)
         most.distance_nm = std::max(most.distance_nm, 1e6 * std::abs(left[k]));
@@ -165,7 +165,7 @@ class PatternedSurface {
 
 /// Returns the value of a quantity of a facet that is measured on a part in a given pose.
 /// \param figures values that the verifier computes for the facet, in the workpiece frame
-inline double measured_of(const fabrication::Groove& groove, const fabrication::FacetFigures& figures,
+inline double measured_of(const fabrication::Cavity& groove, const fabrication::FacetFigures& figures,
                           std::size_t facet, studies::FacetQuantity what, const fabrication::RigidMotion& pose) {
   const fabrication::DesignFacet& design = fabrication::common(groove).facets[facet];
   const geometry::Vec3& along = design.along;
@@ -174,10 +174,11 @@ inline double measured_of(const fabrication::Groove& groove, const fabrication::
   const geometry::Vec3 point = pose.point(fabrication::common(groove).root_mm + figures.mean_up_mm * design.up_slope +
                                           figures.mean_along_mm * along + 1e-6 * figures.mean_nm * design.normal);
   switch (what) {
-    case studies::FacetQuantity::up:
+    case studies::FacetQuantity::tilt_up:
       return -studies::kArcsecPerRad * normal.dot(design.up_slope) / normal.dot(design.normal);
-    case studies::FacetQuantity::along: return -studies::kArcsecPerRad * normal.dot(along) / normal.dot(design.normal);
-    default: return 1e6 * normal.dot(point - fabrication::facet_middle(groove, facet)) / normal.dot(design.normal);
+    case studies::FacetQuantity::tilt_along:
+      return -studies::kArcsecPerRad * normal.dot(along) / normal.dot(design.normal);
+    default: return 1e6 * normal.dot(point - fabrication::facet_centre(groove, facet)) / normal.dot(design.normal);
   }
 }
 

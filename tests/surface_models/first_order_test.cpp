@@ -190,7 +190,7 @@ TEST(FirstOrder, SharesAreIntegralsOverBothSides) {
   for (const auto& [from, to] : {std::pair(kIndex, 1.0), std::pair(1.0, kIndex), std::pair(kIndex, 1.333)}) {
     const DielectricInterface interface(from, to);
     for (const double length_um : {0.1, 0.39}) {
-      const FirstOrderShare share(interface, in_waves(length_um));
+      const FirstOrderFraction share(interface, in_waves(length_um));
       for (const double incidence_deg : {20.0, 41.5, 42.5, 78.0}) {
         const double k = from * std::sin(incidence_deg * kRadians);
         const auto [s, p] = share.at(k);

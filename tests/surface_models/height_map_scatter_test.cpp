@@ -32,7 +32,7 @@ TEST(HeightMapScatter, SpecularShareIsTheClosedForm) {
       const HeightMapScatter model(random_map(64, 0.5, sq_nm, 3.0, 3.0), 550.0);
       const ScatterEvent event = inside(t_deg);
       const double p = std::exp(-std::pow(4.0 * kPi * kIndex * sq_nm * std::cos(t_deg * kRadians) / 550.0, 2));
-      EXPECT_NEAR(specular_share(model, event, {}, Lobe::reflection), p, 1e-9);
+      EXPECT_NEAR(specular_fraction(model, event, {}, Lobe::reflection), p, 1e-9);
       EXPECT_NEAR(specular_draws(model, event, Lobe::reflection, ++seed, kDraws), p,
                   normal_bound(16) * std::sqrt(p * (1.0 - p) / kDraws) + 1e-9)
           << sq_nm << " nm, " << t_deg << " deg";
@@ -46,7 +46,8 @@ TEST(HeightMapScatter, SpecularShareIsTheMeanPhaseOfTheMap) {
   const double per_nm = 4.0 * kPi * kIndex * std::cos(45.0 * kRadians) / 550.0;
   for (const double z : map.heights_nm) mean += std::polar(1.0, per_nm * z);
   mean /= static_cast<double>(map.heights_nm.size());
-  EXPECT_NEAR(specular_share(HeightMapScatter(map, 550.0), inside(45.0), {}, Lobe::reflection), std::norm(mean), 0.01);
+  EXPECT_NEAR(specular_fraction(HeightMapScatter(map, 550.0), inside(45.0), {}, Lobe::reflection), std::norm(mean),
+              0.01);
 }
 
 TEST(HeightMapScatter, SamplesFollowTheDensity) {
@@ -129,7 +130,7 @@ TEST(HeightMapScatter, ConservesEnergy) {
     const double scattered = disc_integral(scaled_density(model, c.event, c.lobe), 700, 700);
     EXPECT_GT(scattered, 0.01) << c.name;
     // The density has steps. Numerical integration in this test has errors of about 1e-3.
-    EXPECT_NEAR(scattered + specular_share(model, c.event, {}, c.lobe), 1.0, 2e-3) << c.name;
+    EXPECT_NEAR(scattered + specular_fraction(model, c.event, {}, c.lobe), 1.0, 2e-3) << c.name;
   }
 }
 
@@ -272,7 +273,7 @@ TEST(HeightMapScatter, FlatMapsAndMissingPoints) {
   const auto drawn = sample(model, inside(30.0), sample_facet(model, inside(30.0), random), Lobe::reflection, random);
   ASSERT_TRUE(drawn);
   EXPECT_TRUE(drawn->is_specular);
-  EXPECT_EQ(specular_share(model, inside(30.0), {}, Lobe::reflection), 1.0);
+  EXPECT_EQ(specular_fraction(model, inside(30.0), {}, Lobe::reflection), 1.0);
   EXPECT_THROW(HeightMapScatter(flat(7, 1.0), 550.0), InputError);
   map.heights_nm.assign(256, kMissing);
   EXPECT_THROW(HeightMapScatter(map, 550.0), InputError);

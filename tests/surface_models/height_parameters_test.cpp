@@ -55,7 +55,7 @@ TEST(Summary, OfValuesWithGaps) {
 
 TEST(HeightMap, TurnedByAQuarter) {
   const HeightMap map{3, 2, 0.5, 2.0, {1.0, 2.0, 3.0, 4.0, 5.0, 6.0}};
-  const HeightMap turned = turned_by_quarter(map);
+  const HeightMap turned = rotated_by_90_degrees(map);
   EXPECT_EQ(turned.columns, 2U);
   EXPECT_EQ(turned.rows, 3U);
   EXPECT_EQ(turned.x_pixel_um, 2.0);

@@ -73,7 +73,7 @@ TEST(Lay, ShortWavesDoNotScatter) {
   share *= 4.0 * edge * edge / (1.0 * kSteps * kSteps) / (2.0 * std::numbers::pi * deviation.prod());
   const double phase = 4.0 * std::numbers::pi * kIndex * r.sq_nm / 550.0;
   EXPECT_LT(share, 0.9);
-  EXPECT_NEAR(-std::log(specular_share(HarveyShack(r), event, {}, Lobe::reflection)) / (phase * phase * share), 1.0,
+  EXPECT_NEAR(-std::log(specular_fraction(HarveyShack(r), event, {}, Lobe::reflection)) / (phase * phase * share), 1.0,
               1e-4);
 }
 
@@ -113,7 +113,7 @@ TEST(Lay, KeepsAllLight) {
     for (const std::size_t k : {1U, 2U, 7U}) {
       const Case& c = cases()[k];
       const auto lobe = scaled_density(model, c.event, c.lobe);
-      EXPECT_NEAR(specular_share(model, c.event, {}, c.lobe) + disc_integral(lobe, 200, 300), 1.0, 1e-3) << c.name;
+      EXPECT_NEAR(specular_fraction(model, c.event, {}, c.lobe) + disc_integral(lobe, 200, 300), 1.0, 1e-3) << c.name;
       for (std::uint32_t draw = 0; draw < 200; ++draw) {
         RandomStream random = stream(92, draw);
         const auto drawn = sample(ScatterModel(model), c.event, {}, c.lobe, random);

@@ -244,7 +244,7 @@ inline void expect_closed_form_share(const ScatterModel& model, double sq_nm, co
   const double paths = e.index_from * e.cos_in() + (c.lobe == Lobe::reflection ? out : -out);
   const double phase = 2.0 * std::numbers::pi * sq_nm * paths / e.wavelength_nm;
   const double p = std::exp(-phase * phase);
-  EXPECT_NEAR(specular_share(model, e, {}, c.lobe), p, 1e-9) << c.name;
+  EXPECT_NEAR(specular_fraction(model, e, {}, c.lobe), p, 1e-9) << c.name;
   EXPECT_NEAR(specular_draws(model, e, c.lobe, seed, kDraws), p,
               normal_bound(comparisons) * std::sqrt(p * (1.0 - p) / kDraws) + 1e-9)
       << c.name;

@@ -46,7 +46,7 @@ TEST(HarveyShack, SharesDrawnApartAreThoseOfOneDraw) {
   constexpr std::uint32_t kDraws = 40000;
   const HarveyShack model({40.0, 2.0, 0.0, 0.0});
   const ScatterEvent event = inside(45.0);
-  const double share = specular_share(model, event, {}, Lobe::reflection);
+  const double share = specular_fraction(model, event, {}, Lobe::reflection);
   std::array<double, 2> mean{};
   std::array<double, 2> square{};
   std::array<double, 2> count{};
@@ -82,7 +82,7 @@ TEST(HarveyShack, ConservesEnergy) {
     for (const Case& c : cases()) {
       const HarveyShack model(r);
       const double scattered = disc_integral(scaled_density(model, c.event, c.lobe));
-      EXPECT_NEAR(scattered + specular_share(model, c.event, {}, c.lobe), 1.0, 1e-5) << c.name;
+      EXPECT_NEAR(scattered + specular_fraction(model, c.event, {}, c.lobe), 1.0, 1e-5) << c.name;
     }
 }
 
@@ -96,7 +96,7 @@ TEST(HarveyShack, SpecularShareIsTheClosedForm) {
         const ScatterEvent event = inside(t_deg);
         const HarveyShack model({sq_nm, waves * 0.55 / kIndex, 0.0, 0.0});
         const double g = std::pow(4.0 * std::numbers::pi * kIndex * sq_nm * std::cos(t_deg * kRadians) / 550.0, 2);
-        EXPECT_NEAR(specular_share(model, event, {}, Lobe::reflection), std::exp(-g), 1e-12);
+        EXPECT_NEAR(specular_fraction(model, event, {}, Lobe::reflection), std::exp(-g), 1e-12);
         const double p = std::exp(-g);
         EXPECT_NEAR(specular_draws(model, event, Lobe::reflection, ++seed, kDraws), p,
                     normal_bound(80) * std::sqrt(p * (1.0 - p) / kDraws) + 1e-12)
@@ -114,7 +114,7 @@ TEST(HarveyShack, SpecularShareIsTheClosedFormOnBothSides) {
 
 TEST(HarveyShack, PublishedValues) {
   const auto scattered = [](double sq_nm, double t_deg, double w_nm) {
-    return 1.0 - specular_share(HarveyShack({sq_nm, 5.0, 0.0, 0.0}), inside(t_deg, w_nm), {}, Lobe::reflection);
+    return 1.0 - specular_fraction(HarveyShack({sq_nm, 5.0, 0.0, 0.0}), inside(t_deg, w_nm), {}, Lobe::reflection);
   };
   EXPECT_NEAR(scattered(10.0, 54.74, 550.0), 0.038, 5e-4);
   EXPECT_NEAR(scattered(20.0, 54.74, 550.0), 0.14, 5e-3);
@@ -128,14 +128,14 @@ TEST(HarveyShack, TransmissionHasThePhaseOfTheDifferenceOfPaths) {
   const double t = 30.0 * kRadians;
   const double refracted = std::asin(kIndex * std::sin(t));
   const double phase = 2.0 * std::numbers::pi * 40.0 * (kIndex * std::cos(t) - std::cos(refracted)) / 550.0;
-  EXPECT_NEAR(specular_share(HarveyShack({40.0, 5.0, 0.0, 0.0}), inside(30.0), {}, Lobe::transmission),
+  EXPECT_NEAR(specular_fraction(HarveyShack({40.0, 5.0, 0.0, 0.0}), inside(30.0), {}, Lobe::transmission),
               std::exp(-phase * phase), 1e-12);
 }
 
 // Roughness with spatial frequencies above n / w does not scatter.
 TEST(HarveyShack, FineRoughnessIsNotRelevant) {
-  const double coarse = specular_share(HarveyShack({20.0, 1.0, 0.0, 0.0}), inside(45.0), {}, Lobe::reflection);
-  const double fine = specular_share(HarveyShack({20.0, 0.02, 0.0, 0.0}), inside(45.0), {}, Lobe::reflection);
+  const double coarse = specular_fraction(HarveyShack({20.0, 1.0, 0.0, 0.0}), inside(45.0), {}, Lobe::reflection);
+  const double fine = specular_fraction(HarveyShack({20.0, 0.02, 0.0, 0.0}), inside(45.0), {}, Lobe::reflection);
   EXPECT_GT(fine, 0.99);
   EXPECT_LT(coarse, 0.8);
 }
@@ -294,7 +294,7 @@ TEST(Abg, WhatDoesNotScatterIsSpecular) {
   const Abg model(0.02, 0.01, 1.0);
   for (const Case& c : cases()) {
     const Density density = [&](const Vec2& beta) { return model.scattered_density(c.event, {}, c.lobe, beta); };
-    EXPECT_NEAR(disc_integral(density), 1.0 - specular_share(model, c.event, {}, c.lobe), 2e-4) << c.name;
+    EXPECT_NEAR(disc_integral(density), 1.0 - specular_fraction(model, c.event, {}, c.lobe), 2e-4) << c.name;
   }
 }
 
@@ -317,7 +317,7 @@ TEST(Abg, IsReciprocalInReflection) {
 
 // The total integrated scatter at normal incidence is pi A ln(1 + 1 / B) for g = 2.
 TEST(Abg, TotalScatterInClosedForm) {
-  EXPECT_NEAR(specular_share(Abg(0.01, 1e-3, 2.0), inside(0.0), {}, Lobe::reflection),
+  EXPECT_NEAR(specular_fraction(Abg(0.01, 1e-3, 2.0), inside(0.0), {}, Lobe::reflection),
               1.0 - std::numbers::pi * 0.01 * std::log1p(1e3), 1e-7);
 }
 
@@ -453,7 +453,7 @@ TEST(Scatter, SmoothIsSpecular) {
       EXPECT_TRUE(drawn->is_specular);
       EXPECT_EQ(drawn->weight, 1.0);
       EXPECT_LT((drawn->direction - *specular_direction(c.event, Vec3::UnitZ(), c.lobe)).norm(), 1e-14);
-      EXPECT_EQ(specular_share(model, c.event, facet, c.lobe), 1.0);
+      EXPECT_EQ(specular_fraction(model, c.event, facet, c.lobe), 1.0);
       EXPECT_EQ(evaluate(model, c.event, facet, c.lobe, drawn->direction), 0.0);
     }
 }
@@ -492,7 +492,7 @@ TEST(Scatter, TotalReflectionTransmitsNothing) {
     RandomStream random = stream(10, 0);
     const Facet facet = sample_facet(model, event, random);
     EXPECT_FALSE(sample(model, event, facet, Lobe::transmission, random));
-    EXPECT_EQ(specular_share(model, event, facet, Lobe::transmission), 0.0);
+    EXPECT_EQ(specular_fraction(model, event, facet, Lobe::transmission), 0.0);
     EXPECT_EQ(evaluate(model, event, facet, Lobe::transmission, -Vec3::UnitZ()), 0.0);
   }
 }

@@ -38,7 +38,7 @@ SECTIONS = {
     "How to": ["docs/nc_dialects.md", "docs/adding_a_dialect.md", "docs/python.md", "docs/library.md", "CONTRIBUTING.md", "docs/*.md"],
     "Reference": [{"Commands": ["docs/commands.md", "docs/commands/*.md"]}, "docs/design_file.md",
                   "docs/study_file.md", "docs/job_file.md", "docs/machine_file.md", "docs/turning_file.md",
-                  "docs/planing_file.md", "docs/json_documents.md", "CONVENTIONS.md"],
+                  "docs/planing_file.md", "docs/json_documents.md", "docs/former_names.md", "CONVENTIONS.md"],
     "Theory": ["docs/theory/README.md", "docs/theory/closed_forms.md", "docs/theory/monte_carlo.md",
                "docs/theory/beams.md", "docs/theory/photometry.md", "docs/theory/scatter.md", "docs/theory/*.md"],
     "Validation": ["docs/validation.md"],

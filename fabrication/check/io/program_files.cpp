@@ -41,7 +41,7 @@ std::vector<NcProgram> read_programs(const std::vector<std::string>& names, cons
   std::vector<NcProgram> programs;
   for (const std::string& given : names) {
     const auto [file, stop_line] = program_name(given);
-    const std::string text = text_of_file(file, given_texts, kMostDataBytes);
+    const std::string text = text_of_file(file, given_texts, kMaxDataBytes);
     NcProgram& program = programs.emplace_back(parse_nc(text, file, dialect_of(dialect, text, file), texts));
     if (stop_line > program.lines)
       throw InputError({file, 0, ""}, fmt::format("cannot be stopped after line {}, because it has only {} lines",

@@ -58,7 +58,7 @@ std::vector<PlacedBody> tool_bodies(const Machine& machine, const ToolWedge& wed
   }
   std::vector<PlacedBody> bodies = {std::move(diamond)};
   for (const MachineBody& body : machine.bodies) {
-    if (body.carrier != Carrier::tool) continue;
+    if (body.link != KinematicLink::tool) continue;
     PlacedBody placed{body.name, body.points_mm.value};
     for (Vec3& p : placed.points_mm) p -= wedge.tip_mm;
     bodies.push_back(std::move(placed));
@@ -66,11 +66,11 @@ std::vector<PlacedBody> tool_bodies(const Machine& machine, const ToolWedge& wed
   return bodies;
 }
 
-std::vector<PlacedBody> standing_bodies(const Machine& machine, const RotaryPose& pose) {
+std::vector<PlacedBody> stationary_bodies(const Machine& machine, const RotaryPose& pose) {
   std::vector<PlacedBody> bodies;
   for (const MachineBody& body : machine.bodies) {
-    if (body.carrier == Carrier::tool) continue;
-    const bool turns_about_c = body.carrier == Carrier::workpiece;
+    if (body.link == KinematicLink::tool) continue;
+    const bool turns_about_c = body.link == KinematicLink::workpiece;
     const RigidMotion motion = machine_from_workpiece(machine, {pose.a_deg, turns_about_c ? pose.c_deg : 0.0});
     PlacedBody placed{body.name, body.points_mm.value};
     for (Vec3& p : placed.points_mm) p = motion.point(p);
@@ -79,7 +79,7 @@ std::vector<PlacedBody> standing_bodies(const Machine& machine, const RotaryPose
   return bodies;
 }
 
-std::vector<BodyContact> contacts(std::span<const PlacedBody> tool, std::span<const PlacedBody> standing,
+std::vector<BodyContact> contacts(std::span<const PlacedBody> tool, std::span<const PlacedBody> stationary,
                                   Points tips_mm) {
   std::vector<BodyContact> found;
   std::vector<Vec3> swept;
@@ -87,7 +87,7 @@ std::vector<BodyContact> contacts(std::span<const PlacedBody> tool, std::span<co
     swept.clear();
     for (const Vec3& p : moving.points_mm)
       for (const Vec3& tip : tips_mm) swept.push_back(tip + p);
-    for (const PlacedBody& other : standing)
+    for (const PlacedBody& other : stationary)
       if (hulls_meet(swept, other.points_mm)) found.push_back({moving.name, other.name});
   }
   return found;

@@ -29,7 +29,7 @@ std::vector<PlacedBody> tool_bodies(const Machine& machine, const ToolWedge& wed
 
 /// Returns the table, the cradle and the fixtures that the machine file describes, in their positions for a rotary
 /// pose.
-std::vector<PlacedBody> standing_bodies(const Machine& machine, const RotaryPose& pose);
+std::vector<PlacedBody> stationary_bodies(const Machine& machine, const RotaryPose& pose);
 
 /// Names of two bodies that collide.
 struct BodyContact {
@@ -40,8 +40,8 @@ struct BodyContact {
 /// straight move, `tips_mm` contains the two end points. The result is exact, because the swept volume of a convex body
 /// is convex.
 /// \param tool bodies that move with the tool
-/// \param standing bodies that do not move
-std::vector<BodyContact> contacts(std::span<const PlacedBody> tool, std::span<const PlacedBody> standing,
+/// \param stationary bodies that do not move
+std::vector<BodyContact> contacts(std::span<const PlacedBody> tool, std::span<const PlacedBody> stationary,
                                   std::span<const geometry::Vec3> tips_mm);
 
 }  // namespace retrace::fabrication

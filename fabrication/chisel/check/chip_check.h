@@ -11,8 +11,8 @@
 
 #include "fabrication/check/findings.h"
 #include "fabrication/chisel/check/facet_cut.h"
-#include "fabrication/chisel/check/simulation/standing_material.h"
-#include "fabrication/chisel/check/workpiece.h"
+#include "fabrication/chisel/check/simulation/remaining_stock.h"
+#include "fabrication/chisel/check/verification_model.h"
 
 namespace retrace::fabrication {
 
@@ -21,7 +21,7 @@ struct ChipFigures {
   std::vector<Finding> findings;        ///< findings; their member `program` is empty
   std::vector<std::uint32_t> programs;  ///< for each finding: SweptVolume::program of the cut
   double thickest_mm = 0.0;             ///< maximum chip thickness
-  double thickest_share = 0.0;          ///< maximum of chip thickness divided by its limit
+  double max_thickness_ratio = 0.0;     ///< maximum of chip thickness divided by its limit
 };
 
 /// Checks the cuts of one element in the order of cutting. Adds a finding for a chip that is thicker than its limit.
@@ -31,7 +31,7 @@ class ChipCheck {
  public:
   /// \param material material before the first cut. Each call of cut() removes a part of it
   /// \pre all arguments outlive this object
-  ChipCheck(const Workpiece3d& workpiece, std::size_t element, StandingMaterial& material, const ToolWedge& wedge,
+  ChipCheck(const VerificationModel& workpiece, std::size_t element, RemainingStock& material, const ToolWedge& wedge,
             std::span<const RigidMotion> poses);
 
   void cut(const SweptVolume& sweep);
@@ -43,7 +43,7 @@ class ChipCheck {
   struct FacetLine {
     std::size_t section = 0;
     std::size_t facet = 0;
-    geometry::Vec2 foot_mm = geometry::Vec2::Zero();
+    geometry::Vec2 origin_mm = geometry::Vec2::Zero();
     geometry::Vec2 direction = geometry::Vec2::UnitY();
     int finishing_cuts = 0;  ///< number of cuts that removed material of the finishing layers on this line
     SweptVolume last;
@@ -51,20 +51,20 @@ class ChipCheck {
 
   void add_lines();
   void check_chips(const SweptVolume& sweep, const std::optional<FacetCut>& cut, const RigidMotion& back,
-                   std::span<const std::vector<ConvexPiece>> removed);
+                   std::span<const std::vector<ConvexPolygon>> removed);
   /// Adds a finding if the cutting edge rubs: the maximum chip thickness of a plunge is less than the minimum chip
   /// thickness of the process.
   void check_rubbing(const SweptVolume& sweep, const FacetCut& cut, double thickest_mm);
   void count_finishing(const SweptVolume& sweep, const FacetCut& cut,
-                       std::span<const std::vector<ConvexPiece>> removed);
+                       std::span<const std::vector<ConvexPolygon>> removed);
   void find(const char* kind, const SweptVolume& sweep, std::string message, double value_um, double limit_um);
 
-  const Workpiece3d& workpiece_;
-  const Groove& groove_;
+  const VerificationModel& workpiece_;
+  const Cavity& cavity_;
   const DesignElement& design_;
   bool is_cube_;
   std::size_t element_;
-  StandingMaterial& material_;
+  RemainingStock& material_;
   const ToolWedge& wedge_;
   std::span<const RigidMotion> poses_;
   double allowance_mm_;

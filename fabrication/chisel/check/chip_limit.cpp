@@ -12,13 +12,13 @@ namespace {
 using geometry::Vec3;
 
 /// Dimensions of the chip that a V-shaped tool removes at a dihedral edge, for a layer with a thickness of 1 mm.
-struct BesideEdge {
+struct EdgeChipSize {
   double thickness = 1.0;  ///< maximum thickness, between the tool's flank and the material on the neighbouring facet
   double reach = 1.0;      ///< maximum distance from the dihedral edge
 };
 
-BesideEdge beside_edges(const CubeCavity& cavity, std::size_t facet, const Vec3& spine) {
-  BesideEdge most;
+EdgeChipSize beside_edges(const CubeCavity& cavity, std::size_t facet, const Vec3& spine) {
+  EdgeChipSize most;
   const Vec3& normal = cavity.facets[facet].normal;
   const std::size_t next = (facet + 1) % 3;
   for (const bool is_second : {false, true}) {
@@ -45,7 +45,7 @@ BesideEdge beside_edges(const CubeCavity& cavity, std::size_t facet, const Vec3&
 
 }  // namespace
 
-ChipLimit::ChipLimit(const Workpiece3d& workpiece, std::size_t element, const std::optional<FacetCut>& cut,
+ChipLimit::ChipLimit(const VerificationModel& workpiece, std::size_t element, const std::optional<FacetCut>& cut,
                      const ToolWedge& wedge, const RigidMotion& back) {
   depth_mm_ = depth_of_cut_mm(workpiece, cut);
   slack_mm_ = workpiece.tolerance_mm + workpiece.prediction(element).root_mm;
@@ -53,18 +53,18 @@ ChipLimit::ChipLimit(const Workpiece3d& workpiece, std::size_t element, const st
                         [&](const CubeCavity& cavity) {
                           if (cut) limit_v_tool(cavity, *cut, back.direction(wedge.rake_direction));
                         }},
-             workpiece.grooves[element]);
+             workpiece.cavities[element]);
 }
 
 void ChipLimit::limit_v_tool(const CubeCavity& cavity, const FacetCut& cut, const Vec3& spine) {
   kind_ = Kind::v_shaped;
-  const BesideEdge beside = beside_edges(cavity, cut.facet, spine);
-  share_ = beside.thickness;
+  const EdgeChipSize beside = beside_edges(cavity, cut.facet, spine);
+  ratio_ = beside.thickness;
   reach_mm_ = beside.reach * (depth_mm_ + slack_mm_);
-  bends_mm_ = {reach_mm_, reach_mm_};
+  kinks_mm_ = {reach_mm_, reach_mm_};
 }
 
-void ChipLimit::limit_chisel(const Workpiece3d& workpiece, std::size_t element, const PrismGroove& groove,
+void ChipLimit::limit_chisel(const VerificationModel& workpiece, std::size_t element, const PrismGroove& groove,
                              const std::optional<FacetCut>& cut) {
   const Tool& tool = workpiece.job->tool;
   const Angle rake = Angle::from_rad(Angle::from_deg(tool.clearance_deg + tool.wedge_deg).rad() +
@@ -82,26 +82,26 @@ void ChipLimit::limit_chisel(const Workpiece3d& workpiece, std::size_t element, 
   const double depth_mm = depth_mm_ + slack_mm_;
   if (!cut) {
     const double half = 0.5 * apex_.rad();
-    share_ = std::max(0.0, std::tan(half - rake.rad())) / std::sin(half);
+    ratio_ = std::max(0.0, std::tan(half - rake.rad())) / std::sin(half);
   } else if (cut->is_by_clearance) {
     kind_ = Kind::plunge;
     // The limit has kinks at two distances from the tip. At the first distance, the surface that the last cut left on
     // the other facet crosses the top of the layer that this plunge removes. At the second distance, this surface
     // crosses the rake face.
-    bends_mm_ = {depth_mm * (1.0 + cosine) / sine, depth_mm / std::max(1e-9, sine - rake_slope_ * cosine)};
+    kinks_mm_ = {depth_mm * (1.0 + cosine) / sine, depth_mm / std::max(1e-9, sine - rake_slope_ * cosine)};
   } else {
     kind_ = Kind::plough;
-    share_ = std::max(0.0, std::sin(apex_.rad() - rake.rad()) / std::sin(rake.rad()));
+    ratio_ = std::max(0.0, std::sin(apex_.rad() - rake.rad()) / std::sin(rake.rad()));
   }
 }
 
-double ChipLimit::at(double from_tip_mm, double beside_mm) const {
+double ChipLimit::at(double from_tip_mm, double from_end_mm) const {
   const double depth_mm = depth_mm_ + slack_mm_;
   switch (kind_) {
     case Kind::plunge: return plunge_at(from_tip_mm);
-    case Kind::plough: return share_ * depth_mm + slack_mm_;
-    case Kind::between: return share_ * depth_mm + slack_mm_;
-    case Kind::v_shaped: return std::min(from_tip_mm, beside_mm) <= reach_mm_ ? share_ * depth_mm : depth_mm;
+    case Kind::plough: return ratio_ * depth_mm + slack_mm_;
+    case Kind::between: return ratio_ * depth_mm + slack_mm_;
+    case Kind::v_shaped: return std::min(from_tip_mm, from_end_mm) <= reach_mm_ ? ratio_ * depth_mm : depth_mm;
   }
   return 0.0;
 }

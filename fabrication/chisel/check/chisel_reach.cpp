@@ -11,7 +11,7 @@
 #include "core/angle.h"
 #include "core/error.h"
 #include "core/number_format.h"
-#include "fabrication/chisel/check/groove.h"
+#include "fabrication/chisel/check/cavity.h"
 #include "fabrication/chisel/check/simulation/swept_volume.h"
 #include "fabrication/job/v_tool.h"
 #include "geometry/elements/element_cells.h"
@@ -44,7 +44,7 @@ class Cutter {
   }
 
   /// Returns the fraction of a facet that is free of material, sampled on a grid.
-  double open_share() const {
+  double open_fraction() const {
     constexpr int kGrid = 60;
     constexpr double kOpenMm = 1e-5;
     const double side_mm = cavity_.is_hexagonal ? 0.5 * cavity_.facet_length_mm : cavity_.facet_length_mm;
@@ -125,7 +125,7 @@ ChiselReach chisel_reach(const geometry::Element& element, const Tool& tool) {
   const double half_mm = 0.5 * tool.width_mm;
   ChiselReach reach;
   reach.facet_area_mm2 = facet_area_mm2(element);
-  reach.share = 1.0 - half_mm * half_mm / reach.facet_area_mm2;
+  reach.fraction = 1.0 - half_mm * half_mm / reach.facet_area_mm2;
   const double rake = Angle::from_deg(tool.clearance_deg + tool.wedge_deg).rad();
   for (std::size_t k = 0; k < 3; ++k) {
     const double azimuth = std::numbers::pi / 3.0 * (2.0 * static_cast<double>(k) + 1.0);
@@ -138,7 +138,7 @@ ChiselReach chisel_reach(const geometry::Element& element, const Tool& tool) {
   }
   reach.core_mm = reach.caps[0].normal.dot(reach.caps[0].point_mm) / reach.caps[0].normal.z();
   const Cutter cutter(element, tool);
-  reach.cut_share = cutter.open_share();
+  reach.cut_fraction = cutter.open_fraction();
   reach.cut_core_mm = cutter.core_mm();
   return reach;
 }

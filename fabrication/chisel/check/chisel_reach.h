@@ -23,10 +23,10 @@ struct ChiselCap {
 struct ChiselReach {
   double facet_area_mm2 = 0.0;  ///< area of one facet
   /// Fraction of a facet that is cut: all except a triangle at the apex, as high as half the width of the tool.
-  double share = 0.0;
+  double fraction = 0.0;
   double core_mm = 0.0;           ///< height of the remaining core above the apex
   std::array<ChiselCap, 3> caps;  ///< planes in the part frame; the remaining material is below all three planes
-  double cut_share = 0.0;         ///< same as `share`, computed by simulating 1201 plunges on each facet
+  double cut_fraction = 0.0;      ///< same as `share`, computed by simulating 1201 plunges on each facet
   double cut_core_mm = 0.0;       ///< same as `core_mm`, computed by this simulation
 };
 

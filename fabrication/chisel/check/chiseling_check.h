@@ -14,7 +14,8 @@ namespace retrace::fabrication {
 /// chip (docs/theory/micro_chiseling.md).
 class ChiselingCheck : public CutCheck {
  public:
-  ChiselingCheck(const Workpiece3d& workpiece, const ToolWedge& wedge, ControlCheck& control, FindingList& findings);
+  ChiselingCheck(const VerificationModel& workpiece, const ToolWedge& wedge, ControlCheck& control,
+                 FindingList& findings);
 
   void move(const CutMove& cut) override;
   void dwell(double seconds) override;
@@ -27,14 +28,14 @@ class ChiselingCheck : public CutCheck {
     std::size_t element = 0;
     std::size_t facet = 0;
     std::array<double, 3> tip_mm{};  ///< heights of the tip above the three facets
-    NcPlace place;
-    double rest_s = 0.0;   ///< dwell time at the apex
+    NcLocation location;
+    double dwell_s = 0.0;  ///< dwell time at the apex
     bool went_up = false;  ///< true after the move up the second dihedral edge
   };
   /// Progress of one element.
   struct State {
-    std::array<double, 3> left_mm{};  ///< thickness of the material that remains on each facet
-    NcPlace last;                     ///< program position of the last cut
+    std::array<double, 3> remaining_mm{};  ///< thickness of the material that remains on each facet
+    NcLocation last;                       ///< program position of the last cut
   };
 
   void open(const CutMove& move);

@@ -6,14 +6,14 @@
 #include <cstddef>
 #include <optional>
 
-#include "fabrication/chisel/check/workpiece.h"
+#include "fabrication/chisel/check/verification_model.h"
 
 namespace retrace::fabrication {
 
 /// Cut along a facet: the edge sweeps a plane that is nearly parallel to the facet.
 struct FacetCut {
   std::size_t facet = 0;
-  double left_mm = 0.0;          ///< minimum distance between the swept plane and the facet
+  double remaining_mm = 0.0;     ///< minimum distance between the swept plane and the facet
   bool is_by_clearance = false;  ///< true if the tool's clearance face faces this facet, as in a plunge with a chisel
 };
 
@@ -28,14 +28,14 @@ std::optional<FacetCut> facet_cut(const DesignElement& element, const ToolWedge&
 geometry::Vec3 swept_normal(const ToolWedge& wedge, const SweptVolume& sweep);
 
 /// Returns the thickness that finishing removes from every facet, or 0 if the strategy has no finishing cuts.
-double finishing_allowance_mm(const Workpiece3d& workpiece);
+double finishing_allowance_mm(const VerificationModel& workpiece);
 
 /// Returns true if the swept plane is inside the finishing allowance. Such a cut is a finishing cut, regardless of its
 /// name in the program, and must use the feed and depth of finishing.
-bool is_finishing(const Workpiece3d& workpiece, const FacetCut& cut);
+bool is_finishing(const VerificationModel& workpiece, const FacetCut& cut);
 
 /// Returns the depth of cut that the process specifies for a move, either for roughing or for finishing.
 /// \param cut facet along which the move cuts; nullopt if the move is along no facet
-double depth_of_cut_mm(const Workpiece3d& workpiece, const std::optional<FacetCut>& cut);
+double depth_of_cut_mm(const VerificationModel& workpiece, const std::optional<FacetCut>& cut);
 
 }  // namespace retrace::fabrication

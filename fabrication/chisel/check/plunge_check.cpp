@@ -27,18 +27,18 @@ void PlungeCheck::move(const CutMove& cut) {
   const Vec3 travel = cut.sweep.to_mm - cut.sweep.from_mm;
   if (retracts(workpiece_.design(cut.element), travel)) return close();
   // Only a retract may move the tool towards the facet that its clearance face faces.
-  if (travel.dot(plunged_normal(*workpiece_.machine)) < -kMostSlip * travel.norm()) find_clearance_face(cut);
+  if (travel.dot(plunged_normal(*workpiece_.machine)) < -kMaxClearanceCosine * travel.norm()) find_clearance_face(cut);
   if (travel.z() < -kMostlyDown * travel.norm()) return plunge(cut);
   plough(cut);
 }
 
 void PlungeCheck::dwell(double seconds) {
-  if (open_) open_->rest_s += seconds;
+  if (open_) open_->dwell_s += seconds;
 }
 
 void PlungeCheck::check_dwell() {
-  if (!is_long_enough(open_->rest_s))
-    find("missing_dwell", open_->place, open_->element,
+  if (!is_long_enough(open_->dwell_s))
+    find("missing_dwell", open_->location, open_->element,
          fmt::format("the plunge ends without its dwell of {} s", shortest(process_.dwell_s)), 0, process_.dwell_s);
 }
 
@@ -50,7 +50,7 @@ void PlungeCheck::plunge(const CutMove& cut) {
   const Vec3 upright = there.direction(groove.facets[0].normal);
   OpenPlunge plunge;
   plunge.element = element;
-  plunge.place = motion.place;
+  plunge.location = motion.location;
   // The normal of the plunged facet is opposite to the normal of the clearance face, and nearly horizontal.
   plunge.facet = upright.dot(wedge_.sides[0].outward) < 0.0 && std::abs(upright.z()) < 0.5 ? 0 : 1;
   plunge.tip_mm = {1e9, 1e9};
@@ -65,7 +65,7 @@ void PlungeCheck::plunge(const CutMove& cut) {
                             groove.to_face_mm(tip, groove.facets[plunge.facet].normal));
   for (const auto& known : state.tips)
     if (known[3] == static_cast<double>(plunge.facet) && (Vec3(known[0], known[1], known[2]) - tip).norm() < kSameTipMm)
-      find("cut_twice", motion.place, element, "an equal cut was already made");
+      find("cut_twice", motion.location, element, "an equal cut was already made");
   state.tips.push_back({tip.x(), tip.y(), tip.z(), static_cast<double>(plunge.facet)});
   open_ = plunge;
 }
@@ -77,13 +77,13 @@ void PlungeCheck::plough(const CutMove& cut) {
   const double length_mm = (cut.sweep.to_mm - cut.sweep.from_mm).norm();
   const double chip_mm = std::min(open_->chip_mm, 1e-3 * process_.roughing_depth_um);
   if (length_mm < chip_mm - workpiece_.tolerance_mm)
-    find("chip_not_separated", cut.motion.place, cut.element,
+    find("chip_not_separated", cut.motion.location, cut.element,
          fmt::format("the plough is {} um long and does not separate the chip, which is {} um thick",
                      fixed(1e3 * length_mm, 3), fixed(1e3 * chip_mm, 3)),
          1e3 * length_mm, 1e3 * chip_mm);
   State& state = states_[cut.element];
   for (std::size_t f = 0; f < 2; ++f) state.surface_mm[f] = std::min(state.surface_mm[f], open_->tip_mm[f]);
-  state.last[open_->facet] = State::Plunge{open_->tip_mm, open_->place.line};
+  state.last[open_->facet] = State::Plunge{open_->tip_mm, open_->location.line};
   open_.reset();
 }
 
@@ -93,7 +93,7 @@ void PlungeCheck::close() {
   check_chip();
   State& state = states_[open_->element];
   state.surface_mm[open_->facet] = std::min(state.surface_mm[open_->facet], open_->tip_mm[open_->facet]);
-  state.last[open_->facet] = State::Plunge{open_->tip_mm, open_->place.line};
+  state.last[open_->facet] = State::Plunge{open_->tip_mm, open_->location.line};
   open_.reset();
 }
 
@@ -114,7 +114,7 @@ void PlungeCheck::check_chip() {
   const auto& before = state.last[g];
   const bool meets = before && before->tip_mm[f] <= open_->tip_mm[f] + tolerance_mm;
   if (meets) return;
-  find("chip_not_separated", open_->place, open_->element,
+  find("chip_not_separated", open_->location, open_->element,
        "the chip of the plunge does not separate: the plunge does not extend beyond the other facet, and no cut along "
        "the other facet extends beyond the plunged facet",
        1e3 * (open_->tip_mm[g] - std::min(state.surface_mm[g], 1e3)), 0.0);

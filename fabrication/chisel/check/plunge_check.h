@@ -13,8 +13,8 @@ namespace retrace::fabrication {
 /// Checks the plunges and ploughs of a chisel (docs/theory/cutting.md).
 class PlungeCheck : public CutCheck {
  public:
-  PlungeCheck(const Workpiece3d& workpiece, const ToolWedge& wedge, ControlCheck& control, FindingList& findings)
-      : CutCheck(workpiece, wedge, control, findings), states_(workpiece.grooves.size()) {}
+  PlungeCheck(const VerificationModel& workpiece, const ToolWedge& wedge, ControlCheck& control, FindingList& findings)
+      : CutCheck(workpiece, wedge, control, findings), states_(workpiece.cavities.size()) {}
 
   void move(const CutMove& cut) override;
   void dwell(double seconds) override;
@@ -37,8 +37,8 @@ class PlungeCheck : public CutCheck {
     std::size_t facet = 0;
     std::array<double, 2> tip_mm{};
     double chip_mm = 0.0;
-    NcPlace place;
-    double rest_s = 0.0;  ///< dwell time at the end of the plunge
+    NcLocation location;
+    double dwell_s = 0.0;  ///< dwell time at the end of the plunge
   };
 
   void plunge(const CutMove& cut);

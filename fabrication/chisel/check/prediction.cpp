@@ -96,7 +96,7 @@ Prediction predict(const Machine& machine, const PrismGroove& groove, const Tool
 
 }  // namespace
 
-Prediction predict(const Machine& machine, const Groove& groove, const ToolWedge& wedge) {
+Prediction predict(const Machine& machine, const Cavity& groove, const ToolWedge& wedge) {
   return std::visit([&](const auto& element) { return predict(machine, element, wedge); }, groove);
 }
 

@@ -6,7 +6,7 @@
 #include <array>
 #include <vector>
 
-#include "fabrication/chisel/check/groove.h"
+#include "fabrication/chisel/check/cavity.h"
 #include "fabrication/chisel/check/simulation/swept_volume.h"
 #include "fabrication/machine/machine.h"
 
@@ -44,6 +44,6 @@ struct Prediction {
 
 /// Predicts the unavoidable errors of an element.
 /// \throw InputError if the machine cannot plunge a facet
-Prediction predict(const Machine& machine, const Groove& groove, const ToolWedge& wedge);
+Prediction predict(const Machine& machine, const Cavity& groove, const ToolWedge& wedge);
 
 }  // namespace retrace::fabrication

@@ -29,33 +29,33 @@ ControlRule control_rule_of(const Job& job, const Machine& machine) {
   ControlRule rule;
   rule.needs_mist = job.process.mist;
   // A tool that dwells too long in the material marks the surface. It also rubs after the mist has dispersed.
-  rule.most_rest_s = 2.0 * job.process.dwell_s + 0.1;
+  rule.max_dwell_s = 2.0 * job.process.dwell_s + 0.1;
   rule.axes = static_cast<std::uint8_t>(kLinearBits | rotary_bits(machine));
   rule.safe_z_mm = machine.first_z_mm();
   return rule;
 }
 
-std::unique_ptr<CutCheck> cut_check_of(const Workpiece3d& workpiece, const ToolWedge& wedge, ControlCheck& control,
-                                       FindingList& findings) {
+std::unique_ptr<CutCheck> cut_check_of(const VerificationModel& workpiece, const ToolWedge& wedge,
+                                       ControlCheck& control, FindingList& findings) {
   if (cuts_prisms(*workpiece.job)) return std::make_unique<PlungeCheck>(workpiece, wedge, control, findings);
   return std::make_unique<ChiselingCheck>(workpiece, wedge, control, findings);
 }
 
 }  // namespace
 
-ProgramCheck::ProgramCheck(const Workpiece3d& workpiece, FindingList& findings,
+ProgramCheck::ProgramCheck(const VerificationModel& workpiece, FindingList& findings,
                            std::vector<std::optional<std::size_t>> visits)
     : workpiece_(workpiece),
       machine_(*workpiece.machine),
       findings_(findings),
-      map_(workpiece.grooves),
-      visits_(std::move(visits)),
+      map_(workpiece.cavities),
+      element_of_run_(std::move(visits)),
       wedge_(wedge_of(*workpiece.job, machine_)),
       control_(findings, control_rule_of(*workpiece.job, machine_), machine_.control),
-      way_(workpiece, wedge_, findings),
+      collisions_(workpiece, wedge_, findings),
       cuts_(cut_check_of(workpiece, wedge_, control_, findings)),
       stops_(workpiece, wedge_, findings),
-      sweeps_(workpiece.grooves.size()) {}
+      sweeps_(workpiece.cavities.size()) {}
 
 void ProgramCheck::begin(const NcProgram& program) {
   findings_.begin(program.file);
@@ -75,23 +75,23 @@ std::size_t ProgramCheck::pose_index(const RotaryPose& pose) {
   constexpr auto kTurn = static_cast<std::int64_t>(360.0 * kUnitsPerDeg);
   const auto units = [](double deg) { return std::llround(deg * kUnitsPerDeg); };
   const auto [known, is_new] =
-      known_poses_.try_emplace({units(pose.a_deg), (units(pose.c_deg) % kTurn + kTurn) % kTurn}, pose_words_.size());
+      known_poses_.try_emplace({units(pose.a_deg), (units(pose.c_deg) % kTurn + kTurn) % kTurn}, rounded_poses_.size());
   if (!is_new) return known->second;
-  pose_words_.push_back(pose);
+  rounded_poses_.push_back(pose);
   poses_.push_back(machine_from_workpiece(machine_, pose));
   back_.push_back(poses_.back().inverse());
-  standing_.push_back(standing_bodies(machine_, pose));
+  stationary_.push_back(stationary_bodies(machine_, pose));
   return poses_.size() - 1;
 }
 
-void ProgramCheck::dwell(double seconds, const NcPlace& place, const AxisPositions&) {
+void ProgramCheck::dwell(double seconds, const NcLocation& place, const AxisPositions&) {
   time_.dwell_s += seconds;
-  if (is_in_blank_) control_.rest(seconds, place);
+  if (is_in_blank_) control_.dwell(seconds, place);
   cuts_->dwell(seconds);
 }
 
-void ProgramCheck::stop(NcStop kind, const NcSettings& settings, const NcPlace& place) {
-  if (is_in_blank_) control_.rest(std::numeric_limits<double>::infinity(), place);
+void ProgramCheck::stop(NcStop kind, const NcSettings& settings, const NcLocation& place) {
+  if (is_in_blank_) control_.dwell(std::numeric_limits<double>::infinity(), place);
   if (kind != NcStop::always) return;
   cuts_->close();
   control_.stop(settings, at_, place);
@@ -112,18 +112,18 @@ void ProgramCheck::end(const NcEnd& end) {
 void ProgramCheck::motion(const NcMotion& motion, const NcSettings& settings) {
   // After a stop, the axis positions are not known because the operator may have moved the axes.
   NcMotion from_known = motion;
-  from_known.known = control_.known();
+  from_known.known = control_.known_axes();
   time_.add(machine_, from_known);
-  control_.way(settings, motion);
+  control_.move(settings, motion);
   control_.axes(machine_, motion);
   at_ = motion.to;
-  const std::optional<std::size_t> run = visits_.empty() ? std::nullopt : runs_.of(motion);
+  const std::optional<std::size_t> run = element_of_run_.empty() ? std::nullopt : runs_.run_of(motion);
   if (motion.moved == 0) return;
   const std::uint8_t rotary = rotary_bits(machine_);
   is_in_blank_ = false;
   if ((motion.moved & rotary) != 0) {
     cuts_->close();
-    return way_.turn(motion);
+    return collisions_.rotary_move(motion);
   }
   // If a position is not known, ControlCheck ensures that the tool is above the safe height, so no cut is possible.
   const auto all = static_cast<std::uint8_t>(kLinearBits | rotary);
@@ -131,25 +131,25 @@ void ProgramCheck::motion(const NcMotion& motion, const NcSettings& settings) {
   if (known_after != all || (motion.known & kLinearBits) != kLinearBits) return;
   SweptVolume sweep;
   sweep.pose = static_cast<std::uint32_t>(pose_index(rotary_pose(machine_, motion.to)));
-  sweep.place = motion.place;
+  sweep.location = motion.location;
   sweep.program = programs_begun_ - 1;
   sweep.is_rapid = motion.move == NcMove::rapid;
   sweep.from_mm = machine_point(machine_, motion.from) + wedge_.tip_mm;
   sweep.to_mm = machine_point(machine_, motion.to) + wedge_.tip_mm;
   const RigidMotion& back = back_[sweep.pose];
-  const std::optional<std::size_t> element = run ? visits_[*run] : element_of(sweep);
-  is_in_blank_ = way_.face().height_mm(back.point(sweep.to_mm)) < 0.0;
+  const std::optional<std::size_t> element = run ? element_of_run_[*run] : element_of(sweep);
+  is_in_blank_ = collisions_.face().height_mm(back.point(sweep.to_mm)) < 0.0;
   find_corners(sweep, element);
-  way_.fixtures(motion, standing_[sweep.pose]);
-  if (sweep.is_rapid) way_.rapid(motion, back, element);
+  collisions_.fixtures(motion, stationary_[sweep.pose]);
+  if (sweep.is_rapid) collisions_.rapid(motion, back, element);
   if (corners_.empty()) {
     return cuts_->close();
   }
-  control_.cut(settings, motion.place);
-  way_.holder(sweep, back);
+  control_.cut(settings, motion.location);
+  collisions_.holder(sweep, back);
   if (!element) {
     cuts_->close();
-    return way_.outside(sweep, corners_);
+    return collisions_.outside(sweep, corners_);
   }
   sweeps_[*element].push_back(sweep);
   check_cut(motion, sweep, *element);
@@ -158,7 +158,7 @@ void ProgramCheck::motion(const NcMotion& motion, const NcSettings& settings) {
 void ProgramCheck::find_corners(const SweptVolume& sweep, std::optional<std::size_t> element) {
   corners_.clear();
   const RigidMotion& back = back_[sweep.pose];
-  const BlankFace& face = way_.face();
+  const BlankFace& face = collisions_.face();
   // Outside of the elements, the face is approximated by its tangent plane below the tool.
   const Vec3 tip = back.point(sweep.to_mm);
   const Vec3 out = element ? workpiece_.design(*element).axis : face.normal_at(tip);
@@ -195,10 +195,10 @@ std::optional<std::size_t> ProgramCheck::element_of(const SweptVolume& sweep) co
 }
 
 void ProgramCheck::check_cut(const NcMotion& motion, const SweptVolume& sweep, std::size_t element) {
-  const auto* const prism = std::get_if<PrismGroove>(&workpiece_.grooves[element]);
+  const auto* const prism = std::get_if<PrismGroove>(&workpiece_.cavities[element]);
   const Prediction& prediction = workpiece_.prediction(element);
   const auto find = [&](const char* kind, std::string message, double value_mm, double limit_mm) {
-    findings_.add(kind, motion.place.line, std::move(message), value_mm * kNmPerMm, limit_mm * kNmPerMm,
+    findings_.add(kind, motion.location.line, std::move(message), value_mm * kNmPerMm, limit_mm * kNmPerMm,
                   static_cast<std::int64_t>(element));
   };
   double gouge_mm = 0.0;

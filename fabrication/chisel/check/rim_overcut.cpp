@@ -41,7 +41,7 @@ std::vector<Vec3> rim_of(const CubeCavity& cavity) {
 
 /// Returns the depth of a point below the surface of the volume that the cut of an element removes. It is negative
 /// outside of this volume.
-double depth_in(const Groove& groove, const Vec3& p) {
+double depth_in(const Cavity& groove, const Vec3& p) {
   const auto* const prism = std::get_if<PrismGroove>(&groove);
   if (prism != nullptr && std::abs(prism->along_mm(p)) > prism->half_width_mm) return -1.0;
   double depth_mm = std::numeric_limits<double>::infinity();
@@ -51,9 +51,9 @@ double depth_in(const Groove& groove, const Vec3& p) {
 
 }  // namespace
 
-double rim_overcut_mm(const std::vector<Groove>& grooves) {
+double rim_overcut_mm(const std::vector<Cavity>& grooves) {
   double cell_mm = 0.0;
-  for (const Groove& groove : grooves) cell_mm = std::max(cell_mm, half_size_mm(groove));
+  for (const Cavity& groove : grooves) cell_mm = std::max(cell_mm, half_size_mm(groove));
   cell_mm *= 4.0;
   const auto index = [&](const Vec3& p) {
     return std::pair{static_cast<std::int64_t>(std::floor(p.x() / cell_mm)),

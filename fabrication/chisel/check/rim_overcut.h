@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "fabrication/chisel/check/groove.h"
+#include "fabrication/chisel/check/cavity.h"
 
 namespace retrace::fabrication {
 
@@ -14,6 +14,6 @@ namespace retrace::fabrication {
 /// rim and removes material of a higher neighbour, so that the designed wall between the rims cannot be made
 /// (docs/theory/cutting.md). The result depends only on the design. It is 0 if all rims meet. Neighbours in
 /// other zones are not included (see zone_overcut.h).
-double rim_overcut_mm(const std::vector<Groove>& grooves);
+double rim_overcut_mm(const std::vector<Cavity>& grooves);
 
 }  // namespace retrace::fabrication

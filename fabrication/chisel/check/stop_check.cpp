@@ -17,8 +17,8 @@ constexpr double kSlack = 1.0 + 1e-4;
 
 }  // namespace
 
-StopCheck::StopCheck(const Workpiece3d& workpiece, const ToolWedge& wedge, FindingList& findings)
-    : workpiece_(workpiece), wedge_(wedge), findings_(findings), roughed_after_(workpiece.grooves.size(), -1) {}
+StopCheck::StopCheck(const VerificationModel& workpiece, const ToolWedge& wedge, FindingList& findings)
+    : workpiece_(workpiece), wedge_(wedge), findings_(findings), roughed_after_(workpiece.cavities.size(), -1) {}
 
 void StopCheck::begin(double now_s) {
   stop(now_s);
@@ -36,7 +36,7 @@ void StopCheck::stop(double now_s) {
 }
 
 void StopCheck::cut(const CutMove& cut, double now_s) {
-  check_time(cut.motion.place, static_cast<std::int64_t>(cut.element), now_s);
+  check_time(cut.motion.location, static_cast<std::int64_t>(cut.element), now_s);
   const auto along = facet_cut(workpiece_.design(cut.element), wedge_, cut.sweep, cut.back);
   if (!along) return;
   check_length(cut, *along);
@@ -48,22 +48,22 @@ void StopCheck::check_length(const CutMove& cut, const FacetCut& along) {
   const Vec3 travel = cut.sweep.to_mm - cut.sweep.from_mm;
   const DesignElement& design = workpiece_.design(cut.element);
   // A chisel that moves up along the plunged facet does not cut, so this move does not wear the edge.
-  const bool is_chisel = std::holds_alternative<PrismGroove>(workpiece_.grooves[cut.element]);
+  const bool is_chisel = std::holds_alternative<PrismGroove>(workpiece_.cavities[cut.element]);
   if (!life_mm || (is_chisel && along.is_by_clearance && travel.z() > 0.0)) return;
-  const double from_mm = design.over_face_mm(cut.back.point(cut.sweep.from_mm));
-  const double to_mm = design.over_face_mm(cut.back.point(cut.sweep.to_mm));
+  const double from_mm = design.height_over_face_mm(cut.back.point(cut.sweep.from_mm));
+  const double to_mm = design.height_over_face_mm(cut.back.point(cut.sweep.to_mm));
   const double below_mm = std::max(0.0, -from_mm) + std::max(0.0, -to_mm);
   const bool crosses = (from_mm > 0.0) != (to_mm > 0.0);
   if (below_mm > 0.0) cut_mm_ += travel.norm() * (crosses ? below_mm / std::abs(from_mm - to_mm) : 1.0);
   if (is_worn_ || cut_mm_ <= *life_mm * kSlack) return;
   is_worn_ = true;
-  findings_.add("edge_worn", cut.motion.place.line,
+  findings_.add("edge_worn", cut.motion.location.line,
                 fmt::format("the edge has cut {} mm, which exceeds its tool life of {} mm",
                             fixed_apart(cut_mm_, *life_mm, 3), shortest(*life_mm)),
                 cut_mm_, *life_mm, static_cast<std::int64_t>(cut.element));
 }
 
-void StopCheck::check_time(const NcPlace& place, std::int64_t element, double now_s) {
+void StopCheck::check_time(const NcLocation& place, std::int64_t element, double now_s) {
   const double ran_s = now_s - began_s_;
   const double warm_s = workpiece_.machine->warm_up_s.value;
   if (!has_cut_ && ran_s * kSlack < warm_s)
@@ -90,7 +90,7 @@ void StopCheck::check_inspection(const CutMove& cut, const FacetCut& along) {
   if (!workpiece_.job->process.stop_before_finishing || roughed != stops_) return;
   roughed = -1;
   findings_.add(
-      "not_inspected", cut.motion.place.line,
+      "not_inspected", cut.motion.location.line,
       fmt::format("element {} is finished without a stop for inspection between roughing and finishing", cut.element),
       0.0, 0.0, static_cast<std::int64_t>(cut.element));
 }

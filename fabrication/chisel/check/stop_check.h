@@ -16,7 +16,7 @@ namespace retrace::fabrication {
 class StopCheck {
  public:
   /// \pre all arguments outlive this object
-  StopCheck(const Workpiece3d& workpiece, const ToolWedge& wedge, FindingList& findings);
+  StopCheck(const VerificationModel& workpiece, const ToolWedge& wedge, FindingList& findings);
 
   /// Starts the checks of a program.
   /// \param now_s total run time of all programs so far
@@ -29,10 +29,10 @@ class StopCheck {
 
  private:
   void check_length(const CutMove& cut, const FacetCut& along);
-  void check_time(const NcPlace& place, std::int64_t element, double now_s);
+  void check_time(const NcLocation& place, std::int64_t element, double now_s);
   void check_inspection(const CutMove& cut, const FacetCut& along);
 
-  const Workpiece3d& workpiece_;
+  const VerificationModel& workpiece_;
   const ToolWedge& wedge_;
   FindingList& findings_;
   double began_s_ = 0.0;                     ///< time of the last stop or program start

@@ -15,11 +15,11 @@
 #include "core/overloaded.h"
 #include "core/threads.h"
 #include "fabrication/chisel/check/chip_check.h"
+#include "fabrication/chisel/check/cut_assignment.h"
 #include "fabrication/chisel/check/program_check.h"
 #include "fabrication/chisel/check/rim_overcut.h"
 #include "fabrication/chisel/check/simulation/nose.h"
-#include "fabrication/chisel/check/visits.h"
-#include "fabrication/chisel/check/workpiece.h"
+#include "fabrication/chisel/check/verification_model.h"
 #include "fabrication/chisel/check/zone_overcut.h"
 #include "fabrication/chisel/on_machine.h"
 #include "fabrication/job/substrate_cells.h"
@@ -32,7 +32,7 @@ using geometry::Vec3;
 
 constexpr double kArcminPerRad = 180.0 * 60.0 / std::numbers::pi;
 
-bool has_poses_of(const Workpiece3d& workpiece, const std::vector<RotaryPose>& words) {
+bool has_poses_of(const VerificationModel& workpiece, const std::vector<RotaryPose>& words) {
   // Programs contain rotary positions with seven decimals. The poses of different shipped machines differ by much more.
   constexpr double same_deg = 1e-5;
   const auto is_solved = [&](const RotaryPose& word) {
@@ -49,12 +49,13 @@ bool has_poses_of(const Workpiece3d& workpiece, const std::vector<RotaryPose>& w
 
 /// Refuses a program if its rotary poses do not match this machine, but match another machine whose axes were measured.
 void refuse_other_machine(const Job& job, const Machine& machine, const std::vector<Machine>& others,
-                          const Workpiece3d& workpiece, const std::vector<RotaryPose>& words, const std::string& file) {
+                          const VerificationModel& workpiece, const std::vector<RotaryPose>& words,
+                          const std::string& file) {
   if (has_poses_of(workpiece, words)) return;
   for (const Machine& other : others) {
     if (other.name == machine.name || other.tilt != machine.tilt || other.a.direction.basis != Basis::measured)
       continue;
-    if (has_poses_of(workpiece_of(job, other), words))
+    if (has_poses_of(verification_model_of(job, other), words))
       throw InputError({file, 0, ""}, fmt::format("is a program for machine {}, but the job is for machine {}: the "
                                                   "positions of the rotary axes do not fit the job's machine",
                                                   other.name, machine.name));
@@ -90,7 +91,7 @@ double apex_error_arcmin(const CubeCavity& cavity, const ElementFigures& figures
   return largest;
 }
 
-ElementResult result_of(const Groove& groove, const ElementFigures& figures) {
+ElementResult result_of(const Cavity& groove, const ElementFigures& figures) {
   ElementResult result;
   result.figures = figures;
   result.facet_angle_arcmin.resize(figures.facets.size());
@@ -105,7 +106,7 @@ ElementResult result_of(const Groove& groove, const ElementFigures& figures) {
 
 class Judge {
  public:
-  Judge(const Workpiece3d& workpiece, FindingList& findings, Verification& verification)
+  Judge(const VerificationModel& workpiece, FindingList& findings, Verification& verification)
       : workpiece_(workpiece), findings_(findings), result_(verification) {}
 
   void element(std::size_t index, const std::string& program) {
@@ -157,7 +158,7 @@ class Judge {
       add("root_residual", facet.root, "of material remain at the root", root_nm + tolerance_nm);
   }
 
-  const Workpiece3d& workpiece_;
+  const VerificationModel& workpiece_;
   FindingList& findings_;
   Verification& result_;
 };
@@ -177,13 +178,13 @@ double design_volume_mm3(const Job& job, std::size_t zone) {
 /// (docs/theory/micro_chiseling.md). Here, a is the edge length of the cubes, and N is the number of cut elements. M is
 /// the number of distinct hexagon corners at their dihedral edges. On a substrate, the formula applies to the unrolled
 /// array.
-double border_overcut_mm3(const Workpiece3d& workpiece, const std::vector<ElementResult>& elements) {
+double border_overcut_mm3(const VerificationModel& workpiece, const std::vector<ElementResult>& elements) {
   std::set<std::pair<std::int64_t, std::int64_t>> corners;
   std::int64_t cut = 0;
   double edge_mm = 0.0;
   for (std::size_t i = 0; i < elements.size(); ++i) {
     if (!elements[i].figures.is_cut) continue;
-    const auto& cavity = std::get<CubeCavity>(workpiece.grooves[i]);
+    const auto& cavity = std::get<CubeCavity>(workpiece.cavities[i]);
     ++cut;
     edge_mm = 0.5 * cavity.facet_length_mm;
     for (int k = 0; k < 3; ++k) {
@@ -208,7 +209,7 @@ bool has_errors(const Job& job) {
 }
 
 /// Computes the material that the triangular cavities of hexagonal elements remove outside of their hexagons.
-void find_cavity_overcut(const Workpiece3d& workpiece, Verification& result) {
+void find_cavity_overcut(const VerificationModel& workpiece, Verification& result) {
   if (!std::holds_alternative<geometry::HexagonalCube>(workpiece.job->element)) return;
   if (workpiece.job->zones.empty()) {
     result.border_overcut_mm3 = border_overcut_mm3(workpiece, result.elements);
@@ -223,13 +224,13 @@ void find_cavity_overcut(const Workpiece3d& workpiece, Verification& result) {
   result.elements_overcut = overcut.elements;
 }
 
-/// Finds the element to which each run of cutting moves belongs (see VisitFinder). Returns an empty list for jobs
+/// Finds the element to which each run of cutting moves belongs (see CutAssignment). Returns an empty list for jobs
 /// without a substrate, where the runs are not needed.
-std::vector<std::optional<std::size_t>> visits_of(const Workpiece3d& workpiece,
+std::vector<std::optional<std::size_t>> visits_of(const VerificationModel& workpiece,
                                                   const std::vector<NcProgram>& programs) {
   if (!workpiece.job->substrate) return {};
   const Machine& machine = *workpiece.machine;
-  VisitFinder finder(machine, workpiece.grooves, wedge_of(*workpiece.job, machine).tip_mm);
+  CutAssignment finder(machine, workpiece.cavities, wedge_of(*workpiece.job, machine).tip_mm);
   for (const NcProgram& program : programs) {
     run_nc(program, finder);
     finder.end();
@@ -238,15 +239,15 @@ std::vector<std::optional<std::size_t>> visits_of(const Workpiece3d& workpiece,
 }
 
 /// Computes the residual material that the rounded nose of the tool leaves along the dihedral edges of all elements.
-void cut_with_nose(const Workpiece3d& workpiece, const ProgramCheck& check, const std::vector<RigidMotion>& poses,
+void cut_with_nose(const VerificationModel& workpiece, const ProgramCheck& check, const std::vector<RigidMotion>& poses,
                    Verification& result) {
   const Tool& tool = workpiece.job->tool;
   if (tool.edge_radius_um <= 0.0) return;
   const ToolWedge nosed = nosed_wedge(tool, *workpiece.machine);
-  std::vector<NoseResidue> residues(workpiece.grooves.size());
+  std::vector<NoseResidue> residues(workpiece.cavities.size());
   for_each_in_parallel(residues.size(), [&](std::size_t i) {
     if (result.elements[i].figures.is_cut)
-      residues[i] = nose_residue(std::get<CubeCavity>(workpiece.grooves[i]), 1e-3 * tool.edge_radius_um,
+      residues[i] = nose_residue(std::get<CubeCavity>(workpiece.cavities[i]), 1e-3 * tool.edge_radius_um,
                                  check.sweeps()[i], poses, nosed);
   });
   for (const NoseResidue& residue : residues) {
@@ -256,12 +257,12 @@ void cut_with_nose(const Workpiece3d& workpiece, const ProgramCheck& check, cons
 }
 
 /// Computes the chips of all cuts of an element, in the order of cutting.
-ChipFigures chips_of(const Workpiece3d& workpiece, const BlankFace& face, std::size_t element,
+ChipFigures chips_of(const VerificationModel& workpiece, const BlankFace& face, std::size_t element,
                      std::span<const SweptVolume> sweeps, std::span<const RigidMotion> poses, const ToolWedge& wedge) {
   const Job& job = *workpiece.job;
   const double wander_mm = workpiece.prediction(element).wall_mm + workpiece.tolerance_mm;
-  StandingMaterial material(workpiece.grooves[element], face, wander_mm, job.tool.width_mm,
-                            1e-3 * job.process.roughing_depth_um);
+  RemainingStock material(workpiece.cavities[element], face, wander_mm, job.tool.width_mm,
+                          1e-3 * job.process.roughing_depth_um);
   ChipCheck check(workpiece, element, material, wedge, poses);
   for (const SweptVolume& sweep : sweeps) check.cut(sweep);
   return check.finish();
@@ -286,17 +287,17 @@ ProgramTime simulate(const std::vector<NcProgram>& programs, std::size_t standin
 
 /// Returns the rotary poses of all cuts, in the order of the programs.
 std::vector<RotaryPose> poses_of_cuts(const ProgramCheck& check) {
-  std::vector<bool> cuts(check.pose_words().size());
+  std::vector<bool> cuts(check.rounded_poses().size());
   for (const std::vector<SweptVolume>& sweeps : check.sweeps())
     for (const SweptVolume& sweep : sweeps) cuts[sweep.pose] = true;
   std::vector<RotaryPose> poses;
   for (std::size_t i = 0; i < cuts.size(); ++i)
-    if (cuts[i]) poses.push_back(check.pose_words()[i]);
+    if (cuts[i]) poses.push_back(check.rounded_poses()[i]);
   return poses;
 }
 
 /// Measures the facets of an element.
-ElementFigures figures_of(const Workpiece3d& workpiece, std::size_t element, const ProgramCheck& check,
+ElementFigures figures_of(const VerificationModel& workpiece, std::size_t element, const ProgramCheck& check,
                           std::span<const RigidMotion> poses) {
   const Job& job = *workpiece.job;
   const Prediction& prediction = workpiece.prediction(element);
@@ -309,7 +310,7 @@ ElementFigures figures_of(const Workpiece3d& workpiece, std::size_t element, con
                  [&](const CubeCavity& cavity) {
                    return cavity_figures(cavity, sweeps, poses, check.wedge(), job.tool.nose_angle_deg, prediction);
                  }},
-      workpiece.grooves[element]);
+      workpiece.cavities[element]);
 }
 
 /// Facets and chips of all elements.
@@ -318,15 +319,15 @@ struct MeasuredElements {
   std::vector<ChipFigures> chips;
 };
 
-MeasuredElements measured(const Workpiece3d& workpiece, const ProgramCheck& check, std::span<const RigidMotion> poses,
-                          const Cancellation* cancellation) {
+MeasuredElements measured(const VerificationModel& workpiece, const ProgramCheck& check,
+                          std::span<const RigidMotion> poses, const Cancellation* cancellation) {
   const BlankFace face(*workpiece.job);
   MeasuredElements all;
-  all.elements.resize(workpiece.grooves.size());
-  all.chips.resize(workpiece.grooves.size());
-  for_each_in_parallel(workpiece.grooves.size(), [&](std::size_t i) {
+  all.elements.resize(workpiece.cavities.size());
+  all.chips.resize(workpiece.cavities.size());
+  for_each_in_parallel(workpiece.cavities.size(), [&](std::size_t i) {
     if (cancellation != nullptr && cancellation->requested()) return;
-    all.elements[i] = result_of(workpiece.grooves[i], figures_of(workpiece, i, check, poses));
+    all.elements[i] = result_of(workpiece.cavities[i], figures_of(workpiece, i, check, poses));
     all.chips[i] = chips_of(workpiece, face, i, check.sweeps()[i], poses, check.wedge());
   });
   return all;
@@ -338,7 +339,7 @@ void add_chips(const std::vector<ChipFigures>& chips, const std::vector<NcProgra
                FindingList& findings, Verification& result) {
   for (const ChipFigures& figures : chips) {
     result.chip_um_max = std::max(result.chip_um_max, 1e3 * figures.thickest_mm);
-    result.chip_share_max = std::max(result.chip_share_max, figures.thickest_share);
+    result.chip_ratio_max = std::max(result.chip_ratio_max, figures.max_thickness_ratio);
     for (std::size_t k = 0; k < figures.findings.size(); ++k) {
       if (figures.programs[k] < standing) continue;
       Finding finding = figures.findings[k];
@@ -349,7 +350,7 @@ void add_chips(const std::vector<ChipFigures>& chips, const std::vector<NcProgra
 }
 
 /// Returns the volume of the material that is removed inside of the elements.
-double removed_volume_mm3(const Workpiece3d& workpiece, const std::vector<ElementResult>& elements) {
+double removed_volume_mm3(const VerificationModel& workpiece, const std::vector<ElementResult>& elements) {
   std::vector<double> volumes_mm3;
   for (std::size_t zone = 0; zone < zone_count(*workpiece.job); ++zone)
     volumes_mm3.push_back(design_volume_mm3(*workpiece.job, zone));
@@ -390,7 +391,7 @@ std::string_view Verification::verdict() const {
   return is_unfinished ? "incomplete" : "fail";
 }
 
-double usual_tolerance_nm(const Machine& machine, const std::vector<NcProgram>& programs) {
+double default_tolerance_nm(const Machine& machine, const std::vector<NcProgram>& programs) {
   constexpr double kUsualNm = 10.0;
   const auto step_nm = static_cast<double>(increments_in(machine, programs).linear_nm);
   return std::max(kUsualNm, std::ceil(std::numbers::sqrt3 * step_nm));
@@ -402,12 +403,13 @@ Verification verify_programs(const Job& job, const Machine& given_machine, const
   Machine machine = given_machine;
   machine.increments = increments_in(given_machine, programs);
   check_on_machine(job, cuts_prisms(job) ? given_machine : machine);
-  const Workpiece3d workpiece =
-      workpiece_of(job, machine, options.tolerance_nm.value_or(usual_tolerance_nm(machine, programs)));
+  const VerificationModel workpiece =
+      verification_model_of(job, machine, options.tolerance_nm.value_or(default_tolerance_nm(machine, programs)));
   FindingList findings;
   ProgramCheck check(workpiece, findings, visits_of(workpiece, programs));
-  const ProgramTime standing_time = simulate(programs, options.standing, check, findings);
-  const std::string first = programs.size() <= options.standing ? std::string() : programs[options.standing].file;
+  const ProgramTime standing_time = simulate(programs, options.unchecked_programs, check, findings);
+  const std::string first =
+      programs.size() <= options.unchecked_programs ? std::string() : programs[options.unchecked_programs].file;
   Verification result;
   result.tolerance_nm = workpiece.tolerance_mm * kNmPerMm;
   result.poses = poses_of_cuts(check);
@@ -416,19 +418,19 @@ Verification verify_programs(const Job& job, const Machine& given_machine, const
   const std::vector<RigidMotion> poses = check.poses();
   MeasuredElements all = measured(workpiece, check, poses, cancellation);
   result.elements = std::move(all.elements);
-  add_chips(all.chips, programs, options.standing, findings, result);
+  add_chips(all.chips, programs, options.unchecked_programs, findings, result);
   Judge judge(workpiece, findings, result);
   for (std::size_t i = 0; i < result.elements.size(); ++i) judge.element(i, first);
   add_predictions(workpiece.predictions, result);
   result.wall_overcut_nm_max = check.deepest_wall_mm() * kNmPerMm;
   find_cavity_overcut(workpiece, result);
-  if (job.substrate || has_errors(job)) result.rim_overcut_um_max = 1e3 * rim_overcut_mm(workpiece.grooves);
+  if (job.substrate || has_errors(job)) result.rim_overcut_um_max = 1e3 * rim_overcut_mm(workpiece.cavities);
   result.removed_volume_mm3 = removed_volume_mm3(workpiece, result.elements) + result.border_overcut_mm3;
   if (cuts_prisms(job))
     result.root_radius_um = job.tool.edge_radius_um;
   else
     cut_with_nose(workpiece, check, poses, result);
-  result.free_tool_length_mm = check.least_free_tool_mm();
+  result.free_tool_length_mm = check.min_free_tool_mm();
   result.time = check.time() - standing_time;
   result.findings = findings.take();
   return result;

@@ -22,12 +22,12 @@ namespace retrace::fabrication {
 /// that is larger. Rounding displaces the cuts of each facet by up to half the diagonal of a cube whose edge is one
 /// increment. The displacements of two facets add up at the root. Only the increments of Fanuc programs are larger than
 /// 1 nm.
-double usual_tolerance_nm(const Machine& machine, const std::vector<NcProgram>& programs);
+double default_tolerance_nm(const Machine& machine, const std::vector<NcProgram>& programs);
 
 struct VerifyOptions {
-  std::optional<double> tolerance_nm;  ///< tolerance for facet planes, > 0; empty: usual_tolerance_nm()
+  std::optional<double> tolerance_nm;  ///< tolerance for facet planes, > 0; empty: default_tolerance_nm()
   /// Number of programs, at the beginning of the list, that are simulated but not checked.
-  std::size_t standing = 0;
+  std::size_t unchecked_programs = 0;
 };
 
 /// Result for one element.
@@ -54,7 +54,7 @@ struct Verification {
   double wall_overcut_nm_max = 0.0;
   double wall_overcut_nm_predicted = 0.0;
   double chip_um_max = 0.0;     ///< maximum chip thickness, perpendicular to the plane that the edge sweeps
-  double chip_share_max = 0.0;  ///< maximum chip thickness divided by its limit; values above 1 give a finding
+  double chip_ratio_max = 0.0;  ///< maximum chip thickness divided by its limit; values above 1 give a finding
   double root_radius_um = 0.0;  ///< radius of the root due to the radius of the tool's edge
   /// Total width of the strips that the nose of a V-shaped tool leaves along a dihedral edge.
   double root_chamfer_um = 0.0;

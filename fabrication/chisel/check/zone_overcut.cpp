@@ -27,9 +27,9 @@ Vec2 towards(double azimuth_deg) {
 
 class Overcutter {
  public:
-  Overcutter(const Workpiece3d& workpiece, const std::vector<bool>& is_cut)
-      : grooves_(workpiece.grooves), elements_(workpiece.elements) {
-    for (const Groove& cavity : grooves_) width_mm_ = std::max(width_mm_, 2.0 * half_size_mm(cavity));
+  Overcutter(const VerificationModel& workpiece, const std::vector<bool>& is_cut)
+      : grooves_(workpiece.cavities), elements_(workpiece.elements) {
+    for (const Cavity& cavity : grooves_) width_mm_ = std::max(width_mm_, 2.0 * half_size_mm(cavity));
     for (std::size_t i = 0; i < grooves_.size(); ++i)
       if (is_cut[i]) squares_[square_of(apex_of(i))].push_back(i);
   }
@@ -68,7 +68,7 @@ class Overcutter {
 
   /// Returns true if a point is inside the hexagon of an element. Angle errors do not change the hexagon.
   bool is_in_hexagon(std::size_t i, const Vec2& p) const {
-    const Vec2 v = elements_[i].turn.topLeftCorner<2, 2>().transpose() * (p - apex_of(i));
+    const Vec2 v = elements_[i].workpiece_from_element.topLeftCorner<2, 2>().transpose() * (p - apex_of(i));
     const double inner_mm = 0.5 * std::numbers::sqrt3 * cavity(i).radius_mm;
     return std::ranges::all_of(std::array{0.0, 60.0, 120.0},
                                [&](double azimuth) { return std::abs(v.dot(towards(azimuth))) <= inner_mm; });
@@ -91,7 +91,7 @@ class Overcutter {
     const double radius_mm = cavity(i).radius_mm;
     const double edge_deg = 120.0 * k - 90.0;
     const auto place = [&](double azimuth_deg, double mm) -> Vec2 {
-      return apex_of(i) + elements_[i].turn.topLeftCorner<2, 2>() * (mm * towards(azimuth_deg));
+      return apex_of(i) + elements_[i].workpiece_from_element.topLeftCorner<2, 2>() * (mm * towards(azimuth_deg));
     };
     if (has_neighbour(i, place(edge_deg + 30.0 * side, std::numbers::sqrt3 * radius_mm))) return;
     const Vec2 a = place(edge_deg, radius_mm);
@@ -138,7 +138,7 @@ class Overcutter {
     if (!is_on_border) reached_.insert(*holder);
   }
 
-  const std::vector<Groove>& grooves_;
+  const std::vector<Cavity>& grooves_;
   const std::vector<CutElement>& elements_;
   double width_mm_ = 0.0;
   std::map<Square, std::vector<std::size_t>> squares_;
@@ -148,7 +148,7 @@ class Overcutter {
 
 }  // namespace
 
-ZoneOvercut zone_overcut(const Workpiece3d& workpiece, const std::vector<bool>& is_cut) {
+ZoneOvercut zone_overcut(const VerificationModel& workpiece, const std::vector<bool>& is_cut) {
   return Overcutter(workpiece, is_cut).run();
 }
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "fabrication/chisel/check/workpiece.h"
+#include "fabrication/chisel/check/verification_model.h"
 
 namespace retrace::fabrication {
 
@@ -22,6 +22,6 @@ struct ZoneOvercut {
 /// this neighbour belongs to the same zone and is cut. The relative error of areas and volumes is a few thousandths.
 /// \param is_cut for each element: true if it is cut
 /// \pre the job has zones of hexagonal cube corners
-ZoneOvercut zone_overcut(const Workpiece3d& workpiece, const std::vector<bool>& is_cut);
+ZoneOvercut zone_overcut(const VerificationModel& workpiece, const std::vector<bool>& is_cut);
 
 }  // namespace retrace::fabrication

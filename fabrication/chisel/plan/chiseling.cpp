@@ -55,18 +55,18 @@ int chiseling_layers(const Job& job, std::size_t zone, double stock_mm) {
 }
 
 CuttingPose chiseling_pose(const Job& job, const Machine& machine, const FacetChoice& facet, double previous_c_deg,
-                           const Stance& stance) {
+                           const ElementPose& stance) {
   CuttingPose pose;
   pose.corner = blank_corner(job, facet.zone, facet.rotated);
   const Vec3& upright = pose.corner.normals[static_cast<std::size_t>(facet.facet - 1)];
-  const Vec3 normal = stance.turn * upright;
+  const Vec3 normal = stance.workpiece_from_element * upright;
   // Azimuth of the facet, without errors of angle and without the slope of a substrate.
   const double azimuth_deg = 120.0 * facet.facet - 150.0 + (facet.rotated ? 180.0 : 0.0) +
                              (job.zones.empty() ? 0.0 : job.zones[facet.zone].rotation_deg);
   pose.facet = facet;
   pose.orientation = stance.orientation;
-  pose.turn = stance.turn;
-  pose.root = pose.turn * upright.cross(Vec3::UnitZ()).normalized();
+  pose.workpiece_from_element = stance.workpiece_from_element;
+  pose.root = pose.workpiece_from_element * upright.cross(Vec3::UnitZ()).normalized();
   const double tilt_deg = Angle::from_rad(std::asin(upright.z())).deg();
   const RotaryPose near{machine.a.sign.value * tilt_deg, -machine.c.sign.value * azimuth_deg};
   set_rotary_pose(pose, machine, normal, near, previous_c_deg, job.where("machine"), stance.who());
@@ -87,13 +87,13 @@ Routine chiseling_routine(const Job& job, const Machine& machine, const CuttingP
   const double to_go_mm = pose.section.depth_mm + pose.section.start_mm + job.process.clearance_mm - tip.z();
   const Vec3 zero = words_of(machine, Vec3::Zero(), pose.rounded);
   const auto rounded = [&](const Vec3& from_apex) {
-    return rounded_words(words_of(machine, pose.turn * from_apex, pose.rounded) - zero, pose.rounded_along,
-                         pose.section.step_nm);
+    return rounded_words(words_of(machine, pose.workpiece_from_element * from_apex, pose.rounded) - zero,
+                         pose.rounded_along, pose.section.step_nm);
   };
   const auto up_edge = [&](const Vec3& edge) -> Vec3 { return tip + to_go_mm / edge.z() * edge; };
-  const Place start = rounded(up_edge(corner.edges[facet]));
-  const Place middle = rounded(tip);
-  const Place end = rounded(up_edge(corner.edges[(facet + 1) % 3]));
+  const LinearPosition start = rounded(up_edge(corner.edges[facet]));
+  const LinearPosition middle = rounded(tip);
+  const LinearPosition end = rounded(up_edge(corner.edges[(facet + 1) % 3]));
   Routine routine;
   routine.start = start;
   std::vector<Step>& steps = routine.subroutine.steps;
@@ -105,7 +105,7 @@ Routine chiseling_routine(const Job& job, const Machine& machine, const CuttingP
 }
 
 void check_v_in_poses(const Job& job, const Machine& machine, const std::array<CuttingPose, 3>& poses,
-                      const Stance& stance) {
+                      const ElementPose& stance) {
   const auto check_fins_in_poses = [&] {
     check_fins(job, machine, poses[0].corner, {poses[0].root_tilt, poses[1].root_tilt, poses[2].root_tilt},
                stance.who());
@@ -205,10 +205,10 @@ ProcessFacts chiseling_facts(const Job& job, double stock_mm, std::size_t elemen
   return facts;
 }
 
-Place rounded_words(const Vec3& words_mm, const Vec3& along, Nanometres step_nm) {
+LinearPosition rounded_words(const Vec3& words_mm, const Vec3& along, Nanometres step_nm) {
   const Vec3 exact = words_mm * (kNanometresPerMm / static_cast<double>(step_nm));
-  const auto place_of = [&](const Vec3& steps) -> Place {
-    return Place(std::llround(steps.x()), std::llround(steps.y()), std::llround(steps.z())) * step_nm;
+  const auto place_of = [&](const Vec3& steps) -> LinearPosition {
+    return LinearPosition(std::llround(steps.x()), std::llround(steps.y()), std::llround(steps.z())) * step_nm;
   };
   if (along == Vec3::Zero()) return place_of(exact);
   const Vec3 low = exact.array().floor();

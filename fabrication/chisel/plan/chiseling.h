@@ -28,7 +28,7 @@ int chiseling_layers(const Job& job, std::size_t zone = 0, double stock_mm = 0.0
 /// `previous_c_deg` within the limits of the axis.
 /// \throw InputError naming axis and limits if the machine cannot reach the pose
 CuttingPose chiseling_pose(const Job& job, const Machine& machine, const FacetChoice& facet, double previous_c_deg,
-                           const Stance& stance = {});
+                           const ElementPose& stance = {});
 
 /// Checks the tool in the three poses of elements with equal orientation. B and C align the tool with a facet, but
 /// cannot rotate it about the facet's normal. The tool must not touch the other facets and must leave no high fins. Its
@@ -36,7 +36,7 @@ CuttingPose chiseling_pose(const Job& job, const Machine& machine, const FacetCh
 /// \param poses poses of the three facets
 /// \throw InputError naming element, tilt and limit
 void check_v_in_poses(const Job& job, const Machine& machine, const std::array<CuttingPose, 3>& poses,
-                      const Stance& stance);
+                      const ElementPose& stance);
 
 /// Returns the subroutine that cuts one facet of one layer. The tool moves down the first dihedral edge of the facet to
 /// the apex of the layer, and up the second dihedral edge of the facet.
@@ -51,6 +51,6 @@ std::string zone_description(const Job& job, std::size_t zone);
 /// Rounds axis positions to whole increments. If `along` is 0, each position is rounded to the nearest increment.
 /// Otherwise, one of the eight neighbouring grid points is returned: the point with the smallest error along the
 /// direction `along`.
-Place rounded_words(const geometry::Vec3& words_mm, const geometry::Vec3& along, Nanometres step_nm);
+LinearPosition rounded_words(const geometry::Vec3& words_mm, const geometry::Vec3& along, Nanometres step_nm);
 
 }  // namespace retrace::fabrication

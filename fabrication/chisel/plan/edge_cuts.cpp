@@ -37,7 +37,7 @@ class Collector {
 
   void add(const Program& program) {
     for (const Item& item : program.items) {
-      const auto* const visit = std::get_if<Visit>(&item);
+      const auto* const visit = std::get_if<CycleCall>(&item);
       if (visit != nullptr && is_wanted(visit->element)) add(program.subroutines[visit->subroutine], *visit);
     }
   }
@@ -50,18 +50,18 @@ class Collector {
            std::binary_search(elements_.begin(), elements_.end(), static_cast<std::size_t>(element));
   }
 
-  void add(const Subroutine& routine, const Visit& visit) {
+  void add(const Subroutine& routine, const CycleCall& visit) {
     const std::size_t stage = stages_.at(routine.title);
     const CuttingPose& pose = plan_.poses[plan_.stages[stage].pose];
     // The last plunge produces the plunged facet, and the plough after it produces the other facet. If the plough is
     // divided into two moves, only its first move is along the facet. A V-shaped tool makes one cut down and one cut
     // up.
     std::array<std::optional<FacetEdgeCut>, 2> last;
-    Place at = visit.start;
+    LinearPosition at = visit.start;
     for (const Step& step : routine.steps) {
       const auto* const move = std::get_if<Move>(&step);
       if (move == nullptr) continue;
-      const Place by(move->to[kX].value_or(0), move->to[kY].value_or(0), move->to[kZ].value_or(0));
+      const LinearPosition by(move->to[kX].value_or(0), move->to[kY].value_or(0), move->to[kZ].value_or(0));
       at += by;
       const bool is_way_up = !cuts_prisms(job_) && move->motion == Motion::retract;
       if (move->motion != Motion::plunge && move->motion != Motion::plough && !is_way_up) continue;
@@ -76,8 +76,8 @@ class Collector {
       if (cut) cuts_.push_back(*cut);
   }
 
-  FacetEdgeCut cut_of(const Visit& visit, std::size_t stage, const CuttingPose& pose, bool ploughs, const Place& at,
-                      const Place& by) const {
+  FacetEdgeCut cut_of(const CycleCall& visit, std::size_t stage, const CuttingPose& pose, bool ploughs,
+                      const LinearPosition& at, const LinearPosition& by) const {
     FacetEdgeCut cut;
     cut.element = static_cast<std::size_t>(visit.element);
     cut.facet = static_cast<std::size_t>(ploughs ? 3 - pose.facet.facet : pose.facet.facet) - 1;

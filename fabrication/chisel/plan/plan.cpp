@@ -27,9 +27,9 @@ bool is_named(const Stage& stage, std::string_view name) {
 [[noreturn]] void refuse_phase(const Plan& plan, Field field, const std::string& name) {
   std::vector<std::string> names;
   for (const Stage& stage : plan.stages) names.push_back(stage.name);
-  constexpr std::size_t kMostNamed = 12;
-  if (names.size() > kMostNamed) {
-    names.resize(kMostNamed);
+  constexpr std::size_t kMaxNamedStages = 12;
+  if (names.size() > kMaxNamedStages) {
+    names.resize(kMaxNamedStages);
     names.emplace_back("...");
   }
   const bool is_phase = field.name == "phase";

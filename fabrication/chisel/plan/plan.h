@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/progress.h"
-#include "fabrication/chisel/plan/edge_use.h"
 #include "fabrication/chisel/plan/section.h"
+#include "fabrication/chisel/plan/tool_life.h"
 #include "fabrication/job/job.h"
 #include "fabrication/machine/machine.h"
 #include "fabrication/program/program.h"
@@ -30,7 +30,7 @@ struct PlanOptions {
 };
 
 /// Machining time in seconds, divided by kind of motion.
-struct TimeShares {
+struct TimeBreakdown {
   double cutting_s = 0.0;  ///< plunging and ploughing, including the approach
   double dwell_s = 0.0;
   double retract_s = 0.0;  ///< retracting and positioning in an element
@@ -46,11 +46,11 @@ struct Stage {
   std::size_t pose = 0;  ///< index in Plan::poses
   std::uint32_t subroutine = 0;
   bool roughs = false;
-  int cut = 0;              ///< number of this layer or finishing cut, from 1; 0 for roughing in one stage
-  int cuts = 0;             ///< total number of layers, or of finishing cuts, on each facet
-  double left_mm = 0.0;     ///< thickness of the material that remains on the cut facets after this stage
-  std::int64_t visits = 0;  ///< number of planned visits
-  TimeShares time;
+  int cut = 0;                   ///< number of this layer or finishing cut, from 1; 0 for roughing in one stage
+  int cuts = 0;                  ///< total number of layers, or of finishing cuts, on each facet
+  double remaining_mm = 0.0;     ///< thickness of the material that remains on the cut facets after this stage
+  std::int64_t cycle_calls = 0;  ///< number of planned visits
+  TimeBreakdown time;
 };
 
 /// Stop of a program, before the visit of an element.
@@ -60,7 +60,7 @@ struct PlannedStop {
   std::size_t stage = 0;     ///< index in Plan::stages
   std::int32_t element = 0;  ///< element with which the program continues
   double at_s = 0.0;         ///< run time since the start of the program
-  EdgeUse used;  ///< use of the edge since the previous stop, or since the edge was new if there was no stop
+  ToolWear wear;  ///< use of the edge since the previous stop, or since the edge was new if there was no stop
 };
 
 /// Number of a program's first subroutine.
@@ -78,7 +78,7 @@ struct Plan {
   double safe_z_mm = 0.0;          ///< Z of the tool while the rotary axes move
   double stock_mm = 0.0;           ///< height of the blank's face above the rims, for a blank with a substrate
   double aperture_area_mm2 = 0.0;  ///< total aperture area of the elements that are cut
-  TimeShares time;
+  TimeBreakdown time;
   std::vector<double> program_times_s;
   std::vector<PlannedStop> stops;
   std::vector<double> program_cuts_mm;  ///< length of cut of each program

@@ -11,8 +11,8 @@ namespace retrace::fabrication {
 
 using geometry::Vec3;
 
-ProgramDraft::ProgramDraft(const Job& job, const Machine& machine, const SafeHeights& heights, TimeShares& plan_time)
-    : job_(job), machine_(machine), heights_(heights), plan_time_(plan_time), edge_(job) {
+ProgramDraft::ProgramDraft(const Job& job, const Machine& machine, const SafeHeights& heights, TimeBreakdown& plan_time)
+    : job_(job), machine_(machine), heights_(heights), plan_time_(plan_time), tool_life_(job) {
   program_.tilt_letter = machine.tilt_letter();
   program_.control = machine.control;
   program_.has_mist = program_.needs_mist = job.process.mist;
@@ -27,10 +27,10 @@ void ProgramDraft::raise_to(Nanometres z_nm) {
   if (at_[kZ] != z_nm) {
     Move up;
     up.to[kZ] = z_nm;
-    go(up, &TimeShares::fixed_s);
+    go(up, &TimeBreakdown::fixed_s);
     add(up);
   }
-  just_turned_ = true;
+  just_raised_ = true;
 }
 
 /// Returns the angle by which a rotary axis rotates when its programmed position changes by `units`. If the axis takes
@@ -40,7 +40,7 @@ RotaryUnits ProgramDraft::rotation(char axis, RotaryUnits units) const {
   return rotary_units(std::remainder(degrees(units), 360.0));
 }
 
-void ProgramDraft::turn(RotaryUnits a, RotaryUnits c) {
+void ProgramDraft::rotate_to(RotaryUnits a, RotaryUnits c) {
   // At the start of a program, the rotary positions are not known. They are assumed to be 0, because programs end at 0.
   const RotaryUnits by_a = rotation(machine_.tilt_letter(), a - at_[kTilt].value_or(0));
   const RotaryUnits by_c = rotation('C', c - at_[kC].value_or(0));
@@ -48,7 +48,7 @@ void ProgramDraft::turn(RotaryUnits a, RotaryUnits c) {
   raise();
   constexpr double kRotationDeg = 45.0;
   if (std::abs(degrees(by_c)) > kRotationDeg) ++c_rotations_;
-  spend(&TimeShares::fixed_s, rotary_move_s(machine_, degrees(by_a), degrees(by_c)));
+  add_time(&TimeBreakdown::fixed_s, rotary_move_s(machine_, degrees(by_a), degrees(by_c)));
   Move turn;
   turn.to[kTilt] = a;
   turn.to[kC] = c;
@@ -59,52 +59,54 @@ void ProgramDraft::turn(RotaryUnits a, RotaryUnits c) {
 void ProgramDraft::traverse(Axis axis, double to_mm) {
   Move move;
   move.to[axis] = to_step(to_mm * kNanometresPerMm, machine_.increments.linear_nm);
-  go(move, &TimeShares::fixed_s);
+  go(move, &TimeBreakdown::fixed_s);
   add(move);
 }
 
-void ProgramDraft::visit(const Visit& visit, const Place& end, const TimeShares& routine, Stage& stage) {
+void ProgramDraft::add_cycle_call(const CycleCall& visit, const LinearPosition& end, const TimeBreakdown& routine,
+                                  Stage& stage) {
   for (const Move& move : approach(at_, visit))
-    go(move, just_turned_ ? &TimeShares::fixed_s : &TimeShares::rapid_s, &stage);
-  just_turned_ = false;
-  for (double TimeShares::*const share : {&TimeShares::cutting_s, &TimeShares::dwell_s, &TimeShares::retract_s})
-    spend(share, routine.*share, &stage);
+    go(move, just_raised_ ? &TimeBreakdown::fixed_s : &TimeBreakdown::rapid_s, &stage);
+  just_raised_ = false;
+  for (double TimeBreakdown::*const part :
+       {&TimeBreakdown::cutting_s, &TimeBreakdown::dwell_s, &TimeBreakdown::retract_s})
+    add_time(part, routine.*part, &stage);
   go_to(at_, linear_words(visit.start + end));
   add(visit);
   used_.insert(visit.subroutine);
 }
 
 void ProgramDraft::cut(double mm) {
-  edge_.cut(mm);
+  tool_life_.add_cut(mm);
   cut_mm_ += mm;
 }
 
 void ProgramDraft::park() {
   raise_to(std::max(*at_[kZ], heights_.first_nm));
-  turn(0, 0);
+  rotate_to(0, 0);
 }
 
 void ProgramDraft::stop(StopReason reason, std::string comment) {
   add(Stop{stop_text(job_, reason, ++stops_)});
   add(Comment{std::move(comment)});
-  edge_.stop();
+  tool_life_.stop();
   at_ = {};
   raise_to(heights_.first_nm);
 }
 
-void ProgramDraft::go(const Move& move, double TimeShares::*share, Stage* stage) {
+void ProgramDraft::go(const Move& move, double TimeBreakdown::*part, Stage* stage) {
   Vec3 by = Vec3::Zero();
   for (const Axis axis : {kX, kY, kZ})
     if (move.to[axis] && at_[axis]) by[axis] = millimetres(*move.to[axis] - *at_[axis]);
-  spend(share, linear_move_s(machine_, by, std::nullopt), stage);
+  add_time(part, linear_move_s(machine_, by, std::nullopt), stage);
   go_to(at_, move.to);
 }
 
-void ProgramDraft::spend(double TimeShares::*share, double seconds, Stage* stage) {
-  plan_time_.*share += seconds;
-  if (stage != nullptr) stage->time.*share += seconds;
+void ProgramDraft::add_time(double TimeBreakdown::*part, double seconds, Stage* stage) {
+  plan_time_.*part += seconds;
+  if (stage != nullptr) stage->time.*part += seconds;
   seconds_ += seconds;
-  edge_.spend(seconds);
+  tool_life_.add_time(seconds);
 }
 
 Program ProgramDraft::take(const std::vector<Subroutine>& all, bool only_used) {
@@ -119,7 +121,7 @@ Program ProgramDraft::take(const std::vector<Subroutine>& all, bool only_used) {
     program_.subroutines.back().number = kFirstSubroutine + static_cast<int>(program_.subroutines.size()) - 1;
   }
   for (Item& item : program_.items)
-    if (auto* const visit = std::get_if<Visit>(&item)) visit->subroutine = places.at(visit->subroutine);
+    if (auto* const visit = std::get_if<CycleCall>(&item)) visit->subroutine = places.at(visit->subroutine);
   return std::move(program_);
 }
 

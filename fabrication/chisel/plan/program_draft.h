@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "fabrication/chisel/plan/edge_use.h"
 #include "fabrication/chisel/plan/plan.h"
+#include "fabrication/chisel/plan/tool_life.h"
 #include "fabrication/job/job.h"
 #include "fabrication/machine/machine.h"
 #include "fabrication/program/program.h"
@@ -28,20 +28,20 @@ class ProgramDraft {
   /// Starts a program. The axis positions are not known, so Z moves up first.
   /// \param plan_time run time of all programs, to which the run time of this program is added
   /// \pre all arguments outlive this object
-  ProgramDraft(const Job& job, const Machine& machine, const SafeHeights& heights, TimeShares& plan_time);
+  ProgramDraft(const Job& job, const Machine& machine, const SafeHeights& heights, TimeBreakdown& plan_time);
 
   void add(Item item) { program_.items.push_back(std::move(item)); }
   /// Moves up to the safe height if the tool is below it.
   void raise();
   /// Moves the tilting axis to `a` and C to `c`, after a move up to the safe height. Does nothing if both axes are at
   /// these positions.
-  void turn(RotaryUnits a, RotaryUnits c);
+  void rotate_to(RotaryUnits a, RotaryUnits c);
   /// Moves one linear axis to a position.
   void traverse(Axis axis, double to_mm);
   /// Adds a visit: the rapid moves to its start, and the call of its subroutine.
   /// \param end end point of the subroutine's moves, relative to its start
   /// \param routine run time of the subroutine
-  void visit(const Visit& visit, const Place& end, const TimeShares& routine, Stage& stage);
+  void add_cycle_call(const CycleCall& visit, const LinearPosition& end, const TimeBreakdown& routine, Stage& stage);
   /// Adds a length of cut to the use of the cutting edge.
   void cut(double mm);
   /// Moves the tool up to the height of the first move, and the rotary axes to 0.
@@ -51,11 +51,11 @@ class ProgramDraft {
   /// \pre the axes are parked
   void stop(StopReason reason, std::string comment);
 
-  const Words& at() const { return at_; }
+  const AxisWords& at() const { return at_; }
   double seconds() const { return seconds_; }
   double cut_mm() const { return cut_mm_; }
-  const EdgeAccount& edge() const { return edge_; }
-  bool has_visits() const { return !used_.empty(); }
+  const ToolLife& tool_life() const { return tool_life_; }
+  bool has_cycle_calls() const { return !used_.empty(); }
   /// Returns the indices of the subroutines that the program calls.
   const std::set<std::uint32_t>& used() const { return used_; }
   /// Returns the number of moves of C by more than 45 degrees.
@@ -70,18 +70,18 @@ class ProgramDraft {
   void raise_to(Nanometres z_nm);
   RotaryUnits rotation(char axis, RotaryUnits units) const;
   /// Updates the axis positions and the run time by a rapid move of linear axes.
-  void go(const Move& move, double TimeShares::*share, Stage* stage = nullptr);
-  void spend(double TimeShares::*share, double seconds, Stage* stage = nullptr);
+  void go(const Move& move, double TimeBreakdown::*part, Stage* stage = nullptr);
+  void add_time(double TimeBreakdown::*part, double seconds, Stage* stage = nullptr);
 
   const Job& job_;
   const Machine& machine_;
   const SafeHeights& heights_;
-  TimeShares& plan_time_;
+  TimeBreakdown& plan_time_;
   Program program_;
-  Words at_{};
-  bool just_turned_ = true;  ///< true if no visit was added since the last move up to a safe height
+  AxisWords at_{};
+  bool just_raised_ = true;  ///< true if no visit was added since the last move up to a safe height
   double seconds_ = 0.0;
-  EdgeAccount edge_;
+  ToolLife tool_life_;
   double cut_mm_ = 0.0;
   int stops_ = 0;
   int c_rotations_ = 0;

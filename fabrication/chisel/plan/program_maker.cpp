@@ -10,8 +10,8 @@
 
 #include "core/error.h"
 #include "core/number_format.h"
+#include "fabrication/chisel/plan/approach_clearance.h"
 #include "fabrication/chisel/plan/chiseling.h"
-#include "fabrication/chisel/plan/clear_way.h"
 #include "fabrication/chisel/plan/move_time.h"
 #include "fabrication/chisel/plan/order.h"
 #include "fabrication/chisel/plan/program_draft.h"
@@ -25,15 +25,15 @@ using geometry::Vec3;
 constexpr double kSecondsPerHour = 3600.0;
 
 /// Returns the machining time of a subroutine, separately for each kind of motion.
-TimeShares routine_time(const Machine& machine, const Subroutine& subroutine) {
-  TimeShares time;
+TimeBreakdown routine_time(const Machine& machine, const Subroutine& subroutine) {
+  TimeBreakdown time;
   for (const Step& step : subroutine.steps) {
     if (const auto* dwell = std::get_if<Dwell>(&step)) {
       time.dwell_s += 1e-3 * dwell->ms;
       continue;
     }
     const auto& move = std::get<Move>(step);
-    const Place by(move.to[kX].value_or(0), move.to[kY].value_or(0), move.to[kZ].value_or(0));
+    const LinearPosition by(move.to[kX].value_or(0), move.to[kY].value_or(0), move.to[kZ].value_or(0));
     const double seconds = linear_move_s(machine, millimetres(by), move.feed_mm_per_min);
     const bool cuts = move.motion == Motion::plunge || move.motion == Motion::plough;
     (cuts ? time.cutting_s : time.retract_s) += seconds;
@@ -60,9 +60,9 @@ void check_axis(const Job& job, const Machine& machine, char axis, Nanometres lo
 void warm_up(const Machine& machine, ProgramDraft& program) {
   if (machine.warm_up_s.value <= 0.0) return;
   constexpr double kOfTravel = 0.9;
-  constexpr std::size_t kMostStrokes = 100'000;
+  constexpr std::size_t kMaxStrokes = 100'000;
   const Interval limits[] = {machine.x.limits_mm.value, machine.y.limits_mm.value};
-  for (std::size_t k = 0; k < kMostStrokes && program.edge().used().seconds < machine.warm_up_s.value; ++k) {
+  for (std::size_t k = 0; k < kMaxStrokes && program.tool_life().wear().seconds < machine.warm_up_s.value; ++k) {
     const auto& [low, high] = limits[k % 2];
     const double side = k % 4 < 2 ? -0.5 : 0.5;
     program.traverse(k % 2 == 0 ? kX : kY, 0.5 * (low + high) + kOfTravel * side * (high - low));
@@ -73,9 +73,9 @@ void warm_up(const Machine& machine, ProgramDraft& program) {
 
 /// Computes the parallel passes of the tool at each visited element. Their order is reversed from one visit to the
 /// next.
-class VisitPasses {
+class CyclePasses {
  public:
-  VisitPasses(const Job& job, const Machine& machine, const std::vector<double>& offsets_mm)
+  CyclePasses(const Job& job, const Machine& machine, const std::vector<double>& offsets_mm)
       : job_(job), machine_(machine), offsets_mm_(offsets_mm) {}
 
   /// Skips visits. An odd number of skipped visits reverses the order of the passes.
@@ -83,24 +83,24 @@ class VisitPasses {
 
   /// Returns the passes of the next visit.
   /// \throw InputError if an axis would leave its limits
-  std::vector<Visit> next(const CutElement& element, std::int32_t number, const CuttingPose& pose,
-                          std::uint32_t subroutine, const RoutineStart& start) {
-    const Vec3 root = element.foot_mm - pose.section.depth_mm * pose.turn.col(2);
+  std::vector<CycleCall> next(const CutElement& element, std::int32_t number, const CuttingPose& pose,
+                              std::uint32_t subroutine, const RoutineStart& start) {
+    const Vec3 root = element.origin_mm - pose.section.depth_mm * pose.workpiece_from_element.col(2);
     forth_ = !forth_;
-    std::vector<Visit> passes;
+    std::vector<CycleCall> passes;
     for (std::size_t k = 0; k < offsets_mm_.size(); ++k) {
       const double offset_mm = offsets_mm_[forth_ ? k : offsets_mm_.size() - 1 - k];
       const AxisPositions at = inverse(machine_, root + offset_mm * pose.root, pose.rounded);
-      const Place words = rounded_words({at.x_mm, at.y_mm, at.z_mm}, pose.rounded_along, pose.section.step_nm);
+      const LinearPosition words = rounded_words({at.x_mm, at.y_mm, at.z_mm}, pose.rounded_along, pose.section.step_nm);
       passes.push_back(
           {number, subroutine, words + start.start, static_cast<int>(k) + 1, static_cast<int>(offsets_mm_.size())});
-      check_limits(passes.back(), start.reach);
+      check_limits(passes.back(), start.extent);
     }
     return passes;
   }
 
  private:
-  void check_limits(const Visit& visit, const Reach& reach) const {
+  void check_limits(const CycleCall& visit, const MoveExtent& reach) const {
     const std::array<const LinearAxis*, 3> axes = {&machine_.x, &machine_.y, &machine_.z};
     for (const Axis axis : {kX, kY, kZ})
       check_axis(job_, machine_, "XYZ"[axis], visit.start[axis] + reach.low[axis], visit.start[axis] + reach.high[axis],
@@ -216,7 +216,7 @@ class ProgramMaker {
 
   void finish_program() {
     program_->raise();
-    program_->turn(0, 0);
+    program_->rotate_to(0, 0);
     plan_.c_rotations += program_->c_rotations();
     plan_.program_cuts_mm.push_back(program_->cut_mm());
     plan_.program_times_s.push_back(program_->seconds());
@@ -229,7 +229,7 @@ class ProgramMaker {
   void stop(StopReason reason, const Stage& stage, std::int32_t element) {
     program_->park();
     plan_.stops.push_back({plan_.programs.size(), reason, static_cast<std::size_t>(&stage - plan_.stages.data()),
-                           element, program_->seconds(), program_->edge().used()});
+                           element, program_->seconds(), program_->tool_life().wear()});
     program_->stop(reason, plain(fmt::format("Goes on with element {} of {}", element, stage.name)));
     since_stop_ = {};
   }
@@ -239,19 +239,19 @@ class ProgramMaker {
   void enter(const Stage& stage) {
     const CuttingPose& pose = plan_.poses[stage.pose];
     if (std::exchange(since_stop_.is_cold, false)) warm_up(machine_, *program_);
-    program_->turn(pose.a, pose.c);
+    program_->rotate_to(pose.a, pose.c);
     program_->add(stage_text(stage, pose));
   }
 
   /// Returns the length of cut and the run time of all passes of a visit. The run time is an upper limit, which assumes
   /// a move to the safe height before each pass.
-  EdgeUse use_of(const Stage& stage, const std::vector<Visit>& passes) const {
-    EdgeUse use;
+  ToolWear use_of(const Stage& stage, const std::vector<CycleCall>& passes) const {
+    ToolWear use;
     if (!job_.tool.edge_life_mm && !job_.process.stop_every_min) return use;
-    Words at = program_->at();
+    AxisWords at = program_->at();
     const Subroutine& routine = plan_.subroutines[stage.subroutine];
     const auto rapid_s = [&](const Vec3& by) { return linear_move_s(machine_, by, std::nullopt); };
-    for (const Visit& pass : passes) {
+    for (const CycleCall& pass : passes) {
       if (job_.tool.edge_life_mm)
         use.cut_mm += length_of_cut_mm(job_, machine_, plan_.elements[static_cast<std::size_t>(pass.element)],
                                        plan_.poses[stage.pose], pass, routine, plan_.stock_mm);
@@ -262,7 +262,7 @@ class ProgramMaker {
       use.seconds += rapid_s(Vec3(0.0, 0.0, millimetres(high - *at[kZ]))) + rapid_s(across) +
                      rapid_s(Vec3(0.0, 0.0, millimetres(high - pass.start.z()))) +
                      routine_times_[stage.subroutine].total_s();
-      go_to(at, linear_words(pass.start + starts_[stage.subroutine].reach.end));
+      go_to(at, linear_words(pass.start + starts_[stage.subroutine].extent.end));
     }
     return use;
   }
@@ -270,9 +270,9 @@ class ProgramMaker {
   /// Returns true if another visit would exceed the maximum number of subroutines or the maximum run time of a program.
   bool is_full(const Stage& stage) const {
     // Numbers of subroutines have at most four digits.
-    constexpr std::size_t kMostSubroutines = 9000;
+    constexpr std::size_t kMaxSubroutines = 9000;
     const auto& used = program_->used();
-    if (has_kinds_ && used.size() >= kMostSubroutines && !used.contains(stage.subroutine)) return true;
+    if (has_kinds_ && used.size() >= kMaxSubroutines && !used.contains(stage.subroutine)) return true;
     if (!options_.split_hours) return false;
     constexpr double kToLeaveS = 30.0;  // time reserved for the moves at the end of the program
     return program_->seconds() + routine_times_[stage.subroutine].total_s() + kToLeaveS >
@@ -280,10 +280,10 @@ class ProgramMaker {
   }
 
   /// Starts a new program before a visit if one is required. Otherwise, adds a stop if a stop is required.
-  void make_way(const Stage& stage, std::int32_t element, const std::vector<Visit>& passes) {
-    const EdgeUse use = use_of(stage, passes);
-    const std::optional<StopReason> reason = program_->edge().stop_before(use);
-    if (program_->has_visits() && (is_full(stage) || program_->edge().needs_program(use))) {
+  void make_way(const Stage& stage, std::int32_t element, const std::vector<CycleCall>& passes) {
+    const ToolWear use = use_of(stage, passes);
+    const std::optional<StopReason> reason = program_->tool_life().stop_before(use);
+    if (program_->has_cycle_calls() && (is_full(stage) || program_->tool_life().needs_program(use))) {
       finish_program();
       begin_program();
       enter(stage);
@@ -291,8 +291,8 @@ class ProgramMaker {
       stop(*reason, stage, element);
       enter(stage);
     }
-    const EdgeUse anew = use_of(stage, passes);
-    if (since_stop_.is_fresh) program_->edge().check(anew, element);
+    const ToolWear anew = use_of(stage, passes);
+    if (since_stop_.is_fresh) program_->tool_life().check(anew, element);
     program_->cut(anew.cut_mm);
     since_stop_.is_fresh = false;
   }
@@ -300,23 +300,23 @@ class ProgramMaker {
   void visit(Stage& stage, std::int32_t element) {
     const CuttingPose& pose = plan_.poses[stage.pose];
     const RoutineStart& start = starts_[stage.subroutine];
-    std::vector<Visit> passes =
+    std::vector<CycleCall> passes =
         passes_.next(plan_.elements[static_cast<std::size_t>(element)], element, pose, stage.subroutine, start);
     if (visits_ == 0 && options_.from_pass) passes.erase(passes.begin(), passes.begin() + (*options_.from_pass - 1));
     make_way(stage, element, passes);
-    for (const Visit& pass : passes) {
+    for (const CycleCall& pass : passes) {
       clear_way(pass, pose);
-      program_->visit(pass, start.reach.end, routine_times_[stage.subroutine], stage);
+      program_->add_cycle_call(pass, start.extent.end, routine_times_[stage.subroutine], stage);
     }
     since_stop_.has_roughed = stage.roughs;
-    ++stage.visits;
+    ++stage.cycle_calls;
     ++visits_;
     if (options_.stop_every && visits_ % *options_.stop_every == 0) program_->add(OptionalStop{});
     if (stage.roughs) roughing_.add_visit(*program_);
   }
 
   /// Moves to the safe height if the direct path to a visit would come too close to the blank.
-  void clear_way(const Visit& visit, const CuttingPose& pose) {
+  void clear_way(const CycleCall& visit, const CuttingPose& pose) {
     if (way_.is_clear(program_->at(), visit, pose)) return;
     program_->raise();
     if (way_.is_clear(program_->at(), visit, pose)) return;
@@ -337,11 +337,11 @@ class ProgramMaker {
   /// separate poses and subroutines. There can be many subroutines, so each program contains only the subroutines that
   /// it calls.
   bool has_kinds_;
-  ClearWay way_;
+  ApproachClearance way_;
   StageOrders orders_;
-  VisitPasses passes_;
+  CyclePasses passes_;
   RoughingProgress roughing_;
-  std::vector<TimeShares> routine_times_;
+  std::vector<TimeBreakdown> routine_times_;
   SafeHeights heights_;
   std::optional<ProgramDraft> program_;  ///< current program
   SinceStop since_stop_;

@@ -59,14 +59,14 @@ std::vector<std::string> program_header(const Job& job, const Machine& machine, 
   lines.push_back(plain(fmt::format("Process {}: roughing {} um, finishing {} x {} um, clearance {} mm", p.name,
                                     shortest(p.roughing_depth_um), has_finishing_cuts(job) ? p.finishing_cuts : 0,
                                     shortest(p.finishing_depth_um), shortest(p.clearance_mm))));
-  constexpr std::size_t kMostPoses = 24;
-  for (const CuttingPose& pose : std::span(plan.poses).first(std::min(kMostPoses, plan.poses.size())))
+  constexpr std::size_t kMaxPoses = 24;
+  for (const CuttingPose& pose : std::span(plan.poses).first(std::min(kMaxPoses, plan.poses.size())))
     lines.push_back(fmt::format("Pose: facet {}{}{} {}{:.7f} C{:.7f}", pose.facet.facet,
                                 pose.facet.rotated ? " of turned elements" : "",
                                 job.zones.empty() ? "" : fmt::format(" of zone {}", pose.facet.zone + 1), tilt,
                                 pose.rounded.a_deg, pose.rounded.c_deg));
-  if (plan.poses.size() > kMostPoses)
-    lines.push_back(fmt::format("And {} poses more, each where it begins", plan.poses.size() - kMostPoses));
+  if (plan.poses.size() > kMaxPoses)
+    lines.push_back(fmt::format("And {} poses more, each where it begins", plan.poses.size() - kMaxPoses));
   const auto point = [](const RotaryAxis& axis) {
     const Vec3& at = axis.point_mm.value;
     return fmt::format("X{} Y{} Z{}", shortest(at.x()), shortest(at.y()), shortest(at.z()));

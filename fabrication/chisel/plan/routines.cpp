@@ -16,7 +16,7 @@ using geometry::Vec2;
 /// Tolerance for a number of cuts or passes that exceeds a whole number due to rounding errors.
 constexpr double kWholeTolerance = 1e-9;
 /// Maximum number of cuts per facet. A larger number indicates that the depth of cut is given in a wrong unit.
-constexpr int kMostCuts = 100'000;
+constexpr int kMaxCuts = 100'000;
 constexpr double kFitToleranceMm = 1e-6;
 
 /// Builds the moves of a subroutine from points of the section, rounded to whole increments.
@@ -28,7 +28,7 @@ class SectionPath {
   }
 
   void to(const Vec2& point_mm, Motion motion, double feed_mm_per_min) {
-    const Place to = place_of(point_mm);
+    const LinearPosition to = place_of(point_mm);
     if (to == at_) return;
     routine_.subroutine.steps.push_back(increment(motion, to - at_, feed_mm_per_min));
     at_ = to;
@@ -40,13 +40,13 @@ class SectionPath {
   }
 
  private:
-  Place place_of(const Vec2& point_mm) const {
+  LinearPosition place_of(const Vec2& point_mm) const {
     return {0, to_step(point_mm.x() * kNanometresPerMm, step_nm_), to_step(point_mm.y() * kNanometresPerMm, step_nm_)};
   }
 
   Routine& routine_;
   Nanometres step_nm_ = 1;
-  Place at_;
+  LinearPosition at_;
 };
 
 Vec2 start_of_cut(const Section& section, double y, double clearance_mm) {
@@ -61,7 +61,7 @@ Vec2 on_clearance_plane(const Section& section, const Vec2& point, const Vec2& d
 
 /// Returns the maximum chip thickness of the first slice, divided by the width of the slice at the floor. The thickness
 /// is measured along the wall's normal. The chip of the first slice is bounded by the rake face and the blank's face.
-double share_of_first_slice(const Section& section) {
+double first_slice_thickness_ratio(const Section& section) {
   const double rake_slope = std::tan(section.rake.rad());
   const double face_slope = 1.0 / std::tan(0.5 * section.apex.rad());
   return rake_slope * face_slope / (rake_slope + face_slope) / std::sin(section.apex.rad());
@@ -112,18 +112,20 @@ int cuts_per_facet(const Job& job, double stock_mm) {
   return whole_cuts(job, roughing_across_mm(job, stock_mm) / (1e-3 * job.process.roughing_depth_um));
 }
 
-double left_of_roughing_mm(const Job& job, double across_mm, int cut, int cuts, double share, double dip_mm) {
+double roughing_remainder_mm(const Job& job, double across_mm, int cut, int cuts, double thickness_ratio,
+                             double dip_mm) {
   const double depth_mm = 1e-3 * job.process.roughing_depth_um;
-  const double least_mm = 1e-3 * job.process.least_chip_um.value_or(0.0);
+  const double least_mm = 1e-3 * job.process.min_chip_um.value_or(0.0);
   const double left_mm = depth_mm * (cuts - cut);
   const double taken_mm = across_mm - left_mm;
   // A cut above the blank's face removes nothing, so the minimum chip thickness does not apply to this cut.
-  if (least_mm == 0.0 || taken_mm <= -dip_mm || share * taken_mm - dip_mm >= least_mm) return left_mm;
+  if (least_mm == 0.0 || taken_mm <= -dip_mm || thickness_ratio * taken_mm - dip_mm >= least_mm) return left_mm;
   const double shared_mm = cut < cuts ? 0.5 * (taken_mm + depth_mm) : taken_mm;
-  if (share * shared_mm - dip_mm < least_mm)
-    throw InputError(job.where("process.min_chip_um"),
-                     fmt::format("must be at most {}, the chip thickness of the first roughing cut, got {}",
-                                 fixed(1e3 * (share * shared_mm - dip_mm), 3), shortest(*job.process.least_chip_um)));
+  if (thickness_ratio * shared_mm - dip_mm < least_mm)
+    throw InputError(
+        job.where("process.min_chip_um"),
+        fmt::format("must be at most {}, the chip thickness of the first roughing cut, got {}",
+                    fixed(1e3 * (thickness_ratio * shared_mm - dip_mm), 3), shortest(*job.process.min_chip_um)));
   return across_mm - shared_mm;
 }
 
@@ -136,9 +138,9 @@ void check_allowance(const Job& job, double left_mm) {
 }
 
 int whole_cuts(const Job& job, double cuts) {
-  if (!(cuts <= kMostCuts))
+  if (!(cuts <= kMaxCuts))
     throw InputError(job.where("process.roughing_depth_um"),
-                     fmt::format("must give at most {} cuts per facet, but {} um gives {:.3g} cuts", kMostCuts,
+                     fmt::format("must give at most {} cuts per facet, but {} um gives {:.3g} cuts", kMaxCuts,
                                  job.process.roughing_depth_um, cuts));
   return std::max(1, static_cast<int>(std::ceil(cuts - kWholeTolerance)));
 }
@@ -151,11 +153,11 @@ Routine unidirectional_routine(const Job& job, const Section& section) {
   const Process& process = job.process;
   const double left_mm = finishing_allowance_mm(job);
   const double across_mm = slices_across_mm(section, left_mm);
-  const double share = share_of_first_slice(section);
+  const double share = first_slice_thickness_ratio(section);
   const double dip_mm = edge_dip_mm(section);
   const int cuts = cuts_per_facet(job, section.stock_mm);
   const auto wall_y = [&](int cut) {
-    return section.wall_y * (left_mm + left_of_roughing_mm(job, across_mm, cut, cuts, share, dip_mm));
+    return section.wall_y * (left_mm + roughing_remainder_mm(job, across_mm, cut, cuts, share, dip_mm));
   };
   Routine routine;
   SectionPath path(routine, start_of_cut(section, wall_y(1), process.clearance_mm), section.step_nm);

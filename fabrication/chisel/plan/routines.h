@@ -10,7 +10,7 @@ namespace retrace::fabrication {
 /// Subroutine and its start point, relative to the centre of the root or to the apex.
 struct Routine {
   Subroutine subroutine;
-  Place start = Place::Zero();
+  LinearPosition start = LinearPosition::Zero();
 };
 
 /// Returns the number of roughing cuts per facet, or the number of layers of a bidirectional strategy. Unidirectional
@@ -36,11 +36,11 @@ inline double edge_dip_mm(const Section& section) {
 /// first cut removes the remainder of the thickness, and all later cuts have the full depth. If the first chip would be
 /// thinner than the minimum chip, the thickness of the first two cuts is divided equally between them.
 /// \param across_mm total thickness that all cuts remove
-/// \param share maximum chip thickness of the first cut, divided by its depth
+/// \param thickness_ratio maximum chip thickness of the first cut, divided by its depth
 /// \param dip_mm edge_dip_mm()
 /// \throw InputError naming the key if the first chip is still too thin
-double left_of_roughing_mm(const Job& job, double across_mm, int cut, int cuts, double share = 1.0,
-                           double dip_mm = 0.0);
+double roughing_remainder_mm(const Job& job, double across_mm, int cut, int cuts, double thickness_ratio = 1.0,
+                             double dip_mm = 0.0);
 
 /// Checks that roughing has material to remove in addition to the finishing allowance.
 /// \param left_mm thickness that remains for roughing

@@ -56,7 +56,7 @@ double max_strip_mm(const Job& job, const Machine& machine, bool is_on_substrate
 /// Refuses a pose in which the angle between the root and the tool's edge is too large. The axes A and C only align the
 /// normal of the facet with the tool. No other axis can align the root with the edge.
 void check_root(const Job& job, const Machine& machine, const CuttingPose& pose, const InputLocation& where,
-                const Stance& stance) {
+                const ElementPose& stance) {
   const double strip_mm = max_strip_mm(job, machine, stance.element >= 0);
   const double tangent = std::abs(std::tan(pose.root_tilt.rad()));
   if (job.tool.width_mm * tangent <= strip_mm) return;
@@ -71,16 +71,16 @@ void check_root(const Job& job, const Machine& machine, const CuttingPose& pose,
 
 /// Refuses a pose in which the angle between the ploughed facet and the plane that the edge sweeps is too large.
 void check_ploughed_facet(const Job& job, const Machine& machine, const CuttingPose& pose, const Vec3& design_floor,
-                          const InputLocation& where, const Stance& stance) {
+                          const InputLocation& where, const ElementPose& stance) {
   if (job.strategy == Strategy::bidirectional) return;
   const Vec3 edge = edge_direction(machine);
   const geometry::Vec2& along = pose.section.floor_direction;
   const Vec3 travel = along.x() * machine.y.direction.value + along.y() * machine.z.direction.value;
   const Vec3 swept = edge.cross(travel).normalized();
   const double cosine = std::abs(swept.dot(design_floor));
-  if (cosine > kAlongFacet) return;
+  if (cosine > kMinCosAlongFacet) return;
   const double at_deg = Angle::from_rad(std::acos(cosine)).deg();
-  const double max_deg = Angle::from_rad(std::acos(kAlongFacet)).deg();
+  const double max_deg = Angle::from_rad(std::acos(kMinCosAlongFacet)).deg();
   throw InputError(
       where, fmt::format("{}the angle between the root and the tool's edge is {} degrees, and A and C cannot correct "
                          "it. The ploughed facet would have an error of {} degrees, but at most {} degrees are allowed",
@@ -106,9 +106,10 @@ double root_depth_mm(const geometry::RtpElement& element) {
   return 0.5 * element.base_mm / std::tan(half_apex_rad(element));
 }
 
-std::string Stance::who() const {
+std::string ElementPose::who() const {
   if (element < 0) return "";
-  const double tilt_deg = Angle::from_rad(std::atan2(turn.col(2).head<2>().norm(), turn(2, 2))).deg();
+  const double tilt_deg =
+      Angle::from_rad(std::atan2(workpiece_from_element.col(2).head<2>().norm(), workpiece_from_element(2, 2))).deg();
   return fmt::format("element {}, tilted by {} degrees: ", element, fixed(tilt_deg, 4));
 }
 
@@ -159,7 +160,7 @@ void set_rotary_pose(CuttingPose& pose, const Machine& machine, const Vec3& norm
 }
 
 CuttingPose cutting_pose(const Job& job, const Machine& machine, const FacetChoice& facet, double previous_c_deg,
-                         const Stance& stance) {
+                         const ElementPose& stance) {
   const InputLocation where = job.where("machine");
   const geometry::RtpElement element = blank_prism(job);
   const double apex_rad = Angle::from_deg(element.apex_angle_deg).rad();
@@ -167,9 +168,9 @@ CuttingPose cutting_pose(const Job& job, const Machine& machine, const FacetChoi
   CuttingPose pose;
   pose.facet = facet;
   pose.orientation = stance.orientation;
-  pose.turn = stance.turn;
-  pose.root = pose.turn * root_direction(facet);
-  const Vec3 normal = pose.turn * facet_normal(element, facet);
+  pose.workpiece_from_element = stance.workpiece_from_element;
+  pose.root = pose.workpiece_from_element * root_direction(facet);
+  const Vec3 normal = pose.workpiece_from_element * facet_normal(element, facet);
   const RotaryPose near{machine.a.sign.value * 0.5 * element.apex_angle_deg, machine.c.sign.value * nominal_c_deg};
   set_rotary_pose(pose, machine, normal, near, previous_c_deg, where, stance.who());
   check_root(job, machine, pose, where, stance);
@@ -181,14 +182,14 @@ CuttingPose cutting_pose(const Job& job, const Machine& machine, const FacetChoi
   // The axes Y and Z move the tool parallel to the designed floor. If the root is tilted relative to the edge, only the
   // deeper end of the edge touches the floor.
   const FacetChoice other{facet.rotated, 3 - facet.facet};
-  const Vec3 design_floor = motion.direction(pose.turn * facet_normal(element, other));
+  const Vec3 design_floor = motion.direction(pose.workpiece_from_element * facet_normal(element, other));
   const Vec3 floor = in_words(machine, design_floor);
   section.floor_normal = Vec2(floor.y(), floor.z()).normalized();
   section.floor_direction = {-section.floor_normal.y(), section.floor_normal.x()};
   check_ploughed_facet(job, machine, pose, design_floor, where, stance);
   section.bisector = (Vec2::UnitY() + section.floor_direction).normalized();
   section.lift_mm = std::abs(design_floor.dot(edge_direction(machine)) / floor.z()) * 0.5 * job.tool.width_mm;
-  const Vec3 face = in_words(machine, motion.direction(pose.turn.col(2)));
+  const Vec3 face = in_words(machine, motion.direction(pose.workpiece_from_element.col(2)));
   section.face_normal = {face.y(), face.z()};
   section.depth_mm = root_depth_mm(element);
   section.stock_mm = stance.stock_mm;

@@ -54,8 +54,8 @@ struct Section {
 /// Pose of the rotary axes in which one facet of all elements of one orientation is cut.
 struct CuttingPose {
   FacetChoice facet;
-  std::int32_t orientation = 0;                        ///< CutElement::orientation of the elements
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  ///< CutElement::turn of the elements
+  std::int32_t orientation = 0;                                          ///< CutElement::orientation of the elements
+  Eigen::Matrix3d workpiece_from_element = Eigen::Matrix3d::Identity();  ///< CutElement::turn of the elements
   /// Cube corner that is cut by micro chiseling, in its orientation at C = 0.
   CubeCorner corner;
   RotaryUnits a = 0;    ///< position of the tilting axis, rounded, as written in programs
@@ -88,9 +88,9 @@ void set_rotary_pose(CuttingPose& pose, const Machine& machine, const geometry::
                      double previous_c_deg, const InputLocation& where, const std::string& who);
 
 /// Orientation of the elements that a pose cuts, and height of the blank above their rims.
-struct Stance {
-  std::int32_t orientation = 0;                        ///< CutElement::orientation of the elements
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  ///< CutElement::turn of the elements
+struct ElementPose {
+  std::int32_t orientation = 0;                                          ///< CutElement::orientation of the elements
+  Eigen::Matrix3d workpiece_from_element = Eigen::Matrix3d::Identity();  ///< CutElement::turn of the elements
   std::size_t zone = 0;
   double stock_mm = 0.0;      ///< height of the blank's face above the rims
   double start_mm = 0.0;      ///< height above the rims from which the clearance is measured at the start of a cut
@@ -104,6 +104,6 @@ struct Stance {
 /// closest to `previous_c_deg` within the limits of the axis.
 /// \throw InputError naming axis and limits if the machine cannot reach the pose
 CuttingPose cutting_pose(const Job& job, const Machine& machine, const FacetChoice& facet, double previous_c_deg,
-                         const Stance& stance = {});
+                         const ElementPose& stance = {});
 
 }  // namespace retrace::fabrication

@@ -57,9 +57,9 @@ class StageMaker {
     const double start_mm = job_.substrate ? stock_mm(job_, plan_.elements, job_.process.clearance_mm) : 0.0;
     for (std::size_t k = 0; k < plan_.elements.size(); ++k) {
       const CutElement& element = plan_.elements[k];
-      Stance stance;
+      ElementPose stance;
       stance.orientation = element.orientation;
-      stance.turn = element.turn;
+      stance.workpiece_from_element = element.workpiece_from_element;
       stance.zone = element.zone;
       stance.stock_mm = plan_.stock_mm;
       stance.start_mm = start_mm;
@@ -100,11 +100,11 @@ class StageMaker {
     double dip_mm = 0.0;
     for (const CuttingPose& pose : plan_.poses) dip_mm = std::max(dip_mm, edge_dip_mm(pose.section));
     return (is_dmc ? chiseling_allowance_mm(job_) : 0.0) +
-           left_of_roughing_mm(job_, across_mm, cut, cuts, share, dip_mm);
+           roughing_remainder_mm(job_, across_mm, cut, cuts, share, dip_mm);
   }
 
   CuttingPose next_pose(const ElementGroup& group, int facet) {
-    const Stance& stance = groups_.at(group);
+    const ElementPose& stance = groups_.at(group);
     CuttingPose pose = chiseling_pose(job_, machine_, {group.first, facet, stance.zone}, previous_c_deg_, stance);
     previous_c_deg_ = pose.rounded.c_deg;
     return pose;
@@ -194,8 +194,8 @@ class StageMaker {
     stage.roughs = what == "layer";
     stage.cut = cut;
     stage.cuts = cuts;
-    stage.left_mm = left_mm(what, cut, cuts, plan_.poses[pose].facet.zone);
-    Routine routine = chiseling_routine(job_, machine_, plan_.poses[pose], stage.left_mm, feed_mm_per_min);
+    stage.remaining_mm = left_mm(what, cut, cuts, plan_.poses[pose].facet.zone);
+    Routine routine = chiseling_routine(job_, machine_, plan_.poses[pose], stage.remaining_mm, feed_mm_per_min);
     routine.subroutine.title = fmt::format("{}: down one edge, up the other", stage.name);
     add(std::move(stage), pose, std::move(routine));
   }
@@ -212,7 +212,7 @@ class StageMaker {
     Stage stage;
     stage.name = "roughing" + group_name(pose);
     stage.roughs = true;
-    stage.left_mm = finishing_allowance_mm(job_);
+    stage.remaining_mm = finishing_allowance_mm(job_);
     Routine routine = unidirectional_routine(job_, plan_.poses[pose].section);
     routine.subroutine.title = fmt::format("{}: {} cuts by plunging and ploughing", stage.name, plan_.cuts_per_facet);
     add(std::move(stage), pose, std::move(routine));
@@ -229,8 +229,8 @@ class StageMaker {
         stage.name = fmt::format("{}-{}-facet-{}{}", what, cut, facet.facet, group_name(pose));
         stage.cut = cut;
         stage.cuts = cuts;
-        stage.left_mm = left_mm(what, cut, cuts);
-        Routine routine = plunge_routine(job_, plan_.poses[pose].section, stage.left_mm, feed_mm_per_min);
+        stage.remaining_mm = left_mm(what, cut, cuts);
+        Routine routine = plunge_routine(job_, plan_.poses[pose].section, stage.remaining_mm, feed_mm_per_min);
         routine.subroutine.title = fmt::format("{}: one plunge", stage.name);
         add(std::move(stage), pose, std::move(routine));
       }
@@ -240,7 +240,7 @@ class StageMaker {
     stage.pose = pose;
     stage.subroutine = static_cast<std::uint32_t>(plan_.subroutines.size());
     routine.subroutine.number = kFirstSubroutine + static_cast<int>(plan_.subroutines.size());
-    starts_.push_back({routine.start, reach_of(routine.subroutine)});
+    starts_.push_back({routine.start, extent_of(routine.subroutine)});
     plan_.subroutines.push_back(std::move(routine.subroutine));
     plan_.stages.push_back(std::move(stage));
   }
@@ -248,7 +248,7 @@ class StageMaker {
   const Job& job_;
   const Machine& machine_;
   Plan& plan_;
-  std::map<ElementGroup, Stance> groups_;
+  std::map<ElementGroup, ElementPose> groups_;
   bool has_tilts_ = false;
   std::vector<RoutineStart> starts_;
   double previous_c_deg_ = 0.0;

@@ -13,8 +13,8 @@ namespace retrace::fabrication {
 
 /// Start point of a subroutine, relative to the centre of the root or to the apex, and the extent of its moves.
 struct RoutineStart {
-  Place start = Place::Zero();
-  Reach reach;
+  LinearPosition start = LinearPosition::Zero();
+  MoveExtent extent;
 };
 
 /// Adds the poses, subroutines and stages of a job to a plan, in the order of cutting. Elements with different

@@ -32,7 +32,7 @@ MeasuredForce force_of(const CsvReader& row) {
 
 std::vector<MeasuredForce> parse_forces(std::string_view text, const std::string& source_name) {
   std::vector<MeasuredForce> forces;
-  CsvReader table(text, source_name, kMostTextBytes, kColumns);
+  CsvReader table(text, source_name, kMaxTextBytes, kColumns);
   while (table.next()) forces.push_back(force_of(table));
   if (forces.empty()) table.fail("must contain forces, but is empty");
   return forces;

@@ -40,11 +40,11 @@ constexpr geometry::SizeKeys kSizeKeys(kSize, Number{{.low = 0.0, .high = 1e4}})
 constexpr Kind kThreeErrors = Numbers{3, {.low = -300.0, .high = 300.0}};
 constexpr Kind kWedge = Number{{.low = 10.0, .high = kMaxWedgeDeg}};
 /// Maximum number of elements. It limits the memory of a plan, which needs about 1 KiB per element.
-constexpr double kMostElements = 2e6;
-constexpr std::size_t kMostZoneElements = 2'000'000;
+constexpr double kMaxElements = 2e6;
+constexpr std::size_t kMaxZoneElements = 2'000'000;
 /// Tolerance, in mm, of the check that the tool is not wider than the element.
 constexpr double kFitToleranceMm = 1e-6;
-constexpr std::size_t kMostChips = 100;
+constexpr std::size_t kMaxChips = 100;
 /// Minimum angle, in degrees, between the rake face and the facet that is not being cut. The chip leaves between them.
 /// The value is an assumption: a wedge angle of 50 and a clearance angle of 15 degrees leave 25 degrees of a right
 /// angle, and half of this remainder is required.
@@ -193,7 +193,7 @@ constexpr Row kZoneRows[] = {
     {"rotation_deg", Number{{.low = -360.0, .high = 360.0}}, 0.0,
      "Rotation of each element about its axis, counter-clockwise as seen from the light.",
      access<&CutZone::rotation_deg>},
-    {"apexes_mm", NumberRows{2, {.low = 0.0, .high = 1e4}, 1, kMostZoneElements, "places"}, kRequired,
+    {"apexes_mm", NumberRows{2, {.low = 0.0, .high = 1e4}, 1, kMaxZoneElements, "places"}, kRequired,
      "`[[x, y], ...]`: positions of the apexes of the zone's elements, in x and y of the part. The origin is the "
      "corner of the part with the smallest x and y.",
      access_by<get_apexes, set_apexes>}};
@@ -315,8 +315,8 @@ const Table kJobTables[] = {
 
 void check_chips(const Job& job, const Refuse& refuse) {
   const auto& chips = job.tool.edge_chips;
-  if (chips.size() > kMostChips)
-    refuse("tool.edge_chips", fmt::format("must have at most {} chips, got {}", kMostChips, chips.size()));
+  if (chips.size() > kMaxChips)
+    refuse("tool.edge_chips", fmt::format("must have at most {} chips, got {}", kMaxChips, chips.size()));
   for (std::size_t i = 0; i < chips.size(); ++i) {
     const std::string path = path_of_entry("tool.edge_chips", i);
     const auto check = [&](std::string_view key, double value, const NumberRange& range) {
@@ -381,9 +381,9 @@ void check_zones(const Job& job, const Refuse& refuse) {
     if (is_given) refuse(key, "not allowed together with [[zone]]");
   std::size_t elements = 0;
   for (const CutZone& zone : job.zones) elements += zone.apexes_mm.size();
-  if (elements > kMostZoneElements)
-    refuse("zone", fmt::format("must have at most {} elements in all, got {}", kMostZoneElements, elements));
-  if (const std::optional<ZoneMisfit> misfit = misfit_of_zones(job))
+  if (elements > kMaxZoneElements)
+    refuse("zone", fmt::format("must have at most {} elements in all, got {}", kMaxZoneElements, elements));
+  if (const std::optional<ZoneError> misfit = first_zone_error(job))
     refuse(path_in(path_of_entry("zone", misfit->zone), "apexes_mm"), misfit->text);
 }
 
@@ -411,9 +411,9 @@ void check_pattern(const Job& job, const Refuse& refuse) {
 void check_room(const Job& job, const Refuse& refuse) {
   const ArrayLayout& array = job.array;
   if (array.arrangement == Arrangement::single || !job.zones.empty()) return;
-  if (const double elements = geometry::element_estimate(array, job.element); elements > kMostElements)
-    refuse("array.x_length_mm", fmt::format("the array would have {:.6g} elements, but at most {:.0f} are allowed",
-                                            elements, kMostElements));
+  if (const double elements = geometry::element_estimate(array, job.element); elements > kMaxElements)
+    refuse("array.x_length_mm",
+           fmt::format("the array would have {:.6g} elements, but at most {:.0f} are allowed", elements, kMaxElements));
   if (cuts_prisms(job)) {
     const geometry::CellCounts counts = geometry::prism_block(array, prism_of(job)).counts;
     for (const auto& [count, key, length_mm] : {std::tuple(counts.columns, "array.x_length_mm", array.x_length_mm),

@@ -26,7 +26,7 @@ using schema::kRequired;
 using schema::Number;
 
 constexpr NumberRange kDepth{.low = 0.0, .low_included = false, .high = 1000.0};
-constexpr NumberRange kFeed{.low = kLeastFeedMmPerMin, .high = 1e5};
+constexpr NumberRange kFeed{.low = kMinFeedMmPerMin, .high = 1e5};
 constexpr NumberRange kShortLength{.low = 0.0, .low_included = false, .high = 100.0};
 constexpr NumberRange kDwell{.low = 0.0, .high = 60.0};
 constexpr NumberRange kCuts{.low = 1.0, .high = 1000.0};
@@ -49,7 +49,7 @@ constexpr schema::Row kRows[] = {
      access<&Process::roughing_depth_um>},
     {"finishing_depth_um", Number{kDepth}, kRequired, "Depth of cut in finishing.",
      access<&Process::finishing_depth_um>},
-    {"finishing_cuts", schema::Whole{kCuts}, 2.0,
+    {"finishing_cuts", schema::Integer{kCuts}, 2.0,
      "Number of finishing cuts on each facet, for the strategies `two-step` and `dmc`.",
      access<&Process::finishing_cuts>},
     {"plough_length_mm", Number{kShortLength}, kRequired, "Length of a plough along facet 2, from the root.",
@@ -80,7 +80,7 @@ constexpr schema::Row kRows[] = {
             "min_chip_um", Number{kDepth}, kNone,
             "Minimum chip thickness. If the chip of a cut is thinner along its whole length, the edge rubs instead of "
             "cutting. The value is at most half of the depth of cut, both in roughing and in finishing.",
-            access_given<&Process::least_chip_um>}),
+            access_given<&Process::min_chip_um>}),
     {"stop_every_min", Number{kMinutes}, kNone,
      "Maximum run time of a program from its beginning, or from a stop, to the next stop. At a stop, the operator "
      "inspects the part and the edge, and touches off again.",
@@ -115,15 +115,15 @@ std::string hanging_chip(const Process& p) {
 /// half a depth of cut thick, which must be sufficient.
 std::string rubbing_depth(const Process& p) {
   const double most_um = 0.5 * std::min(p.roughing_depth_um, p.finishing_depth_um);
-  if (!p.least_chip_um || *p.least_chip_um <= most_um) return {};
+  if (!p.min_chip_um || *p.min_chip_um <= most_um) return {};
   return fmt::format("must be at most half of roughing_depth_um and of finishing_depth_um, which is {}, got {}",
-                     shortest(most_um), shortest(*p.least_chip_um));
+                     shortest(most_um), shortest(*p.min_chip_um));
 }
 
 constexpr std::string_view kPloughKeys[] = {"plough_length_mm"};
-constexpr std::string_view kLeastChipKeys[] = {"min_chip_um"};
+constexpr std::string_view kMinChipKeys[] = {"min_chip_um"};
 constexpr schema::Rule kRules[] = {
-    schema::Check{kLeastChipKeys, "`min_chip_um` is at most half of `roughing_depth_um` and of `finishing_depth_um`.",
+    schema::Check{kMinChipKeys, "`min_chip_um` is at most half of `roughing_depth_um` and of `finishing_depth_um`.",
                   schema::check_by<rubbing_depth>},
     schema::Check{kPloughKeys,
                   "A plough is at least as long as the depth of cut in roughing, unless `shortest_plough` is true.",

@@ -32,14 +32,14 @@ constexpr NumberRange kComponent{.low = -1e6, .high = 1e6};
 constexpr NumberRange kDegrees{.low = -3600.0, .high = 3600.0};
 /// Minimum determinant of the directions of the three linear axes, and minimum sine of the angle between the two rotary
 /// axes. A sine of 0.5 is an angle of 30 degrees.
-constexpr double kLeastDeterminant = 0.5;
+constexpr double kMinDeterminant = 0.5;
 
 /// Minimum length of a vector that is accepted as a direction. Shorter vectors are refused.
-constexpr double kLeastLength = 1e-6;
+constexpr double kMinLength = 1e-6;
 /// Maximum deviation of a direction's length from 1. A direction with a larger deviation is normalised when it is read.
 /// A direction that was written with length 1 is therefore read back unchanged.
 constexpr double kUnitTolerance = 1e-15;
-constexpr double kLeastVolumeMm3 = 1e-6;
+constexpr double kMinVolumeMm3 = 1e-6;
 
 // Conversions between members of Machine and values in files.
 
@@ -59,7 +59,7 @@ void set_point(Sourced<Vec3>& item, const Value& value) {
 void set_direction(Sourced<Vec3>& item, const Value& value) {
   set_point(item, value);
   const double length = item.value.norm();
-  if (length > kLeastLength && std::abs(length - 1.0) > kUnitTolerance) item.value /= length;
+  if (length > kMinLength && std::abs(length - 1.0) > kUnitTolerance) item.value /= length;
 }
 
 Value get_interval(const Sourced<Interval>& item) {
@@ -110,7 +110,7 @@ std::string nameless_source(const Sourced<Type>& item) {
   return item.source.empty() ? "must give the source of the value, got \"\"" : "";
 }
 std::string no_direction(const Sourced<Vec3>& item) {
-  if (item.value.norm() > kLeastLength) return {};
+  if (item.value.norm() > kMinLength) return {};
   return fmt::format("must be a vector with a length above 0, got [{}, {}, {}]", shortest(item.value.x()),
                      shortest(item.value.y()), shortest(item.value.z()));
 }
@@ -129,20 +129,19 @@ std::string falling_box(const Sourced<Points>& item) {
 std::string flat_hull(const Sourced<Points>& item) {
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
   for (const Vec3& p : item.value) spread += (p - item.value.front()) * (p - item.value.front()).transpose();
-  if (std::sqrt(std::max(spread.determinant(), 0.0)) > kLeastVolumeMm3) return {};
+  if (std::sqrt(std::max(spread.determinant(), 0.0)) > kMinVolumeMm3) return {};
   return "must not have all points in one plane";
 }
 std::string skew_linear_axes(const Machine& m) {
   const double volume = m.x.direction.value.cross(m.y.direction.value).dot(m.z.direction.value);
-  return volume > kLeastDeterminant
+  return volume > kMinDeterminant
              ? ""
              : "the directions of X, Y and Z must be right-handed and nearly perpendicular to each other";
 }
 std::string aligned_rotary_axes(const Machine& m) {
   const double across = m.a.direction.value.cross(m.c.direction.value).norm();
-  return across > kLeastDeterminant
-             ? ""
-             : std::string("the direction of C must not be nearly parallel to ") + m.tilt_letter();
+  return across > kMinDeterminant ? ""
+                                  : std::string("the direction of C must not be nearly parallel to ") + m.tilt_letter();
 }
 
 // Tables with a value and its origin: { value = ..., measured = "source" } or { value = ..., assumed = "reason" }.
@@ -237,7 +236,7 @@ constexpr Table value(std::string_view name, const ValueTable& type, Child child
           .presence = otherwise.empty() ? Presence::always : Presence::optional,
           .layout = Layout::in_line,
           .shape = kSourcedShape,
-          .otherwise = otherwise,
+          .default_text = otherwise,
           .former = former};
 }
 
@@ -286,7 +285,7 @@ constexpr Row kBodyRows[] = {
      "Part of the machine with which the body moves. `\"workpiece\"`: A and C rotate the body, for example the table "
      "or a clamp. `\"cradle\"`: A rotates the body, but C does not; on a machine with a tilting head, the body does "
      "not move. `\"tool\"`: the body holds the diamond, and its points are relative to the tool reference point.",
-     access<&MachineBody::carrier>}};
+     access<&MachineBody::link>}};
 constexpr Table kBodyTables[] = {value("box_mm", kBox, child_only_read<&MachineBody::points_mm>,
                                        "Box [x_min, y_min, z_min, x_max, y_max, z_max].", "none"),
                                  value("points_mm", kHull, child<&MachineBody::points_mm>,
@@ -323,23 +322,23 @@ constexpr Table kMountTables[] = {
           "Displacement, along X, Y and Z, of the tool reference point from its nominal position. For a tilting head, "
           "it is the displacement at B = 0.",
           "0"),
-    value("rotation_deg", kMountTurn, child<&ToolMount::turn_deg>,
+    value("rotation_deg", kMountTurn, child<&ToolMount::rotation_deg>,
           "Orientation of the mounted tool: a rotation vector by the right-hand rule. The tool is touched off after "
           "mounting, so the rotation does not move its reference point. A rotation about X changes the clearance, one "
           "about Y tilts the edge, and one about Z rotates the edge away from X.",
           "0", "turn_deg")};
 
 bool is_mounted_askew(const Machine& m) {
-  return m.mount.offset_mm.value != Vec3::Zero() || m.mount.turn_deg.value != Vec3::Zero();
+  return m.mount.offset_mm.value != Vec3::Zero() || m.mount.rotation_deg.value != Vec3::Zero();
 }
 
 template <std::string Control::*line>
 std::string unfit_text(const Control& control) {
   const std::string& text = control.*line;
   if (text.empty()) return {};
-  if (const std::string fault = unfit_line(text); !fault.empty()) return fault + ", got " + in_quotes(text);
+  if (const std::string fault = line_error(text); !fault.empty()) return fault + ", got " + in_quotes(text);
   const bool is_stop = &text == &control.stop || &text == &control.optional_stop;
-  const std::string fault = unknown_line(text, is_stop ? LineUse::stop : LineUse::output);
+  const std::string fault = line_form_error(text, is_stop ? LineUse::stop : LineUse::output);
   if (!control.has_unchecked_lines && !fault.empty())
     return fmt::format("{}; any other line needs control.has_unchecked_lines = true, got {}", fault, in_quotes(text));
   const std::string* const lines[] = {&control.mist_on, &control.mist_off, &control.optional_stop, &control.stop};
@@ -370,7 +369,7 @@ constexpr Row kControlRows[] = {
      "Letters of the modulo axes of a Sinumerik (MD30310). A modulo axis is a rotary axis that rotates without limits "
      "and whose position is counted within one rotation.",
      access<&Control::modulo_axes>},
-    {"coordinate_system", Whole{{.low = 1.0, .high = 127.0}}, 1.0,
+    {"coordinate_system", Integer{{.low = 1.0, .high = 127.0}}, 1.0,
      "Number of the coordinate system of a Power PMAC that contains the axes X to C.",
      access<&Control::coordinate_system>},
     {"mist_on", Text{}, kNone, "Program line that switches mist on, for a Power PMAC or an Aerotech control.",

@@ -16,7 +16,7 @@ namespace retrace::fabrication {
 struct ProfileSample {
   double x_mm = 0.0;
   double design_mm = 0.0;
-  double left_mm = 0.0;
+  double machined_mm = 0.0;
 };
 
 /// Result of a check. It is computed from the part, the tool and the NC text, without the planner.
@@ -24,7 +24,7 @@ struct PlaningCheck {
   std::vector<Finding> findings;     ///< findings, with values in mm
   std::vector<double> time_s;        ///< run time of each program
   std::vector<std::int64_t> frames;  ///< number of moves (frames) in each program
-  double standing_mm_max = 0.0;      ///< maximum height of remaining material above the design
+  double excess_mm_max = 0.0;        ///< maximum height of remaining material above the design
   double gouge_mm_max = 0.0;         ///< maximum depth of cuts below the design
   double off_grid_nm_max = 0.0;      ///< maximum distance of a position from the machine's grid
   double shortest_x_mm = 0.0;        ///< shortest move of X; 0 if X does not move

@@ -54,12 +54,12 @@ constexpr double kWordsMm = 2e-6;  // tolerance for positions that are rounded t
 ControlRule rule_of(const PlaningLathe& lathe, NcDialect dialect) {
   ControlRule rule;
   rule.axes = kAxesXz;
-  rule.most_rest_s = 0.0;
-  rule.safe_z_mm = lathe.clear_mm - kWordsMm;
+  rule.max_dwell_s = 0.0;
+  rule.safe_z_mm = lathe.clearance_mm - kWordsMm;
   const bool is_clockwise = lathe.spindle_direction == SpindleDirection::clockwise;
   rule.spindle.rpm = static_cast<double>(lathe.spindle_rpm);
-  rule.spindle.turns = is_clockwise ? NcSpindle::clockwise : NcSpindle::counterclockwise;
-  if (has_own_texts(dialect)) rule.spindle.turns = NcSpindle::started_by_text;
+  rule.spindle.state = is_clockwise ? NcSpindle::clockwise : NcSpindle::counterclockwise;
+  if (has_own_texts(dialect)) rule.spindle.state = NcSpindle::started_by_text;
   return rule;
 }
 
@@ -89,8 +89,8 @@ LatheCheck::LatheCheck(const PlanedPart& part, FindingList& findings, PlaningChe
       findings_(findings),
       result_(result),
       known_(findings, kAxesXz),
-      standing_(part.lens.half_width_mm, spacing_mm_, part.lathe->nose_radius_mm),
-      before_run_(standing_.heights_mm()) {}
+      stock_(part.lens.half_width_mm, spacing_mm_, part.lathe->nose_radius_mm),
+      before_run_(stock_.heights_mm()) {}
 
 void LatheCheck::begin(const NcProgram& program) {
   programs_.push_back(program.file);
@@ -99,7 +99,7 @@ void LatheCheck::begin(const NcProgram& program) {
 }
 
 std::int32_t LatheCheck::add_source(const NcMotion& motion) {
-  sources_.push_back({programs_.size() - 1, motion.place.line});
+  sources_.push_back({programs_.size() - 1, motion.location.line});
   return static_cast<std::int32_t>(sources_.size() - 1);
 }
 
@@ -110,20 +110,20 @@ void LatheCheck::add(const char* kind, std::int32_t who, const char* message, do
 
 void LatheCheck::motion(const NcMotion& motion, const NcSettings& settings) {
   known_.motion(motion);
-  control_->way(settings, motion);
+  control_->move(settings, motion);
   if (motion.move == NcMove::rapid) {
     end_run();
     follow_rapid(motion);
     return;
   }
   const PlaningLathe& lathe = *part_.lathe;
-  control_->cut(settings, motion.place);
+  control_->cut(settings, motion.location);
   control_->feed(motion, lathe.feed_mm_per_min);
   const SectionPoint from{motion.from.x_mm, motion.from.z_mm};
   const SectionPoint to{motion.to.x_mm, motion.to.z_mm};
   if (run_.empty()) run_.push_back(from);
   run_.push_back(to);
-  standing_.cut(from, to, add_source(motion));
+  stock_.cut(from, to, add_source(motion));
   ++result_.frames.back();
   if (const double feed = motion.path_speed_per_min(); feed > 0.0)
     result_.time_s.back() += std::hypot(to.x_mm - from.x_mm, to.z_mm - from.z_mm) / feed * 60.0;
@@ -132,18 +132,19 @@ void LatheCheck::motion(const NcMotion& motion, const NcSettings& settings) {
 /// Checks a rapid move. Its path is not always straight, so the nose may be anywhere in the box between both end
 /// points.
 void LatheCheck::follow_rapid(const NcMotion& motion) {
-  const double clear_mm = part_.lathe->clear_mm;
+  const double clear_mm = part_.lathe->clearance_mm;
   const double from_z = is_known(motion, 'Z') ? motion.from.z_mm : motion.to.z_mm;
   const double from_x = is_known(motion, 'X') ? motion.from.x_mm : motion.to.x_mm;
   const double lowest = std::min(from_z, motion.to.z_mm);
   const bool only_rises = from_x == motion.to.x_mm && motion.to.z_mm >= from_z;
   if (!only_rises && lowest < clear_mm - kWordsMm)
-    findings_.add("clearance", motion.place.line, "a rapid move goes below clear_mm", lowest, clear_mm);
+    findings_.add("clearance", motion.location.line, "a rapid move goes below clear_mm", lowest, clear_mm);
   if (only_rises || lowest >= 0.0) return;
-  const double taken = standing_.cut({from_x, lowest}, {motion.to.x_mm, lowest}, add_source(motion));
+  const double taken = stock_.cut({from_x, lowest}, {motion.to.x_mm, lowest}, add_source(motion));
   if (taken > kWordsMm)
-    findings_.add("rapid_in_material", motion.place.line, "a rapid move goes through remaining material", taken, 0.0);
-  before_run_ = standing_.heights_mm();
+    findings_.add("rapid_in_material", motion.location.line, "a rapid move goes through remaining material", taken,
+                  0.0);
+  before_run_ = stock_.heights_mm();
 }
 
 /// Ends a run of feed moves and checks that its chip is at most as thick as the depth of cut. The tolerance is added to
@@ -153,23 +154,23 @@ void LatheCheck::end_run() {
   runs_.push_back(std::move(run_));
   run_.clear();
   const double limit = part_.lathe->depth_of_cut_mm;
-  const std::vector<double>& heights = standing_.heights_mm();
+  const std::vector<double>& heights = stock_.heights_mm();
   for (std::size_t i = 0; i < heights.size(); ++i) {
     const double taken = before_run_[i] - heights[i];
     result_.chip_mm_max = std::max(result_.chip_mm_max, taken);
     if (taken > limit + part_.tolerance_mm)
-      add("chip_too_thick", standing_.who(i), "a pass removes more than the depth of cut", taken, limit);
+      add("chip_too_thick", stock_.who(i), "a pass removes more than the depth of cut", taken, limit);
   }
   before_run_ = heights;
 }
 
-void LatheCheck::dwell(double seconds, const NcPlace& place, const AxisPositions&) {
+void LatheCheck::dwell(double seconds, const NcLocation& place, const AxisPositions&) {
   result_.time_s.back() += seconds;
-  if (!run_.empty()) control_->rest(seconds, place);
+  if (!run_.empty()) control_->dwell(seconds, place);
 }
 
-void LatheCheck::stop(NcStop, const NcSettings&, const NcPlace& place) {
-  if (!run_.empty()) control_->rest(std::numeric_limits<double>::infinity(), place);
+void LatheCheck::stop(NcStop, const NcSettings&, const NcLocation& place) {
+  if (!run_.empty()) control_->dwell(std::numeric_limits<double>::infinity(), place);
 }
 
 void LatheCheck::end(const NcEnd& end) {
@@ -191,7 +192,7 @@ std::vector<SectionPoint> LatheCheck::last_pass() const {
           std::find_if(inner.begin(), inner.end(), [&](const SectionPoint& p) { return p.x_mm >= joint.x_mm; });
       if (beyond == inner.begin()) continue;
       if (beyond == inner.end()) {
-        const double clear_mm = part_.lathe->clear_mm;
+        const double clear_mm = part_.lathe->clearance_mm;
         const double end_mm = inner.back().x_mm;
         inner.push_back({end_mm, clear_mm});
         inner.push_back({joint.x_mm, clear_mm});
@@ -210,16 +211,16 @@ std::vector<SectionPoint> LatheCheck::last_pass() const {
 
 /// Finds moves before the last pass that went below the surface of the last pass by more than the tolerance.
 void LatheCheck::find_gouges(const std::vector<SectionPoint>& path, const SectionLine& reachable, double limit_mm) {
-  StandingSection last(part_.lens.half_width_mm, spacing_mm_, part_.lathe->nose_radius_mm);
+  StockProfile last(part_.lens.half_width_mm, spacing_mm_, part_.lathe->nose_radius_mm);
   for (std::size_t i = 1; i < path.size(); ++i) last.cut(path[i - 1], path[i], 0);
-  const std::vector<double>& heights = standing_.heights_mm();
+  const std::vector<double>& heights = stock_.heights_mm();
   for (std::size_t i = 0; i < heights.size(); ++i) {
     if (heights[i] > last.heights_mm()[i] - kWordsMm) continue;
-    const SectionPoint left{standing_.place_mm(i), heights[i]};
+    const SectionPoint left{stock_.position_mm(i), heights[i]};
     const double distance = largest_distance({left}, reachable, 2.0 * part_.tolerance_mm + 2.0 * spacing_mm_);
     if (distance > limit_mm + spacing_mm_)
-      add("gouge", standing_.who(i), "a move cuts below the surface of the last pass",
-          last.heights_mm()[i] - heights[i], part_.tolerance_mm);
+      add("gouge", stock_.who(i), "a move cuts below the surface of the last pass", last.heights_mm()[i] - heights[i],
+          part_.tolerance_mm);
   }
 }
 
@@ -236,8 +237,8 @@ void LatheCheck::measure() {
   double limit = part_.tolerance_mm * (1.0 + 1e-3);
   if (nose > 0.0) {
     // Include positions of the nose beyond the rim, because the nose also touches the rim from there.
-    reachable = left_by_nose(lowest_centres(design, nose, places_to(end + nose, spacing_mm_)), nose, places);
-    if (goes_outwards(path)) left = left_by_nose(left, nose, places);
+    reachable = nose_envelope(lowest_centres(design, nose, places_to(end + nose, spacing_mm_)), nose, places);
+    if (goes_outwards(path)) left = nose_envelope(left, nose, places);
     result_.unreached_mm_max = largest_distance(design, reachable, 2.0 * nose);
     limit += spacing_mm_ * spacing_mm_ / (8.0 * nose);  // maximum distance between a chord of a fillet and the fillet
   }

@@ -10,7 +10,7 @@
 #include "fabrication/check/control_check.h"
 #include "fabrication/check/known_axes.h"
 #include "fabrication/planing/check/check.h"
-#include "fabrication/planing/check/standing_section.h"
+#include "fabrication/planing/check/stock_profile.h"
 #include "fabrication/read/nc_motion.h"
 
 namespace retrace::fabrication {
@@ -24,11 +24,11 @@ class LatheCheck : public NcSink {
   /// Starts the checks of a program.
   void begin(const NcProgram& program);
   void motion(const NcMotion& motion, const NcSettings& settings) override;
-  void dwell(double seconds, const NcPlace& place, const AxisPositions&) override;
-  void state(const NcSettings& settings, const NcPlace& place) override {
+  void dwell(double seconds, const NcLocation& place, const AxisPositions&) override;
+  void state(const NcSettings& settings, const NcLocation& place) override {
     control_->state(settings, place, !run_.empty());
   }
-  void stop(NcStop, const NcSettings&, const NcPlace& place) override;
+  void stop(NcStop, const NcSettings&, const NcLocation& place) override;
   void end(const NcEnd& end);
   /// Compares the surface after all passes with the design.
   void measure();
@@ -55,7 +55,7 @@ class LatheCheck : public NcSink {
   std::optional<ControlCheck> control_;
   std::vector<std::string> programs_;
   std::vector<Source> sources_;
-  StandingSection standing_;
+  StockProfile stock_;
   std::vector<double> before_run_;               ///< heights of the section before the present run of feed moves
   std::vector<std::vector<SectionPoint>> runs_;  ///< completed runs of feed moves between rapid moves
   std::vector<SectionPoint> run_;

@@ -19,7 +19,7 @@ constexpr std::uint8_t kAxes = 0b111;
 ControlRule rule_of(const PlaningMill& mill) {
   ControlRule rule;
   rule.axes = kAxes;
-  rule.safe_z_mm = mill.clear_mm - kRoundingMm;
+  rule.safe_z_mm = mill.clearance_mm - kRoundingMm;
   return rule;
 }
 
@@ -41,51 +41,51 @@ MillCheck::MillCheck(const PlanedPart& part, FindingList& findings, PlaningCheck
 
 void MillCheck::begin(const NcProgram& program) {
   programs_.push_back(program.file);
-  std::fill(std::begin(is_placed_), std::end(is_placed_), false);
+  std::fill(std::begin(has_position_), std::end(has_position_), false);
   height_mm_ = 0.0;
   control_.begin(program);
 }
 
 void MillCheck::check_length(const NcMotion& motion, std::size_t axis, double length_mm) {
-  const std::array least = {part_.mill->least_x_mm, part_.mill->least_y_mm, part_.mill->least_z_mm};
+  const std::array least = {part_.mill->min_move_x_mm, part_.mill->min_move_y_mm, part_.mill->min_move_z_mm};
   double& shortest_mm = axis == 0 ? result_.shortest_x_mm : axis == 1 ? result_.shortest_y_mm : result_.shortest_z_mm;
   if (shortest_mm == 0.0 || length_mm < shortest_mm) shortest_mm = length_mm;
   if (length_mm < least[axis] - kRoundingMm)
-    findings_.add("short_move", motion.place.line,
+    findings_.add("short_move", motion.location.line,
                   fmt::format("a move of {} is shorter than the minimum move of fast feed", kLetters[axis]), length_mm,
                   least[axis]);
 }
 
-void MillCheck::check_grid(const NcMotion& motion, std::size_t axis, double place_mm) {
-  const double off_mm = std::abs(std::remainder(place_mm, part_.mill->grid_mm));
+void MillCheck::check_grid(const NcMotion& motion, std::size_t axis, double position_mm) {
+  const double off_mm = std::abs(std::remainder(position_mm, part_.mill->grid_mm));
   result_.off_grid_nm_max = std::max(result_.off_grid_nm_max, 1e6 * off_mm);
   if (off_mm > kRoundingMm)
-    findings_.add("off_grid", motion.place.line,
+    findings_.add("off_grid", motion.location.line,
                   fmt::format("{} is at a position that is not on the machine's grid", kLetters[axis]), off_mm, 0.0);
 }
 
 /// Checks that the tool does not move across or down while it is in the part, and stores the strokes (cutting moves
 /// along the zones).
-void MillCheck::check_place(const NcMotion& motion, std::size_t axis) {
+void MillCheck::check_position(const NcMotion& motion, std::size_t axis) {
   const double lowest = std::min(motion.from.z_mm, motion.to.z_mm);
   const bool is_beside = motion.to.y_mm < 0.0 || motion.to.y_mm > part_.length_mm;
   if (axis == 1) {
     if (!is_beside && lowest < 0.0)
-      findings_.add("ends_in_part", motion.place.line, "a stroke ends within the part", motion.to.y_mm,
+      findings_.add("ends_in_part", motion.location.line, "a stroke ends within the part", motion.to.y_mm,
                     part_.length_mm);
     const bool is_through = std::min(motion.from.y_mm, motion.to.y_mm) < 0.0 &&
                             std::max(motion.from.y_mm, motion.to.y_mm) > part_.length_mm;
     if (is_through && lowest < 0.0)
-      strokes_.push_back({motion.to.x_mm, -lowest, programs_.size() - 1, motion.place.line});
+      strokes_.push_back({motion.to.x_mm, -lowest, programs_.size() - 1, motion.location.line});
   } else if (!is_beside && lowest < 0.0) {
-    findings_.add("moves_in_part", motion.place.line,
+    findings_.add("moves_in_part", motion.location.line,
                   fmt::format("{} moves while the tool is in the part", kLetters[axis]), lowest, 0.0);
   }
 }
 
 void MillCheck::motion(const NcMotion& motion, const NcSettings& settings) {
-  control_.way(settings, motion);
-  control_.cut(settings, motion.place);
+  control_.move(settings, motion);
+  control_.cut(settings, motion.location);
   known_.motion(motion);
   height_mm_ = motion.to.z_mm;
   const std::array from = linear(motion.from);
@@ -95,22 +95,22 @@ void MillCheck::motion(const NcMotion& motion, const NcSettings& settings) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const bool is_known = ((motion.known >> axis) & 1U) != 0;
     if (!is_known && ((motion.moved >> axis) & 1U) == 0) continue;
-    low_mm_[axis] = is_placed_[axis] ? std::min(low_mm_[axis], to[axis]) : to[axis];
-    high_mm_[axis] = is_placed_[axis] ? std::max(high_mm_[axis], to[axis]) : to[axis];
-    is_placed_[axis] = true;
+    low_mm_[axis] = has_position_[axis] ? std::min(low_mm_[axis], to[axis]) : to[axis];
+    high_mm_[axis] = has_position_[axis] ? std::max(high_mm_[axis], to[axis]) : to[axis];
+    has_position_[axis] = true;
     check_grid(motion, axis, to[axis]);
     if (!is_known || from[axis] == to[axis]) continue;
     ++moved;
     length_mm += std::abs(to[axis] - from[axis]);
     check_length(motion, axis, std::abs(to[axis] - from[axis]));
-    check_place(motion, axis);
+    check_position(motion, axis);
   }
   if (moved == 0) return;
   if (moved > 1)
-    findings_.add("several_axes", motion.place.line, "several axes move at the same time", static_cast<double>(moved),
-                  1.0);
+    findings_.add("several_axes", motion.location.line, "several axes move at the same time",
+                  static_cast<double>(moved), 1.0);
   if (motion.move != NcMove::rapid)
-    findings_.add("not_fast", motion.place.line, "the tool must plane in fast feed (rapid moves) only",
+    findings_.add("not_fast", motion.location.line, "the tool must plane in fast feed (rapid moves) only",
                   motion.feed_mm_per_min, 0.0);
   ++result_.frames.back();
   result_.time_s.back() += length_mm / part_.mill->fast_feed_mm_per_min * 60.0 + part_.mill->frame_s;
@@ -123,12 +123,12 @@ void MillCheck::end(const NcEnd& end) {
     if (high_mm_[axis] - low_mm_[axis] > travel[axis] + kRoundingMm)
       findings_.add("travel", 0, fmt::format("the travel of {} exceeds that of the machine", kLetters[axis]),
                     high_mm_[axis] - low_mm_[axis], travel[axis]);
-  if (height_mm_ < part_.mill->clear_mm - kRoundingMm)
-    findings_.add("ends_low", 0, "the program ends with the tool below clear_mm", height_mm_, part_.mill->clear_mm);
+  if (height_mm_ < part_.mill->clearance_mm - kRoundingMm)
+    findings_.add("ends_low", 0, "the program ends with the tool below clear_mm", height_mm_, part_.mill->clearance_mm);
   const double hours = result_.time_s.back() / 3600.0;
-  if (hours > part_.mill->most_hours + 1e-9)
+  if (hours > part_.mill->max_hours + 1e-9)
     findings_.add("too_long", 0, fmt::format("the program runs for {} hours", fixed(hours, 3)), hours,
-                  part_.mill->most_hours);
+                  part_.mill->max_hours);
 }
 
 void MillCheck::measure_at(double x_mm, double left_mm, const Stroke* stroke) {
@@ -144,7 +144,7 @@ void MillCheck::measure_at(double x_mm, double left_mm, const Stroke* stroke) {
   // The other half of the lens is planed after the part has been rotated. Material that remains there is therefore not
   // an error.
   if (x_mm < 0.0 || x_mm > part_.lens.half_width_mm - near_mm) standing = 0.0;
-  result_.standing_mm_max = std::max(result_.standing_mm_max, standing);
+  result_.excess_mm_max = std::max(result_.excess_mm_max, standing);
   result_.gouge_mm_max = std::max(result_.gouge_mm_max, gouge);
   if (x_mm >= 0.0) result_.profile.push_back({x_mm, design_mm, left_mm});
   if (stroke != nullptr && gouge > part_.tolerance_mm + kRoundingMm)
@@ -179,8 +179,8 @@ void MillCheck::measure() {
       measure_at(std::clamp(x, x < -kBeside ? -part_.lens.half_width_mm : 0.0, part_.lens.half_width_mm), left_mm, of);
   }
   std::reverse(result_.profile.begin(), result_.profile.end());
-  if (result_.standing_mm_max > part_.tolerance_mm + kRoundingMm)
-    findings_.add("excess", 0, "material remains above the design", result_.standing_mm_max, part_.tolerance_mm);
+  if (result_.excess_mm_max > part_.tolerance_mm + kRoundingMm)
+    findings_.add("excess", 0, "material remains above the design", result_.excess_mm_max, part_.tolerance_mm);
 }
 
 }  // namespace retrace::fabrication

@@ -19,8 +19,8 @@ class MillCheck : public NcSink {
   /// Starts the checks of a program.
   void begin(const NcProgram& program);
   void motion(const NcMotion& motion, const NcSettings& settings) override;
-  void dwell(double seconds, const NcPlace&, const AxisPositions&) override { result_.time_s.back() += seconds; }
-  void state(const NcSettings& settings, const NcPlace& place) override { control_.state(settings, place, false); }
+  void dwell(double seconds, const NcLocation&, const AxisPositions&) override { result_.time_s.back() += seconds; }
+  void state(const NcSettings& settings, const NcLocation& place) override { control_.state(settings, place, false); }
   void end(const NcEnd& end);
   /// Compares the surface after all strokes with the design.
   void measure();
@@ -34,8 +34,8 @@ class MillCheck : public NcSink {
   };
 
   void check_length(const NcMotion& motion, std::size_t axis, double length_mm);
-  void check_grid(const NcMotion& motion, std::size_t axis, double place_mm);
-  void check_place(const NcMotion& motion, std::size_t axis);
+  void check_grid(const NcMotion& motion, std::size_t axis, double position_mm);
+  void check_position(const NcMotion& motion, std::size_t axis);
   /// Compares one point of the surface with the design.
   /// \param stroke stroke that produced this point; null if no stroke did
   void measure_at(double x_mm, double left_mm, const Stroke* stroke);
@@ -51,7 +51,7 @@ class MillCheck : public NcSink {
   double height_mm_ = 0.0;
   double low_mm_[3] = {0.0, 0.0, 0.0};
   double high_mm_[3] = {0.0, 0.0, 0.0};
-  bool is_placed_[3] = {false, false, false};
+  bool has_position_[3] = {false, false, false};
 };
 
 }  // namespace retrace::fabrication

@@ -67,8 +67,8 @@ double flank_slope_of(const PhaseProfile& profile, double half_width_mm) {
   double steepest = profile.slope(half_width_mm, profile.depth_mm(half_width_mm));
   for (const Wall& wall : profile.walls()) steepest = std::max(steepest, profile.slope(wall.x_mm, wall.inner_depth_mm));
   constexpr double kStepsPerDegree = 2.0;
-  const double deg = std::atan(steepest) / kDegree;
-  return std::tan(std::ceil(kStepsPerDegree * deg) / kStepsPerDegree * kDegree);
+  const double deg = std::atan(steepest) / kRadPerDeg;
+  return std::tan(std::ceil(kStepsPerDegree * deg) / kStepsPerDegree * kRadPerDeg);
 }
 
 }  // namespace retrace::fabrication

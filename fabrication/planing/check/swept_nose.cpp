@@ -56,9 +56,9 @@ double squared_distance(const SectionPoint& p, const SectionPoint& a, const Sect
 
 }  // namespace
 
-SectionLine left_by_nose(const SectionLine& centres, double nose_mm, const std::vector<double>& places_mm) {
+SectionLine nose_envelope(const SectionLine& centres, double nose_mm, const std::vector<double>& positions_mm) {
   SectionLine left;
-  for (const double x : with_fillets(places_mm, centres, nose_mm))
+  for (const double x : with_fillets(positions_mm, centres, nose_mm))
     left.push_back({x, std::numeric_limits<double>::infinity()});
   const auto lower = [&](double from, double to, const auto& height) {
     auto at =
@@ -82,16 +82,16 @@ SectionLine left_by_nose(const SectionLine& centres, double nose_mm, const std::
   return left;
 }
 
-SectionLine lowest_centres(const SectionLine& section, double nose_mm, const std::vector<double>& places_mm) {
+SectionLine lowest_centres(const SectionLine& section, double nose_mm, const std::vector<double>& positions_mm) {
   // If the centre of the nose is above the upper envelope of circles about the points of the section, the nose does not
   // cut into the section. This upper envelope is the negative of the lower envelope of circles about the negated
   // section.
-  return negated(left_by_nose(negated(section), nose_mm, places_mm));
+  return negated(nose_envelope(negated(section), nose_mm, positions_mm));
 }
 
-double largest_distance(const SectionLine& places, const SectionLine& line, double reach_mm) {
+double largest_distance(const SectionLine& points, const SectionLine& line, double reach_mm) {
   double largest = 0.0;
-  for (const SectionPoint& p : places) {
+  for (const SectionPoint& p : points) {
     double best = std::numeric_limits<double>::max();
     const auto first = std::lower_bound(line.begin(), line.end(), p.x_mm - reach_mm,
                                         [](const SectionPoint& q, double x) { return q.x_mm < x; });

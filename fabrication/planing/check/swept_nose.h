@@ -17,17 +17,17 @@ using SectionLine = std::vector<SectionPoint>;
 
 /// Returns the surface that a round nose produces while its centre moves along a line.
 /// \param centres path of the centre; x does not decrease
-/// \param places_mm positions of the points of the result, ascending. Positions at vertical walls that the nose
+/// \param positions_mm positions of the points of the result, ascending. Positions at vertical walls that the nose
 ///        produces are added
 /// \pre nose_mm > 0
-SectionLine left_by_nose(const SectionLine& centres, double nose_mm, const std::vector<double>& places_mm);
+SectionLine nose_envelope(const SectionLine& centres, double nose_mm, const std::vector<double>& positions_mm);
 
 /// Returns the lowest positions of the nose's centre at which the nose does not cut into a section.
-/// \pre as for left_by_nose()
-SectionLine lowest_centres(const SectionLine& section, double nose_mm, const std::vector<double>& places_mm);
+/// \pre as for nose_envelope()
+SectionLine lowest_centres(const SectionLine& section, double nose_mm, const std::vector<double>& positions_mm);
 
 /// Returns the largest distance of points from a line. Segments that are farther than `reach_mm` along x are ignored.
 /// If no segment is near a point, the result is the largest number of its type.
-double largest_distance(const SectionLine& places, const SectionLine& line, double reach_mm);
+double largest_distance(const SectionLine& points, const SectionLine& line, double reach_mm);
 
 }  // namespace retrace::fabrication

@@ -21,16 +21,16 @@ constexpr Kind kFeed = Number{{.low = 1.0, .high = 1e6}};
 /// Maximum tolerance and maximum half width, both in steps of the grid. For a mill, this is the grid of the machine.
 /// For a lathe, a step is a tenth of the tolerance. The first maximum limits the planning time, because the planner
 /// tries all depth increments from the tolerance down to one step.
-constexpr double kMostQuanta = 200.0;
-constexpr double kMostSteps = 1e6;
+constexpr double kMaxToleranceSteps = 200.0;
+constexpr double kMaxHalfWidthSteps = 1e6;
 /// Minimum width of a zone in steps of the grid. The profile of a narrower zone cannot be represented on the grid.
-constexpr double kLeastStepsOfZone = 4.0;
+constexpr double kMinZoneSteps = 4.0;
 
 constexpr Words kLenses = {"zone_lens", "round_zone_lens"};
 constexpr Condition kMilledOnly[] = {is("element.kind", only(kLenses, "zone_lens"))};
 constexpr Condition kTurnedOnly[] = {is("element.kind", only(kLenses, "round_zone_lens"))};
-constexpr Condition kWithStart[] = {beside("spindle_start")};
-constexpr Condition kWithStop[] = {beside("spindle_stop")};
+constexpr Condition kWithStart[] = {is_given("spindle_start")};
+constexpr Condition kWithStop[] = {is_given("spindle_stop")};
 
 constexpr Row kRows[] = {{"title", Text{}, kNone, "Title of the part. It is used as the title of plots."}};
 constexpr Row kElementRows[] = {
@@ -46,7 +46,7 @@ constexpr Row kToleranceRows[] = {
      "Form tolerance, at most half of the depth of a zone. Mill: tolerance of the depth, 2 to 200 steps of the grid. "
      "Lathe: maximum distance of the machined surface from the nearest surface that the round nose can produce without "
      "cutting below the profile."}};
-constexpr double kLeastMovesMm[] = {13.0, 13.0, 6.0};
+constexpr double kMinMovesMm[] = {13.0, 13.0, 6.0};
 constexpr double kTravelsMm[] = {350.0, 1500.0, 400.0};
 constexpr Row kMillRows[] = {
     {"fast_feed_mm_per_min", kFeed, kRequired, "Feed of all moves."},
@@ -54,7 +54,7 @@ constexpr Row kMillRows[] = {
                            "Time that each block of a program takes in addition to its move."}),
     {"grid_mm", Number{{.low = 1e-3, .high = 1.0}}, 0.01, "Step of the grid of the machine's positions."},
     renamed("least_move_mm",
-            Row{"min_move_mm", Numbers{3, {.low = 0.0, .high = 1e3}}, kLeastMovesMm,
+            Row{"min_move_mm", Numbers{3, {.low = 0.0, .high = 1e3}}, kMinMovesMm,
                 "Minimum lengths of moves in fast feed, `[x, y, z]`. X is across the zones, Y is along them, and Z is "
                 "up."}),
     {"travel_mm", Numbers{3, {.low = 0.1, .high = 1e4}}, kTravelsMm,
@@ -77,7 +77,7 @@ constexpr Row kLatheRows[] = {
      "Radius of the tool's nose, which is round on both sides. The nose must be small enough to reach the bottom of "
      "every zone next to the wall of the zone."},
     // An S word has up to five digits.
-    {"spindle_rpm", Whole{{.low = 1.0, .high = 99999.0}}, kRequired, "Speed of the spindle."},
+    {"spindle_rpm", Integer{{.low = 1.0, .high = 99999.0}}, kRequired, "Speed of the spindle."},
     {"spindle_direction", Word{kSpindleDirectionWords}, kRequired,
      "Direction of rotation of the spindle: `\"clockwise\"` is `M3`, `\"counterclockwise\"` is `M4`."},
     {"spindle_start", Text{}, kNone, kSpindleText, kWithStop},
@@ -151,9 +151,9 @@ void check_clearance(const Document& file) {
 
 void check_spindle_texts(const Document& file) {
   for (const std::string_view key : {kStart, kStop}) {
-    const std::string fault = file.has(key) ? unfit_line(file.text(key)) : "";
+    const std::string fault = file.has(key) ? line_error(file.text(key)) : "";
     if (!fault.empty()) file.fail(key, fault + ", got " + in_quotes(file.text(key)));
-    const std::string unknown = file.has(key) ? unknown_line(file.text(key), LineUse::output) : "";
+    const std::string unknown = file.has(key) ? line_form_error(file.text(key), LineUse::output) : "";
     if (!unknown.empty() && !file.flag("lathe.has_unchecked_lines"))
       file.fail(key, fmt::format("{}; any other line needs lathe.has_unchecked_lines = true, got {}", unknown,
                                  in_quotes(file.text(key))));
@@ -182,20 +182,21 @@ void check_sizes(const Document& file) {
   };
   if (part.tolerance_mm > 0.5 * step_mm) refuse_form("<= half the depth of a zone", 0.5 * step_mm);
   if (part.mill && part.tolerance_mm < 2.0 * grid) refuse_form(">= two steps of the machine's grid", 2.0 * grid);
-  if (part.mill && part.tolerance_mm > kMostQuanta * grid)
-    refuse_form(fmt::format("<= {} steps of the machine's grid", kMostQuanta), kMostQuanta * grid);
+  if (part.mill && part.tolerance_mm > kMaxToleranceSteps * grid)
+    refuse_form(fmt::format("<= {} steps of the machine's grid", kMaxToleranceSteps), kMaxToleranceSteps * grid);
   const double width_mm = 2.0 * part.lens.half_width_mm;
-  if (width_mm > 2.0 * kMostSteps * grid)
-    file.fail("element.width_mm",
-              fmt::format("must be <= {} with a {} of {}, got {}", fixed_apart(2.0 * kMostSteps * grid, width_mm, 3),
-                          part.mill ? "grid_mm" : "form_mm", shortest(part.mill ? grid : part.tolerance_mm),
-                          fixed_apart(width_mm, 2.0 * kMostSteps * grid, 3)));
+  if (width_mm > 2.0 * kMaxHalfWidthSteps * grid)
+    file.fail(
+        "element.width_mm",
+        fmt::format("must be <= {} with a {} of {}, got {}", fixed_apart(2.0 * kMaxHalfWidthSteps * grid, width_mm, 3),
+                    part.mill ? "grid_mm" : "form_mm", shortest(part.mill ? grid : part.tolerance_mm),
+                    fixed_apart(width_mm, 2.0 * kMaxHalfWidthSteps * grid, 3)));
 }
 
 void check_zones(const Document& file) {
   const PlanedPart part = part_of(file);
   const ZoneProfile profile = profile_of(file, part.lens);
-  const double least_mm = kLeastStepsOfZone * (part.mill ? part.mill->grid_mm : 0.1 * part.tolerance_mm);
+  const double least_mm = kMinZoneSteps * (part.mill ? part.mill->grid_mm : 0.1 * part.tolerance_mm);
   for (const Zone& zone : profile.zones())
     if (zone.to_mm - zone.from_mm < least_mm && zone.to_mm < part.lens.half_width_mm)
       file.fail(

@@ -21,10 +21,10 @@ std::int64_t steps_up(double length_mm, double grid_mm) {
 
 MillMoves::MillMoves(const PlanedPart& part, std::string set) : part_(part), set_(std::move(set)) {
   const PlaningMill& mill = *part.mill;
-  least_ = {steps_up(mill.least_x_mm, mill.grid_mm), steps_up(mill.least_y_mm, mill.grid_mm),
-            steps_up(mill.least_z_mm, mill.grid_mm)};
-  const std::int64_t run_out = steps_up(mill.run_out_mm, mill.grid_mm);
-  home_ = {0, -run_out, steps_up(mill.clear_mm, mill.grid_mm)};
+  min_steps_ = {steps_up(mill.min_move_x_mm, mill.grid_mm), steps_up(mill.min_move_y_mm, mill.grid_mm),
+                steps_up(mill.min_move_z_mm, mill.grid_mm)};
+  const std::int64_t run_out = steps_up(mill.overrun_mm, mill.grid_mm);
+  home_ = {0, -run_out, steps_up(mill.clearance_mm, mill.grid_mm)};
   stroke_end_ = steps_up(part.length_mm, mill.grid_mm) + run_out;
   begin();
 }
@@ -32,7 +32,7 @@ MillMoves::MillMoves(const PlanedPart& part, std::string set) : part_(part), set
 void MillMoves::begin() {
   state_ = {};
   state_.at.set = set_;
-  state_.place = home_;
+  state_.position = home_;
   const double nm = kNanometresPerMm * part_.mill->grid_mm;
   state_.at.program.header = {"one half of the lens: turn the part by 180 degrees and run it again",
                               "begins where the axes stand at its first three words"};
@@ -45,20 +45,20 @@ void MillMoves::begin() {
   }
 }
 
-MillMoves::Mark MillMoves::mark() const {
-  return {state_.at.program.items.size(), state_.at.frames, state_.at.cuts, state_.at.time_s, state_.place};
+MillMoves::Snapshot MillMoves::snapshot() const {
+  return {state_.at.program.items.size(), state_.at.frames, state_.at.cuts, state_.at.time_s, state_.position};
 }
 
-void MillMoves::go_back_to(const Mark& mark) {
+void MillMoves::restore(const Snapshot& mark) {
   state_.at.program.items.resize(mark.items);
   state_.at.frames = mark.frames;
   state_.at.cuts = mark.cuts;
   state_.at.time_s = mark.time_s;
-  state_.place = mark.place;
+  state_.position = mark.position;
 }
 
 void MillMoves::begin_next() {
-  go_home();
+  return_to_centre();
   done_.push_back(std::move(state_.at));
   begin();
 }
@@ -70,35 +70,36 @@ double MillMoves::time_of(std::int64_t steps) const {
 
 bool MillMoves::ends_in_time() const {
   // The time includes the moves back to the centre: Z, and X with a detour of twice its minimum move.
-  const double home_s = time_of(state_.place[kZ] - home_[kZ]) + time_of(state_.place[kX]) + time_of(2 * least_[kX]);
-  return state_.at.time_s + home_s <= 3600.0 * part_.mill->most_hours;
+  const double home_s =
+      time_of(state_.position[kZ] - home_[kZ]) + time_of(state_.position[kX]) + time_of(2 * min_steps_[kX]);
+  return state_.at.time_s + home_s <= 3600.0 * part_.mill->max_hours;
 }
 
 void MillMoves::require_in_time() const {
   if (!ends_in_time())
     throw InputError(fmt::format(
         "a single cut, or a single depth of all cuts, takes longer than {} hours, the max_hours of a program",
-        shortest(part_.mill->most_hours)));
+        shortest(part_.mill->max_hours)));
 }
 
 void MillMoves::single(Axis axis, std::int64_t to) {
   Move move;
   move.to[axis] = std::llround(static_cast<double>(to) * part_.mill->grid_mm * kNanometresPerMm);
   state_.at.program.items.emplace_back(move);
-  state_.at.time_s += time_of(to - state_.place[axis]);
+  state_.at.time_s += time_of(to - state_.position[axis]);
   ++state_.at.frames;
-  state_.place[axis] = to;
+  state_.position[axis] = to;
 }
 
 void MillMoves::move(Axis axis, std::int64_t to) {
-  const std::int64_t way = to - state_.place[axis];
+  const std::int64_t way = to - state_.position[axis];
   if (way == 0) return;
-  if (std::abs(way) < least_[axis]) {
+  if (std::abs(way) < min_steps_[axis]) {
     // The detour of Z is upwards, so that nothing is cut. The detour of X is away from the edge of the lens, so that
     // the travel is not larger than the lens.
-    const bool positive_first = axis == kZ || state_.place[axis] < 2 * least_[axis];
-    const std::int64_t detour = positive_first ? std::max(state_.place[axis], to) + least_[axis]
-                                               : std::min(state_.place[axis], to) - least_[axis];
+    const bool positive_first = axis == kZ || state_.position[axis] < 2 * min_steps_[axis];
+    const std::int64_t detour = positive_first ? std::max(state_.position[axis], to) + min_steps_[axis]
+                                               : std::min(state_.position[axis], to) - min_steps_[axis];
     single(axis, detour);
   }
   single(axis, to);
@@ -118,13 +119,13 @@ void MillMoves::stroke() {
   ++state_.at.cuts;
 }
 
-void MillMoves::go_home() {
+void MillMoves::return_to_centre() {
   move(kZ, home_[kZ]);
   move(kX, home_[kX]);
 }
 
 std::vector<PlannedProgram> MillMoves::finish() {
-  go_home();
+  return_to_centre();
   if (state_.at.cuts > 0) done_.push_back(std::move(state_.at));
   return std::move(done_);
 }

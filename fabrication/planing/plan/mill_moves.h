@@ -28,16 +28,16 @@ class MillMoves {
   /// Moves along the zones and back.
   void stroke();
   /// Moves up, and then back to the centre of the lens.
-  void go_home();
+  void return_to_centre();
   /// Makes moves that must be in one program. If the present program would exceed its time limit with them, they become
   /// the first moves of the next program.
   /// \throw InputError if these moves exceed the time limit even in a program without other moves
   template <class Moves>
-  void together(const Moves& moves) {
-    const Mark before = mark();
+  void in_one_program(const Moves& moves) {
+    const Snapshot before = snapshot();
     moves();
     if (ends_in_time()) return;
-    go_back_to(before);
+    restore(before);
     begin_next();
     moves();
     require_in_time();
@@ -48,20 +48,20 @@ class MillMoves {
   /// Present program, and position of the tool.
   struct State {
     PlannedProgram at;
-    std::array<std::int64_t, 3> place{};
+    std::array<std::int64_t, 3> position{};
   };
 
-  /// State of a program, to which go_back_to() can return.
-  struct Mark {
+  /// State of a program, to which restore() can return.
+  struct Snapshot {
     std::size_t items = 0;
     std::int64_t frames = 0;
     std::int64_t cuts = 0;
     double time_s = 0.0;
-    std::array<std::int64_t, 3> place{};
+    std::array<std::int64_t, 3> position{};
   };
 
-  Mark mark() const;
-  void go_back_to(const Mark& mark);
+  Snapshot snapshot() const;
+  void restore(const Snapshot& mark);
   void begin();
   void begin_next();
   void move(Axis axis, std::int64_t to);
@@ -72,7 +72,7 @@ class MillMoves {
 
   const PlanedPart& part_;
   std::string set_;
-  std::array<std::int64_t, 3> least_{};
+  std::array<std::int64_t, 3> min_steps_{};
   std::array<std::int64_t, 3> home_{};
   std::int64_t stroke_end_ = 0;
   std::vector<PlannedProgram> done_;

@@ -19,7 +19,7 @@ namespace {
 
 // Distance of the points of a lathe's profile, divided by the tolerance of the path.
 constexpr double kPointsPerTolerance = 1.0;
-constexpr std::size_t kMostPoints = 40000;
+constexpr std::size_t kMaxPoints = 40000;
 
 void append(std::vector<PlannedProgram>& programs, std::vector<PlannedProgram> more) {
   for (PlannedProgram& program : more) programs.push_back(std::move(program));
@@ -33,13 +33,13 @@ std::vector<PlannedProgram> moves_by_depth(const PlanedPart& part, const std::ve
   for (const ZoneCut& cut : cuts) by_depth[cut.depth].push_back(cut);
   MillMoves moves(part, set);
   for (const auto& [depth, at_depth] : by_depth)
-    moves.together([&, level = depth, &strokes = at_depth] {
+    moves.in_one_program([&, level = depth, &strokes = at_depth] {
       moves.lower_to(level);
       for (const ZoneCut& cut : strokes) {
         moves.across_to(cut.x);
         moves.stroke();
       }
-      moves.go_home();
+      moves.return_to_centre();
     });
   return moves.finish();
 }
@@ -47,7 +47,7 @@ std::vector<PlannedProgram> moves_by_depth(const PlanedPart& part, const std::ve
 std::vector<PlannedProgram> moves_one_after_another(const PlanedPart& part, const std::vector<ZoneCut>& cuts) {
   MillMoves moves(part, "inner zones");
   for (const ZoneCut& cut : cuts)
-    moves.together([&] {
+    moves.in_one_program([&] {
       moves.across_to(cut.x);
       moves.lower_to(cut.depth);
       moves.stroke();
@@ -64,9 +64,9 @@ PlaningPlan plan_with(const PlanedPart& part, const ZoneProfile& profile, const 
   plan.quantum_mm = static_cast<double>(quantum) * cutter.grid_mm();
   std::vector<ZoneCut> odd, even, inner;
   for (std::size_t zone = 0; zone < profile.zones().size(); ++zone) {
-    const auto by_depths = cutter.by_depths(zone, quantum);
-    const std::vector<ZoneCut> cuts = by_depths ? *by_depths : cutter.one_after_another(zone);
-    plan.by_depths.push_back(by_depths.has_value());
+    const auto by_depths = cutter.cuts_at_depths(zone, quantum);
+    const std::vector<ZoneCut> cuts = by_depths ? *by_depths : cutter.sequential_cuts(zone);
+    plan.uses_depth_method.push_back(by_depths.has_value());
     // Zone numbers start at 1 for users, so that zone 0 belongs to the odd zones.
     std::vector<ZoneCut>& set = !by_depths ? inner : (zone % 2 == 0 ? odd : even);
     set.insert(set.end(), cuts.begin(), cuts.end());
@@ -136,7 +136,7 @@ PlaningPlan plan_mill(const PlanedPart& part) {
 void add_pass(const PlanedPart& part, const PlaningPlan& plan, double raised_mm, PlannedProgram& planned) {
   const PlaningLathe& lathe = *part.lathe;
   Move out, in;
-  out.to[kZ] = nanometres(lathe.clear_mm);
+  out.to[kZ] = nanometres(lathe.clearance_mm);
   in.to[kX] = nanometres(plan.points.front().x_mm);
   planned.program.items.emplace_back(out);
   planned.program.items.emplace_back(in);
@@ -145,7 +145,7 @@ void add_pass(const PlanedPart& part, const PlaningPlan& plan, double raised_mm,
     const ProfilePoint& to = plan.points[k];
     Move cut{Motion::plough, {}, lathe.feed_mm_per_min, 0.0};
     cut.to[kX] = nanometres(to.x_mm);
-    cut.to[kZ] = nanometres(std::min(to.z_mm + raised_mm, lathe.clear_mm));
+    cut.to[kZ] = nanometres(std::min(to.z_mm + raised_mm, lathe.clearance_mm));
     planned.program.items.emplace_back(cut);
     planned.time_s += std::hypot(to.x_mm - at.x_mm, to.z_mm - at.z_mm) / lathe.feed_mm_per_min * 60.0;
     ++planned.frames;
@@ -165,7 +165,7 @@ PlaningPlan plan_lathe(const PlanedPart& part) {
   PlaningPlan plan;
   const double tolerance = path_tolerance_mm(profile, part.lathe->nose_radius_mm, part.tolerance_mm);
   const double spacing =
-      std::max(kPointsPerTolerance * tolerance, part.lens.half_width_mm / static_cast<double>(kMostPoints));
+      std::max(kPointsPerTolerance * tolerance, part.lens.half_width_mm / static_cast<double>(kMaxPoints));
   plan.points = nose_points(profile, part.lathe->nose_radius_mm, spacing, tolerance);
   plan.chords = fewest_chords(plan.points, tolerance);
   plan.longest = longest_chords(plan.points, tolerance);

@@ -25,14 +25,14 @@ struct PlannedProgram {
 /// Plan of a flat element. The programs of a mill produce one half of a lens. The part is then rotated by 180 degrees
 /// about Z, and the programs run a second time. docs/theory/planing.md describes the two methods of milling.
 struct PlaningPlan {
-  double flank_slope = 0.0;          ///< slope of the flank of the mill's tool, as depth divided by distance
-  double quantum_mm = 0.0;           ///< depth increment of the cuts of the first method
-  std::vector<ZoneCut> cuts;         ///< mill: cuts, sorted by zone and outwards
-  std::vector<bool> by_depths;       ///< for each zone: true if the first method is used
-  Chords chords;                     ///< lathe: chords with which the programs approximate the profile
-  Chords longest;                    ///< lathe: result of longest_chords(), for comparison
-  std::vector<ProfilePoint> points;  ///< lathe: points that the chords connect
-  std::int64_t passes = 0;           ///< lathe: number of passes
+  double flank_slope = 0.0;             ///< slope of the flank of the mill's tool, as depth divided by distance
+  double quantum_mm = 0.0;              ///< depth increment of the cuts of the first method
+  std::vector<ZoneCut> cuts;            ///< mill: cuts, sorted by zone and outwards
+  std::vector<bool> uses_depth_method;  ///< for each zone: true if the first method is used
+  Chords chords;                        ///< lathe: chords with which the programs approximate the profile
+  Chords longest;                       ///< lathe: result of longest_chords(), for comparison
+  std::vector<ProfilePoint> points;     ///< lathe: points that the chords connect
+  std::int64_t passes = 0;              ///< lathe: number of passes
   std::vector<PlannedProgram> programs;
   int runs = 1;  ///< number of runs of every program: 2 for a milled lens, which is made in two halves
 

@@ -20,11 +20,11 @@ double flank_slope_of(const ZoneProfile& profile) {
 ZoneCutter::ZoneCutter(const ZoneProfile& profile, double grid_mm, double tolerance_mm)
     : profile_(profile), grid_mm_(grid_mm), tolerance_mm_(tolerance_mm), flank_slope_(flank_slope_of(profile)) {}
 
-std::int64_t ZoneCutter::first_place(std::size_t zone) const {
+std::int64_t ZoneCutter::first_position(std::size_t zone) const {
   return static_cast<std::int64_t>(std::ceil(profile_.zones()[zone].from_mm / grid_mm_));
 }
 
-std::int64_t ZoneCutter::last_place(std::size_t zone) const {
+std::int64_t ZoneCutter::last_position(std::size_t zone) const {
   return std::llround(profile_.zones()[zone].to_mm / grid_mm_);
 }
 
@@ -34,7 +34,7 @@ ZoneCut ZoneCutter::cut_at(std::size_t zone, std::int64_t x) const {
   return {zone, x, std::llround(depth / grid_mm_)};
 }
 
-double ZoneCutter::left_standing_mm(std::size_t zone, const ZoneCut* before, const ZoneCut& cut) const {
+double ZoneCutter::cusp_height_mm(std::size_t zone, const ZoneCut* before, const ZoneCut& cut) const {
   const double x = static_cast<double>(cut.x) * grid_mm_;
   const double depth = static_cast<double>(cut.depth) * grid_mm_;
   const double from = before != nullptr ? static_cast<double>(before->x) * grid_mm_ : profile_.zones()[zone].from_mm;
@@ -48,11 +48,11 @@ std::optional<ZoneCut> ZoneCutter::at_depth(std::size_t zone, std::int64_t depth
                                             const ZoneCut* before) const {
   const double middle = static_cast<double>(depth) * grid_mm_;
   const auto place = [&](double depth_mm) {
-    return profile_.place_in_zone_mm(zone, std::max(depth_mm, 0.0)) / grid_mm_;
+    return profile_.position_in_zone_mm(zone, std::max(depth_mm, 0.0)) / grid_mm_;
   };
-  const std::int64_t last = last_place(zone);
+  const std::int64_t last = last_position(zone);
   const std::int64_t low =
-      std::max(first_place(zone), static_cast<std::int64_t>(std::ceil(place(middle - 0.5 * grid_mm_))));
+      std::max(first_position(zone), static_cast<std::int64_t>(std::ceil(place(middle - 0.5 * grid_mm_))));
   const std::int64_t high = std::min(last, static_cast<std::int64_t>(std::floor(place(middle + 0.5 * grid_mm_))));
   if (low == high) return ZoneCut{zone, low, depth};  // exactly one grid point is at this depth
   if (low < high) {
@@ -61,48 +61,48 @@ std::optional<ZoneCut> ZoneCutter::at_depth(std::size_t zone, std::int64_t depth
     std::int64_t beyond = high + 1;
     while (beyond - fits > 1) {
       const std::int64_t probe = fits + (beyond - fits) / 2;
-      (left_standing_mm(zone, before, {zone, probe, depth}) <= tolerance_mm_ ? fits : beyond) = probe;
+      (cusp_height_mm(zone, before, {zone, probe, depth}) <= tolerance_mm_ ? fits : beyond) = probe;
     }
     return ZoneCut{zone, fits, depth};
   }
   // No grid point is at this depth. Cut at the nearest one only if a cut at the next depth would leave more than the
   // tolerance.
-  const std::int64_t nearest = std::clamp<std::int64_t>(std::llround(place(middle)), first_place(zone), last);
+  const std::int64_t nearest = std::clamp<std::int64_t>(std::llround(place(middle)), first_position(zone), last);
   const auto next =
       std::min(last, static_cast<std::int64_t>(std::llround(place(static_cast<double>(next_depth) * grid_mm_))));
-  if (next <= nearest || left_standing_mm(zone, before, cut_at(zone, next)) <= tolerance_mm_) return std::nullopt;
+  if (next <= nearest || cusp_height_mm(zone, before, cut_at(zone, next)) <= tolerance_mm_) return std::nullopt;
   return cut_at(zone, nearest);
 }
 
-std::optional<std::vector<ZoneCut>> ZoneCutter::by_depths(std::size_t zone, std::int64_t quantum) const {
+std::optional<std::vector<ZoneCut>> ZoneCutter::cuts_at_depths(std::size_t zone, std::int64_t quantum) const {
   const Zone& range = profile_.zones()[zone];
   const double shallowest = profile_.depth_in_zone_mm(zone, range.from_mm);
-  const ZoneCut deepest = cut_at(zone, last_place(zone));
+  const ZoneCut deepest = cut_at(zone, last_position(zone));
   std::vector<ZoneCut> cuts;
   const auto before = [&]() { return cuts.empty() ? nullptr : &cuts.back(); };
   for (std::int64_t depth = quantum; depth < deepest.depth; depth += quantum) {
     if (static_cast<double>(depth) * grid_mm_ < shallowest) continue;
     const auto cut = at_depth(zone, depth, std::min(depth + quantum, deepest.depth), before());
     if (!cut || (before() != nullptr && cut->x <= before()->x)) continue;
-    if (left_standing_mm(zone, before(), *cut) > tolerance_mm_) return std::nullopt;
+    if (cusp_height_mm(zone, before(), *cut) > tolerance_mm_) return std::nullopt;
     cuts.push_back(*cut);
   }
-  if (left_standing_mm(zone, before(), deepest) > tolerance_mm_) return std::nullopt;
+  if (cusp_height_mm(zone, before(), deepest) > tolerance_mm_) return std::nullopt;
   if (before() == nullptr || before()->x < deepest.x) cuts.push_back(deepest);
   return cuts;
 }
 
-std::vector<ZoneCut> ZoneCutter::one_after_another(std::size_t zone) const {
+std::vector<ZoneCut> ZoneCutter::sequential_cuts(std::size_t zone) const {
   std::vector<ZoneCut> cuts;
-  const std::int64_t last = last_place(zone);
-  std::int64_t at = first_place(zone) - 1;
+  const std::int64_t last = last_position(zone);
+  std::int64_t at = first_position(zone) - 1;
   while (at < last) {
     const ZoneCut* const before = cuts.empty() ? nullptr : &cuts.back();
     std::int64_t fits = at;
     std::int64_t beyond = last + 1;
     while (beyond - fits > 1) {
       const std::int64_t probe = fits + (beyond - fits) / 2;
-      (left_standing_mm(zone, before, cut_at(zone, probe)) <= tolerance_mm_ ? fits : beyond) = probe;
+      (cusp_height_mm(zone, before, cut_at(zone, probe)) <= tolerance_mm_ ? fits : beyond) = probe;
     }
     if (fits == at)
       throw InputError(fmt::format("neighbouring cuts on a grid of {} mm leave more material than {} mm",

@@ -35,20 +35,20 @@ class ZoneCutter {
   /// First method: at most one cut at every depth that is a multiple of the depth increment (quantum), by the three
   /// cases of docs/theory/planing.md. Returns nothing if these cuts leave more than the tolerance.
   /// \param quantum depth increment in steps of the grid, >= 1
-  std::optional<std::vector<ZoneCut>> by_depths(std::size_t zone, std::int64_t quantum) const;
+  std::optional<std::vector<ZoneCut>> cuts_at_depths(std::size_t zone, std::int64_t quantum) const;
   /// Second method: cuts from the inside to the outside. Each cut is as far from the previous one as the tolerance
   /// allows.
   /// \throw InputError if the tolerance is too small for the grid
-  std::vector<ZoneCut> one_after_another(std::size_t zone) const;
+  std::vector<ZoneCut> sequential_cuts(std::size_t zone) const;
 
   /// Returns the maximum height of the material that remains between two neighbouring cuts of a zone.
   /// \param before previous cut. If it is null, the material between the inner step of the zone and the first cut is
   ///        measured
-  double left_standing_mm(std::size_t zone, const ZoneCut* before, const ZoneCut& cut) const;
+  double cusp_height_mm(std::size_t zone, const ZoneCut* before, const ZoneCut& cut) const;
 
  private:
-  std::int64_t first_place(std::size_t zone) const;
-  std::int64_t last_place(std::size_t zone) const;
+  std::int64_t first_position(std::size_t zone) const;
+  std::int64_t last_position(std::size_t zone) const;
   ZoneCut cut_at(std::size_t zone, std::int64_t x) const;
   std::optional<ZoneCut> at_depth(std::size_t zone, std::int64_t depth, std::int64_t next_depth,
                                   const ZoneCut* before) const;

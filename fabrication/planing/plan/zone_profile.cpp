@@ -11,7 +11,7 @@
 namespace retrace::fabrication {
 namespace {
 
-constexpr std::size_t kMostZones = 10000;
+constexpr std::size_t kMaxZones = 10000;
 
 }  // namespace
 
@@ -20,12 +20,12 @@ ZoneProfile::ZoneProfile(const ZoneLens& lens) : lens_(lens) {
   double from = 0.0;
   while (from < lens.half_width_mm) {
     const std::size_t zone = zones_.size();
-    if (!(vertex_distance_mm(zone) > 0.0) || zone >= kMostZones)
+    if (!(vertex_distance_mm(zone) > 0.0) || zone >= kMaxZones)
       throw InputError(
           fmt::format("the lens has more zones than its focal length allows: zone {} would begin beyond the "
                       "focus; wavelength_mm / (refractive_index - 1) is {}",
                       zone + 1, fixed(step_mm_, 6)));
-    const double to = place_in_zone_mm(zone, step_mm_);
+    const double to = position_in_zone_mm(zone, step_mm_);
     zones_.push_back({from, std::min(to, lens.half_width_mm)});
     from = to;
   }
@@ -55,7 +55,7 @@ double ZoneProfile::slope_in_zone(std::size_t zone, double x_mm) const {
   return x_mm / std::sqrt(near * near + (n * n - 1.0) * x_mm * x_mm);
 }
 
-double ZoneProfile::place_in_zone_mm(std::size_t zone, double depth_mm) const {
+double ZoneProfile::position_in_zone_mm(std::size_t zone, double depth_mm) const {
   const double n = lens_.refractive_index;
   const double z = depth_mm + static_cast<double>(zone) * step_mm_;
   return std::sqrt(2.0 * (n - 1.0) * vertex_distance_mm(zone) * z + (n * n - 1.0) * z * z);

@@ -38,7 +38,7 @@ class ZoneProfile {
   double slope_in_zone(std::size_t zone, double x_mm) const;
   /// Returns the position at which the formula of a zone gives a depth.
   /// \pre the depth is not less than the depth of this formula at the centre
-  double place_in_zone_mm(std::size_t zone, double depth_mm) const;
+  double position_in_zone_mm(std::size_t zone, double depth_mm) const;
   double steepest_slope() const;
 
  private:

@@ -28,9 +28,9 @@ class CoverageCheck {
     for (const CutPass& pass : cuts_.passes) check_direction(pass);
     if (cuts_.passes.empty()) {
       add_uncut(0, 0, "no cut was found", 0.0, 0.0);
-      figures_.is_orderly = false;
+      figures_.is_monotonic = false;
     }
-    if (!figures_.is_orderly) return figures_;
+    if (!figures_.is_monotonic) return figures_;
     if (path_.strategy == Strategy::spiral)
       check_turns();
     else
@@ -45,7 +45,7 @@ class CoverageCheck {
     findings_.add({kind, cuts_.programs[pass.program], pass.line[i], -1, std::move(message), value, limit, 1});
   }
   void add_uncut(std::size_t program, std::int32_t line, std::string message, double value, double limit) {
-    figures_.is_whole = false;
+    figures_.is_complete = false;
     findings_.add({"uncut", cuts_.programs.empty() ? "" : cuts_.programs[program], line, -1, std::move(message), value,
                    limit, 1});
   }
@@ -56,7 +56,7 @@ class CoverageCheck {
       const bool rises = pass.c_rad[i - 1] < pass.c_rad[i];
       const bool falls = pass.c_rad[i - 1] == pass.c_rad[i] && pass.y_mm[i - 1] > pass.y_mm[i];
       if (is_spiral() ? rises : falls) continue;
-      figures_.is_orderly = false;
+      figures_.is_monotonic = false;
       add("direction", pass, i,
           is_spiral() ? "C does not increase along the cut" : "along the line, C changes or Y does not decrease", 0.0,
           0.0);
@@ -83,20 +83,20 @@ class CoverageCheck {
     for (std::size_t j = pass; j-- > 0;) {
       const CutPass& before = cuts_.passes[j];
       const double end = before.c_rad.back();
-      const double at = end - std::fmod(std::fmod(end - c_rad, kTurn) + kTurn, kTurn);
+      const double at = end - std::fmod(std::fmod(end - c_rad, kTwoPi) + kTwoPi, kTwoPi);
       if (at >= before.c_rad.front()) return radius_at(before, at);
     }
     return path_.radius_mm;
   }
 
   void check_turns() {
-    const double cosine = std::cos(part_.tool.skew_deg * kDegree);
-    const double sine = std::sin(part_.tool.skew_deg * kDegree);
+    const double cosine = std::cos(part_.tool.skew_deg * kRadPerDeg);
+    const double sine = std::sin(part_.tool.skew_deg * kRadPerDeg);
     for (std::size_t k = 0; k < cuts_.passes.size(); ++k) {
       const CutPass& pass = cuts_.passes[k];
       for (std::size_t i = 0; i < pass.size(); ++i) {
         const double c = pass.c_rad[i];
-        const double before = c - kTurn >= pass.c_rad.front() ? radius_at(pass, c - kTurn) : radius_before(k, c);
+        const double before = c - kTwoPi >= pass.c_rad.front() ? radius_at(pass, c - kTwoPi) : radius_before(k, c);
         check_step(pass, i, before - radius(pass, i));
         const double off = std::abs(pass.x_mm[i] * sine + pass.y_mm[i] * cosine);
         if (off > kOffSkewMm)
@@ -140,8 +140,8 @@ class CoverageCheck {
     for (const CutPass& pass : cuts_.passes) {
       std::vector<geometry::Vec2> line;
       for (std::size_t i = 0; i < pass.size(); ++i) line.push_back(place(pass, i));
-      if (std::abs(pass.c_rad.front() / kDegree + part_.tool.skew_deg) > kSameDeg)
-        add("skew", pass, 1, "the position of C does not match the tool's skew", pass.c_rad.front() / kDegree,
+      if (std::abs(pass.c_rad.front() / kRadPerDeg + part_.tool.skew_deg) > kSameDeg)
+        add("skew", pass, 1, "the position of C does not match the tool's skew", pass.c_rad.front() / kRadPerDeg,
             -part_.tool.skew_deg);
       if (line.front().y() < half_along || line.back().y() > -half_along)
         add_uncut(pass.program, pass.line.front(), "a line does not extend over the whole part",
@@ -186,7 +186,7 @@ class CoverageCheck {
           step_mm, path_.feed_mm);
     was_wide_ = is_wide;
     // In a gap wider than the nose, a part of the surface is not cut at all.
-    if (step_mm > path_.feed_mm + 2.0 * part_.tool.nose_radius_mm) figures_.is_whole = false;
+    if (step_mm > path_.feed_mm + 2.0 * part_.tool.nose_radius_mm) figures_.is_complete = false;
   }
 
   const TurnedPart& part_;

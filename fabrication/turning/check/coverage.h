@@ -8,8 +8,8 @@ namespace retrace::fabrication::turning {
 
 struct CoverageFigures {
   double step_mm_max = 0.0;  ///< maximum distance between neighbouring cuts
-  bool is_orderly = true;    ///< true if every cut moves forward; otherwise the machined surface cannot be computed
-  bool is_whole = true;      ///< true if no part of the region is left uncut
+  bool is_monotonic = true;  ///< true if every cut moves forward; otherwise the machined surface cannot be computed
+  bool is_complete = true;   ///< true if no part of the region is left uncut
 };
 
 /// Checks the order and the distance of the cuts. The kinds of findings are:

@@ -24,7 +24,7 @@ constexpr double kWordMm = 1e-6;
 ControlRule rule_of_c_axis() {
   ControlRule rule;
   rule.axes = kAxesXyzc;
-  rule.most_rest_s = 0.0;
+  rule.max_dwell_s = 0.0;
   return rule;
 }
 
@@ -66,18 +66,18 @@ class CutReader : public NcSink {
       const bool is_z_known = (motion.known & 4U) != 0;
       const double from_z = is_z_known ? motion.from.z_mm : motion.to.z_mm;
       if (!moves_z_alone || motion.to.z_mm < from_z || !is_z_known)
-        cuts_.free_moves.push_back({std::min(from_z, motion.to.z_mm), cuts_.programs.size() - 1, motion.place.line});
+        cuts_.free_moves.push_back({std::min(from_z, motion.to.z_mm), cuts_.programs.size() - 1, motion.location.line});
     } else {
       check_cut(motion, moves_z_alone && !is_cutting_);
     }
     recorder_->motion(motion, settings);
   }
 
-  void dwell(double seconds, const NcPlace& place, const AxisPositions&) override {
-    if (is_down_) control_.rest(seconds, place);
+  void dwell(double seconds, const NcLocation& place, const AxisPositions&) override {
+    if (is_down_) control_.dwell(seconds, place);
   }
 
-  void state(const NcSettings& settings, const NcPlace& place) override {
+  void state(const NcSettings& settings, const NcLocation& place) override {
     // Cuts are paths without stops. check_state() checks exact stops for each move, so the check of exact stops is
     // disabled here.
     NcSettings asked = settings;
@@ -85,36 +85,36 @@ class CutReader : public NcSink {
     control_.state(asked, place, is_down_);
   }
 
-  void stop(NcStop, const NcSettings&, const NcPlace& place) override {
-    if (is_down_) control_.rest(std::numeric_limits<double>::infinity(), place);
+  void stop(NcStop, const NcSettings&, const NcLocation& place) override {
+    if (is_down_) control_.dwell(std::numeric_limits<double>::infinity(), place);
   }
 
   TurningCuts take() { return std::move(cuts_); }
 
  private:
   void check_state(const NcMotion& motion, const NcSettings& settings) {
-    control_.way(settings, motion);
+    control_.move(settings, motion);
     // Cuts are paths without stops. The check of exact stops is disabled for timed moves and rapid moves.
     NcSettings asked = settings;
     if (motion.duration_s > 0.0 || motion.move == NcMove::rapid) asked.exact_stop = true;
-    control_.cut(asked, motion.place);
+    control_.cut(asked, motion.location);
     if (motion.duration_s > 0.0 && !motion.is_exact_stop)
       cuts_.blend_mm = std::max(cuts_.blend_mm, settings.blend_mm.value_or(0.0));
     const bool is_free = cuts_.dialects.back() == NcDialect::rs274ngc && motion.duration_s > 0.0 &&
                          !motion.is_exact_stop && !settings.blend_mm;
     if (is_free && !std::exchange(has_free_path_, true))
-      findings_.add("blending", motion.place.line,
+      findings_.add("blending", motion.location.line,
                     "G64 without P allows any distance between the tool and the path between blocks");
   }
 
   void check_cut(const NcMotion& motion, bool is_approach) {
     is_cutting_ = !is_approach;
     if (!is_approach) return;
-    cuts_.down_moves.push_back({motion.to, 0.0, cuts_.programs.size() - 1, motion.place.line});
+    cuts_.down_moves.push_back({motion.to, 0.0, cuts_.programs.size() - 1, motion.location.line});
     if (motion.duration_s == 0.0 || motion.path_speed_per_min() > 0.0)
       control_.feed(motion, part_.path.approach_mm_per_min);
     if (!motion.is_exact_stop && !std::exchange(has_soft_start_, true))
-      findings_.add("setup", motion.place.line, "the tool moves down to the start of the cut without an exact stop");
+      findings_.add("setup", motion.location.line, "the tool moves down to the start of the cut without an exact stop");
   }
 
   void follow_travel(const NcMotion& motion) {
@@ -136,7 +136,7 @@ class CutReader : public NcSink {
       worst.by_mm = std::max(below, above);
       worst.at_mm = to[axis];
       worst.limit_mm = below > above ? *limits.low_mm : *limits.high_mm;
-      worst.line = motion.place.line;
+      worst.line = motion.location.line;
     }
   }
 
@@ -176,7 +176,7 @@ class CutReader : public NcSink {
 
 bool begins_at(const CutPass& pass, const DownMove& move) {
   return pass.program == move.program && pass.x_mm.front() == move.at.x_mm && pass.y_mm.front() == move.at.y_mm &&
-         pass.c_rad.front() == move.at.c_deg * kDegree;
+         pass.c_rad.front() == move.at.c_deg * kRadPerDeg;
 }
 
 }  // namespace
@@ -206,7 +206,7 @@ void add_strokes(TurningCuts& cuts, const std::string& table, const std::string&
     for (std::size_t i = 0; i < pass.size(); ++i, ++row) {
       if (row >= strokes.size()) continue;
       const Stroke& stroke = strokes[row];
-      const double c_deg = pass.c_rad[i] / kDegree;
+      const double c_deg = pass.c_rad[i] / kRadPerDeg;
       if (std::abs(stroke.c_deg - c_deg) > kSameDeg && std::exchange(fits, false))
         findings.add({"servo", cuts.programs[pass.program], pass.line[i], -1,
                       fmt::format("line {} of the servo's file has a stroke for C {}, but the program moves to C {}",

@@ -17,7 +17,7 @@ using geometry::Vec2;
 constexpr double kNanometresAMm = 1e6;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kUncut = std::numeric_limits<double>::infinity();
-constexpr int kMostSamples = 12;
+constexpr int kMaxSamples = 12;
 /// Pixel size, relative to the feed, below which single cusps are resolved.
 constexpr double kResolved = 0.25;
 
@@ -57,7 +57,7 @@ class PixelProbe {
     if (per_feed >= kResolved)
       take_feed_through(first);
     else
-      for (int k = 1; k < std::ceil(kMostSamples * per_feed); ++k) take(drawn(static_cast<std::uint32_t>(k)));
+      for (int k = 1; k < std::ceil(kMaxSamples * per_feed); ++k) take(drawn(static_cast<std::uint32_t>(k)));
     return pixel_;
   }
 
@@ -65,15 +65,15 @@ class PixelProbe {
   /// Evaluates a short profile across the cuts, and then searches between its samples for a larger deviation.
   void take_feed_through(const Vec2& at) {
     const Vec2 outward = region_.is_round && at.norm() > 0.0 ? Vec2(at.normalized()) : Vec2(Vec2::UnitX());
-    const double step = region_.feed_mm / kMostSamples;
+    const double step = region_.feed_mm / kMaxSamples;
     double best = 0.0;
     double most = -1.0;
     const auto size_at = [&](double s) {
       const double e = std::abs(take(at + s * outward));
       return std::isnan(e) ? -1.0 : e;
     };
-    for (int k = 0; k < kMostSamples; ++k) {
-      const double s = step * (k - 0.5 * kMostSamples);
+    for (int k = 0; k < kMaxSamples; ++k) {
+      const double s = step * (k - 0.5 * kMaxSamples);
       const double size = size_at(s);
       if (size > most) {
         most = size;
@@ -103,9 +103,9 @@ std::optional<double> deviation_nm(const Envelope& envelope, const FreeformSurfa
 }
 
 std::pair<double, double> largest_between(const std::function<double(double)>& f, double a, double b, int steps) {
-  constexpr double kShare = 0.6180339887498949;
-  double c = b - kShare * (b - a);
-  double d = a + kShare * (b - a);
+  constexpr double kInverseGoldenRatio = 0.6180339887498949;
+  double c = b - kInverseGoldenRatio * (b - a);
+  double d = a + kInverseGoldenRatio * (b - a);
   double fc = f(c);
   double fd = f(d);
   for (int step = 0; step < steps; ++step) {
@@ -113,13 +113,13 @@ std::pair<double, double> largest_between(const std::function<double(double)>& f
       b = d;
       d = c;
       fd = fc;
-      c = b - kShare * (b - a);
+      c = b - kInverseGoldenRatio * (b - a);
       fc = f(c);
     } else {
       a = c;
       c = d;
       fc = fd;
-      d = a + kShare * (b - a);
+      d = a + kInverseGoldenRatio * (b - a);
       fd = f(d);
     }
   }

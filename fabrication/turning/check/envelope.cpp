@@ -23,16 +23,16 @@ void CutRecorder::motion(const NcMotion& motion, const NcSettings&) {
     return;
   }
   if (findings_.empty() && motion.is_exact_stop)
-    findings_.push_back({"stops", "", motion.place.line, -1, "the cut stops at every point", 0.0, 0.0, 1});
+    findings_.push_back({"stops", "", motion.location.line, -1, "the cut stops at every point", 0.0, 0.0, 1});
   if (findings_.empty() && !(motion.duration_s > 0.0))
-    findings_.push_back({"untimed", "", motion.place.line, -1, "a move of the cut has no duration", 0.0, 0.0, 1});
+    findings_.push_back({"untimed", "", motion.location.line, -1, "a move of the cut has no duration", 0.0, 0.0, 1});
   const auto add = [&](const AxisPositions& p, double duration_s) {
     pass_.duration_s.push_back(duration_s);
-    pass_.line.push_back(motion.place.line);
+    pass_.line.push_back(motion.location.line);
     pass_.x_mm.push_back(p.x_mm);
     pass_.y_mm.push_back(p.y_mm);
     pass_.z_mm.push_back(p.z_mm);
-    pass_.c_rad.push_back(p.c_deg * kDegree);
+    pass_.c_rad.push_back(p.c_deg * kRadPerDeg);
   };
   if (pass_.x_mm.empty()) {
     add(motion.from, 0.0);
@@ -41,10 +41,10 @@ void CutRecorder::motion(const NcMotion& motion, const NcSettings&) {
   add(motion.to, motion.duration_s);
   pass_.seconds += motion.duration_s;
   block_s_ += motion.duration_s;
-  pass_.block_s.push_back(motion.goes_on ? 0.0 : std::exchange(block_s_, 0.0));
+  pass_.block_s.push_back(motion.is_continued ? 0.0 : std::exchange(block_s_, 0.0));
 }
 
-void CutRecorder::dwell(double, const NcPlace&, const AxisPositions&) {}
+void CutRecorder::dwell(double, const NcLocation&, const AxisPositions&) {}
 
 void CutRecorder::end_pass() {
   if (!pass_.x_mm.empty()) passes_.push_back(std::move(pass_));
@@ -58,9 +58,9 @@ std::vector<CutPass> CutRecorder::take() {
 
 Envelope::Envelope(const TurningTool& tool, std::vector<CutPass> passes)
     : radius_mm_(tool.nose_radius_mm),
-      reach_mm_(tool.nose_radius_mm * std::sin(0.5 * tool.window_deg * kDegree)),
-      sin_rake_(std::sin(tool.rake_deg * kDegree)),
-      cos_rake_(std::cos(tool.rake_deg * kDegree)),
+      reach_mm_(tool.nose_radius_mm * std::sin(0.5 * tool.window_deg * kRadPerDeg)),
+      sin_rake_(std::sin(tool.rake_deg * kRadPerDeg)),
+      cos_rake_(std::cos(tool.rake_deg * kRadPerDeg)),
       passes_(std::move(passes)) {
   for (const CutPass& pass : passes_) indices_.push_back(index_of(pass));
 }
@@ -78,19 +78,19 @@ Envelope::Index Envelope::index_of(const CutPass& pass) const {
   }
   if (!rises && !(stands && y_falls))
     throw InputError("in a cut, C must increase throughout, or stay constant while Y decreases throughout");
-  index.turns = rises;
+  index.is_spiral = rises;
   if (!rises) return index;
   for (std::size_t i = 0; i < n; ++i) {
-    const auto turn = static_cast<std::size_t>((pass.c_rad[i] - pass.c_rad[0]) / kTurn);
-    while (index.turn.size() <= turn) index.turn.push_back({i, pass.x_mm[i], pass.x_mm[i]});
-    index.turn.back().x_low = std::min(index.turn.back().x_low, pass.x_mm[i]);
-    index.turn.back().x_high = std::max(index.turn.back().x_high, pass.x_mm[i]);
+    const auto turn = static_cast<std::size_t>((pass.c_rad[i] - pass.c_rad[0]) / kTwoPi);
+    while (index.turns.size() <= turn) index.turns.push_back({i, pass.x_mm[i], pass.x_mm[i]});
+    index.turns.back().x_low = std::min(index.turns.back().x_low, pass.x_mm[i]);
+    index.turns.back().x_high = std::max(index.turns.back().x_high, pass.x_mm[i]);
   }
   // The move between the last point of a turn and the first point of the next turn belongs to both turns.
-  for (std::size_t t = 0; t + 1 < index.turn.size(); ++t) {
-    const double x = pass.x_mm[index.turn[t + 1].first];
-    index.turn[t].x_low = std::min(index.turn[t].x_low, x);
-    index.turn[t].x_high = std::max(index.turn[t].x_high, x);
+  for (std::size_t t = 0; t + 1 < index.turns.size(); ++t) {
+    const double x = pass.x_mm[index.turns[t + 1].first];
+    index.turns[t].x_low = std::min(index.turns[t].x_low, x);
+    index.turns[t].x_high = std::max(index.turns[t].x_high, x);
   }
   return index;
 }
@@ -103,8 +103,8 @@ void Envelope::cross_turning(const CutPass& pass, const Index& index, double x_m
   const double r = std::hypot(x_mm, y_mm);
   const double theta = std::atan2(y_mm, x_mm);
   const double start = pass.c_rad.front();
-  for (std::size_t t = 0; t < index.turn.size(); ++t) {
-    const Turn& turn = index.turn[t];
+  for (std::size_t t = 0; t < index.turns.size(); ++t) {
+    const Turn& turn = index.turns[t];
     // The edge can pass over the point on the tool's side of the spindle. Near the centre, it can also pass over it on
     // the opposite side.
     for (const bool beyond : {false, true}) {
@@ -114,13 +114,13 @@ void Envelope::cross_turning(const CutPass& pass, const Index& index, double x_m
       const double margin = 0.01 * reach_mm_ + 0.01 * std::abs(y);
       if (x < turn.x_low - reach_mm_ - margin || x > turn.x_high + reach_mm_ + margin) continue;
       const double phase = (beyond ? std::numbers::pi - std::asin(y / r) : std::asin(y / r)) - theta - start;
-      const double within = phase - kTurn * std::floor(phase / kTurn);
-      const double c = start + kTurn * static_cast<double>(t) + within;
+      const double within = phase - kTwoPi * std::floor(phase / kTwoPi);
+      const double c = start + kTwoPi * static_cast<double>(t) + within;
       cross_at(pass, r, theta, c, lowest);
       // Near the beginning or the end of a turn, the crossing may belong to the neighbouring turn.
       constexpr double kNear = 0.5;
-      if (within < kNear) cross_at(pass, r, theta, c + kTurn, lowest);
-      if (within > kTurn - kNear) cross_at(pass, r, theta, c - kTurn, lowest);
+      if (within < kNear) cross_at(pass, r, theta, c + kTwoPi, lowest);
+      if (within > kTwoPi - kNear) cross_at(pass, r, theta, c - kTwoPi, lowest);
     }
   }
 }
@@ -154,8 +154,8 @@ void Envelope::cross_line(const CutPass& pass, double x_mm, double y_mm, double&
   // X may change along the line. The lateral distance and the position along the line are therefore found together by
   // Newton's method.
   double at = y;
-  constexpr int kMostSteps = 20;
-  for (int step = 0; step < kMostSteps; ++step) {
+  constexpr int kMaxSteps = 20;
+  for (int step = 0; step < kMaxSteps; ++step) {
     const auto above = std::lower_bound(pass.y_mm.begin(), pass.y_mm.end(), at, std::greater<>());
     if (above == pass.y_mm.begin() && at > pass.y_mm.front()) return;
     if (above == pass.y_mm.end()) return;
@@ -178,7 +178,7 @@ void Envelope::cross_line(const CutPass& pass, double x_mm, double y_mm, double&
 std::optional<double> Envelope::height_mm(double x_mm, double y_mm) const {
   double lowest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < passes_.size(); ++i) {
-    if (indices_[i].turns)
+    if (indices_[i].is_spiral)
       cross_turning(passes_[i], indices_[i], x_mm, y_mm, lowest);
     else
       cross_line(passes_[i], x_mm, y_mm, lowest);

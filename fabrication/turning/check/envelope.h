@@ -33,7 +33,7 @@ struct CutPass {
 class CutRecorder : public NcSink {
  public:
   void motion(const NcMotion& motion, const NcSettings& settings) override;
-  void dwell(double seconds, const NcPlace& place, const AxisPositions& position) override;
+  void dwell(double seconds, const NcLocation& place, const AxisPositions& position) override;
 
   /// Ends the present cut and returns all cuts.
   std::vector<CutPass> take();
@@ -69,8 +69,8 @@ class Envelope {
     double x_high = 0.0;
   };
   struct Index {
-    bool turns = false;
-    std::vector<Turn> turn;
+    bool is_spiral = false;
+    std::vector<Turn> turns;
   };
   struct Pose {
     double x_mm;

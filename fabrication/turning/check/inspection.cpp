@@ -152,7 +152,7 @@ Inspection inspect(const Envelope& envelope, const FreeformSurface& design, cons
     }
     result.form_error_nm = std::max(result.form_error_nm, std::abs(sample->valley_nm));
     result.interference_nm = std::max(result.interference_nm, -sample->valley_nm);
-    result.scallop_most_nm = std::max(result.scallop_most_nm, sample->scallop_nm);
+    result.scallop_nm_max = std::max(result.scallop_nm_max, sample->scallop_nm);
     result.scallop_nm += sample->scallop_nm;
   }
   if (!result.cusps.empty()) result.scallop_nm /= static_cast<double>(result.cusps.size());

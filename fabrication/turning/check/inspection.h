@@ -39,7 +39,7 @@ struct Inspection {
   double form_error_nm = 0.0;    ///< largest absolute value of CuspSample::valley_nm
   double interference_nm = 0.0;  ///< depth of the deepest cut below the design
   double scallop_nm = 0.0;       ///< mean height of all cusps
-  double scallop_most_nm = 0.0;
+  double scallop_nm_max = 0.0;
   double scallop_ratio_low = 0.0;  ///< minimum ratio of simulated to predicted height, over the compared profiles
   double scallop_ratio_high = 0.0;
   double rms_nm = 0.0;  ///< rms deviation from the design, at one random point in each pixel of the map

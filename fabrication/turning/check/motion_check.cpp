@@ -39,14 +39,14 @@ class Worst {
   explicit Worst(const std::optional<double>& limit) : limit_(limit) {}
 
   void add(const Figure& figure, std::int32_t line) {
-    most_ = std::max(most_, figure.sure());
+    max_ = std::max(max_, figure.sure());
     if (!limit_ || figure.sure() <= *limit_ * (1.0 + 1e-9)) return;
     ++count_;
     if (figure.sure() <= excess_) return;
     excess_ = figure.sure();
     line_ = line;
   }
-  double most() const { return most_; }
+  double most() const { return max_; }
 
   void report(FindingList& findings, const char* kind, const std::string& program, const std::string& what,
               const char* unit, const char* whose) const {
@@ -59,7 +59,7 @@ class Worst {
 
  private:
   std::optional<double> limit_;
-  double most_ = 0.0;
+  double max_ = 0.0;
   double excess_ = 0.0;
   std::int32_t line_ = 0;
   std::int64_t count_ = 0;
@@ -223,7 +223,7 @@ void check_spindle(const TurnedPart& part, const TurningCuts& cuts, std::size_t 
   Worst acceleration(part.machine.c_acceleration_deg_per_s2);
   for_passes(cuts, program, [&](const CutPass& pass) {
     const Quotients q(
-        pass, [&](std::size_t i) { return pass.c_rad[i] / kDegree; }, half_word_deg(cuts.dialects[program]));
+        pass, [&](std::size_t i) { return pass.c_rad[i] / kRadPerDeg; }, half_word_deg(cuts.dialects[program]));
     for (std::size_t i = 0; i < pass.size(); ++i) {
       const std::int32_t line = pass.line[std::min(i + 1, pass.size() - 1)];
       if (i > 0) by_machine.add(q.velocity(i), pass.line[i]);

@@ -15,11 +15,11 @@ namespace {
 
 /// Checks that moves without cutting, and the ends of programs, keep the required clearance above the highest point of
 /// the part.
-void check_free_moves(const TurnedPart& part, const TurningCuts& cuts, const TouchFigures& touch,
+void check_free_moves(const TurnedPart& part, const TurningCuts& cuts, const ContactFigures& touch,
                       FindingList& findings) {
   constexpr double kHeightsMm = 5e-6;
   if (!touch.highest_mm) return;
-  const double limit = *touch.highest_mm + part.path.clear_mm;
+  const double limit = *touch.highest_mm + part.path.clearance_mm;
   for (const FreeMove& move : cuts.free_moves)
     if (move.lowest_mm < limit - kHeightsMm)
       findings.add(
@@ -80,13 +80,13 @@ TurningCheck check_turning(const TurnedPart& part, TurningCuts cuts, const std::
   for (const CutPass& pass : cuts.passes) check.points += pass.size();
   if (cuts.blend_mm > 0.0) check.blend_nm = 1e6 * std::min(cuts.blend_mm, widest_blend_mm(cuts.passes));
   check.motion = check_motion(part, cuts, findings);
-  check.touch = check_touch(part, cuts, findings);
+  check.contact = check_contact(part, cuts, findings);
   check.coverage = check_coverage(part, cuts, findings);
-  check_free_moves(part, cuts, check.touch, findings);
-  if (!check.coverage.is_orderly || !check.coverage.is_whole) return check;
+  check_free_moves(part, cuts, check.contact, findings);
+  if (!check.coverage.is_monotonic || !check.coverage.is_complete) return check;
   try {
     check.envelope.emplace(part.tool, std::move(cuts.passes));
-    check_border(part, cuts, *check.envelope, check.touch, findings);
+    check_border(part, cuts, *check.envelope, check.contact, findings);
     check.inspection = inspect(*check.envelope, part.surface, part.tool, region_of(part.path), part.map_pixels);
     judge(part.form_tolerance_nm, check.blend_nm, check.inspection, findings);
   } catch (const InputError& error) {

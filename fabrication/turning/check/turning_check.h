@@ -5,17 +5,17 @@
 #include <optional>
 #include <string>
 
+#include "fabrication/turning/check/contact_check.h"
 #include "fabrication/turning/check/coverage.h"
 #include "fabrication/turning/check/inspection.h"
 #include "fabrication/turning/check/motion_check.h"
-#include "fabrication/turning/check/touch_check.h"
 
 namespace retrace::fabrication::turning {
 
 /// Result of the check of programs. It depends only on the part file and on the text of the programs.
 struct TurningCheck {
   MotionFigures motion;
-  TouchFigures touch;
+  ContactFigures contact;
   CoverageFigures coverage;
   std::size_t points = 0;  ///< number of points of all cuts
   /// Maximum deviation from the path due to blending. It is the tolerance that the programs allow, or the deviation of

@@ -32,7 +32,7 @@ PathOptions read_path(const Document& file, const TurningTool& tool) {
   path.strategy = file.choice<Strategy>("path.strategy");
   path.feed_mm = file.has("path.feed_um") ? 1e-3 * number("feed_um")
                                           : feed_for_scallop_mm(effective_radius_mm(tool), number("scallop_nm"));
-  path.clear_mm = number("clear_mm");
+  path.clearance_mm = number("clear_mm");
   path.approach_mm_per_min = number("approach_mm_per_min");
   path.blend_mm = blend_mm(file.number("inspect.form_tolerance_nm"));
   if (path.strategy == Strategy::raster) {
@@ -97,8 +97,8 @@ double reach_mm(const PathOptions& path, const TurningTool& tool) {
 
 void settle_skew(TurnedPart& part, const InputLocation& where) {
   const std::vector<SlopeSample> slopes = slopes_along(part.surface, part.path);
-  if (part.skew_is_least) {
-    const auto skew = least_skew_deg(part.tool, slopes, kTriedSkewDeg);
+  if (part.skew_is_min) {
+    const auto skew = min_skew_deg(part.tool, slopes, kTestedSkewDeg);
     if (!skew)
       throw InputError(where, fmt::format("the tool does not clear the surface at any skew within +-60 degrees with a "
                                           "clearance of {} and a window of {} degrees",
@@ -108,7 +108,7 @@ void settle_skew(TurnedPart& part, const InputLocation& where) {
   }
   const ClearanceFigures figures = clearance_figures(part.tool, slopes);
   if (figures.clears(part.tool)) return;
-  const auto skew = least_skew_deg(part.tool, slopes, kTriedSkewDeg);
+  const auto skew = min_skew_deg(part.tool, slopes, kTestedSkewDeg);
   throw InputError(
       where, fmt::format("the tool does not clear the surface: a clearance of {} and a window of {} degrees are "
                          "required, got {} and {}; {}",
@@ -123,7 +123,7 @@ void settle_skew(TurnedPart& part, const InputLocation& where) {
 TurnedPart parse_turned_part(std::string_view text, const std::string& source_name) {
   const Document file = schema::read_document(turned_part_format(), text, source_name);
   geometry::FreeformSurface surface = geometry::read_surface(file);
-  const InputLocation surface_where = geometry::surface_place(file);
+  const InputLocation surface_where = geometry::surface_location(file);
   const TurningTool tool = read_tool(file);
   const PathOptions path = read_path(file, tool);
   TurnedPart part{file.text_if("title"),

@@ -20,7 +20,7 @@ constexpr Kind kPositive = Number{{.low = 0.0, .low_included = false, .high = 1e
 constexpr Words kSamplings = {"angle", "arc"};
 constexpr Words kServos = {"slow", "fast"};
 
-constexpr Condition kNoLeastSkew[] = {without("find_min_skew")};
+constexpr Condition kNoLeastSkew[] = {is_absent("find_min_skew")};
 constexpr Row kToolRows[] = {
     {"nose_radius_mm", Number{{.low = 1e-4, .high = 100.0}}, kRequired, "Radius of the tool's round nose."},
     {"clearance_deg", Number{{.low = 0.0, .low_included = false, .high = 60.0}}, kRequired,
@@ -67,7 +67,7 @@ constexpr Row kPathRows[] = {
      "points by straight moves of all axes. A curved cut therefore needs short moves: an arc of length s and curvature "
      "k leaves an error of s^2 k / 8.",
      kSpiralOnly},
-    {"points_per_turn", Whole{{.low = 8.0, .high = 100000.0}}, 360.0,
+    {"points_per_turn", Integer{{.low = 8.0, .high = 100000.0}}, 360.0,
      "Number of points per rotation of the spindle, at equal angles.", kAngleOnly},
     {"arc_um", kArcUm, kRequired, "Distance between neighbouring points along the cut.", kArcOnly},
     {"arc_um", kArcUm, kRequired, "Distance between neighbouring points along the lines.", kRasterOnly},
@@ -113,14 +113,14 @@ constexpr Row kInspectRows[] = {
     {"form_tolerance_nm", kPositive, 10.0,
      "Maximum form error. The part fails the inspection if its form error, or the depth of a cut below the surface, "
      "exceeds this value."},
-    {"map_pixels", Whole{{.low = 11.0, .high = 2001.0}}, 101.0,
+    {"map_pixels", Integer{{.low = 11.0, .high = 2001.0}}, 101.0,
      "Number of pixels along each side of the map. Each pixel shows the largest deviation within one feed across the "
      "cuts."},
     {"mesh_thickness_mm", kPositiveMm, kNone,
      "Thickness of the part in the mesh `machined.stl`, from the highest point of its back to its horizontal entrance "
      "face. If the key is given, this mesh is written. It shows the part that is moulded from the machined surface.",
      kRoundOnly},
-    {"mesh_rings", Whole{{.low = 2.0, .high = 1000.0}}, 100.0, "Number of circles of the mesh `machined.stl`."}};
+    {"mesh_rings", Integer{{.low = 2.0, .high = 1000.0}}, 100.0, "Number of circles of the mesh `machined.stl`."}};
 
 constexpr Row kRows[] = {{"title", Text{}, kNone, "Title of the part, in one line."}};
 constexpr Table kTables[] = {

@@ -23,12 +23,12 @@ class TimedSpiral {
   TimedSpiral(const geometry::FreeformSurface& surface, const TurningTool& tool, const PathOptions& o, double unit_s)
       : options_(o),
         places_(surface, tool, o),
-        spin_(
-            SpinTimes(360.0 * places_.whole_turns(), 6.0 * o.spindle_rpm, *o.spin_deg_per_s2).in_whole_steps(unit_s)) {}
+        spin_(SpindleMotion(360.0 * places_.total_turns(), 6.0 * o.spindle_rpm, *o.spin_deg_per_s2)
+                  .in_whole_steps(unit_s)) {}
 
   /// Returns the times at which the acceleration of C changes. Cubic moves must end at these times.
   std::array<double, 3> corners_s() const {
-    return {spin_.ramp_s(), spin_.whole_s() - spin_.ramp_s(), spin_.whole_s()};
+    return {spin_.ramp_s(), spin_.total_s() - spin_.ramp_s(), spin_.total_s()};
   }
   double turns_at(double time_s) const { return spin_.c_deg(time_s) / 360.0; }
 
@@ -36,14 +36,14 @@ class TimedSpiral {
 
   CubicPoint point_at(double time_s) {
     CubicPoint point;
-    point.place = place_at(time_s);
+    point.point = place_at(time_s);
     const double turns_per_s = spin_.speed_deg_per_s(time_s) / 360.0;
     // X and Y change linearly with the angle of the spindle.
     const double turns = turns_at(time_s);
-    const double left = places_.whole_turns() - turns;
+    const double left = places_.total_turns() - turns;
     const double share = left > 0.0 ? turns_per_s / left : 0.0;
-    point.velocities[kX] = -share * point.place.x_mm;
-    point.velocities[kY] = -share * point.place.y_mm;
+    point.velocities[kX] = -share * point.point.x_mm;
+    point.velocities[kY] = -share * point.point.y_mm;
     point.velocities[kZ] = turns_per_s * rise_at(turns);
     point.velocities[kC] = 360.0 * turns_per_s;
     return point;
@@ -57,7 +57,7 @@ class TimedSpiral {
     constexpr double kFewest = 8.0;
     const int parts = static_cast<int>(std::max(kFewest, std::ceil(turns / turns_between_points(options_, radius_mm))));
     double worst = 0.0;
-    to.highest_mm = std::max(from.place.z_mm, to.place.z_mm);
+    to.highest_mm = std::max(from.point.z_mm, to.point.z_mm);
     for (int k = 1; k < parts; ++k) {
       const double t = static_cast<double>(k) / parts;
       const PathPoint is = on_cubic(from, to, to_s - from_s, t);
@@ -66,7 +66,7 @@ class TimedSpiral {
       const double arm_mm = std::hypot(is_meant.x_mm, is_meant.y_mm);
       worst = std::max(worst,
                        std::hypot(std::hypot(is.x_mm - is_meant.x_mm, is.y_mm - is_meant.y_mm, is.z_mm - is_meant.z_mm),
-                                  arm_mm * kDegree * (is.c_deg - is_meant.c_deg)));
+                                  arm_mm * kRadPerDeg * (is.c_deg - is_meant.c_deg)));
     }
     return worst;
   }
@@ -85,16 +85,16 @@ class TimedSpiral {
              t * (1.0 - t) * seconds * ((1.0 - t) * from.velocities[axis] - t * to.velocities[axis]);
     };
     PathPoint p;
-    p.x_mm = along(from.place.x_mm, to.place.x_mm, kX);
-    p.y_mm = along(from.place.y_mm, to.place.y_mm, kY);
-    p.z_mm = along(from.place.z_mm, to.place.z_mm, kZ);
-    p.c_deg = along(from.place.c_deg, to.place.c_deg, kC);
+    p.x_mm = along(from.point.x_mm, to.point.x_mm, kX);
+    p.y_mm = along(from.point.y_mm, to.point.y_mm, kY);
+    p.z_mm = along(from.point.z_mm, to.point.z_mm, kZ);
+    p.c_deg = along(from.point.c_deg, to.point.c_deg, kC);
     return p;
   }
 
   const PathOptions& options_;
-  SpiralPlaces places_;
-  SpinTimes spin_;
+  ToolSpiral places_;
+  SpindleMotion spin_;
   double touch_rad_ = 0.0;
 };
 
@@ -109,9 +109,9 @@ double growth(double most_mm, double error_mm) {
 }  // namespace
 
 CubicPath cubic_path(const geometry::FreeformSurface& surface, const TurningTool& tool, const PathOptions& options,
-                     double least_block_s, const InputLocation& where) {
+                     double min_block_s, const InputLocation& where) {
   // All durations are multiples of the shortest duration.
-  const double unit_s = kCubicStepS * std::max(1.0, std::ceil(least_block_s / kCubicStepS - 1e-9));
+  const double unit_s = kCubicStepS * std::max(1.0, std::ceil(min_block_s / kCubicStepS - 1e-9));
   TimedSpiral spiral(surface, tool, options, unit_s);
   const double most_mm = *options.cubic_error_nm / kNmPerMm;
   const auto units_in = [&](double seconds) { return static_cast<std::int64_t>(std::llround(seconds / unit_s)); };
@@ -119,7 +119,7 @@ CubicPath cubic_path(const geometry::FreeformSurface& surface, const TurningTool
   const std::int64_t longest = std::max<std::int64_t>(1, units_in(30.0 / options.spindle_rpm));
   CubicPath path;
   path.points.push_back(spiral.point_at(0.0));
-  path.points.front().highest_mm = path.points.front().place.z_mm;
+  path.points.front().highest_mm = path.points.front().point.z_mm;
   std::int64_t guess = 1;
   std::int64_t at = 0;
   for (const double corner_s : spiral.corners_s()) {
@@ -136,17 +136,17 @@ CubicPath cubic_path(const geometry::FreeformSurface& surface, const TurningTool
         throw InputError(
             where, fmt::format("is too small: a cubic move of {} ms at a radius of {} mm has an error of {} nm. Use a "
                                "lower spindle_rpm",
-                               fixed_visible(1e3 * unit_s, 3), fixed(std::hypot(point.place.x_mm, point.place.y_mm), 4),
+                               fixed_visible(1e3 * unit_s, 3), fixed(std::hypot(point.point.x_mm, point.point.y_mm), 4),
                                fixed(kNmPerMm * error_mm, 2)));
       if (error_mm > most_mm) {
         guess = std::min(guess, units - 1);
         continue;
       }
-      point.place.seconds = to_s - from_s;
+      point.point.seconds = to_s - from_s;
       path.error_nm = std::max(path.error_nm, kNmPerMm * error_mm);
       path.points.push_back(point);
-      if (path.points.size() > kMostPathPoints)
-        throw InputError(where, fmt::format("must give a path of at most {} points", kMostPathPoints));
+      if (path.points.size() > kMaxPathPoints)
+        throw InputError(where, fmt::format("must give a path of at most {} points", kMaxPathPoints));
       at += units;
     }
   }

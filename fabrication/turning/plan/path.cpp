@@ -25,9 +25,9 @@ std::vector<double> spiral_turns(const PathOptions& o, const InputLocation& wher
   const double turns = start / o.feed_mm;
   const double mean_arc = std::numbers::pi * start;
   const double count = o.sampling == Sampling::angle ? turns * o.points_per_turn : turns * mean_arc / o.arc_mm;
-  if (!(count < static_cast<double>(kMostPathPoints)))
+  if (!(count < static_cast<double>(kMaxPathPoints)))
     throw InputError(
-        where, fmt::format("must give a path of at most {} points, but gives {:.3g} points", kMostPathPoints, count));
+        where, fmt::format("must give a path of at most {} points, but gives {:.3g} points", kMaxPathPoints, count));
   std::vector<double> result;
   result.reserve(static_cast<std::size_t>(count) + 2);
   if (o.sampling == Sampling::angle) {
@@ -43,9 +43,9 @@ std::vector<double> spiral_turns(const PathOptions& o, const InputLocation& wher
 }
 
 /// Predicts the angle of the next point of contact on the nose, by quadratic extrapolation of the last three angles.
-class TouchForecast {
+class ContactExtrapolation {
  public:
-  explicit TouchForecast(double end_rad) : end_rad_(end_rad) {}
+  explicit ContactExtrapolation(double end_rad) : end_rad_(end_rad) {}
   double next() const { return std::clamp(3.0 * (angles_[0] - angles_[1]) + angles_[2], -end_rad_, end_rad_); }
   void add(double angle_rad) { angles_ = {angle_rad, angles_[0], angles_[1]}; }
 
@@ -56,9 +56,9 @@ class TouchForecast {
 
 Pass spiral(const FreeformSurface& surface, const TurningTool& tool, const PathOptions& o, const InputLocation& where) {
   if (const auto pass = polynomial_spiral(surface, tool, o)) return *pass;
-  const SpiralPlaces places(surface, tool, o);
+  const ToolSpiral places(surface, tool, o);
   Pass pass;
-  TouchForecast forecast(places.end_rad());
+  ContactExtrapolation forecast(places.end_rad());
   double last = 0.0;
   const std::vector<double> all_turns = spiral_turns(o, where);
   pass.reserve(all_turns.size());
@@ -79,21 +79,22 @@ std::vector<Pass> raster(const FreeformSurface& surface, const TurningTool& tool
   // higher than the cusps.
   const double lines = std::ceil(o.height_mm / o.feed_mm - 0.5 - 1e-9) + 1.0;
   const double points = std::max(1.0, std::ceil(o.width_mm / o.arc_mm - 1e-9));
-  if (!(lines * points < static_cast<double>(kMostPathPoints)))
+  if (!(lines * points < static_cast<double>(kMaxPathPoints)))
     throw InputError(where, fmt::format("must give a path of at most {} points, but gives {:.3g} points",
-                                        kMostPathPoints, lines * points));
-  const NoseCompensation nose(surface, tool, TouchMap(surface, tool, 0.5 * std::hypot(o.width_mm, o.height_mm)));
+                                        kMaxPathPoints, lines * points));
+  const NoseCompensation nose(surface, tool,
+                              SingleContactMap(surface, tool, 0.5 * std::hypot(o.width_mm, o.height_mm)));
   // The rake face is perpendicular to machine Y. A skew rotates the part, and with it the lines, relative to the rake
   // face.
-  const double cosine = std::cos(tool.skew_deg * kDegree);
-  const double sine = std::sin(tool.skew_deg * kDegree);
+  const double cosine = std::cos(tool.skew_deg * kRadPerDeg);
+  const double sine = std::sin(tool.skew_deg * kRadPerDeg);
   const Vec2 across(cosine, sine);
   const Vec2 cut(sine, -cosine);
   const double step = o.width_mm / points;
   std::vector<Pass> passes;
   for (int line = 0; line < static_cast<int>(lines); ++line) {
     Pass pass;
-    TouchForecast forecast(nose.end_rad());
+    ContactExtrapolation forecast(nose.end_rad());
     for (int i = 0; i <= static_cast<int>(points); ++i) {
       PathPoint p;
       const Vec2 tip(0.5 * o.height_mm - o.feed_mm * line, 0.5 * o.width_mm - step * i);
@@ -112,14 +113,14 @@ std::vector<Pass> raster(const FreeformSurface& surface, const TurningTool& tool
 }
 
 void spin_up_and_down(Pass& pass, double spindle_rpm, double acceleration_deg_per_s2) {
-  const SpinTimes times(pass.back().c_deg, 6.0 * spindle_rpm, acceleration_deg_per_s2);
+  const SpindleMotion times(pass.back().c_deg, 6.0 * spindle_rpm, acceleration_deg_per_s2);
   for (std::size_t i = 1; i < pass.size(); ++i)
     pass[i].seconds = times.time_s(pass[i].c_deg) - times.time_s(pass[i - 1].c_deg);
 }
 
 /// Divides Z of a spiral between slide and servo. The slide follows the mean over one turn centred at each point, and
 /// the servo adds the difference. In the first and the last half turn, the slide moves linearly.
-void share_with_servo(Pass& pass, int points_per_turn) {
+void split_with_servo(Pass& pass, int points_per_turn) {
   const std::size_t count = pass.size();
   const auto turn = static_cast<std::size_t>(points_per_turn);
   const std::size_t half = turn / 2;
@@ -146,13 +147,13 @@ void share_with_servo(Pass& pass, int points_per_turn) {
 
 }  // namespace
 
-NoseCompensation::NoseCompensation(const FreeformSurface& surface, const TurningTool& tool, TouchMap map)
+NoseCompensation::NoseCompensation(const FreeformSurface& surface, const TurningTool& tool, SingleContactMap map)
     : surface_(surface),
       map_(std::move(map)),
       radius_mm_(tool.nose_radius_mm),
-      sin_rake_(std::sin(tool.rake_deg * kDegree)),
-      cos_rake_(std::cos(tool.rake_deg * kDegree)),
-      end_rad_(0.5 * tool.window_deg * kDegree) {}
+      sin_rake_(std::sin(tool.rake_deg * kRadPerDeg)),
+      cos_rake_(std::cos(tool.rake_deg * kRadPerDeg)),
+      end_rad_(0.5 * tool.window_deg * kRadPerDeg) {}
 
 double NoseCompensation::sampled(double x_mm, double y_mm, const Vec2& across, const Vec2& cut, double angle) const {
   const double aside = radius_mm_ * std::sin(angle);
@@ -161,14 +162,14 @@ double NoseCompensation::sampled(double x_mm, double y_mm, const Vec2& across, c
   return surface_.height_mm(p.x(), p.y()) - lift * cos_rake_;
 }
 
-NoseCompensation::Touch NoseCompensation::searched(double x_mm, double y_mm, const Vec2& across, const Vec2& cut,
-                                                   double& angle) const {
-  constexpr int kMostSteps = 12;
+NoseCompensation::SearchResult NoseCompensation::searched(double x_mm, double y_mm, const Vec2& across, const Vec2& cut,
+                                                          double& angle) const {
+  constexpr int kMaxSteps = 12;
   // The error of the height after a step is of third order in the step. For steps below this limit, it is less than
   // 1e-14 mm.
   constexpr double kSmallStep = 2e-5;
-  Touch touch;
-  for (int step = 0; step < kMostSteps; ++step) {
+  SearchResult touch;
+  for (int step = 0; step < kMaxSteps; ++step) {
     const double sine = std::sin(angle);
     const double cosine = std::cos(angle);
     const Jet2 aside(radius_mm_ * sine, radius_mm_ * cosine, -0.5 * radius_mm_ * sine);
@@ -193,8 +194,8 @@ NoseCompensation::Touch NoseCompensation::searched(double x_mm, double y_mm, con
 
 double NoseCompensation::height_mm(double x_mm, double y_mm, const Vec2& across, const Vec2& cut,
                                    double& start_rad) const {
-  const Touch touch = searched(x_mm, y_mm, across, cut, start_rad);
-  if (touch.is_found && map_.touches_once(x_mm, y_mm)) return touch.height_mm;
+  const SearchResult touch = searched(x_mm, y_mm, across, cut, start_rad);
+  if (touch.is_found && map_.has_single_contact(x_mm, y_mm)) return touch.height_mm;
   double height = touch.height_mm;
   // Search the whole edge, because a distant point may touch a steep part of the surface first, for example a lenslet.
   constexpr int kPlaces = 8;
@@ -222,7 +223,7 @@ std::vector<Pass> make_path(const FreeformSurface& surface, const TurningTool& t
   std::vector<Pass> passes;
   passes.push_back(spiral(surface, tool, options, where));
   if (options.spin_deg_per_s2) spin_up_and_down(passes.front(), options.spindle_rpm, *options.spin_deg_per_s2);
-  if (options.servo == Servo::fast) share_with_servo(passes.front(), options.points_per_turn);
+  if (options.servo == Servo::fast) split_with_servo(passes.front(), options.points_per_turn);
   return passes;
 }
 

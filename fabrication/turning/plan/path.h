@@ -8,7 +8,7 @@
 
 #include "core/error.h"
 #include "fabrication/turning/path_options.h"
-#include "fabrication/turning/plan/touch_map.h"
+#include "fabrication/turning/plan/single_contact_map.h"
 #include "fabrication/turning/tool.h"
 #include "geometry/surface/freeform_surface.h"
 
@@ -25,7 +25,7 @@ struct PathPoint {
 };
 
 /// Maximum number of points of a path.
-inline constexpr std::size_t kMostPathPoints = std::size_t{1} << 26;
+inline constexpr std::size_t kMaxPathPoints = std::size_t{1} << 26;
 
 /// Sequence of points that are cut without lifting the tool.
 using Pass = std::vector<PathPoint>;
@@ -45,7 +45,7 @@ std::vector<Pass> make_path(const geometry::FreeformSurface& surface, const Turn
 class NoseCompensation {
  public:
   /// \param map positions at which there is only one point of contact. At other positions, the whole arc is searched
-  NoseCompensation(const geometry::FreeformSurface& surface, const TurningTool& tool, TouchMap map = {});
+  NoseCompensation(const geometry::FreeformSurface& surface, const TurningTool& tool, SingleContactMap map = {});
 
   /// Returns the height at a position of the part.
   /// \param across unit vector along the edge, in the part
@@ -59,16 +59,16 @@ class NoseCompensation {
 
  private:
   /// Result of a search by Newton's method.
-  struct Touch {
+  struct SearchResult {
     double height_mm = 0.0;
     bool is_found = false;  ///< true if the search ended at a maximum or at an end of the arc
   };
-  Touch searched(double x_mm, double y_mm, const geometry::Vec2& across, const geometry::Vec2& cut,
-                 double& angle) const;
+  SearchResult searched(double x_mm, double y_mm, const geometry::Vec2& across, const geometry::Vec2& cut,
+                        double& angle) const;
   double sampled(double x_mm, double y_mm, const geometry::Vec2& across, const geometry::Vec2& cut, double angle) const;
 
   const geometry::FreeformSurface& surface_;
-  TouchMap map_;
+  SingleContactMap map_;
   double radius_mm_;
   double sin_rake_;
   double cos_rake_;

@@ -10,14 +10,14 @@ namespace retrace::fabrication::turning {
 namespace {
 
 using geometry::FreeformSurface;
-using geometry::kMostPolynomialDegree;
+using geometry::kMaxPolynomialDegree;
 using geometry::Sag;
 using geometry::XyPolynomial;
 
 /// Surface along the radial line at one angle: coefficients of the powers of the distance from the centre. Also the
 /// lateral position, on the nose, of the point of contact in the previous turn.
 struct RadialPolynomial {
-  std::array<double, kMostPolynomialDegree + 1> c{};
+  std::array<double, kMaxPolynomialDegree + 1> c{};
   double aside_mm = 0.0;
 };
 
@@ -84,14 +84,14 @@ std::optional<Pass> polynomial_spiral(const FreeformSurface& surface, const Turn
   const int even = static_cast<int>(surface.base().asphere.even.size());
   const int degree =
       std::max({1, surface.base().polynomial ? surface.base().polynomial->degree : 0, even > 0 ? 2 * even + 2 : 0});
-  if (!surface.is_polynomial_everywhere() || degree > kMostPolynomialDegree || o.sampling != Sampling::angle ||
+  if (!surface.is_polynomial_everywhere() || degree > kMaxPolynomialDegree || o.sampling != Sampling::angle ||
       tool.skew_deg != 0.0 || tool.rake_deg != 0.0)
     return std::nullopt;
   const double start = o.radius_mm + o.overrun_mm;
   std::vector<RadialPolynomial> lines;
   for (int i = 0; i < o.points_per_turn; ++i) {
     // C increases, and the angle of the tool in the part decreases.
-    lines.push_back(radial_polynomial(surface.base(), -kTurn * i / o.points_per_turn, degree));
+    lines.push_back(radial_polynomial(surface.base(), -kTwoPi * i / o.points_per_turn, degree));
     if (steepest_bend(lines.back(), degree, start + tool.nose_radius_mm) * tool.nose_radius_mm > 0.99)
       return std::nullopt;
   }

@@ -9,15 +9,15 @@ namespace retrace::fabrication::turning {
 
 using geometry::Vec2;
 
-SpiralPlaces::SpiralPlaces(const geometry::FreeformSurface& surface, const TurningTool& tool, const PathOptions& o)
-    : nose_(surface, tool, TouchMap(surface, tool, o.radius_mm + o.overrun_mm)),
+ToolSpiral::ToolSpiral(const geometry::FreeformSurface& surface, const TurningTool& tool, const PathOptions& o)
+    : nose_(surface, tool, SingleContactMap(surface, tool, o.radius_mm + o.overrun_mm)),
       start_mm_(o.radius_mm + o.overrun_mm),
       feed_mm_(o.feed_mm),
-      skew_rad_(tool.skew_deg * kDegree) {}
+      skew_rad_(tool.skew_deg * kRadPerDeg) {}
 
-PathPoint SpiralPlaces::at(double turns, double& touch_rad) const {
+PathPoint ToolSpiral::at(double turns, double& touch_rad) const {
   const double r = radius_mm(turns);
-  const double c = kTurn * (turns - std::floor(turns));
+  const double c = kTwoPi * (turns - std::floor(turns));
   const Vec2 across(std::cos(c), -std::sin(c));
   const Vec2 cut(-std::sin(c), -std::cos(c));
   PathPoint p;
@@ -29,43 +29,43 @@ PathPoint SpiralPlaces::at(double turns, double& touch_rad) const {
   return p;
 }
 
-SpinTimes::SpinTimes(double whole_deg, double speed_deg_per_s, double acceleration)
-    : whole_(whole_deg),
+SpindleMotion::SpindleMotion(double whole_deg, double speed_deg_per_s, double acceleration)
+    : total_deg_(whole_deg),
       acceleration_(acceleration),
       speed_(std::min(speed_deg_per_s, std::sqrt(acceleration * whole_deg))),
-      whole_s_(whole_deg / speed_ + ramp_s()) {}
+      total_s_(whole_deg / speed_ + ramp_s()) {}
 
-double SpinTimes::time_s(double c_deg) const {
+double SpindleMotion::time_s(double c_deg) const {
   const double ramp = 0.5 * speed_ * ramp_s();
   if (c_deg < ramp) return std::sqrt(2.0 * std::max(0.0, c_deg) / acceleration_);
-  if (c_deg > whole_ - ramp) return whole_s_ - std::sqrt(2.0 * std::max(0.0, whole_ - c_deg) / acceleration_);
+  if (c_deg > total_deg_ - ramp) return total_s_ - std::sqrt(2.0 * std::max(0.0, total_deg_ - c_deg) / acceleration_);
   return ramp_s() + (c_deg - ramp) / speed_;
 }
 
-double SpinTimes::c_deg(double time_s) const {
+double SpindleMotion::c_deg(double time_s) const {
   const double before = std::max(0.0, time_s);
-  const double left = std::max(0.0, whole_s_ - time_s);
+  const double left = std::max(0.0, total_s_ - time_s);
   if (before < ramp_s()) return 0.5 * acceleration_ * before * before;
-  if (left < ramp_s()) return whole_ - 0.5 * acceleration_ * left * left;
+  if (left < ramp_s()) return total_deg_ - 0.5 * acceleration_ * left * left;
   return speed_ * (before - 0.5 * ramp_s());
 }
 
-double SpinTimes::speed_deg_per_s(double time_s) const {
-  return std::min(speed_, acceleration_ * std::max(0.0, std::min(time_s, whole_s_ - time_s)));
+double SpindleMotion::speed_deg_per_s(double time_s) const {
+  return std::min(speed_, acceleration_ * std::max(0.0, std::min(time_s, total_s_ - time_s)));
 }
 
-SpinTimes SpinTimes::in_whole_steps(double step_s) const {
+SpindleMotion SpindleMotion::in_whole_steps(double step_s) const {
   const auto whole_steps = [&](double seconds) { return step_s * std::ceil(seconds / step_s - 1e-9); };
   const double ramp = whole_steps(ramp_s());
-  const double even = whole_steps(std::max(0.0, whole_s_ - 2.0 * ramp_s()));
-  const double speed = whole_ / (ramp + even);
-  return {whole_, speed, speed / ramp};
+  const double even = whole_steps(std::max(0.0, total_s_ - 2.0 * ramp_s()));
+  const double speed = total_deg_ / (ramp + even);
+  return {total_deg_, speed, speed / ramp};
 }
 
 double turns_between_points(const PathOptions& o, double radius_mm) {
   if (o.sampling == Sampling::angle) return 1.0 / o.points_per_turn;
-  constexpr double kMostStep = 1.0 / 24.0;
-  return std::min(kMostStep, o.arc_mm / (kTurn * radius_mm));
+  constexpr double kMaxStep = 1.0 / 24.0;
+  return std::min(kMaxStep, o.arc_mm / (kTwoPi * radius_mm));
 }
 
 }  // namespace retrace::fabrication::turning

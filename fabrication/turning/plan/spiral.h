@@ -7,12 +7,12 @@
 namespace retrace::fabrication::turning {
 
 /// Positions of the tool along a spiral, as a function of the spindle's angle.
-class SpiralPlaces {
+class ToolSpiral {
  public:
-  SpiralPlaces(const geometry::FreeformSurface& surface, const TurningTool& tool, const PathOptions& options);
+  ToolSpiral(const geometry::FreeformSurface& surface, const TurningTool& tool, const PathOptions& options);
 
   /// Returns the number of turns from the start to the spindle's axis.
-  double whole_turns() const { return start_mm_ / feed_mm_; }
+  double total_turns() const { return start_mm_ / feed_mm_; }
   double radius_mm(double turns) const { return start_mm_ - feed_mm_ * turns; }
   /// Returns a point of the spiral, without its time.
   /// \param touch_rad angle on the nose at which the search starts; receives the angle of the point of contact
@@ -27,25 +27,25 @@ class SpiralPlaces {
 };
 
 /// Rotation of C that accelerates uniformly from rest to the speed of the spindle, and decelerates to rest at the end.
-class SpinTimes {
+class SpindleMotion {
  public:
   /// \param whole_deg total angle of the rotation
-  SpinTimes(double whole_deg, double speed_deg_per_s, double acceleration_deg_per_s2);
+  SpindleMotion(double whole_deg, double speed_deg_per_s, double acceleration_deg_per_s2);
 
-  double whole_s() const { return whole_s_; }
+  double total_s() const { return total_s_; }
   double time_s(double c_deg) const;
   double c_deg(double time_s) const;
   double speed_deg_per_s(double time_s) const;
   double ramp_s() const { return speed_ / acceleration_; }
   /// Returns a slightly slower rotation. Its ramps (acceleration and deceleration), and the motion between them, take
   /// whole numbers of steps.
-  SpinTimes in_whole_steps(double step_s) const;
+  SpindleMotion in_whole_steps(double step_s) const;
 
  private:
-  double whole_;
+  double total_deg_;
   double acceleration_;
   double speed_;
-  double whole_s_;
+  double total_s_;
 };
 
 /// Returns the angle of the spindle, in turns, between neighbouring points of the straight path at a radius. There are

@@ -6,18 +6,18 @@
 namespace retrace::fabrication::turning {
 namespace {
 
-Words words_of(const PathPoint& p) {
+AxisWords words_of(const PathPoint& p) {
   return {nanometres(p.x_mm), nanometres(p.y_mm), nanometres(p.z_mm), std::nullopt, rotary_units(p.c_deg)};
 }
 
 /// Returns the moves to all points except the first one, where the tool already is. Y and C have positions only if they
 /// change.
-Path path_of(const Pass& pass, Words at, double blend_mm) {
+Path path_of(const Pass& pass, AxisWords at, double blend_mm) {
   Path path;
   path.blend_mm = blend_mm;
   path.moves.reserve(pass.size() - 1);
   for (std::size_t k = 1; k < pass.size(); ++k) {
-    const Words to = words_of(pass[k]);
+    const AxisWords to = words_of(pass[k]);
     Move& move = path.moves.emplace_back(Move{Motion::plough, to, 0.0, pass[k].seconds});
     for (const Axis axis : {kY, kC})
       if (to[axis] == at[axis]) move.to[axis].reset();
@@ -30,7 +30,7 @@ Path path_of(const Pass& pass, Words at, double blend_mm) {
 Path path_of(const CubicPath& cubics, bool has_y) {
   Path path;
   for (auto point = cubics.points.begin() + 1; point != cubics.points.end(); ++point) {
-    Move& move = path.moves.emplace_back(Move{Motion::plough, words_of(point->place), 0.0, point->place.seconds});
+    Move& move = path.moves.emplace_back(Move{Motion::plough, words_of(point->point), 0.0, point->point.seconds});
     if (!has_y) move.to[kY].reset();
     path.end_velocities.push_back(point->velocities);
   }
@@ -41,7 +41,7 @@ Path path_of(const CubicPath& cubics, bool has_y) {
 class ProgramMaker {
  public:
   ProgramMaker(const PathOptions& options, double highest_mm) : options_(options) {
-    raise_.to[kZ] = nanometres(highest_mm + options.clear_mm);
+    raise_.to[kZ] = nanometres(highest_mm + options.clearance_mm);
   }
 
   void add(const PathPoint& start, Path path) {
@@ -84,10 +84,10 @@ Program turning_program(const CubicPath& cubics, const PathOptions& options, con
   bool has_y = false;
   for (const CubicPoint& point : cubics.points) {
     highest_mm = std::max(highest_mm, point.highest_mm);
-    has_y = has_y || point.place.y_mm != 0.0;
+    has_y = has_y || point.point.y_mm != 0.0;
   }
   ProgramMaker maker(options, highest_mm);
-  maker.add(cubics.points.front().place, path_of(cubics, has_y));
+  maker.add(cubics.points.front().point, path_of(cubics, has_y));
   return maker.take(name, header);
 }
 

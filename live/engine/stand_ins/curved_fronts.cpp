@@ -1,7 +1,7 @@
 // Replaces entrance surfaces of turned parts and meshes by a function that reports an error. They are read from files,
 // which the live page does not have.
+#include "design/entrance_of_design.h"
 #include "live/engine/stand_ins/absent.h"
-#include "studies/design/entrance_of_design.h"
 
 namespace retrace::studies {
 

@@ -88,7 +88,7 @@ function changed(lines, path, value) {
   return [...lines.slice(0, place), `${key} = ${textOf(value)}`, ...lines.slice(place)];
 }
 
-// Former names of the design format (`former` in studies/design/io and geometry/io) that a text may contain.
+// Former names of the design format (`former` in design/io and geometry/io) that a text may contain.
 const FORMER_TABLES = "base|front";
 const FORMER_KEYS = "elements|turned|share|dust_forward_share|height_map_level_axis|map_level_axis|level|down";
 const FORMER = new RegExp(

@@ -8,13 +8,13 @@
 #include "core/message_text.h"
 #include "core/number_format.h"
 #include "core/text.h"
+#include "design/io/design_json.h"
 #include "geometry/direction.h"
 #include "studies/appearance/io/glsl_file.h"
 #include "studies/appearance/io/radiance_file.h"
 #include "studies/appearance/lobes.h"
 #include "studies/appearance/table_errors.h"
 #include "studies/appearance/tensor_tree.h"
-#include "studies/design/io/design_json.h"
 
 namespace retrace::studies {
 namespace {
@@ -24,8 +24,8 @@ using Json = nlohmann::ordered_json;
 Json error_json(const AppearanceError& error) {
   return {{"geometries", error.geometries},
           {"median", error.median},
-          {"of_95_percent", error.of_95_percent},
-          {"max", error.greatest},
+          {"of_95_percent", error.percentile_95},
+          {"max", error.max},
           {"floor", kErrorFloor}};
 }
 
@@ -46,7 +46,7 @@ Json request_json(const AppearanceResult& result) {
 
 std::string table_text(const AppearanceResult& result, const std::string& values_name) {
   const ReflectionTable& table = result.table;
-  Json json = {{"design", to_json(result.design)}, {"values", values_name}, {"unit", "cd/(lx m2)"}};
+  Json json = {{"design", design::to_json(result.design)}, {"values", values_name}, {"unit", "cd/(lx m2)"}};
   json["bands"] = {"red", "green", "blue"};
   json.update(request_json(result));
   json["error"] = error_json(result.error);
@@ -87,8 +87,8 @@ std::string percent(double share) {
 }
 
 std::string error_text(const AppearanceError& error) {
-  return fmt::format("median {}, 95th percentile {}, maximum {}", percent(error.median), percent(error.of_95_percent),
-                     percent(error.greatest));
+  return fmt::format("median {}, 95th percentile {}, maximum {}", percent(error.median), percent(error.percentile_95),
+                     percent(error.max));
 }
 
 /// Returns a description of the central direction of view, for the header of a file.
@@ -102,9 +102,10 @@ AppearanceText radiance(const AppearanceResult& result) {
   const TensorTree tree = tensor_tree_of(result.table);
   const double leaf_deg = Angle::from_rad(tree.leaf_width()).deg();
   AppearanceText text;
-  text.what = fmt::format("{} leaves of a tensor tree, each a mean over {} degrees of the directions of light and view",
-                          tree.leaves.size(), fixed_visible(leaf_deg, 2));
-  text.text = radiance_text(tree, printable(short_name(result.design), 60));
+  text.approximation =
+      fmt::format("{} leaves of a tensor tree, each a mean over {} degrees of the directions of light and view",
+                  tree.leaves.size(), fixed_visible(leaf_deg, 2));
+  text.text = radiance_text(tree, printable(design::short_name(result.design), 60));
   return text;
 }
 
@@ -115,8 +116,9 @@ AppearanceText glsl(const AppearanceResult& result) {
     told.push_back(luminous(lobes.r_a(probe.to_source, probe.to_observer)));
   AppearanceText text;
   text.error = appearance_error(result.probes, told);
-  text.what = fmt::format("{} lobes; deviation from the photometer: {}", lobes.lobes.size(), error_text(*text.error));
-  text.text = glsl_text(lobes, {printable(short_name(result.design), 60), text.what});
+  text.approximation =
+      fmt::format("{} lobes; deviation from the photometer: {}", lobes.lobes.size(), error_text(*text.error));
+  text.text = glsl_text(lobes, {printable(design::short_name(result.design), 60), text.approximation});
   return text;
 }
 
@@ -147,7 +149,7 @@ std::string appearance_json(const AppearanceResult& result, const AppearanceText
   json["error"] = error_json(result.error);
   if (text.error) json["error_of_lobes"] = error_json(*text.error);
   json["elapsed_s"] = result.elapsed_s;
-  json["design"] = to_json(result.design);
+  json["design"] = design::to_json(result.design);
   return result_text("retrace.export/2", json, result.warnings);
 }
 
@@ -155,12 +157,12 @@ std::string appearance_table(const AppearanceResult& result, const AppearanceTex
   const MaterialRequest& request = result.request;
   std::string lines = fmt::format(
       "material of {}: R_A around the direction {}, CIE D65, source disc {} arcmin, receiver disc {} arcmin\n",
-      printable(short_name(result.design), 60), where_of(result.table), shortest(request.source_arcmin),
+      printable(design::short_name(result.design), 60), where_of(result.table), shortest(request.source_arcmin),
       shortest(request.receiver_arcmin));
   lines += fmt::format(
       "  light      entrance angles up to {} degrees: {} directions in {} cells, the smallest {} degrees wide\n",
       shortest(request.entrance_deg), result.table.directions.size(), result.table.cells.size(),
-      shortest(result.least_cell_deg));
+      shortest(result.min_cell_deg));
   lines += fmt::format("  views      deviations up to {} degrees: {} x {} points\n", shortest(request.window_deg),
                        result.table.columns, result.table.columns);
   lines += fmt::format("  returned   {} of the light at normal incidence\n",
@@ -168,7 +170,7 @@ std::string appearance_table(const AppearanceResult& result, const AppearanceTex
   lines += fmt::format(
       "  error      {}, relative to the larger of the value and {} of the brightest view; {} random geometries\n",
       error_text(result.error), percent(kErrorFloor), result.error.geometries);
-  if (!text.what.empty()) lines += "  file       " + text.what + '\n';
+  if (!text.approximation.empty()) lines += "  file       " + text.approximation + '\n';
   return lines;
 }
 

@@ -20,7 +20,8 @@ std::optional<AppearanceFormat> appearance_format(const std::string& file);
 struct AppearanceText {
   std::string text;
   std::string values;  ///< CSV file that belongs to a table; empty for other formats
-  std::string what;    ///< one line on how the format approximates the table; empty if the format is the table itself
+  std::string
+      approximation;  ///< one line on how the format approximates the table; empty if the format is the table itself
   std::optional<AppearanceError> error;  ///< error of the fitted lobes
 };
 

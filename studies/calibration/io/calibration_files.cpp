@@ -27,21 +27,22 @@ std::string place_of(const MeasuredParts& parts, const Measurement& m) {
 
 /// Returns the scatter of the residuals divided by the expected scatter, or 1 if there are no degrees of freedom.
 double scatter(const Calibration& result) {
-  return result.freedom == 0 ? 1.0 : std::sqrt(result.chi_square / static_cast<double>(result.freedom));
+  return result.degrees_of_freedom == 0 ? 1.0
+                                        : std::sqrt(result.chi_square / static_cast<double>(result.degrees_of_freedom));
 }
 
 void put(Json& json, const Calibration& result) {
   json["machine"] = result.machine.name;
   json["used"] = result.parts.measurements.size();
   json["empty"] = result.parts.empty_rows;
-  json["degrees_of_freedom"] = result.freedom;
+  json["degrees_of_freedom"] = result.degrees_of_freedom;
   json["scatter"] = scatter(result);
   json["quantities"] = Json::array();
   for (const CalibratedQuantity& q : result.quantities)
     json["quantities"].push_back({{"quantity", q.quantity->key},
-                                  {"description", q.quantity->words},
+                                  {"description", q.quantity->description},
                                   {"unit", q.quantity->unit()},
-                                  {"observable", q.is_told},
+                                  {"observable", q.is_observable},
                                   {"value", q.value},
                                   {"uncertainty", q.uncertainty}});
   json["covariance"] = Json::array();
@@ -50,7 +51,7 @@ void put(Json& json, const Calibration& result) {
     for (Eigen::Index l = 0; l < result.covariance.cols(); ++l) row.push_back(result.covariance(k, l));
     json["covariance"].push_back(std::move(row));
   }
-  json["unobservable"] = result.untold;
+  json["unobservable"] = result.unobservable;
   json["outliers"] = Json::array();
   for (const Outlier& outlier : result.outliers)
     json["outliers"].push_back({{"line", outlier.measurement.line},
@@ -65,21 +66,21 @@ std::string rows_of(const Calibration& result) {
   std::string text;
   for (const CalibratedQuantity& q : result.quantities)
     text += fmt::format(
-        "  {:<38} {}\n", fmt::format("{}, {}", q.quantity->words, q.quantity->unit()),
-        q.is_told ? fmt::format("{:>12} +- {}", fixed(q.value, 3), fixed(q.uncertainty, 3)) : "unobservable");
-  for (const std::string& combination : result.untold) text += fmt::format("  unobservable: {}\n", combination);
-  if (result.freedom > 0)
+        "  {:<38} {}\n", fmt::format("{}, {}", q.quantity->description, q.quantity->unit()),
+        q.is_observable ? fmt::format("{:>12} +- {}", fixed(q.value, 3), fixed(q.uncertainty, 3)) : "unobservable");
+  for (const std::string& combination : result.unobservable) text += fmt::format("  unobservable: {}\n", combination);
+  if (result.degrees_of_freedom > 0)
     text += fmt::format("  scatter of residuals {} times their uncertainties, {} degrees of freedom\n",
-                        fixed(scatter(result), 2), result.freedom);
+                        fixed(scatter(result), 2), result.degrees_of_freedom);
   for (const Outlier& outlier : result.outliers)
     text += fmt::format("  omitted, {} standard uncertainties from the fit: {}\n", fixed(outlier.deviations, 1),
                         place_of(result.parts, outlier.measurement));
   return text;
 }
 
-Json facets_of(const std::vector<FacetPlace>& facets) {
+Json facets_of(const std::vector<FacetId>& facets) {
   Json json = Json::array();
-  for (const FacetPlace& at : facets) json.push_back({{"element", at.element}, {"facet", at.facet + 1}});
+  for (const FacetId& at : facets) json.push_back({{"element", at.element}, {"facet", at.facet + 1}});
   return json;
 }
 
@@ -98,10 +99,10 @@ void put_rests(Json& json, const Correction& result) {
   for (const FacetMark& mark : result.marks)
     json["marks"].push_back({{"direction", mark.is_along_cut ? "cut" : "edge"},
                              {"of_edge", mark.is_of_edge},
-                             {"position_um", mark.place_um},
+                             {"position_um", mark.position_um},
                              {"height_nm", mark.height_nm},
                              {"width_um", mark.width_um},
-                             {"shown", mark.shown},
+                             {"shown", mark.facets_covering},
                              {"facets", facets_of(mark.facets)}});
 }
 
@@ -135,7 +136,7 @@ std::string correction_json(const Correction& result) {
                             {"face", map.face.has_value()}});
   }
   put(json, result.calibration);
-  const auto outlook = [](const FacetOutlook& o) -> Json {
+  const auto outlook = [](const DeviationPrediction& o) -> Json {
     return {{"distance_nm", o.distance_nm}, {"tilt_arcsec", o.tilt_arcsec}};
   };
   json["before"] = outlook(result.before);
@@ -161,8 +162,8 @@ std::string correction_table(const Correction& result) {
   text += fmt::format("  largest errors after correction        {} nm, {} arcsec\n", fixed(result.after.distance_nm, 1),
                       fixed(result.after.tilt_arcsec, 2));
   for (const FacetWave& wave : result.waves)
-    text += fmt::format("  not corrected: {}\n", words_of(wave, result.facets));
-  for (const FacetMark& mark : result.marks) text += fmt::format("  not corrected: {}\n", words_of(mark));
+    text += fmt::format("  not corrected: {}\n", description_of(wave, result.facets));
+  for (const FacetMark& mark : result.marks) text += fmt::format("  not corrected: {}\n", description_of(mark));
   if (result.waves.empty() && result.marks.empty())
     text += fmt::format("  no other waves or marks on {} facets\n", result.facets);
   return text;
@@ -185,7 +186,7 @@ std::string test_cuts_csv(const TestCuts& cuts) {
   const std::optional<double> none;
   for (const Measurement& m : cuts.parts.measurements)
     table.row(cuts.parts.jobs[m.part], m.at.element, m.at.facet + 1, word_of(m.what), none, m.uncertainty, none, none,
-              m.what == FacetQuantity::end ? std::optional(m.along_edge) : none, parts[m.part].positive_sense(m));
+              m.what == FacetQuantity::cut_end ? std::optional(m.along_edge) : none, parts[m.part].positive_sense(m));
   return table.text();
 }
 
@@ -203,13 +204,13 @@ std::string test_cuts_json(const TestCuts& cuts) {
     Json needs = Json::array();
     for (const std::size_t part : q.needs) needs.push_back(cuts.parts.jobs[part]);
     json["quantities"].push_back({{"quantity", q.quantity->key},
-                                  {"description", q.quantity->words},
+                                  {"description", q.quantity->description},
                                   {"unit", q.quantity->unit()},
-                                  {"observable", q.is_told},
+                                  {"observable", q.is_observable},
                                   {"uncertainty", q.uncertainty},
                                   {"needs", std::move(needs)}});
   }
-  json["unobservable"] = cuts.untold;
+  json["unobservable"] = cuts.unobservable;
   return result_text("retrace.test_cuts/2", std::move(json), {});
 }
 
@@ -220,12 +221,12 @@ std::string test_cuts_table(const TestCuts& cuts) {
     text += fmt::format("  {:<24} {} prisms, {} s\n", cuts.parts.jobs[k], cuts.jobs[k].elements,
                         fixed(cuts.parts.plans[k].plan.time.total_s(), 0));
   for (const PlannedQuantity& q : cuts.quantities) {
-    std::string line = q.is_told ? fmt::format("{:>10}", "+- " + fixed(q.uncertainty, 3)) : "unobservable";
+    std::string line = q.is_observable ? fmt::format("{:>10}", "+- " + fixed(q.uncertainty, 3)) : "unobservable";
     for (std::size_t k = 0; k < q.needs.size(); ++k)
       line += fmt::format("{}{}", k == 0 ? "  needs " : ", ", cuts.parts.jobs[q.needs[k]]);
-    text += fmt::format("  {:<38} {}\n", fmt::format("{}, {}", q.quantity->words, q.quantity->unit()), line);
+    text += fmt::format("  {:<38} {}\n", fmt::format("{}, {}", q.quantity->description, q.quantity->unit()), line);
   }
-  for (const std::string& combination : cuts.untold) text += fmt::format("  unobservable: {}\n", combination);
+  for (const std::string& combination : cuts.unobservable) text += fmt::format("  unobservable: {}\n", combination);
   return text;
 }
 

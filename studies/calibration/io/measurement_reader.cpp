@@ -17,9 +17,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostBytes = std::size_t{1} << 20;
-constexpr std::size_t kMostMeasurements = 10000;
-constexpr std::size_t kMostJobs = 32;
+constexpr std::size_t kMaxBytes = std::size_t{1} << 20;
+constexpr std::size_t kMaxMeasurements = 10000;
+constexpr std::size_t kMaxJobs = 32;
 constexpr NumberRange kElement{.low = 0.0, .high = 1e9};
 constexpr NumberRange kFacet{.low = 1.0, .high = 3.0};
 /// Range of measured values. Larger deviations, about a degree or a millimetre, mean that the wrong part was measured.
@@ -59,12 +59,12 @@ std::size_t whole(const CsvReader& row, std::size_t column, const NumberRange& r
 }
 
 /// Returns the reference facet of a value, or nothing if the columns are empty.
-std::optional<FacetPlace> from_of(const CsvReader& row, const Columns& columns) {
+std::optional<FacetId> from_of(const CsvReader& row, const Columns& columns) {
   const auto is_given = [&](const std::optional<std::size_t>& column) { return column && !row[*column].empty(); };
   if (!is_given(columns.from_element) && !is_given(columns.from_facet)) return std::nullopt;
   if (!is_given(columns.from_element) || !is_given(columns.from_facet))
     row.fail("from_element and from_facet must be given together or not at all");
-  return FacetPlace{whole(row, *columns.from_element, kElement), whole(row, *columns.from_facet, kFacet) - 1};
+  return FacetId{whole(row, *columns.from_element, kElement), whole(row, *columns.from_facet, kFacet) - 1};
 }
 
 Measurement measurement_of(const CsvReader& row, const Columns& columns) {
@@ -76,7 +76,7 @@ Measurement measurement_of(const CsvReader& row, const Columns& columns) {
   m.from = from_of(row, columns);
   if (columns.at && !row[*columns.at].empty()) {
     m.along_edge = row.number(*columns.at, kAlongEdge);
-    if (m.what != FacetQuantity::end)
+    if (m.what != FacetQuantity::cut_end)
       row.fail(*columns.at, "is allowed only for end_nm, as the position along the edge at which a cut ends");
   }
   return m;
@@ -86,14 +86,14 @@ Measurement measurement_of(const CsvReader& row, const Columns& columns) {
 class Reader {
  public:
   Reader(std::string_view text, const fs::path& file, const FileTexts& texts)
-      : table_(text, file.string(), kMostBytes), columns_(table_), folder_(file.parent_path()), texts_(texts) {
+      : table_(text, file.string(), kMaxBytes), columns_(table_), folder_(file.parent_path()), texts_(texts) {
     result_.file = file.string();
   }
 
   MeasuredParts read() {
     while (table_.next()) {
-      if (table_.rows() > kMostMeasurements)
-        table_.fail(fmt::format("at most {} measurements are allowed", kMostMeasurements));
+      if (table_.rows() > kMaxMeasurements)
+        table_.fail(fmt::format("at most {} measurements are allowed", kMaxMeasurements));
       Measurement m = measurement_of(table_, columns_);
       m.part = part_of(std::string(table_[columns_.job]));
       if (table_[columns_.value].empty()) {
@@ -112,7 +112,7 @@ class Reader {
     if (job.empty()) table_.fail(columns_.job, "must name a job file");
     const auto known = std::find(result_.jobs.begin(), result_.jobs.end(), job);
     if (known != result_.jobs.end()) return static_cast<std::size_t>(known - result_.jobs.begin());
-    if (result_.jobs.size() == kMostJobs) table_.fail(fmt::format("at most {} jobs are allowed", kMostJobs));
+    if (result_.jobs.size() == kMaxJobs) table_.fail(fmt::format("at most {} jobs are allowed", kMaxJobs));
     FabricationRequest request;
     const fs::path file = folder_ / job;
     if (const auto text = texts_.find(file.string()); text != texts_.end()) request.job_text = text->second;
@@ -140,7 +140,7 @@ MeasuredParts parse_measurements(std::string_view text, const fs::path& file, co
 }
 
 MeasuredParts read_measurements(const fs::path& file) {
-  return parse_measurements(read_file(file, kMostBytes), file);
+  return parse_measurements(read_file(file, kMaxBytes), file);
 }
 
 }  // namespace retrace::studies

@@ -32,9 +32,9 @@ namespace fs = std::filesystem;
 using namespace fabrication;
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kMostTimesBytes = std::size_t{1} << 22;
-constexpr std::size_t kMostRows = 100000;
-constexpr std::size_t kMostPrograms = 100;
+constexpr std::size_t kMaxTimesBytes = std::size_t{1} << 22;
+constexpr std::size_t kMaxRows = 100000;
+constexpr std::size_t kMaxPrograms = 100;
 constexpr NumberRange kSeconds{.low = 0.0, .low_included = false, .high = 1e8};
 constexpr NumberRange kLine{.low = 1.0, .high = 1e9};
 
@@ -50,9 +50,9 @@ class Timeline final : public NcSink {
     if (motion.moved == 0) return;
     const auto [known, is_new] = kinds_.try_emplace(key_of(motion), motions_.size());
     if (is_new) motions_.push_back(motion);
-    moves_.push_back({main_line(motion.place), known->second});
+    moves_.push_back({main_line(motion.location), known->second});
   }
-  void dwell(double seconds, const NcPlace& place, const AxisPositions&) override {
+  void dwell(double seconds, const NcLocation& place, const AxisPositions&) override {
     dwells_.emplace_back(main_line(place), seconds);
   }
 
@@ -77,7 +77,7 @@ class Timeline final : public NcSink {
     return {first, std::ranges::upper_bound(first, events.end(), to_line, {}, &Event::first)};
   }
 
-  static int main_line(const NcPlace& place) { return place.call_line > 0 ? place.call_line : place.line; }
+  static int main_line(const NcLocation& place) { return place.call_line > 0 ? place.call_line : place.line; }
 
   static Key key_of(const NcMotion& motion) {
     constexpr double kUnits[] = {1e6, 1e7};
@@ -125,7 +125,7 @@ struct TimeColumns {
 class TimeReader {
  public:
   TimeReader(std::string_view text, const fs::path& file, const Machine& machine, const FileTexts& texts)
-      : table_(text, file.string(), kMostTimesBytes),
+      : table_(text, file.string(), kMaxTimesBytes),
         columns_(table_),
         folder_(file.parent_path()),
         machine_(machine),
@@ -135,7 +135,7 @@ class TimeReader {
 
   TimedPrograms read() {
     while (table_.next()) {
-      if (table_.rows() > kMostRows) table_.fail(fmt::format("at most {} rows are allowed", kMostRows));
+      if (table_.rows() > kMaxRows) table_.fail(fmt::format("at most {} rows are allowed", kMaxRows));
       add_row();
     }
     if (result_.rows.empty()) table_.fail("must have a row with a time");
@@ -178,7 +178,7 @@ class TimeReader {
     if (printable(name, name.size()) != name)
       table_.fail(columns_.program, "must be the name of a program, got " + in_quotes(name));
     if (const auto known = timelines_.find(name); known != timelines_.end()) return known->second.timeline;
-    if (timelines_.size() == kMostPrograms) table_.fail(fmt::format("at most {} programs are allowed", kMostPrograms));
+    if (timelines_.size() == kMaxPrograms) table_.fail(fmt::format("at most {} programs are allowed", kMaxPrograms));
     auto program = std::make_unique<NcProgram>(read_named({result_.file, table_.line(), "program"}, [&] {
       return std::move(read_programs({(folder_ / name).string()}, "auto", texts_of(machine_.control), texts_).front());
     }));
@@ -209,7 +209,7 @@ TimedPrograms parse_times(std::string_view text, const fs::path& file, const Mac
 }
 
 TimedPrograms read_times(const fs::path& file, const Machine& machine) {
-  return parse_times(read_file(file, kMostTimesBytes), file, machine);
+  return parse_times(read_file(file, kMaxTimesBytes), file, machine);
 }
 
 std::string time_calibration_json(const TimeCalibration& result) {
@@ -218,24 +218,24 @@ std::string time_calibration_json(const TimeCalibration& result) {
   json["machine"] = result.machine.name;
   json["used"] = result.programs.rows.size();
   json["empty"] = result.programs.empty_rows;
-  json["degrees_of_freedom"] = result.freedom;
+  json["degrees_of_freedom"] = result.degrees_of_freedom;
   json["scatter"] = result.scatter;
   json["quantities"] = Json::array();
   for (std::size_t k = 0; k < kTimeQuantities; ++k)
     json["quantities"].push_back({{"quantity", kTimeQuantityWords[k].key},
-                                  {"description", kTimeQuantityWords[k].words},
-                                  {"observable", result.quantities[k].is_told},
+                                  {"description", kTimeQuantityWords[k].description},
+                                  {"observable", result.quantities[k].is_observable},
                                   {"value", result.quantities[k].value},
                                   {"uncertainty", result.quantities[k].uncertainty}});
-  json["unobservable"] = result.untold;
+  json["unobservable"] = result.unobservable;
   json["rows"] = Json::array();
   for (std::size_t k = 0; k < result.programs.rows.size(); ++k) {
     const TimedMoves& row = result.programs.rows[k];
     json["rows"].push_back({{"line", row.line},
                             {"program", row.program},
                             {"measured_s", row.seconds},
-                            {"before_s", row.on_s(result.nominal)},
-                            {"after_s", row.on_s(result.machine)},
+                            {"before_s", row.predicted_s(result.nominal)},
+                            {"after_s", row.predicted_s(result.machine)},
                             {"residual", result.residuals[k]}});
   }
   return result_text("retrace.time_calibration/2", std::move(json), result.warnings);
@@ -246,24 +246,25 @@ std::string time_calibration_table(const TimeCalibration& result) {
                                  printable(result.machine.name), result.programs.rows.size());
   for (std::size_t k = 0; k < kTimeQuantities; ++k) {
     const CalibratedTime& found = result.quantities[k];
-    text += fmt::format("  {:<50} {}\n", kTimeQuantityWords[k].words,
-                        found.is_told ? fmt::format("{:>10} +- {}", fixed(found.value, 4), fixed(found.uncertainty, 4))
-                                      : "unobservable");
+    text += fmt::format("  {:<50} {}\n", kTimeQuantityWords[k].description,
+                        found.is_observable
+                            ? fmt::format("{:>10} +- {}", fixed(found.value, 4), fixed(found.uncertainty, 4))
+                            : "unobservable");
   }
-  for (const std::string& keys : result.untold)
+  for (const std::string& keys : result.unobservable)
     text += fmt::format("  {}: {}\n", keys.find(',') == std::string::npos ? "unobservable" : "not separable", keys);
-  constexpr std::size_t kMostShown = 20;
-  for (std::size_t k = 0; k < std::min(result.programs.rows.size(), kMostShown); ++k) {
+  constexpr std::size_t kMaxShownRows = 20;
+  for (std::size_t k = 0; k < std::min(result.programs.rows.size(), kMaxShownRows); ++k) {
     const TimedMoves& row = result.programs.rows[k];
     text += fmt::format("  line {:<4} {:<28} measured {} s; computed {} s before and {} s after the calibration\n",
-                        row.line, row.program, fixed(row.seconds, 2), fixed(row.on_s(result.nominal), 2),
-                        fixed(row.on_s(result.machine), 2));
+                        row.line, row.program, fixed(row.seconds, 2), fixed(row.predicted_s(result.nominal), 2),
+                        fixed(row.predicted_s(result.machine), 2));
   }
-  if (result.programs.rows.size() > kMostShown)
-    text += fmt::format("  and {} more rows\n", result.programs.rows.size() - kMostShown);
-  if (result.freedom > 0)
+  if (result.programs.rows.size() > kMaxShownRows)
+    text += fmt::format("  and {} more rows\n", result.programs.rows.size() - kMaxShownRows);
+  if (result.degrees_of_freedom > 0)
     text += fmt::format("  scatter of residuals {} times their uncertainties, {} degrees of freedom\n",
-                        fixed(result.scatter, 2), result.freedom);
+                        fixed(result.scatter, 2), result.degrees_of_freedom);
   return text;
 }
 

@@ -17,7 +17,8 @@ using Json = nlohmann::ordered_json;
 
 Json programs_json(const VerificationRun& run) {
   Json programs = Json::array();
-  for (std::size_t k = run.standing; k < run.programs.size(); ++k) programs.push_back(program_json(run.programs[k]));
+  for (std::size_t k = run.unchecked_programs; k < run.programs.size(); ++k)
+    programs.push_back(program_json(run.programs[k]));
   return programs;
 }
 
@@ -47,7 +48,7 @@ std::string verification_json(const VerificationRun& run, double elapsed_s) {
                      {"root_residual_nm_max", r.root_residual_nm_max},
                      {"root_residual_nm_predicted", r.root_residual_nm_predicted},
                      {"chip_um_max", r.chip_um_max},
-                     {"chip_ratio_max", r.chip_share_max},
+                     {"chip_ratio_max", r.chip_ratio_max},
                      {"root_radius_um", r.root_radius_um},
                      {"root_chamfer_um", r.root_chamfer_um},
                      {"root_ridge_um", r.root_ridge_um},

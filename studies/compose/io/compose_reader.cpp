@@ -30,7 +30,7 @@ std::vector<std::string> quantities_of(const Study& study, const std::string& na
 std::string checked_mean(const Study& study, const std::string& given, const InputLocation& where) {
   const std::string name = checked_quantity(study, given, where);
   const auto found = std::ranges::find_if(study.quantities, [&](const auto& q) { return q->name() == name; });
-  if (!(*found)->adds_up())
+  if (!(*found)->is_additive())
     throw InputError(where,
                      fmt::format("{} is the minimum of several values, which cannot be averaged over zones: make each "
                                  "value a quantity with points = \"each_reading\" or over_directions = \"each\"",
@@ -56,17 +56,17 @@ bool are_all_margins(const Study& study, const std::vector<std::string>& goals) 
   });
 }
 
-void check_shares(const Document& document, const ComposeRequest& request) {
-  if (request.least_share > request.most_share)
+void check_fractions(const Document& document, const ComposeRequest& request) {
+  if (request.min_area_fraction > request.max_area_fraction)
     document.fail("compose.min_area_fraction",
-                  fmt::format("must be <= max_area_fraction ({}), got {}", shortest(request.most_share),
-                              shortest(request.least_share)));
-  if (request.most_zones && static_cast<double>(*request.most_zones) * request.most_share < 1.0 - 1e-12)
+                  fmt::format("must be <= max_area_fraction ({}), got {}", shortest(request.max_area_fraction),
+                              shortest(request.min_area_fraction)));
+  if (request.max_zones && static_cast<double>(*request.max_zones) * request.max_area_fraction < 1.0 - 1e-12)
     document.fail(
         "compose.max_area_fraction",
         fmt::format(
             "must be >= 1 / max_zones (max_zones = {}), because otherwise the zones cannot fill the part, got {}",
-            *request.most_zones, shortest(request.most_share)));
+            *request.max_zones, shortest(request.max_area_fraction)));
 }
 
 void check_parameters(const Study& study) {
@@ -81,11 +81,11 @@ void check_parameters(const Study& study) {
 void check_cells(const Study& study) {
   std::optional<Candidate> cell;
   try {
-    cell = make_candidate(study, some_values(study));
+    cell = make_candidate(study, example_values(study));
   } catch (const InputError&) {
     return;
   }
-  check_taken(cell->design(), {.what = "retrace compose", .wet_backs = true});
+  design::require_supported(cell->design(), {.what = "retrace compose", .wet_backs = true});
 }
 
 /// Reads the standard deviations of angle errors. Returns nothing if the study has none.
@@ -100,7 +100,7 @@ std::optional<ErrorSpread> read_errors(const Document& document, const Study& st
                     "needs cell_sigma_arcmin or zone_sigma_arcmin, because all parts are equal without angle errors");
     return std::nullopt;
   }
-  if (angles_of(study, some_values(study)) == 0)
+  if (angles_of(study, example_values(study)) == 0)
     document.fail(key, "not allowed: the cells have no angles between facets");
   ErrorSpread spread{cells.value_or(0.0), zones.value_or(0.0), {}, document.number_if("compose.worst_fraction")};
   spread.parts = static_cast<std::size_t>(document.number("compose.parts"));
@@ -116,16 +116,16 @@ ComposeRequest read_compose(const Study& study) {
   check_cells(study);
   ComposeRequest request;
   request.goals = read_goals(document, study);
-  request.of_cells = read_constraints(study, ConstraintOver::cell);
-  request.of_part = read_constraints(study, ConstraintOver::part);
-  for (const Constraint& constraint : request.of_part)
+  request.cell_constraints = read_constraints(study, ConstraintOver::cell);
+  request.part_constraints = read_constraints(study, ConstraintOver::part);
+  for (const Constraint& constraint : request.part_constraints)
     checked_mean(study, constraint.quantity, document.where("constraint"));
-  request.least_goal = document.number_if("compose.min_goal");
-  if (!request.least_goal && are_all_margins(study, request.goals)) request.least_goal = 0.0;
-  request.least_share = document.number("compose.min_area_fraction");
-  request.most_share = document.number("compose.max_area_fraction");
-  if (const auto most = document.number_if("compose.max_zones")) request.most_zones = static_cast<std::size_t>(*most);
-  check_shares(document, request);
+  request.min_goal = document.number_if("compose.min_goal");
+  if (!request.min_goal && are_all_margins(study, request.goals)) request.min_goal = 0.0;
+  request.min_area_fraction = document.number("compose.min_area_fraction");
+  request.max_area_fraction = document.number("compose.max_area_fraction");
+  if (const auto most = document.number_if("compose.max_zones")) request.max_zones = static_cast<std::size_t>(*most);
+  check_fractions(document, request);
   if (document.has("compose.price"))
     for (const auto& [name, price] : document.named("compose.price"))
       request.price.emplace_back(checked_mean(study, name, document.where("compose.price." + name)),
@@ -140,7 +140,7 @@ ComposeRequest read_compose(const Study& study) {
   request.scan = static_cast<std::size_t>(document.number("compose.scan"));
   request.rounds = static_cast<std::size_t>(document.number("compose.rounds"));
   request.starts = static_cast<std::size_t>(document.number("compose.starts"));
-  request.looks = static_cast<int>(document.number("compose.evaluations_per_start"));
+  request.evaluations_per_start = static_cast<int>(document.number("compose.evaluations_per_start"));
   request.errors = read_errors(document, study);
   return request;
 }

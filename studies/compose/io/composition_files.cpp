@@ -26,7 +26,8 @@ Json cell_json(const Study& study, const FamilyCell& cell) {
 
 Json zones_json(const Study& study, const std::vector<Zone>& zones) {
   Json all = Json::array();
-  for (const Zone& zone : zones) all.push_back({{"area_fraction", zone.share}, {"cell", cell_json(study, zone.cell)}});
+  for (const Zone& zone : zones)
+    all.push_back({{"area_fraction", zone.area_fraction}, {"cell", cell_json(study, zone.cell)}});
   return all;
 }
 
@@ -44,7 +45,7 @@ Json goals_json(const Study& study, const ComposeRequest& request, const PartOfZ
       goal["cost_of_one_more"] = *cost_of_limit(quantity, part.mixture, k);
     }
     Json given = Json::array();
-    for (const Zone& zone : part.zones) given.push_back(given_by(zone, k, quantity.limit().has_value()));
+    for (const Zone& zone : part.zones) given.push_back(contribution_of(zone, k, quantity.limit().has_value()));
     goal["given_by_zones"] = given;
     all.push_back(goal);
   }
@@ -63,34 +64,34 @@ std::string_view proof_word(Proof proof) {
 void add_part(const Study& study, const ComposeRequest& request, const Composition& composition, Json& json) {
   const PartOfZones& part = *composition.best;
   json["zones"] = zones_json(study, part.zones);
-  json["goal_min"] = part.mixture.least;
+  json["goal_min"] = part.mixture.min_goal;
   json["merit"] = part.mixture.merit;
   json["goals"] = goals_json(study, request, part);
   Json means = Json::array();
-  for (std::size_t k = 0; k < request.of_part.size(); ++k)
-    means.push_back({{"constraint", request.of_part[k].text()},
+  for (std::size_t k = 0; k < request.part_constraints.size(); ++k)
+    means.push_back({{"constraint", request.part_constraints[k].text()},
                      {"value", part.mixture.means[k]},
                      {"price", part.mixture.prices.means[k]}});
   json["constraints_over_part"] = means;
   json["proven_optimal_over"] = proof_word(composition.proof);
   json["bound"] = part.mixture.bound;
   json["search_converged"] = composition.has_converged;
-  json["any_number_of_zones"] = composition.unlimited;
+  json["any_number_of_zones"] = composition.unlimited_merit;
   Json by_zones = Json::array();
   for (const PartOfZones& of : composition.by_zones)
-    by_zones.push_back({{"max_zones", of.most_zones},
-                        {"goal_min", of.mixture.least},
+    by_zones.push_back({{"max_zones", of.max_zones},
+                        {"goal_min", of.mixture.min_goal},
                         {"merit", of.mixture.merit},
                         {"zones", zones_json(study, of.zones)}});
   json["by_number_of_zones"] = by_zones;
   if (composition.errors)
     json["errors_of_angle"] =
-        error_effects_json(request, *composition.errors, zones_json(study, zones_for_worst(composition)));
+        error_effects_json(request, *composition.errors, zones_json(study, robust_zones(composition)));
   if (!request.front) return;
   Json front = Json::array();
   for (const FrontPart& at : composition.front)
     front.push_back(
-        {{request.front->quantity, at.mean}, {"goal_min", at.least}, {"zones", zones_json(study, at.zones)}});
+        {{request.front->quantity, at.mean}, {"goal_min", at.min_goal}, {"zones", zones_json(study, at.zones)}});
   json["front"] = front;
 }
 
@@ -132,8 +133,9 @@ std::string composition_csv(const Study& study, const ComposeRequest& request, c
     csv.add_quoted(limit ? limit->unit : "");
     csv.add(part.mixture.goals[k]);
     csv.add(part.mixture.prices.goals[k]);
-    for (std::size_t z = 0; z + 1 < part.zones.size(); ++z) csv.add(given_by(part.zones[z], k, limit.has_value()));
-    csv.row(given_by(part.zones.back(), k, limit.has_value()));
+    for (std::size_t z = 0; z + 1 < part.zones.size(); ++z)
+      csv.add(contribution_of(part.zones[z], k, limit.has_value()));
+    csv.row(contribution_of(part.zones.back(), k, limit.has_value()));
   }
   return csv.text();
 }
@@ -143,7 +145,8 @@ namespace {
 std::string zones_text(const Study& study, const std::vector<Zone>& zones) {
   std::string text;
   for (std::size_t z = 0; z < zones.size(); ++z)
-    text += fmt::format("zone {}  {:6.2f} %  {}\n", z + 1, 100.0 * zones[z].share, cell_text(study, zones[z].cell));
+    text +=
+        fmt::format("zone {}  {:6.2f} %  {}\n", z + 1, 100.0 * zones[z].area_fraction, cell_text(study, zones[z].cell));
   return text;
 }
 
@@ -158,7 +161,7 @@ std::string goals_text(const Study& study, const ComposeRequest& request, const 
     text += fmt::format("{:<28}{:>10}{:>12}", quantity.label(), limit ? fmt::format("{:g}", limit->value) : "",
                         goal_value_text(part.mixture.goals[k], limit.has_value()) + (limit ? " %" : ""));
     for (const Zone& zone : part.zones)
-      text += fmt::format("{:>10}", goal_value_text(given_by(zone, k, limit.has_value()), limit.has_value()));
+      text += fmt::format("{:>10}", goal_value_text(contribution_of(zone, k, limit.has_value()), limit.has_value()));
     const double price = part.mixture.prices.goals[k];
     text += is_price(price) ? fmt::format("{:10.3f}\n", price) : std::string("\n");
   }
@@ -179,11 +182,11 @@ std::string prices_text(const Study& study, const ComposeRequest& request, const
       text += fmt::format("binding: {}; requiring 1 more of it lowers the minimum by {:.3g}\n", quantity.label(),
                           part.mixture.prices.goals[k]);
   }
-  for (std::size_t k = 0; k < request.of_part.size(); ++k)
+  for (std::size_t k = 0; k < request.part_constraints.size(); ++k)
     if (is_price(part.mixture.prices.means[k]))
       text +=
           fmt::format("binding: {} as a mean over the part; increasing this limit by 1 changes the merit by {:.3g}\n",
-                      request.of_part[k].text(), part.mixture.prices.means[k]);
+                      request.part_constraints[k].text(), part.mixture.prices.means[k]);
   return text;
 }
 
@@ -208,36 +211,38 @@ std::string worth_text(const Study& study, const ComposeRequest& request, const 
   const auto shown = [&](double value) { return goal_value_text(value, margins) + (margins ? " %" : ""); };
   std::string text;
   for (const PartOfZones& of : composition.by_zones)
-    text += fmt::format("{}{} zone{}: {}", text.empty() ? "minimum with at most " : ", ", of.most_zones,
-                        of.most_zones == 1 ? "" : "s", shown(of.mixture.least));
-  text += fmt::format("\n{} with any number of zones\n", shown(composition.unlimited));
+    text += fmt::format("{}{} zone{}: {}", text.empty() ? "minimum with at most " : ", ", of.max_zones,
+                        of.max_zones == 1 ? "" : "s", shown(of.mixture.min_goal));
+  text += fmt::format("\n{} with any number of zones\n", shown(composition.unlimited_merit));
   for (const FrontPart& at : composition.front)
-    text += fmt::format("Pareto front: {} = {:.6g}, minimum {}\n", request.front->quantity, at.mean, shown(at.least));
+    text +=
+        fmt::format("Pareto front: {} = {:.6g}, minimum {}\n", request.front->quantity, at.mean, shown(at.min_goal));
   return text;
 }
 
 }  // namespace
 
 std::string composition_text(const Study& study, const ComposeRequest& request, const Composition& composition) {
-  if (!composition.best) return composition.complete ? "no part: " + composition.none_because + "\n" : std::string();
+  if (!composition.best)
+    return composition.complete ? "no part: " + composition.infeasible_reason + "\n" : std::string();
   const PartOfZones& part = *composition.best;
   std::string text = zones_text(study, part.zones) + "\n" + goals_text(study, request, part) + "\n";
   const bool margins = are_margins(study, request);
   text +=
-      fmt::format("minimum of all goals: {}{}\n", goal_value_text(part.mixture.least, margins), margins ? " %" : "");
+      fmt::format("minimum of all goals: {}{}\n", goal_value_text(part.mixture.min_goal, margins), margins ? " %" : "");
   if (!request.price.empty()) text += fmt::format("minimum minus the prices: {:.6g}\n", part.mixture.merit);
   text += prices_text(study, request, part) + worth_text(study, request, composition) + proof_text(composition);
   if (composition.errors)
-    text += "\n" +
-            error_effects_text(request, *composition.errors, zones_text(study, zones_for_worst(composition)), margins);
+    text +=
+        "\n" + error_effects_text(request, *composition.errors, zones_text(study, robust_zones(composition)), margins);
   return text;
 }
 
 std::string why_not_reached(const Study& study, const ComposeRequest& request, const Composition& composition) {
   if (!composition.complete) return {};
-  if (!composition.best) return composition.none_because;
+  if (!composition.best) return composition.infeasible_reason;
   const Mixture& mixture = composition.best->mixture;
-  if (!request.least_goal || mixture.least >= *request.least_goal) return {};
+  if (!request.min_goal || mixture.min_goal >= *request.min_goal) return {};
   std::string text;
   for (std::size_t k = 0; k < request.goals.size(); ++k)
     if (is_price(mixture.prices.goals[k]))
@@ -246,7 +251,7 @@ std::string why_not_reached(const Study& study, const ComposeRequest& request, c
   return fmt::format(
       "the minimum of all goals is {:.6g}, but {} is required. Limiting goals, with weights: {}. No mixture of the {} "
       "cells has a weighted mean of these goals above {:.6g}",
-      mixture.least, shortest(*request.least_goal), text, composition.catalogue.size(), mixture.least);
+      mixture.min_goal, shortest(*request.min_goal), text, composition.catalogue.size(), mixture.min_goal);
 }
 
 }  // namespace retrace::studies

@@ -11,17 +11,17 @@ namespace retrace::studies {
 namespace {
 
 /// Fraction of the random parts that are better than the reported minimum.
-constexpr double kMostParts = 0.95;
+constexpr double kReportedPartFraction = 0.95;
 
-double least_of_most(const PartYield& yield) {
-  const double below = (1.0 - kMostParts) * static_cast<double>(yield.leasts.size());
-  return yield.leasts[static_cast<std::size_t>(below)];
+double reported_min_goal(const PartYield& yield) {
+  const double below = (1.0 - kReportedPartFraction) * static_cast<double>(yield.min_goals.size());
+  return yield.min_goals[static_cast<std::size_t>(below)];
 }
 
 nlohmann::ordered_json yield_json(const PartYield& yield) {
-  nlohmann::ordered_json json = {{"parts", yield.leasts.size()}};
+  nlohmann::ordered_json json = {{"parts", yield.min_goals.size()}};
   if (yield.good) json["good"] = *yield.good;
-  json["goal_min_of_95_percent"] = least_of_most(yield);
+  json["goal_min_of_95_percent"] = reported_min_goal(yield);
   if (yield.mean_of_worst) json["mean_of_worst"] = *yield.mean_of_worst;
   return json;
 }
@@ -30,12 +30,12 @@ std::string yield_text(const ComposeRequest& request, const PartYield& yield, bo
   const char* const unit = are_margins ? " %" : "";
   std::string text;
   if (yield.good)
-    text += fmt::format("{} of {} parts reach {}{}, ", *yield.good, yield.leasts.size(),
-                        goal_value_text(*request.least_goal, are_margins), unit);
+    text += fmt::format("{} of {} parts reach {}{}, ", *yield.good, yield.min_goals.size(),
+                        goal_value_text(*request.min_goal, are_margins), unit);
   text += fmt::format("95 % of {} {}{} or more", yield.good ? "them reach" : "parts reach",
-                      goal_value_text(least_of_most(yield), are_margins), unit);
+                      goal_value_text(reported_min_goal(yield), are_margins), unit);
   if (yield.mean_of_worst)
-    text += fmt::format(", the mean of the worst {:g} % is {}{}", 100.0 * *request.errors->worst_share,
+    text += fmt::format(", the mean of the worst {:g} % is {}{}", 100.0 * *request.errors->worst_fraction,
                         goal_value_text(*yield.mean_of_worst, are_margins), unit);
   return text + "\n";
 }
@@ -50,11 +50,11 @@ nlohmann::ordered_json error_effects_json(const ComposeRequest& request, const E
                                  {"goals", effects.goals},
                                  {"slopes_per_arcmin", effects.slopes},
                                  {"yield", yield_json(effects.yield)}};
-  if (effects.for_worst) {
-    json["worst_fraction"] = *request.errors->worst_share;
-    json["best_for_worst"] = {{"zones", for_worst}, {"yield", yield_json(effects.for_worst->yield)}};
+  if (effects.robust_part) {
+    json["worst_fraction"] = *request.errors->worst_fraction;
+    json["best_for_worst"] = {{"zones", for_worst}, {"yield", yield_json(effects.robust_part->yield)}};
   }
-  json["approximation_error_max"] = effects.missed_by;
+  json["approximation_error_max"] = effects.approximation_error;
   return json;
 }
 
@@ -73,11 +73,11 @@ std::string error_effects_text(const ComposeRequest& request, const ErrorEffects
       text += (k == 0 ? " " : ", ") + shown(effects.slopes[z][k]);
     text += "\n";
   }
-  if (effects.for_worst)
-    text += "best part for the worst random parts: " + yield_text(request, effects.for_worst->yield, are_margins) +
+  if (effects.robust_part)
+    text += "best part for the worst random parts: " + yield_text(request, effects.robust_part->yield, are_margins) +
             for_worst;
   return text + fmt::format("error of the polynomial approximation of the goals: at most {} at the computed points\n",
-                            shown(effects.missed_by));
+                            shown(effects.approximation_error));
 }
 
 }  // namespace retrace::studies

@@ -9,9 +9,9 @@
 
 #include "core/message_text.h"
 #include "core/number_format.h"
-#include "studies/design/io/design_document.h"
-#include "studies/design/io/design_reader.h"
-#include "studies/design/io/zone_reader.h"
+#include "design/io/design_document.h"
+#include "design/io/design_reader.h"
+#include "design/io/zone_reader.h"
 #include "studies/quantity/io/study_reader.h"
 
 namespace retrace::studies {
@@ -23,7 +23,7 @@ constexpr std::string_view kTurn = "analysis.rotation_deg";
 /// Minimum height of a row of a zone, in elements. With this height, most elements in the row are whole.
 constexpr double kElementsOfRow = 8.0;
 /// Maximum number of rows of all zones, limited by what a design file can contain.
-constexpr double kMostRows = 120.0;
+constexpr double kMaxRows = 120.0;
 
 /// Divides a rectangle into blocks for the zones from `first` to `end`. The zones are split into two groups of about
 /// the same area. The rectangle is split across its longer side, and both halves are divided in the same manner.
@@ -57,7 +57,7 @@ std::vector<std::vector<Rectangle>> blocks_of(const std::vector<double>& shares,
 /// \param element_mm maximum extent of an element along y
 std::vector<std::vector<Rectangle>> rows_of(const std::vector<double>& shares, const Vec2& size_mm, double element_mm) {
   const double least = *std::ranges::min_element(shares);
-  const double most = std::floor(kMostRows / static_cast<double>(shares.size()));
+  const double most = std::floor(kMaxRows / static_cast<double>(shares.size()));
   const double bands = std::clamp(std::floor(least * size_mm.y() / (kElementsOfRow * element_mm)), 1.0, most);
   std::vector<std::vector<Rectangle>> regions(shares.size());
   double from = 0.0;
@@ -86,7 +86,8 @@ std::string changes_text(const Study& study, const PointValues& values) {
   std::string text;
   for (std::size_t k = 0; k < study.parameters.size(); ++k)
     for (const std::string& key : study.parameters[k].keys)
-      if (may_set_in_zone(key)) text += fmt::format("{}'{}={}'", text.empty() ? "" : ", ", key, values[k].toml);
+      if (design::may_vary_between_zones(key))
+        text += fmt::format("{}'{}={}'", text.empty() ? "" : ", ", key, values[k].toml);
   return text.empty() ? text : fmt::format("set = [{}]\n", text);
 }
 
@@ -98,11 +99,12 @@ Field field_of(std::string_view key) {
 
 /// Returns the design of the whole part, with elements that have the given parameter values everywhere. The part is
 /// finite and has the size of the request.
-Design whole_design(const Study& study, const PointValues& values, const ZonedDesignRequest& request) {
-  const Design design = make_candidate(study, values).design();
+design::Design whole_design(const Study& study, const PointValues& values, const ZonedDesignRequest& request) {
+  const design::Design design = make_candidate(study, values).design();
   if (!request.size_mm) return design;
   try {
-    return with(design, std::vector<std::string>{"array.extent=\"finite\"",
+    return design::with(design,
+                        std::vector<std::string>{"array.extent=\"finite\"",
                                                  fmt::format("array.x_length_mm={}", shortest(request.size_mm->x())),
                                                  fmt::format("array.y_length_mm={}", shortest(request.size_mm->y()))});
   } catch (const InputError& error) {
@@ -118,19 +120,19 @@ double height_of(const Study& study, const Zone& zone) {
 
 }  // namespace
 
-std::size_t most_zone_designs(const ComposeRequest& request) {
-  return std::min<std::size_t>(100, request.most_zones.value_or(100));
+std::size_t max_zone_designs(const ComposeRequest& request) {
+  return std::min<std::size_t>(100, request.max_zones.value_or(100));
 }
 
 std::string zone_design_text(const Study& study, const std::vector<Zone>& zones, std::size_t zone) {
   const Candidate candidate = make_candidate(study, zones[zone].cell.values);
-  std::string comment =
-      fmt::format("# Zone {} of {} of {}: {} of the area", zone + 1, zones.size(),
-                  printable(std::filesystem::path(study.source).filename().string()), shortest(zones[zone].share));
+  std::string comment = fmt::format("# Zone {} of {} of {}: {} of the area", zone + 1, zones.size(),
+                                    printable(std::filesystem::path(study.source).filename().string()),
+                                    shortest(zones[zone].area_fraction));
   if (const double turn_deg = candidate.analysis().rotation_deg; turn_deg != 0.0)
     comment += fmt::format(", rotated by {} degrees (use this value as the rotation of retrace photometry)",
                            shortest(turn_deg));
-  return design_text(candidate.design(), comment + "\n");
+  return design::design_text(candidate.design(), comment + "\n");
 }
 
 ZoneLayout read_zone_layout(const std::string& word) {
@@ -143,13 +145,13 @@ ZoneLayout read_zone_layout(const std::string& word) {
 void check_zoned_design(const Study& study, const ZonedDesignRequest& request) {
   for (const Parameter& parameter : study.parameters)
     for (const std::string& key : parameter.keys)
-      if (key != kTurn && !may_set_in_zone(key))
+      if (key != kTurn && !design::may_vary_between_zones(key))
         throw InputError(
             parameter.location,
             fmt::format("{}: zones of a part cannot differ in {}, which must be the same for the whole part",
                         reference({"design"}), key));
-  const Design design = whole_design(study, some_values(study), request);
-  if (design.is_endless())
+  const design::Design design = whole_design(study, example_values(study), request);
+  if (design.is_infinite())
     throw InputError(Field{"x_length_mm"},
                      "missing: a part of zones is finite, but the design of the study is infinite");
   if (design.part().array.arrangement == geometry::Arrangement::single)
@@ -158,20 +160,21 @@ void check_zoned_design(const Study& study, const ZonedDesignRequest& request) {
 }
 
 std::string zoned_design_text(const Study& study, const std::vector<Zone>& zones, const ZonedDesignRequest& request) {
-  const Design whole = whole_design(study, zones.front().cell.values, request);
+  const design::Design whole = whole_design(study, zones.front().cell.values, request);
   const Vec2 size_mm(whole.part().array.x_length_mm, whole.part().array.y_length_mm);
   std::vector<double> shares;
   double element_mm = 0.0;
   for (const Zone& zone : zones) {
-    shares.push_back(zone.share);
+    shares.push_back(zone.area_fraction);
     element_mm = std::max(element_mm, height_of(study, zone));
   }
   std::vector<std::vector<Rectangle>> regions;
   if (request.layout == ZoneLayout::blocks) regions = blocks_of(shares, size_mm);
   if (request.layout == ZoneLayout::rows) regions = rows_of(shares, size_mm, element_mm);
-  std::string text = design_text(whole, fmt::format("# The {} zones of {} in {}.\n", zones.size(),
-                                                    printable(std::filesystem::path(study.source).filename().string()),
-                                                    kZoneLayouts[static_cast<std::size_t>(request.layout)]));
+  std::string text =
+      design::design_text(whole, fmt::format("# The {} zones of {} in {}.\n", zones.size(),
+                                             printable(std::filesystem::path(study.source).filename().string()),
+                                             kZoneLayouts[static_cast<std::size_t>(request.layout)]));
   for (std::size_t k = 0; k < zones.size(); ++k) {
     const PointValues& values = zones[k].cell.values;
     text += "\n[[zone]]\n";
@@ -180,7 +183,7 @@ std::string zoned_design_text(const Study& study, const std::vector<Zone>& zones
     if (turn_deg != 0.0) text += fmt::format("rotation_deg = {}\n", shortest(turn_deg));
     text += changes_text(study, values);
   }
-  parse_design(text, "the design of zones");  // throws InputError if a zone is too small for its elements
+  design::parse_design(text, "the design of zones");  // throws InputError if a zone is too small for its elements
   return text;
 }
 

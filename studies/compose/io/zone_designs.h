@@ -14,7 +14,7 @@
 namespace retrace::studies {
 
 /// Returns the maximum number of zones for which design files are written. The largest zones come first.
-std::size_t most_zone_designs(const ComposeRequest& request);
+std::size_t max_zone_designs(const ComposeRequest& request);
 
 /// Returns the text of a design file with the cells of a single zone. A comment in the file gives the zone's fraction
 /// of the area and its rotation.

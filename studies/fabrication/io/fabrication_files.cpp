@@ -14,7 +14,7 @@
 namespace retrace::studies {
 namespace {
 
-using fabrication::Plan, fabrication::TimeShares;
+using fabrication::Plan, fabrication::TimeBreakdown;
 using Json = nlohmann::ordered_json;
 
 constexpr double kSecondsPerHour = 3600.0;
@@ -27,7 +27,7 @@ double area_rate(const Plan& plan) {
   return plan.aperture_area_mm2 / (plan.time.total_s() / kSecondsPerHour);
 }
 
-Json shares_json(const TimeShares& time) {
+Json time_breakdown_json(const TimeBreakdown& time) {
   return {{"cutting_s", time.cutting_s},
           {"dwell_s", time.dwell_s},
           {"retract_s", time.retract_s},
@@ -66,7 +66,7 @@ Json poses_json(const FabricationResult& result) {
 
 }  // namespace
 
-std::string job_json(const MadeJob& made) {
+std::string job_json(const GeneratedJob& made) {
   const fabrication::Job& job = made.job;
   const Json json = {{"elements", made.elements},
                      {"partial_elements", made.partial_elements},
@@ -79,7 +79,7 @@ std::string job_json(const MadeJob& made) {
   return result_text("retrace.job_summary/1", json, made.warnings);
 }
 
-std::string job_table(const MadeJob& made) {
+std::string job_table(const GeneratedJob& made) {
   const fabrication::Job& job = made.job;
   std::string text;
   text +=
@@ -98,12 +98,12 @@ namespace {
 Json section_path_json(const FabricationResult& result) {
   // Maximum number of moves. The limit allows web pages to draw the path. Only jobs with very thin layers have more
   // moves.
-  constexpr std::size_t kMostMoves = 2000;
+  constexpr std::size_t kMaxMoves = 2000;
   Json paths = Json::array();
   for (const bool roughing : {true, false}) {
     Json moves = Json::array();
     for (const SectionMove& m : section_moves(result, roughing))
-      if (moves.size() < kMostMoves)
+      if (moves.size() < kMaxMoves)
         moves.push_back({fabrication::kMotionWords[static_cast<std::size_t>(m.motion)], m.from_u_mm, m.from_z_mm,
                          m.to_u_mm, m.to_z_mm});
     if (!moves.empty()) paths.push_back({{"name", roughing ? "roughing" : "finishing"}, {"moves", std::move(moves)}});
@@ -123,7 +123,7 @@ std::string fabrication_json(const FabricationResult& result, const Json& setup)
     stages.push_back({{"name", stage.name},
                       {tilt_key(result.machine), pose.rounded.a_deg},
                       {"c_deg", pose.rounded.c_deg},
-                      {"elements", stage.visits},
+                      {"elements", stage.cycle_calls},
                       {"time_s", stage.time.total_s()}});
   }
   const fabrication::CuttingAngles plunge = fabrication::plunge_angles(result.job.tool);
@@ -143,7 +143,7 @@ std::string fabrication_json(const FabricationResult& result, const Json& setup)
                {"area_mm2", plan.aperture_area_mm2},
                {"area_rate_mm2_per_h", area_rate(plan)},
                {"time_per_cm2_s", 100.0 * plan.time.total_s() / plan.aperture_area_mm2},
-               {"time", shares_json(plan.time)},
+               {"time", time_breakdown_json(plan.time)},
                {"plunge_rake_deg", plunge.rake_deg},
                {"plough_rake_deg", plough.rake_deg},
                {"safe_z_mm", plan.safe_z_mm},
@@ -164,8 +164,8 @@ std::string stages_csv(const FabricationResult& result) {
                 ",c_deg,elements,time_s,cutting_s,dwell_s,retract_s,rapid_s,fixed_s");
   for (const fabrication::Stage& stage : result.plan.stages) {
     const fabrication::CuttingPose& pose = result.plan.poses[stage.pose];
-    const TimeShares& t = stage.time;
-    csv.row(stage.name, pose.rounded.a_deg, pose.rounded.c_deg, stage.visits, t.total_s(), t.cutting_s, t.dwell_s,
+    const TimeBreakdown& t = stage.time;
+    csv.row(stage.name, pose.rounded.a_deg, pose.rounded.c_deg, stage.cycle_calls, t.total_s(), t.cutting_s, t.dwell_s,
             t.retract_s, t.rapid_s, t.fixed_s);
   }
   return csv.text();
@@ -173,7 +173,7 @@ std::string stages_csv(const FabricationResult& result) {
 
 std::string fabrication_table(const FabricationResult& result) {
   const Plan& plan = result.plan;
-  const TimeShares& t = plan.time;
+  const TimeBreakdown& t = plan.time;
   std::string text;
   text += fmt::format("  elements            {}, {} cuts per facet{}\n", plan.elements.size(), plan.cuts_per_facet,
                       plan.passes > 1 ? fmt::format(", {} passes side by side", plan.passes) : "");
@@ -187,15 +187,15 @@ std::string fabrication_table(const FabricationResult& result) {
                       fixed(100.0 * t.retract_s / t.total_s(), 1), fixed(100.0 * t.rapid_s / t.total_s(), 1),
                       fixed(100.0 * t.fixed_s / t.total_s(), 1));
   if (!plan.stops.empty()) text += fmt::format("  stops               {}\n", plan.stops.size());
-  constexpr std::size_t kMostStages = 20;
-  for (std::size_t k = 0; k < plan.stages.size() && k < kMostStages; ++k) {
+  constexpr std::size_t kMaxStages = 20;
+  for (std::size_t k = 0; k < plan.stages.size() && k < kMaxStages; ++k) {
     const fabrication::Stage& stage = plan.stages[k];
     const fabrication::CuttingPose& pose = plan.poses[stage.pose];
     text += fmt::format("  {:<28} {}{} C{}  {} elements, {}\n", stage.name, result.machine.tilt_letter(),
-                        fixed(pose.rounded.a_deg, 4), fixed(pose.rounded.c_deg, 4), stage.visits,
+                        fixed(pose.rounded.a_deg, 4), fixed(pose.rounded.c_deg, 4), stage.cycle_calls,
                         hours_text(stage.time.total_s()));
   }
-  if (plan.stages.size() > kMostStages) text += fmt::format("  and {} more\n", plan.stages.size() - kMostStages);
+  if (plan.stages.size() > kMaxStages) text += fmt::format("  and {} more\n", plan.stages.size() - kMaxStages);
   return text;
 }
 

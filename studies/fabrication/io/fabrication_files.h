@@ -11,8 +11,8 @@
 namespace retrace::studies {
 
 /// These functions return the result of `retrace job` as JSON (retrace.job_summary/1) and as a table.
-std::string job_json(const MadeJob& made);
-std::string job_table(const MadeJob& made);
+std::string job_json(const GeneratedJob& made);
+std::string job_table(const GeneratedJob& made);
 
 /// These functions return the result of `retrace fabricate` as JSON (retrace.fabrication/2), as CSV with one line for
 /// each stage, and as a table.

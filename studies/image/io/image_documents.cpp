@@ -7,7 +7,7 @@
 
 #include "core/json_text.h"
 #include "core/number_format.h"
-#include "studies/design/io/design_json.h"
+#include "design/io/design_json.h"
 
 namespace retrace::studies {
 namespace {
@@ -22,8 +22,8 @@ Json place(const geometry::Vec3& p) {
   return Json::array({p.x(), p.y(), p.z()});
 }
 
-Json header(const char* kind, const Design& design, std::uint32_t seed) {
-  return {{"kind", kind}, {"design", to_json(design)}, {"seed", seed}};
+Json header(const char* kind, const design::Design& design, std::uint32_t seed) {
+  return {{"kind", kind}, {"design", design::to_json(design)}, {"seed", seed}};
 }
 
 std::string image_text(Json json, double elapsed_s, const Warnings& warnings, bool complete) {
@@ -87,7 +87,7 @@ std::string camera_json(const CameraResult& result) {
   json["ambient_lx"] = asked.ambient_lx;
   json["backlight_lx"] = asked.backlight_lx;
   if (result.scene.film) {
-    json["film_mm"] = asked.film_mm.value_or(kUsualFilmMm);
+    json["film_mm"] = asked.film_mm.value_or(kDefaultFilmMm);
     if (asked.cylinder_mm) json["cylinder_mm"] = *asked.cylinder_mm;
   }
   json["passes"] = result.image.passes;
@@ -104,7 +104,7 @@ std::string camera_json(const CameraResult& result) {
 }
 
 std::string road_json(const RoadResult& result) {
-  Json json = {{"kind", "road"}, {"design", to_json(result.design)}};
+  Json json = {{"kind", "road"}, {"design", design::to_json(result.design)}};
   json["engine"] = result.engine;
   if (const auto& lamp = result.scene.lamp)
     json["lamp"] = lamp_json(*lamp, result.request.lamp_aim_deg);

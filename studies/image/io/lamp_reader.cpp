@@ -17,8 +17,8 @@
 namespace retrace::studies {
 namespace {
 
-constexpr std::size_t kMostLampBytes = std::size_t{16} << 20;
-constexpr double kMostAngles = 3601;  ///< maximum number of planes, and of angles in a plane
+constexpr std::size_t kMaxLampBytes = std::size_t{16} << 20;
+constexpr double kMaxAngles = 3601;  ///< maximum number of planes, and of angles in a plane
 constexpr double kFullTurnDeg = 360.0;
 
 /// Text that is read line by line. The object stores the current position for messages.
@@ -230,7 +230,7 @@ void pass_tilt(Lines& lines, const std::string& tilt) {
   if (word == "none") return;
   lines.word("tilt", 1, 3);
   lines.leave_line();
-  const std::size_t pairs = lines.count_word("tilt", 1, kMostAngles);
+  const std::size_t pairs = lines.count_word("tilt", 1, kMaxAngles);
   for (std::size_t k = 0; k < 2 * pairs; ++k) lines.word("tilt", -kMost, kMost);
   lines.leave_line();
 }
@@ -279,8 +279,8 @@ PhotometricLamp parse_ies(std::string_view text, const std::string& file) {
   const double lamps = lines.word("number of lamps", 1, 1e6);
   const double lumens = lines.word("lumens per lamp", -1, kMost);
   const double multiplier = lines.word("candela multiplier", 1e-12, kMost);
-  const std::size_t angles = lines.count_word("number of vertical angles", 2, kMostAngles);
-  const std::size_t planes = lines.count_word("number of horizontal angles", 1, kMostAngles);
+  const std::size_t angles = lines.count_word("number of vertical angles", 2, kMaxAngles);
+  const std::size_t planes = lines.count_word("number of horizontal angles", 1, kMaxAngles);
   const std::size_t type = lines.count_word("photometric type", 1, 3);
   lines.word("units", 1, 2);
   for (const char* const size : {"width", "length", "height"}) lines.word(size, -kMost, kMost);
@@ -355,9 +355,9 @@ PhotometricLamp parse_ldt(std::string_view text, const std::string& file) {
   lines.next("the company");
   lines.number("type indicator", 0, 3);
   const std::size_t symmetry = lines.count("symmetry indicator", 0, 4);
-  const std::size_t planes = lines.count("number of C planes", 1, kMostAngles);
+  const std::size_t planes = lines.count("number of C planes", 1, kMaxAngles);
   lines.number("distance of C planes", 0, kFullTurnDeg);
-  const std::size_t angles = lines.count("number of angles", 2, kMostAngles);
+  const std::size_t angles = lines.count("number of angles", 2, kMaxAngles);
   lines.number("distance of angles", 0, 180);
   lines.next("the report's number");
   const std::string title = printable(lines.next("the luminaire's name"));
@@ -379,7 +379,7 @@ PhotometricLamp read_lamp(const std::filesystem::path& file, Field field) {
   const std::string ending = ending_of(file);
   if (ending != ".ies" && ending != ".ldt")
     throw InputError(field, fmt::format("must end in .ies or .ldt, got {}", in_quotes(file.string())));
-  const std::string text = read_file(file, kMostLampBytes);
+  const std::string text = read_file(file, kMaxLampBytes);
   return ending == ".ies" ? parse_ies(text, file.string()) : parse_ldt(text, file.string());
 }
 

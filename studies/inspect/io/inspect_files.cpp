@@ -10,7 +10,7 @@
 #include "core/message_text.h"
 #include "core/number_format.h"
 #include "core/overloaded.h"
-#include "studies/design/io/design_json.h"
+#include "design/io/design_json.h"
 
 namespace retrace::studies {
 namespace {
@@ -34,8 +34,8 @@ std::string light_text(const Inspection& i) {
       fmt::format("  refractive index    {} at {} nm{}\n", fixed(i.refractive_index, 5), wavelength,
                   temperature_c ? fmt::format(" and {} degrees C", shortest(*temperature_c)) : "");
   if (!i.design.light.spectrum()) return text;
-  const SpectralOptics& first = i.light.front();
-  const SpectralOptics& last = i.light.back();
+  const design::SpectralOptics& first = i.light.front();
+  const design::SpectralOptics& last = i.light.back();
   return text + fmt::format("  spectrum            {} wavelengths, {} to {} nm, index {} to {}\n", i.light.size(),
                             fixed(first.wavelength_nm, 1), fixed(last.wavelength_nm, 1), fixed(first.optics.index, 5),
                             fixed(last.optics.index, 5));
@@ -60,7 +60,7 @@ nlohmann::ordered_json entrance_json(const EntranceReport& entrance) {
           {"steepest_deg", entrance.steepest_deg}};
 }
 
-nlohmann::ordered_json form_json(const FormReport& form) {
+nlohmann::ordered_json form_json(const design::FormReport& form) {
   return {{"radius_mm", form.radius_mm}, {"lowest_um", form.lowest_um}, {"highest_um", form.highest_um},
           {"rms_um", form.rms_um},       {"tilt_mrad", form.tilt_mrad}, {"steepest_mrad", form.steepest_mrad}};
 }
@@ -113,7 +113,7 @@ void add_coating(const Inspection& i, nlohmann::ordered_json& json) {
   if (i.coating.entrance) json["coating"]["entrance"] = coating_json(*i.coating.entrance);
 }
 
-std::string layer_text(const CoatingLayer& layer) {
+std::string layer_text(const design::CoatingLayer& layer) {
   std::string name = printable(layer.material);
   if (name.empty()) name = "n = " + shortest(layer.refractive_index);
   if (layer.extinction_coefficient > 0.0) name += fmt::format(" + {} i", shortest(layer.extinction_coefficient));
@@ -125,7 +125,7 @@ std::string layer_text(const CoatingLayer& layer) {
 std::string coating_text(std::string_view label, const std::optional<CoatingReport>& face) {
   if (!face) return {};
   std::vector<std::string> layers;
-  for (const CoatingLayer& layer : face->layers) layers.push_back(layer_text(layer));
+  for (const design::CoatingLayer& layer : face->layers) layers.push_back(layer_text(layer));
   return fmt::format("  {:<20}{}, from the body outwards\n", label, fmt::join(layers, "; ")) +
          fmt::format("  {:<20}reflects {} %, transmits {} %, absorbs {} % at normal incidence\n", "",
                      fixed(100.0 * face->reflectance, 3), fixed(100.0 * face->transmittance, 3),
@@ -139,13 +139,13 @@ std::string entrance_state_text(const Inspection& i) {
   std::string text = fmt::format(
       "  {:<20}{} % free of drops, dust and scratches; this area reflects {} %, transmits {} %, absorbs {} % at normal "
       "incidence\n",
-      "entrance state", fixed(100.0 * face.clean_share, 3), fixed(100.0 * face.reflectance, 3),
+      "entrance state", fixed(100.0 * face.clean_fraction, 3), fixed(100.0 * face.reflectance, 3),
       fixed(100.0 * face.transmittance, 3), fixed(100.0 * face.absorptance, 3));
   text += fmt::format("  {:<20}transmits {} % of all light without scattering\n", "",
                       fixed(100.0 * face.specular_transmittance, 3));
-  if (face.haze_share > 0.0)
-    text +=
-        fmt::format("  {:<20}haze scatters {} % of the light in one passage\n", "", fixed(100.0 * face.haze_share, 3));
+  if (face.haze_fraction > 0.0)
+    text += fmt::format("  {:<20}haze scatters {} % of the light in one passage\n", "",
+                        fixed(100.0 * face.haze_fraction, 3));
   if (i.design.surface.entrance.dust_coverage > 0.0)
     text += fmt::format("  {:<20}dust returns {} cd/(lx m2) along the normal\n", "", fixed(face.dust_cd_per_lx_m2, 6));
   return text;
@@ -159,8 +159,8 @@ std::string coatings_text(const Inspection& i) {
 
 std::string place_text(const geometry::ElementChoice& choice) {
   return std::visit(
-      Overloaded{[](const geometry::RandomShare& random) {
-                   return fmt::format("each with a probability of {}, seed {}", shortest(random.share), random.seed);
+      Overloaded{[](const geometry::RandomFraction& random) {
+                   return fmt::format("each with a probability of {}, seed {}", shortest(random.fraction), random.seed);
                  },
                  [](const geometry::Rectangle& r) {
                    return fmt::format("x {} to {}, y {} to {} mm", shortest(r.lower.x()), shortest(r.upper.x()),
@@ -218,26 +218,26 @@ namespace {
 
 /// Returns the keys that the documents of all kinds of designs have in common.
 nlohmann::ordered_json common_json(const Inspection& i) {
-  return {{"design", to_json(i.design)},
+  return {{"design", design::to_json(i.design)},
           {"elements_full", i.elements_full},
           {"elements_partial", i.elements_partial},
           {"element_depth_mm", i.element_depth_mm},
           {"facet_area_mm2", i.facet_area_mm2},
           {"entrance_area_mm2", i.entrance_area_mm2},
-          {"full_element_area_fraction", i.full_element_share},
+          {"full_element_area_fraction", i.full_element_area_fraction},
           {"refractive_index", i.refractive_index}};
 }
 
 std::string ball_json(const Inspection& i) {
   const BallFigures& balls = *i.balls;
   nlohmann::ordered_json json = common_json(i);
-  json["packing_fraction"] = balls.packing_share;
+  json["packing_fraction"] = balls.packing_fraction;
   json["mirror_half_angle_deg"] = balls.mirror_half_angle_deg;
   json["paraxial_error"] = balls.paraxial_error;
   json["largest_return_error_deg"] = balls.largest_return_error_deg;
-  json["fraction_within_acceptance"] = balls.share_within_acceptance;
+  json["fraction_within_acceptance"] = balls.fraction_within_acceptance;
   if (balls.focal_offset_mm) json["focal_offset_mm"] = *balls.focal_offset_mm;
-  if (i.design.light.spectrum()) json["spectrum"] = spectrum_json(i.light);
+  if (i.design.light.spectrum()) json["spectrum"] = design::spectrum_json(i.light);
   add_coating(i, json);
   return result_text("retrace.inspect/2", json, i.warnings);
 }
@@ -249,10 +249,11 @@ std::string zones_text(const Inspection& i) {
   for (std::size_t k = 0; k < i.zones->zones.size(); ++k) {
     const ZoneReport& zone = i.zones->zones[k];
     std::string changes;
-    for (const ZoneChange& change : i.design.zoned()->changes[k]) changes += "; " + change.text;
+    for (const design::ZoneChange& change : i.design.zoned()->changes[k]) changes += "; " + change.text;
     const double turn_deg = i.design.zoned()->spec.zones[k].rotation_deg;
     std::string wander;
-    if (zone.wander_mm) wander = fmt::format(", mean lateral shift of the light {} mm", fixed(*zone.wander_mm, 4));
+    if (zone.lateral_shift_mm)
+      wander = fmt::format(", mean lateral shift of the light {} mm", fixed(*zone.lateral_shift_mm, 4));
     text += fmt::format(
         "  {:<20}{} %, {} full elements, {} cut{}{}{}\n", fmt::format("zone {}", k + 1),
         fixed(100.0 * zone.elements.area_mm2 / i.entrance_area_mm2, 3), zone.elements.full, zone.elements.partial,
@@ -260,7 +261,7 @@ std::string zones_text(const Inspection& i) {
   }
   for (const ZoneCrossing& crossing : i.zones->crossings)
     text += fmt::format("  {:<20}{} % of the light that is returned at {} degrees of incidence crosses two zones\n", "",
-                        fixed(100.0 * crossing.share, 2), shortest(crossing.incidence_deg));
+                        fixed(100.0 * crossing.fraction, 2), shortest(crossing.incidence_deg));
   return text;
 }
 
@@ -271,10 +272,10 @@ nlohmann::ordered_json zones_json(const ZonesReport& report) {
     json["zones"].push_back({{"area_mm2", zone.elements.area_mm2},
                              {"elements_full", zone.elements.full},
                              {"elements_partial", zone.elements.partial}});
-    if (zone.wander_mm) json["zones"].back()["lateral_shift_mm"] = *zone.wander_mm;
+    if (zone.lateral_shift_mm) json["zones"].back()["lateral_shift_mm"] = *zone.lateral_shift_mm;
   }
   for (const ZoneCrossing& crossing : report.crossings)
-    json["meets_two_zones"].push_back({{"incidence_deg", crossing.incidence_deg}, {"fraction", crossing.share}});
+    json["meets_two_zones"].push_back({{"incidence_deg", crossing.incidence_deg}, {"fraction", crossing.fraction}});
   return json;
 }
 
@@ -291,12 +292,12 @@ std::string inspect_json(const Inspection& i) {
     for (const char* key : {"elements_full", "elements_partial", "full_element_area_fraction"}) json.erase(key);
   }
   if (!i.design.elements()) json["thickness_mm"] = i.thickness_mm;
-  if (i.design.light.spectrum()) json["spectrum"] = spectrum_json(i.light);
+  if (i.design.light.spectrum()) json["spectrum"] = design::spectrum_json(i.light);
   add_coating(i, json);
   add_entrance_state(i, json);
   if (i.tir_limit_deg) json["tir_limit_deg"] = *i.tir_limit_deg;
   if (i.tir_limit_azimuth_deg) json["tir_limit_azimuth_deg"] = *i.tir_limit_azimuth_deg;
-  if (i.design.elements()) json["dead_zone_fraction"] = i.dead_zone_share;
+  if (i.design.elements()) json["dead_zone_fraction"] = i.dead_zone_fraction;
   if (i.substrate) json["substrate"] = substrate_json(*i.substrate);
   if (i.wet_back) json["wet_back"] = wet_back_json(i);
   if (i.entrance) json["entrance_surface"] = entrance_json(*i.entrance);
@@ -308,7 +309,7 @@ std::string inspect_json(const Inspection& i) {
 namespace {
 
 std::string mesh_text(const Inspection& i) {
-  std::string text = fmt::format("{}\n", printable(short_name(i.design)));
+  std::string text = fmt::format("{}\n", printable(design::short_name(i.design)));
   text += zones_text(i);
   text += fmt::format("  depth               {} mm\n", fixed(i.element_depth_mm, 6));
   text += fmt::format("  plate               {} mm\n", fixed(i.thickness_mm, 6));
@@ -323,8 +324,8 @@ std::string mesh_text(const Inspection& i) {
 
 std::string ball_text(const Inspection& i) {
   const BallFigures& balls = *i.balls;
-  std::string text = fmt::format("{}\n", printable(short_name(i.design)));
-  text += fmt::format("  packing             {} % of the plan area\n", fixed(100.0 * balls.packing_share, 3));
+  std::string text = fmt::format("{}\n", printable(design::short_name(i.design)));
+  text += fmt::format("  packing             {} % of the plan area\n", fixed(100.0 * balls.packing_fraction, 3));
   text += fmt::format("  mirror              {} mm behind the balls, up to {} degrees from their axes\n",
                       shortest(i.design.balls()->mirror_offset_mm), fixed_visible(balls.mirror_half_angle_deg, 2));
   text += fmt::format("  offset for focus    {}\n",
@@ -333,8 +334,8 @@ std::string ball_text(const Inspection& i) {
   text += coatings_text(i);
   text += fmt::format("  paraxial error      {} rad per unit of height / radius\n", fixed(balls.paraxial_error, 6));
   text += fmt::format("  max. return error   {} degrees\n", fixed_visible(balls.largest_return_error_deg, 3));
-  text +=
-      fmt::format("  within acceptance   {} % of a ball's aperture\n", fixed(100.0 * balls.share_within_acceptance, 3));
+  text += fmt::format("  within acceptance   {} % of a ball's aperture\n",
+                      fixed(100.0 * balls.fraction_within_acceptance, 3));
   return text;
 }
 
@@ -345,11 +346,11 @@ std::string inspect_text(const Inspection& i) {
   if (!i.design.elements()) return mesh_text(i);
   const bool infinite = i.design.part().array.extent == geometry::Extent::infinite;
   const char* per_period = infinite ? " per period" : "";
-  std::string text = fmt::format("{}\n", printable(short_name(i.design)));
+  std::string text = fmt::format("{}\n", printable(design::short_name(i.design)));
   text += fmt::format("  elements            {} full, {} partial{}\n", i.elements_full, i.elements_partial, per_period);
   text += fmt::format("  element depth       {} mm\n", fixed(i.element_depth_mm, 6));
   text += fmt::format("  entrance area       {} mm2{}\n", fixed(i.entrance_area_mm2, 4), per_period);
-  text += fmt::format("  full elements       {} % of the area\n", fixed(100.0 * i.full_element_share, 3));
+  text += fmt::format("  full elements       {} % of the area\n", fixed(100.0 * i.full_element_area_fraction, 3));
   text += fmt::format("  retro facet area    {} mm2{}\n", fixed(i.facet_area_mm2, 4), per_period);
   text += substrate_text(i);
   text += entrance_text(i);
@@ -358,7 +359,7 @@ std::string inspect_text(const Inspection& i) {
   text += coatings_text(i);
   text += fmt::format("  total reflection    {}\n", total_reflection(i));
   text += wet_back_text(i);
-  text += fmt::format("  dead zone           {} %\n", fixed(100.0 * i.dead_zone_share, 3));
+  text += fmt::format("  dead zone           {} %\n", fixed(100.0 * i.dead_zone_fraction, 3));
   text += fmt::format("  boundary            {}\n", i.boundary);
   return text;
 }

@@ -6,7 +6,7 @@
 
 #include "core/message_text.h"
 #include "core/schema/reader.h"
-#include "studies/design/io/design_format.h"
+#include "design/io/design_format.h"
 #include "studies/quantity/io/constraint_reader.h"
 #include "studies/quantity/io/point_texts.h"
 
@@ -50,7 +50,7 @@ std::vector<std::string> read_band_keys(const Document& document, const Study& s
     key = current_key(key);
     const bool is_varied = std::ranges::any_of(
         study.parameters, [&](const Parameter& parameter) { return std::ranges::count(parameter.keys, key) > 0; });
-    if (!is_varied && !schema::is_number_key(design_format(), key))
+    if (!is_varied && !schema::is_number_key(design::design_format(), key))
       document.fail(
           list,
           fmt::format("must be keys of a design with numbers as values, or keys of parameters of the study, got {}",
@@ -77,7 +77,7 @@ OptimiseRequest read_optimise(const Study& study) {
   request.objective = read_objective(document, study);
   request.front = read_front_axes(document, study, request.objective);
   request.scan = static_cast<std::size_t>(document.number("optimize.scan"));
-  request.bands_of = read_band_keys(document, study);
+  request.band_keys = read_band_keys(document, study);
   constexpr double percent = 100.0;
   request.band_loss = document.number("optimize.band_loss_percent") / percent;
   request.constraints = read_constraints(study);

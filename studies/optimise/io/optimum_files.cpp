@@ -55,7 +55,7 @@ std::string optimum_json(const Study& study, const OptimiseRequest& request, con
   json["constraints"] = Json::array();
   for (const Constraint& constraint : request.constraints) json["constraints"].push_back(constraint.text());
   if (optimum.best) json["best"] = variant_json(study, *optimum.best);
-  if (!optimum.best && optimum.complete) json["infeasible"] = optimum.none_because;
+  if (!optimum.best && optimum.complete) json["infeasible"] = optimum.infeasible_reason;
   json["pareto"] = Json::array();
   for (const Variant& variant : optimum.front) json["pareto"].push_back(variant_json(study, variant));
   json["rejected"] = Json::array();
@@ -93,7 +93,8 @@ std::string front_csv(const Study& study, const Optimum& optimum) {
 }
 
 std::string optimum_text(const Study& study, const OptimiseRequest& request, const Optimum& optimum) {
-  if (!optimum.best) return optimum.complete ? "no feasible design: " + optimum.none_because + "\n" : std::string();
+  if (!optimum.best)
+    return optimum.complete ? "no feasible design: " + optimum.infeasible_reason + "\n" : std::string();
   std::string text = "chosen:  " + variant_text(study, *optimum.best) + "\n";
   for (const Rejected& rejected : optimum.rejected)
     text += fmt::format("not chosen ({}):  {}\n    {}\n", rejected.role, variant_text(study, rejected.variant),

@@ -14,13 +14,13 @@
 namespace retrace::studies {
 namespace {
 
-constexpr std::size_t kMostRows = 10000;
-constexpr std::size_t kMostBytes = std::size_t{1} << 20;
-constexpr double kMostObservationDeg = 20.0;
-constexpr double kMostEntranceDeg = 85.0;
-constexpr double kMostFactor = 1e3;
-constexpr double kMostBoundCm2 = 1e6;
-constexpr double kMostOfColour = 10.0;
+constexpr std::size_t kMaxRows = 10000;
+constexpr std::size_t kMaxBytes = std::size_t{1} << 20;
+constexpr double kMaxObservationDeg = 20.0;
+constexpr double kMaxEntranceDeg = 85.0;
+constexpr double kMaxFactor = 1e3;
+constexpr double kMaxBoundCm2 = 1e6;
+constexpr double kMaxColourCoefficient = 10.0;
 constexpr NumberRange kLimit{.low = 0.0, .low_included = false, .high = 1e9};
 
 enum Column : std::size_t {
@@ -47,10 +47,10 @@ std::vector<double> signed_numbers(const CsvReader& row, Column column, std::str
   const bool both = text.starts_with("+-");
   if (both) text.remove_prefix(2);
   const std::optional<double> value = number_in(text);
-  if (!value || !(std::abs(*value) <= kMostEntranceDeg) || (both && !(*value > 0.0)))
+  if (!value || !(std::abs(*value) <= kMaxEntranceDeg) || (both && !(*value > 0.0)))
     row.fail(column,
              fmt::format("must be a number from -{0} to {0}, or +- and a number above 0{1}, got {2}",
-                         shortest(kMostEntranceDeg), column == kV ? ", or two such angles, as in \"0 or +-5\"" : "",
+                         shortest(kMaxEntranceDeg), column == kV ? ", or two such angles, as in \"0 or +-5\"" : "",
                          in_quotes(row[column])));
   if (both) return {*value, -*value};
   return {*value};
@@ -95,10 +95,10 @@ Row begun(const CsvReader& row) {
 LimitRow limit_of(const CsvReader& row) {
   auto limit = begun<LimitRow>(row);
   limit.colour = named(row, kColour);
-  limit.observation_deg = row.number(kObservation, {.low = 0.0, .high = kMostObservationDeg});
+  limit.observation_deg = row.number(kObservation, {.low = 0.0, .high = kMaxObservationDeg});
   V v = read_v(row);
   limit.v_deg = std::move(v.deg);
-  limit.v_beside_deg = std::move(v.beside_deg);
+  limit.substitute_v_deg = std::move(v.beside_deg);
   limit.h_deg = signed_numbers(row, kH, row[kH]);
   limit.minimum = row.number(kMinimum, kLimit);
   limit.unit = static_cast<PhotometricUnit>(row.one_of(kUnit, kUnits));
@@ -112,12 +112,12 @@ LimitFactor factor_of(const CsvReader& row) {
   must_be_empty(row, {kObservation, kV, kH}, "for a factor");
   const std::vector<std::string_view> words = split(row[kMinimum], ' ');
   const std::optional<double> times = number_in(words.front());
-  if (words.size() != 3 || words[1] != "x" || words[2].empty() || !times || !(*times > 0.0 && *times <= kMostFactor))
+  if (words.size() != 3 || words[1] != "x" || words[2].empty() || !times || !(*times > 0.0 && *times <= kMaxFactor))
     row.fail(kMinimum,
              fmt::format("must be a number above 0 and at most {}, x and a colour, as in \"2.5 x red\", got {}",
-                         shortest(kMostFactor), in_quotes(row[kMinimum])));
+                         shortest(kMaxFactor), in_quotes(row[kMinimum])));
   factor.factor = *times;
-  factor.of_colour = printable(words[2]);
+  factor.reference_colour = printable(words[2]);
   factor.status = static_cast<LimitStatus>(row.one_of(kStatus, kStatuses));
   return factor;
 }
@@ -129,10 +129,10 @@ LimitArea area_of(const CsvReader& row) {
   const std::vector<std::string_view> words = split(row[kMinimum], ' ');
   const bool is_begun = words.size() == 3 && words[0] == "at" && (words[1] == "most" || words[1] == "least");
   const std::optional<double> cm2 = is_begun ? number_in(words[2]) : std::nullopt;
-  if (!cm2 || !(*cm2 > 0.0 && *cm2 <= kMostBoundCm2))
+  if (!cm2 || !(*cm2 > 0.0 && *cm2 <= kMaxBoundCm2))
     row.fail(kMinimum, fmt::format("must be \"at most\" or \"at least\" and a number above 0 and at most {}, got {}",
-                                   shortest(kMostBoundCm2), in_quotes(row[kMinimum])));
-  area.is_most = words[1] == "most";
+                                   shortest(kMaxBoundCm2), in_quotes(row[kMinimum])));
+  area.is_maximum = words[1] == "most";
   area.area_cm2 = *cm2;
   area.status = static_cast<LimitStatus>(row.one_of(kStatus, kStatuses));
   return area;
@@ -147,10 +147,11 @@ void read_boundary(const CsvReader& row, ColourBoundary& boundary) {
   const std::optional<double> slope = is_sloping ? number_in(word(4)) : std::optional(0.0);
   const bool is_one = (word(0) == "x" || word(0) == "y" || word(0) == "z") && (word(1) == "<=" || word(1) == ">=") &&
                       (words.size() == 3 || is_sloping);
-  if (!is_one || !constant || !slope || !(std::abs(*constant) <= kMostOfColour) || !(std::abs(*slope) <= kMostOfColour))
+  if (!is_one || !constant || !slope || !(std::abs(*constant) <= kMaxColourCoefficient) ||
+      !(std::abs(*slope) <= kMaxColourCoefficient))
     row.fail(kMinimum, fmt::format("must be a boundary such as \"z <= 0.008\" or \"y >= 0.146 + 0.489 x\", of x, y or "
                                    "z and with numbers from -{0} to {0}, got {1}",
-                                   shortest(kMostOfColour), in_quotes(row[kMinimum])));
+                                   shortest(kMaxColourCoefficient), in_quotes(row[kMinimum])));
   // Moves all terms to the left side and replaces z by 1 - x - y.
   const bool is_z = word(0) == "z";
   const double of_x = (word(0) == "x" ? 1.0 : is_z ? -1.0 : 0.0) - (word(3) == "-" ? -*slope : *slope);
@@ -158,22 +159,22 @@ void read_boundary(const CsvReader& row, ColourBoundary& boundary) {
   const double most = *constant - (is_z ? 1.0 : 0.0);
   if (of_x == 0.0 && of_y == 0.0) row.fail(kMinimum, "must limit the colour, got " + in_quotes(row[kMinimum]));
   const double sign = word(1) == "<=" ? 1.0 : -1.0;
-  boundary.of_x = sign * of_x;
-  boundary.of_y = sign * of_y;
-  boundary.most = sign * most;
+  boundary.x_coefficient = sign * of_x;
+  boundary.y_coefficient = sign * of_y;
+  boundary.limit = sign * most;
   boundary.text = printable(row[kMinimum]);
 }
 
 ColourBoundary boundary_of(const CsvReader& row) {
   auto boundary = begun<ColourBoundary>(row);
   boundary.colour = named(row, kColour);
-  boundary.observation_deg = row.number(kObservation, {.low = 0.0, .high = kMostObservationDeg});
+  boundary.observation_deg = row.number(kObservation, {.low = 0.0, .high = kMaxObservationDeg});
   const V v = read_v(row);
   const std::vector<double> h_deg = signed_numbers(row, kH, row[kH]);
   if (v.deg.size() != 1 || h_deg.size() != 1)
     row.fail(v.deg.size() != 1 ? kV : kH, "must be a single angle for a colour, got +-");
   boundary.v_deg = v.deg.front();
-  boundary.v_beside_deg = v.beside_deg;
+  boundary.substitute_v_deg = v.beside_deg;
   boundary.h_deg = h_deg.front();
   read_boundary(row, boundary);
   boundary.status = static_cast<LimitStatus>(row.one_of(kStatus, kStatuses));
@@ -208,9 +209,9 @@ LimitTable parse_limits(std::string_view content, const std::string& name) {
   LimitTable table;
   table.source = name;
   const bool has_source = names_source(content);
-  CsvReader row(content, name, kMostBytes, std::span(kHeader).first(has_source ? kColumns : kSource));
+  CsvReader row(content, name, kMaxBytes, std::span(kHeader).first(has_source ? kColumns : kSource));
   while (row.next()) {
-    if (row.rows() > kMostRows) row.fail(fmt::format("at most {} limits are allowed", kMostRows));
+    if (row.rows() > kMaxRows) row.fail(fmt::format("at most {} limits are allowed", kMaxRows));
     if (kStatuses[row.one_of(kStatus, kStatuses)] == "incomplete")
       table.gaps.push_back(with_source(gap_of(row), row, has_source));
     else if (const std::string_view unit = kUnits[row.one_of(kUnit, kUnits)]; unit == "factor")
@@ -227,7 +228,7 @@ LimitTable parse_limits(std::string_view content, const std::string& name) {
 }
 
 LimitTable read_limits(const std::filesystem::path& file) {
-  return parse_limits(read_file(file, kMostBytes), file.string());
+  return parse_limits(read_file(file, kMaxBytes), file.string());
 }
 
 }  // namespace retrace::studies

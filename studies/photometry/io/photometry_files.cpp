@@ -8,7 +8,7 @@
 #include "core/json_text.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
-#include "studies/design/io/design_json.h"
+#include "design/io/design_json.h"
 
 namespace retrace::studies {
 namespace {
@@ -16,20 +16,20 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json point_json(const PhotometricPoint& p) {
-  return {{"observation_deg", p.asked.observation_deg},
-          {"v_deg", p.asked.v_deg},
-          {"h_deg", p.asked.h_deg},
+  return {{"observation_deg", p.test_point.observation_deg},
+          {"v_deg", p.test_point.v_deg},
+          {"h_deg", p.test_point.h_deg},
           {"measured_v_deg", p.v_deg},
           {"rotation_deg", p.rotation_deg},
           {"value_mcd_per_lx", p.r_i_mcd_per_lx},
           {"std_error_mcd_per_lx", p.std_error_mcd_per_lx},
           {"limit_mcd_per_lx", p.limit_mcd_per_lx},
           {"margin", p.margin()},
-          {"limit_as_given", p.asked.minimum},
-          {"unit", unit_name(p.asked.unit)},
-          {"limit_status", status_name(p.asked.status)},
-          {"limit_line", p.asked.line},
-          {"limit_source", p.asked.source},
+          {"limit_as_given", p.test_point.minimum},
+          {"unit", unit_name(p.test_point.unit)},
+          {"limit_status", status_name(p.test_point.status)},
+          {"limit_line", p.test_point.line},
+          {"limit_source", p.test_point.source},
           {"pass", p.verdict() == Verdict::pass},
           {"verdict", verdict_name(p.verdict())},
           {"lower_bound", p.is_lower_bound},
@@ -70,7 +70,7 @@ Json change_json(const PhotometricChange& change) {
 
 Json areas_json(const PhotometrySettings& asked) {
   Json json = Json::array();
-  for (const LimitArea& limit : asked.programme.areas)
+  for (const LimitArea& limit : asked.test_plan.areas)
     json.push_back({{"limit", limit.text()},
                     {"limit_status", status_name(limit.status)},
                     {"limit_line", limit.line},
@@ -91,10 +91,10 @@ Json colour_json(const PhotometricColour& colour) {
                  {"std_error_y", colour.std_error.y}});
   json["boundaries"] = Json::array();
   for (const ColourPoint& point : colour.boundaries) {
-    Json one = {{"limit", point.asked.text},
-                {"limit_status", status_name(point.asked.status)},
-                {"limit_line", point.asked.line},
-                {"limit_source", point.asked.source}};
+    Json one = {{"limit", point.boundary.text},
+                {"limit_status", status_name(point.boundary.status)},
+                {"limit_line", point.boundary.line},
+                {"limit_source", point.boundary.source}};
     if (colour.chromaticity) one.update({{"margin", point.margin}, {"std_error", point.std_error}});
     json["boundaries"].push_back(std::move(one));
   }
@@ -105,19 +105,19 @@ Json colour_json(const PhotometricColour& colour) {
 
 Json programme_json(const PhotometryResult& result) {
   const PhotometrySettings& asked = result.request;
-  return {{"standard", asked.programme.standard},
-          {"class", asked.programme.part_class},
-          {"colour", asked.programme.colour},
+  return {{"standard", asked.test_plan.standard},
+          {"class", asked.test_plan.part_class},
+          {"colour", asked.test_plan.colour},
           {"limits", asked.limits_source},
-          {"limits_complete", asked.programme.is_complete}};
+          {"limits_complete", asked.test_plan.is_complete}};
 }
 
 std::string point_text(const PhotometricPoint& p) {
   std::string text = p.verdict() == Verdict::fail ? "FAIL" : std::string(verdict_name(p.verdict()));
   if (p.is_lower_bound) text += " (at least)";
-  if (p.v_deg != p.asked.v_deg)
+  if (p.v_deg != p.test_point.v_deg)
     text += fmt::format(" (measured at V {}, away from the mirror image of the lamp)", shortest(p.v_deg));
-  if (p.asked.status == LimitStatus::recalled) text += " (limit unconfirmed)";
+  if (p.test_point.status == LimitStatus::recalled) text += " (limit unconfirmed)";
   return text;
 }
 
@@ -127,16 +127,16 @@ std::string rows_of(const std::vector<PhotometricPoint>& points) {
                                   "rotation", "mcd/lx", "limit", "margin_%", "R_A", "verdict");
   for (const PhotometricPoint& p : points)
     table += fmt::format("{:>7} {:>6} {:>6} {:>9} {:>11} {:>11} {:>9} {:>8}  {}\n",
-                         fixed_visible(p.asked.observation_deg, 2), shortest(p.asked.v_deg), shortest(p.asked.h_deg),
-                         shortest(p.rotation_deg), fixed(p.r_i_mcd_per_lx, 2), fixed(p.limit_mcd_per_lx, 2),
-                         fixed(100.0 * p.margin(), 1), fixed(p.r_a, 1), point_text(p));
+                         fixed_visible(p.test_point.observation_deg, 2), shortest(p.test_point.v_deg),
+                         shortest(p.test_point.h_deg), shortest(p.rotation_deg), fixed(p.r_i_mcd_per_lx, 2),
+                         fixed(p.limit_mcd_per_lx, 2), fixed(100.0 * p.margin(), 1), fixed(p.r_a, 1), point_text(p));
   return table;
 }
 
 /// Returns a line for each limit of the area.
 std::string areas_text(const PhotometrySettings& asked) {
   std::string text;
-  for (const LimitArea& limit : asked.programme.areas)
+  for (const LimitArea& limit : asked.test_plan.areas)
     text += fmt::format("area: {}{} - must be {}, is {} cm2\n", limit.holds(asked.area_cm2) ? "pass" : "FAIL",
                         limit.status == LimitStatus::recalled ? " (limit unconfirmed)" : "", limit.text(),
                         shortest(asked.area_cm2));
@@ -154,7 +154,7 @@ std::string colour_text(const PhotometricColour& colour) {
                       shortest(colour.v_deg), shortest(colour.h_deg));
   if (colour.boundaries.empty()) return text + "; the colour boundaries of the standard are not known\n";
   for (const ColourPoint& point : colour.boundaries)
-    if (point.margin < 0.0) text += fmt::format("; violates {}", point.asked.text);
+    if (point.margin < 0.0) text += fmt::format("; violates {}", point.boundary.text);
   return text + (colour.reason.text.empty() ? "" : "; " + colour.reason.text) + "\n";
 }
 
@@ -170,7 +170,7 @@ std::string_view light_text(PhotometricLight light) {
 
 /// Returns a line with the verdict.
 /// \param reason reason of an undetermined verdict
-std::string verdict_text(Verdict verdict, const TestProgramme& programme, const std::string& reason = {}) {
+std::string verdict_text(Verdict verdict, const TestPlan& programme, const std::string& reason = {}) {
   switch (verdict) {
     case Verdict::pass: return "verdict: pass\n";
     case Verdict::unconfirmed:
@@ -184,7 +184,7 @@ std::string verdict_text(Verdict verdict, const TestProgramme& programme, const 
   return {};
 }
 
-std::string change_text(const PhotometricChange& change, const TestProgramme& programme) {
+std::string change_text(const PhotometricChange& change, const TestPlan& programme) {
   std::string text =
       fmt::format("\n{} {} = {} (now {}):\n",
                   change.passes() ? "change that passes:" : "best change that was tried, not sufficient:", change.key,
@@ -199,7 +199,7 @@ std::string photometry_json(const PhotometryResult& result) {
   Json json = {{"engine", result.engine},
                {"engine_requested", raytrace::engine_name(asked.engine)},
                {"diffraction", result.has_diffraction},
-               {"design", to_json(result.design)},
+               {"design", design::to_json(result.design)},
                {"test_plan", programme_json(result)},
                {"area_cm2", asked.area_cm2},
                {"area_limits", areas_json(asked)},
@@ -228,10 +228,10 @@ std::string photometry_csv(const PhotometryResult& result) {
       "observation_deg,v_deg,h_deg,rotation_deg,value_mcd_per_lx,std_error_mcd_per_lx,limit_mcd_per_lx,margin,"
       "limit_status,pass,r_a_cd_per_lx_m2,r_l_cd_per_lx_m2,verdict,lower_bound,measured_v_deg,limit_source");
   for (const PhotometricPoint& p : result.points)
-    csv.row(p.asked.observation_deg, p.asked.v_deg, p.asked.h_deg, p.rotation_deg, p.r_i_mcd_per_lx,
-            p.std_error_mcd_per_lx, p.limit_mcd_per_lx, p.margin(), status_name(p.asked.status),
+    csv.row(p.test_point.observation_deg, p.test_point.v_deg, p.test_point.h_deg, p.rotation_deg, p.r_i_mcd_per_lx,
+            p.std_error_mcd_per_lx, p.limit_mcd_per_lx, p.margin(), status_name(p.test_point.status),
             p.verdict() == Verdict::pass, p.r_a, p.r_l, verdict_name(p.verdict()), p.is_lower_bound, p.v_deg,
-            p.asked.source);
+            p.test_point.source);
   return csv.text();
 }
 
@@ -255,14 +255,14 @@ std::string first_answer_table(const PhotometricFirstAnswer& answer) {
       answer.wavelengths_nm.size() == 1 ? "" : "s", 100.0 * kSystematicErrorOfFirstAnswer);
   table += fmt::format("{:>7} {:>6} {:>6} {:>9} {:>11} {:>11}\n", "alpha", "V", "H", "rotation", "mcd/lx", "error");
   for (const PhotometricPoint& p : answer.points)
-    table += fmt::format("{:>7} {:>6} {:>6} {:>9} {:>11} {:>11}\n", fixed_visible(p.asked.observation_deg, 2),
-                         shortest(p.asked.v_deg), shortest(p.asked.h_deg), shortest(p.rotation_deg),
+    table += fmt::format("{:>7} {:>6} {:>6} {:>9} {:>11} {:>11}\n", fixed_visible(p.test_point.observation_deg, 2),
+                         shortest(p.test_point.v_deg), shortest(p.test_point.h_deg), shortest(p.rotation_deg),
                          fixed(p.r_i_mcd_per_lx, 2), fixed_visible(p.std_error_mcd_per_lx, 2));
   return table;
 }
 
 std::string photometry_table(const PhotometryResult& result) {
-  const TestProgramme& programme = result.request.programme;
+  const TestPlan& programme = result.request.test_plan;
   std::string table = printable(programme.standard);
   if (!programme.part_class.empty()) table += ", class " + printable(programme.part_class);
   table += fmt::format(", {}, {} cm2, {}{}\n", printable(programme.colour), shortest(result.request.area_cm2),

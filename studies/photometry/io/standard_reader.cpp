@@ -27,10 +27,10 @@ std::vector<std::string_view> names_of_standards() {
 PhotometrySettings settings_of_standard(const PhotometryRequest& request) {
   const fs::path file = limits_file_of(request.standard);
   const ShippedStandard* const shipped = find_standard(request.standard);
-  const auto in_table = shipped != nullptr ? std::optional(std::string(shipped->in_table)) : std::nullopt;
+  const auto in_table = shipped != nullptr ? std::optional(std::string(shipped->table_name)) : std::nullopt;
   PhotometrySettings settings;
   const auto limits = read_named(Field{"standard"}, [&] { return read_limits(file); });
-  settings.programme = programme_of(limits, in_table, request.part_class, request.colour);
+  settings.test_plan = test_plan_of(limits, in_table, request.part_class, request.colour);
   settings.limits_source = shipped != nullptr ? request.standard : file.string();
   settings.apertures = shipped != nullptr ? shipped->apertures : default_apertures();
   if (shipped != nullptr) settings.rotation_deg = shipped->rotation_deg;
@@ -62,9 +62,9 @@ fs::path dye_file_of(const std::optional<std::string>& dye, bool design_is_colou
 PhotometrySettings resolve(const PhotometryRequest& request, bool design_is_coloured) {
   requests::check(request);
   PhotometrySettings settings = settings_of_standard(request);
-  const fs::path dye = dye_file_of(request.dye, design_is_coloured, settings.programme.colour);
+  const fs::path dye = dye_file_of(request.dye, design_is_coloured, settings.test_plan.colour);
   if (!dye.empty()) {
-    settings.dye = request.dye.value_or(settings.programme.colour);
+    settings.dye = request.dye.value_or(settings.test_plan.colour);
     settings.dye_absorption_per_mm = read_named(Field{"dye"}, [&] { return materials::read_spectral_absorption(dye); });
   }
   settings.area_cm2 = request.area_cm2;

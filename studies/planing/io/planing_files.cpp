@@ -46,7 +46,7 @@ Json zones_json(const PlaningResult& result) {
   for (std::size_t k = 0; k < profile.zones().size(); ++k) {
     Json zone = {{"zone", k + 1}, {"from_mm", profile.zones()[k].from_mm}, {"to_mm", profile.zones()[k].to_mm}};
     if (result.part.mill) {
-      zone["method"] = result.plan.by_depths[k] ? "by_depths" : "one_after_another";
+      zone["method"] = result.plan.uses_depth_method[k] ? "by_depths" : "one_after_another";
       zone["cuts"] = cuts[k];
     }
     zones.push_back(std::move(zone));
@@ -82,7 +82,7 @@ double flank_deg(double slope) {
 }
 
 double form_error_mm(const PlanedPart& part, const PlaningCheck& check) {
-  return part.mill ? std::max(check.standing_mm_max, check.gouge_mm_max) : check.path_distance_mm_max;
+  return part.mill ? std::max(check.excess_mm_max, check.gouge_mm_max) : check.path_distance_mm_max;
 }
 
 /// Adds the data that are computed from a program's text.
@@ -110,7 +110,7 @@ void add_machine(const PlanedPart& part, const PlaningCheck& check, const Planin
     json["tool_flank_deg"] = flank_deg(check.flank_slope);
     if (plan != nullptr) json["quantum_mm"] = plan->quantum_mm;
     json["form_error_mm_max"] = form_error_mm(part, check);
-    json["excess_mm_max"] = check.standing_mm_max;
+    json["excess_mm_max"] = check.excess_mm_max;
     json["gouge_mm_max"] = check.gouge_mm_max;
     json["off_grid_nm_max"] = check.off_grid_nm_max;
     json["shortest_move_mm"] = {check.shortest_x_mm, check.shortest_y_mm, check.shortest_z_mm};
@@ -155,7 +155,7 @@ std::string planing_json(const PlaningResult& result) {
 std::string planing_csv(const PlaningResult& result) {
   CsvWriter csv("x_mm,design_mm,machined_mm");
   for (const ProfileSample& s : result.check.profile)
-    csv.row(fixed(s.x_mm, 6), fixed(s.design_mm, 6), fixed(s.left_mm, 6));
+    csv.row(fixed(s.x_mm, 6), fixed(s.design_mm, 6), fixed(s.machined_mm, 6));
   return csv.text();
 }
 

@@ -25,7 +25,7 @@ std::string checked_quantity(const Study& study, const std::string& name, const 
   if (std::find(names.begin(), names.end(), name) != names.end()) return name;
   for (const std::string_view each : names)
     if (current_kind(each) == current_kind(name)) return std::string(each);
-  const std::string_view meant = closest(name, names);
+  const std::string_view meant = closest_match(name, names);
   throw InputError(where,
                    fmt::format("must be a quantity of the study ({}), got {}{}", alternatives(names), in_quotes(name),
                                meant.empty() ? "" : fmt::format("; did you mean {}?", in_quotes(meant))));
@@ -37,12 +37,12 @@ Constraint read_constraint(const Study& study, const std::string& at) {
   const schema::Document& document = *study.document;
   Constraint constraint;
   constraint.quantity = checked_quantity(study, document.text(at + ".quantity"), document.where(at + ".quantity"));
-  constraint.least = document.number_if(at + ".min");
-  constraint.most = document.number_if(at + ".max");
-  if (!constraint.least && !constraint.most) document.fail(at + ".max", "missing: a constraint needs min, max or both");
-  if (constraint.least && constraint.most && *constraint.least > *constraint.most)
+  constraint.min = document.number_if(at + ".min");
+  constraint.max = document.number_if(at + ".max");
+  if (!constraint.min && !constraint.max) document.fail(at + ".max", "missing: a constraint needs min, max or both");
+  if (constraint.min && constraint.max && *constraint.min > *constraint.max)
     document.fail(at + ".max",
-                  fmt::format("must be >= min ({}), got {}", shortest(*constraint.least), shortest(*constraint.most)));
+                  fmt::format("must be >= min ({}), got {}", shortest(*constraint.min), shortest(*constraint.max)));
   return constraint;
 }
 

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "core/schema/reader.h"
-#include "studies/design/io/design_format.h"
+#include "design/io/design_format.h"
 #include "studies/quantity/io/study_format.h"
 
 namespace retrace::studies {
@@ -18,7 +18,7 @@ constexpr std::array<std::string_view, 2> kSettingTables = {"analysis", "machini
 /// Returns points of the study such that each text value of a parameter occurs at least one time. Designs and the files
 /// that they name may depend on these texts.
 std::vector<PointValues> points_of_texts(const Study& study) {
-  std::vector<PointValues> points = {some_values(study)};
+  std::vector<PointValues> points = {example_values(study)};
   for (std::size_t k = 0; k < study.parameters.size(); ++k)
     for (const ParameterValue& value : study.parameters[k].values)
       if (std::holds_alternative<std::string>(value.shown)) {
@@ -30,7 +30,7 @@ std::vector<PointValues> points_of_texts(const Study& study) {
 
 /// Returns the position, for messages, at which a file is named. This is the position of the parameter that sets the
 /// file's key, or otherwise the position of the key in the design.
-InputLocation where_named(const Study& study, const NamedFile& named) {
+InputLocation where_named(const Study& study, const design::NamedFile& named) {
   for (std::size_t k = 0; k < study.parameters.size(); ++k)
     if (std::ranges::count(study.parameters[k].keys, named.key) > 0)
       return study.document->where(schema::path_of_entry("parameter", k) + ".values");
@@ -52,7 +52,7 @@ std::string key_of(const std::string& override_text) {
 }
 
 std::string current_key(std::string_view key) {
-  return current_path(key, schema::former_names(is_setting(key) ? study_format() : design_format()));
+  return current_path(key, schema::former_names(is_setting(key) ? study_format() : design::design_format()));
 }
 
 std::vector<std::string> overrides_for(std::span<const std::string> overrides, bool study) {
@@ -74,12 +74,13 @@ PointTexts texts_at(const Study& study, std::span<const ParameterValue> values) 
   return texts;
 }
 
-std::vector<NamedFile> files_of_designs(const Study& study) {
-  std::vector<NamedFile> files;
+std::vector<design::NamedFile> files_of_designs(const Study& study) {
+  std::vector<design::NamedFile> files;
   std::set<std::filesystem::path> known;
   for (const PointValues& values : points_of_texts(study)) {
     const PointTexts texts = texts_at(study, values);
-    for (NamedFile& named : files_named(study.design_texts.at(texts.design), texts.design, texts.for_design))
+    for (design::NamedFile& named :
+         design::files_named(study.design_texts.at(texts.design), texts.design, texts.for_design))
       if (known.insert(named.file).second) {
         named.where = where_named(study, named);
         files.push_back(std::move(named));

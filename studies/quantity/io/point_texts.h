@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "studies/design/io/design_reader.h"
+#include "design/io/design_reader.h"
 #include "studies/quantity/study.h"
 
 namespace retrace::studies {
@@ -38,6 +38,6 @@ PointTexts texts_at(const Study& study, std::span<const ParameterValue> values);
 /// Returns the files that the designs of a study name, without duplicates. If a parameter of the study sets the key of
 /// a file, the files of all values of the parameter are included. For messages, such files have the position of the
 /// parameter.
-std::vector<NamedFile> files_of_designs(const Study& study);
+std::vector<design::NamedFile> files_of_designs(const Study& study);
 
 }  // namespace retrace::studies

@@ -17,7 +17,7 @@ namespace {
 
 using schema::Document;
 
-constexpr double kMostDirections = 10000.0;
+constexpr double kMaxDirections = 10000.0;
 
 /// Returns the centres of `count` equal parts of a range. The mean of a function at these points approximates its mean
 /// over the range to second order.
@@ -31,7 +31,7 @@ std::vector<double> middles(const Document& document, const std::string& at, con
   const double from = given("from", allowed);
   const double to = given("to", allowed);
   if (!(to > from)) document.fail(at + ".to", fmt::format("must be > from ({}), got {}", shortest(from), shortest(to)));
-  const double count = given("count", {.low = 1.0, .high = kMostDirections});
+  const double count = given("count", {.low = 1.0, .high = kMaxDirections});
   if (count != std::floor(count))
     document.fail(at + ".count", fmt::format("must be a whole number, got {}", shortest(count)));
   std::vector<double> values;
@@ -47,8 +47,8 @@ std::optional<std::vector<double>> angles_of(const Document& document, const std
 }
 
 /// Returns one quantity, or, for Reduction::each, one quantity for each direction.
-Quantities shares_of(const std::string& name, const ShareSpec& spec) {
-  if (spec.reduction != Reduction::each) return {make_share(name, spec)};
+Quantities fractions_of(const std::string& name, const FractionSpec& spec) {
+  if (spec.reduction != Reduction::each) return {make_fraction(name, spec)};
   using Angles = std::optional<std::vector<double>>;
   const auto each_of = [](const Angles& angles) {
     std::vector<Angles> each;
@@ -59,17 +59,17 @@ Quantities shares_of(const std::string& name, const ShareSpec& spec) {
   Quantities all;
   for (const Angles& azimuth : each_of(spec.window.azimuth_deg))
     for (const Angles& incidence : each_of(spec.window.incidence_deg)) {
-      ShareSpec one = spec;
+      FractionSpec one = spec;
       one.window.azimuth_deg = azimuth;
       one.window.incidence_deg = incidence;
-      all.push_back(make_share(fmt::format("{}.{}", name, all.size() + 1), one));
+      all.push_back(make_fraction(fmt::format("{}.{}", name, all.size() + 1), one));
     }
   return all;
 }
 
-Quantities read_share(const std::string& name, const Document& document, const std::string& at) {
+Quantities read_fraction(const std::string& name, const Document& document, const std::string& at) {
   constexpr NumberRange incidence{.low = -90.0, .low_included = false, .high = 90.0, .high_included = false};
-  ShareSpec spec;
+  FractionSpec spec;
   spec.window.incidence_deg = angles_of(document, at + ".incidence_deg", incidence);
   spec.window.azimuth_deg = angles_of(document, at + ".azimuth_deg", {});
   spec.window.by_solid_angle = document.text(at + ".weighting") == "solid_angle";
@@ -88,7 +88,7 @@ Quantities read_share(const std::string& name, const Document& document, const s
   } else {
     spec.acceptance_half_angle_deg = document.number_if(at + ".acceptance_half_angle_deg");
   }
-  return shares_of(name, spec);
+  return fractions_of(name, spec);
 }
 
 /// Resolves a request into settings. Errors in fields of the request are reported at the corresponding keys of the
@@ -113,7 +113,7 @@ std::optional<std::string> optional_text(const Document& document, const std::st
 }
 
 std::shared_ptr<const PhotometricTable> read_photometric_table(const Document& document, const std::string& at,
-                                                               std::vector<NamedFile>& files) {
+                                                               std::vector<design::NamedFile>& files) {
   PhotometryRequest request;
   // The value is the name of a shipped standard or otherwise the name of a file.
   request.standard = document.text(at + ".standard");
@@ -134,26 +134,26 @@ std::shared_ptr<const PhotometricTable> read_photometric_table(const Document& d
   PhotometricTable table;
   table.request = settings_of(request, document, at);
   const PhotometrySettings& settings = table.request;
-  for (const TestPoint& point : settings.programme.points)
+  for (const TestPoint& point : settings.test_plan.points)
     if (point.observation_deg > settings.window_deg)
       document.fail(at + ".window_deg", fmt::format("must be >= {}, an observation angle of the standard, got {}",
                                                     shortest(point.observation_deg), shortest(settings.window_deg)));
-  const std::filesystem::path dye_file = dye_file_of(request.dye, false, settings.programme.colour);
+  const std::filesystem::path dye_file = dye_file_of(request.dye, false, settings.test_plan.colour);
   if (request.dye && dye_file == *request.dye)  // the user gave the dye as a file
     files.push_back({dye_file, at + ".dye", document.where(at + ".dye")});
   table.dye_unless_coloured = !request.dye;
   table.key =
       fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}", request.standard, request.part_class.value_or(""),
-                  settings.programme.colour, settings.area_cm2, fmt::join(settings.rotation_deg, " "),
+                  settings.test_plan.colour, settings.area_cm2, fmt::join(settings.rotation_deg, " "),
                   settings.window_deg, request.light, settings.diffraction, request.dye.value_or("(by colour)"));
   return std::make_shared<const PhotometricTable>(std::move(table));
 }
 
 Quantities read_photometric(const std::string& name, const Document& document, const std::string& at,
-                            std::vector<NamedFile>& files) {
+                            std::vector<design::NamedFile>& files) {
   const auto figure = document.choice<PhotometricFigure>(at + ".figure");
   const auto table = read_photometric_table(document, at, files);
-  const std::size_t points = table->request.programme.points.size();
+  const std::size_t points = table->request.test_plan.points.size();
   if (const auto point = document.number_if(at + ".points")) {
     const NumberRange there{.low = 1.0, .high = static_cast<double>(points)};
     if (!there.contains(*point))
@@ -179,7 +179,7 @@ bool is_name(const std::string& text) {
 
 }  // namespace
 
-Quantities read_quantity(const Document& document, const std::string& at, std::vector<NamedFile>& files) {
+Quantities read_quantity(const Document& document, const std::string& at, std::vector<design::NamedFile>& files) {
   const std::string kind = document.text(at + ".kind");
   const std::string name = optional_text(document, at + ".name").value_or(document.text_as_written(at + ".kind"));
   if (!is_name(name))
@@ -189,7 +189,7 @@ Quantities read_quantity(const Document& document, const std::string& at, std::v
                     in_quotes(name)));
   if (kind == "photometry") return read_photometric(name, document, at, files);
   const std::size_t plain = document.index(at + ".kind");
-  if (plain < kFirstPlainKind) return read_share(name, document, at);
+  if (plain < kFirstPlainKind) return read_fraction(name, document, at);
   return {make_plain(name, static_cast<PlainQuantity>(plain - kFirstPlainKind))};
 }
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/schema/document.h"
-#include "studies/design/io/design_reader.h"
+#include "design/io/design_reader.h"
 #include "studies/quantity/quantity.h"
 
 namespace retrace::studies {
@@ -15,6 +15,7 @@ namespace retrace::studies {
 /// \param at path of the table
 /// \param files receives the files that the table names
 /// \throw InputError for invalid keys
-Quantities read_quantity(const schema::Document& document, const std::string& at, std::vector<NamedFile>& files);
+Quantities read_quantity(const schema::Document& document, const std::string& at,
+                         std::vector<design::NamedFile>& files);
 
 }  // namespace retrace::studies

@@ -23,10 +23,10 @@ constexpr Words kDistributions = {"normal", "uniform", "triangular"};
 constexpr Words kNormal = {"normal"};
 constexpr Words kTriangular = {"triangular"};
 constexpr Words kScales = {"linear", "log"};
-constexpr Condition kNoDistribution[] = {without("distribution", "not allowed together with distribution")};
-constexpr Condition kNoValues[] = {without("values", "not allowed together with values")};
+constexpr Condition kNoDistribution[] = {is_absent("distribution", "not allowed together with distribution")};
+constexpr Condition kNoValues[] = {is_absent("values", "not allowed together with values")};
 constexpr Condition kSteps[] = {kNoDistribution[0], kNoValues[0]};
-constexpr Condition kCounts[] = {kNoDistribution[0], kNoValues[0], without("step", "not allowed together with step")};
+constexpr Condition kCounts[] = {kNoDistribution[0], kNoValues[0], is_absent("step", "not allowed together with step")};
 constexpr Condition kOfNormal[] = {is("distribution", kNormal)};
 constexpr Condition kOfTriangular[] = {is("distribution", kTriangular)};
 
@@ -46,7 +46,7 @@ constexpr Row kParameterRows[] = {
      kNoValues},
     {"step", Number{kAboveZero}, kNone,
      "Step between the values. The values are `from` + i `step`, up to and including `to`.", kSteps},
-    {"count", Whole{{.low = 2.0, .high = 100'000.0}}, kNone,
+    {"count", Integer{{.low = 2.0, .high = 100'000.0}}, kNone,
      "Number of values from `from` to `to`, including both ends.", kCounts},
     {"scale", Word{kScales}, "linear", "Spacing of the values. `\"log\"`: neighbouring values have equal ratios.",
      kSteps},
@@ -78,7 +78,7 @@ constexpr Words kKinds = {"rre",
                           "process_sa_nm",
                           "root_radius_um"};
 constexpr FormerWord kFormerKinds[] = {{"full_element_share", "full_element_area_fraction"}};
-constexpr Words kShares = {"rre", "ledger", "far_field"};
+constexpr Words kFractionKinds = {"rre", "ledger", "far_field"};
 constexpr Words kLedger = {"ledger"};
 constexpr Words kFarField = {"far_field"};
 constexpr Words kInCone = {"rre", "ledger"};
@@ -91,7 +91,7 @@ constexpr Words kPoints = {"worst", "each", "each_reading"};
 constexpr Words kLights = {"a", "d65", "design"};
 constexpr Words kFarFields = {"geometric", "diffracted"};
 constexpr Words kMiddles = {"from", "to", "count"};
-constexpr Condition kOfShares[] = {is("kind", kShares)};
+constexpr Condition kOfFractions[] = {is("kind", kFractionKinds)};
 constexpr Condition kOfLedger[] = {is("kind", kLedger)};
 constexpr Condition kOfFarField[] = {is("kind", kFarField)};
 constexpr Condition kOfCone[] = {is("kind", kInCone)};
@@ -107,18 +107,18 @@ constexpr Row kQuantityRows[] = {
     {"kind", Word{.words = kKinds, .former = kFormerKinds}, kRequired, "Kind of quantity."},
     {"name", Text{}, Computed{"the kind"},
      "Name of the quantity's column in results. It is needed if several quantities have the same kind."},
-    {"incidence_deg", NumberOrNumbers{kIncidence}, kOfAnalysis, kAngles, kOfShares},
-    {"incidence_deg", kMiddlesOfParts, kNone, kAngles, kOfShares},
-    {"azimuth_deg", NumberOrNumbers{{}}, kOfAnalysis, kAngles, kOfShares},
-    {"azimuth_deg", kMiddlesOfParts, kNone, kAngles, kOfShares},
+    {"incidence_deg", NumberOrNumbers{kIncidence}, kOfAnalysis, kAngles, kOfFractions},
+    {"incidence_deg", kMiddlesOfParts, kNone, kAngles, kOfFractions},
+    {"azimuth_deg", NumberOrNumbers{{}}, kOfAnalysis, kAngles, kOfFractions},
+    {"azimuth_deg", kMiddlesOfParts, kNone, kAngles, kOfFractions},
     {"over_directions", Word{.words = kReductions, .former = kFormerReductions}, "mean",
      "Method by which the values of several directions are combined. `\"mean\"`: weighted mean. `\"min\"`: minimum "
      "over all directions. `\"each\"`: one quantity for each direction, named `NAME.1`, `NAME.2`, ...",
-     kOfShares},
+     kOfFractions},
     {"weighting", Word{kWeightings}, "uniform",
      "Weights of the directions. `\"uniform\"`: all weights are equal. `\"solid_angle\"`: the weight is \\|sin "
      "incidence\\|.",
-     kOfShares},
+     kOfFractions},
     {"account", Word{raytrace::kAccountNames}, kRequired, "Account of the ledger whose power is the quantity.",
      kOfLedger},
     {"from_deg", Number{kHalfAngle}, kRequired,
@@ -143,7 +143,7 @@ constexpr Row kQuantityRows[] = {
      "`NAME.1.2`, ...; a point has one reading for each rotation of the part and for each angle V next to the mirror "
      "image of the lamp. A number: the point with this number, from 1, in the list of `retrace photometry`.",
      kOfPhotometry},
-    {"points", Whole{{.low = 1.0, .high = 10'000.0}}, kNone, "Number of a test point.", kOfPhotometry},
+    {"points", Integer{{.low = 1.0, .high = 10'000.0}}, kNone, "Number of a test point.", kOfPhotometry},
     {"rotation_deg", NumberOrNumbers{{}}, kOfCommand, "Rotations of the part about its axis.", kOfPhotometry},
     {"window_deg", Number{{.low = 0.05, .high = 10.0}}, kOfCommand, "Half-angle of the computed far field.",
      kOfPhotometry},
@@ -170,7 +170,8 @@ constexpr Row kAnalysisRows[] = {
     {"engine", Word{raytrace::kEngineNames}, "auto", "Engine, as for `retrace rre --engine`."},
     {"target_error", Number{{.low = 0.0, .low_included = false, .high = 1.0, .high_included = false}}, Computed{"1e-4"},
      "Target error, as for `retrace rre --target-error`. It is allowed only if the study has a quantity of RRE."},
-    {"samples", Whole{{.low = 1.0, .high = 0x1p36}}, kNone, "Number of rays, as for `retrace rre --samples`.", kOfRays},
+    {"samples", Integer{{.low = 1.0, .high = 0x1p36}}, kNone, "Number of rays, as for `retrace rre --samples`.",
+     kOfRays},
     {"cutoff", Number{{.low = 0.0, .high = 1.0, .high_included = false}}, kNone,
      "Cut-off power, as for `retrace rre --cutoff`. Photometry by rays has no cut-off.", kOfCutoff}};
 
@@ -213,7 +214,7 @@ constexpr Row kMachiningRows[] = {
     {"roughing_depth_um", Number{kSane}, 15.0, "Depth of each roughing cut.", access<&Process::roughing_depth_um>},
     {"finishing_depth_um", Number{kSaneOrNone}, 5.0, "Depth of each finishing cut.",
      access<&Process::finishing_depth_um>},
-    {"finishing_cuts", Whole{{.low = 0.0, .high = 1000.0}}, 2.0, "Number of finishing cuts of each facet.",
+    {"finishing_cuts", Integer{{.low = 0.0, .high = 1000.0}}, 2.0, "Number of finishing cuts of each facet.",
      access<&Process::finishing_cuts>, kFinishing},
     {"plough_length_um", Number{kSaneOrNone}, 100.0, "Length of the ploughing motion that follows every roughing cut.",
      access<&Process::plough_length_um>},
@@ -246,7 +247,7 @@ constexpr Row kSweepRows[] = {
      "parameter varies fastest. `\"zipped\"`: the first values of all parameters, then their second values, and so on. "
      "`\"sobol\"`: Owen-scrambled Sobol points; their number should be a power of two. `\"latin_hypercube\"`: a Latin "
      "hypercube. `\"monte_carlo\"`: independent random points."},
-    {"samples", Whole{{.low = 1.0, .high = 1'000'000.0}}, kRequired, "Number of points.", kOfSampled}};
+    {"samples", Integer{{.low = 1.0, .high = 1'000'000.0}}, kRequired, "Number of points.", kOfSampled}};
 
 constexpr Words kSenses = {"max", "min"};
 constexpr FormerWord kFormerSenses[] = {{"most", "max"}, {"least", "min"}};
@@ -264,7 +265,7 @@ constexpr Row kOptimiseRows[] = {
      Computed{"the quantities of the objective"},
      "Axes of the Pareto front: quantities, and whether large values (`\"max\"`) or small values (`\"min\"`) are "
      "better."},
-    {"scan", Whole{{.low = 3.0, .high = 100'000.0}}, 65.0,
+    {"scan", Integer{{.low = 3.0, .high = 100'000.0}}, 65.0,
      "Number of designs in the first scan, for each combination of discrete values. For one continuous parameter, the "
      "designs are equally spaced from end to end of its interval. For several continuous parameters, they are the "
      "corners of the intervals and Sobol points."},
@@ -278,7 +279,7 @@ constexpr Rule kOptimiseRules[] = {
 
 constexpr Words kIndices = {"none", "sobol"};
 constexpr Row kToleranceRows[] = {
-    {"samples", Whole{{.low = 2.0, .high = 1'000'000.0}}, 256.0,
+    {"samples", Integer{{.low = 2.0, .high = 1'000'000.0}}, 256.0,
      "Number of rows. With Sobol indices, a row consists of two random parts and one more point for each parameter. "
      "Without indices, a row is one random part."},
     {"sampling", Word{kSampled}, "sobol", "Method by which the rows are sampled."},
@@ -305,7 +306,7 @@ constexpr Row kComposeRows[] = {
     renamed("least", Row{"min_goal", Number{}, Computed{"0 if all goals are margins"},
                          "Value that the minimum of all goals must reach. If the best part does not reach it, the "
                          "command ends with exit code 1."}),
-    renamed("most_zones", Row{"max_zones", Whole{{.low = 1.0, .high = 100.0}}, kNone,
+    renamed("most_zones", Row{"max_zones", Integer{{.low = 1.0, .high = 100.0}}, kNone,
                               "Maximum number of zones. Each zone has one kind of cell."}),
     renamed("least_share", Row{"min_area_fraction", Number{{.low = 0.0, .high = 1.0}}, 0.0,
                                "Minimum fraction of the area for each zone of the part."}),
@@ -317,14 +318,14 @@ constexpr Row kComposeRows[] = {
     {"front", ByName{kSense, {}, "a table of one quantity, such as {machining_time_h = \"min\"}"}, kNone,
      "Quantity whose mean over the part is one axis of the Pareto front, and whether large values (`\"max\"`) or small "
      "values (`\"min\"`) are better. The minimum of all goals is the other axis."},
-    {"scan", Whole{{.low = 3.0, .high = 100'000.0}}, 65.0,
+    {"scan", Integer{{.low = 3.0, .high = 100'000.0}}, 65.0,
      "Number of cells in the first scan, for each combination of discrete values. The cells are chosen in the same way "
      "as the designs of `scan` in [optimize]."},
-    {"rounds", Whole{{.low = 0.0, .high = 100.0}}, 4.0,
+    {"rounds", Integer{{.low = 0.0, .high = 100.0}}, 4.0,
      "Maximum number of searches for further cells with dual prices."},
-    {"starts", Whole{{.low = 1.0, .high = 100.0}}, 3.0,
+    {"starts", Integer{{.low = 1.0, .high = 100.0}}, 3.0,
      "Number of cells from which each search with dual prices starts."},
-    renamed("looks", Row{"evaluations_per_start", Whole{{.low = 1.0, .high = 10'000.0}}, 20.0,
+    renamed("looks", Row{"evaluations_per_start", Integer{{.low = 1.0, .high = 10'000.0}}, 20.0,
                          "Maximum number of cells that are evaluated from each start."}),
     {"cell_sigma_arcmin", Number{{.low = 0.0, .high = 60.0}}, kNone,
      "Standard deviation, from cell to cell, of the error of each angle between facets. These errors average out over "
@@ -333,7 +334,7 @@ constexpr Row kComposeRows[] = {
      "Standard deviation, from zone to zone, of the error of each angle between facets. These errors do not average "
      "out. If `cell_sigma_arcmin` or `zone_sigma_arcmin` is given, even as 0, the effects of angle errors on the part "
      "are reported."},
-    {"parts", Whole{{.low = 16.0, .high = 16'384.0}}, 1024.0,
+    {"parts", Integer{{.low = 16.0, .high = 16'384.0}}, 1024.0,
      "Number of random parts with angle errors from which the yield is computed."},
     renamed("worst_share",
             Row{"worst_fraction", Number{{.low = 0.0, .low_included = false, .high = 1.0}}, kNone,

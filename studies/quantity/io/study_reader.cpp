@@ -13,8 +13,8 @@
 #include "core/number_format.h"
 #include "core/schema/reader.h"
 #include "core/toml_file.h"
-#include "studies/design/io/design_format.h"
-#include "studies/design/io/design_reader.h"
+#include "design/io/design_format.h"
+#include "design/io/design_reader.h"
 #include "studies/quantity/io/point_texts.h"
 #include "studies/quantity/io/quantity_reader.h"
 #include "studies/quantity/io/study_format.h"
@@ -26,16 +26,16 @@ namespace {
 using schema::Document;
 
 /// Names of the tables of a study file that determine its points.
-constexpr std::array<std::string_view, 8> kParts = {"parameter", "quantity",  "analysis",   "machining",
-                                                    "sweep",     "tolerance", "constraint", "optimize"};
-constexpr double kMostValues = 100'000.0;
+constexpr std::array<std::string_view, 8> kIntervalsPerFunction = {"parameter", "quantity",  "analysis",   "machining",
+                                                                   "sweep",     "tolerance", "constraint", "optimize"};
+constexpr double kMaxValues = 100'000.0;
 
 AnalysisSettings analysis_of(const Document& document, std::uint32_t seed) {
   AnalysisSettings analysis;
   analysis.incidence_deg = document.number("analysis.incidence_deg");
   analysis.azimuth_deg = document.number("analysis.azimuth_deg");
   analysis.rotation_deg = document.number("analysis.rotation_deg");
-  analysis.engine = document.choice<Engine>("analysis.engine");
+  analysis.engine = document.choice<raytrace::Engine>("analysis.engine");
   analysis.target_error = document.number_if("analysis.target_error");
   if (const auto rays = document.number_if("analysis.samples")) analysis.rays = static_cast<std::uint64_t>(*rays);
   if (analysis.rays && analysis.target_error)
@@ -69,7 +69,7 @@ void check_settings_have_effect(const Document& document, const Study& study) {
   if (is_traced(study, "rre")) return;
   refuse_setting(document, study, "analysis.target_error",
                  "needs a quantity of RRE, because other quantities have no target error");
-  const bool is_exact = raytrace::may_be_exact(document.choice<Engine>("analysis.engine")) ||
+  const bool is_exact = raytrace::may_be_exact(document.choice<raytrace::Engine>("analysis.engine")) ||
                         parameter_of(study, "analysis.engine") != nullptr;
   if (!is_exact && is_traced(study, "photometry"))
     refuse_setting(document, study, "analysis.cutoff",
@@ -86,7 +86,7 @@ MachiningProcess machining_of(const Document& document) {
 /// Returns a message that explains why the key of a parameter is invalid. Empty if the key is valid.
 std::string complaint_about_parameter(const std::string& key) {
   if (key == "design") return {};
-  return schema::complaint_about_key(is_setting(key) ? study_format() : design_format(), key);
+  return schema::complaint_about_key(is_setting(key) ? study_format() : design::design_format(), key);
 }
 
 ParameterValue value_of(const std::string& toml) {
@@ -118,8 +118,8 @@ std::vector<ParameterValue> range_values(const Document& document, const std::st
   if (const auto step = document.number_if(at + ".step")) {
     if (interval.logarithmic) document.fail(at + ".step", "not allowed for a logarithmic range: give count");
     const double steps = std::floor((interval.to - interval.from) / *step + 1e-9);
-    if (!(steps < kMostValues))
-      document.fail(at + ".step", fmt::format("must give at most {} values, got {}", kMostValues, shortest(*step)));
+    if (!(steps < kMaxValues))
+      document.fail(at + ".step", fmt::format("must give at most {} values, got {}", kMaxValues, shortest(*step)));
     for (double k = 0.0; k <= steps; ++k) values.push_back(Parameter::value_of(interval.from + k * *step));
     return values;
   }
@@ -242,10 +242,10 @@ std::string fingerprint(const std::string& text) {
 
 /// Returns the fingerprints of the files that the designs and quantities of a study name.
 /// \throw InputError if a file cannot be read; the location is that of the file's name
-std::string fingerprints(const std::vector<NamedFile>& files) {
+std::string fingerprints(const std::vector<design::NamedFile>& files) {
   std::string parts;
   for (const auto& [file, key, where] : files) {
-    const std::string content = read_named(where, [&] { return read_file(file, kMostDataBytes); });
+    const std::string content = read_named(where, [&] { return read_file(file, kMaxDataBytes); });
     parts += file.filename().string() + ": " + fingerprint(content) + "\n";
   }
   return parts;
@@ -253,8 +253,8 @@ std::string fingerprints(const std::vector<NamedFile>& files) {
 
 /// Returns replacements of names after which texts with former and with current names are equal: both then contain the
 /// names of the first version. Stores of former versions contain such texts.
-std::vector<FormerName> names_of_stores(const schema::Format& format) {
-  std::vector<FormerName> names = schema::former_names(format);
+std::vector<TomlRename> names_of_stores(const schema::Format& format) {
+  std::vector<TomlRename> names = schema::former_names(format);
   for (std::size_t i = names.size(); i-- > 0;) {
     names.push_back(names[i]);
     std::swap(names.back().former, names.back().current);
@@ -265,20 +265,22 @@ std::vector<FormerName> names_of_stores(const schema::Format& format) {
 /// Returns the text of an override for stores.
 std::string override_of_stores(const std::string& text) {
   const std::string key = key_of(text);
-  const std::string stored = current_path(key, names_of_stores(is_setting(key) ? study_format() : design_format()));
+  const std::string stored =
+      current_path(key, names_of_stores(is_setting(key) ? study_format() : design::design_format()));
   return stored == key ? text : stored + text.substr(text.find('='));
 }
 
-std::vector<std::pair<std::string, std::string>> parts_of(const Study& study, const std::vector<NamedFile>& named) {
+std::vector<std::pair<std::string, std::string>> parts_of(const Study& study,
+                                                          const std::vector<design::NamedFile>& named) {
   std::vector<std::pair<std::string, std::string>> parts;
   const Document::Origin& origin = study.document->origin();
   const TomlTable as_given =
-      parse_toml(origin.text, study.source, kMostDesignBytes, origin.overrides, names_of_stores(study_format()));
-  for (const std::string_view key : kParts) parts.emplace_back(key, as_given.as_json(key));
+      parse_toml(origin.text, study.source, kMaxDesignBytes, origin.overrides, names_of_stores(study_format()));
+  for (const std::string_view key : kIntervalsPerFunction) parts.emplace_back(key, as_given.as_json(key));
   std::string designs;
   for (const auto& [file, text] : study.design_texts)
     designs += fs::path(file).filename().string() + " " +
-               parse_toml(text, file, kMostDesignBytes, {}, names_of_stores(design_format())).as_json() + "\n";
+               parse_toml(text, file, kMaxDesignBytes, {}, names_of_stores(design::design_format())).as_json() + "\n";
   parts.emplace_back("the design", designs);
   parts.emplace_back("a file of the design", fingerprints(named));
   std::vector<std::string> overrides;
@@ -292,7 +294,7 @@ void read_designs(const Document& document, const FileTexts& given, Study& study
   const auto text_of = [&](const std::string& file, const std::string& key) {
     const auto found = given.find(file);
     if (found != given.end()) return found->second;
-    return read_named(document.where(key), [&] { return read_toml_text(file); });
+    return read_named(document.where(key), [&] { return design::read_toml_text(file); });
   };
   const auto varied = std::find_if(study.parameters.begin(), study.parameters.end(),
                                    [](const Parameter& p) { return p.keys.front() == "design"; });
@@ -314,7 +316,7 @@ Study parse_study(const std::string& text, const std::string& source_name, std::
                   std::uint32_t seed, const FileTexts& designs) {
   Study study;
   study.document = std::make_shared<const Document>(
-      schema::read_document(study_format(), text, source_name, kMostDesignBytes, overrides_for(overrides, true)));
+      schema::read_document(study_format(), text, source_name, kMaxDesignBytes, overrides_for(overrides, true)));
   const Document& document = *study.document;
   study.source = source_name;
   study.overrides.assign(overrides.begin(), overrides.end());
@@ -323,7 +325,7 @@ Study parse_study(const std::string& text, const std::string& source_name, std::
   for (const std::string& at : entries_of(document, "parameter"))
     study.parameters.push_back(read_parameter(document, at));
   std::vector<InputLocation> quantity_locations;
-  std::vector<NamedFile> of_quantities;
+  std::vector<design::NamedFile> of_quantities;
   for (const std::string& at : entries_of(document, "quantity"))
     for (auto& quantity : read_quantity(document, at, of_quantities)) {
       study.quantities.push_back(std::move(quantity));
@@ -334,17 +336,17 @@ Study parse_study(const std::string& text, const std::string& source_name, std::
   check_settings_have_effect(document, study);
   analysis_of(document, seed);  // refuses settings that exclude each other before any point is computed
   read_designs(document, designs, study);
-  std::vector<NamedFile> named = files_of_designs(study);
+  std::vector<design::NamedFile> named = files_of_designs(study);
   named.insert(named.end(), of_quantities.begin(), of_quantities.end());
   study.files = {source_name};
   for (const auto& [file, design] : study.design_texts) study.files.push_back(file);
-  for (const NamedFile& each : named) study.files.push_back(each.file.string());
+  for (const design::NamedFile& each : named) study.files.push_back(each.file.string());
   study.parts = parts_of(study, named);
   return study;
 }
 
 Study read_study(const fs::path& file, std::span<const std::string> overrides, std::uint32_t seed) {
-  return parse_study(read_toml_text(file), file == "-" ? "standard input" : file.string(), overrides, seed);
+  return parse_study(design::read_toml_text(file), file == "-" ? "standard input" : file.string(), overrides, seed);
 }
 
 Candidate make_candidate(const Study& study, std::span<const ParameterValue> values) {
@@ -357,15 +359,16 @@ Candidate make_candidate(const Study& study, std::span<const ParameterValue> val
   // The surface that results from machining comes first, so that surface keys of the study override it.
   const std::vector<std::string> as_cut = surface_overrides(machining);
   texts.for_design.insert(texts.for_design.begin(), as_cut.begin(), as_cut.end());
-  const Design varied = parse_design(study.design_texts.at(texts.design), texts.design, texts.for_design);
-  check_taken(varied, {.what = "a study", .solids = true, .wet_backs = true});
+  const design::Design varied =
+      design::parse_design(study.design_texts.at(texts.design), texts.design, texts.for_design);
+  design::require_supported(varied, {.what = "a study", .solids = true, .wet_backs = true});
   return {varied, analysis_of(document, study.seed), machining};
 }
 
 Warnings keys_without_effect(const Study& study) {
   Warnings warnings = schema::renamed_keys(*study.document);
   try {
-    append(warnings, make_candidate(study, some_values(study)).design().warnings());
+    append(warnings, make_candidate(study, example_values(study)).design().warnings());
   } catch (const InputError&) {  // the study reports it when it computes this point
   }
   return warnings;

@@ -37,8 +37,8 @@ enum Quantity : std::size_t {
 constexpr std::array<std::string_view, 17> kNames = {"x_mm",    "y_mm",        "z_mm",          "dx",  "dy",     "dz",
                                                      "power_w", "luminous_lm", "wavelength_nm", "s1",  "s2",     "s3",
                                                      "axis_x",  "axis_y",      "axis_z",        "ray", "account"};
-constexpr std::size_t kMostLineBytes = 64 * 1024;
-constexpr int kMostLines = 2'000'000'000;
+constexpr std::size_t kMaxLineBytes = 64 * 1024;
+constexpr int kMaxLines = 2'000'000'000;
 
 std::string all_names() {
   std::string text;
@@ -61,12 +61,12 @@ void RayCsvSource::fail(std::string_view column, std::string_view text) const {
 
 /// Reads the next line that is not empty and splits it into values. Returns false if there is none.
 bool RayCsvSource::next_line() {
-  text_.resize(kMostLineBytes);
+  text_.resize(kMaxLineBytes);
   while (stream_->getline(text_.data(), static_cast<std::streamsize>(text_.size())) || stream_->gcount() > 0) {
     const auto read = static_cast<std::size_t>(stream_->gcount());
     at_ += read;
-    line_ = std::min(line_ + 1, kMostLines);
-    if (read + 1 >= text_.size()) fail("", fmt::format("must have at most {} characters", kMostLineBytes - 2));
+    line_ = std::min(line_ + 1, kMaxLines);
+    if (read + 1 >= text_.size()) fail("", fmt::format("must have at most {} characters", kMaxLineBytes - 2));
     std::string_view line(text_.data(), read - (stream_->eof() ? 0 : 1));
     if (line_ == 1 && line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
     line = trimmed(line);
@@ -128,13 +128,13 @@ SetRay RayCsvSource::ray() const {
   if (!has(kS1)) return ray;
   ray.stokes = {value(kS1), value(kS2), value(kS3)};
   ray.axis = {value(kAxisX), value(kAxisY), value(kAxisZ)};
-  if (const char* const wrong = settle_stokes(ray)) fail("s1", wrong);
+  if (const char* const wrong = orthogonalize_stokes_axis(ray)) fail("s1", wrong);
   return ray;
 }
 
-bool RayCsvSource::read(std::size_t most, std::vector<SetRay>& rays) {
+bool RayCsvSource::read(std::size_t max_rays, std::vector<SetRay>& rays) {
   rays.clear();
-  while (rays.size() < most && next_line()) {
+  while (rays.size() < max_rays && next_line()) {
     if (values_.size() != column_count_)
       fail("", fmt::format("must have {} values, got {}", column_count_, values_.size()));
     rays.push_back(ray());
@@ -144,7 +144,7 @@ bool RayCsvSource::read(std::size_t most, std::vector<SetRay>& rays) {
   return !rays.empty();
 }
 
-double RayCsvSource::share_read() const {
+double RayCsvSource::fraction_read() const {
   return bytes_ > 0 ? std::min(1.0, static_cast<double>(at_) / static_cast<double>(bytes_)) : 1.0;
 }
 
@@ -158,7 +158,7 @@ void RayCsvSink::begin(const RaySinkLayout& layout) {
   add(kX, kDz);
   if (layout.info.has_radiant) add(kPower, kPower);
   if (layout.info.has_luminous) add(kLuminous, kLuminous);
-  if (layout.tells_wavelengths) add(kWavelength, kWavelength);
+  if (layout.has_wavelengths) add(kWavelength, kWavelength);
   if (layout.info.has_stokes) add(kS1, kAxisZ);
   file_.append(names + '\n');
 }
@@ -172,7 +172,7 @@ void RayCsvSink::write(std::span<const AccountedRay> rays) {
     table.add(ray.direction);
     if (layout_.info.has_radiant) table.add(ray.radiant_w);
     if (layout_.info.has_luminous) table.add(ray.luminous_lm);
-    if (layout_.tells_wavelengths) table.add(ray.wavelength_nm);
+    if (layout_.has_wavelengths) table.add(ray.wavelength_nm);
     if (layout_.info.has_stokes) {
       table.add(ray.stokes);
       table.add(ray.axis);

@@ -26,8 +26,8 @@ class RayCsvSource : public RaySource {
   RayCsvSource(RayInput input, std::string file);
 
   const RaySetInfo& info() const override { return info_; }
-  bool read(std::size_t most, std::vector<SetRay>& rays) override;
-  double share_read() const override;
+  bool read(std::size_t max_rays, std::vector<SetRay>& rays) override;
+  double fraction_read() const override;
 
  private:
   [[noreturn]] void fail(std::string_view column, std::string_view text) const;
@@ -62,7 +62,7 @@ class RayCsvSink : public RaySink {
   void finish() override { file_.finish(); }
 
  private:
-  GrowingFile file_;
+  AtomicFileWriter file_;
   RaySinkLayout layout_;
 };
 

@@ -6,7 +6,7 @@
 
 #include "core/json_text.h"
 #include "core/number_format.h"
-#include "studies/design/io/design_json.h"
+#include "design/io/design_json.h"
 #include "studies/rays/ray_accounts.h"
 
 namespace retrace::studies {
@@ -55,7 +55,8 @@ const char* unit_of(RayPower power) {
 
 std::string rays_json(const RayResult& result) {
   const raytrace::RayLedger& ledger = result.ledger;
-  Json json = {{"design", to_json(result.design)}, {"seed", result.request.seed}, {"source", source_json(result)}};
+  Json json = {
+      {"design", design::to_json(result.design)}, {"seed", result.request.seed}, {"source", source_json(result)}};
   json["split"] = result.request.split;
   json["cutoff"] = result.request.cutoff;
   json["acceptance_half_angle_deg"] = result.acceptance_half_angle_deg;

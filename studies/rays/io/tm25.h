@@ -26,16 +26,16 @@ class Tm25Source : public RaySource {
   Tm25Source(RayInput input, std::string file);
 
   const RaySetInfo& info() const override { return info_; }
-  bool read(std::size_t most, std::vector<SetRay>& rays) override;
-  double share_read() const override;
+  bool read(std::size_t max_rays, std::vector<SetRay>& rays) override;
+  double fraction_read() const override;
   Warnings warnings() const override;
 
  private:
   [[noreturn]] void fail(std::uint64_t byte, std::string_view text) const;
   std::string_view take(std::uint64_t bytes, std::string_view what);
-  std::int32_t whole();
+  std::int32_t integer();
   float number();
-  std::int32_t whole_within(std::string_view what, std::int32_t least, std::int32_t most);
+  std::int32_t integer_within(std::string_view what, std::int32_t min, std::int32_t max);
   std::optional<double> flux(std::string_view what);
   bool flag(std::string_view what);
   void read_header();
@@ -75,7 +75,7 @@ class Tm25Sink : public RaySink {
   void write_header();
   void write_totals();
 
-  GrowingFile file_;
+  AtomicFileWriter file_;
   RaySinkLayout layout_;
   bool has_wavelength_column_ = false;
   std::uint64_t rays_ = 0;

@@ -63,15 +63,15 @@ std::u32string legend() {
 void Tm25Sink::begin(const RaySinkLayout& layout) {
   layout_ = layout;
   // The format allows no wavelengths together with luminous flux.
-  has_wavelength_column_ = layout.tells_wavelengths && !layout.info.has_luminous;
+  has_wavelength_column_ = layout.has_wavelengths && !layout.info.has_luminous;
   write_header();
 }
 
 void Tm25Sink::write_header() {
   const RaySetInfo& info = layout_.info;
-  const bool has_wavelength_item = layout_.tells_wavelengths && !has_wavelength_column_;
+  const bool has_wavelength_item = layout_.has_wavelengths && !has_wavelength_column_;
   RaySpectrum spectrum = info.spectrum;
-  if (layout_.tells_wavelengths)
+  if (layout_.has_wavelengths)
     spectrum = has_wavelength_column_ ? RaySpectrum::wavelength_of_each : RaySpectrum::unknown;
   const std::u32string more = legend();
   const std::size_t more_bytes = (4 * (more.size() + 1) + kBlockBytes - 1) / kBlockBytes * kBlockBytes;
@@ -120,7 +120,7 @@ void Tm25Sink::write(std::span<const AccountedRay> rays) {
       records.add_real(ray.tristimulus_z);
     }
     records.add_real(static_cast<double>(ray.account));
-    if (layout_.tells_wavelengths && !has_wavelength_column_) records.add_real(ray.wavelength_nm);
+    if (layout_.has_wavelengths && !has_wavelength_column_) records.add_real(ray.wavelength_nm);
     radiant_w_ += ray.radiant_w;
     luminous_lm_ += ray.luminous_lm;
     shortest_nm_ = shortest_nm_ > 0.0 ? std::min(shortest_nm_, ray.wavelength_nm) : ray.wavelength_nm;

@@ -18,8 +18,8 @@ namespace {
 using namespace tm25;
 
 // Maximum numbers of tables and items. Larger numbers in a file indicate damage.
-constexpr std::int32_t kMostTables = 100'000;
-constexpr std::int32_t kMostItems = 1000;
+constexpr std::int32_t kMaxTables = 100'000;
+constexpr std::int32_t kMaxItems = 1000;
 // Relative tolerance between the sum of the rays' fluxes and the flux in the header.
 constexpr double kFluxTolerance = 0.01;
 // Tolerance of the squared length of a direction.
@@ -87,7 +87,7 @@ std::string_view Tm25Source::take(std::uint64_t bytes, std::string_view what) {
   return buffer_;
 }
 
-std::int32_t Tm25Source::whole() {
+std::int32_t Tm25Source::integer() {
   return value_at<std::int32_t>(take(4, "a number").data());
 }
 
@@ -95,15 +95,15 @@ float Tm25Source::number() {
   return value_at<float>(take(4, "a number").data());
 }
 
-std::int32_t Tm25Source::whole_within(std::string_view what, std::int32_t least, std::int32_t most) {
-  const std::int32_t value = whole();
-  if (value >= least && value <= most) return value;
-  const std::string allowed = least == most ? fmt::format("{}", least) : fmt::format("{} to {}", least, most);
+std::int32_t Tm25Source::integer_within(std::string_view what, std::int32_t min, std::int32_t max) {
+  const std::int32_t value = integer();
+  if (value >= min && value <= max) return value;
+  const std::string allowed = min == max ? fmt::format("{}", min) : fmt::format("{} to {}", min, max);
   fail(at_ - 4, fmt::format("{} must be {}, got {}", what, allowed, value));
 }
 
 bool Tm25Source::flag(std::string_view what) {
-  return whole_within(what, 0, 1) == 1;
+  return integer_within(what, 0, 1) == 1;
 }
 
 /// Reads a flux. NaN means that the file does not give the flux.
@@ -117,15 +117,15 @@ std::optional<double> Tm25Source::flux(std::string_view what) {
 void Tm25Source::read_header() {
   if (take(std::min<std::uint64_t>(4, bytes_), "a ray file") != "TM25")
     fail(0, "must be TM25, the first four bytes of a ray file of IES TM-25");
-  whole_within("the version of the format", kFormatVersion, kFormatVersion);
-  whole();  // skips the method by which the rays were made
+  integer_within("the version of the format", kFormatVersion, kFormatVersion);
+  integer();  // skips the method by which the rays were made
   info_.luminous_lm = flux("the luminous flux");
   info_.radiant_w = flux("the radiant flux");
   info_.rays = value_at<std::uint64_t>(take(8, "the number of rays").data());
   if (*info_.rays == 0) fail(at_ - 8, "the number of rays must be at least 1, got 0");
   info_.date = ascii_of(take(kDateBytes, "the date"));
-  whole();  // skips the surface on which the rays begin
-  info_.spectrum = static_cast<RaySpectrum>(whole_within("the spectral data identifier", 0, 4));
+  integer();  // skips the surface on which the rays begin
+  info_.spectrum = static_cast<RaySpectrum>(integer_within("the spectral data identifier", 0, 4));
   const float wavelength_nm = number();
   if (info_.spectrum == RaySpectrum::one_wavelength) {
     if (!is_wavelength(wavelength_nm)) fail(at_ - 4, wavelength_text(wavelength_nm));
@@ -133,9 +133,9 @@ void Tm25Source::read_header() {
   }
   take(8, "the range of wavelengths");
   const bool has_tables = info_.spectrum == RaySpectrum::one_table || info_.spectrum == RaySpectrum::table_of_each;
-  const std::int32_t tables = whole_within("the number of spectral tables", has_tables ? 1 : 0, kMostTables);
-  const std::int32_t items = whole_within("the number of additional items", 0, kMostItems);
-  const std::int32_t text_bytes = whole_within("the size of the additional text", 0, INT32_MAX);
+  const std::int32_t tables = integer_within("the number of spectral tables", has_tables ? 1 : 0, kMaxTables);
+  const std::int32_t items = integer_within("the number of additional items", 0, kMaxItems);
+  const std::int32_t text_bytes = integer_within("the size of the additional text", 0, INT32_MAX);
   take(kReservedBytes, "the header");
   read_flags();
   read_texts();
@@ -145,7 +145,7 @@ void Tm25Source::read_header() {
 
 void Tm25Source::read_flags() {
   const std::uint64_t begin = at_;
-  for (const std::string_view what : {"the flag of positions", "the flag of directions"}) whole_within(what, 1, 1);
+  for (const std::string_view what : {"the flag of positions", "the flag of directions"}) integer_within(what, 1, 1);
   info_.has_radiant = flag("the flag of radiant flux");
   has_wavelengths_ = flag("the flag of wavelengths");
   info_.has_luminous = flag("the flag of luminous flux");
@@ -171,7 +171,7 @@ void Tm25Source::read_texts() {
 
 materials::SpectralCurve Tm25Source::read_table(std::int32_t number) {
   const std::uint64_t begin = at_;
-  const std::int32_t pairs = whole_within(fmt::format("the length of spectral table {}", number), 1, INT32_MAX);
+  const std::int32_t pairs = integer_within(fmt::format("the length of spectral table {}", number), 1, INT32_MAX);
   const std::string_view data = take(8 * static_cast<std::uint64_t>(pairs), "a spectral table");
   materials::SpectralCurve table;
   double sum = 0.0;
@@ -216,13 +216,13 @@ void Tm25Source::find_rays(std::int32_t items, std::int32_t text_bytes) {
                         record_bytes_, left));
 }
 
-double Tm25Source::share_read() const {
+double Tm25Source::fraction_read() const {
   return static_cast<double>(rays_read_) / static_cast<double>(*info_.rays);
 }
 
-bool Tm25Source::read(std::size_t most, std::vector<SetRay>& rays) {
+bool Tm25Source::read(std::size_t max_rays, std::vector<SetRay>& rays) {
   rays.clear();
-  const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(most, *info_.rays - rays_read_));
+  const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(max_rays, *info_.rays - rays_read_));
   if (count == 0) return false;
   const std::uint64_t begin = at_;
   const std::string_view records = take(count * record_bytes_, "rays");
@@ -263,7 +263,7 @@ SetRay Tm25Source::ray_at(const char* record, std::uint64_t byte) {
   if (info_.has_stokes) {
     for (double& s : ray.stokes) s = next("a Stokes parameter");
     for (double& a : ray.axis) a = next("an axis of polarisation");
-    if (const char* const wrong = settle_stokes(ray)) fail(place() - 24, wrong);
+    if (const char* const wrong = orthogonalize_stokes_axis(ray)) fail(place() - 24, wrong);
   }
   if (info_.has_tristimulus) {
     ray.tristimulus_x = flux_of("a tristimulus value");

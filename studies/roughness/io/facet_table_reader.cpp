@@ -12,8 +12,8 @@
 namespace retrace::studies {
 namespace {
 
-constexpr std::size_t kMostFacets = 10000;
-constexpr std::size_t kMostBytes = std::size_t{1} << 20;
+constexpr std::size_t kMaxFacets = 10000;
+constexpr std::size_t kMaxBytes = std::size_t{1} << 20;
 constexpr NumberRange kSaNm{.low = 0.0, .high = 1e5};
 
 /// Indices of the columns of a table.
@@ -49,11 +49,11 @@ FacetGroup& group_of(const CsvReader& row, const Columns& columns, std::vector<F
 }  // namespace
 
 std::vector<FacetGroup> parse_facet_table(std::string_view content, const std::string& name) {
-  CsvReader table(content, name, kMostBytes);
+  CsvReader table(content, name, kMaxBytes);
   const Columns columns = columns_of(table);
   std::vector<FacetGroup> groups;
   while (table.next()) {
-    if (table.rows() > kMostFacets) table.fail(fmt::format("at most {} facets are allowed", kMostFacets));
+    if (table.rows() > kMaxFacets) table.fail(fmt::format("at most {} facets are allowed", kMaxFacets));
     FacetGroup& group = group_of(table, columns, groups, name);
     ++group.facets;
     // Running means are used instead of sums because sums could overflow.
@@ -66,7 +66,7 @@ std::vector<FacetGroup> parse_facet_table(std::string_view content, const std::s
 }
 
 std::vector<FacetGroup> read_facet_table(const std::filesystem::path& file) {
-  return parse_facet_table(read_file(file, kMostBytes), file.string());
+  return parse_facet_table(read_file(file, kMaxBytes), file.string());
 }
 
 }  // namespace retrace::studies

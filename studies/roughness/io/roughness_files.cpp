@@ -8,7 +8,7 @@
 #include "core/json_text.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
-#include "studies/design/io/design_json.h"
+#include "design/io/design_json.h"
 
 namespace retrace::studies {
 namespace {
@@ -43,7 +43,7 @@ std::string percent(double share) {
 
 std::string roughness_json(const RoughnessResult& result) {
   const RoughnessRequest& asked = result.request;
-  Json json = {{"design", to_json(result.design)},
+  Json json = {{"design", design::to_json(result.design)},
                {"seed", asked.seed},
                {"incidence_deg", asked.incidence_deg},
                {"azimuth_deg", asked.azimuth_deg},

@@ -11,7 +11,7 @@
 #include "core/json_text.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
-#include "studies/design/io/design_json.h"
+#include "design/io/design_json.h"
 
 namespace retrace::studies {
 namespace {
@@ -51,8 +51,8 @@ Json by_wavelength_json(const std::vector<SpectralRre>& points) {
 
 /// Returns the design as JSON, with the wavelengths that represent its spectrum.
 Json design_json(const RreResult& result, std::size_t d) {
-  Json json = to_json(result.designs[d]);
-  if (result.designs[d].light.spectrum()) json["spectrum"] = spectrum_json(result.light[d]);
+  Json json = design::to_json(result.designs[d]);
+  if (result.designs[d].light.spectrum()) json["spectrum"] = design::spectrum_json(result.light[d]);
   return json;
 }
 
@@ -60,8 +60,8 @@ Json derivatives_json(const std::vector<RreDerivative>& derivatives) {
   Json json = Json::object();
   for (const RreDerivative& by : derivatives) {
     Json& entry = json[std::string(parameter_name(by.parameter))];
-    if (by.left_out)
-      entry = {{"left_out", text_of(*by.left_out)}};
+    if (by.missing_reason)
+      entry = {{"left_out", text_of(*by.missing_reason)}};
     else
       entry = {{"value", by.derivative.value}, {"error", by.derivative.error}};
   }
@@ -84,7 +84,7 @@ Json point_json(const RrePoint& p) {
 }
 
 bool has_several_cones(const RreResult& result) {
-  for (const Design& design : result.designs)
+  for (const design::Design& design : result.designs)
     if (design.detector.acceptance_half_angle_deg.size() > 1) return true;
   return false;
 }
@@ -93,7 +93,7 @@ std::string line_of(const RrePoint& point, const RreDerivative& by) {
   std::string line =
       fmt::format("{:>6}  {:>13}  {:>11}  {:>14}  {:<18}  ", point.design, shortest(point.incidence_deg),
                   shortest(point.azimuth_deg), shortest(point.acceptance_half_angle_deg), parameter_name(by.parameter));
-  if (by.left_out) return line + fmt::format("not computed: {}\n", text_of(*by.left_out));
+  if (by.missing_reason) return line + fmt::format("not computed: {}\n", text_of(*by.missing_reason));
   return line + fmt::format("{:>13.6g}  {:.1e}\n", by.derivative.value, by.derivative.error);
 }
 
@@ -127,7 +127,7 @@ std::string rre_table(const RreResult& result) {
   std::string table;
   if (several_designs)
     for (std::size_t d = 0; d < result.designs.size(); ++d)
-      table += fmt::format("design {}: {}\n", d, printable(short_name(result.designs[d])));
+      table += fmt::format("design {}: {}\n", d, printable(design::short_name(result.designs[d])));
   if (several_designs) table += "design  ";
   table += "incidence_deg  azimuth_deg  ";
   if (several_cones) table += "acceptance_deg  ";
@@ -177,8 +177,8 @@ Json summary_of(const RrePoint& at, const Footprint& footprint) {
   Json summary = direction_and_cone_of(at);
   summary["entrance_area_mm2"] = footprint.entrance_area_mm2;
   summary["active_area_mm2"] = footprint.active_area_mm2;
-  summary["active_fraction"] = footprint.active_share();
-  summary["rre_shown"] = footprint.rre_shown();
+  summary["active_fraction"] = footprint.active_fraction();
+  summary["rre_shown"] = footprint.rre_contribution();
   summary["rre"] = at.rre;
   return summary;
 }
@@ -223,7 +223,7 @@ Fields fields_of(const FarFieldSpot& spot) {
 Json spot_of(const FarFieldSpot& spot) {
   Json json = Json::object();
   for (const auto& [name, value] : fields_of(spot)) json[std::string(name)] = value;
-  json["depth_min"] = spot.least_depth;
+  json["depth_min"] = spot.min_depth;
   return json;
 }
 
@@ -253,7 +253,7 @@ std::string far_field_csv(const RreResult& result) {
     const RrePoint& at = light.at;
     for (const FarFieldSpot& spot : light.far_field->spots) {
       const Fields fields = fields_of(spot);
-      csv.row(at.design, at.incidence_deg, at.azimuth_deg, at.wavelength_nm, parts_of<1>(fields), spot.least_depth);
+      csv.row(at.design, at.incidence_deg, at.azimuth_deg, at.wavelength_nm, parts_of<1>(fields), spot.min_depth);
     }
   }
   return csv.text();

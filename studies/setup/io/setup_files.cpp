@@ -45,7 +45,7 @@ Json tool_json(const FabricationResult& result, const ToolSetup& tool) {
   if (!tool.plough_rake_deg) json["nose_angle_deg"] = t.nose_angle_deg;
   if (tool.free_length_mm) json["free_length_mm"] = *tool.free_length_mm;
   json["mount_offset_mm"] = point_json(result.machine.mount.offset_mm.value);
-  json["mount_rotation_deg"] = point_json(result.machine.mount.turn_deg.value);
+  json["mount_rotation_deg"] = point_json(result.machine.mount.rotation_deg.value);
   return json;
 }
 
@@ -65,7 +65,7 @@ Json checks_json(const FabricationResult& result, const std::vector<StageCheck>&
     rows.push_back({{"stage", check.stage},
                     {"program", result.program_file(check.program)},
                     {"ends_s", check.ends_s},
-                    {"remaining_um", check.left_um}});
+                    {"remaining_um", check.remaining_um}});
     if (check.root_depth_mm > 0.0) rows.back()["root_depth_mm"] = check.root_depth_mm;
   }
   return rows;
@@ -79,8 +79,8 @@ Json stops_json(const FabricationResult& result) {
                     {"stage", result.plan.stages[stop.stage].name},
                     {"element", stop.element},
                     {"at_s", stop.at_s},
-                    {"ran_s", stop.used.seconds},
-                    {"cut_mm", stop.used.cut_mm}});
+                    {"ran_s", stop.wear.seconds},
+                    {"cut_mm", stop.wear.cut_mm}});
   return rows;
 }
 
@@ -95,9 +95,9 @@ Json sensitivities_json(const FabricationResult& result, const SetupSheet& sheet
                         {"up_arcmin", row.facets[k].up_arcmin},
                         {"along_arcmin", row.facets[k].along_arcmin},
                         {"farthest_nm", row.facets[k].farthest_nm}});
-    Json json = {{"quantity", row.quantity->key}, {"description", row.quantity->words},
+    Json json = {{"quantity", row.quantity->key}, {"description", row.quantity->description},
                  {"unit", row.quantity->unit()},  {"facets", std::move(facets)},
-                 {"chip_nm", row.chip_nm},        {"root_residual_nm", row.root_left_nm},
+                 {"chip_nm", row.chip_nm},        {"root_residual_nm", row.root_residual_nm},
                  {"root_cut_nm", row.root_cut_nm}};
     if (result.machine.tilt == Tilt::table) json["wall_nm"] = row.wall_nm;
     if (const PartLight* const change = sheet.change_of_light(*row.quantity, result.machine.tilt)) {

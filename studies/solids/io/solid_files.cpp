@@ -10,13 +10,13 @@
 #include "core/number_format.h"
 #include "core/text.h"
 #include "core/version.h"
+#include "design/io/design_json.h"
+#include "design/optical_model.h"
 #include "geometry/io/gltf_file.h"
 #include "geometry/io/obj_file.h"
 #include "geometry/io/step_file.h"
 #include "geometry/io/stl_file.h"
 #include "geometry/part/faceted_solid.h"
-#include "studies/design/io/design_json.h"
-#include "studies/design/optical_model.h"
 
 namespace retrace::studies {
 namespace {
@@ -26,7 +26,7 @@ using Json = nlohmann::ordered_json;
 /// Returns the title as one line of ASCII characters. It contains no line breaks, because they end a comment in OBJ. It
 /// contains no apostrophes, because they end a text in STEP.
 std::string title_of(const Solid& solid) {
-  std::string title = printable(short_name(solid.design), 60) + ", " + name_of(solid.what);
+  std::string title = printable(design::short_name(solid.design), 60) + ", " + name_of(solid.what);
   std::replace(title.begin(), title.end(), '\'', ' ');
   // STEP and STL support only ASCII.
   std::replace_if(
@@ -38,10 +38,10 @@ std::string title_of(const Solid& solid) {
 /// metallic.
 std::string gltf_text(const Solid& solid) {
   if (solid.what == SolidKind::mould) return geometry::gltf_text(solid.mesh, title_of(solid), std::nullopt, 0.0);
-  Design body = solid.design;
+  design::Design body = solid.design;
   body.surface = {};
   body.wet_back.reset();
-  const raytrace::Optics optics = make_light_model(body, materials::MaterialLibrary::shipped()).optics;
+  const raytrace::Optics optics = design::make_light_model(body, materials::MaterialLibrary::shipped()).optics;
   return geometry::gltf_text(solid.mesh, title_of(solid), optics.index, optics.absorption_per_mm);
 }
 
@@ -81,7 +81,7 @@ std::string solid_text(const Solid& solid, SolidFormat format) {
 }
 
 std::string solid_json(const Solid& solid, const std::string& file) {
-  Json json = {{"design", to_json(solid.design)}, {"what", name_of(solid.what)}};
+  Json json = {{"design", design::to_json(solid.design)}, {"what", name_of(solid.what)}};
   if (!file.empty()) json["file"] = file;
   if (solid.what == SolidKind::mould) json["block_mm"] = solid.block_mm;
   json.update({{"elements_full", solid.elements_full},
@@ -97,7 +97,7 @@ std::string solid_json(const Solid& solid, const std::string& file) {
 
 std::string solid_table(const Solid& solid) {
   const auto size = solid.upper_mm - solid.lower_mm;
-  std::string text = fmt::format("{} of {}\n", name_of(solid.what), printable(short_name(solid.design)));
+  std::string text = fmt::format("{} of {}\n", name_of(solid.what), printable(design::short_name(solid.design)));
   if (solid.what == SolidKind::mould) text += fmt::format("  block below the deepest point  {} mm\n", solid.block_mm);
   text += fmt::format("  elements   {} whole, {} cut\n", solid.elements_full, solid.elements_partial);
   text += fmt::format("  size       {} x {} x {} mm\n", fixed(size.x(), 4), fixed(size.y(), 4), fixed(size.z(), 4));

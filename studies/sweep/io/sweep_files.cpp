@@ -17,7 +17,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// Maximum number of rows in the table for the terminal. Files contain all rows.
-constexpr std::size_t kMostRows = 200;
+constexpr std::size_t kMaxRows = 200;
 
 Json value_json(const compute::StoredValue& value) {
   return std::visit([](const auto& v) { return Json(v); }, value);
@@ -98,7 +98,7 @@ std::string sweep_table(const SweepResult& result) {
   for (const auto* names : {&layout.inputs, &layout.outputs})
     for (const std::string& name : *names) rows.front().push_back(printable(name, 40));
   for (const compute::StoredPoint& point : result.points) {
-    if (rows.size() > kMostRows) break;
+    if (rows.size() > kMaxRows) break;
     rows.push_back(table_row(point));
   }
   std::vector<std::size_t> widths(rows.front().size(), 0);
@@ -111,8 +111,8 @@ std::string sweep_table(const SweepResult& result) {
     for (std::size_t k = 0; k < row.size(); ++k) line += fmt::format("{}{:>{}}", k == 0 ? "" : "  ", row[k], widths[k]);
     table += line + '\n';
   }
-  if (result.points.size() > kMostRows)
-    table += fmt::format("... and {} more points\n", result.points.size() - kMostRows);
+  if (result.points.size() > kMaxRows)
+    table += fmt::format("... and {} more points\n", result.points.size() - kMaxRows);
   return table;
 }
 

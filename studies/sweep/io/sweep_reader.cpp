@@ -10,9 +10,9 @@ Sweep read_sweep(Study study) {
   const schema::Document& document = *study.document;
   const auto combine = document.choice<Combine>("sweep.combine");
   const double samples = document.number_if("sweep.samples").value_or(0.0);
-  if (samples > 0.0 && study.parameters.size() > compute::UnitSamples::most_dimensions)
+  if (samples > 0.0 && study.parameters.size() > compute::UnitSamples::max_dimensions)
     document.fail("sweep.combine",
-                  fmt::format("is allowed for at most {} parameters", compute::UnitSamples::most_dimensions));
+                  fmt::format("is allowed for at most {} parameters", compute::UnitSamples::max_dimensions));
   return {std::move(study), combine, static_cast<std::uint64_t>(samples)};
 }
 

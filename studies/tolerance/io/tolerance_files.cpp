@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kPercentPerShare = 100.0;
+constexpr double kPercentPerFraction = 100.0;
 
 Json estimate_json(const compute::IntervalEstimate& estimate) {
   return {{"value", estimate.value}, {"low", estimate.low}, {"high", estimate.high}};
@@ -25,17 +25,17 @@ Json quantity_json(const Study& study, const QuantityTolerance& quantity) {
   Json json = {{"quantity", quantity.quantity}};
   if (quantity.nominal) json["nominal"] = *quantity.nominal;
   json["parts"] = quantity.parts;
-  json["without_value"] = quantity.without;
+  json["without_value"] = quantity.missing_parts;
   if (quantity.spread) {
     const compute::Spread& spread = *quantity.spread;
     json["mean"] = estimate_json(spread.mean_interval);
     json["standard_deviation"] = spread.deviation;
-    json["min"] = spread.least;
-    json["max"] = spread.most;
+    json["min"] = spread.min;
+    json["max"] = spread.max;
   }
   json["percentiles"] = Json::array();
   for (const auto& [share, value] : quantity.percentiles)
-    json["percentiles"].push_back({{"percent", kPercentPerShare * share}, {"value", value}});
+    json["percentiles"].push_back({{"percent", kPercentPerFraction * share}, {"value", value}});
   if (quantity.noise) json["noise"] = *quantity.noise;
   json["index_rows"] = quantity.rows;
   json["indices"] = Json::array();
@@ -56,8 +56,9 @@ const char* sampling_name(compute::UnitSamples::Kind kind) {
 }
 
 std::string percent_text(const compute::IntervalEstimate& share, double confidence) {
-  return fmt::format("{:.2f} % ({:g} % confidence: {:.2f} to {:.2f} %)", kPercentPerShare * share.value,
-                     kPercentPerShare * confidence, kPercentPerShare * share.low, kPercentPerShare * share.high);
+  return fmt::format("{:.2f} % ({:g} % confidence: {:.2f} to {:.2f} %)", kPercentPerFraction * share.value,
+                     kPercentPerFraction * confidence, kPercentPerFraction * share.low,
+                     kPercentPerFraction * share.high);
 }
 
 /// Returns the indices of the parameters in descending order of their total Sobol index.
@@ -74,12 +75,12 @@ std::string quantity_text(const Study& study, const QuantityTolerance& quantity)
   if (quantity.nominal) text += fmt::format("  nominal {:.6g}", *quantity.nominal);
   if (quantity.spread)
     text += fmt::format("  mean {:.6g}  standard deviation {:.3g}  range {:.6g} to {:.6g}", quantity.spread->mean,
-                        quantity.spread->deviation, quantity.spread->least, quantity.spread->most);
+                        quantity.spread->deviation, quantity.spread->min, quantity.spread->max);
   text += "\n";
   if (!quantity.percentiles.empty()) {
     text += " ";
     for (const auto& [share, value] : quantity.percentiles)
-      text += fmt::format("  {:g} %: {:.6g}", kPercentPerShare * share, value);
+      text += fmt::format("  {:g} %: {:.6g}", kPercentPerFraction * share, value);
     text += "\n";
   }
   for (const std::size_t k : by_contribution(quantity.indices)) {
@@ -107,8 +108,8 @@ std::string tolerance_json(const SweepResult& swept, const ToleranceRequest& req
   json["parts"] = result.parts;
   json["failed"] = result.failed;
   if (result.yield) json["yield"] = estimate_json(*result.yield);
-  if (request.least_yield) json["min_yield"] = *request.least_yield;
-  if (request.least_yield) json["verdict"] = result.is_enough ? "pass" : "fail";
+  if (request.min_yield) json["min_yield"] = *request.min_yield;
+  if (request.min_yield) json["verdict"] = result.is_enough ? "pass" : "fail";
   json["limits"] = Json::array();
   for (const LimitYield& limit : result.limits)
     json["limits"].push_back({{"limit", limit.text}, {"yield", estimate_json(limit.yield)}});

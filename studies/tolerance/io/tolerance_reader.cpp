@@ -21,14 +21,14 @@ void check_parameters(const Study& study) {
 void check_size(const Study& study, const ToleranceRequest& request) {
   const std::size_t parameters = study.parameters.size();
   const std::size_t dimensions = (request.indices ? 2 : 1) * parameters;
-  if (dimensions > compute::UnitSamples::most_dimensions)
+  if (dimensions > compute::UnitSamples::max_dimensions)
     study.document->fail("tolerance.indices", fmt::format("are available for at most {} parameters, got {}",
-                                                          compute::UnitSamples::most_dimensions / 2, parameters));
+                                                          compute::UnitSamples::max_dimensions / 2, parameters));
   const std::uint64_t points = 1 + request.samples * (request.indices ? parameters + 2 : 1);
-  if (points > Sweep::most_points)
+  if (points > Sweep::max_points)
     study.document->fail("tolerance.samples",
                          fmt::format("gives {} points with {} parameters, but at most {} are allowed", points,
-                                     parameters, Sweep::most_points));
+                                     parameters, Sweep::max_points));
 }
 
 }  // namespace
@@ -45,7 +45,7 @@ ToleranceRequest read_tolerance(const Study& study) {
   if (const auto least = document.number_if("tolerance.min_yield_percent")) {
     if (request.constraints.empty())
       document.fail("tolerance.min_yield_percent", "needs one or more tables [[constraint]]");
-    request.least_yield = kOfPercent * *least;
+    request.min_yield = kOfPercent * *least;
   }
   check_size(study, request);
   return request;

@@ -37,15 +37,15 @@ Json tool_json(const TurningResult& r) {
           {"clearance_at_y_mm", r.clearance.clearance_at_mm.y()},
           {"rake_deg", tool.rake_deg},
           {"skew_deg", tool.skew_deg},
-          {"skew_is_min", r.part.skew_is_least}};
+          {"skew_is_min", r.part.skew_is_min}};
 }
 
 /// Adds the results of the checks to a document: the contact between tool and surface along the blocks of the program,
 /// and the machined surface if it was computed.
 void add_judged(const turning::TurnedPart& part, const turning::TurningCheck& check, Json& json) {
   json["form_tolerance_nm"] = part.form_tolerance_nm;
-  json["block_low_nm"] = check.touch.low_nm;
-  json["block_high_nm"] = check.touch.high_nm;
+  json["block_low_nm"] = check.contact.low_nm;
+  json["block_high_nm"] = check.contact.high_nm;
   json["step_um_max"] = 1e3 * check.coverage.step_mm_max;
   json["blocks_per_s_max"] = check.motion.blocks_per_s;
   if (!check.envelope) return;
@@ -54,7 +54,7 @@ void add_judged(const turning::TurnedPart& part, const turning::TurningCheck& ch
   json["form_error_nm"] = i.form_error_nm;
   json["interference_nm"] = i.interference_nm;
   json["scallop_nm"] = i.scallop_nm;
-  json["scallop_nm_max"] = i.scallop_most_nm;
+  json["scallop_nm_max"] = i.scallop_nm_max;
   json["scallop_ratio_low"] = i.scallop_ratio_low;
   json["scallop_ratio_high"] = i.scallop_ratio_high;
   json["rms_nm"] = i.rms_nm;
@@ -116,8 +116,8 @@ std::string turning_json(const TurningResult& r) {
 }
 
 std::string turning_path_csv(const TurningResult& r) {
-  constexpr std::size_t kMostRows = 50000;
-  const std::size_t stride = r.points / kMostRows + 1;
+  constexpr std::size_t kMaxRows = 50000;
+  const std::size_t stride = r.points / kMaxRows + 1;
   CsvWriter csv("time_s,x_mm,y_mm,z_mm,c_deg,servo_mm,z_speed_mm_per_s,z_acceleration_mm_per_s2,z_jerk_mm_per_s3");
   std::size_t count = 0;
   double start_s = 0.0;
@@ -210,8 +210,8 @@ std::string verification_table(const TurningVerification& run) {
   };
   row("points", std::to_string(check.points));
   row("time", fixed(check.motion.time_s, 1) + " s");
-  row("deepest block", fixed(check.touch.low_nm, 2) + " nm");
-  row("highest block", fixed(check.touch.high_nm, 2) + " nm");
+  row("deepest block", fixed(check.contact.low_nm, 2) + " nm");
+  row("highest block", fixed(check.contact.high_nm, 2) + " nm");
   row("tolerance", shortest(run.part.form_tolerance_nm) + " nm");
   row("largest distance of cuts", fixed(1e3 * check.coverage.step_mm_max, 3) + " um");
   if (check.envelope) {

@@ -86,7 +86,7 @@ std::string mill_fault(const PlanedPart& part, double slope, const std::vector<P
     double depth;
   };
   std::vector<Stroke> strokes;
-  const double least[] = {part.mill->least_x_mm, part.mill->least_y_mm, part.mill->least_z_mm};
+  const double least[] = {part.mill->min_move_x_mm, part.mill->min_move_y_mm, part.mill->min_move_z_mm};
   for (const PlainProgram& program : programs) {
     if (const std::string fault = form_fault(program); !fault.empty()) return fault;
     if (!program.stops_spindle || program.spindle_is_left_on) return "spindle";
@@ -353,11 +353,11 @@ void for_random_parts(unsigned seed, int count, const Use& use) {
     if (part.mill) {
       part.mill->grid_mm = tried % 3 == 0 ? 0.01 : 0.02;
       part.mill->frame_s = between(0.0, 1.0);
-      part.mill->most_hours = between(0.3, 8.0);
+      part.mill->max_hours = between(0.3, 8.0);
     } else {
       part.lathe->feed_mm_per_min = between(20.0, 400.0);
       part.lathe->depth_of_cut_mm = between(0.5, 5.0);
-      part.lathe->clear_mm = between(0.5, 5.0);
+      part.lathe->clearance_mm = between(0.5, 5.0);
       if (tried % 5 == 0) part.lathe->spindle_direction = SpindleDirection::counterclockwise;
     }
     try {

@@ -36,10 +36,10 @@ TEST(PlanedPart, DefaultsAreThoseOfTheMachineOfThePaper) {
   EXPECT_FALSE(part.lathe);
   EXPECT_EQ(part.lens.half_width_mm, 200.0);
   EXPECT_EQ(part.mill->grid_mm, 0.01);
-  EXPECT_EQ(part.mill->least_x_mm, 13.0);
-  EXPECT_EQ(part.mill->least_y_mm, 13.0);
-  EXPECT_EQ(part.mill->least_z_mm, 6.0);
-  EXPECT_EQ(part.mill->most_hours, 8.0);
+  EXPECT_EQ(part.mill->min_move_x_mm, 13.0);
+  EXPECT_EQ(part.mill->min_move_y_mm, 13.0);
+  EXPECT_EQ(part.mill->min_move_z_mm, 6.0);
+  EXPECT_EQ(part.mill->max_hours, 8.0);
 }
 
 const std::string kTurned = R"(schema = "retrace.planed_part/1"

@@ -11,11 +11,11 @@
 #include <sstream>
 
 #include "core/error.h"
+#include "design/io/init_templates.h"
 #include "fabrication/planing/check/check.h"
 #include "fabrication/planing/io/part_files.h"
 #include "fabrication/planing/plan/plan.h"
 #include "fabrication/post/post.h"
-#include "studies/design/io/init_templates.h"
 #include "studies/planing/io/planing_files.h"
 #include "studies/planing/planing_study.h"
 #include "tests/fabrication/planing/findings.h"
@@ -72,7 +72,7 @@ TEST(ZoneProfile, SlopesRefractLightFromTheFocusParallel) {
     EXPECT_NEAR(profile.slope_in_zone(zone, x), sine / (1.52 - cosine), 1e-12);
     EXPECT_NEAR(profile.slope_in_zone(zone, x),
                 (profile.depth_in_zone_mm(zone, x + 1e-4) - profile.depth_in_zone_mm(zone, x - 1e-4)) / 2e-4, 1e-8);
-    EXPECT_NEAR(profile.place_in_zone_mm(zone, profile.depth_mm(x)), x, 1e-9);
+    EXPECT_NEAR(profile.position_in_zone_mm(zone, profile.depth_mm(x)), x, 1e-9);
   }
 }
 
@@ -90,7 +90,7 @@ TEST(Planing, WhatStandsBetweenTwoCutsIsTheLargestOfManySamples) {
   const ZoneProfile profile(lens());
   const ZoneCutter cutter(profile, 0.01, 0.2);
   for (const std::size_t zone : {std::size_t{0}, std::size_t{3}, std::size_t{8}}) {
-    const auto cuts = cutter.one_after_another(zone);
+    const auto cuts = cutter.sequential_cuts(zone);
     for (std::size_t k = 1; k < cuts.size(); k += 7) {
       double most = 0.0;
       const double from = 0.01 * static_cast<double>(cuts[k - 1].x);
@@ -100,7 +100,7 @@ TEST(Planing, WhatStandsBetweenTwoCutsIsTheLargestOfManySamples) {
         const double left = std::max(0.0, 0.01 * static_cast<double>(cuts[k].depth) - cutter.flank_slope() * (to - x));
         most = std::max(most, profile.depth_in_zone_mm(zone, x) - left);
       }
-      EXPECT_NEAR(cutter.left_standing_mm(zone, &cuts[k - 1], cuts[k]), most, 1e-9);
+      EXPECT_NEAR(cutter.cusp_height_mm(zone, &cuts[k - 1], cuts[k]), most, 1e-9);
       EXPECT_LE(most, 0.2);
     }
   }
@@ -109,12 +109,12 @@ TEST(Planing, WhatStandsBetweenTwoCutsIsTheLargestOfManySamples) {
 TEST(Planing, OneAfterAnotherNoCutCouldBeFarther) {
   const ZoneProfile profile(lens());
   const ZoneCutter cutter(profile, 0.01, 0.2);
-  const auto cuts = cutter.one_after_another(1);
+  const auto cuts = cutter.sequential_cuts(1);
   for (std::size_t k = 1; k + 1 < cuts.size(); ++k) {
     ZoneCut farther = cuts[k];
     farther.x += 1;
     farther.depth = std::llround(profile.depth_in_zone_mm(1, 0.01 * static_cast<double>(farther.x)) / 0.01);
-    EXPECT_GT(cutter.left_standing_mm(1, &cuts[k - 1], farther), 0.2);
+    EXPECT_GT(cutter.cusp_height_mm(1, &cuts[k - 1], farther), 0.2);
   }
 }
 
@@ -125,8 +125,8 @@ TEST(Planing, ProgramsKeepTheToleranceAndTheMachine) {
     EXPECT_LT(plan.quantum_mm, tolerance_mm);
     const PlaningCheck check = check_planing(part, texts_of(plan, "rs274ngc"), NcDialect::rs274ngc);
     for (const Finding& f : check.findings) ADD_FAILURE() << f.kind << ' ' << f.line << ' ' << f.message;
-    EXPECT_LE(check.standing_mm_max, tolerance_mm);
-    EXPECT_GT(check.standing_mm_max, 0.5 * tolerance_mm);
+    EXPECT_LE(check.excess_mm_max, tolerance_mm);
+    EXPECT_GT(check.excess_mm_max, 0.5 * tolerance_mm);
     EXPECT_LE(check.gouge_mm_max, 0.005 + 1e-6);
     EXPECT_GE(check.shortest_x_mm, 13.0 - 1e-9);
     EXPECT_GE(check.shortest_y_mm, 13.0 - 1e-9);
@@ -158,19 +158,19 @@ TEST(Planing, AllDialectsSayTheSame) {
         check_planing(part, texts_of(plan, std::string(kNcDialectWords[k])), static_cast<NcDialect>(k));
     EXPECT_TRUE(check.passes()) << kNcDialectWords[k];
     EXPECT_EQ(check.frames, first.frames);
-    EXPECT_EQ(check.standing_mm_max, first.standing_mm_max);
+    EXPECT_EQ(check.excess_mm_max, first.excess_mm_max);
   }
 }
 
 TEST(Planing, ProgramsEndInTime) {
   PlanedPart part = small_part();
   const double whole_s = plan_planing(part).time_s();
-  part.mill->most_hours = 0.25 * whole_s / 3600.0;
+  part.mill->max_hours = 0.25 * whole_s / 3600.0;
   const PlaningPlan plan = plan_planing(part);
   EXPECT_GT(plan.programs.size(), 4U);
   for (const PlannedProgram& planned : plan.programs) EXPECT_LE(planned.time_s, 0.25 * whole_s + 1e-9);
   EXPECT_TRUE(check_planing(part, texts_of(plan, "fanuc"), NcDialect::fanuc).passes());
-  part.mill->most_hours = 0.001;
+  part.mill->max_hours = 0.001;
   EXPECT_THROW(plan_planing(part), InputError);
 }
 
@@ -238,10 +238,10 @@ TEST(Planing, EveryPlantedFaultIsFound) {
   missing.erase(missing.begin());
   EXPECT_TRUE(finds(check(missing), "excess"));
   PlanedPart quick = part;
-  quick.mill->most_hours = 0.01;
+  quick.mill->max_hours = 0.01;
   EXPECT_TRUE(finds(check_planing(quick, texts, NcDialect::rs274ngc), "too_long"));
   quick = part;
-  quick.mill->least_z_mm = 6.5;
+  quick.mill->min_move_z_mm = 6.5;
   EXPECT_TRUE(finds(check_planing(quick, texts, NcDialect::rs274ngc), "short_move"));
 }
 
@@ -273,7 +273,7 @@ TEST(Planing, ControlsWithoutWordsAreToldHowTheSpindleStarts) {
 }
 
 TEST(Planing, TheTemplateOfALatheIsMadeInEveryDialect) {
-  const std::string text = studies::design_template("round_zone_lens");
+  const std::string text = design::design_template("round_zone_lens");
   const PlanedPart part = parse_planed_part(text, "t.toml");
   EXPECT_EQ(part.lathe->spindle_rpm, 800);
   // Lines that show a default or an alternative must be valid without their leading "# ".
@@ -283,7 +283,7 @@ TEST(Planing, TheTemplateOfALatheIsMadeInEveryDialect) {
     all += (line.starts_with("# ") && line.find(" = ") != std::string::npos ? line.substr(2) : line) + "\n";
   const PlanedPart whole = parse_planed_part(all, "t.toml");
   EXPECT_EQ(whole.lathe->depth_of_cut_mm, part.lathe->depth_of_cut_mm);
-  EXPECT_EQ(whole.lathe->clear_mm, part.lathe->clear_mm);
+  EXPECT_EQ(whole.lathe->clearance_mm, part.lathe->clearance_mm);
   EXPECT_EQ(whole.lathe->nose_radius_mm, part.lathe->nose_radius_mm);
   const PlaningPlan plan = plan_planing(whole);
   for (std::size_t k = 0; k < std::size(kNcDialectWords); ++k)

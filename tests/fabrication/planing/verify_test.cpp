@@ -102,13 +102,13 @@ TEST(SweptNose, LeavesCuspsBetweenPlacesAndLinesAlongPieces) {
   // above the valleys.
   const double nose = 0.8;
   const double feed = 0.5;
-  const SectionLine one = left_by_nose({{-feed / 2, nose}}, nose, places(-0.4, 0.4, 80));
-  const SectionLine two = left_by_nose({{feed / 2, nose}}, nose, places(-0.4, 0.4, 80));
+  const SectionLine one = nose_envelope({{-feed / 2, nose}}, nose, places(-0.4, 0.4, 80));
+  const SectionLine two = nose_envelope({{feed / 2, nose}}, nose, places(-0.4, 0.4, 80));
   const double cusp = nose - std::sqrt(nose * nose - feed * feed / 4.0);
   EXPECT_NEAR(std::min(one[40].z_mm, two[40].z_mm), cusp, 1e-15);
   EXPECT_NEAR(one[15].z_mm, 0.0, 1e-15);
   // A nose that moves along a slope leaves a parallel line at the distance of its radius.
-  const SectionLine line = left_by_nose({{-2.0, -1.0}, {4.0, 2.0}}, nose, places(-0.5, 0.5, 10));
+  const SectionLine line = nose_envelope({{-2.0, -1.0}, {4.0, 2.0}}, nose, places(-0.5, 0.5, 10));
   for (const SectionPoint& p : line) EXPECT_NEAR(p.z_mm, 0.5 * p.x_mm - nose * std::sqrt(1.25), 1e-14);
 }
 
@@ -117,7 +117,7 @@ TEST(SweptNose, ComesAsDeepAsACornerLetsIt) {
   const double nose = 1.5;
   const SectionLine corner = {{-10.0, 0.0}, {0.0, 0.0}, {0.0, 6.0}, {10.0, 6.0}};
   const auto at = places(-10.0, 10.0, 2000);
-  const SectionLine left = left_by_nose(lowest_centres(corner, nose, at), nose, at);
+  const SectionLine left = nose_envelope(lowest_centres(corner, nose, at), nose, at);
   for (const SectionPoint& p : left) {
     if (p.x_mm < -9.0 || p.x_mm > 9.0 || std::abs(p.x_mm) < 1e-8) continue;
     const double x = p.x_mm + nose;

@@ -269,7 +269,7 @@ TEST(CubicPath, TakesFewerMovesThanStraightOnes) {
 TEST(CubicPath, MovesAreNoShorterThanTheControlCarriesOut) {
   const Planned plan = planned(Plane{.rpm = 15.0, .error_nm = 10.0}.file("blocks_per_s = 40\n"));
   for (auto point = plan.path.points.begin() + 1; point != plan.path.points.end(); ++point)
-    EXPECT_GE(point->place.seconds, 0.025 - 1e-12);
+    EXPECT_GE(point->point.seconds, 0.025 - 1e-12);
   for (const Finding& finding : findings_of(plan.part, nc_text(plan.program, "a3200"), NcDialect::a3200))
     ADD_FAILURE() << text_of(finding);
   EXPECT_THROW(planned(Plane{.rpm = 6000.0, .acceleration = 1e6, .error_nm = 0.1}.file()), InputError);

@@ -25,7 +25,7 @@ FreeformSurface wavy() {
 
 /// Compares a path with the moves that the interpreter prints: each point, and the time to reach it from the previous
 /// point.
-void expect_path(const Path& path, Words& at, const std::vector<test::CanonicalMove>& moves, std::size_t& next) {
+void expect_path(const Path& path, AxisWords& at, const std::vector<test::CanonicalMove>& moves, std::size_t& next) {
   constexpr double kPrinted = 1e-4;  // rounding of printed positions
   for (const Move& move : path.moves) {
     ASSERT_LT(next, moves.size());
@@ -49,7 +49,7 @@ void expect_read(const std::vector<Pass>& passes, const PathOptions& options) {
   EXPECT_NE(printed.find("PROGRAM_END()"), std::string::npos);
   const std::vector<test::CanonicalMove> moves = test::canonical_moves(printed);
   std::size_t next = 0;
-  Words at{};
+  AxisWords at{};
   for (const Item& item : program.items) {
     if (const auto* const path = std::get_if<Path>(&item)) {
       expect_path(*path, at, moves, next);

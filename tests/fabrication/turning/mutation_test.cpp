@@ -129,7 +129,7 @@ std::string fault_of(const TurnedPart& part, const PlainProgram& program, std::v
     if (m.is_rapid) {
       if (stops_turning()) return "C stops at once";
       const double low = m.known[2] ? std::min(m.from[2], m.at[2]) : m.at[2];
-      if ((moves_aside || m.at[2] < m.from[2]) && low < highest + 0.9 * part.path.clear_mm) return "low rapid";
+      if ((moves_aside || m.at[2] < m.from[2]) && low < highest + 0.9 * part.path.clearance_mm) return "low rapid";
       continue;
     }
     if (!is_known) return "cuts before its place is known";
@@ -270,7 +270,7 @@ TEST(TurningCheck, LimitsOfTheMachineAreKeptOrFound) {
   EXPECT_TRUE(found([](TurnedPart& p) { p.machine.axes[2].high_mm = 0.5; }, "axis_limit"));
   EXPECT_TRUE(found([](TurnedPart& p) { p.machine.axes[2].speed_mm_per_s = 0.01; }, "axis_speed"));
   EXPECT_TRUE(found([](TurnedPart& p) { p.machine.axes[2].jerk_mm_per_s3 = 0.01; }, "axis_jerk"));
-  EXPECT_TRUE(found([](TurnedPart& p) { p.path.clear_mm = 1.1; }, "clearance"));
+  EXPECT_TRUE(found([](TurnedPart& p) { p.path.clearance_mm = 1.1; }, "clearance"));
   EXPECT_TRUE(found([](TurnedPart& p) { p.path.feed_mm = 0.019; }, "feed_step"));
   EXPECT_TRUE(found([](TurnedPart& p) { p.path.radius_mm = 0.09; }, "feed_step"));
   EXPECT_TRUE(found([](TurnedPart& p) { p.tool.nose_radius_mm = 0.1; }, "excess"));

@@ -83,11 +83,11 @@ TEST(TurningTool, CylinderLensNeedsTheSkewOfTheRightSign) {
 TEST(TurningTool, LeastSkewOfTheCylinderLens) {
   // The required skew follows from sin 50 (1 - sin skew) / 2 = sin 12.
   const double exact = std::asin(1.0 - 2.0 * std::sin(12.0 * kDegree) / std::sin(50.0 * kDegree)) / kDegree;
-  const auto skew = least_skew_deg(sharp_tool(12.0, 0.0), cylinder(50.0), 60.0);
+  const auto skew = min_skew_deg(sharp_tool(12.0, 0.0), cylinder(50.0), 60.0);
   ASSERT_TRUE(skew.has_value());
   EXPECT_NEAR(*skew, -exact, 0.02);
-  EXPECT_EQ(least_skew_deg(sharp_tool(25.0, 0.0), cylinder(50.0), 60.0), 0.0);
-  EXPECT_FALSE(least_skew_deg(sharp_tool(0.5, 0.0), cylinder(80.0), 60.0).has_value());
+  EXPECT_EQ(min_skew_deg(sharp_tool(25.0, 0.0), cylinder(50.0), 60.0), 0.0);
+  EXPECT_FALSE(min_skew_deg(sharp_tool(0.5, 0.0), cylinder(80.0), 60.0).has_value());
 }
 
 TEST(TurningTool, WindowIsTheRadialSlope) {

@@ -1,4 +1,4 @@
-#include "fabrication/turning/plan/touch_map.h"
+#include "fabrication/turning/plan/single_contact_map.h"
 
 #include <gtest/gtest.h>
 
@@ -173,7 +173,7 @@ PathOptions spiral() {
 double largest_difference(const FreeformSurface& surface, const TurningTool& tool, const PathOptions& o, int& once,
                           int& searched) {
   const NoseCompensation slow(surface, tool);
-  const TouchMap map(surface, tool, o.radius_mm);
+  const SingleContactMap map(surface, tool, o.radius_mm);
   double most = 0.0;
   double angle = 0.0;
   const std::vector<Pass> passes = make_path(surface, tool, o, kHere);
@@ -183,12 +183,12 @@ double largest_difference(const FreeformSurface& surface, const TurningTool& too
     const Vec2 cut(-std::sin(c), -std::cos(c));
     const Vec2 tip = p.x_mm * across - p.y_mm * cut;
     most = std::max(most, std::abs(p.z_mm - slow.height_mm(tip.x(), tip.y(), across, cut, angle)));
-    ++(map.touches_once(tip.x(), tip.y()) ? once : searched);
+    ++(map.has_single_contact(tip.x(), tip.y()) ? once : searched);
   }
   return most;
 }
 
-TEST(TouchMap, QuickPathsAreThoseOfTheSearch) {
+TEST(SingleContactMap, QuickPathsAreThoseOfTheSearch) {
   for (const Kind& kind : kKinds)
     for (const double skew : {0.0, 20.0}) {
       SCOPED_TRACE(&kind - kKinds);
@@ -202,7 +202,7 @@ TEST(TouchMap, QuickPathsAreThoseOfTheSearch) {
     }
 }
 
-TEST(TouchMap, SearchesRoundWhatIsHollowerThanTheNose) {
+TEST(SingleContactMap, SearchesRoundWhatIsHollowerThanTheNose) {
   // One of four lenslets has a blend that is too concave for the nose.
   std::vector<Lenslet> lenslets;
   for (const double x : {-0.25, 0.25})
@@ -215,23 +215,23 @@ TEST(TouchMap, SearchesRoundWhatIsHollowerThanTheNose) {
   EXPECT_LT(largest_difference(surface, tool, spiral(), once, searched), 1e-12);
   EXPECT_GT(once, 8000);
   EXPECT_GT(searched, 500);
-  const TouchMap map(surface, tool, 0.6);
-  EXPECT_FALSE(map.touches_once(-0.25, -0.25));
-  EXPECT_FALSE(map.touches_once(-0.25 - 0.14 - 0.02, -0.25)) << "the edge reaches into it";
-  EXPECT_TRUE(map.touches_once(0.25, 0.25));
-  EXPECT_FALSE(map.touches_once(5.0, 0.0)) << "outside of what was looked at";
+  const SingleContactMap map(surface, tool, 0.6);
+  EXPECT_FALSE(map.has_single_contact(-0.25, -0.25));
+  EXPECT_FALSE(map.has_single_contact(-0.25 - 0.14 - 0.02, -0.25)) << "the edge reaches into it";
+  EXPECT_TRUE(map.has_single_contact(0.25, 0.25));
+  EXPECT_FALSE(map.has_single_contact(5.0, 0.0)) << "outside of what was looked at";
 }
 
-TEST(TouchMap, KnowsNothingBeyondABoundaryAndOfToolsWithRake) {
+TEST(SingleContactMap, KnowsNothingBeyondABoundaryAndOfToolsWithRake) {
   const FreeformSurface surface(sphere(-0.1), Extrapolation{circle_boundary({0.1, 0.0}, 0.4), 2}, {}, kHere);
-  const TouchMap map(surface, nose(0.02), 0.6);
-  EXPECT_TRUE(map.touches_once(0.1, 0.3));
-  EXPECT_FALSE(map.touches_once(0.1, 0.39)) << "the edge reaches beyond";
-  EXPECT_FALSE(map.touches_once(-0.4, 0.0));
+  const SingleContactMap map(surface, nose(0.02), 0.6);
+  EXPECT_TRUE(map.has_single_contact(0.1, 0.3));
+  EXPECT_FALSE(map.has_single_contact(0.1, 0.39)) << "the edge reaches beyond";
+  EXPECT_FALSE(map.has_single_contact(-0.4, 0.0));
   TurningTool leaning = nose(0.02);
   leaning.rake_deg = -5.0;
-  EXPECT_FALSE(TouchMap(surface, leaning, 0.6).touches_once(0.1, 0.0));
-  EXPECT_FALSE(TouchMap().touches_once(0.0, 0.0));
+  EXPECT_FALSE(SingleContactMap(surface, leaning, 0.6).has_single_contact(0.1, 0.0));
+  EXPECT_FALSE(SingleContactMap().has_single_contact(0.0, 0.0));
 }
 
 }  // namespace

@@ -43,9 +43,9 @@ FarField field_of(const Polygon& polygon, double wavelength_nm, const Vec3& dire
   beam.direction = direction;
   beam.stokes.i = 1.0;
   beam.transmission = 1.0;
-  beam.left_mm = polygon;
-  beam.entered_mm = polygon;
-  beam.trail.first = CellPlace{};
+  beam.exit_polygon_mm = polygon;
+  beam.entry_polygon_mm = polygon;
+  beam.trail.first = CellInstance{};
   collector.add(beam);
   return collector.finish();
 }
@@ -229,8 +229,8 @@ TEST(Diffraction, WeakBeamsAreDiffractedIfTheyAreFew) {
     beam.direction = directions[k];
     beam.stokes.i = k == 0 ? 1.0 : kWeak;
     beam.transmission = beam.stokes.i;
-    beam.left_mm = beam.entered_mm = regular(64, 0.2);
-    beam.trail.first = CellPlace{static_cast<std::uint32_t>(k)};
+    beam.exit_polygon_mm = beam.entry_polygon_mm = regular(64, 0.2);
+    beam.trail.first = CellInstance{static_cast<std::uint32_t>(k)};
     collector.add(beam);
   }
   const FarField field = collector.finish();
@@ -284,7 +284,7 @@ TEST(Diffraction, SixSectorsOfACubeCornerAgreeWithAPixelModel) {
     FarFieldCollector collector(part, {}, policy);
     BeamPolicy beams;
     beams.truncated_goal = 1e-6;
-    beams.by_cell = true;
+    beams.separate_cells = true;
     BeamTracer(part).trace(optics, {}, {0.5}, beams, nullptr, [&](const ReturnedBeam& b) { collector.add(b); });
     const FarField field = collector.finish();
     ASSERT_EQ(field.groups().size(), 1U);
@@ -326,11 +326,11 @@ TEST(FarField, IsNotSummedOnceItIsCancelled) {
   EXPECT_TRUE(field_of(regular(6, 0.5), 550.0, Vec3::UnitZ(), policy).groups().empty());
 }
 
-// At most FarFieldPolicy::most_polygons polygons are diffracted. The power of all other polygons is reported.
+// At most FarFieldPolicy::max_polygons polygons are diffracted. The power of all other polygons is reported.
 TEST(FarField, TellsWhatTheBudgetOfPolygonsLeavesUndiffracted) {
   FarFieldPolicy policy;
   EXPECT_EQ(field_of(regular(6, 0.5), 550.0, Vec3::UnitZ(), policy).beyond_budget_power(), 0.0);
-  policy.most_polygons = 0;
+  policy.max_polygons = 0;
   const FarField field = field_of(regular(6, 0.5), 550.0, Vec3::UnitZ(), policy);
   EXPECT_TRUE(field.groups().empty());
   EXPECT_NEAR(field.beyond_budget_power(), 1.0, 1e-12);

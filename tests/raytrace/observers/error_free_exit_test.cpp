@@ -32,7 +32,7 @@ FarField field_of(const PartSpec& spec, const Optics& optics, const Illumination
   FarFieldCollector collector(part, light, policy);
   BeamPolicy beams;
   beams.cutoff = 1e-6;
-  beams.by_cell = true;
+  beams.separate_cells = true;
   BeamTracer(part).trace(optics, light, {0.5}, beams, nullptr, [&](const ReturnedBeam& b) { collector.add(b); });
   return collector.finish();
 }

@@ -41,7 +41,7 @@ FarField field_of(const PartSpec& spec, Optics optics, const FacetForm& form, co
   FarFieldCollector collector(part, light, policy);
   BeamPolicy beams;
   beams.cutoff = 1e-6;
-  beams.by_cell = true;
+  beams.separate_cells = true;
   BeamTracer(part).trace(optics, light, {0.5}, beams, nullptr, [&](const ReturnedBeam& b) { collector.add(b); });
   return collector.finish();
 }
@@ -199,7 +199,7 @@ TEST(FormedAperture, WideCellsSendRaysWhereMonteCarloDoes) {
 
 TEST(FormedAperture, FormsThatBendTooMuchAreRefused) {
   FarFieldPolicy policy;
-  policy.most_polygons = 50;
+  policy.max_polygons = 50;
   const PartSpec spec = single(HexagonalCube{0.5}, 0.3);
   EXPECT_NO_THROW(field_of(spec, ideal(), paraboloid(1e-6, 0.2), {}, policy));
   EXPECT_THROW(field_of(spec, ideal(), paraboloid(3e-3, 0.2), {}, policy), BudgetError);

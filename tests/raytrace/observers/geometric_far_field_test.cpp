@@ -32,7 +32,7 @@ Traced trace(const Part& part, const Optics& optics, const Illumination& light, 
   FarFieldCollector collector(part, light, policy);
   BeamPolicy beams;
   beams.truncated_goal = truncated;
-  beams.by_cell = true;
+  beams.separate_cells = true;
   Traced traced;
   traced.result = BeamTracer(part).trace(optics, light, {0.5}, beams, nullptr,
                                          [&](const ReturnedBeam& beam) { collector.add(beam); });
@@ -106,14 +106,14 @@ TEST(DirectionGrid, SolidAnglesAddUp) {
   double sum = 0.0;
   for (std::size_t bin = 0; bin < polar.size(); ++bin) {
     sum += polar.solid_angle_sr(bin);
-    EXPECT_EQ(polar.bin_of(polar.middle_rad(bin)), bin);
+    EXPECT_EQ(polar.bin_of(polar.centre_rad(bin)), bin);
   }
   EXPECT_NEAR(sum, 2.0 * pi * (1.0 - std::cos(0.7)), 1e-12);
   const DirectionGrid square(DirectionGrid::Layout::square, 0.02, 9, 11);
   sum = 0.0;
   for (std::size_t bin = 0; bin < square.size(); ++bin) {
     sum += square.solid_angle_sr(bin);
-    EXPECT_EQ(square.bin_of(square.middle_rad(bin)), bin);
+    EXPECT_EQ(square.bin_of(square.centre_rad(bin)), bin);
   }
   EXPECT_NEAR(sum, 0.04 * 0.04, 1e-3 * 0.04 * 0.04);
   EXPECT_FALSE(square.bin_of({0.021, 0.0}));

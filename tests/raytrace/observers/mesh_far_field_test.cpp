@@ -18,7 +18,7 @@ FarField far_field_of(const Part& part, const Optics& optics, const Illumination
   FarFieldCollector collector(part, light, FarFieldPolicy{});
   BeamPolicy policy;
   policy.cutoff = 1e-5;
-  policy.by_cell = true;
+  policy.separate_cells = true;
   BeamTracer(part).trace(optics, light, {0.5}, policy, nullptr, [&](const ReturnedBeam& beam) { collector.add(beam); });
   return collector.finish();
 }

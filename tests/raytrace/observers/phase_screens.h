@@ -49,7 +49,7 @@ inline FarField engine_field(const Part& part, const Optics& optics, const Illum
   FarFieldCollector collector(part, light, policy);
   BeamPolicy beams;
   beams.truncated_goal = 1e-6;
-  beams.by_cell = true;
+  beams.separate_cells = true;
   beams.keeps_phases = !optics.is_smooth();
   BeamTracer(part).trace(optics, light, {0.5}, beams, nullptr, [&](const ReturnedBeam& b) { collector.add(b); });
   return collector.finish();

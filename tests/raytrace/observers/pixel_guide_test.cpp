@@ -15,7 +15,7 @@ namespace retrace::testing::pixel_guide_test {
 namespace {
 
 using geometry::Vec2;
-using raytrace::PixelGuide, raytrace::PixelPlace;
+using raytrace::PixelGuide, raytrace::PixelProjection;
 
 const Vec2 kPeriod(2.0, 3.0);
 constexpr std::uint32_t kPasses = 4000;
@@ -46,11 +46,11 @@ PixelGuide guide_of(const Seen& seen) {
     const auto tile = static_cast<std::uint32_t>(k % 2);
     samples.push_back(guide.sample(at, tile, tile == 0 ? static_cast<float>(seen(at) - 1.0) : 0.0F));
   }
-  guide.learn({samples});
+  guide.train({samples});
   return guide;
 }
 
-Vec2 place_of(const PixelPlace& pixel, const Vec2& within) {
+Vec2 place_of(const PixelProjection& pixel, const Vec2& within) {
   return pixel.corner_mm + within.x() * pixel.along_row_mm + within.y() * pixel.along_column_mm;
 }
 
@@ -72,7 +72,7 @@ Mean mean_over_passes(const PassOf& pass_of) {
   return result;
 }
 
-Mean guided(const PixelGuide& guide, const PixelPlace& pixel, const Seen& seen) {
+Mean guided(const PixelGuide& guide, const PixelProjection& pixel, const Seen& seen) {
   return mean_over_passes([&](std::uint32_t pass) {
     const auto words = philox({7, 1}, pass, 0);
     double sum = 0.0;
@@ -82,19 +82,19 @@ Mean guided(const PixelGuide& guide, const PixelPlace& pixel, const Seen& seen) 
   });
 }
 
-Mean even(const PixelPlace& pixel, const Seen& seen) {
+Mean even(const PixelProjection& pixel, const Seen& seen) {
   return mean_over_passes([&](std::uint32_t pass) {
     double sum = 0.0;
-    for (std::uint32_t k = 0; k < PixelGuide::kPoints; ++k) {
+    for (std::uint32_t k = 0; k < PixelGuide::kPointsPerPixel; ++k) {
       const auto words = philox({7, 2}, pass, k);
-      sum += seen(place_of(pixel, {unit_interval(words[0]), unit_interval(words[1])})) / PixelGuide::kPoints;
+      sum += seen(place_of(pixel, {unit_interval(words[0]), unit_interval(words[1])})) / PixelGuide::kPointsPerPixel;
     }
     return sum;
   });
 }
 
 /// Returns pixels of both tiles: small, large, rotated and mirrored ones, and pixels that cover several periods.
-std::vector<PixelPlace> pixels() {
+std::vector<PixelProjection> pixels() {
   return {{{0.2, 0.1}, {0.5, 0.0}, {0.0, -0.5}, 0},  {{-7.3, 4.4}, {0.3, 0.2}, {0.2, -0.3}, 0},
           {{1.7, -9.0}, {-0.6, 0.1}, {0.1, 0.6}, 0}, {{12.0, 30.0}, {5.3, 0.0}, {0.0, -7.1}, 0},
           {{0.2, 0.1}, {0.5, 0.0}, {0.0, -0.5}, 1},  {{-40.0, 0.0}, {0.05, 0.01}, {0.0, -0.05}, 1}};
@@ -104,7 +104,7 @@ TEST(PixelGuide, LeavesMeansAsTheyAre) {
   const PixelGuide guide = guide_of(strip(0.505, 100.0));
   const Seen ones = [](const Vec2&) { return 1.0; };
   const Seen waves = [](const Vec2& at) { return 2.0 + std::sin(9.0 * at.x()) * std::cos(4.0 * at.y()); };
-  for (const PixelPlace& pixel : pixels())
+  for (const PixelProjection& pixel : pixels())
     for (const Seen& seen : {ones, waves, strip(0.505, 100.0), strip(0.3, 5.0)}) {
       const Mean by_map = guided(guide, pixel, seen);
       // The expected mean is computed independently on a fine grid over the pixel.
@@ -121,25 +121,25 @@ TEST(PixelGuide, LeavesMeansAsTheyAre) {
 TEST(PixelGuide, MeetsWhatIsRare) {
   const Seen seen = strip(0.505, 100.0);
   const PixelGuide guide = guide_of(seen);
-  const PixelPlace pixel{{0.2, 0.1}, {0.5, 0.0}, {0.0, -0.5}, 0};
-  ASSERT_TRUE(guide.serves(pixel));
+  const PixelProjection pixel{{0.2, 0.1}, {0.5, 0.0}, {0.0, -0.5}, 0};
+  ASSERT_TRUE(guide.reduces_noise(pixel));
   const Mean by_map = guided(guide, pixel, seen);
   EXPECT_LT(5.0 * by_map.variance, even(pixel, seen).variance);
 }
 
 TEST(PixelGuide, ServesOnlyWhereItsMapIsUneven) {
   const PixelGuide guide = guide_of(strip(0.505, 100.0));
-  EXPECT_TRUE(guide.serves({{4.2, 0.1}, {0.5, 0.0}, {0.0, -0.5}, 0}));
+  EXPECT_TRUE(guide.reduces_noise({{4.2, 0.1}, {0.5, 0.0}, {0.0, -0.5}, 0}));
   // The guide serves neither a pixel next to the strip nor a pixel of the tile with uniform luminance.
-  EXPECT_FALSE(guide.serves({{0.8, 0.1}, {0.5, 0.0}, {0.0, -0.5}, 0}));
-  EXPECT_FALSE(guide.serves({{0.2, 0.1}, {0.5, 0.0}, {0.0, -0.5}, 1}));
+  EXPECT_FALSE(guide.reduces_noise({{0.8, 0.1}, {0.5, 0.0}, {0.0, -0.5}, 0}));
+  EXPECT_FALSE(guide.reduces_noise({{0.2, 0.1}, {0.5, 0.0}, {0.0, -0.5}, 1}));
 }
 
 /// Learning from the paths that the guide itself has selected reduces the variance further.
 TEST(PixelGuide, LearnsFromItsOwnPoints) {
   const Seen seen = strip(0.505, 100.0);
   PixelGuide guide = guide_of(seen);
-  const PixelPlace pixel{{0.2, 0.1}, {0.5, 0.0}, {0.0, -0.5}, 0};
+  const PixelProjection pixel{{0.2, 0.1}, {0.5, 0.0}, {0.0, -0.5}, 0};
   const double before = guided(guide, pixel, seen).variance;
   PixelGuide::Samples samples;
   for (std::uint32_t pass = 0; pass < 20'000; ++pass) {
@@ -150,7 +150,7 @@ TEST(PixelGuide, LearnsFromItsOwnPoints) {
       samples.push_back(guide.sample(at, 0, static_cast<float>(seen(at) - 1.0)));
     }
   }
-  guide.learn({samples});
+  guide.train({samples});
   EXPECT_LT(guided(guide, pixel, seen).variance, before);
 }
 

@@ -6,11 +6,11 @@
 #include <numbers>
 #include <set>
 
+#include "design/design_part.h"
+#include "design/io/design_reader.h"
 #include "geometry/elements/facet_planes.h"
 #include "report/drawing/design_sheets.h"
 #include "report/drawing/svg_sheet.h"
-#include "studies/design/design_part.h"
-#include "studies/design/io/design_reader.h"
 #include "tests/report/drawing/svg_reader.h"
 
 namespace retrace::testing::design_drawing_test {
@@ -59,14 +59,14 @@ std::vector<std::string> all_designs() {
 }
 
 struct Drawn {
-  Design design;
+  design::Design design;
   Part part;
   DesignDrawing drawing;
 };
 
 Drawn drawn(const std::string& text) {
-  Drawn d{parse_design(text, "d.toml"), {}, {}};
-  d.part = part_of(d.design);
+  Drawn d{design::parse_design(text, "d.toml"), {}, {}};
+  d.part = design::part_of(d.design);
   d.drawing = draw_design(d.design, d.part);
   return d;
 }
@@ -207,12 +207,12 @@ TEST(DesignDrawing, SectionsHaveTheirAreas) {
 
 TEST(DesignDrawing, MasksAreShown) {
   // The table of planes acts as a mask here: elements that are not in the table are flat.
-  Design design = parse_design(prisms("x_length_mm = 2\ny_length_mm = 1\n"), "d.toml");
+  design::Design design = design::parse_design(prisms("x_length_mm = 2\ny_length_mm = 1\n"), "d.toml");
   ElementPlanes element;
   element.centre_mm = {1.25, 0.75};
   element.planes = {HeightPlane{-0.25, {-1.0, 0.0}}, HeightPlane{-0.25, {1.0, 0.0}}};
   const FacetPlanes planes({element}, 0.5);
-  std::get<ElementArray>(design.shape).facet_planes = FacetPlanesFile{};
+  std::get<design::ElementArray>(design.shape).facet_planes = design::FacetPlanesFile{};
   const Part part = build_part(design.part(), planes);
   const DesignDrawing drawing = draw_design(design, part);
   std::size_t facets = 0;
@@ -324,7 +324,7 @@ TEST(DesignSheets, AreLegible) {
 TEST(DesignSheets, LargeArraysAreDrawnWithoutTheirElements) {
   const Drawn d = drawn(prisms("x_length_mm = 60\ny_length_mm = 90\n"));
   ASSERT_EQ(d.drawing.plan.size(), 2U);
-  EXPECT_TRUE(d.drawing.plan[0].faces_are_left_out);
+  EXPECT_TRUE(d.drawing.plan[0].omits_faces);
   EXPECT_FALSE(d.drawing.plan[1].view.faces.empty());
   EXPECT_LT(report::plan_svg(d.drawing).size(), 30'000U);
 }

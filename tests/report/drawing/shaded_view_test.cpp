@@ -9,8 +9,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "design/io/design_reader.h"
 #include "report/drawing/design_picture.h"
-#include "studies/design/io/design_reader.h"
 #include "tests/support/designs.h"
 
 namespace retrace::testing::shaded_view_test {
@@ -123,7 +123,7 @@ struct PngSource {
 };
 
 TEST(DesignPicture, IsAPicture) {
-  const studies::Design design = studies::parse_design(
+  const design::Design design = design::parse_design(
       "[element]\nkind = \"rtp\"\nbase_mm = 0.5\nwidth_mm = 0.5\n[array]\nextent = \"infinite\"\n[body]\n"
       "thickness_mm = 2\n",
       "d.toml");

@@ -8,7 +8,7 @@
 namespace retrace::test::explore_command_test {
 namespace {
 
-constexpr std::size_t kMostBytes = 3'000'000;
+constexpr std::size_t kMaxBytes = 3'000'000;
 
 /// Returns the initial state of a page as JSON.
 Json start_of(const std::string& html) {
@@ -19,7 +19,7 @@ Json start_of(const std::string& html) {
 
 void expect_to_stand_alone(const std::string& html) {
   EXPECT_TRUE(html.starts_with("<!DOCTYPE html>"));
-  EXPECT_LT(html.size(), kMostBytes);
+  EXPECT_LT(html.size(), kMaxBytes);
   EXPECT_NE(html.find("default-src 'none'"), std::string::npos) << "it may ask the network for nothing";
   for (const char* const loads : {"src=\"", "href=\"http", "@import", "url(http"})
     EXPECT_EQ(html.find(loads), std::string::npos) << loads;
@@ -88,7 +88,7 @@ TEST(Explore, IsASectionOfReports) {
       0);
   ASSERT_EQ(retrace(folder, {"report", "results"}).code, 0);
   const std::string html = folder.read("results/report.html");
-  EXPECT_LT(html.size(), kMostBytes);
+  EXPECT_LT(html.size(), kMaxBytes);
   EXPECT_NE(html.find("<div id=\"live\"></div>"), std::string::npos);
   const Json start = start_of(html);
   EXPECT_TRUE(start["embedded"]);

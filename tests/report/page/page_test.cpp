@@ -304,8 +304,8 @@ TEST(StudyPage, LongResultsAreCutAndSaySo) {
   const Page page = study_page(
       {"x", {document("sweep", {{"parameters", {"a"}}, {"quantities", {"rre"}}, {"points", points}})}, {}}, "");
   const PageTable& table = page.sections[1].tables[0];
-  EXPECT_EQ(table.rows.size() + table.left_out, 5000U);
-  EXPECT_GT(table.left_out, 0U);
+  EXPECT_EQ(table.rows.size() + table.omitted_rows, 5000U);
+  EXPECT_GT(table.omitted_rows, 0U);
   EXPECT_EQ(page.sections[1].charts[0].series[0].x.size(), 5000U);
 }
 

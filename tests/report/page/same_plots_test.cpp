@@ -4,9 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "design/io/design_reader.h"
 #include "report/page/sections.h"
 #include "report/results/result_plots.h"
-#include "studies/design/io/design_reader.h"
 #include "studies/forces/forces_study.h"
 #include "studies/forces/io/forces_files.h"
 #include "studies/roughness/io/roughness_files.h"
@@ -39,8 +39,8 @@ void expect_same(const LinePlot& on_page, const LinePlot& drawn) {
   }
 }
 
-studies::Design prism(const std::string& title) {
-  return studies::parse_design(
+design::Design prism(const std::string& title) {
+  return design::parse_design(
       "title = \"" + title +
           "\"\n[element]\nkind = \"rtp\"\nbase_mm = 1\nwidth_mm = 1\n[array]\narrangement = \"single\"\n[body]\n"
           "thickness_mm = 1\n",

@@ -335,7 +335,7 @@ TEST(Material, EveryFormatKeepsThePower) {
   const RadianceFile bsdf(folder.read("m.xml"));
   EXPECT_NEAR(bsdf.reflected(to_source), rre, 0.01 * rre);
   // The light returns to the source and to no other direction.
-  const double projected_sr = kPi * bsdf.least_leaf() * bsdf.least_leaf();
+  const double projected_sr = kPi * bsdf.min_leaf() * bsdf.min_leaf();
   double about = 0.0;
   for (int j = -4; j <= 4; ++j)
     for (int i = -4; i <= 4; ++i) {

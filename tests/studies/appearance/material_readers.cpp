@@ -73,7 +73,7 @@ RadianceFile::RadianceFile(const std::string& xml) {
     for (const Node& branch : node.branches) most = std::max(most, depth(branch));
     return most + 1;
   };
-  least_leaf_ = std::ldexp(1.0, -depth(root_));
+  min_leaf_ = std::ldexp(1.0, -depth(root_));
 }
 
 /// Parses a node, which is either `{value}`, or `{` followed by 16 branches and `}`.

@@ -21,7 +21,7 @@ class RadianceFile {
  public:
   explicit RadianceFile(const std::string& xml);
   /// Side of the smallest leaf of the tree, as a fraction of the side of the unit square.
-  double least_leaf() const { return least_leaf_; }
+  double min_leaf() const { return min_leaf_; }
   /// Returns the BRDF for light from the direction `in` that is reflected into the direction `out`.
   double brdf(const Triple& in, const Triple& out) const;
   /// Returns the fraction of light from the direction `in` that is reflected into all directions. It is the sum of the
@@ -37,7 +37,7 @@ class RadianceFile {
   double sum_below(const Node& node, std::array<double, 2> light, double size) const;
 
   Node root_;
-  double least_leaf_ = 1.0;
+  double min_leaf_ = 1.0;
 };
 
 /// Evaluates the function of an exported GLSL shader, a sum of lobes, from the constants in its text.

@@ -19,12 +19,12 @@
 #include "core/atomic_file.h"
 #include "core/number_format.h"
 #include "core/text.h"
+#include "design/io/design_reader.h"
 #include "fabrication/job/io/job_files.h"
 #include "fabrication/machine/io/machine_files.h"
 #include "studies/calibration/correction.h"
 #include "studies/calibration/io/calibration_files.h"
 #include "studies/calibration/test_cuts.h"
-#include "studies/design/io/design_reader.h"
 #include "studies/fabrication/job_maker.h"
 #include "tests/support/seen_parts.h"
 
@@ -131,7 +131,7 @@ Vec3 normal_vector(std::normal_distribution<double>& normal, std::mt19937& bits)
 }
 
 /// Simulates the measurements of the test cuts and fills their table with the values.
-void measure(Example& example, const Design& design, std::mt19937& bits) {
+void measure(Example& example, const design::Design& design, std::mt19937& bits) {
   std::normal_distribution<double> normal;
   TestCuts cuts = plan_test_cuts(design, request());
   const Machine real = with_errors(cuts.parts.plans.front().machine, hidden());
@@ -156,7 +156,7 @@ void measure(Example& example, const Design& design, std::mt19937& bits) {
   std::getline(rows, row);
   example.measurements += row + "\n";
   for (Measurement& m : cuts.parts.measurements) {
-    const bool is_end = m.what == FacetQuantity::end;
+    const bool is_end = m.what == FacetQuantity::cut_end;
     const double truth =
         is_end ? parts[m.part].predicted(m, real, {})
                : measured_of(surfaces[m.part].grooves()[m.at.element],
@@ -170,7 +170,7 @@ void measure(Example& example, const Design& design, std::mt19937& bits) {
 }
 
 /// Simulates a height map of the part that the programs for the calibrated machine cut later.
-void look(Example& example, const Design& design, std::mt19937& bits) {
+void look(Example& example, const design::Design& design, std::mt19937& bits) {
   FabricationResult plan = test::planned(job_text(make_job(design, request()).job));
   plan.machine = example.calibrated.machine;
   plan.plan = make_plan(plan.job, plan.machine);
@@ -204,7 +204,7 @@ const Example& example() {
   static const Example made = [] {
     Example example;
     std::mt19937 bits(31);
-    const Design design = read_design(kFolder + "part.toml");
+    const design::Design design = design::read_design(kFolder + "part.toml");
     measure(example, design, bits);
     look(example, design, bits);
     return example;
@@ -242,7 +242,7 @@ TEST(CalibrationExample, FilesAreWhatIsMade) {
 /// the 95 % intervals of each quantity that contain the true error, over 100 machines.
 TEST(CalibrationExample, TestCutsFindWhatIsHidden) {
   constexpr std::uint32_t kMachines = 100;
-  const TestCuts cuts = plan_test_cuts(read_design(kFolder + "part.toml"), request());
+  const TestCuts cuts = plan_test_cuts(design::read_design(kFolder + "part.toml"), request());
   std::vector<CutPart> parts;
   for (const FabricationResult& plan : cuts.parts.plans) parts.emplace_back(plan, std::vector<std::size_t>());
   std::map<std::string_view, std::size_t> within;
@@ -253,7 +253,7 @@ TEST(CalibrationExample, TestCutsFindWhatIsHidden) {
     const Machine real = with_errors(cuts.parts.plans.front().machine, errors);
     std::vector<PartPose> poses(parts.size());
     for (PartPose& pose : poses) {
-      pose.turn_arcsec = 50.0 * normal_vector(normal, bits);
+      pose.rotation_arcsec = 50.0 * normal_vector(normal, bits);
       pose.shift_um = {10.0 * normal(bits), 10.0 * normal(bits), 0.0};
     }
     MeasuredParts measured = cuts.parts;
@@ -262,7 +262,7 @@ TEST(CalibrationExample, TestCutsFindWhatIsHidden) {
     const Calibration found = calibrate(std::move(measured));
     for (std::size_t k = 0; k < errors.size(); ++k) {
       const CalibratedQuantity& q = found.quantities[k];
-      if (q.is_told) within[q.quantity->key] += std::abs(q.value - errors[k]) < 1.96 * q.uncertainty ? 1U : 0U;
+      if (q.is_observable) within[q.quantity->key] += std::abs(q.value - errors[k]) < 1.96 * q.uncertainty ? 1U : 0U;
     }
   }
   EXPECT_EQ(within.size(), 9U);
@@ -277,7 +277,7 @@ TEST(CalibrationExample, WhatIsHiddenIsFound) {
     std::size_t told = 0;
     for (std::size_t k = 0; k < errors.size(); ++k) {
       const CalibratedQuantity& q = found.quantities[k];
-      if (!q.is_told) continue;
+      if (!q.is_observable) continue;
       ++told;
       EXPECT_NEAR(q.value, errors[k], 2.6 * q.uncertainty) << q.quantity->key;
     }
@@ -292,7 +292,7 @@ TEST(CalibrationExample, WhatIsHiddenIsFound) {
   EXPECT_GE(expect_found(made.corrected.calibration, rest), 2U);
   ASSERT_EQ(made.corrected.marks.size(), 1U);
   EXPECT_TRUE(made.corrected.marks.front().is_of_edge);
-  EXPECT_NEAR(made.corrected.marks.front().place_um, kChipUm, 10.0);
+  EXPECT_NEAR(made.corrected.marks.front().position_um, kChipUm, 10.0);
 }
 
 }  // namespace

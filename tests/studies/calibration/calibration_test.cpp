@@ -71,13 +71,13 @@ MeasuredParts measured_on(const Machine& real, std::mt19937& bits) {
     parts.jobs.push_back(fmt::format("{}.toml", k));
     parts.plans.push_back(plan);
     const Verification v = verify_programs(plan.job, real, cuts.programs[k], {}, {});
-    const std::vector<Groove> grooves = designed_grooves(plan.job);
+    const std::vector<Cavity> grooves = designed_cavities(plan.job);
     const geometry::Vec3 turn = 50.0 / kArcsecPerRad * geometry::Vec3(normal(bits), normal(bits), normal(bits));
     const RigidMotion pose{rotation_about(turn.normalized(), Angle::from_rad(turn.norm())),
                            {1e-2 * normal(bits), 1e-2 * normal(bits), 0.0}};
     for (std::size_t element = 0; element < grooves.size(); ++element)
       for (std::size_t facet = 0; facet < 2; ++facet)
-        for (const FacetQuantity what : {FacetQuantity::distance, FacetQuantity::up, FacetQuantity::along}) {
+        for (const FacetQuantity what : {FacetQuantity::distance, FacetQuantity::tilt_up, FacetQuantity::tilt_along}) {
           Measurement m{k, {element, facet}, what, 0.0, uncertainty_of(what), {}, 0.0, 0};
           m.value = measured_of(grooves[element], v.elements[element].figures.facets[facet], facet, what, pose) +
                     m.uncertainty * normal(bits);
@@ -91,7 +91,7 @@ MeasuredParts measured_on(const Machine& real, std::mt19937& bits) {
 std::vector<std::string> told(const Calibration& found) {
   std::vector<std::string> keys;
   for (const CalibratedQuantity& q : found.quantities)
-    if (q.is_told) keys.emplace_back(q.quantity->key);
+    if (q.is_observable) keys.emplace_back(q.quantity->key);
   return keys;
 }
 
@@ -117,7 +117,7 @@ TEST(Calibration, IntervalsHoldWhatIsHidden) {
     const Calibration found = calibrate(measured_on(with_errors(test_cuts().plans.front().machine, hidden), bits));
     with_outliers += found.outliers.empty() ? 0 : 1;
     for (std::size_t k = 0; k < hidden.size(); ++k) {
-      if (!found.quantities[k].is_told) continue;
+      if (!found.quantities[k].is_observable) continue;
       ++all;
       if (std::abs(found.quantities[k].value - hidden[k]) < 1.96 * found.quantities[k].uncertainty) ++within;
     }
@@ -132,7 +132,7 @@ TEST(Calibration, IntervalsHoldWhatIsHidden) {
 /// subtracted.
 double largest_tilt_arcsec(const FabricationResult& plan, const Machine& real) {
   const Verification v = verify_programs(plan.job, real, programs_of(plan), {}, {});
-  const std::vector<Groove> grooves = designed_grooves(plan.job);
+  const std::vector<Cavity> grooves = designed_cavities(plan.job);
   std::vector<double> tilts;
   std::vector<geometry::Vec3> of_turn;
   for (std::size_t element = 0; element < grooves.size(); ++element)
@@ -204,14 +204,14 @@ TEST(Calibration, RefusesAWrongSignOfAllThatWasMeasuredOfAFacet) {
     MeasuredParts parts = measured_on(real, bits);
     ASSERT_EQ(refusal_of(parts), "accepted");
     const auto is_of_turned = [](const Measurement& m) {
-      return m.part == 1 && m.what == FacetQuantity::along && (m.at.element == 1 || m.at.element == 2);
+      return m.part == 1 && m.what == FacetQuantity::tilt_along && (m.at.element == 1 || m.at.element == 2);
     };
     for (Measurement& m : parts.measurements)
       if (is_of_turned(m)) m.value = -m.value;
     EXPECT_TRUE(refusal_of(parts).ends_with(": value")) << seed;
     // If only one of two rows is wrong, it is an outlier, and the table is accepted.
     for (Measurement& m : parts.measurements)
-      if (is_of_turned(m) && m.at != FacetPlace{1, 0}) m.value = -m.value;
+      if (is_of_turned(m) && m.at != FacetId{1, 0}) m.value = -m.value;
     EXPECT_EQ(refusal_of(parts), "accepted") << seed;
   }
 }
@@ -223,13 +223,13 @@ TEST(Calibration, TiltsAlongTheRootArePositiveWhereTheWordsSay) {
   const CutPart part(plan, {});
   for (std::size_t element = 0; element < 4; ++element)
     for (const std::size_t facet : {0U, 1U}) {
-      const Measurement along{0, {element, facet}, FacetQuantity::along, 0.0, 1.0, {}, 0.0, 0};
+      const Measurement along{0, {element, facet}, FacetQuantity::tilt_along, 0.0, 1.0, {}, 0.0, 0};
       const std::string words = part.positive_sense(along);
       ASSERT_TRUE(words == "rises towards +X" || words == "rises towards +Y") << words;
       EXPECT_EQ(words == "rises towards +Y", plan.plan.elements[element].rotated);
       PartPose pose;
       // By the right-hand rule, a rotation about -Y raises the +X side, and a rotation about X raises the +Y side.
-      pose.turn_arcsec = words.ends_with("X") ? geometry::Vec3(0, -10, 0) : geometry::Vec3(10, 0, 0);
+      pose.rotation_arcsec = words.ends_with("X") ? geometry::Vec3(0, -10, 0) : geometry::Vec3(10, 0, 0);
       EXPECT_NEAR(part.predicted(along, plan.machine, pose), 10.0 / std::numbers::sqrt2, 1e-3);
     }
 }
@@ -250,7 +250,7 @@ TEST(Calibration, WhereCutsEndIsWhatTheVerifierFinds) {
       cut_nm = std::max(cut_nm, -facet.deepest.nm);
     }
     for (const std::size_t facet : {0U, 1U}) {
-      const double end_nm = part.predicted({0, {0, facet}, FacetQuantity::end, 0.0, 1.0, {}, 0.0, 0}, real, {});
+      const double end_nm = part.predicted({0, {0, facet}, FacetQuantity::cut_end, 0.0, 1.0, {}, 0.0, 0}, real, {});
       EXPECT_NEAR(std::abs(end_nm), amount > 0.0 ? left_nm : cut_nm, 0.03 * std::abs(end_nm));
       EXPECT_EQ(end_nm > 0.0, amount > 0.0);
     }
@@ -267,14 +267,14 @@ TEST(Calibration, AnglesAndDepthsFollowFromFacets) {
     const auto measured = [&](std::size_t facet, FacetQuantity what) {
       return part.predicted({0, {element, facet}, what, 0.0, 1.0, {}, 0.0, 0}, real, {});
     };
-    const Measurement angle{0, {element, 0}, FacetQuantity::angle, 0.0, 1.0, FacetPlace{element, 1}, 0.0, 0};
-    EXPECT_NEAR(part.predicted(angle, real, {}), -measured(0, FacetQuantity::up) - measured(1, FacetQuantity::up),
-                0.02);
+    const Measurement angle{0, {element, 0}, FacetQuantity::angle, 0.0, 1.0, FacetId{element, 1}, 0.0, 0};
+    EXPECT_NEAR(part.predicted(angle, real, {}),
+                -measured(0, FacetQuantity::tilt_up) - measured(1, FacetQuantity::tilt_up), 0.02);
     // Distances are measured at the center of a facet, which is half the length of the facet above the root. To get the
     // distances at the root, the effect of the tilts is subtracted.
     const double half_nm = 0.5e6 * std::sqrt(0.125) / kArcsecPerRad;
     const double sum = measured(0, FacetQuantity::distance) + measured(1, FacetQuantity::distance) -
-                       half_nm * (measured(0, FacetQuantity::up) + measured(1, FacetQuantity::up));
+                       half_nm * (measured(0, FacetQuantity::tilt_up) + measured(1, FacetQuantity::tilt_up));
     EXPECT_NEAR(measured(0, FacetQuantity::depth), -sum / std::sqrt(2.0), 2.0) << "but for terms of the second order";
   }
 }

@@ -61,7 +61,7 @@ TEST(Correction, IntervalsHoldWhatIsHidden) {
     std::vector<std::string_view> told;
     for (std::size_t k = 0; k < machine.hidden.size(); ++k) {
       const CalibratedQuantity& q = machine.found.calibration.quantities[k];
-      if (!q.is_told) continue;
+      if (!q.is_observable) continue;
       told.push_back(q.quantity->key);
       within[q.quantity->key] += std::abs(q.value - machine.hidden[k]) < 1.96 * q.uncertainty ? 1U : 0U;
     }
@@ -83,9 +83,9 @@ TEST(Correction, TheSecondPartIsAsPromised) {
     second.machine = machine.found.calibration.machine;
     second.plan = make_plan(second.job, second.machine);
     const CutSurface cut(machine.real, second);
-    const FacetOutlook before = machine.first.off();
-    const FacetOutlook now = cut.off();
-    const FacetOutlook& promised = machine.found.after;
+    const DeviationPrediction before = machine.first.off();
+    const DeviationPrediction now = cut.off();
+    const DeviationPrediction& promised = machine.found.after;
     EXPECT_LT(now.distance_nm, std::max(kLeft * before.distance_nm, promised.distance_nm)) << seed;
     EXPECT_LT(now.tilt_arcsec, std::max(kLeft * before.tilt_arcsec, promised.tilt_arcsec)) << seed;
     EXPECT_LT(cut.apex_error_arcsec(), std::max(kLeft * machine.first.apex_error_arcsec(), 2.0 * promised.tilt_arcsec))

@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "fabrication/chisel/check/groove.h"
+#include "fabrication/chisel/check/cavity.h"
 #include "studies/calibration/correction.h"
 #include "tests/support/prism_jobs.h"
 #include "tests/support/seen_parts.h"
@@ -41,7 +41,7 @@ struct HiddenMachine {
     std::pair<int, int> counts;
     for (std::size_t k = 0; k < errors.size(); ++k) {
       const CalibratedQuantity& q = found.calibration.quantities[k];
-      if (!q.is_told) continue;
+      if (!q.is_observable) continue;
       counts.first += std::abs(q.value - errors[k]) < 1.96 * q.uncertainty ? 1 : 0;
       ++counts.second;
     }
@@ -118,11 +118,11 @@ TEST(FacetMarks, ChipsOfTheEdgeAreFound) {
     const FacetMark& mark = found.marks.front();
     EXPECT_TRUE(mark.is_along_cut) << seed;
     EXPECT_TRUE(mark.is_of_edge) << seed;
-    EXPECT_NEAR(mark.place_um, place_um, 10.0) << seed;
+    EXPECT_NEAR(mark.position_um, place_um, 10.0) << seed;
     EXPECT_NEAR(mark.height_nm, depth_nm, 0.25 * depth_nm) << seed;
     // If the part is displaced, the map may not contain the ends of some facets.
-    EXPECT_EQ(mark.facets.size(), mark.shown) << seed;
-    EXPECT_GE(mark.shown, 6U) << seed;
+    EXPECT_EQ(mark.facets.size(), mark.facets_covering) << seed;
+    EXPECT_GE(mark.facets_covering, 6U) << seed;
     EXPECT_TRUE(found.waves.empty()) << seed;
     const auto [in, of] = machine.held(found);
     held += in;
@@ -135,7 +135,7 @@ TEST(FacetMarks, ChipsOfTheEdgeAreFound) {
 TEST(FacetMarks, AScratchOfOneFacetIsNotTheEdges) {
   std::mt19937 bits(3);
   const HiddenMachine machine(bits);
-  const auto groove = std::get<PrismGroove>(designed_grooves(four_prisms().job).front());
+  const auto groove = std::get<PrismGroove>(designed_cavities(four_prisms().job).front());
   class Scratched {
    public:
     Scratched(const CutSurface& cut, const PrismGroove& groove) : cut_(cut), groove_(groove) {}
@@ -157,9 +157,9 @@ TEST(FacetMarks, AScratchOfOneFacetIsNotTheEdges) {
   EXPECT_FALSE(found.marks.front().is_of_edge);
   EXPECT_LT(found.marks.front().height_nm, 0.0);
   ASSERT_EQ(found.marks.front().facets.size(), 1U);
-  EXPECT_EQ(found.marks.front().facets.front(), (FacetPlace{0, 0}));
-  EXPECT_NEAR(std::abs(found.marks.front().place_um), 100.0, 10.0);
-  EXPECT_EQ(found.marks.front().shown, 8U);
+  EXPECT_EQ(found.marks.front().facets.front(), (FacetId{0, 0}));
+  EXPECT_NEAR(std::abs(found.marks.front().position_um), 100.0, 10.0);
+  EXPECT_EQ(found.marks.front().facets_covering, 8U);
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ double clock_s(double distance, double speed, double acceleration, double ramp_s
 double clock_s(const Program& program, const Hidden& hidden) {
   const Machine file = nominal();
   constexpr double kAlmostNoRampS = 1e-9;
-  Words before = {std::nullopt, std::nullopt, std::nullopt, 0, 0};
+  AxisWords before = {std::nullopt, std::nullopt, std::nullopt, 0, 0};
   double sum_s = 0.0;
   for_each_move(program, [&](const PlannedMove& planned) {
     double move_s = 0.0;
@@ -125,7 +125,7 @@ TEST(TimeCalibration, IntervalsHoldTheMachine) {
     const Hidden hidden = drawn(seed);
     const TimeCalibration found = timed().calibrate(timed().table(hidden, 0.5, seed + 1000));
     for (std::size_t k = 0; k < kTimeQuantities; ++k) {
-      EXPECT_TRUE(found.quantities[k].is_told) << kTimeQuantityWords[k].key << " of machine " << seed;
+      EXPECT_TRUE(found.quantities[k].is_observable) << kTimeQuantityWords[k].key << " of machine " << seed;
       if (std::abs(found.quantities[k].value - truth_of(hidden)[k]) < 1.96 * found.quantities[k].uncertainty) ++held[k];
     }
   }
@@ -143,7 +143,7 @@ TEST(TimeCalibration, FindsTheMachineExactlyWithoutNoise) {
   EXPECT_NEAR(found.machine.y.acceleration_mm_per_s2.value, 350.0, 0.1);
   EXPECT_NEAR(found.machine.z.jerk_mm_per_s3.value, 14000.0, 20.0);
   EXPECT_NEAR(found.machine.a.acceleration_deg_per_s2.value, 30.0, 0.01);
-  EXPECT_EQ(found.freedom, 0U);
+  EXPECT_EQ(found.degrees_of_freedom, 0U);
   EXPECT_TRUE(found.warnings.empty());
 }
 
@@ -158,14 +158,14 @@ TEST(TimeCalibration, SaysWhatProgramsDoNotTell) {
   // The first table lacks the program that rotates axes. The second table contains only the program of short steps,
   // whose time depends on the sum of settling and ramps.
   const TimeCalibration without_turns = timed().calibrate(timed().table(drawn(3), 0.5, 3, 3));
-  ASSERT_EQ(without_turns.untold.size(), 1U);
-  EXPECT_EQ(without_turns.untold[0], "rotary_acceleration_factor");
-  EXPECT_FALSE(without_turns.quantities[3].is_told);
+  ASSERT_EQ(without_turns.unobservable.size(), 1U);
+  EXPECT_EQ(without_turns.unobservable[0], "rotary_acceleration_factor");
+  EXPECT_FALSE(without_turns.quantities[3].is_observable);
   EXPECT_EQ(without_turns.quantities[3].value, 1.0);
   EXPECT_EQ(without_turns.machine.a.acceleration_deg_per_s2.basis, Basis::assumed);
   const TimeCalibration steps_alone = timed().calibrate(timed().table(drawn(3), 0.5, 3, 1));
-  EXPECT_EQ(steps_alone.untold.size(), 3U);
-  EXPECT_FALSE(steps_alone.quantities[0].is_told);
+  EXPECT_EQ(steps_alone.unobservable.size(), 3U);
+  EXPECT_FALSE(steps_alone.quantities[0].is_observable);
 }
 
 TEST(TimeCalibration, JerkAloneIsToldWhereAccelerationIsNeverReached) {
@@ -173,11 +173,11 @@ TEST(TimeCalibration, JerkAloneIsToldWhereAccelerationIsNeverReached) {
   // acceleration limit is therefore never reached, and only the jerk has an effect.
   const Hidden hidden{0.02, 1000.0, 0.06, 30.0};
   const TimeCalibration found = timed().calibrate(timed().table(hidden, 0.5, 3));
-  EXPECT_TRUE(found.quantities[0].is_told);
-  EXPECT_FALSE(found.quantities[1].is_told);
-  EXPECT_FALSE(found.quantities[2].is_told);
-  ASSERT_EQ(found.untold.size(), 1U);
-  EXPECT_EQ(found.untold[0], "linear_acceleration_factor, linear_ramp_s");
+  EXPECT_TRUE(found.quantities[0].is_observable);
+  EXPECT_FALSE(found.quantities[1].is_observable);
+  EXPECT_FALSE(found.quantities[2].is_observable);
+  ASSERT_EQ(found.unobservable.size(), 1U);
+  EXPECT_EQ(found.unobservable[0], "linear_acceleration_factor, linear_ramp_s");
   EXPECT_NEAR(found.machine.x.jerk_mm_per_s3.value, 1000.0 / 0.06, 300.0);
 }
 
@@ -203,10 +203,10 @@ TEST(TimeCalibration, BlockTimesOfALogTellAsMuch) {
   }
   const TimeCalibration found = timed().calibrate(text);
   for (std::size_t k = 0; k < kTimeQuantities; ++k) {
-    EXPECT_TRUE(found.quantities[k].is_told);
+    EXPECT_TRUE(found.quantities[k].is_observable);
     EXPECT_NEAR(found.quantities[k].value, truth_of(hidden)[k], 1e-3 * truth_of(hidden)[k]);
   }
-  EXPECT_EQ(found.freedom, 4U * 37U - 4U);
+  EXPECT_EQ(found.degrees_of_freedom, 4U * 37U - 4U);
 }
 
 TEST(TimeCalibration, NamesTheRowThatContradictsTheOthers) {
@@ -269,8 +269,8 @@ TEST(TimeTables, MovesThatSayTheirTimeTakeIt) {
   const FileTexts texts = {{"p.ngc", "%\nG21 G90 G94\nG0 Z50\nG0 X0 Y0\nG93\nG1 X1 F30\nG1 X1.5 F120\nM2\n%\n"}};
   const TimedPrograms read = parse_times(
       "program,from_line,to_line,seconds,uncertainty\np.ngc,6,7,1,1\np.ngc,6,6,1,1\n", "t.csv", nominal(), texts);
-  EXPECT_DOUBLE_EQ(read.rows[0].on_s(nominal()), 2.5);
-  EXPECT_DOUBLE_EQ(read.rows[1].on_s(nominal()), 2.0);
+  EXPECT_DOUBLE_EQ(read.rows[0].predicted_s(nominal()), 2.5);
+  EXPECT_DOUBLE_EQ(read.rows[1].predicted_s(nominal()), 2.0);
 }
 
 TEST(TimeTables, RefuseWhatIsWrongWithItsPlace) {

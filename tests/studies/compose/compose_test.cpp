@@ -63,7 +63,7 @@ TEST(Compose, OfTwoLobesHasTheSharesAndPricesOfTheClosedForm) {
   const double price = (g2 - f2) / (f0 - g0 + g2 - f2);
   ASSERT_EQ(composition.best->zones.size(), 2U);
   for (const Zone& zone : composition.best->zones)
-    EXPECT_NEAR(zone.share, number(zone.cell.values[0]) == 1.1 ? share : 1.0 - share, 1e-9);
+    EXPECT_NEAR(zone.area_fraction, number(zone.cell.values[0]) == 1.1 ? share : 1.0 - share, 1e-9);
   EXPECT_NEAR(composition.best->mixture.prices.goals[0], price, 1e-9);
   EXPECT_NEAR(composition.best->mixture.prices.goals[1], 0.0, 1e-9);
   EXPECT_NEAR(composition.best->mixture.prices.goals[2], 1.0 - price, 1e-9);
@@ -90,7 +90,7 @@ TEST(Compose, IsNeverWorseThanThreeZonesOnAGrid) {
               least = std::min(least, (i * cells[a][goal] + j * cells[b][goal] + (20 - i - j) * cells[c][goal]) / 20.0);
             best = std::max(best, least);
           }
-  EXPECT_GE(composition.best->mixture.least, best);
+  EXPECT_GE(composition.best->mixture.min_goal, best);
 }
 
 TEST(Compose, FindsTheBestOfAContinuousFamily) {
@@ -101,7 +101,7 @@ TEST(Compose, FindsTheBestOfAContinuousFamily) {
   const Composition composition = composed(analytic_study(kMaximize, far)).composition;
   ASSERT_TRUE(composition.best.has_value());
   const auto top = [&](double between) { return std::exp(-std::pow(3.0 * between, 2.0)); };
-  EXPECT_NEAR(composition.best->mixture.least, 1.0 + top(1.25), 1e-3);
+  EXPECT_NEAR(composition.best->mixture.min_goal, 1.0 + top(1.25), 1e-3);
   EXPECT_TRUE(composition.has_converged);
   EXPECT_EQ(composition.proof, Proof::catalogue);
 }
@@ -118,11 +118,11 @@ TEST(Compose, WithOneZoneFindsWhatOptimiseFinds) {
   const Composition composition = composed(study).composition;
   ASSERT_TRUE(composition.best && optimum.best);
   ASSERT_EQ(composition.best->zones.size(), 1U);
-  EXPECT_EQ(composition.best->zones[0].share, 1.0);
-  EXPECT_GE(composition.best->mixture.least, *optimum.best->objective);
+  EXPECT_EQ(composition.best->zones[0].area_fraction, 1.0);
+  EXPECT_GE(composition.best->mixture.min_goal, *optimum.best->objective);
   // The minimum of two functions has a kink at its maximum. An optimizer without derivatives only approximates this
   // maximum.
-  EXPECT_NEAR(composition.best->mixture.least, *optimum.best->objective, 2e-3);
+  EXPECT_NEAR(composition.best->mixture.min_goal, *optimum.best->objective, 2e-3);
   ASSERT_TRUE(composition.single.has_value());
   EXPECT_EQ(std::min(composition.single->mixed.goals[0], composition.single->mixed.goals[1]), *optimum.best->objective);
 }
@@ -141,9 +141,9 @@ TEST(Compose, HoldsConstraintsOverCellsAndThePart) {
   double thickness = 0.0;
   for (const Zone& zone : composition.best->zones) {
     EXPECT_LE(number(zone.cell.values[1]), 2.0);
-    EXPECT_GE(zone.share, 0.1 - 1e-9);
-    EXPECT_LE(zone.share, 0.5 + 1e-9);
-    thickness += zone.share * number(zone.cell.values[0]);
+    EXPECT_GE(zone.area_fraction, 0.1 - 1e-9);
+    EXPECT_LE(zone.area_fraction, 0.5 + 1e-9);
+    thickness += zone.area_fraction * number(zone.cell.values[0]);
   }
   EXPECT_LE(thickness, 1.5 + 1e-9);
   EXPECT_GT(composition.best->mixture.prices.means[0], 0.0);
@@ -162,14 +162,14 @@ TEST(Compose, PaysWhatIsAskedAndDrawsTheFront) {
   const Composition dear = with_price("0.2");
   ASSERT_TRUE(free.best && dear.best);
   EXPECT_LT(dear.best->mixture.means.back(), free.best->mixture.means.back());
-  EXPECT_LT(dear.best->mixture.least, free.best->mixture.least);
-  EXPECT_NEAR(dear.best->mixture.merit, dear.best->mixture.least - 0.2 * dear.best->mixture.means.back(), 1e-12);
+  EXPECT_LT(dear.best->mixture.min_goal, free.best->mixture.min_goal);
+  EXPECT_NEAR(dear.best->mixture.merit, dear.best->mixture.min_goal - 0.2 * dear.best->mixture.means.back(), 1e-12);
   ASSERT_EQ(free.front.size(), 9U);
   for (std::size_t k = 1; k < free.front.size(); ++k) {
     EXPECT_GE(free.front[k].mean, free.front[k - 1].mean - 1e-9);
-    EXPECT_GE(free.front[k].least, free.front[k - 1].least - 1e-9);
+    EXPECT_GE(free.front[k].min_goal, free.front[k - 1].min_goal - 1e-9);
   }
-  EXPECT_NEAR(free.front.back().least, free.best->mixture.least, 1e-9);
+  EXPECT_NEAR(free.front.back().min_goal, free.best->mixture.min_goal, 1e-9);
 }
 
 TEST(Compose, SaysWhatOneZoneMoreIsWorth) {
@@ -178,9 +178,9 @@ TEST(Compose, SaysWhatOneZoneMoreIsWorth) {
   ASSERT_TRUE(composition.best.has_value());
   ASSERT_EQ(composition.by_zones.size(), 3U);
   for (std::size_t k = 1; k < 3; ++k)
-    EXPECT_GE(composition.by_zones[k].mixture.least, composition.by_zones[k - 1].mixture.least);
-  EXPECT_NEAR(composition.by_zones[1].mixture.least, composition.best->mixture.least, 1e-12);
-  EXPECT_GE(composition.unlimited, composition.by_zones[2].mixture.least - 1e-12);
+    EXPECT_GE(composition.by_zones[k].mixture.min_goal, composition.by_zones[k - 1].mixture.min_goal);
+  EXPECT_NEAR(composition.by_zones[1].mixture.min_goal, composition.best->mixture.min_goal, 1e-12);
+  EXPECT_GE(composition.unlimited_merit, composition.by_zones[2].mixture.min_goal - 1e-12);
 }
 
 TEST(Compose, GoesOnWithWhatTheStoreHas) {
@@ -222,7 +222,8 @@ TEST(Compose, IsTheSameWhateverAKilledRunLeft) {
 TEST(Compose, IsTheSameWhateverOtherRunsLeft) {
   const auto zones_of = [](const Composition& composition) {
     std::vector<std::pair<double, double>> zones;
-    for (const Zone& zone : composition.best->zones) zones.emplace_back(number(zone.cell.values[0]), zone.share);
+    for (const Zone& zone : composition.best->zones)
+      zones.emplace_back(number(zone.cell.values[0]), zone.area_fraction);
     return zones;
   };
   const Study other = analytic_study(std::string(kMaximize) + "max_zones = 3\nscan = 33\n", kThreePoints);
@@ -239,16 +240,16 @@ TEST(Compose, ReportsTheBoundsThatExcludeAllMixtures) {
   const Composed low = composed(analytic_study(std::string(kMaximize) + "min_goal = 5\n", kThreePoints));
   ASSERT_TRUE(low.composition.best);
   const Mixture& mixture = low.composition.best->mixture;
-  EXPECT_LT(mixture.least, *low.request.least_goal);
+  EXPECT_LT(mixture.min_goal, *low.request.min_goal);
   EXPECT_GT(mixture.prices.goals[0], 0.0);
-  EXPECT_TRUE(low.composition.excluding.empty());
+  EXPECT_TRUE(low.composition.infeasible_bounds.empty());
   record_message(why_not_reached(low.study, low.request, low.composition));
   Functions functions = kThreePoints;
   functions.emplace_back("thickness", [](double x, double) { return x; });
   const Composed none = composed(analytic_study(
       std::string(kMaximize) + "[[constraint]]\nquantity = \"thickness\"\nmax = 0.1\nover = \"part\"\n", functions));
   EXPECT_FALSE(none.composition.best.has_value());
-  EXPECT_EQ(none.composition.excluding, (std::vector<std::size_t>{0}));
+  EXPECT_EQ(none.composition.infeasible_bounds, (std::vector<std::size_t>{0}));
   record_message(why_not_reached(none.study, none.request, none.composition));
 }
 
@@ -291,13 +292,13 @@ TEST(Compose, ReadsFormerNamesOfItsKeys) {
       "[compose]\nmaximize = \"g\"\nleast = 0.3\nmost_zones = 3\nleast_share = 0.1\nmost_share = 0.6\nlooks = 7\n"
       "front = {\"g.1\" = \"least\"}\n",
       kThreePoints));
-  EXPECT_EQ(request.least_goal, 0.3);
-  EXPECT_EQ(request.most_zones, 3U);
-  EXPECT_EQ(request.least_share, 0.1);
-  EXPECT_EQ(request.most_share, 0.6);
-  EXPECT_EQ(request.looks, 7);
+  EXPECT_EQ(request.min_goal, 0.3);
+  EXPECT_EQ(request.max_zones, 3U);
+  EXPECT_EQ(request.min_area_fraction, 0.1);
+  EXPECT_EQ(request.max_area_fraction, 0.6);
+  EXPECT_EQ(request.evaluations_per_start, 7);
   ASSERT_TRUE(request.front.has_value());
-  EXPECT_FALSE(request.front->largest);
+  EXPECT_FALSE(request.front->is_maximized);
 }
 
 TEST(Compose, RefusesWhatMeansNothing) {

@@ -63,8 +63,8 @@ ErrorResponse linear(const Numbers& at_none, const Numbers& slopes) {
 }
 
 TEST(PartYield, OfLinearGoalsIsThatOfTheNormalDistribution) {
-  const DrawnParts parts = drawn_parts({linear({1.0}, {1.0}), linear({1.0}, {-2.0})}, 0.5, 4096, 1);
-  const Numbers leasts = leasts_of(parts, {0.6, 0.4});
+  const RandomParts parts = random_parts({linear({1.0}, {1.0}), linear({1.0}, {-2.0})}, 0.5, 4096, 1);
+  const Numbers leasts = min_goals_of(parts, {0.6, 0.4});
   const double sigma = 0.5 * std::hypot(0.6, 0.8);
   const auto above = [&](double limit) {
     return static_cast<double>(std::ranges::count_if(leasts, [&](double l) { return l >= limit; })) / 4096.0;
@@ -90,9 +90,9 @@ TEST(PartYield, SharesForTheWorstAreNeverWorseThanAGrid) {
     for (int z = 0; z < 3; ++z)
       zones.push_back(linear({number(random), number(random), number(random)},
                              {number(random) - 0.5, number(random) - 0.5, number(random) - 0.5}));
-    const DrawnParts parts = drawn_parts(zones, 0.5, 64, 1);
-    const auto worst = [&](const Numbers& shares) { return mean_of_worst(leasts_of(parts, shares), 0.1); };
-    const auto best = best_shares(parts, 0.1, {0.05, 0.8}, nullptr);
+    const RandomParts parts = random_parts(zones, 0.5, 64, 1);
+    const auto worst = [&](const Numbers& shares) { return mean_of_worst(min_goals_of(parts, shares), 0.1); };
+    const auto best = best_fractions(parts, 0.1, {0.05, 0.8}, nullptr);
     ASSERT_TRUE(best.has_value());
     double of_grid = -1e9;
     for (int i = 2; i <= 32; ++i)
@@ -114,7 +114,7 @@ TEST(PartYield, SetsForTheWorstAreNeverWorseThanAGridOfEach) {
     std::vector<ErrorResponse> cells;
     for (int z = 0; z < 4; ++z)
       cells.push_back(linear({number(random), number(random)}, {number(random) - 0.5, number(random) - 0.5}));
-    const DrawnParts parts = drawn_parts(cells, 0.5, 64, 1);
+    const RandomParts parts = random_parts(cells, 0.5, 64, 1);
     const auto best = best_set(parts, 0.1, 2, {0.1, 1.0}, nullptr);
     ASSERT_TRUE(best.has_value());
     EXPECT_LE(best->size(), 2U);
@@ -125,7 +125,7 @@ TEST(PartYield, SetsForTheWorstAreNeverWorseThanAGridOfEach) {
       all += shares[cell] = share;
     }
     EXPECT_NEAR(all, 1.0, 1e-9);
-    const auto worst = [&](const Numbers& of) { return mean_of_worst(leasts_of(parts, of), 0.1); };
+    const auto worst = [&](const Numbers& of) { return mean_of_worst(min_goals_of(parts, of), 0.1); };
     double of_grid = -1e9;
     for (std::size_t a = 0; a < 4; ++a)
       for (std::size_t b = 0; b < 4; ++b)
@@ -179,11 +179,11 @@ TEST(ComposeErrors, AreThoseOfTheClosedForm) {
   for (const double goal : effects.goals) EXPECT_NEAR(goal, 2.0 - 0.09, 1e-9);
   const double most = -0.25 + std::sqrt(0.0625 + 0.5 - 0.09);
   EXPECT_NEAR(static_cast<double>(*effects.yield.good) / 4096.0, std::erf(most / (0.4 * std::sqrt(2.0))), 5e-3);
-  EXPECT_NEAR(effects.missed_by, 0.0, 1e-9);
+  EXPECT_NEAR(effects.approximation_error, 0.0, 1e-9);
   // The derivatives of the two goals are 0.5 and -0.5. They are weighted by the prices of the goals, which add up to 1.
   const double price = composition.best->mixture.prices.goals[0];
   EXPECT_NEAR(effects.slopes.at(0).at(0), price * 0.5 - (1.0 - price) * 0.5, 1e-9);
-  EXPECT_NEAR(effects.for_worst->zones.at(0).share, 1.0, 1e-12);
+  EXPECT_NEAR(effects.robust_part->zones.at(0).area_fraction, 1.0, 1e-12);
   const auto json = nlohmann::json::parse(composition_json(study, request, composition, 1.0)).at("errors_of_angle");
   EXPECT_EQ(json.at("yield").at("good"), *effects.yield.good);
   EXPECT_NE(composition_text(study, request, composition).find("of 4096 parts reach 1.5, 95 % of them reach"),
@@ -198,14 +198,14 @@ TEST(ComposeErrors, AreAddedToThoseOfTheDesign) {
       "[[quantity]]\nkind = \"rre\"\nincidence_deg = [0, 15]\nover_directions = \"each\"\n[compose]\nmaximize = "
       "\"rre\"\n";
   const Study study = parse_study(text, test::kStudies + "study.toml");
-  EXPECT_EQ(angles_of(study, some_values(study)), 3U);
+  EXPECT_EQ(angles_of(study, example_values(study)), 3U);
   const auto goals =
-      goals_with_errors(study, read_compose(study), {0, some_values(study), {}}, {{0, 0, 0}, {3, 0, -2}}, nullptr);
+      goals_with_errors(study, read_compose(study), {0, example_values(study), {}}, {{0, 0, 0}, {3, 0, -2}}, nullptr);
   const auto measured = [&](const std::string& values) {
     std::string with = text;
     with.replace(with.find("[5]"), 3, values);
     const Study other = parse_study(with, test::kStudies + "study.toml");
-    const Candidate candidate = make_candidate(other, some_values(other));
+    const Candidate candidate = make_candidate(other, example_values(other));
     Numbers all;
     for (const auto& quantity : other.quantities) all.push_back(*quantity->measure(candidate, nullptr)->value);
     return all;

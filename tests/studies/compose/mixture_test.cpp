@@ -35,12 +35,12 @@ TEST(Mixture, OfTwoLobesHasSharesAndPricesOfTheClosedForm) {
   const Mixture mixture = best_mixture(cells, {});
   ASSERT_EQ(mixture.kind, Mixture::Kind::optimal);
   ASSERT_EQ(mixture.zones.size(), 2U);
-  for (const ZoneShare& zone : mixture.zones) EXPECT_NEAR(zone.share, zone.cell == 0 ? x : 1.0 - x, 1e-9);
+  for (const ZoneFraction& zone : mixture.zones) EXPECT_NEAR(zone.fraction, zone.cell == 0 ? x : 1.0 - x, 1e-9);
   EXPECT_NEAR(mixture.prices.goals[0], price, 1e-9);
   EXPECT_NEAR(mixture.prices.goals[1], 0.0, 1e-9);
   EXPECT_NEAR(mixture.prices.goals[2], 1.0 - price, 1e-9);
-  EXPECT_NEAR(mixture.least, x * f0 + (1.0 - x) * g0, 1e-12);
-  EXPECT_GT(mixture.goals[1], mixture.least);
+  EXPECT_NEAR(mixture.min_goal, x * f0 + (1.0 - x) * g0, 1e-12);
+  EXPECT_GT(mixture.goals[1], mixture.min_goal);
   EXPECT_EQ(mixture.bound, mixture.merit);
 }
 
@@ -52,7 +52,7 @@ TEST(Mixture, PriceIsWhatAskingMoreCosts) {
     constexpr double kMore = 1e-4;
     std::vector<MixedCell> asked = cells;
     for (MixedCell& cell : asked) cell.goals[goal] -= kMore;
-    EXPECT_NEAR((before.least - best_mixture(asked, {}).least) / kMore, before.prices.goals[goal], 1e-9);
+    EXPECT_NEAR((before.min_goal - best_mixture(asked, {}).min_goal) / kMore, before.prices.goals[goal], 1e-9);
   }
 }
 
@@ -72,7 +72,7 @@ std::vector<MixedCell> random_cells(std::size_t count, std::size_t goals, std::u
 TEST(Mixture, HoldsDuality) {
   for (std::uint32_t seed = 1; seed <= 20; ++seed) {
     const std::vector<MixedCell> cells = random_cells(40, 12, seed);
-    const Mixture mixture = best_mixture(cells, {.means = {{.most = 0.4}}, .most_share = 0.3});
+    const Mixture mixture = best_mixture(cells, {.means = {{.upper = 0.4}}, .max_fraction = 0.3});
     ASSERT_EQ(mixture.kind, Mixture::Kind::optimal);
     EXPECT_LE(mixture.means[0], 0.4 + 1e-9);
     double prices = 0.0, shares = 0.0;
@@ -84,9 +84,9 @@ TEST(Mixture, HoldsDuality) {
     // Cells in the mixture have a gain of 0, or a positive gain if they have the maximum fraction. Cells that are not
     // in the mixture have no positive gain.
     std::vector<double> share(cells.size(), 0.0);
-    for (const ZoneShare& zone : mixture.zones) shares += share[zone.cell] = zone.share;
+    for (const ZoneFraction& zone : mixture.zones) shares += share[zone.cell] = zone.fraction;
     EXPECT_NEAR(shares, 1.0, 1e-9);
-    double dual = mixture.prices.share + 0.4 * mixture.prices.means[0];
+    double dual = mixture.prices.fraction + 0.4 * mixture.prices.means[0];
     for (std::size_t k = 0; k < cells.size(); ++k) {
       const double gained = gain(mixture.prices, cells[k]);
       if (share[k] < 0.3 - 1e-9) {
@@ -104,24 +104,24 @@ TEST(Mixture, HoldsDuality) {
 /// Returns the merit of the best mixture of a few cells. The best mixture of every set of cells is computed.
 double best_of_all_sets(const std::vector<MixedCell>& cells, const MixtureRules& rules) {
   MixtureRules of_set = rules;
-  of_set.most_zones = cells.size();
-  of_set.least_share = 0.0;
+  of_set.max_zones = cells.size();
+  of_set.min_fraction = 0.0;
   double best = -kInfinity;
   for (std::size_t set = 1; set < (std::size_t{1} << cells.size()); ++set) {
     std::vector<MixedCell> chosen;
     for (std::size_t k = 0; k < cells.size(); ++k)
       if ((set >> k) % 2 == 1) chosen.push_back(cells[k]);
-    if (chosen.size() > rules.most_zones || rules.least_share * static_cast<double>(chosen.size()) > 1.0) continue;
+    if (chosen.size() > rules.max_zones || rules.min_fraction * static_cast<double>(chosen.size()) > 1.0) continue;
     // Each cell has its minimum fraction. Only the remaining area is divided freely.
     MixedCell given = chosen.front();
     for (std::size_t k = 0; k < given.goals.size(); ++k) {
       given.goals[k] = 0.0;
-      for (const MixedCell& cell : chosen) given.goals[k] += rules.least_share * cell.goals[k];
+      for (const MixedCell& cell : chosen) given.goals[k] += rules.min_fraction * cell.goals[k];
     }
-    const double rest = 1.0 - rules.least_share * static_cast<double>(chosen.size());
+    const double rest = 1.0 - rules.min_fraction * static_cast<double>(chosen.size());
     double cost = 0.0;
     for (MixedCell& cell : chosen) {
-      cost += rules.least_share * cell.cost;
+      cost += rules.min_fraction * cell.cost;
       for (std::size_t k = 0; k < cell.goals.size(); ++k) cell.goals[k] = given.goals[k] + rest * cell.goals[k];
       cell.cost *= rest;
       cell.means.clear();
@@ -137,11 +137,11 @@ TEST(Mixture, OfFewZonesIsTheBestOfAllSets) {
     for (MixedCell& cell : cells) cell.means.clear();
     for (const std::size_t zones : {1U, 2U, 3U})
       for (const double least : {0.0, 0.2}) {
-        const MixtureRules rules{.least_share = least, .most_zones = zones};
+        const MixtureRules rules{.min_fraction = least, .max_zones = zones};
         const Mixture mixture = best_mixture(cells, rules);
         ASSERT_EQ(mixture.kind, Mixture::Kind::optimal);
         EXPECT_LE(mixture.zones.size(), zones);
-        EXPECT_GE(mixture.zones.back().share, least - 1e-9);
+        EXPECT_GE(mixture.zones.back().fraction, least - 1e-9);
         EXPECT_NEAR(mixture.merit, best_of_all_sets(cells, rules), 1e-9) << seed << " " << zones << " " << least;
         EXPECT_EQ(mixture.bound, mixture.merit);
       }
@@ -150,7 +150,7 @@ TEST(Mixture, OfFewZonesIsTheBestOfAllSets) {
 
 TEST(Mixture, IsNeverWorseThanAnyOnAGrid) {
   const std::vector<MixedCell> cells = random_cells(25, 10, 7);
-  const Mixture mixture = best_mixture(cells, {.means = {{.most = 0.5}}, .most_zones = 3});
+  const Mixture mixture = best_mixture(cells, {.means = {{.upper = 0.5}}, .max_zones = 3});
   ASSERT_EQ(mixture.kind, Mixture::Kind::optimal);
   constexpr int kParts = 10;
   double best = -kInfinity;
@@ -177,7 +177,7 @@ TEST(Mixture, IsNeverWorseThanAnyOnAGrid) {
 
 TEST(Mixture, SaysWhatItMayHaveMissedWhenItIsCutShort) {
   const std::vector<MixedCell> cells = random_cells(60, 20, 3);
-  const MixtureRules rules{.means = {{}}, .most_zones = 3};
+  const MixtureRules rules{.means = {{}}, .max_zones = 3};
   const Mixture whole = best_mixture(cells, rules);
   const Mixture cut = best_mixture(cells, rules, nullptr, 20);
   ASSERT_EQ(whole.kind, Mixture::Kind::optimal);
@@ -188,13 +188,13 @@ TEST(Mixture, SaysWhatItMayHaveMissedWhenItIsCutShort) {
 
 TEST(Mixture, OfBoundsThatNoCellHoldsIsInfeasible) {
   const std::vector<MixedCell> cells = random_cells(10, 4, 5);
-  const Mixture mixture = best_mixture(cells, {.means = {{.most = -0.1}}});
+  const Mixture mixture = best_mixture(cells, {.means = {{.upper = -0.1}}});
   EXPECT_EQ(mixture.kind, Mixture::Kind::infeasible);
   EXPECT_GT(std::abs(mixture.prices.means[0]), 0.1);
   // Ten cells with at most a twentieth of the area each cover only half of the part.
-  EXPECT_EQ(best_mixture(cells, {.means = {{}}, .most_share = 0.05}).kind, Mixture::Kind::infeasible);
-  EXPECT_EQ(best_mixture(cells, {.means = {{}}, .most_share = 0.3, .most_zones = 3}).kind, Mixture::Kind::infeasible);
-  EXPECT_EQ(best_mixture(cells, {.means = {{}}, .most_share = 0.3, .most_zones = 4}).kind, Mixture::Kind::optimal);
+  EXPECT_EQ(best_mixture(cells, {.means = {{}}, .max_fraction = 0.05}).kind, Mixture::Kind::infeasible);
+  EXPECT_EQ(best_mixture(cells, {.means = {{}}, .max_fraction = 0.3, .max_zones = 3}).kind, Mixture::Kind::infeasible);
+  EXPECT_EQ(best_mixture(cells, {.means = {{}}, .max_fraction = 0.3, .max_zones = 4}).kind, Mixture::Kind::optimal);
 }
 
 }  // namespace

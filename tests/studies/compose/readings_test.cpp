@@ -19,7 +19,7 @@ using namespace studies;
 /// Returns the values of a study's quantities at its first point.
 std::map<std::string, double> measured(const std::string& text) {
   const Study study = parse_study(text, test::kStudies + "study.toml");
-  const Candidate candidate = make_candidate(study, some_values(study));
+  const Candidate candidate = make_candidate(study, example_values(study));
   std::map<std::string, double> values;
   for (const auto& quantity : study.quantities)
     values[quantity->name()] = *quantity->measure(candidate, nullptr)->value;

@@ -7,10 +7,10 @@
 #include <array>
 #include <limits>
 
+#include "design/io/design_reader.h"
 #include "studies/compose/compose.h"
 #include "studies/compose/io/compose_reader.h"
 #include "studies/compose/io/zone_designs.h"
-#include "studies/design/io/design_reader.h"
 #include "studies/optimise/io/optimise_reader.h"
 #include "studies/quantity/io/study_reader.h"
 
@@ -92,8 +92,8 @@ TEST(RealCells, AreNeverWorseThanThreeZonesOnAGrid) {
         best = std::max(best, best_in_twentieths(cells[a], cells[b], cells[c]));
   ASSERT_TRUE(composition.best.has_value());
   EXPECT_LE(composition.best->zones.size(), 3U);
-  EXPECT_GE(composition.best->mixture.least, best);
-  EXPECT_GT(composition.best->mixture.least, composition.by_zones.front().mixture.least);
+  EXPECT_GE(composition.best->mixture.min_goal, best);
+  EXPECT_GT(composition.best->mixture.min_goal, composition.by_zones.front().mixture.min_goal);
 }
 
 TEST(RealCells, OfOneZoneAreWhatOptimiseFinds) {
@@ -109,7 +109,7 @@ TEST(RealCells, OfOneZoneAreWhatOptimiseFinds) {
   compute::ResultStore store("", optimise_layout(least), compute::IfExists::refuse);
   const Optimum optimum = optimise(least, read_optimise(least), store, nullptr, nullptr);
   ASSERT_TRUE(optimum.best.has_value());
-  EXPECT_EQ(composition.best->mixture.least, *optimum.best->objective);
+  EXPECT_EQ(composition.best->mixture.min_goal, *optimum.best->objective);
   for (std::size_t k = 0; k < 2; ++k) EXPECT_EQ(composition.single->values[k].shown, optimum.best->values[k].shown);
 }
 
@@ -123,8 +123,9 @@ TEST(RealCells, AreWrittenAsTheDesignsOfTheirZones) {
     const std::string text = zone_design_text(study, composition.best->zones, z);
     EXPECT_TRUE(text.starts_with("# Zone " + std::to_string(z + 1) + " of ")) << text;
     const Candidate in_study = make_candidate(study, zone.cell.values);
-    const Goals goals = goals_of(study, {parse_design(text, "zone.toml"), in_study.analysis(), in_study.machining()});
-    for (std::size_t k = 0; k < kGoals; ++k) part[k] += zone.share * goals[k];
+    const Goals goals =
+        goals_of(study, {design::parse_design(text, "zone.toml"), in_study.analysis(), in_study.machining()});
+    for (std::size_t k = 0; k < kGoals; ++k) part[k] += zone.area_fraction * goals[k];
   }
   for (std::size_t k = 0; k < kGoals; ++k) EXPECT_NEAR(part[k], composition.best->mixture.goals[k], 1e-9);
 }
@@ -135,7 +136,8 @@ TEST(RealCells, AreWrittenAsOnePartOfZones) {
   ASSERT_TRUE(composition.best && composition.best->zones.size() > 1);
   for (const ZoneLayout layout : {ZoneLayout::stripes, ZoneLayout::blocks, ZoneLayout::rows}) {
     const ZonedDesignRequest request{layout, geometry::Vec2(80.0, 60.0)};
-    const Design design = parse_design(zoned_design_text(study, composition.best->zones, request), "part.toml");
+    const design::Design design =
+        design::parse_design(zoned_design_text(study, composition.best->zones, request), "part.toml");
     ASSERT_NE(design.zoned(), nullptr);
     const geometry::ZonedSpec& spec = design.zoned()->spec;
     ASSERT_EQ(spec.zones.size(), composition.best->zones.size());
@@ -144,7 +146,7 @@ TEST(RealCells, AreWrittenAsOnePartOfZones) {
       const Candidate cell = make_candidate(study, zone.cell.values);
       double area_mm2 = 0.0;
       for (const geometry::Polygon& region : spec.zones[z].regions) area_mm2 += geometry::area(region);
-      EXPECT_NEAR(area_mm2 / spec.area_mm2(), zone.share, 1e-9);
+      EXPECT_NEAR(area_mm2 / spec.area_mm2(), zone.area_fraction, 1e-9);
       EXPECT_EQ(spec.zones[z].rotation_deg, cell.analysis().rotation_deg);
       EXPECT_EQ(geometry::cant_of(spec.zones[z].elements.element).deg,
                 geometry::cant_of(cell.design().part().element).deg);
@@ -158,7 +160,7 @@ TEST(RealCells, TracedAsOnePartAreTheSumOfZones) {
   const Study& study = three_zones().study;
   const Composition& composition = three_zones().composition;
   ASSERT_TRUE(composition.best && composition.best->zones.size() > 1);
-  const auto by_rays = [&](const Design& design, double rotation_deg, Engine engine) {
+  const auto by_rays = [&](const design::Design& design, double rotation_deg, raytrace::Engine engine) {
     AnalysisSettings analysis = make_candidate(study, composition.best->zones[0].cell.values).analysis();
     analysis.rotation_deg = rotation_deg;
     analysis.engine = engine;
@@ -169,12 +171,13 @@ TEST(RealCells, TracedAsOnePartAreTheSumOfZones) {
   Goals sum{};
   for (const Zone& zone : composition.best->zones) {
     const Candidate cell = make_candidate(study, zone.cell.values);
-    const Goals goals = by_rays(cell.design(), cell.analysis().rotation_deg, Engine::cell);
-    for (std::size_t k = 0; k < kGoals; ++k) sum[k] += zone.share * goals[k];
+    const Goals goals = by_rays(cell.design(), cell.analysis().rotation_deg, raytrace::Engine::cell);
+    for (std::size_t k = 0; k < kGoals; ++k) sum[k] += zone.area_fraction * goals[k];
   }
   const ZonedDesignRequest request{ZoneLayout::stripes, geometry::Vec2(240.0, 180.0)};
-  const Goals whole = by_rays(parse_design(zoned_design_text(study, composition.best->zones, request), "part.toml"),
-                              0.0, Engine::embree);
+  const Goals whole =
+      by_rays(design::parse_design(zoned_design_text(study, composition.best->zones, request), "part.toml"), 0.0,
+              raytrace::Engine::embree);
   for (std::size_t k = 0; k < kGoals; ++k) EXPECT_NEAR(whole[k], sum[k], 0.02 * sum[k]) << k;
 }
 

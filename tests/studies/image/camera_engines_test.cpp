@@ -21,7 +21,7 @@ struct Case {
   std::string name;
   Part part;
   CameraScene scene;
-  std::vector<WeighedOptics> light;
+  std::vector<WeightedOptics> light;
 };
 
 /// Returns a scene with a camera that is so near that the viewing direction differs from pixel to pixel. Light comes
@@ -43,7 +43,7 @@ CameraScene near_scene(const Part& part, double width_mm) {
 
 std::vector<Case> cases() {
   std::vector<Case> all;
-  const auto add = [&](std::string name, Part part, double width_mm, std::vector<WeighedOptics> light,
+  const auto add = [&](std::string name, Part part, double width_mm, std::vector<WeightedOptics> light,
                        std::optional<double> radius_mm = {}) {
     CameraScene scene = near_scene(part, width_mm);
     if (part.period_mm) scene.film = Film{20.0, 16.0, radius_mm};
@@ -144,7 +144,7 @@ TEST(CameraEngines, AnInterruptedPassIsBegunAgain) {
 
 TEST(CameraEngines, OfMirrorsWithLayersOnTheEntranceAgree) {
   Case c = cases()[1];
-  for (WeighedOptics& at : c.light) {
+  for (WeightedOptics& at : c.light) {
     at.optics.mirror_facets = true;
     at.optics.entrance_layers = anti_reflection();
   }

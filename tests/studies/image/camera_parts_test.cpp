@@ -16,11 +16,11 @@ namespace {
 
 using namespace geometry;
 using namespace raytrace;
+using design::Design;
+using design::SurfaceFinish;
 using std::numbers::pi;
-using studies::Design;
-using studies::FacetTexture;
 
-Design rough_cubes(const FacetTexture& texture) {
+Design rough_cubes(const design::SurfaceFinish& texture) {
   Design design;
   design.part() = infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 1.0);
   design.substance.refractive_index = kPmma;
@@ -29,7 +29,7 @@ Design rough_cubes(const FacetTexture& texture) {
 }
 
 struct RoughCase {
-  FacetTexture texture;
+  design::SurfaceFinish texture;
   double alpha_deg;
   double v_deg;
   double h_deg;
@@ -38,14 +38,14 @@ struct RoughCase {
 /// Returns R_A and its standard error, from light that is traced forwards: from the source to the disc of the receiver.
 studies::PhotometricPoint forwards(const Design& design, const RoughCase& c, double disc_arcmin) {
   studies::PhotometrySettings request;
-  request.programme.points.push_back({c.alpha_deg, c.v_deg, c.h_deg, 1.0, studies::PhotometricUnit::cd_per_lx_per_m2,
+  request.test_plan.points.push_back({c.alpha_deg, c.v_deg, c.h_deg, 1.0, studies::PhotometricUnit::cd_per_lx_per_m2,
                                       studies::LimitStatus::confirmed, 2});
   request.area_cm2 = 10.0;
   request.apertures = {Angle::from_deg(disc_arcmin / 60.0), Angle::from_deg(disc_arcmin / 60.0)};
   request.light = studies::PhotometricLight::of_design;
   request.diffraction = false;
   request.advice = false;
-  request.engine = studies::Engine::embree;
+  request.engine = raytrace::Engine::embree;
   request.rays = 1U << 17U;
   request.window_deg = 3.0;
   return studies::PhotometryStudy(design, request).run().points.front();
@@ -57,8 +57,8 @@ TEST(RoughCamera, SeesWhatIsSentForwards) {
   // The receiver is outside of the specular return of the discs of half a degree. Inside of it, the efficiency depends
   // on the angle of incidence. The two methods would then differ by an amount of the order of the radii of the discs,
   // even with smooth facets.
-  const studies::HarveyShackTexture rough = {.roughness_sq_nm = 25.0, .correlation_length_um = 12.0};
-  const studies::MicrofacetTexture wavy = {.waviness_sq_nm = 30.0, .waviness_length_um = 60.0};
+  const design::HarveyShackTexture rough = {.roughness_sq_nm = 25.0, .correlation_length_um = 12.0};
+  const design::MicrofacetTexture wavy = {.waviness_sq_nm = 30.0, .waviness_length_um = 60.0};
   for (const RoughCase& c :
        {RoughCase{rough, 1.0, 10.0, 0.0}, RoughCase{rough, 0.8, 0.0, 0.0}, RoughCase{wavy, 0.5, 0.0, 15.0}}) {
     const Design design = rough_cubes(c.texture);
@@ -125,7 +125,7 @@ TEST(MaskCamera, ShowsTheElementsThatAreThere) {
 }
 
 TEST(CameraStudy, RefusesAnEntranceFaceThatScatters) {
-  Design design = rough_cubes(studies::SmoothTexture());
+  Design design = rough_cubes(design::SmoothTexture());
   design.source = "d.toml";
   design.surface.entrance.haze = 0.1;
   design.surface.entrance.haze_spread_deg = 5.0;

@@ -121,12 +121,12 @@ TEST(Camera, MeanLuminanceIsThatOfThePhotometer) {
   };
   for (const Case& c : {Case{0.0, 0.0, 0.0, 0.0, 10.0, 10.0}, Case{2.0, 0.2, 0.0, 0.0, 20.0, 10.0},
                         Case{2.0, 0.2, 10.0, 0.0, 10.0, 20.0}, Case{1.0, 0.1, 0.0, 20.0, 15.0, 15.0}}) {
-    studies::Design design;
+    design::Design design;
     design.part() = infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 1.0);
     design.part().angle_errors.dihedral_error_arcmin.fill(c.error_arcmin);
     design.substance.refractive_index = kPmma;
     studies::PhotometrySettings request;
-    request.programme.points.push_back({c.alpha_deg, c.v_deg, c.h_deg, 1.0, studies::PhotometricUnit::cd_per_lx_per_m2,
+    request.test_plan.points.push_back({c.alpha_deg, c.v_deg, c.h_deg, 1.0, studies::PhotometricUnit::cd_per_lx_per_m2,
                                         studies::LimitStatus::confirmed, 2});
     request.area_cm2 = 10.0;
     request.apertures = {Angle::from_rad(c.lamp_arcmin * kArcmin), Angle::from_rad(c.pupil_arcmin * kArcmin)};

@@ -146,12 +146,12 @@ TEST(DetectorMaps, AreTheSameWithAnyNumberOfThreads) {
 /// Table 1 of Hamilton et al. 2017: brick rows have spots along two borders that return no light. They explain the loss
 /// of RRE.
 TEST(DetectorStudy, MapOfTheBrickArrayHoldsItsRre) {
-  studies::Design design;
+  design::Design design;
   design.part() = finite(RtpElement{2.0, 2.0}, Arrangement::offset, 10.0, 10.0, 2.0);
   design.part().array.shifted_rows = RowParity::odd;
   design.substance.refractive_index = kPmma;
   studies::RreSettings asked;
-  asked.engine = studies::Engine::exact;
+  asked.engine = raytrace::Engine::exact;
   const double rre = studies::RreStudy({design}, asked).run().points.front().rre;
   DetectorRequest request;
   request.pixels = 50;

@@ -42,8 +42,8 @@ constexpr std::array<RoadRow, 12> kRows = {{{10, 0, 0, 2.847349387, 99.983102856
                                             {100, 1, 1, 0.616489872, 0.999998310, 0.690411}}};
 
 /// Returns a design with prisms that are so small that diffraction sends light in all directions.
-Design design() {
-  Design d;
+design::Design design() {
+  design::Design d;
   d.part() = infinite(RtpElement{0.1, 0.1}, Arrangement::aligned, 0.5);
   d.part().angle_errors.dihedral_error_arcmin[0] = 10.0;
   d.substance.refractive_index = kPmma;

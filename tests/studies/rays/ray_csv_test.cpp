@@ -59,7 +59,7 @@ TEST(RayCsv, WhatIsWrittenIsReadAgain) {
       std::filesystem::temp_directory_path() / ("retrace_ray_csv_" + std::to_string(::getpid()) + ".csv");
   RayCsvSink sink(file);
   RaySinkLayout layout;
-  layout.info.has_luminous = layout.info.has_stokes = layout.tells_wavelengths = true;
+  layout.info.has_luminous = layout.info.has_stokes = layout.has_wavelengths = true;
   sink.begin(layout);
   AccountedRay ray;
   ray.position_mm = {0.1, -2.0 / 3.0, 1e-9};

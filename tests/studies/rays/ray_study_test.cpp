@@ -9,9 +9,9 @@
 #include <complex>
 #include <numbers>
 
+#include "design/io/design_reader.h"
 #include "materials/dispersion.h"
 #include "materials/io/material_library.h"
-#include "studies/design/io/design_reader.h"
 #include "studies/rays/ray_accounts.h"
 #include "studies/rays/ray_arrays.h"
 #include "studies/rre/rre.h"
@@ -33,7 +33,7 @@ class Given : public RaySource {
     rays_.clear();
     return !rays.empty();
   }
-  double share_read() const override { return rays_.empty() ? 1.0 : 0.0; }
+  double fraction_read() const override { return rays_.empty() ? 1.0 : 0.0; }
 
  private:
   RaySetInfo info_;
@@ -51,8 +51,8 @@ struct Kept : RaySink {
 
 /// Returns a design of a plate of 10 mm x 10 mm x 2 mm.
 /// \param more lines of [body], followed by other sections
-Design plate(const std::string& more = "refractive_index = 1.5\n") {
-  return parse_design("[part]\nplate_mm = [10, 10]\n[body]\nthickness_mm = 2\n" + more, "plate.toml");
+design::Design plate(const std::string& more = "refractive_index = 1.5\n") {
+  return design::parse_design("[part]\nplate_mm = [10, 10]\n[body]\nthickness_mm = 2\n" + more, "plate.toml");
 }
 
 SetRay down_at(double x, double y) {
@@ -63,7 +63,7 @@ SetRay down_at(double x, double y) {
   return ray;
 }
 
-RayResult traced(const Design& design, const RayRequest& request, RaySource&& source, Kept& kept) {
+RayResult traced(const design::Design& design, const RayRequest& request, RaySource&& source, Kept& kept) {
   return RayStudy(design, request).run(source, &kept, nullptr, nullptr);
 }
 
@@ -204,7 +204,7 @@ TEST(RayStudy, EachRayIsTracedAtItsWavelength) {
   const RayResult result = traced(plate("material = \"N-BK7\"\n"), request, Given(info, rays), kept);
   EXPECT_EQ(result.shortest_nm, 440.0);
   EXPECT_EQ(result.longest_nm, 780.0);
-  EXPECT_TRUE(kept.layout.tells_wavelengths);
+  EXPECT_TRUE(kept.layout.has_wavelengths);
   for (const AccountedRay& ray : kept.rays)
     if (ray.radiant_w > 0.5) {
       EXPECT_NEAR(index_from(ray, 0.7), index_of_bk7(rays[ray.number - 1].wavelength_nm), 1e-9);
@@ -221,7 +221,7 @@ TEST(RayStudy, SpectraAreTakenByTheirPower) {
   Kept kept;
   traced(plate("material = \"N-BK7\"\n"), {}, Given(info, rays), kept);
   EXPECT_EQ(kept.layout.info.spectrum, RaySpectrum::table_of_each);
-  EXPECT_TRUE(kept.layout.tells_wavelengths);
+  EXPECT_TRUE(kept.layout.has_wavelengths);
   double below_600 = 0.0;
   double of_third = 0.0;
   for (const AccountedRay& ray : kept.rays) {
@@ -243,7 +243,7 @@ TEST(RayStudy, LightOfTheDesignIsTakenWhereTheSetTellsNone) {
   luminous.has_luminous = true;
   const RayResult result = traced(plate(lamp), {}, Given(luminous, oblique(4000)), kept);
   EXPECT_EQ(result.power, RayPower::luminous_lm);
-  EXPECT_TRUE(kept.layout.tells_wavelengths);
+  EXPECT_TRUE(kept.layout.has_wavelengths);
   double sum = 0.0;
   for (const AccountedRay& ray : kept.rays) sum += ray.wavelength_nm / static_cast<double>(kept.rays.size());
   EXPECT_NEAR(sum, 572.0, 3.0);  // luminous centroid of illuminant A: 572 nm
@@ -271,7 +271,7 @@ TEST(RayStudy, BothFluxesAndTristimulusValuesShrinkAlike) {
 // proportions as the power of the beam of `retrace rre`. Rays that do not hit the part count as missed and are excluded
 // from the comparison.
 TEST(RayStudy, AnEmitterThatCoversThePartIsTheBeamOfRre) {
-  const Design design = parse_design(
+  const design::Design design = design::parse_design(
       "[element]\nkind = \"rtp\"\nbase_mm = 1\nwidth_mm = 1\n[array]\narrangement = \"offset\"\nx_length_mm = "
       "6\ny_length_mm = 4\n[body]\nthickness_mm = 0.02\nrefractive_index = 1.4917\n",
       "bricks.toml");
@@ -304,8 +304,8 @@ TEST(RayStudy, AnEmitterThatCoversThePartIsTheBeamOfRre) {
   }
 }
 
-Design endless_triangles() {
-  return parse_design(
+design::Design endless_triangles() {
+  return design::parse_design(
       "[element]\nkind = \"triangular_icc\"\naperture_mm = 1\n[array]\narrangement = \"triangular\"\nextent = "
       "\"infinite\"\n"
       "[body]\nthickness_mm = 1\nrefractive_index = 1.5\n",

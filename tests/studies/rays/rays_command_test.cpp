@@ -67,7 +67,7 @@ TEST_F(Rays, WhatLeavesIsWrittenInTheFormatOfTheSource) {
   EXPECT_EQ(out.date, "2013-09-04T08:30:29+01:00");
   EXPECT_EQ(out.texts[0], U"LED");
   EXPECT_TRUE(out.more.starts_with(U"account: 0 = retroreflected, 1 = front_specular,"));
-  EXPECT_EQ(out.least_wavelength, 450.0F);
+  EXPECT_EQ(out.min_wavelength, 450.0F);
   EXPECT_EQ(out.greatest_wavelength, 610.0F);
   EXPECT_EQ(out.rays, json["out"]["rays"].get<std::uint64_t>());
   EXPECT_TRUE(std::isnan(out.luminous));

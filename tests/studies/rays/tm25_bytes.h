@@ -23,7 +23,7 @@ struct File {
   std::string date;
   std::int32_t spectral_identifier = 0;
   float wavelength = 0.0F;
-  float least_wavelength = 0.0F;
+  float min_wavelength = 0.0F;
   float greatest_wavelength = 0.0F;
   /// Flags for the items of each ray: position, direction, radiant flux, wavelength, luminous flux, Stokes parameters,
   /// tristimulus values, spectrum index.
@@ -67,7 +67,7 @@ inline std::string bytes_of(const File& file) {
   put(bytes, std::int32_t{0});
   put(bytes, file.spectral_identifier);
   put(bytes, file.wavelength);
-  put(bytes, file.least_wavelength);
+  put(bytes, file.min_wavelength);
   put(bytes, file.greatest_wavelength);
   put(bytes, static_cast<std::int32_t>(file.tables.size()));
   put(bytes, static_cast<std::int32_t>(file.items.size()));
@@ -124,7 +124,7 @@ inline File file_of(const std::string& bytes) {
   at = 60;
   take(file.spectral_identifier);
   take(file.wavelength);
-  take(file.least_wavelength);
+  take(file.min_wavelength);
   take(file.greatest_wavelength);
   std::int32_t tables = 0;
   std::int32_t items = 0;

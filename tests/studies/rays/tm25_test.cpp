@@ -61,13 +61,13 @@ TEST(Tm25, PlainRaysAreRead) {
   EXPECT_EQ(source.info().radiant_w, 6.0);
   EXPECT_TRUE(source.info().has_radiant);
   EXPECT_FALSE(source.info().has_luminous || source.info().has_stokes || source.info().has_tristimulus);
-  EXPECT_EQ(source.share_read(), 0.0);
+  EXPECT_EQ(source.fraction_read(), 0.0);
   const std::vector<SetRay> rays = rays_of(source);
   ASSERT_EQ(rays.size(), 3U);
   EXPECT_EQ(rays[1].position_mm, Vec3(4, 5, 6));
   EXPECT_NEAR((rays[1].direction - Vec3(0, 0.6, 0.8)).norm(), 0.0, 1e-7);
   EXPECT_EQ(rays[2].radiant_w, 3.0);
-  EXPECT_EQ(source.share_read(), 1.0);
+  EXPECT_EQ(source.fraction_read(), 1.0);
   EXPECT_TRUE(source.warnings().empty());
 }
 

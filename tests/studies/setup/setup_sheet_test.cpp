@@ -57,7 +57,7 @@ TEST(SetupSheet, RootsAreWhatTheVerifierFinds) {
   const FabricationResult result = made();
   const SetupSheet sheet = setup_sheet(result, false);
   const Sensitivity& row = row_of(sheet, "tool_z_um");
-  EXPECT_NEAR(row.root_left_nm, 1000.0, 0.1);
+  EXPECT_NEAR(row.root_residual_nm, 1000.0, 0.1);
   for (const double amount : {1.0, -1.0}) {
     const Verification v = cut_on(result, with_error(result.machine, *row.quantity, amount));
     double left_nm = 0.0;
@@ -67,12 +67,12 @@ TEST(SetupSheet, RootsAreWhatTheVerifierFinds) {
         left_nm = std::max(left_nm, facet.root.nm);
         cut_nm = std::max(cut_nm, -facet.deepest.nm);
       }
-    EXPECT_NEAR(amount > 0.0 ? left_nm : cut_nm, row.root_left_nm, 0.03 * row.root_left_nm);
+    EXPECT_NEAR(amount > 0.0 ? left_nm : cut_nm, row.root_residual_nm, 0.03 * row.root_residual_nm);
   }
   // A tilted edge has one higher end and one lower end.
   const Sensitivity& level = row_of(sheet, "tool_rotation_y_arcsec");
   const double end_nm = 0.25e6 * std::numbers::pi / 648000.0;
-  EXPECT_NEAR(level.root_left_nm, end_nm, 1e-6);
+  EXPECT_NEAR(level.root_residual_nm, end_nm, 1e-6);
   EXPECT_NEAR(level.root_cut_nm, end_nm, 1e-6);
 }
 
@@ -131,9 +131,9 @@ TEST(SetupSheet, SaysWhereTheProgramsGo) {
 TEST(SetupSheet, SaysWhatToMeasureWhen) {
   const SetupSheet sheet = setup_sheet(made(), false);
   ASSERT_EQ(sheet.checks.front().stage, "roughing");
-  EXPECT_EQ(sheet.checks.front().left_um, 10.0);
+  EXPECT_EQ(sheet.checks.front().remaining_um, 10.0);
   EXPECT_NEAR(sheet.checks.front().root_depth_mm, 0.25 - std::numbers::sqrt2 * 0.010, 1e-12);
-  EXPECT_EQ(sheet.checks.back().left_um, 0.0);
+  EXPECT_EQ(sheet.checks.back().remaining_um, 0.0);
   EXPECT_NEAR(sheet.checks.back().root_depth_mm, 0.25, 1e-12);
   for (std::size_t k = 1; k < sheet.checks.size(); ++k) EXPECT_GT(sheet.checks[k].ends_s, sheet.checks[k - 1].ends_s);
 }

@@ -71,7 +71,7 @@ std::size_t retro_elements(const Part& part) {
   for (const PatchCell& cell : part.patches[0].cells)
     for (std::uint32_t f = cell.first_facet; f < cell.first_facet + cell.facet_count; ++f)
       if (part.patches[0].facets[f].role == FacetRole::retro_facet)
-        elements.insert(part.number_of(part.patches[0], cell));
+        elements.insert(part.element_id(part.patches[0], cell));
   return elements.size();
 }
 
@@ -84,7 +84,7 @@ std::ptrdiff_t retro_planes(const Part& part) {
       const PatchFacet& facet = part.patches[0].facets[f];
       if (facet.role != FacetRole::retro_facet) continue;
       const Vec3 rounded = (1e5 * facet.normal).array().round();
-      const auto element = static_cast<double>(part.number_of(part.patches[0], cell));
+      const auto element = static_cast<double>(part.element_id(part.patches[0], cell));
       area_of_plane[{element, rounded.x(), rounded.y(), rounded.z()}] += facet_area(part.patches[0], facet);
     }
   return std::count_if(area_of_plane.begin(), area_of_plane.end(), [](const auto& p) { return p.second > 1e-7; });
@@ -207,7 +207,7 @@ TEST(MeshPart, OpeningsAreClosedAndCounted) {
 
 TEST(MeshPart, TurnedOverTrianglesHaveTheOppositeVolume) {
   const TriangleMesh mesh = mesh_of(test::single_part(HexagonalCube{1.6}));
-  EXPECT_NEAR(volume_mm3(boundary_of(turned_over(mesh))), -volume_mm3(boundary_of(mesh)), 1e-12);
+  EXPECT_NEAR(volume_mm3(boundary_of(with_reversed_orientation(mesh))), -volume_mm3(boundary_of(mesh)), 1e-12);
 }
 
 /// Returns a cube that stands on the corner `tip`, with a vertical space diagonal.
@@ -262,7 +262,7 @@ TEST(MeshUnion, HeldBodiesVanishAndBodiesThatCrossThemselvesAreNotUnited) {
   TriangleMesh twisted = cube_on_its_corner({2.0, 2.0, -0.3}, 0.8);
   std::swap(twisted.vertices[4], twisted.vertices[7]);
   EXPECT_FALSE(union_of_bodies(both(plate, twisted)));
-  EXPECT_FALSE(union_of_bodies(both(plate, turned_over(cube_on_its_corner({2.0, 2.0, -0.3}, 0.8)))));
+  EXPECT_FALSE(union_of_bodies(both(plate, with_reversed_orientation(cube_on_its_corner({2.0, 2.0, -0.3}, 0.8)))));
 }
 
 }  // namespace

@@ -171,8 +171,8 @@ TEST(Optimise, FormerWordsOfTheFrontKeepTheirMeaning) {
             .front;
     ASSERT_EQ(axes.size(), 2U) << front;
     EXPECT_EQ(axes[0].quantity, "f");
-    EXPECT_TRUE(axes[0].largest) << front;
-    EXPECT_FALSE(axes[1].largest) << front;
+    EXPECT_TRUE(axes[0].is_maximized) << front;
+    EXPECT_FALSE(axes[1].is_maximized) << front;
   }
 }
 
@@ -217,10 +217,10 @@ TEST(Optimise, ReportsTheConstraintThatExcludesAllDesigns) {
   EXPECT_FALSE(optimum.best.has_value());
   ASSERT_EQ(optimum.exclusions.size(), 2U);
   EXPECT_EQ(optimum.exclusions[0].designs, optimum.evaluations);
-  EXPECT_EQ(optimum.exclusions[0].least_violation, 4.0);
+  EXPECT_EQ(optimum.exclusions[0].min_violation, 4.0);
   EXPECT_EQ(optimum.exclusions[1].designs, 0U);
-  EXPECT_EQ(optimum.exclusions[1].least_violation, 0.0);
-  record_message(optimum.none_because);
+  EXPECT_EQ(optimum.exclusions[1].min_violation, 0.0);
+  record_message(optimum.infeasible_reason);
 }
 
 TEST(Optimise, AResumedSearchComputesNothingAgain) {
@@ -268,7 +268,7 @@ TEST(Optimise, TheSmallestPrismThatTheToolCutsIsChosenAndTheSingleOneRejectedByT
   request.scan = 21;
   compute::ResultStore store("", optimise_layout(study), compute::IfExists::refuse);
   const Optimum optimum = optimise(study, request, store, nullptr, nullptr);
-  ASSERT_TRUE(optimum.best.has_value()) << optimum.none_because;
+  ASSERT_TRUE(optimum.best.has_value()) << optimum.infeasible_reason;
   EXPECT_EQ(number(optimum.best->values[0]), 1.0);
   EXPECT_NEAR(*optimum.best->objective, 0.953748, 1e-6);
   const Rejected& single = optimum.rejected.at(0);
@@ -290,7 +290,7 @@ TEST(Optimise, AKeyThatIsACurveHasNoBand) {
   study.parameters[0].interval->from = 0.8;
   OptimiseRequest request = read_optimise(study);
   request.scan = 3;
-  request.bands_of = {"body.absorption_per_mm"};
+  request.band_keys = {"body.absorption_per_mm"};
   compute::ResultStore store("", optimise_layout(study), compute::IfExists::refuse);
   const Optimum optimum = optimise(study, request, store, nullptr, nullptr);
   ASSERT_EQ(optimum.bands.size(), 1U);

@@ -10,9 +10,9 @@
 #include "core/schema/json.h"
 #include "core/schema/reader.h"
 #include "core/schema/writer.h"
-#include "studies/design/io/design_document.h"
-#include "studies/design/io/design_format.h"
-#include "studies/design/io/design_reader.h"
+#include "design/io/design_document.h"
+#include "design/io/design_format.h"
+#include "design/io/design_reader.h"
 #include "tests/support/documents.h"
 #include "tests/support/key_table.h"
 
@@ -55,7 +55,7 @@ TEST(StudyFormat, EveryExampleReadsBackTheSame) {
   EXPECT_GE(studies, 6U);
   for (const auto& file : files_in("examples")) {
     SCOPED_TRACE(file);
-    expect_round_trips(design_format(), read_file(file));
+    expect_round_trips(design::design_format(), read_file(file));
   }
 }
 
@@ -82,9 +82,9 @@ TEST(StudyFormat, DesignsAreWrittenAsTheyAre) {
   for (const std::string folder : {"examples", "examples/fronts"})
     for (const auto& file : files_in(folder)) {
       SCOPED_TRACE(file);
-      const Design design = read_design(file);
-      const Design back = parse_design(design_text(design), file.string());
-      EXPECT_EQ(to_json(document_of(back)), to_json(document_of(design)));
+      const design::Design design = design::read_design(file);
+      const design::Design back = design::parse_design(design::design_text(design), file.string());
+      EXPECT_EQ(to_json(design::document_of(back)), to_json(design::document_of(design)));
     }
 }
 
@@ -92,9 +92,10 @@ TEST(StudyFormat, AVariedDesignIsAnOverriddenOne) {
   const std::string file = kRoot + "/examples/rtp_brick_1mm.toml";
   const std::vector<std::string> overrides = {override_text("element.base_mm", 0.1),
                                               override_text("title", "it's \"x\"")};
-  EXPECT_EQ(to_json(document_of(with(read_design(file), overrides))),
-            to_json(document_of(read_design(file, overrides))));
-  EXPECT_THROW(with(read_design(file), std::vector<std::string>{"element.apex_angle_deg=20"}), InputError);
+  EXPECT_EQ(to_json(design::document_of(design::with(design::read_design(file), overrides))),
+            to_json(design::document_of(design::read_design(file, overrides))));
+  EXPECT_THROW(design::with(design::read_design(file), std::vector<std::string>{"element.apex_angle_deg=20"}),
+               InputError);
 }
 
 TEST(StudyFormat, DocumentationSaysWhatTheRowsSay) {

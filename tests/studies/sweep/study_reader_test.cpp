@@ -121,7 +121,7 @@ TEST(StudyReader, AnalysisMachiningAndWordsCanBeVaried) {
   values[2].toml = "\"offset\"";
   const Candidate candidate = make_candidate(study, values);
   EXPECT_EQ(candidate.analysis().incidence_deg, 7.0);
-  EXPECT_EQ(candidate.analysis().engine, Engine::exact);
+  EXPECT_EQ(candidate.analysis().engine, raytrace::Engine::exact);
   EXPECT_EQ(candidate.machining().tool_width_mm, 0.3);
   EXPECT_EQ(candidate.design().part().thickness_mm, 3.0);
 }

@@ -13,7 +13,7 @@
 #include <optional>
 
 #include "core/error.h"
-#include "studies/design/io/design_reader.h"
+#include "design/io/design_reader.h"
 #include "studies/optimise/io/optimise_reader.h"
 #include "studies/optimise/optimise.h"
 #include "studies/photometry/io/standard_reader.h"
@@ -201,7 +201,7 @@ TEST_F(PhotometricStudy, QuantitiesAreThoseOfTheTable) {
   request.advice = false;
   const std::vector<std::string> overrides = {"surface.dihedral_error_arcmin=1"};
   const PhotometryResult table =
-      PhotometryStudy(parse_design(kCubes, "d.toml", overrides), resolve(request, false)).run();
+      PhotometryStudy(design::parse_design(kCubes, "d.toml", overrides), resolve(request, false)).run();
   ASSERT_EQ(table.points.size(), 3U);
   double worst = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < 3; ++k) {
@@ -239,7 +239,7 @@ TEST_F(PhotometricStudy, TheWorstMarginIsMaximised) {
   const Study study = parse_study(keys + "[optimize]\nmaximize = \"worst\"\n", (folder_ / "study.toml").string());
   compute::ResultStore store("", optimise_layout(study), compute::IfExists::refuse);
   const Optimum optimum = optimise(study, read_optimise(study), store, nullptr, nullptr);
-  ASSERT_TRUE(optimum.best.has_value()) << optimum.none_because;
+  ASSERT_TRUE(optimum.best.has_value()) << optimum.infeasible_reason;
   std::optional<double> best;
   std::optional<compute::StoredValue> at;
   for (const compute::StoredPoint& point : store.points()) {
@@ -276,16 +276,18 @@ TEST(MachiningLoop, SurfacesAreThoseThatTheStrategyLeaves) {
         kFolder + "study.toml", overrides);
     return make_candidate(study, study.parameters[0].values).design();
   };
-  const auto texture_of = [](const Design& rough) { return std::get<HarveyShackTexture>(rough.surface.texture); };
-  const Design drawn = design("edge_radius_um = 3\n");
+  const auto texture_of = [](const design::Design& rough) {
+    return std::get<design::HarveyShackTexture>(rough.surface.texture);
+  };
+  const design::Design drawn = design("edge_radius_um = 3\n");
   EXPECT_TRUE(drawn.surface.is_smooth());
   EXPECT_EQ(drawn.part().edges.root_radius_mm, 0.0);
-  const Design cut = design("edge_radius_um = 3\nsurface = \"as_cut\"\n");
+  const design::Design cut = design("edge_radius_um = 3\nsurface = \"as_cut\"\n");
   EXPECT_NEAR(cut.part().edges.root_radius_mm, 3e-3, 1e-15);
   // The finished surface has Sa = 48.9 nm, of which 19.7 nm are roughness. For Gaussian heights, Sq is sqrt(pi / 2) Sa.
   EXPECT_NEAR(texture_of(cut).roughness_sq_nm, 19.7 * std::sqrt(M_PI / 2.0), 1e-9);
   EXPECT_NEAR(texture_of(cut).waviness_sq_nm, 29.9 * std::sqrt(M_PI / 2.0), 1e-9);
-  const Design rough = design("strategy = \"unidirectional\"\nsurface = \"as_cut\"\n");
+  const design::Design rough = design("strategy = \"unidirectional\"\nsurface = \"as_cut\"\n");
   EXPECT_GT(texture_of(rough).roughness_sq_nm, 5.0 * texture_of(cut).roughness_sq_nm);
   const std::vector<std::string> smoother = {"surface.roughness_sq_nm=7"};
   EXPECT_EQ(texture_of(design("surface = \"as_cut\"\n", smoother)).roughness_sq_nm, 7.0);
@@ -336,7 +338,7 @@ class HalfReported : public Quantity {
 class SharesOfSweep : public SweepObserver {
  public:
   void at(std::uint64_t, std::uint64_t, std::uint64_t) override {}
-  void at_share(double share) override { shares.push_back(share); }
+  void at_fraction(double share) override { shares.push_back(share); }
   std::vector<double> shares;
 };
 

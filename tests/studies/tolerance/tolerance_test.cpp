@@ -219,8 +219,8 @@ TEST(Tolerance, PartsThatCannotBeMadeAreNoGoodParts) {
   run.compute();
   EXPECT_NEAR(static_cast<double>(run.result.failed), 64.0, 2.0);
   EXPECT_NEAR(run.result.yield->value, 0.5, 0.02);
-  EXPECT_EQ(run.result.quantities[0].without, run.result.failed);
-  EXPECT_GE(run.result.quantities[0].spread->least, 0.0);
+  EXPECT_EQ(run.result.quantities[0].missing_parts, run.result.failed);
+  EXPECT_GE(run.result.quantities[0].spread->min, 0.0);
   ASSERT_FALSE(run.result.warnings.empty());
   EXPECT_EQ(run.result.warnings[0].id, "parts_without_value");
 }

@@ -45,13 +45,13 @@ class Places {
     for (int i = 0; i < kDirections; ++i) directions.push_back((i + 0.4871) / kDirections * kQuarter);
     for (const double direction : directions) {
       const Vec2 unit(std::cos(direction), std::sin(direction));
-      for (const double share : shares()) {
+      for (const double share : fractions()) {
         const Vec2 place = share * reach(unit) * unit;
         places.push_back(place);
       }
     }
     for (const double steps : kEdgeLineSteps)
-      for (const double share : shares()) {
+      for (const double share : fractions()) {
         const double off = steps * step_mm_;
         places.emplace_back(share * along(0, off), off);
         places.emplace_back(off, share * along(1, off));
@@ -60,7 +60,7 @@ class Places {
   }
 
  private:
-  static std::vector<double> shares() {
+  static std::vector<double> fractions() {
     return {1e-4, 0.013, 0.11, 0.23, 0.37, 0.49, 0.61, 0.73, 0.87, 0.97, 1.0 - kWithin};
   }
   /// Returns the distance from the apex to the border of the facet in a direction.

@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "core/threads.h"
 #include "fabrication/check/findings.h"
-#include "fabrication/chisel/check/groove.h"
+#include "fabrication/chisel/check/cavity.h"
 #include "fabrication/chisel/check/program_check.h"
 #include "fabrication/chisel/check/simulation/dexel.h"
 #include "fabrication/chisel/on_machine.h"
@@ -20,8 +20,8 @@ namespace {
 using geometry::Vec2;
 using geometry::Vec3;
 
-constexpr std::size_t kMostLines = 400;
-constexpr std::size_t kLeastLines = 4;
+constexpr std::size_t kMaxLines = 400;
+constexpr std::size_t kMinLines = 4;
 /// Extent of a hexagonal cube corner's cavity from its apex, divided by the radius of its aperture.
 constexpr double kCavityReach = 2.0;
 
@@ -86,7 +86,7 @@ ErrorField error_field(const Job& job, const Machine& machine, const std::vector
     throw InputError(job.where("substrate"),
                      "an error map is available only for flat arrays, not for elements on a substrate");
   check_on_machine(job, machine);
-  const Workpiece3d workpiece = workpiece_of(job, machine);
+  const VerificationModel workpiece = verification_model_of(job, machine);
   FindingList findings;
   ProgramCheck check(workpiece, findings);
   for (const NcProgram& program : programs) {
@@ -104,15 +104,15 @@ ErrorField error_field(const Job& job, const Machine& machine, const std::vector
   field.columns = count(field.size_mm.x());
   field.rows = count(field.size_mm.y());
 
-  std::vector<ElementField> elements(workpiece.grooves.size());
+  std::vector<ElementField> elements(workpiece.cavities.size());
   for_each_in_parallel(elements.size(), [&](std::size_t i) {
-    const Vec3 half = std::visit([](const auto& groove) { return half_extent_mm(groove); }, workpiece.grooves[i]);
+    const Vec3 half = std::visit([](const auto& groove) { return half_extent_mm(groove); }, workpiece.cavities[i]);
     const double longest_mm = 2.0 * half.maxCoeff();
-    const auto lines = std::clamp(static_cast<std::size_t>(std::ceil(longest_mm / pitch_mm)), kLeastLines, kMostLines);
+    const auto lines = std::clamp(static_cast<std::size_t>(std::ceil(longest_mm / pitch_mm)), kMinLines, kMaxLines);
     elements[i] = field_of(workpiece.design(i), half, check.sweeps()[i], poses, check.wedge(), lines);
   });
 
-  const GrooveMap map(workpiece.grooves);
+  const CavityMap map(workpiece.cavities);
   field.height_nm.assign(field.columns * field.rows, std::numeric_limits<double>::quiet_NaN());
   for (std::size_t row = 0; row < field.rows; ++row)
     for (std::size_t column = 0; column < field.columns; ++column) {

@@ -14,14 +14,14 @@ using geometry::Vec3;
 /// side plane of the tool.
 constexpr double kOffCornerMm = 2e-7;
 /// Minimum distance from the root, in mm, at which a measuring line can distinguish the two facets.
-constexpr double kLeastStripMm = 2e-6;
+constexpr double kMinStripMm = 2e-6;
 /// Distance from the root, in mm, of the line that measures the residual material at the root.
 constexpr double kAtRootMm = 1.5e-6;
 /// Maximum extent, along a facet, of the tolerance layer on the other facet, relative to the facet's length. Residual
 /// material within this extent is attributed to the root. The maximum only has an effect for large tolerances.
-constexpr double kMostLayerShare = 0.01;
+constexpr double kMaxLayerFraction = 0.01;
 /// Maximum tolerance for the position of a pass along the root, relative to half of the width of the element.
-constexpr double kMostEndShare = 0.01;
+constexpr double kMaxEndFraction = 0.01;
 /// Safety factor on the predicted width of the strip at the root that the edge leaves uncut. It allows for rounded
 /// poses and positions.
 constexpr double kRootMargin = 1.05;
@@ -30,9 +30,9 @@ constexpr int kEvenLines = 12;
 /// picometres only.
 constexpr double kSamePassMm = 3e-6;
 /// Fraction of the facet's width that is used to fit the plane of the facet. The ends of the facet are excluded.
-constexpr double kPlaneShare = 0.8;
+constexpr double kPlaneFraction = 0.8;
 /// Maximum distance of a measured point from the root, in facet lengths, at which is_beside() is reliable.
-constexpr double kReachShare = 4.0;
+constexpr double kReachRatio = 4.0;
 
 /// Positions, along the root, of the stations and of the passes of the tool. A station is a cross-section in which the
 /// facets are measured.
@@ -48,9 +48,9 @@ class Measurer {
       : groove_(groove), sweeps_(sweeps), poses_(poses), wedge_(wedge), prediction_(prediction) {
     for (const SweptVolume& sweep : sweeps) by_pose_.push_back(&sweep);
     std::ranges::stable_sort(by_pose_, {}, &SweptVolume::pose);
-    find_stations(std::min(tolerance_mm, kMostEndShare * groove.half_width_mm));
-    const double layer_mm = std::min(tolerance_mm / sine_between(), kMostLayerShare * groove.facet_length_mm);
-    layer_end_mm_ = kLeastStripMm + layer_mm;
+    find_stations(std::min(tolerance_mm, kMaxEndFraction * groove.half_width_mm));
+    const double layer_mm = std::min(tolerance_mm / sine_between(), kMaxLayerFraction * groove.facet_length_mm);
+    layer_end_mm_ = kMinStripMm + layer_mm;
     strip_mm_ = kRootMargin * prediction.root_mm + layer_end_mm_;
     find_burr();
   }
@@ -158,8 +158,8 @@ class Measurer {
     // slivers, so they are not measured.
     const double margin = prediction_.wall_mm + end_mm + 2.0 * kSamePassMm;
     const double end = groove_.half_width_mm - margin;
-    stations_.along_mm = {-end, -kPlaneShare * end, kPlaneShare * end, end};
-    plane_end_mm_ = kPlaneShare * groove_.half_width_mm;
+    stations_.along_mm = {-end, -kPlaneFraction * end, kPlaneFraction * end, end};
+    plane_end_mm_ = kPlaneFraction * groove_.half_width_mm;
     if (stations_.pass_middles_mm.size() > 1) add_stations_of_passes(margin, end);
   }
 
@@ -222,13 +222,13 @@ class Measurer {
   }
 
   /// Returns true if a sweep misses all measuring lines of a station, because the tool passes them on one side. The
-  /// tool is as wide as its edge. The result is reliable for points up to kReachShare facet lengths from the root.
+  /// tool is as wide as its edge. The result is reliable for points up to kReachRatio facet lengths from the root.
   bool is_beside(const SweptVolume& sweep, double along) const {
     const RigidMotion& pose = poses_[sweep.pose];
     const Vec3 root = pose.direction(groove_.root_direction);
     const Vec3 at = pose.point(groove_.root_mm) + along * root;
     const double oblique = wedge_.edge.cross(root).norm();
-    const double allowed_mm = wedge_.half_width_mm + kReachShare * groove_.facet_length_mm * oblique;
+    const double allowed_mm = wedge_.half_width_mm + kReachRatio * groove_.facet_length_mm * oblique;
     const double at_start_mm = wedge_.edge.dot(at - sweep.from_mm);
     const double at_end_mm = wedge_.edge.dot(at - sweep.to_mm);
     return std::min(at_start_mm, at_end_mm) > allowed_mm || std::max(at_start_mm, at_end_mm) < -allowed_mm;
@@ -285,7 +285,7 @@ class Measurer {
   }
 
   /// Returns the height above the other facet up to which a measuring line can cross residual material of that facet.
-  double residue_of_other_mm() const { return strip_mm_ + kLeastStripMm; }
+  double residue_of_other_mm() const { return strip_mm_ + kMinStripMm; }
 
   /// Returns true if a line at a distance from the root measures only its own facet. In grooves with an angle below 90
   /// degrees, lines near the root cross the residual material of the other facet.

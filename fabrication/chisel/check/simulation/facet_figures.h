@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "fabrication/chisel/check/groove.h"
+#include "fabrication/chisel/check/cavity.h"
 #include "fabrication/chisel/check/prediction.h"
 #include "fabrication/chisel/check/simulation/swept_volume.h"
 

@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "fabrication/chisel/check/groove.h"
+#include "fabrication/chisel/check/cavity.h"
 #include "fabrication/chisel/check/simulation/swept_volume.h"
 #include "fabrication/job/job.h"
 #include "fabrication/machine/machine.h"

@@ -40,7 +40,7 @@ bool narrow(double a, double c, double& low, double& high) {
 
 ToolWedge tool_wedge(const Tool& tool, const Machine& machine, Angle apex) {
   const Vec3 x = edge_direction(machine);
-  const Vec3 up = tool_turn(machine) * machine.z.direction.value;
+  const Vec3 up = tool_rotation(machine) * machine.z.direction.value;
   const Vec3 z = (up - x * x.dot(up)).normalized();
   const Vec3 y = z.cross(x);
   const double clearance = Angle::from_deg(tool.clearance_deg).rad();
@@ -68,7 +68,7 @@ ToolWedge v_tool_wedge(const Tool& tool, const Machine& machine) {
   // Frame of the facet that is cut: its normal, and its two dihedral edges, which are at 45 degrees to its upward
   // direction.
   const Vec3 normal = plunged_normal(machine);
-  const Vec3 level = (level_direction(machine) - normal * normal.dot(level_direction(machine))).normalized();
+  const Vec3 level = (horizontal_direction(machine) - normal * normal.dot(horizontal_direction(machine))).normalized();
   const Vec3 up = level.cross(normal);
   const Vec3 first = (up - level).normalized();
   const Vec3 second = (up + level).normalized();
@@ -97,8 +97,8 @@ std::optional<LineSpan> swept_span(const ToolWedge& wedge, const SweptVolume& sw
   const Vec3 start = point_mm - sweep.from_mm;
   // An inequality with b > 0 is a lower bound of t, and one with b < 0 is an upper bound. The first bounds are 0 <= t
   // and t <= 1.
-  std::array<Inequality, ToolWedge::kMostSides + 1> lower;
-  std::array<Inequality, ToolWedge::kMostSides + 1> upper;
+  std::array<Inequality, ToolWedge::kMaxSides + 1> lower;
+  std::array<Inequality, ToolWedge::kMaxSides + 1> upper;
   lower[0] = {0.0, 1.0, 0.0};
   upper[0] = {0.0, -1.0, 1.0};
   std::size_t lowers = 1;
@@ -122,7 +122,7 @@ std::optional<LineSpan> swept_span(const ToolWedge& wedge, const SweptVolume& sw
       if (!narrow(-above.b * below.a + below.b * above.a, -above.b * below.c + below.b * above.c, low, high))
         return std::nullopt;
     }
-  return LineSpan{low, high, sweep.place.line};
+  return LineSpan{low, high, sweep.location.line};
 }
 
 std::vector<ToolWedge::Side> swept_sides(const ToolWedge& wedge, const SweptVolume& sweep) {

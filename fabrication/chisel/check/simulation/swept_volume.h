@@ -22,13 +22,13 @@ namespace retrace::fabrication {
 /// the intersection of the edge circle's tangents in the two facets. The rounded edge then sweeps the same two planes
 /// as a sharp edge (docs/theory/verification.md).
 struct ToolWedge {
-  static constexpr std::size_t kMostSides = 40;
+  static constexpr std::size_t kMaxSides = 40;
   /// Half-space outward . p <= bound_mm.
   struct Side {
     geometry::Vec3 outward = geometry::Vec3::Zero();
     double bound_mm = 0.0;
   };
-  /// Sides of the wedge, at most kMostSides. Chisel: clearance face, rake face, ends of the edge at +X and -X. V-shaped
+  /// Sides of the wedge, at most kMaxSides. Chisel: clearance face, rake face, ends of the edge at +X and -X. V-shaped
   /// tool: clearance face, leading flank, trailing flank, and the trailing flank again as the fourth side. A rounded
   /// nose adds planes that are tangent to its arc.
   std::vector<Side> sides;
@@ -53,7 +53,7 @@ ToolWedge v_tool_wedge(const Tool& tool, const Machine& machine);
 /// Straight move of the tool's tip in one pose. Its end points are given in the machine frame.
 struct SweptVolume {
   std::uint32_t pose = 0;
-  NcPlace place;
+  NcLocation location;
   bool is_rapid = false;
   geometry::Vec3 from_mm = geometry::Vec3::Zero();
   geometry::Vec3 to_mm = geometry::Vec3::Zero();

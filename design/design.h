@@ -1,0 +1,389 @@
+#pragma once
+
+// Contents of a design file: shape, material, surface, light and detector. They have been checked, and defaults are
+// filled in. Every study begins with a Design.
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "core/error.h"
+#include "core/schema/document.h"
+#include "core/warning.h"
+#include "geometry/elements/element_choice.h"
+#include "geometry/elements/part_spec.h"
+#include "geometry/part/zones.h"
+#include "raytrace/balls/ball_layer.h"
+#include "raytrace/light/stokes.h"
+
+namespace retrace::geometry {
+class FacetPlanes;
+}
+
+namespace retrace::design {
+
+/// Optical idealisations that a design may request, for comparison with theory.
+struct Idealisation {
+  bool mirror_facets = false;  ///< true: retro facets reflect all light at every angle
+  /// True if the entrance face transmits all light. Light from inside beyond the critical angle is then lost.
+  bool lossless_entrance = false;
+};
+
+enum class HeightMapAxis { x, y };
+
+struct SmoothTexture {};
+/// Roughness with a Gaussian autocorrelation of heights, and periodic waviness. At least one of the two rms heights is
+/// above 0.
+struct HarveyShackTexture {
+  double roughness_sq_nm = 0.0;        ///< rms height of the roughness
+  double correlation_length_um = 0.0;  ///< distance at which the Gaussian autocorrelation is 1/e
+  double waviness_sq_nm = 0.0;
+  double waviness_length_um = 0.0;  ///< period of the waviness
+  /// Correlation length along the line of steepest descent of the facet, if it differs from correlation_length_um. In
+  /// this case, correlation_length_um applies to the horizontal direction. If the value is 0, correlation_length_um
+  /// applies to both directions.
+  double down_correlation_length_um = 0.0;
+};
+/// BSDF = a / (b + |dbeta|^g), per sr.
+struct AbgTexture {
+  double a = 0.0;
+  double b = 0.0;
+  double g = 0.0;
+};
+struct MicrofacetTexture {
+  double waviness_sq_nm = 0.0;  ///< rms height, > 0
+  double waviness_length_um = 0.0;
+  bool ggx = false;  ///< true: GGX distribution of slopes, with longer tails than a Gaussian
+};
+struct HeightMapTexture {
+  std::string name;  ///< name of the file, as given
+  /// Path of the file, from the working directory; make_model() checks the file when it reads it.
+  std::filesystem::path file;
+  /// Axis of the map that is horizontal on a facet. For a prism, it is parallel to the roof edge.
+  HeightMapAxis horizontal_axis = HeightMapAxis::x;
+  int form_degree = 1;  ///< degree of the polynomial that is removed from the map, 1..8
+};
+/// Surface texture of the retro facets. The alternatives have the same order as the words of `surface.model`.
+using SurfaceFinish = std::variant<SmoothTexture, HarveyShackTexture, AbgTexture, MicrofacetTexture, HeightMapTexture>;
+
+/// Term of a polynomial over a facet: height_um x^level y^down. x is the horizontal coordinate and y the coordinate
+/// down the facet, both in units of the facet's radius.
+struct FormTerm {
+  int x_power = 0;
+  int y_power = 0;         ///< level + down is at most 8
+  double height_um = 0.0;  ///< coefficient; positive is out of the body
+};
+struct FormMap {
+  std::string name;  ///< name of the file, as given
+  /// Path of the file, from the working directory; make_model() checks the file when it reads it.
+  std::filesystem::path file;
+  HeightMapAxis horizontal_axis = HeightMapAxis::x;
+  int degree = 4;  ///< degree of the polynomial that is fitted to the map, 2..8
+};
+/// Deviation of the retro facets from planes, the same for all facets. It is the sum of the three members.
+struct FormOfFacets {
+  /// Sag of a paraboloid into the body, from the farthest corner of the facet to the facet's centre.
+  double sink_um = 0.0;
+  std::vector<FormTerm> terms;
+  std::optional<FormMap> map;
+
+  bool is_plane() const { return sink_um == 0.0 && terms.empty() && !map; }
+};
+
+struct SpectralAbsorption {
+  double wavelength_nm = 0.0;
+  double per_mm = 0.0;  ///< Napierian absorption coefficient for power; >= 0
+
+  bool operator==(const SpectralAbsorption&) const = default;
+};
+/// Napierian absorption coefficient for power. The alternatives are the value of the material, a number per mm, and a
+/// table with linear interpolation. The wavelengths of the table ascend.
+using Absorption = std::variant<std::monostate, double, std::vector<SpectralAbsorption>>;
+
+/// Light of more than one wavelength, as the design specifies it.
+struct LightSpectrum {
+  enum class Kind { illuminant_a, illuminant_d65, file, lines };
+  struct Line {
+    double wavelength_nm = 0.0;
+    double power = 0.0;  ///< in any unit, >= 0
+  };
+  Kind kind = Kind::illuminant_a;
+  std::string name;            ///< name of the file, as given; empty if there is none
+  std::filesystem::path file;  ///< path of the file, from the working directory; empty if there is none
+  std::vector<Line> lines;     ///< in ascending order of wavelength
+  bool photopic = true;        ///< true: results are fractions of the luminous flux; false: of the power
+};
+
+/// Image that selects elements of an array: the array has elements where pixels are dark.
+struct ArrayMask {
+  std::string name;            ///< name of the file, as given
+  std::filesystem::path file;  ///< path of the file, from the working directory
+  double threshold = 0.7;      ///< pixels with grey < threshold * 255 are dark and have elements
+};
+
+/// File with planes of individual facets. They replace the nominal planes of the facets.
+struct FacetPlanesFile {
+  std::string name;  ///< name of the file, as given
+  /// Path of the file, from the working directory; part_of() checks the file when it reads it.
+  std::filesystem::path file;
+  /// Planes that replace those of the file. If the pointer is null, the file is read.
+  std::shared_ptr<const geometry::FacetPlanes> planes = {};
+};
+
+/// Array of elements, the plate in front of them, and differences between individual elements.
+struct ElementArray {
+  geometry::PartSpec part;
+  std::optional<ArrayMask> mask;
+  std::optional<FacetPlanesFile> facet_planes;  ///< finite parts only; not together with a mask
+};
+
+/// Mesh that is the whole part.
+struct PartMesh {
+  std::string name;            ///< name of the STL file, as given
+  std::filesystem::path file;  ///< path of the file, from the working directory; part_of_design() reads the file
+  /// True if a mesh that is not closed is traced. Its openings are then closed by flat patches.
+  bool allow_open = false;
+  std::optional<double> thickness_mm;  ///< thickness that the mesh must have; not checked if empty
+};
+
+/// Plate whose flat back, the plane z = 0, is its retro facet.
+struct Plate {
+  std::array<double, 2> size_mm = {};  ///< size in x and y
+  double thickness_mm = 0.0;
+};
+
+/// Elements of an array that belong to a zone. Only one of the members rows, columns, mask and rest is used.
+struct ElementsOfZone {
+  std::vector<double> rows;       ///< numbers of rows, from 1 at the smallest y
+  std::vector<double> columns;    ///< numbers of columns, from 1 at the smallest x
+  std::optional<double> every;    ///< period after which the numbers of rows or columns repeat
+  std::optional<ArrayMask> mask;  ///< elements whose centroid is on a dark pixel
+  bool is_remainder = false;      ///< true: all elements that no other zone has
+};
+
+/// Change of a key of the design in a zone.
+struct ZoneChange {
+  std::string key;   ///< such as "element.aperture_mm"
+  std::string text;  ///< KEY=VALUE, as in the file
+};
+
+/// Plate with zones of different elements. The zones are either regions of the plate or sets of elements of one array.
+struct ZonedPart {
+  geometry::PartSpec base;                       ///< elements of the design, before the changes of a zone are applied
+  std::vector<std::vector<ZoneChange>> changes;  ///< changes of each zone
+  std::vector<ElementsOfZone> elements;          ///< elements of each zone; empty if the zones are regions
+  geometry::ZonedSpec spec;                      ///< zones in detail; part_of_design() adds the cells that masks select
+
+  bool has_masks() const {
+    return std::ranges::any_of(elements, [](const ElementsOfZone& of_zone) { return of_zone.mask.has_value(); });
+  }
+};
+
+/// Shape that a design describes.
+using Shape = std::variant<ElementArray, PartMesh, Plate, ZonedPart, raytrace::BallLayer>;
+
+/// File with a curved entrance face. It replaces the plane entrance face.
+struct EntranceFile {
+  std::string name;            ///< name of the file, as given
+  std::filesystem::path file;  ///< path of the file, from the working directory; entrance_of_design() reads the file
+  bool is_mesh = false;        ///< true: an STL file; false: the file of a turned part
+  /// True if the mesh is a counterpart that is located above the entrance face. The entrance face then consists of the
+  /// triangles of the mesh that face downward.
+  bool mesh_bottom = false;
+  /// Position of the origin of the file's frame (x and y), in the part frame. Default: the centre of the part.
+  std::optional<std::array<double, 2>> centre_mm;
+};
+
+/// Glass catalogue.
+struct GlassCatalogueFile {
+  std::string name;  ///< name of the file, as given
+  /// Path of the file, from the working directory; make_model() checks the file when it reads it.
+  std::filesystem::path file;
+};
+
+/// Returns the catalogue with an absolute file name, for designs that are written to another folder.
+std::optional<GlassCatalogueFile> with_absolute_path(const std::optional<GlassCatalogueFile>& catalogue);
+
+/// Material of the part, and medium behind its retro facets.
+struct Substance {
+  std::string material = "PMMA";
+  std::optional<GlassCatalogueFile> catalogue;  ///< catalogue that contains the material; empty for shipped materials
+  std::optional<double> refractive_index;  ///< takes precedence over the index of the material; relative to air, >= 1
+  std::optional<double> temperature_c;     ///< temperature of part and air; if empty, that of the material's data
+  Absorption absorption_per_mm;
+  double back_index = 1.0;  ///< refractive index of the medium behind the facets, relative to air; 1..3
+
+  bool is_coloured() const { return std::holds_alternative<std::vector<SpectralAbsorption>>(absorption_per_mm); }
+};
+
+/// Selected elements of a finite array that have another medium behind them.
+struct WetElements {
+  double index = 1.333;  ///< refractive index of the medium behind these elements, relative to air; 1..3
+  geometry::ElementChoice where;
+};
+
+/// Layer of a coating, as the design specifies it.
+struct CoatingLayer {
+  std::string material;  ///< name of a material or metal in the library; if empty, the index is given
+  double refractive_index = 1.0;
+  double extinction_coefficient = 0.0;
+  std::optional<double> thickness_nm;  ///< thickness; if empty, the layer is opaque
+
+  bool operator==(const CoatingLayer&) const = default;
+};
+
+/// Coatings of the faces of a part. The layers of each list are ordered from the body outwards.
+struct Coating {
+  std::vector<CoatingLayer> facets;    ///< at most one layer is opaque
+  std::vector<CoatingLayer> entrance;  ///< no layer is opaque
+
+  /// Returns true if the facets have the coating of `facet_coating = "aluminium"` and no other.
+  bool has_only_aluminium_on_facets() const;
+  bool has_opaque_facets() const;
+};
+
+/// Layer on the entrance face whose thickness is large compared with the coherence length of the light.
+struct ThickCoatingLayer {
+  double refractive_index = 1.0;
+  double thickness_um = 0.0;
+  double absorption_per_mm = 0.0;  ///< Napierian absorption coefficient for power
+};
+
+/// Contamination and damage of the entrance face. Coverages are fractions of its area; haze is a fraction of the light.
+struct EntranceState {
+  std::vector<ThickCoatingLayer> layers;  ///< outside of the coating, ordered from the body outwards
+  double film_coverage = 0.0;
+  double water_index = 1.333;
+  double drop_coverage = 0.0;
+  /// Set if `drop_coverage` is above 0. Other optional members, except the azimuth, are set if their coverage or `haze`
+  /// is above 0.
+  std::optional<double> drop_contact_angle_deg;
+  double dust_coverage = 0.0;
+  std::optional<double> dust_albedo;
+  std::optional<double> dust_forward_fraction;
+  double scratch_coverage = 0.0;
+  std::optional<double> scratch_spread_deg;
+  std::optional<double> scratch_azimuth_deg;  ///< azimuth of the scratches; if empty, they have all directions
+  double haze = 0.0;                          ///< fraction of the light that is scattered by more than 2.5 degrees
+  std::optional<double> haze_spread_deg;
+  double roughness_sq_nm = 0.0;
+  double correlation_length_um = 0.0;
+
+  /// Returns true if the face scatters light. A clean plane face does not.
+  bool scatters() const {
+    return drop_coverage > 0.0 || dust_coverage > 0.0 || scratch_coverage > 0.0 || haze > 0.0 || roughness_sq_nm > 0.0;
+  }
+  bool is_clean() const { return layers.empty() && film_coverage == 0.0 && !scatters(); }
+};
+
+/// Optical properties of surfaces other than the index: coatings, state of the entrance face, texture and form of the
+/// retro facets.
+struct Surface {
+  Coating coating;
+  EntranceState entrance;
+  bool absorbing_walls = false;  ///< true: the walls of elements and of the border absorb all light
+  SurfaceFinish texture;
+  FormOfFacets form;
+
+  bool is_smooth() const { return std::holds_alternative<SmoothTexture>(texture); }
+};
+
+/// Light that illuminates the part.
+struct Light {
+  std::variant<double, LightSpectrum> colour = 587.56;  ///< one wavelength in vacuum, in nm, or a spectrum
+  /// Polarisation with respect to the axes of raytrace::source_axis(). The component i is 1.
+  raytrace::Stokes polarisation = raytrace::kUnpolarised;
+
+  /// Returns the spectrum, or null if the light has only one wavelength.
+  const LightSpectrum* spectrum() const { return std::get_if<LightSpectrum>(&colour); }
+  /// Returns the wavelength in vacuum.
+  /// \pre the light has only one wavelength
+  double wavelength_nm() const { return std::get<double>(colour); }
+};
+
+/// Definition of retroreflected light.
+struct Detector {
+  /// Half-angles of the acceptance cones, in air; ascending, each in (0, 90].
+  std::vector<double> acceptance_half_angle_deg = {0.5};
+};
+
+/// Contents of a design file. They have been checked, and defaults are filled in.
+struct Design {
+  std::string source;  ///< file name as given, "-" for standard input
+  std::string title;   ///< empty if no title was given
+  Shape shape;
+  std::optional<EntranceFile> entrance;  ///< curved entrance face; empty for plane faces, balls and infinite arrays
+  Substance substance;
+  std::optional<WetElements> wet_back;
+  Surface surface;
+  Light light;
+  Detector detector;
+  Idealisation idealisation;
+  /// Document of the design file. Null if the design was not read from a file.
+  std::shared_ptr<const schema::Document> document;
+
+  /// Returns the paths, from the working directory, of all files whose names are values of keys of the design.
+  std::vector<std::filesystem::path> files() const;
+  /// Returns a warning for each key of the design file that has no effect because of another key.
+  Warnings warnings() const;
+  /// Returns the position at which a key was given. For a missing key, returns the position that messages report for
+  /// it.
+  InputLocation where(std::string_view key) const;
+  /// Returns the position of the key that determines the texture of the facets.
+  InputLocation where_texture() const;
+  /// Returns the position of the key that determines the form of the facets.
+  InputLocation where_form() const;
+  /// Returns the position of the key because of which the facets are not smooth planes. It is the key of the texture,
+  /// or the key of the form if the facets are smooth.
+  InputLocation where_facets() const { return surface.is_smooth() ? where_form() : where_texture(); }
+  std::string_view entrance_key() const;
+  /// Sets the position that messages about a key report.
+  void set_where(const std::string& key, InputLocation place);
+
+  // Each of these functions returns the shape, or null if the shape is of another kind.
+  const ElementArray* elements() const { return std::get_if<ElementArray>(&shape); }
+  const raytrace::BallLayer* balls() const { return std::get_if<raytrace::BallLayer>(&shape); }
+  const PartMesh* mesh() const { return std::get_if<PartMesh>(&shape); }
+  const ZonedPart* zoned() const { return std::get_if<ZonedPart>(&shape); }
+  /// Returns the mask of the array. Null if there is none.
+  const ArrayMask* mask() const;
+  const FacetPlanesFile* facet_planes() const;
+  /// \pre elements()
+  const geometry::PartSpec& part() const { return std::get<ElementArray>(shape).part; }
+  geometry::PartSpec& part() { return std::get<ElementArray>(shape).part; }
+  /// Returns true if the design has an infinite array. Returns false for balls, even though a layer with a pitch is
+  /// infinite.
+  bool is_infinite() const { return elements() != nullptr && part().array.extent == geometry::Extent::infinite; }
+  /// Returns the thickness of the plate as given in the design, or 0 if it is not given.
+  double thickness_mm() const;
+
+  /// Returns the name of the design in messages.
+  std::string source_name() const { return source == "-" ? "standard input" : source; }
+  /// Returns the position of the key because of which the entrance face scatters light.
+  /// \pre surface.entrance.scatters()
+  InputLocation where_entrance_scatters() const;
+  /// Returns true if the retro facets reflect by total internal reflection, that is, without mirror coating.
+  bool needs_total_reflection() const { return !idealisation.mirror_facets && !surface.coating.has_opaque_facets(); }
+};
+
+/// Kinds of designs that a study supports. Every study supports plane arrays of elements with a plane entrance face.
+struct Capabilities {
+  std::string_view what;  ///< name of the study for messages, such as "retrace job"
+  bool balls = false;
+  bool solids = false;  ///< meshes and plates are supported
+  bool zones = false;   ///< parts of zones are supported, even if `solids` is false
+  bool substrates = true;
+  bool entrances = false;
+  bool wet_backs = false;
+};
+/// Checks that a study supports a design.
+/// \throw InputError if it does not
+void require_supported(const Design& design, const Capabilities& capabilities);
+
+}  // namespace retrace::design

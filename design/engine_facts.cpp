@@ -1,0 +1,30 @@
+#include "design/engine_facts.h"
+
+namespace retrace::design {
+
+raytrace::EngineFacts engine_facts(const Design& design, const raytrace::Optics* optics) {
+  raytrace::EngineFacts facts;
+  if (optics != nullptr) facts = raytrace::facts_of(*optics);
+  facts.has_balls = design.balls() != nullptr;
+  facts.has_curved_entrance = design.entrance.has_value();
+  return facts;
+}
+
+InputLocation position_of(const Design& design, raytrace::Obstacle obstacle) {
+  using enum raytrace::Obstacle;
+  switch (obstacle) {
+    case balls: return design.where("element.kind");
+    case curved_entrance: return design.where(design.entrance_key());
+    case unequal_backs: return design.where("wet_back.index");
+    case form_and_texture:
+    case texture:
+    case texture_without_phases:
+    case form: return design.where_facets();
+    case scattering_entrance: return design.where_entrance_scatters();
+    case plain_sampling:
+    case unequal_cells: break;  // no single key is the cause
+  }
+  return {design.source_name(), 0, ""};
+}
+
+}  // namespace retrace::design

@@ -1,0 +1,194 @@
+#include "design/io/design_format.h"
+
+#include "design/io/design_rows.h"
+#include "design/io/design_rules.h"
+#include "geometry/io/substrate_rows.h"
+
+namespace retrace::design {
+namespace {
+
+using namespace schema;
+
+constexpr Condition kTableOfNoBall = is_not(kKind, kBall);
+constexpr Condition kNoMesh =
+    is_absent("part.mesh", "not allowed together with part.mesh, which describes the whole part");
+constexpr Condition kNoPlate =
+    is_absent("part.plate_mm", "not allowed together with part.plate_mm, which describes the whole part");
+
+constexpr Condition kWithElements[] = {kNoMesh, kNoPlate};
+constexpr Condition kWithPlanes[] = {kNoMesh, kNoPlate, kTableOfNoBall};
+constexpr Condition kPartTable[] = {kTableOfNoBall};
+constexpr Condition kEntranceTable[] = {kTableOfNoBall};
+constexpr Condition kSurfaceTable[] = {
+    is_not(kKind, kBall, "not allowed for kind = \"ball\", whose surfaces are smooth")};
+constexpr Condition kScratchesOnly[] = {is_absent("part.mesh", kNotWithMesh), is_absent("part.plate_mm", kNotWithMesh),
+                                        is(kKind, kRtp)};
+
+const Table kSurfaceTables[] = {
+    {.name = "scratches",
+     .meaning = "Scratches on the facets of prisms: V-shaped grooves that run up a facet from the root to the rim. At "
+                "most 200 are allowed, and none on a `[substrate]`. Scratches on the same facet must not overlap. In a "
+                "`checker` array, scratches are rotated with their elements.",
+     .rows = scratch_rows(),
+     .presence = Presence::list,
+     .layout = Layout::in_line,
+     .shape = "a list of tables with facet, position_um, width_um and depth_um",
+     .when = kScratchesOnly}};
+
+const Table kFormTables[] = {
+    {.name = "terms",
+     .meaning = "Terms of a polynomial over every facet, at most 45. Coordinates are measured from the centroid of the "
+                "facet. Their unit is the radius of the facet, which is the distance from the centroid to the farthest "
+                "corner. The best-fit plane is not subtracted.",
+     .rows = form_term_rows(),
+     .presence = Presence::list,
+     .layout = Layout::in_line,
+     .shape = "a list of tables with x_power, y_power and height_um"}};
+
+constexpr std::string_view kLayerIndex[] = {"material", "refractive_index"};
+constexpr Rule kLayerRules[] = {OneOf{kLayerIndex, "must have either material or refractive_index"}};
+constexpr std::string_view kLayerShape =
+    "a list of tables with material or refractive_index, and thickness_nm, the layer on the body first";
+const Table kCoatingTables[] = {{.name = "facets",
+                                 .meaning = "Layers on the retro facets, in order from the body outwards. At most 200 "
+                                            "layers are allowed, and at most one may be opaque.",
+                                 .rows = layer_rows(),
+                                 .rules = kLayerRules,
+                                 .presence = Presence::list,
+                                 .layout = Layout::in_line,
+                                 .shape = kLayerShape},
+                                {.name = "entrance",
+                                 .meaning = "Layers on the entrance face, in order from the body outwards. At most 200 "
+                                            "layers are allowed, and none may be opaque.",
+                                 .rows = layer_rows(),
+                                 .rules = kLayerRules,
+                                 .presence = Presence::list,
+                                 .layout = Layout::in_line,
+                                 .shape = kLayerShape,
+                                 .when = kEntranceTable}};
+
+constexpr Condition kWithZones[] = {kNoMesh,
+                                    kNoPlate,
+                                    kTableOfNoBall,
+                                    is_absent("substrate", "not allowed together with [substrate]"),
+                                    is_absent("wet_back", "not allowed together with [wet_back]"),
+                                    is_absent("form", "not allowed together with [form]"),
+                                    is_absent("array.mask", "not allowed together with array.mask"),
+                                    is_absent("part.facets", "not allowed together with facets in [part]")};
+constexpr std::string_view kWhereAreZones[] = {"area_fraction", "rectangles_mm", "polygon_mm", "rows",
+                                               "columns",       "mask",          "rest"};
+constexpr Rule kZoneRules[] = {
+    OneOf{kWhereAreZones,
+          "must have one of area_fraction, rectangles_mm, polygon_mm, rows, columns, mask and rest, "
+          "which determine its region or its elements"}};
+constexpr std::string_view kWhichAreWet[] = {"fraction", "rectangle_mm", "disc_mm", "half_plane"};
+constexpr Rule kWetBackRules[] = {OneOf{
+    kWhichAreWet, "must have one of fraction, rectangle_mm, disc_mm and half_plane, which select the wet elements"}};
+const Table kEntranceFaceTables[] = {
+    {.name = "layers",
+     .meaning = "Layers that are much thicker than the coherence length of the light, such as hard coats, in order "
+                "from the body outwards. At most 20 are allowed. They are on top of the layers of `coating.entrance`, "
+                "and water is on top of them.",
+     .rows = thick_layer_rows(),
+     .presence = Presence::list,
+     .layout = Layout::in_line,
+     .shape = "a list of tables with refractive_index, thickness_um and absorption_per_mm"}};
+
+constexpr Row kRootRows[] = {
+    {"title", Text{}, kNone, "Title of the design. It is used as the name of the design's curves in plots."}};
+const Table kTables[] = {
+    {.name = "element",
+     .meaning = "Kind and dimensions of one element.",
+     .rows = element_rows(),
+     .presence = Presence::implied,
+     .when = kWithElements},
+    {.name = "array",
+     .meaning = "Arrangement of the elements over the part.",
+     .rows = array_rows(),
+     .presence = Presence::implied,
+     .when = kWithElements},
+    {.name = "substrate",
+     .meaning = "Surface on which the elements of a finite array are placed, instead of the plane z = 0.",
+     .rows = geometry::substrate_rows(),
+     .presence = Presence::optional,
+     .when = kWithPlanes,
+     .former = "base"},
+    {.name = "zone",
+     .meaning = "Region of a finite part, or set of its elements, with elements that differ from those of other zones. "
+                "The zones cover the whole part.",
+     .rows = zone_rows(),
+     .rules = kZoneRules,
+     .presence = Presence::list,
+     .when = kWithZones},
+    {.name = "part",
+     .meaning = "Mesh or plate that replaces the elements, or planes of individual facets.",
+     .rows = part_rows(),
+     .presence = Presence::optional,
+     .when = kPartTable},
+    {.name = "entrance_surface",
+     .meaning = "Curved surface through which light enters, instead of the plane z = thickness_mm.",
+     .rows = entrance_rows(),
+     .presence = Presence::optional,
+     .when = kEntranceTable,
+     .former = "front"},
+    {.name = "body",
+     .meaning = "Plate and material of the part, and the medium behind its retro facets.",
+     .rows = body_rows(),
+     .presence = Presence::implied},
+    {.name = "wet_back",
+     .meaning = "Another medium behind some elements of a finite array, for example where water has entered.",
+     .rows = wet_back_rows(),
+     .rules = kWetBackRules,
+     .presence = Presence::optional,
+     .when = kWithPlanes},
+    {.name = "coating",
+     .meaning = "Thin layers on the faces of the part.",
+     .tables = kCoatingTables,
+     .presence = Presence::optional},
+    {.name = "entrance",
+     .meaning =
+         "State of an entrance face that is not clean or not smooth: layers, water, dust, scratches, haze, roughness.",
+     .rows = entrance_face_rows(),
+     .tables = kEntranceFaceTables,
+     .presence = Presence::optional,
+     .when = kEntranceTable},
+    {.name = "light", .meaning = "Light that falls on the part.", .rows = light_rows(), .presence = Presence::implied},
+    {.name = "detector",
+     .meaning = "Cone of directions in which light counts as returned.",
+     .rows = detector_rows(),
+     .presence = Presence::implied},
+    {.name = "surface",
+     .meaning = "Angle errors, texture and edges of the retro facets.",
+     .rows = surface_rows(),
+     .tables = kSurfaceTables,
+     .presence = Presence::implied,
+     .when = kSurfaceTable},
+    {.name = "form",
+     .meaning = "Deviation of the retro facets of elements from planes, equal for all facets: sink of moulded parts, a "
+                "polynomial, or a measured height map.",
+     .rows = form_rows(),
+     .tables = kFormTables,
+     .presence = Presence::optional,
+     .when = kWithPlanes},
+    {.name = "idealisation",
+     .meaning = "Idealisations, for comparisons with theory.",
+     .rows = idealisation_rows(),
+     .presence = Presence::implied}};
+
+const Format kFormat = {"design",
+                        "retrace.design/1",
+                        "Design of a retroreflector array",
+                        {.name = "",
+                         .meaning = "Part, and the light that falls on it.",
+                         .rows = kRootRows,
+                         .tables = kTables,
+                         .rules = design_rules()},
+                        true};
+
+}  // namespace
+
+const Format& design_format() {
+  return kFormat;
+}
+
+}  // namespace retrace::design

@@ -1,0 +1,458 @@
+#include "design/io/design_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/atomic_file.h"
+#include "core/message_text.h"
+#include "core/overloaded.h"
+#include "core/schema/reader.h"
+#include "core/sin_cos.h"
+#include "design/io/design_document.h"
+#include "design/io/design_format.h"
+#include "design/io/part_reader.h"
+#include "design/io/zone_reader.h"
+#include "geometry/io/substrate_rows.h"
+#include "materials/io/index_record.h"
+
+namespace retrace::design {
+namespace fs = std::filesystem;
+namespace {
+
+using schema::Document;
+
+std::array<double, 2> pair_of(const Document& document, std::string_view key) {
+  const std::vector<double> given = document.numbers(key);
+  return {given[0], given[1]};
+}
+
+PartMesh read_mesh(const Document& document) {
+  return {document.text("part.mesh"), document.file("part.mesh"), document.flag("part.allow_open"),
+          document.number_if("body.thickness_mm")};
+}
+
+ElementArray read_elements(const Document& document) {
+  ElementArray array = {read_part(document), {}, {}};
+  if (constexpr std::string_view mask = "array.mask"; document.has(mask))
+    array.mask = {document.text(mask), document.file(mask), document.number("array.mask_threshold")};
+  if (constexpr std::string_view facets = "part.facets"; document.has(facets))
+    array.facet_planes = {document.text(facets), document.file(facets)};
+  return array;
+}
+
+Shape read_shape(const Document& document) {
+  if (document.has("part.plate_mm"))
+    return Plate{pair_of(document, "part.plate_mm"), document.number("body.thickness_mm")};
+  if (document.has("part.mesh")) return read_mesh(document);
+  if (has_zones(document)) return read_zones(document);
+  if (has_elements(document)) return read_elements(document);
+  return read_balls(document);
+}
+
+Absorption read_absorption(const Document& document) {
+  constexpr std::string_view key = "body.absorption_per_mm";
+  if (!document.is_list(key)) {
+    const std::optional<double> per_mm = document.number_if(key);
+    return per_mm ? Absorption(*per_mm) : Absorption();
+  }
+  std::vector<SpectralAbsorption> curve;
+  for (const std::vector<double>& pair : document.rows(key)) curve.push_back({pair[0], pair[1]});
+  return curve;
+}
+
+/// Reads the texture of models with rms heights. If all heights are 0, the facets are smooth.
+SurfaceFinish read_heights(const Document& document, std::string_view model) {
+  const double waviness_sq_nm = document.number("surface.waviness_sq_nm");
+  const double waviness_length_um = document.number("surface.waviness_length_um");
+  const double roughness_sq_nm = document.number("surface.roughness_sq_nm");
+  if (model == "smooth" || !(roughness_sq_nm > 0.0 || waviness_sq_nm > 0.0)) return SmoothTexture();
+  if (model == "microfacet")
+    return MicrofacetTexture{waviness_sq_nm, waviness_length_um, document.text("surface.slope_distribution") == "ggx"};
+  return HarveyShackTexture{roughness_sq_nm, document.number("surface.correlation_length_um"), waviness_sq_nm,
+                            waviness_length_um, document.number_if("surface.correlation_length_down_um").value_or(0.0)};
+}
+
+SurfaceFinish read_texture(const Document& document) {
+  const std::string model = document.text_if("surface.model");
+  if (model == "abg")
+    return AbgTexture{document.number("surface.abg_a"), document.number("surface.abg_b"),
+                      document.number("surface.abg_g")};
+  if (model == "height_map")
+    return HeightMapTexture{document.text("surface.height_map"), document.file("surface.height_map"),
+                            document.choice<HeightMapAxis>("surface.height_map_horizontal_axis"),
+                            static_cast<int>(document.index("surface.height_map_form")) + 1};
+  return read_heights(document, model);
+}
+
+/// Layer that `facet_coating = "aluminium"` describes.
+const CoatingLayer kPlainAluminium = {"aluminium", 1.0, 0.0, {}};
+
+std::vector<CoatingLayer> read_layers(const Document& document, std::string_view list) {
+  std::vector<CoatingLayer> layers;
+  for (std::size_t i = 0; i < document.count(list); ++i) {
+    const std::string entry = schema::path_of_entry(list, i);
+    CoatingLayer& layer = layers.emplace_back();
+    layer.material = document.text_if(entry + ".material");
+    layer.refractive_index = document.number_if(entry + ".refractive_index").value_or(1.0);
+    layer.extinction_coefficient = document.number_if(entry + ".extinction_coefficient").value_or(0.0);
+    layer.thickness_nm = document.number_if(entry + ".thickness_nm");
+  }
+  return layers;
+}
+
+Coating read_coating(const Document& document) {
+  Coating coating = {read_layers(document, "coating.facets"), read_layers(document, "coating.entrance")};
+  if (document.text("body.facet_coating") == "aluminium") coating.facets = {kPlainAluminium};
+  return coating;
+}
+
+FormOfFacets read_form(const Document& document) {
+  FormOfFacets form;
+  if (!document.has("form")) return form;
+  form.sink_um = document.number("form.sink_um");
+  for (std::size_t i = 0; i < document.count("form.terms"); ++i) {
+    const std::string entry = schema::path_of_entry("form.terms", i);
+    const FormTerm term{static_cast<int>(document.number(entry + ".x_power")),
+                        static_cast<int>(document.number(entry + ".y_power")), document.number(entry + ".height_um")};
+    if (term.height_um != 0.0) form.terms.push_back(term);
+  }
+  if (document.has("form.map"))
+    form.map = {document.text("form.map"), document.file("form.map"),
+                document.choice<HeightMapAxis>("form.map_horizontal_axis"),
+                static_cast<int>(document.number("form.map_degree"))};
+  return form;
+}
+
+EntranceState read_entrance_face(const Document& document) {
+  EntranceState face;
+  if (!document.has("entrance")) return face;
+  for (std::size_t i = 0; i < document.count("entrance.layers"); ++i) {
+    const std::string entry = schema::path_of_entry("entrance.layers", i);
+    face.layers.push_back({document.number(entry + ".refractive_index"), document.number(entry + ".thickness_um"),
+                           document.number(entry + ".absorption_per_mm")});
+  }
+  face.film_coverage = document.number("entrance.film_coverage");
+  face.water_index = document.number("entrance.water_index");
+  face.drop_coverage = document.number("entrance.drop_coverage");
+  face.drop_contact_angle_deg = document.number_if("entrance.drop_contact_angle_deg");
+  face.dust_coverage = document.number("entrance.dust_coverage");
+  face.dust_albedo = document.number_if("entrance.dust_albedo");
+  face.dust_forward_fraction = document.number_if("entrance.dust_forward_fraction");
+  face.scratch_coverage = document.number("entrance.scratch_coverage");
+  face.scratch_spread_deg = document.number_if("entrance.scratch_spread_deg");
+  face.scratch_azimuth_deg = document.number_if("entrance.scratch_azimuth_deg");
+  face.haze = document.number("entrance.haze");
+  face.haze_spread_deg = document.number_if("entrance.haze_spread_deg");
+  face.roughness_sq_nm = document.number("entrance.roughness_sq_nm");
+  face.correlation_length_um = document.number("entrance.correlation_length_um");
+  return face;
+}
+
+Surface read_surface(const Document& document) {
+  return {read_coating(document), read_entrance_face(document), document.text("surface.walls") == "absorbing",
+          read_texture(document), read_form(document)};
+}
+
+std::variant<double, LightSpectrum> read_colour(const Document& document) {
+  constexpr std::string_view key = "light.spectrum";
+  if (!document.has(key)) return document.number("light.wavelength_nm");
+  LightSpectrum spectrum;
+  spectrum.photopic = document.text("light.weighting") == "photopic";
+  if (document.is_list(key)) {
+    spectrum.kind = LightSpectrum::Kind::lines;
+    for (const std::vector<double>& line : document.rows(key)) spectrum.lines.push_back({line[0], line[1]});
+    std::ranges::sort(spectrum.lines, {}, &LightSpectrum::Line::wavelength_nm);
+    return spectrum;
+  }
+  const std::string word = document.text(key);
+  spectrum.kind = word == "A"     ? LightSpectrum::Kind::illuminant_a
+                  : word == "D65" ? LightSpectrum::Kind::illuminant_d65
+                                  : LightSpectrum::Kind::file;
+  if (spectrum.kind != LightSpectrum::Kind::file) return spectrum;
+  spectrum.name = word;
+  spectrum.file = document.file(key);
+  return spectrum;
+}
+
+raytrace::Stokes read_polarisation(const Document& document) {
+  constexpr std::string_view key = "light.polarisation";
+  if (document.is_list(key)) {  // Stokes parameters, which are divided by i
+    const std::vector<double> given = document.numbers(key);
+    return {1.0, given[1] / given[0], given[2] / given[0], given[3] / given[0]};
+  }
+  const std::string word = document.text(key);
+  if (word == "right_circular") return {1.0, 0.0, 0.0, 1.0};
+  if (word == "left_circular") return {1.0, 0.0, 0.0, -1.0};
+  if (word != "linear") return raytrace::kUnpolarised;
+  const auto [sine, cosine] = sin_cos_deg(2.0 * document.number("light.polarisation_angle_deg"));
+  return {1.0, cosine, sine, 0.0};
+}
+
+std::vector<double> read_acceptance(const Document& document) {
+  std::vector<double> angles_deg = document.numbers("detector.acceptance_half_angle_deg");
+  std::sort(angles_deg.begin(), angles_deg.end());
+  angles_deg.erase(std::unique(angles_deg.begin(), angles_deg.end()), angles_deg.end());
+  return angles_deg;
+}
+
+/// Reads the curved entrance face. Returns nothing if the document has no table [entrance_surface].
+std::optional<EntranceFile> read_entrance(const Document& document) {
+  if (!document.has("entrance_surface")) return std::nullopt;
+  EntranceFile entrance;
+  entrance.is_mesh = document.has("entrance_surface.mesh");
+  const std::string_view key = entrance.is_mesh ? "entrance_surface.mesh" : "entrance_surface.turned_part";
+  entrance.file = document.file(key);
+  entrance.name = document.text(key);
+  entrance.mesh_bottom = entrance.is_mesh && document.text("entrance_surface.mesh_side") == "bottom";
+  if (document.has("entrance_surface.centre_mm")) entrance.centre_mm = pair_of(document, "entrance_surface.centre_mm");
+  return entrance;
+}
+
+/// Reads the glass catalogue that contains the material. Returns nothing if the document has no such key.
+std::optional<GlassCatalogueFile> read_catalogue(const Document& document) {
+  if (!document.has("body.catalogue")) return std::nullopt;
+  return GlassCatalogueFile{document.text("body.catalogue"), document.file("body.catalogue")};
+}
+
+/// Returns the name of the material. For a file with a single index record it is the name of the file, which a design
+/// need not repeat.
+std::string read_material(const Document& document) {
+  std::string material = document.text("body.material");
+  if (!document.has("body.catalogue") || !materials::is_index_record(document.file("body.catalogue"))) return material;
+  const std::string recorded = printable(document.file("body.catalogue").stem().string());
+  if (document.has("body.material") && material != recorded)
+    document.fail("body.material", fmt::format("must be left out or be {}, the material of the record, got {}",
+                                               in_quotes(recorded), in_quotes(material)));
+  return recorded;
+}
+
+/// Reads the selection of wet elements. Returns nothing if the document has no table [wet_back].
+std::optional<WetElements> read_wet_back(const Document& document) {
+  if (!document.has("wet_back")) return std::nullopt;
+  WetElements wet{document.number("wet_back.index"), {}};
+  if (const auto share = document.number_if("wet_back.fraction")) {
+    wet.where = geometry::RandomFraction{*share, static_cast<std::uint32_t>(document.number("wet_back.seed"))};
+  } else if (document.has("wet_back.rectangle_mm")) {
+    const std::vector<double> r = document.numbers("wet_back.rectangle_mm");
+    wet.where = geometry::Rectangle{{r[0], r[1]}, {r[2], r[3]}};
+  } else if (document.has("wet_back.disc_mm")) {
+    const std::vector<double> d = document.numbers("wet_back.disc_mm");
+    wet.where = geometry::Disc{{d[0], d[1]}, d[2]};
+  } else {
+    const std::vector<double> h = document.numbers("wet_back.half_plane");
+    wet.where = geometry::HalfPlane{{h[0], h[1]}, h[2]};
+  }
+  return wet;
+}
+
+/// Returns the design of a document. Files that are named in the document are not read.
+Design resolved(std::shared_ptr<const Document> given) {
+  const Document& document = *given;
+  schema::check(document, design_format().root, "", &document);
+  Design design;
+  design.source = document.source();
+  design.title = document.text_if("title");
+  design.shape = read_shape(document);
+  design.entrance = read_entrance(document);
+  design.substance = {read_material(document),
+                      read_catalogue(document),
+                      document.number_if("body.refractive_index"),
+                      document.number_if("body.temperature_c"),
+                      read_absorption(document),
+                      document.number("body.back_index")};
+  design.wet_back = read_wet_back(document);
+  design.surface = read_surface(document);
+  design.light = {read_colour(document), read_polarisation(document)};
+  design.detector.acceptance_half_angle_deg = read_acceptance(document);
+  design.idealisation = {document.text("idealisation.facets") == "mirror",
+                         document.text("idealisation.entrance") == "lossless"};
+  design.document = std::move(given);
+  return design;
+}
+
+}  // namespace
+
+std::vector<fs::path> Design::files() const {
+  return document ? document->files() : std::vector<fs::path>();
+}
+
+namespace {
+
+/// Returns a warning for each correlation length or waviness period whose rms height is missing in the document. An
+/// explicit height of 0 causes no warning, because parameter studies vary heights starting from 0.
+Warnings lengths_without_heights(const Document& document) {
+  Warnings warnings;
+  for (const auto& [length, height] : {std::pair("surface.correlation_length_um", "surface.roughness_sq_nm"),
+                                       {"surface.correlation_length_down_um", "surface.roughness_sq_nm"},
+                                       {"surface.waviness_length_um", "surface.waviness_sq_nm"},
+                                       {"entrance.correlation_length_um", "entrance.roughness_sq_nm"}})
+    if (document.number_if(length).value_or(0.0) > 0.0 && document.has(length) && !document.has(height))
+      warnings.push_back(
+          {"key_without_effect",
+           InputError(document.where(length), fmt::format("has no effect: give {} as well, or remove it", height))
+               .what()});
+  return warnings;
+}
+
+}  // namespace
+
+Warnings Design::warnings() const {
+  if (!document) return {};
+  Warnings warnings = schema::renamed_keys(*document);
+  append(warnings, schema::superseded_keys(*document));
+  append(warnings, lengths_without_heights(*document));
+  return warnings;
+}
+
+void Design::set_where(const std::string& key, InputLocation place) {
+  auto changed = document ? std::make_shared<Document>(*document) : std::make_shared<Document>(design_format().root);
+  changed->set(key, {}, std::move(place));
+  document = std::move(changed);
+}
+
+InputLocation Design::where(std::string_view key) const {
+  return document ? document->where(key) : InputLocation{source, 0, std::string(key)};
+}
+
+InputLocation Design::where_texture() const {
+  for (const std::string_view key : {"surface.height_map", "surface.model", "surface.roughness_sq_nm"})
+    if (document && document->has(key)) return where(key);
+  return where("surface.waviness_sq_nm");
+}
+
+InputLocation Design::where_form() const {
+  for (const std::string_view key : {"form.map", "form.terms", "form.sink_um"})
+    if (document && document->has(key)) return where(key);
+  return where("form");
+}
+
+InputLocation Design::where_entrance_scatters() const {
+  const EntranceState& face = surface.entrance;
+  return where(face.drop_coverage > 0.0      ? "entrance.drop_coverage"
+               : face.dust_coverage > 0.0    ? "entrance.dust_coverage"
+               : face.scratch_coverage > 0.0 ? "entrance.scratch_coverage"
+               : face.haze > 0.0             ? "entrance.haze"
+                                             : "entrance.roughness_sq_nm");
+}
+
+bool Coating::has_opaque_facets() const {
+  return std::ranges::any_of(facets, [](const CoatingLayer& layer) { return !layer.thickness_nm; });
+}
+
+bool Coating::has_only_aluminium_on_facets() const {
+  return facets.size() == 1 && facets[0] == kPlainAluminium;
+}
+
+std::optional<GlassCatalogueFile> with_absolute_path(const std::optional<GlassCatalogueFile>& catalogue) {
+  if (!catalogue) return std::nullopt;
+  const fs::path file = fs::absolute(catalogue->file).lexically_normal();
+  return GlassCatalogueFile{file.string(), file};
+}
+
+std::string_view Design::entrance_key() const {
+  return entrance && entrance->is_mesh ? "entrance_surface.mesh" : "entrance_surface.turned_part";
+}
+
+const ArrayMask* Design::mask() const {
+  return elements() != nullptr && elements()->mask ? &*elements()->mask : nullptr;
+}
+
+const FacetPlanesFile* Design::facet_planes() const {
+  return elements() != nullptr && elements()->facet_planes ? &*elements()->facet_planes : nullptr;
+}
+
+double Design::thickness_mm() const {
+  return std::visit(Overloaded{[](const ElementArray& array) { return array.part.thickness_mm; },
+                               [](const PartMesh& mesh) { return mesh.thickness_mm.value_or(0.0); },
+                               [](const Plate& plate) { return plate.thickness_mm; },
+                               [](const ZonedPart& zoned) { return zoned.spec.thickness_mm; },
+                               [](const raytrace::BallLayer&) { return 0.0; }},
+                    shape);
+}
+
+void require_supported(const Design& design, const Capabilities& capabilities) {
+  const std::string what(capabilities.what);
+  const auto refuse_solid = [&](std::string_view key, std::string_view solid) {
+    if (!capabilities.solids)
+      throw InputError(design.where(key),
+                       fmt::format("{} does not support a {}, only [element] and [array]", what, solid));
+  };
+  std::visit(Overloaded{[&](const ElementArray& array) {
+                          if (array.part.substrate && !capabilities.substrates)
+                            throw InputError(design.where(geometry::substrate_shape_key(*array.part.substrate)),
+                                             what + " does not support a [substrate], only elements on a plane");
+                        },
+                        [&](const PartMesh&) { refuse_solid("part.mesh", "mesh"); },
+                        [&](const Plate&) { refuse_solid("part.plate_mm", "plate"); },
+                        [&](const ZonedPart&) {
+                          if (!capabilities.zones) refuse_solid("zone", "part of zones");
+                        },
+                        [&](const raytrace::BallLayer&) {
+                          if (!capabilities.balls)
+                            throw InputError(design.where("element.kind"),
+                                             "balls are supported only by retrace rre, photometry and inspect");
+                        }},
+             design.shape);
+  if (design.entrance && !capabilities.entrances)
+    throw InputError(design.where(design.entrance_key()),
+                     what + " does not support an [entrance_surface], only a plane entrance face");
+  if (design.wet_back && !capabilities.wet_backs)
+    throw InputError(design.where("wet_back.index"),
+                     what + " does not support a [wet_back], only the same medium behind all elements");
+}
+
+Design parse_design(std::string_view text, const std::string& source_name, std::span<const std::string> overrides) {
+  return resolved(std::make_shared<const Document>(
+      schema::read_document(design_format(), text, source_name, kMaxDesignBytes, overrides)));
+}
+
+Design with(const Design& design, std::span<const std::string> overrides) {
+  const bool is_of_file = design.document && !design.document->origin().text.empty();
+  if (!is_of_file) return parse_design(design_text(design), design.source, overrides);
+  Design changed =
+      resolved(std::make_shared<const Document>(schema::with(design_format(), *design.document, overrides)));
+  changed.source = design.source;
+  return changed;
+}
+
+/// Keys whose values are names of files, in the order in which the stores of studies list the files of a design. The
+/// order determines the identity of a study, so that new keys must be appended at the end.
+constexpr std::array<std::string_view, 9> kFilesOfStores = {"part.mesh",
+                                                            "array.mask",
+                                                            "surface.height_map",
+                                                            "part.facets",
+                                                            "light.spectrum",
+                                                            "entrance_surface.turned_part",
+                                                            "entrance_surface.mesh",
+                                                            "body.catalogue",
+                                                            "form.map"};
+
+std::vector<NamedFile> files_named(std::string_view text, const std::string& source_name,
+                                   std::span<const std::string> overrides) {
+  const Document document = schema::unchecked_names(design_format(), text, source_name, kMaxDesignBytes, overrides);
+  std::vector<std::string> keys = document.keys_of_files();
+  const auto rank = [](const std::string& key) { return std::ranges::find(kFilesOfStores, key); };
+  std::stable_sort(keys.begin(), keys.end(),
+                   [&](const std::string& a, const std::string& b) { return rank(a) < rank(b); });
+  std::vector<NamedFile> files;
+  for (const std::string& key : keys) files.push_back({document.file(key), key, document.where(key)});
+  return files;
+}
+
+std::string read_toml_text(const fs::path& file) {
+  return file == "-" ? read_standard_input(kMaxDesignBytes) : read_file(file, kMaxDesignBytes);
+}
+
+Design read_design(const fs::path& file, std::span<const std::string> overrides) {
+  if (file != "-") return parse_design(read_toml_text(file), file.string(), overrides);
+  Design design = parse_design(read_toml_text(file), "standard input", overrides);
+  design.source = file.string();
+  return design;
+}
+
+}  // namespace retrace::design

@@ -1,0 +1,115 @@
+#include "design/io/part_reader.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "core/schema/reader.h"
+#include "geometry/io/element_keys.h"
+#include "geometry/io/substrate_rows.h"
+
+namespace retrace::design {
+namespace {
+
+using geometry::Arrangement, geometry::PartSpec, schema::Document;
+
+geometry::Element element_of(const Document& document) {
+  const std::string kind = document.text("element.kind");
+  if (kind == "rtp")
+    return geometry::RtpElement{document.number("element.base_mm"), document.number("element.width_mm"),
+                                document.number("element.apex_angle_deg")};
+  const double aperture_mm = document.number("element.aperture_mm");
+  const geometry::Cant cant{document.number("element.cant_deg"), document.number("element.cant_azimuth_deg")};
+  if (kind == "hexagonal_icc") return geometry::HexagonalCube{aperture_mm, cant};
+  return geometry::TriangularCube{aperture_mm, cant};
+}
+
+Arrangement arrangement_of(const std::string& word) {
+  if (word == "pins") return Arrangement::honeycomb;
+  const auto& words = geometry::kArrangementWords;
+  return static_cast<Arrangement>(std::ranges::find(words, word) - std::begin(words));
+}
+
+void read_angle_errors(const Document& document, PartSpec& part) {
+  auto& [dihedral, tilt] = part.angle_errors;
+  const std::vector<double> errors = document.numbers("surface.dihedral_error_arcmin");
+  const bool is_prism = std::holds_alternative<geometry::RtpElement>(part.element);
+  for (std::size_t k = 0; k < (is_prism ? 1 : 3); ++k) dihedral[k] = errors[std::min(k, errors.size() - 1)];
+  const std::vector<double> tilts = document.numbers("surface.facet_tilt_arcmin");
+  std::copy_n(tilts.begin(), std::min(tilts.size(), tilt.size()), tilt.begin());
+  part.random_tilts = {document.number("surface.angle_error_sigma_arcmin"),
+                       static_cast<std::uint32_t>(document.number("surface.angle_error_seed"))};
+}
+
+void read_edges(const Document& document, geometry::EdgeShape& edges) {
+  const auto mm = [&](std::string_view key) { return 1e-3 * document.number(key); };
+  edges.root_radius_mm = mm("surface.root_radius_um");
+  edges.root_chamfer_mm = mm("surface.root_chamfer_um");
+  edges.rim_radius_mm = mm("surface.rim_radius_um");
+  edges.rim_chamfer_mm = mm("surface.rim_chamfer_um");
+  edges.chords = static_cast<int>(document.number("surface.edge_chords"));
+}
+
+geometry::Scratch scratch_of(const Document& document, const std::string& entry) {
+  const auto mm = [&](std::string_view key) { return 1e-3 * document.number(schema::path_in(entry, key)); };
+  geometry::Scratch scratch;
+  scratch.facet = document.index(entry + ".facet");
+  scratch.width_mm = mm("width_um");
+  scratch.position_mm = mm("position_um");
+  scratch.depth_mm = mm("depth_um");
+  return scratch;
+}
+
+}  // namespace
+
+bool has_elements(const Document& document) {
+  return !document.has("part.mesh") && !document.has("part.plate_mm") && document.text("element.kind") != "ball";
+}
+
+PartSpec read_array(const Document& document) {
+  PartSpec part;
+  part.element = element_of(document);
+  const std::string arrangement = document.text("array.arrangement");
+  part.array.arrangement = arrangement_of(arrangement);
+  part.is_pin_bundle = arrangement == "pins";
+  part.array.extent =
+      document.text("array.extent") == "infinite" ? geometry::Extent::infinite : geometry::Extent::finite;
+  const auto read = [&](std::string_view key, double& value) { value = document.number_if(key).value_or(value); };
+  read("array.x_length_mm", part.array.x_length_mm);
+  read("array.y_length_mm", part.array.y_length_mm);
+  read("array.x_offset_mm", part.array.x_offset_mm);
+  read("array.y_offset_mm", part.array.y_offset_mm);
+  read("array.x_gap_mm", part.array.x_gap_mm);
+  read("array.y_gap_mm", part.array.y_gap_mm);
+  part.array.partial_elements = document.choice<geometry::PartialElements>("array.partial_elements");
+  if (part.array.arrangement != Arrangement::offset) return part;
+  part.array.shifted_rows = document.choice<geometry::RowParity>("array.shifted_rows");
+  part.array.overlap_percent = document.number("array.overlap_percent");
+  return part;
+}
+
+PartSpec read_part(const Document& document) {
+  PartSpec part = read_array(document);
+  if (document.has("substrate"))
+    schema::fill(document, {.name = "substrate", .meaning = {}, .rows = geometry::substrate_rows()}, "substrate",
+                 &part.substrate.emplace());
+  read_angle_errors(document, part);
+  read_edges(document, part.edges);
+  for (std::size_t i = 0; i < document.count("surface.scratches"); ++i)
+    part.scratches.push_back(scratch_of(document, schema::path_of_entry("surface.scratches", i)));
+  part.thickness_mm = document.number("body.thickness_mm");
+  return part;
+}
+
+raytrace::BallLayer read_balls(const Document& document) {
+  raytrace::BallLayer balls;
+  balls.diameter_mm = document.number("element.diameter_mm");
+  if (document.text("array.arrangement") == "packed")
+    balls.pitch_mm = balls.diameter_mm + document.number("array.gap_mm");
+  balls.mirror_offset_mm = document.number_if("element.mirror_offset_mm").value_or(0.0);
+  const double most_deg = balls.max_mirror_half_angle_deg();
+  balls.mirror_half_angle_deg =
+      std::min(document.number_if("element.mirror_half_angle_deg").value_or(most_deg), most_deg);
+  return balls;
+}
+
+}  // namespace retrace::design

@@ -1,0 +1,221 @@
+#include "design/io/design_rows.h"
+
+namespace retrace::design {
+namespace {
+
+using namespace schema;
+
+constexpr Kind kGap = Number{{.low = 0.0, .high = 1e6}};
+constexpr geometry::SizeKeys kSizeKeys(kSize, kGap);
+constexpr NumberRange kPlace{.low = -1e6, .high = 1e6};
+
+constexpr Words kBallArrangements = {"single", "packed"};
+constexpr auto kPacked = only(kBallArrangements, "packed");
+constexpr auto kOffset = only(geometry::kArrangementWords, "offset");
+constexpr auto kSingle = only(geometry::kArrangementWords, "single");
+constexpr Words kExtents = {"finite", "infinite"};
+constexpr Words kFinite = {"finite"};
+constexpr Words kInfinite = {"infinite"};
+constexpr Words kPartialElements = {"cut", "omit"};
+constexpr Words kSides = {"top", "bottom"};
+
+constexpr Condition kElementOfNoBall = is_not(kKind, kBall, "not allowed for kind = \"ball\", which has diameter_mm");
+constexpr Condition kArrayOfNoBall =
+    is_not(kKind, kBall, "not allowed for kind = \"ball\", because layers of balls are infinite and use gap_mm");
+
+constexpr Condition kPrismOnly[] = {kElementOfNoBall,
+                                    is(kKind, kRtp, "only allowed for kind = \"rtp\"; other kinds have aperture_mm")};
+constexpr Condition kCubeOnly[] = {
+    kElementOfNoBall,
+    is(kKind, geometry::kCubeKinds, "not allowed for kind = \"rtp\", which has base_mm and width_mm")};
+constexpr Condition kCantOnly[] = {kElementOfNoBall, is(kKind, geometry::kCubeKinds, "only allowed for cube corners")};
+constexpr Condition kBallOnly[] = {is(kKind, kBall)};
+
+constexpr Row kElementRows[] = {
+    {"kind", Word{geometry::kElementKinds}, kRequired,
+     "Kind of the elements: prisms, hexagonal or triangular cube corners, or balls."},
+    where(kSizeKeys.base_mm, kPrismOnly),
+    where(kSizeKeys.width_mm, kPrismOnly),
+    where(geometry::kApexAngleKey, kPrismOnly),
+    where(kSizeKeys.aperture_mm, kCubeOnly),
+    // Facets would become vertical at a cant of 35.26 degrees.
+    {"cant_deg", Number{{.low = 0.0, .high = 30.0}}, 0.0,
+     "Angle between +z and the axis of the cube corner. The axis points from the apex into the part.", kCantOnly,
+     kZeroIsNone},
+    {"cant_azimuth_deg", Number{kAzimuth}, 0.0,
+     "Azimuth of the direction towards which the axis is tilted, measured from +x towards +y.", kCantOnly, kZeroIsNone},
+    {"diameter_mm", kSize, kRequired, "Diameter of the balls.", kBallOnly},
+    {"mirror_offset_mm", kGap, Computed{"0: the back of the ball itself is coated"},
+     "Distance from the ball to the mirror behind it. The mirror is a spherical bowl with the same centre as the ball. "
+     "A value above 0 needs a mirror: aluminium, an opaque layer, or an ideal mirror.",
+     kBallOnly},
+    {"mirror_half_angle_deg", Number{{.low = 0.0, .low_included = false, .high = 90.0}},
+     Computed{"90, or the angle at which the bowls of neighbouring balls meet if this angle is smaller"},
+     "Angle from -z up to which the mirror extends, measured at the centre of the ball. It is at most the angle at "
+     "which the bowls of neighbouring balls meet.",
+     kBallOnly}};
+
+constexpr Condition kOfPrisms[] = {is(kKind, kRtp)};
+constexpr Condition kOfHexagons[] = {is(kKind, only(geometry::kElementKinds, "hexagonal_icc"))};
+constexpr Condition kOfTriangles[] = {is(kKind, only(geometry::kElementKinds, "triangular_icc"))};
+constexpr Condition kOfBalls[] = {is(kKind, kBall)};
+constexpr Condition kOfSingle[] = {is(kArrangement, kSingle)};
+constexpr Condition kOfPacked[] = {is(kArrangement, kPacked)};
+constexpr Condition kOfOthers[] = {is_not(kArrangement, kBallArrangements)};
+constexpr Condition kFiniteOnly[] = {
+    kArrayOfNoBall,
+    is_not(kArrangement, kSingle, "not allowed for arrangement = \"single\", whose extent is the element's aperture"),
+    is_not(kExtent, kInfinite, "not allowed for extent = \"infinite\", which is one periodic cell")};
+constexpr Condition kGapOnly[] = {kArrayOfNoBall, is(kKind, kRtp), is_not(kArrangement, kSingle)};
+constexpr Condition kOffsetOnly[] = {kArrayOfNoBall, is(kArrangement, kOffset)};
+constexpr Condition kNoBallArray[] = {kArrayOfNoBall};
+constexpr Condition kMaskOnly[] = {
+    kArrayOfNoBall, is(kKind, kRtp),
+    is_not(kArrangement, kSingle, "only allowed for finite arrays that are not \"single\""),
+    is_not(kExtent, kInfinite, "only allowed for finite arrays that are not \"single\"")};
+constexpr Condition kThresholdOnly[] = {kArrayOfNoBall, is_given("array.mask")};
+constexpr Condition kBallGapOnly[] = {is(kKind, kBall), is_not(kArrangement, kSingle)};
+
+constexpr Row kArrayRows[] = {
+    {"arrangement", Word{geometry::kPrismArrangements}, "aligned",
+     "Arrangement of the elements. `\"checker\"`: neighbouring prisms are rotated by 90 degrees to each other; "
+     "`base_mm` must equal `width_mm`.",
+     kOfPrisms},
+    {"arrangement", Word{geometry::kHexagonalArrangements}, "honeycomb",
+     "Arrangement of the elements. `\"pins\"`: a honeycomb of cells that are the ends of parallel pins; see "
+     "[substrate].",
+     kOfHexagons},
+    {"arrangement", Word{geometry::kTriangularArrangements}, "triangular", geometry::kArrangementMeaning, kOfTriangles},
+    {"arrangement", Word{kBallArrangements}, "packed",
+     "Arrangement of the balls. `\"packed\"` is an infinite layer with hexagonal packing.", kOfBalls},
+    {"extent", Word{kFinite}, "finite", "Extent of the array. A single element is finite.", kOfSingle},
+    {"extent", Word{kInfinite}, "infinite", "Extent of the array. A layer of balls is infinite.", kOfPacked},
+    {"extent", Word{kExtents}, "finite", "Extent of the array. `\"infinite\"` is one periodic cell.", kOfOthers},
+    where(kSizeKeys.x_length_mm, kFiniteOnly),
+    where(kSizeKeys.y_length_mm, kFiniteOnly),
+    where(kSizeKeys.x_offset_mm, kFiniteOnly, kZeroIsNone),
+    where(kSizeKeys.y_offset_mm, kFiniteOnly, kZeroIsNone),
+    {"partial_elements", Word{kPartialElements}, "cut",
+     "Treatment of elements that cross the border of the part. `\"cut\"`: they are cut at the border. `\"omit\"`: they "
+     "are replaced by flat back.",
+     kNoBallArray},
+    where(kSizeKeys.x_gap_mm, kGapOnly, kZeroIsNone),
+    where(kSizeKeys.y_gap_mm, kGapOnly, kZeroIsNone),
+    where(geometry::kOverlapKey, kOffsetOnly),
+    where(geometry::kShiftedRowsKey, kOffsetOnly),
+    {"mask", File{"a picture"}, kNone,
+     "Image with one pixel for each element. The first row of pixels belongs to the elements at the largest y. Only "
+     "cells with a dark pixel have an element. All other cells, and all partial elements, are replaced by flat back. "
+     "Not allowed together with `angle_error_sigma_arcmin` (except for `retrace job`) or with `[part]` `facets`.",
+     kMaskOnly},
+    {"mask_threshold", Number{{.low = 0.0, .low_included = false, .high = 1.0}}, 0.7,
+     "Threshold for dark pixels. A pixel is dark if its grey value (0 to 255) is below `mask_threshold` * 255. With "
+     "0.7, values up to 178 are dark.",
+     kThresholdOnly},
+    {"gap_mm", kGap, 0.0, "Gap between neighbouring balls.", kBallGapOnly}};
+
+constexpr std::string_view kScaleMeaning =
+    "Factor that converts the unit of the STL file to mm: 1 for mm, 1000 for metres, 25.4 for inches, 0.001 for "
+    "micrometres.";
+constexpr std::string_view kBesidePlate = "not allowed together with plate_mm";
+constexpr Condition kMeshOnly[] = {is_absent("plate_mm", kBesidePlate)};
+constexpr Condition kWithMesh[] = {is_absent("plate_mm", kBesidePlate), is_given("mesh")};
+constexpr Condition kFacetsOnly[] = {is_absent("plate_mm", kBesidePlate),
+                                     is_absent("mesh", "not allowed together with mesh, which determines all facets")};
+
+constexpr Row kPartRows[] = {
+    {"mesh", File{"an STL file"}, kNone,
+     "STL mesh of the whole part, binary or ASCII, in the part frame. It replaces the elements. It has at most 10 "
+     "million triangles.",
+     kMeshOnly},
+    {"scale", kSize, 1.0, kScaleMeaning, kWithMesh},
+    {"allow_open", Flag{}, false,
+     "true: a mesh with defects is traced. Openings are closed by flat patches, and bodies that intersect are united. "
+     "A mesh that touches itself along edges is traced unchanged. A warning reports each defect. Results apply to the "
+     "repaired mesh.",
+     kWithMesh},
+    {"plate_mm", Numbers{2, kPlausibleSize, "lengths, along x and y"}, kNone,
+     "Lengths along x and y of a plate that replaces the elements. The flat back of the plate, on z = 0, is its only "
+     "retro facet."},
+    {"facets", File{"a table of planes"}, kNone,
+     "Table with the plane of each facet of a finite part. These planes replace the nominal planes of the facets.",
+     kFacetsOnly}};
+
+constexpr Condition kTurnedOnly[] = {
+    is_absent("mesh", "not allowed together with mesh, because a part has only one entrance surface")};
+constexpr Condition kSideOnly[] = {is_given("mesh")};
+
+constexpr Row kEntranceRows[] = {
+    renamed("turned", Row{"turned_part", File{"a turned part"}, kNone,
+                          "File of a turned part (turning_file.md). The entrance surface is its exact surface, not an "
+                          "approximation by triangles. The material is below the surface.",
+                          kTurnedOnly}),
+    {"mesh", File{"an STL file"}, kNone, "STL mesh of the entrance surface, binary or ASCII."},
+    {"scale", kSize, 1.0, kScaleMeaning, kSideOnly},
+    {"mesh_side", Word{kSides}, "top",
+     "Side of the mesh that is the entrance surface. `\"top\"`: the triangles that face +z. `\"bottom\"`: the "
+     "triangles that face -z, with reversed orientation. `\"bottom\"` is needed for `machined.stl` of `retrace turn`, "
+     "which is the counterpart that is moulded in the turned surface.",
+     kSideOnly},
+    {"centre_mm", Numbers{2, kPlace, "coordinates, x and y"}, Computed{"the centre of the part"},
+     "`[x, y]`: position of the origin of the file in the part frame."}};
+
+constexpr NumberRange kLines{.low = 1.0, .high = 1e6};
+constexpr Condition kBesideLines[] = {is_absent("mask", "only allowed together with rows or columns"),
+                                      is_absent("rest", "only allowed together with rows or columns"),
+                                      is_absent("area_fraction", "only allowed together with rows or columns"),
+                                      is_absent("rectangles_mm", "only allowed together with rows or columns"),
+                                      is_absent("polygon_mm", "only allowed together with rows or columns")};
+constexpr Condition kBesideMask[] = {is_given("mask")};
+constexpr Row kZoneRows[] = {
+    renamed("share", Row{"area_fraction", Number{{.low = 0.0, .low_included = false, .high = 1.0}}, kNone,
+                         "Fraction of the part's area. The zone is a stripe over the whole length of the part along y. "
+                         "The stripes are placed side by side along x, in the order of the file. Their fractions must "
+                         "add up to 1 within 1e-6."}),
+    {"rectangles_mm", NumberRows{4, kPlace, 1, 1000, "rectangles"}, kNone,
+     "`[[x_from, y_from, x_to, y_to], ...]`: rectangles in the plan of the part. Each rectangle has its own array."},
+    {"polygon_mm", NumberRows{2, kPlace, 3, 100, "points"}, kNone,
+     "`[[x, y], ...]`: corners of a convex polygon in the plan of the part."},
+    {"rows", NumberOrNumbers{kLines, true}, kNone,
+     "Numbers of the rows (parallel to x) whose elements belong to the zone. Rows extend over the whole part and are "
+     "counted from 1 at the smallest y."},
+    {"columns", NumberOrNumbers{kLines, true}, kNone,
+     "Numbers of the columns (parallel to y) whose elements belong to the zone. Columns extend over the whole part and "
+     "are counted from 1 at the smallest x."},
+    {"every", Integer{kLines}, kNone, "Number of rows or columns after which their numbering starts again at 1.",
+     kBesideLines},
+    {"mask", File{"a picture"}, kNone,
+     "Image that covers the whole part. Its first row of pixels is at the largest y. Elements whose centroid is on a "
+     "dark pixel belong to the zone."},
+    {"mask_threshold", Number{{.low = 0.0, .low_included = false, .high = 1.0}}, 0.7,
+     "Threshold for dark pixels. A pixel is dark if its grey value (0 to 255) is below `mask_threshold` * 255.",
+     kBesideMask},
+    {"rest", Flag{}, kNone, "true: the zone consists of all elements that belong to no other zone."},
+    {"rotation_deg", Number{kAzimuth}, 0.0,
+     "Rotation about z, from +x towards +y. The array of a region is rotated about the centre of the region's bounding "
+     "box. Elements that are selected by `rows`, `columns`, `mask` or `rest` are rotated individually about their own "
+     "centroids; the rotation must not change their outline."},
+    {"set", Texts{}, kNone,
+     "`[\"KEY=VALUE\", ...]`: values of this zone that differ from those of the design, written as for `--set`. "
+     "Allowed are keys of `[element]`, keys of `[array]` except extent, lengths, margins and mask, and the keys of "
+     "`[surface]` for angles and edges."}};
+
+}  // namespace
+
+std::span<const Row> element_rows() {
+  return kElementRows;
+}
+std::span<const Row> array_rows() {
+  return kArrayRows;
+}
+std::span<const Row> part_rows() {
+  return kPartRows;
+}
+std::span<const Row> zone_rows() {
+  return kZoneRows;
+}
+std::span<const Row> entrance_rows() {
+  return kEntranceRows;
+}
+
+}  // namespace retrace::design

@@ -1,0 +1,33 @@
+#pragma once
+
+// Reads and writes tables (CSV) with the facet planes of individual elements, which may differ from the planes of the
+// nominal element.
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include "geometry/elements/facet_planes.h"
+
+namespace retrace::geometry {
+
+/// Maximum size of a table of planes, in bytes.
+inline constexpr std::size_t kMaxFacetPlanesBytes = std::size_t{512} << 20;
+
+/// Reads the planes of individual facets from a CSV table with `#` comments and the header
+/// `x_mm,y_mm,facet,height_mm,x_slope,y_slope`. There is a line for each facet of an element, with z = height_mm +
+/// x_slope (x - x_mm) + y_slope (y - y_mm).
+/// For prisms, `facet` 1 faces -x (-y for a rotated element), and 2 faces the opposite direction. For cube corners, 1
+/// to 3 are the facets between the dihedral edges, starting from the edge at 0 degrees. 4 to 6 are flares, which
+/// replace a missing hexagonal element. 7 to 9 are caps, which a chisel leaves over the apex; their lines follow those
+/// of the element's facets (ElementPlanes::flares, caps).
+/// \param spec array to which the planes belong; planes may differ from its facets by at most 5 degrees and a tenth of
+///        the depth
+/// \throw InputError with file, line and column
+geometry::FacetPlanes parse_facet_planes(std::string_view text, const std::string& file,
+                                         const geometry::PartSpec& spec);
+
+/// Returns the planes as a table in the same format.
+std::string facet_planes_text(const geometry::FacetPlanes& planes);
+
+}  // namespace retrace::geometry
