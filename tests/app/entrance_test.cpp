@@ -18,9 +18,9 @@ const std::string kBody = "[body]\nthickness_mm = 1.2\nrefractive_index = 1.4917
 const std::string kPlate = "[part]\nplate_mm = [1, 0.8]\n";
 const std::string kFront = "[entrance_surface]\nturned_part = \"lens.toml\"\n";
 
-std::string turned(const std::string& substrate, const std::string& more = {}, double radius_mm = 0.7,
+std::string turned(const std::string& base, const std::string& more = {}, double radius_mm = 0.7,
                    const std::string& path = "feed_um = 10\nspindle_rpm = 60\n") {
-  return "schema = \"retrace.turned_part/1\"\n[base]\n" + substrate + more + kTool +
+  return "schema = \"retrace.turned_part/1\"\n[base]\n" + base + more + kTool +
          "[path]\nradius_mm = " + std::to_string(radius_mm) + "\n" + path;
 }
 

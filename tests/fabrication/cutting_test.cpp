@@ -83,13 +83,13 @@ TEST(Cutting, VolumeOfAPrism) {
   const ToolWedge wedge = tool_wedge(tool_of_width(0.5), ideal, Angle::from_deg(90));
   const std::vector<RigidMotion> poses = {machine_from_workpiece(ideal, {45, 0}),
                                           machine_from_workpiece(ideal, {45, 180})};
-  const double substrate = 0.5;
+  const double base = 0.5;
   const Vec3 root(0, 0, -0.25);
   const std::vector<SweptVolume> sweeps = {sweep_of(poses[0].point(root) + Vec3(0, 0, 0.6), poses[0].point(root), 0),
                                            sweep_of(poses[1].point(root) + Vec3(0, 0, 0.6), poses[1].point(root), 1)};
   const double left = volume_by_lines(sweeps, poses, wedge, 0.25, -0.25, 0.0, 1);
   const double right = volume_by_lines(sweeps, poses, wedge, 0.25, 0.0, 0.25, 1);
-  EXPECT_NEAR(left + right, 0.25 * substrate * substrate * 0.5, 1e-9 * 0.03125);
+  EXPECT_NEAR(left + right, 0.25 * base * base * 0.5, 1e-9 * 0.03125);
 }
 
 /// Prisms whose apertures overlap by a quarter of the base have a smaller prism in common.
@@ -98,16 +98,16 @@ TEST(Cutting, VolumeOfOverlappingPrisms) {
   const ToolWedge wedge = tool_wedge(tool_of_width(0.5), ideal, Angle::from_deg(90));
   const std::vector<RigidMotion> poses = {machine_from_workpiece(ideal, {45, 0}),
                                           machine_from_workpiece(ideal, {45, 180})};
-  const double substrate = 0.5;
-  const double shift = 0.75 * substrate;
+  const double base = 0.5;
+  const double shift = 0.75 * base;
   std::vector<SweptVolume> sweeps;
   for (const double y : {0.0, shift})
     for (std::uint32_t pose : {0U, 1U}) {
       const Vec3 tip = poses[pose].point(Vec3(0, y, -0.25));
       sweeps.push_back(sweep_of(tip + Vec3(0, 0, 0.6), tip, pose));
     }
-  const double shared = substrate - shift;
-  const double analytic = (2.0 * 0.25 * substrate * substrate - 0.25 * shared * shared) * 0.5;
+  const double shared = base - shift;
+  const double analytic = (2.0 * 0.25 * base * base - 0.25 * shared * shared) * 0.5;
   double volume = 0.0;
   for (const auto& [from, to] : {std::pair{-0.25, 0.0}, {0.0, 0.1875}, {0.1875, 0.375}, {0.375, 0.625}})
     volume += volume_by_lines(sweeps, poses, wedge, 0.25, from, to, 1);

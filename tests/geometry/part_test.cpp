@@ -11,9 +11,9 @@
 namespace retrace::geometry::part_test {
 namespace {
 
-PartSpec rtp_array(double substrate, double width, double length, Arrangement arrangement) {
+PartSpec rtp_array(double base, double width, double length, Arrangement arrangement) {
   PartSpec spec;
-  spec.element = RtpElement{substrate, width, 90.0};
+  spec.element = RtpElement{base, width, 90.0};
   spec.array.arrangement = arrangement;
   spec.array.x_length_mm = spec.array.y_length_mm = length;
   spec.thickness_mm = 0.5;

@@ -35,11 +35,11 @@ Ledger beams(const Part& part, const Optics& optics, const Illumination& illumin
 
 TEST(BeamTracer, ArraySizeStudyExactly) {
   const double fresnel = materials::reflectance(1.0 / kPmma, 1.0);
-  for (const double substrate : {10.0, 5.0, 2.0, 1.0, 0.5}) {
-    PartSpec spec = finite(RtpElement{substrate, substrate, 90.0}, Arrangement::offset, 10.0, 10.0, 2.0);
+  for (const double base : {10.0, 5.0, 2.0, 1.0, 0.5}) {
+    PartSpec spec = finite(RtpElement{base, base, 90.0}, Arrangement::offset, 10.0, 10.0, 2.0);
     spec.array.shifted_rows = RowParity::odd;
     const Part part = build_part(spec);
-    const double full = static_cast<double>(part.elements_full) * substrate * substrate / 100.0;
+    const double full = static_cast<double>(part.elements_full) * base * base / 100.0;
     const Ledger ledger = beams(part, pmma(), from(0.0), 0.5);
     EXPECT_NEAR(ledger[Account::retroreflected], full + (1.0 - full) * 2.0 * fresnel / (1.0 + fresnel), 1e-9);
     EXPECT_NEAR(ledger.total(), 1.0, 1e-12);

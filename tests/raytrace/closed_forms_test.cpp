@@ -37,20 +37,20 @@ TEST(ClosedForms, ArraySizeStudy) {
   while (std::getline(file, line)) {
     if (line.empty() || line[0] == '#' || line[0] == 'b') continue;
     std::istringstream cells(line);
-    double substrate = 0, width = 0, full = 0, facets = 0, printed = 0;
+    double base = 0, width = 0, full = 0, facets = 0, printed = 0;
     char comma = 0;
-    cells >> substrate >> comma >> width >> comma >> full >> comma >> facets >> comma >> printed;
+    cells >> base >> comma >> width >> comma >> full >> comma >> facets >> comma >> printed;
     ASSERT_FALSE(cells.fail()) << line;
-    PartSpec spec = finite(RtpElement{substrate, width, 90.0}, Arrangement::offset, 10.0, 10.0, 2.0);
+    PartSpec spec = finite(RtpElement{base, width, 90.0}, Arrangement::offset, 10.0, 10.0, 2.0);
     spec.array.shifted_rows = RowParity::odd;
     const Part part = build_part(spec);
     EXPECT_EQ(part.elements_full, static_cast<std::int64_t>(full));
     EXPECT_NEAR(part.retro_facet_area_mm2, facets, 5e-3);
     const MonteCarloResult result = MonteCarlo(part).trace(pmma(), from(0.0), {0.5}, rays(1U << 17), {});
-    EXPECT_NEAR(100.0 * result.cones[0].rre, printed, 0.05) << "base " << substrate;
-    const double share = full * substrate * width / 100.0;
+    EXPECT_NEAR(100.0 * result.cones[0].rre, printed, 0.05) << "base " << base;
+    const double share = full * base * width / 100.0;
     expect_within(result.cones[0], share + (1.0 - share) * 2.0 * fresnel / (1.0 + fresnel), student_bound(5),
-                  "base " + std::to_string(substrate));
+                  "base " + std::to_string(base));
     ++rows;
   }
   EXPECT_EQ(rows, 5);

@@ -35,13 +35,13 @@ double exact_rre(const PartSpec& spec, const Optics& optics, double incidence_de
 // A root is a valley edge between the facets of one element; a rim is an edge between neighbouring elements. At normal
 // incidence, a root or rim of radius r makes the width sqrt(2) r of a prism ineffective.
 TEST(Edges, RoundedEdgesOfAPrismTakeTheirWidth) {
-  const double substrate = 0.5;
-  const PartSpec sharp = infinite(RtpElement{substrate, 0.5, 90.0}, Arrangement::aligned, 1.0);
+  const double base = 0.5;
+  const PartSpec sharp = infinite(RtpElement{base, 0.5, 90.0}, Arrangement::aligned, 1.0);
   Optics lossless = pmma();
   lossless.lossless_entrance = true;
   const double fresnel = materials::reflectance(1.0 / kPmma, 1.0);
   for (const double radius : {1e-4, 1e-3, 5e-3, 2e-2}) {
-    const double dead = std::numbers::sqrt2 * radius / substrate;
+    const double dead = std::numbers::sqrt2 * radius / base;
     for (const EdgeShape& edges : {EdgeShape{radius, 0.0, 0.0}, EdgeShape{0.0, 0.0, radius}}) {
       EXPECT_NEAR(exact_rre(with_edges(sharp, edges), lossless), 1.0 - dead, 1e-8);
       const double loss = exact_rre(sharp, pmma()) - exact_rre(with_edges(sharp, edges), pmma());
@@ -64,25 +64,25 @@ TEST(Edges, ChamferedRootOfAPrismIsAPlane) {
 // of 45 degrees. It covers the width tan(22.5 degrees) r of the land, and the same length of the facet. The land itself
 // reflects like a plane surface.
 TEST(Edges, RimsBesideLandTakeTheirWidth) {
-  const double substrate = 0.5;
+  const double base = 0.5;
   const double gap = 0.1;
-  PartSpec sharp = infinite(RtpElement{substrate, 0.5, 90.0}, Arrangement::aligned, 1.0);
+  PartSpec sharp = infinite(RtpElement{base, 0.5, 90.0}, Arrangement::aligned, 1.0);
   sharp.array.x_gap_mm = gap;
   Optics lossless = pmma();
   lossless.lossless_entrance = true;
   const double fresnel = materials::reflectance(1.0 / kPmma, 1.0);
   const double tangent = std::tan(std::numbers::pi / 8.0);
   for (const double radius : {1e-4, 1e-3, 2e-2, 5e-2}) {
-    const double facets = substrate - std::numbers::sqrt2 * tangent * radius;
+    const double facets = base - std::numbers::sqrt2 * tangent * radius;
     const double land = gap - 2.0 * tangent * radius;
-    EXPECT_NEAR(exact_rre(with_edges(sharp, {0.0, 0.0, radius}), lossless),
-                (facets + fresnel * land) / (substrate + gap), 1e-8);
+    EXPECT_NEAR(exact_rre(with_edges(sharp, {0.0, 0.0, radius}), lossless), (facets + fresnel * land) / (base + gap),
+                1e-8);
     EXPECT_NEAR(rim_reach_over_land_mm(with_edges(sharp, {0.0, 0.0, radius})), tangent * radius, 1e-15);
   }
   const double width = 0.02;
   const double leg = 0.5 * width / std::cos(std::numbers::pi / 8.0);
   EXPECT_NEAR(exact_rre(with_edges(sharp, {0.0, 0.0, 0.0, width}), lossless),
-              (substrate - std::numbers::sqrt2 * leg + fresnel * (gap - 2.0 * leg)) / (substrate + gap), 1e-9);
+              (base - std::numbers::sqrt2 * leg + fresnel * (gap - 2.0 * leg)) / (base + gap), 1e-9);
   EXPECT_NEAR(rim_reach_over_land_mm(with_edges(sharp, {0.0, 0.0, 0.0, width})), leg, 1e-15);
 }
 

@@ -85,9 +85,9 @@ PartSpec brick(double base_mm) {
 
 // RRE = f + (1 - f) 2R / (1 + R) with 2R / (1 + R) = (n - 1)^2 / (n^2 + 1).
 TEST(RreDerivatives, IndexOfABrickArray) {
-  for (const double substrate : {5.0, 2.0}) {
-    const design::Design design = design_of(brick(substrate));
-    const double full = substrate == 5.0 ? 3.0 / 4.0 : 22.0 / 25.0;
+  for (const double base : {5.0, 2.0}) {
+    const design::Design design = design_of(brick(base));
+    const double full = base == 5.0 ? 3.0 / 4.0 : 22.0 / 25.0;
     const double n2 = kPmma * kPmma;
     const double by_index = (1.0 - full) * 2.0 * (n2 - 1.0) / ((n2 + 1.0) * (n2 + 1.0));
     const RrePoint point = point_of(design, exactly(0.0));

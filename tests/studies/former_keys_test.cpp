@@ -1,12 +1,14 @@
 // The file formats accept exactly the former names of tests/data/renames.json, and docs/former_names.md lists them.
 #include <gtest/gtest.h>
 
-#include <fstream>
+#include <algorithm>
+#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <sstream>
 
+#include "core/atomic_file.h"
+#include "core/schema/json.h"
 #include "core/schema/reader.h"
 #include "design/io/design_format.h"
 #include "fabrication/job/io/job_files.h"
@@ -15,6 +17,7 @@
 #include "fabrication/planing/io/part_files.h"
 #include "fabrication/turning/io/part_files.h"
 #include "studies/quantity/io/study_format.h"
+#include "studies/quantity/io/study_reader.h"
 
 namespace retrace::studies::former_keys_test {
 namespace {
@@ -22,10 +25,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 std::string text_of(const std::string& name) {
-  std::ifstream file(std::string(RETRACE_SOURCE_DIR) + "/" + name);
-  std::stringstream text;
-  text << file.rdbuf();
-  return text.str();
+  return read_file(std::string(RETRACE_SOURCE_DIR) + "/" + name);
 }
 
 const Json& table() {
@@ -73,6 +73,65 @@ TEST(FormerKeys, AreThoseOfTheTable) {
     EXPECT_EQ(count, words) << name;
     EXPECT_EQ(renames.size() - count, keys) << name;
   }
+}
+
+/// Returns replacements of current names by former ones.
+std::vector<TomlRename> reversed(std::vector<TomlRename> renames) {
+  for (TomlRename& rename : renames) std::swap(rename.former, rename.current);
+  std::ranges::reverse(renames);
+  return renames;
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+
+/// A store is continued only if the parts of the study are equal. They are equal whichever names the files, their
+/// words and the overrides use.
+TEST(FormerKeys, StoresCanBeContinuedAfterFilesAreRenamed) {
+  const std::string study =
+      "design = \"d.toml\"\n[[parameter]]\nkey = \"element.base_mm\"\nvalues = [0.4, 0.5]\n[[quantity]]\nkind = "
+      "\"rre\"\n"
+      "incidence_deg = [0, 10]\nover_directions = \"min\"\n[tolerance]\nmin_yield_percent = 90\n";
+  const std::string former_study =
+      replaced(replaced(study, "\"min\"", "\"least\""), "min_yield_percent", "least_yield_percent");
+  const std::string design = text_of("examples/curved_base.toml");
+  const std::string former_design = replaced(replaced(design, "[substrate]", "[base]"), "element_axes", "elements");
+  const std::vector<std::string> overrides = {"substrate.element_axes=parallel", "body.thickness_mm = 3"};
+  const std::vector<std::string> former_overrides = {"base.elements=parallel", "body.thickness_mm = 3"};
+  const auto parts = [](const std::string& text, const std::string& of_design, const std::vector<std::string>& given) {
+    return parse_study(text, "s.toml", given, 1, {{"d.toml", of_design}}).parts;
+  };
+  const auto expected = parts(former_study, former_design, former_overrides);
+  EXPECT_EQ(parts(study, design, overrides), expected);
+  EXPECT_EQ(parts(study, former_design, overrides), expected);
+  EXPECT_EQ(parts(former_study, design, former_overrides), expected);
+  EXPECT_NE(parts(replaced(study, "90", "91"), design, overrides), expected);
+}
+
+/// Each example is rewritten with former names, and read to the same values as the example itself.
+TEST(FormerKeys, ExamplesWithFormerNamesHaveTheSameValues) {
+  std::map<std::string, const schema::Format*> by_id;
+  for (const auto& [name, format] : formats()) by_id[std::string(format->id)] = format;
+  std::size_t renamed = 0;
+  const std::string folder = std::string(RETRACE_SOURCE_DIR) + "/examples";
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    if (entry.path().extension() != ".toml") continue;
+    const std::string text = read_file(entry.path());
+    const Json values = Json::parse(parse_toml(text, entry.path().string()).as_json());
+    const auto found = by_id.find(values.value("schema", ""));
+    if (found == by_id.end()) continue;
+    const schema::Format& format = *found->second;
+    const std::string former_text = schema::toml_of_json(
+        format, Json::parse(parse_toml(text, "", kMaxTextBytes, {}, reversed(schema::former_names(format))).as_json()));
+    const schema::Document former = schema::read_document(format, former_text, "former.toml");
+    EXPECT_EQ(schema::to_json(former), schema::to_json(schema::read_document(format, text, "current.toml")))
+        << entry.path();
+    if (!former.renamed().empty()) ++renamed;
+  }
+  EXPECT_GE(renamed, 8U);
 }
 
 TEST(FormerKeys, AreListedInTheDocumentation) {

@@ -277,7 +277,7 @@ TEST(Photometry, APartOfTheWrongAreaFails) {
   EXPECT_EQ(large.verdict, Verdict::fail);
   EXPECT_EQ(large.points[0].verdict(), Verdict::pass);
   EXPECT_FALSE(large.change);
-  EXPECT_NE(photometry_table(large).find("area: FAIL - at most 5 cm2, has 10"), std::string::npos);
+  EXPECT_NE(photometry_table(large).find("area: FAIL - must be at most 5 cm2, is 10 cm2"), std::string::npos);
   EXPECT_NE(photometry_json(large).find("\"limit\": \"at most 5 cm2\""), std::string::npos);
   request.area_cm2 = 4.0;
   EXPECT_EQ(run(design, request).verdict, Verdict::pass);

@@ -20,7 +20,8 @@ ZoneProfile::ZoneProfile(const ZoneLens& lens) : lens_(lens) {
   double from = 0.0;
   while (from < lens.half_width_mm) {
     const std::size_t zone = zones_.size();
-    if (!(vertex_distance_mm(zone) > 0.0) || zone >= kMaxZones)
+    if (zone >= kMaxZones) throw InputError(fmt::format("the lens has more than {} zones", kMaxZones));
+    if (!(vertex_distance_mm(zone) > 0.0))
       throw InputError(
           fmt::format("the lens has more zones than its focal length allows: zone {} would begin beyond the "
                       "focus; wavelength_mm / (refractive_index - 1) is {}",

@@ -55,16 +55,16 @@ TEST(Sweep, TheExampleGivesTheTableOfThePaper) {
   std::ifstream table(std::string(RETRACE_SOURCE_DIR) + "/tests/data/rtp_array_rre.csv");
   std::size_t point = 0;
   for (std::string line; std::getline(table, line);) {
-    double substrate = 0.0, width = 0.0, full = 0.0, area = 0.0, rre = 0.0;
-    if (std::sscanf(line.c_str(), "%lf,%lf,%lf,%lf,%lf", &substrate, &width, &full, &area, &rre) != 5) continue;
+    double base = 0.0, width = 0.0, full = 0.0, area = 0.0, rre = 0.0;
+    if (std::sscanf(line.c_str(), "%lf,%lf,%lf,%lf,%lf", &base, &width, &full, &area, &rre) != 5) continue;
     SCOPED_TRACE(line);
-    EXPECT_EQ(std::get<double>(result.points.at(point).inputs[0]), substrate);
+    EXPECT_EQ(std::get<double>(result.points.at(point).inputs[0]), base);
     EXPECT_EQ(output(result, point, "elements_full"), full);
     EXPECT_NEAR(output(result, point, "facet_area_mm2"), area, 0.005);
     EXPECT_NEAR(100.0 * output(result, point, "rre"), rre, 0.011) << "as printed";
-    EXPECT_NEAR(output(result, point, "rre"), brick_rre(full * substrate * width / 100.0), 1e-9);
-    EXPECT_NEAR(output(result, point, "effective_area_mm2"), full * std::sqrt(2.0) * substrate * width, 1e-9);
-    EXPECT_NEAR(output(result, point, "lens_thickness_mm"), 2.0 + substrate / 2.0, 1e-12);
+    EXPECT_NEAR(output(result, point, "rre"), brick_rre(full * base * width / 100.0), 1e-9);
+    EXPECT_NEAR(output(result, point, "effective_area_mm2"), full * std::sqrt(2.0) * base * width, 1e-9);
+    EXPECT_NEAR(output(result, point, "lens_thickness_mm"), 2.0 + base / 2.0, 1e-12);
     ++point;
   }
   EXPECT_EQ(point, 5U);
