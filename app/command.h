@@ -122,7 +122,7 @@ struct Command {
   std::string manual = {};       ///< paragraphs, separated by empty lines; text in `backticks` is printed in bold
   Words reads = {};              ///< formats of the input files, such as "retrace.design/1", or their descriptions
   Words writes = {};             ///< formats of the output documents; the format of --json comes first
-  std::string refuses_set = {};  ///< reason why the command does not allow --set; empty: --set is allowed
+  std::string refuses_set = {};  ///< message if --set is given; empty: --set is allowed
   std::function<Invocation()> begin = {};
 };
 

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
+#include <regex>
 
 #include "app/commands.h"
 #include "app/output.h"
@@ -199,6 +200,14 @@ std::string one_line(const std::string& text) {
   return line;
 }
 
+/// Returns the message of an error of CLI11 as one line, in the words of the other messages.
+std::string message_of(const CLI::ParseError& error) {
+  const std::string line = one_line(error.what());
+  if (dynamic_cast<const CLI::ExcludesError*>(&error) != nullptr)
+    return std::regex_replace(line, std::regex(" excludes "), ": not allowed together with ");
+  return std::regex_replace(line, std::regex(": [0-9]+ required (\\S+) missing$"), ": needs a value $1");
+}
+
 /// Sets the memory budget of the process if --memory-gib is given.
 /// \throw InputError if the value is out of range
 void set_memory_budget(const CommonOptions& common) {
@@ -244,7 +253,7 @@ bool parse(CLI::App& app, int argc, const char* const* argv) {
   } catch (const CLI::RequiredError& error) {
     throw InputError(missing(app, one_line(error.what())) + "; see retrace --help");
   } catch (const CLI::ParseError& error) {
-    throw InputError(one_line(error.what()) + "; see retrace --help");
+    throw InputError(message_of(error) + "; see retrace --help");
   }
   return true;
 }

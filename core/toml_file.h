@@ -97,7 +97,8 @@ class TomlTable {
   /// Returns the tables `[[key]]` in the order of the file.
   /// \param shape text for the required type in messages
   /// \param are_numbered true: messages contain the index of the table, such as "key[1]"
-  std::vector<TomlTable> tables(std::string_view key, std::string_view shape = "tables", bool are_numbered = false);
+  std::vector<TomlTable> tables(std::string_view key, std::string_view shape = "a list of tables",
+                                bool are_numbered = false);
 
   enum class Shape { nothing, text, number, list, table, other };
   /// Returns the type of the value of a key, or Shape::nothing if the key was not given.

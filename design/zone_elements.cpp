@@ -127,8 +127,10 @@ void check_zones(const ZonedPart& part, const std::function<InputLocation(const 
   if (!part.changes[fault->zone].empty()) throw InputError(where(zone + ".set"), fault->text);
   // The faulty zone has no changes. The fault is a difference from zone 1, so that the changes of zone 1 must cause it.
   // The message therefore names the `set` key of zone 1.
-  throw InputError(where(schema::path_of_entry("zone", 0) + ".set"),
-                   fmt::format("must keep the outlines and positions of the elements of zone {}", fault->zone + 1));
+  throw InputError(
+      where(schema::path_of_entry("zone", 0) + ".set"),
+      fmt::format("must not change the outlines and positions of the elements, which must be the same as in zone {}",
+                  fault->zone + 1));
 }
 
 }  // namespace retrace::design

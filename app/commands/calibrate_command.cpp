@@ -109,7 +109,7 @@ Command calibrate_command() {
                     "NC program"},
           .writes = {"retrace.calibration/2", "retrace.time_calibration/2", "retrace.time_programs/1",
                      "retrace.machine/1", "NC program", "table of times (CSV)"},
-          .refuses_set = "calibrate reads no design",
+          .refuses_set = "not allowed with calibrate, which reads no design",
           .begin = begins<CalibrateOptions>(arguments, run)};
 }
 

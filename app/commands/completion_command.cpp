@@ -322,7 +322,7 @@ Command completion_command() {
               "Prints a script that completes commands, options, file names and other values in `bash`, `zsh` or "
               "`fish`. To use it: `source <(retrace completion bash)`.",
           .writes = {"retrace.completion/1"},
-          .refuses_set = "completion reads no design",
+          .refuses_set = "not allowed with completion, which reads no design",
           .begin = begins<CompletionOptions>(arguments, run)};
 }
 

@@ -114,7 +114,7 @@ Command correct_command() {
               "corrected machine file and a job for it, and predicts the deviations of the next part.",
           .reads = {"retrace.job/1", "retrace.machine/1", "height map (text, SDF, GSF, GWY)"},
           .writes = {"retrace.correction/2", "retrace.machine/1", "retrace.job/1"},
-          .refuses_set = "correct reads no design",
+          .refuses_set = "not allowed with correct, which reads no design",
           .begin = begins<CorrectOptions>(arguments, run)};
 }
 

@@ -95,7 +95,8 @@ Command fabricate_command() {
               "or a stage.",
           .reads = {"retrace.job/1", "retrace.machine/1"},
           .writes = {"retrace.fabrication/2"},
-          .refuses_set = "fabricate reads no design; change the job file, or make a new one with retrace job",
+          .refuses_set =
+              "not allowed with fabricate, which reads no design; change the job, or make a new one with retrace job",
           .begin = begins<FabricateOptions>(arguments, run)};
 }
 

@@ -47,7 +47,7 @@ Command forces_command() {
               "published measurements.",
           .reads = {"retrace.job/1"},
           .writes = {"retrace.forces/1"},
-          .refuses_set = "forces reads no design",
+          .refuses_set = "not allowed with forces, which reads no design",
           .begin = begins<ForcesOptions>(arguments, run)};
 }
 

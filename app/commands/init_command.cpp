@@ -69,7 +69,7 @@ Command init_command() {
               "JSON Schema of the file, so that editors complete and check its keys. The path in this line is valid "
               "only on this machine.",
           .writes = {"retrace.template/1"},
-          .refuses_set = "init writes its template as it is; edit the file",
+          .refuses_set = "not allowed with init, which writes its template unchanged; edit the file instead",
           .begin = begins<InitOptions>(arguments, run)};
 }
 

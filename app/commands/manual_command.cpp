@@ -208,7 +208,7 @@ Command manual_command() {
               "Prints this page, for `man -l`. `--json` writes every command with its arguments, their allowed words, "
               "and the formats that it reads and writes.",
           .writes = {"retrace.manual/1"},
-          .refuses_set = "manual reads no design",
+          .refuses_set = "not allowed with manual, which reads no design",
           .begin = begins<ManualOptions>(arguments, run)};
 }
 

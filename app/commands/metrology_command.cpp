@@ -45,7 +45,7 @@ Command metrology_command() {
               "profile, and writes `surface.toml`, which describes such a surface in a design.",
           .reads = {"height map or profile (text, SDF, GSF, GWY)"},
           .writes = {"retrace.metrology/1"},
-          .refuses_set = "metrology reads no design",
+          .refuses_set = "not allowed with metrology, which reads no design",
           .begin = begins<MetrologyOptions>(arguments, run)};
 }
 

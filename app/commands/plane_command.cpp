@@ -44,7 +44,7 @@ Command plane_command() {
               "findings.",
           .reads = {"retrace.planed_part/1"},
           .writes = {"retrace.planing/2"},
-          .refuses_set = "plane reads no design: change the part file",
+          .refuses_set = "not allowed with plane, which reads no design; change the part file",
           .begin = begins<PlaneOptions>(arguments, run)};
 }
 

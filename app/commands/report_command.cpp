@@ -101,7 +101,7 @@ Command report_command() {
               "commands wrote there. It reads no file outside the folder unless `--read` names it.",
           .reads = {"documents and drawings of other commands"},
           .writes = {"retrace.report/1", "HTML"},
-          .refuses_set = "report reads results, not designs",
+          .refuses_set = "not allowed with report, which reads results and no designs",
           .begin = begins<ReportOptions>(arguments, run)};
 }
 

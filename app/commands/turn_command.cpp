@@ -45,7 +45,7 @@ Command turn_command() {
               "deviation exceeds the tolerances of the part.",
           .reads = {"retrace.turned_part/1"},
           .writes = {"retrace.turning/2"},
-          .refuses_set = "turn reads no design",
+          .refuses_set = "not allowed with turn, which reads no design",
           .begin = begins<TurnOptions>(arguments, run)};
 }
 

@@ -40,7 +40,7 @@ Command validate_command() {
               "difference with its reason. `--out FILE` writes the page to a file. Exits with 1 if a difference is "
               "greater than allowed.",
           .writes = {"retrace.validation/1"},
-          .refuses_set = "validate uses its own designs",
+          .refuses_set = "not allowed with validate, which uses its own designs",
           .begin = begins<ValidateOptions>(arguments, run)};
 }
 

@@ -194,7 +194,7 @@ Command verify_command() {
           "compared with the file of the part. Exits with 1 if there are findings.",
       .reads = {"retrace.job/1", "retrace.machine/1", "retrace.planed_part/1", "retrace.turned_part/1", "NC programs"},
       .writes = {"retrace.verification/2", "retrace.design/1"},
-      .refuses_set = "verify reads no design",
+      .refuses_set = "not allowed with verify, which reads no design",
       .begin = begins<VerifyOptions>(arguments, run)};
 }
 

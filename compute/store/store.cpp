@@ -261,8 +261,9 @@ void ResultStore::Database::check_study() const {
     if (stored("part." + key) != value)
       throw InputError(
           {layout.source, 0, ""},
-          fmt::format("{} differs from that of {}; use {} to replace the store, or another output folder to keep both",
-                      key, name(), reference({"overwrite"})));
+          fmt::format(
+              "{} differs from the one used for {}; use {} to replace the store, or another output folder to keep both",
+              key, name(), reference({"overwrite"})));
 }
 
 void ResultStore::Database::prepare() {

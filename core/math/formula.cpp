@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cctype>
 #include <numbers>
+#include <string_view>
 
 #include "core/leading_number.h"
 #include "core/math/formula_error.h"
@@ -124,6 +125,20 @@ std::vector<Formula::Node> simplified(std::vector<Formula::Node> nodes, std::siz
   return kept;
 }
 
+/// Returns a message of muParser as part of a sentence. Removes the position at its end, because muParser counts
+/// characters from 0.
+std::string reason_of(std::string message) {
+  for (const std::string_view mark : {" found at position ", " at expression position ", " at position "})
+    if (const std::size_t at = message.rfind(mark);
+        at != std::string::npos && message.find_first_not_of("0123456789.", at + mark.size()) == std::string::npos) {
+      message.resize(at);
+      break;
+    }
+  while (message.ends_with('.') || message.ends_with('!')) message.pop_back();
+  if (!message.empty()) message[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(message[0])));
+  return message;
+}
+
 }  // namespace
 
 Formula parse_formula(const std::string& text, const std::vector<std::string>& variables, const InputLocation& where) {
@@ -163,7 +178,7 @@ Formula parse_formula(const std::string& text, const std::vector<std::string>& v
   } catch (const mu::Parser::exception_type& error) {
     // For an error at the end of the text, muParser returns a position that is too large by one.
     throw failed_at(std::min(static_cast<std::size_t>(error.GetPos()), text.size()) + 1,
-                    printable(error.GetMsg(), 120));
+                    printable(reason_of(error.GetMsg()), 120));
   }
   return {text, simplified(std::move(record.nodes), result)};
 }

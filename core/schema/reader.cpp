@@ -46,7 +46,7 @@ std::string unknown_name(const Table& table, std::string_view name, bool is_tabl
 /// Returns the required type of a table as text for messages.
 std::string_view shape_of(const Table& table) {
   if (!table.shape.empty()) return table.shape;
-  return table.presence == Presence::list ? "tables" : "a table";
+  return table.presence == Presence::list ? "a list of tables" : "a table";
 }
 
 std::vector<TomlTable> entries(const Table& table, TomlTable& around) {

@@ -183,11 +183,11 @@ struct OneOf {
   std::string_view complaint;  ///< message if none of the keys is given
 };
 /// Function that throws an InputError about a key.
-/// \param key path of the key relative to the table of the rule. If it is empty, the error is about the first key of
-/// the rule that is given. If none is given, the error is about the table.
+/// \param key path of the key relative to the table of the rule. If it is empty, the error is about the first of the
+/// rule's keys that the input contains. If the input contains none of them, the error is about the table.
 /// \param complaint message
 using Refuse = std::function<void(std::string_view key, const std::string& complaint)>;
-/// Rule on a combination of values, each of which is allowed by itself.
+/// Rule that refuses some combinations of values that are allowed individually.
 struct Check {
   /// Paths of the keys in the rule, relative to the table; if empty, the rule is about the whole table.
   std::span<const std::string_view> keys;
@@ -197,7 +197,7 @@ struct Check {
   void (*check)(const void* object, const Refuse& refuse);
 };
 /// Rule that one key, called the winner, takes precedence over other keys, which then have no effect. If the input
-/// gives such a key without effect, a warning names this key and the winner.
+/// contains one of these other keys, a warning names this key and the winner.
 struct Precedence {
   Condition winner;                        ///< condition on the winner under which the rule applies
   std::span<const std::string_view> keys;  ///< keys without effect if `winner` holds; paths relative to the table
@@ -240,7 +240,7 @@ struct Table {
   Child child = {};
   Presence presence = Presence::always;
   Layout layout = Layout::headed;
-  std::string_view shape = {};             ///< text for the required type in messages; empty: "a table" or "tables"
+  std::string_view shape = {};  ///< text for the required type in messages; empty: "a table" or "a list of tables"
   std::string_view default_text = "none";  ///< text for the default of an optional table in the documentation
   When when = {};
   bool is_open = false;          ///< true if unknown keys are allowed, because another reader checks them

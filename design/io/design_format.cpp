@@ -48,7 +48,7 @@ const Table kFormTables[] = {
 constexpr std::string_view kLayerIndex[] = {"material", "refractive_index"};
 constexpr Rule kLayerRules[] = {OneOf{kLayerIndex, "must have either material or refractive_index"}};
 constexpr std::string_view kLayerShape =
-    "a list of tables with material or refractive_index, and thickness_nm, the layer on the body first";
+    "a list of tables with material or refractive_index, and thickness_nm, starting with the layer on the body";
 const Table kCoatingTables[] = {{.name = "facets",
                                  .meaning = "Layers on the retro facets, in order from the body outwards. At most 200 "
                                             "layers are allowed, and at most one may be opaque.",

@@ -379,8 +379,10 @@ void require_supported(const Design& design, const Capabilities& capabilities) {
   const std::string what(capabilities.what);
   const auto refuse_solid = [&](std::string_view key, std::string_view solid) {
     if (!capabilities.solids)
-      throw InputError(design.where(key),
-                       fmt::format("{} does not support a {}, only [element] and [array]", what, solid));
+      throw InputError(
+          design.where(key),
+          fmt::format("{} does not support a {}, only a part that is described by one [element] and one [array]", what,
+                      solid));
   };
   std::visit(Overloaded{[&](const ElementArray& array) {
                           if (array.part.substrate && !capabilities.substrates)
@@ -390,7 +392,7 @@ void require_supported(const Design& design, const Capabilities& capabilities) {
                         [&](const PartMesh&) { refuse_solid("part.mesh", "mesh"); },
                         [&](const Plate&) { refuse_solid("part.plate_mm", "plate"); },
                         [&](const ZonedPart&) {
-                          if (!capabilities.zones) refuse_solid("zone", "part of zones");
+                          if (!capabilities.zones) refuse_solid("zone", "part with zones");
                         },
                         [&](const raytrace::BallLayer&) {
                           if (!capabilities.balls)

@@ -150,9 +150,9 @@ void check_coating(const Document& document) {
     if (document.text("idealisation.facets") == "mirror")
       document.fail(kFacetLayers, "not allowed together with idealisation.facets = \"mirror\"");
     if (document.text_if("element.kind") == "ball" && count_opaque(document, kFacetLayers) == 0)
-      document.fail(
-          kFacetLayers,
-          "must have a layer without thickness_nm for kind = \"ball\", because layers behind balls must form a mirror");
+      document.fail(kFacetLayers,
+                    "needs one opaque layer, without thickness_nm, for kind = \"ball\": the layers behind balls must "
+                    "form a mirror");
   }
   if (document.count(kEntranceLayers) > 0 && document.text("idealisation.entrance") == "lossless")
     document.fail(kEntranceLayers, "not allowed together with idealisation.entrance = \"lossless\"");

@@ -74,7 +74,8 @@ std::vector<ZoneChange> changes_of(const Document& document, std::size_t zone) {
   for (const std::string& change : document.texts(key)) {
     const std::size_t equals = change.find('=');
     const std::string name = equals == std::string::npos ? std::string() : stripped(change.substr(0, equals), " \t");
-    if (name.empty()) document.fail(key, fmt::format("must be a list of texts KEY=VALUE, got {}", in_quotes(change)));
+    if (name.empty())
+      document.fail(key, fmt::format("must be a list of strings of the form KEY=VALUE, got {}", in_quotes(change)));
     if (!may_vary_between_zones(name))
       document.fail(key, fmt::format("must set only keys of [element], keys of [array] except extent, lengths, margins "
                                      "and mask, and keys of [surface] for angles and edges, got {}",
@@ -174,7 +175,7 @@ void read_regions(const Document& document, geometry::ZonedSpec& spec) {
     regions += spec.zones[k].regions.size();
   }
   if (regions > kMaxRegions)
-    document.fail(kZone, fmt::format("must have at most {} regions in all, got {}", kMaxRegions, regions));
+    document.fail(kZone, fmt::format("must have at most {} regions in total, got {}", kMaxRegions, regions));
 }
 
 std::vector<double> lines_of(const Document& document, const std::string& key) {
@@ -190,7 +191,7 @@ ElementsOfZone elements_of(const Document& document, const std::string& zone) {
     chosen.mask = {document.text(mask), document.file(mask), document.number(zone + ".mask_threshold")};
   chosen.is_remainder = document.has(zone + ".rest");
   if (chosen.is_remainder && !document.flag(zone + ".rest"))
-    document.fail(zone + ".rest", "must be true if it is given, got false");
+    document.fail(zone + ".rest", "must be true or left out, got false");
   return chosen;
 }
 
@@ -206,7 +207,7 @@ bool read_elements(const Document& document, ZonedPart& part) {
     if (!is_region) ++by_cell;
     if (by_cell != 0 && by_cell != k + 1)
       document.fail(zone,
-                    "must be of the same type as the previous zones: either all zones have regions (share, "
+                    "must be of the same type as the previous zones: either all zones have regions (area_fraction, "
                     "rectangles_mm, polygon_mm), or all select elements (rows, columns, mask, rest)");
     part.elements.push_back(elements_of(document, zone));
     if (part.elements.back().is_remainder && rest)
@@ -223,7 +224,7 @@ void check_lines(const Document& document, const std::string& key, const std::ve
   for (const double number : numbers)
     if (number > most)
       document.fail(key, fmt::format("must be at most {}, {}, got {}", shortest(most),
-                                     every ? "the value of every" : "the number in the array", shortest(number)));
+                                     every ? "the value of every" : "the number that the array has", shortest(number)));
 }
 
 /// Assigns the cells of the array to the zones. part_of_design() assigns the cells of masks.
@@ -297,9 +298,9 @@ ZonedPart read_zones(const Document& document) {
     check_room(document, k, part.spec.zones[k], part.spec.size_mm);
   }
   if (const double elements = geometry::element_estimate(part.spec); elements > kMaxZoneElements)
-    document.fail(kZone,
-                  fmt::format("a part of zones may have at most {:.0f} elements, but this part would have about {:.0f}",
-                              kMaxZoneElements, elements));
+    document.fail(
+        kZone, fmt::format("a part with zones may have at most {:.0f} elements, but this part would have about {:.0f}",
+                           kMaxZoneElements, elements));
   if (part.spec.is_by_cell) read_cells(document, part);
   if (part.has_masks()) return part;
   check_zones(part, [&](const std::string& key) { return document.where(key); });

@@ -23,10 +23,10 @@ void check_tilt(const Job& job, const Machine& machine) {
   if (is_dmc == (machine.tilt == Tilt::head)) return;
   throw InputError(
       job.where("machine"),
-      is_dmc
-          ? fmt::format("must be a machine whose head tilts (B), such as \"ideal-dmc\", for strategy \"dmc\", got {}",
-                        machine.name)
-          : fmt::format("must be a machine whose table tilts (A) for this strategy, got {}", machine.name));
+      is_dmc ? fmt::format(
+                   "must be a machine with a tilting head (B), such as \"ideal-dmc\", for strategy \"dmc\", got {}",
+                   machine.name)
+             : fmt::format("must be a machine with a tilting table (A) for this strategy, got {}", machine.name));
 }
 
 /// Checks that the depths of cut are large compared to the increments of the control. Otherwise, rounded positions
@@ -103,8 +103,8 @@ void check_fins(const Job& job, const Machine& machine, const CubeCorner& corner
   const double allowed_um = std::floor(1e4 * max_step_um) * 1e-4;
   throw LimitError(
       job.where("machine"),
-      fmt::format("{}must round positions to at most {} um for this tool (control.increment_system), got machine {} "
-                  "with {} um: {}, and {}",
+      fmt::format("{}the rounding of positions (control.increment_system) must be at most {} um for this tool, but "
+                  "machine {} rounds to {} um: {}, and {}",
                   who, fixed(allowed_um, 4), machine.name, step_text, fin, none),
       allowed_um);
 }

@@ -245,7 +245,8 @@ class Runner {
     double time_s = cubic.time_s;
     if (has_times_since_begin(program_.dialect)) {
       if (!cubics_s_)
-        fail(block, "PVT INIT TIME ABS must precede moves with velocities, because it starts the count of their times");
+        fail(block,
+             "PVT INIT TIME ABS must precede moves with velocities, because it defines the time origin of these moves");
       time_s -= std::exchange(*cubics_s_, cubic.time_s);
     }
     if (!(time_s > 0.0)) fail(block, fmt::format("a move with velocities must have a duration > 0, got {} s", time_s));
@@ -256,7 +257,7 @@ class Runner {
     const NcCubic& cubic = program_.cubics[static_cast<std::size_t>(block.cubic)];
     // For other time units, the documents of the control contradict each other about the units of times and velocities.
     if (has_feeds_of_all_axes(program_.dialect) && settings_.feed_time_s != 1.0)
-      fail(block, "moves with velocities must have their times in seconds");
+      fail(block, "the time unit must be seconds for moves with velocities");
     if ((block.axes & ~known_) != 0) fail(block, "a move with velocities begins at an unknown position");
     const double time_s = cubic_time_s(block, cubic);
     const std::array<double, kNcAxes> from = position_;

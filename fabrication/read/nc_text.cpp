@@ -239,7 +239,8 @@ bool IsoBlock::set(const NcWord& word, std::span<const NcCode> g_codes) {
 void IsoBlock::take_group(const NcCode& code, const NcWord& word) {
   const unsigned bit = 1U << static_cast<unsigned>(code.group);
   if (code.group != 0 && (groups_ & bit) != 0)
-    lines_.fail(fmt::format("has two {0} codes of one group, the second is {0}{1}", word.letter, word.number.value));
+    lines_.fail(
+        fmt::format("has two {0} codes of the same group ({0}{1} is the second)", word.letter, word.number.value));
   groups_ |= bit;
 }
 
@@ -268,14 +269,14 @@ void IsoBlock::set_feed(const NcWord& word) {
 }
 
 void IsoBlock::set_spindle_speed(const NcWord& word) {
-  if (block_.spindle_rpm) lines_.fail("has two words S");
+  if (block_.spindle_rpm) lines_.fail("has the word S twice");
   if (word.number.value < 0.0) lines_.fail(fmt::format("S must be >= 0, got {}", word.number.value));
   block_.spindle_rpm = word.number.value;
 }
 
 void IsoBlock::set_axis(std::size_t axis, const NcNumber& place) {
   const auto bit = static_cast<std::uint8_t>(1U << axis);
-  if ((block_.axes & bit) != 0) lines_.fail(fmt::format("has two words for {}", kNcAxisLetters[axis]));
+  if ((block_.axes & bit) != 0) lines_.fail(fmt::format("has the axis {} twice", kNcAxisLetters[axis]));
   block_.axes = static_cast<std::uint8_t>(block_.axes | bit);
   block_.words[axis] = place.value;
   block_.axis_decimals[axis] = place.decimals;

@@ -141,7 +141,7 @@ class PmacReader {
       text.remove_prefix(1);
       iso.set_cubic(axis, word.number, take_number(text, lines_).value, cubic);
     }
-    if (block.axes == 0) lines_.fail("PVT must have axes in its line");
+    if (block.axes == 0) lines_.fail("PVT must have axes on the same line");
     program_.set_cubic(block, cubic);
   }
 

@@ -54,7 +54,7 @@ std::string with_marked_rs274ngc_comments(std::string_view line, const NcLines& 
     }
     const std::size_t end = line.find_first_of("()", 1);
     if (end == std::string_view::npos || line[end] == '(')
-      lines.fail("has a comment without an end, or a nested comment");
+      lines.fail("has a comment that is not closed, or a nested comment");
     result += kNcCommentMark;
     line.remove_prefix(end + 1);
   }
@@ -108,7 +108,7 @@ class Rs274Reader {
 
   /// Reads a line that contains only %. A program either has no such line, or begins and ends with one.
   void read_percent() {
-    if (percent_signs_ == 0 && has_text_) lines_.fail("% is optional, but must be the first line with text");
+    if (percent_signs_ == 0 && has_text_) lines_.fail("the first % must precede all other text");
     is_over_ = ++percent_signs_ == 2;
   }
 
@@ -168,7 +168,7 @@ class Rs274Reader {
   void read_word(const NcWord& word, IsoBlock& iso) {
     if (word.letter == 'P' || word.letter == 'Q') {
       Setting<double>& given = word.letter == 'P' ? words_.p : words_.q;
-      if (given) lines_.fail(fmt::format("has two words {}", word.letter));
+      if (given) lines_.fail(fmt::format("has the word {} twice", word.letter));
       given = word.number.value;
     } else if (!iso.set(word, kRs274ngcCodes)) {
       lines_.fail_word(word.remainder);

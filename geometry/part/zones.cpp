@@ -288,7 +288,8 @@ double min_rotation_deg(const ArraySheet& sheet, double near_mm) {
 std::optional<ZoneFault> misfit(std::size_t zone, const ArraySheet& own, const ArraySheet& first, double rotation_deg,
                                 double near_mm) {
   if (!are_alike(own, first, near_mm))
-    return ZoneFault{zone, "must keep the outlines and positions of the elements of zone 1",
+    return ZoneFault{zone,
+                     "must not change the outlines and positions of the elements, which must be the same as in zone 1",
                      ZoneFault::Subject::elements};
   if (!may_turn(own, rotation_deg, near_mm))
     return ZoneFault{zone,
@@ -407,7 +408,7 @@ std::vector<std::vector<ElementPlacement>> whole_elements(const ZonedSpec& spec)
       while (cell->number != number) ++cell;
       if (!cell->is_element || !contains(plan.block_mm, cell->outline, tolerance_mm)) continue;
       const Vec2 apex = centroid(cell->outline);
-      // A rotated triangle (by 180 degrees) has no corner in the direction +x from its centroid.
+      // A triangle that is rotated by 180 degrees has no corner in the direction +x from its centroid.
       const bool is_rotated = std::ranges::none_of(
           cell->outline, [&](const Vec2& p) { return p.x() - apex.x() > 0.75 * (p - apex).norm(); });
       elements[z].push_back({apex, zone.rotation_deg + (is_rotated ? 180.0 : 0.0)});

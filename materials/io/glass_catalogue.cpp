@@ -108,7 +108,9 @@ std::vector<double> GlassCatalogue::numbers(const Record& record, std::size_t fi
     values.push_back(*value);
   }
   if (values.size() < min_count)
-    fail(record.front().line, code, fmt::format("must have at least {} numbers, got {}", min_count, values.size()));
+    fail(record.front().line, code,
+         fmt::format("must have at least {} {}, got {}", min_count, min_count == 1 ? "number" : "numbers",
+                     values.size()));
   values.resize(max_count, 0.0);
   return values;
 }
@@ -130,9 +132,10 @@ void GlassCatalogue::require_no_more(const Record& record, std::size_t max_count
 void GlassCatalogue::require_whole_pairs(const Record& record, std::size_t first, std::size_t end) const {
   if (record.size() <= first || record.size() >= end || (record.size() - first) % 2 == 0) return;
   if (number_in(record.back().text) == 0.0) return;
-  fail(record.back().line, "CD",
-       fmt::format("coefficients {} to {} must be pairs of strength and resonance, got a total of {} coefficients",
-                   first, end - 1, record.size() - 1));
+  fail(
+      record.back().line, "CD",
+      fmt::format("coefficients {} to {} must be pairs of strength and resonance, but the number of coefficients is {}",
+                  first, end - 1, record.size() - 1));
 }
 
 /// Returns the record with this code, or null if there is none.
@@ -143,7 +146,8 @@ const GlassCatalogue::Record* GlassCatalogue::find(const std::vector<Record>& re
     if (record.front().text != code) continue;
     if (found != nullptr && *found != record)
       fail(record.front().line, code,
-           fmt::format("a glass must have one such record, got a different one in line {}", found->front().line));
+           fmt::format("a glass may have only one such record, but line {} contains a different one",
+                       found->front().line));
     found = &record;
   }
   return found;

@@ -150,7 +150,7 @@ class Record {
     RecordFormula formula{static_cast<int>(*number), numbers_in(entry, "coefficients", 1, kMaxFormulaCoefficients)};
     if (!has_whole_terms(formula))
       fail(entry["coefficients"], "coefficients",
-           fmt::format("must be {} for {}, got {} numbers", kTerms[static_cast<std::size_t>(formula.number - 1)], type,
+           fmt::format("must have {} for {}, got {}", kTerms[static_cast<std::size_t>(formula.number - 1)], type,
                        formula.c.size()));
     material.dispersion = std::move(formula);
   }

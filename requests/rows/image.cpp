@@ -72,8 +72,8 @@ void set_camera_pixels(CameraRequest& request, const schema::Value& value) {
 void check_camera(const void* object) {
   const auto& request = *static_cast<const CameraRequest*>(object);
   if (request.columns * request.rows > kMaxPixels)
-    throw InputError(Field{"pixels"},
-                     fmt::format("must be at most {} in all, got {}x{}", kMaxPixels, request.columns, request.rows));
+    throw InputError(Field{"pixels"}, fmt::format("must be at most {} pixels in total, got {}x{}", kMaxPixels,
+                                                  request.columns, request.rows));
 }
 
 constexpr NumberRange kLampAngle{.low = -90.0, .low_included = false, .high = 90.0, .high_included = false};

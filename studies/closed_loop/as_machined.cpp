@@ -180,10 +180,9 @@ bool has_flares(const VerificationRun& run) {
 /// \throw InputError if an element is not cut
 void check_on_substrate(const VerificationRun& run, const ElementDifferences& unlike, AsMachined& part) {
   if (unlike.missing > 0)
-    throw InputError(
-        Field{"as_machined"},
-        fmt::format("all elements on a [substrate] must be cut for an as-machined design, but {} are not cut",
-                    unlike.missing));
+    throw InputError(Field{"as_machined"}, fmt::format("all elements on a [substrate] must be cut for an as-machined "
+                                                       "design; number of elements that are not cut: {}",
+                                                       unlike.missing));
   warn_of(unlike, part, "on a substrate");
   if (run.result.rim_overcut_um_max > 0.0)
     part.warnings.push_back(

@@ -67,7 +67,7 @@ void check_upright(const geometry::Element& element, const InputLocation& where)
   const double cant_deg = geometry::cant_of(element).deg;
   if (cant_deg != 0.0)
     throw InputError(where,
-                     fmt::format("{}must be 0 to be cut in this version, got {}",
+                     fmt::format("{}must be 0, because canted cube corners cannot be cut in this version, got {}",
                                  where.key == "element.cant_deg" ? "" : "element.cant_deg ", shortest(cant_deg)));
 }
 
@@ -110,7 +110,8 @@ bool has_errors(const PartSpec& part) {
 void warn_of_errors(const PartSpec& part, const std::string& name, GeneratedJob& made) {
   if (has_errors(part))
     made.warnings.push_back(
-        {"surface_errors_not_cut", fmt::format("{}: {}random errors, edges and scratches of [surface] are not cut",
+        {"surface_errors_not_cut", fmt::format("{}: the job does not contain the {}random errors, edges and scratches "
+                                               "of [surface]; the machined part will not have them",
                                                name, is_prism(part) ? "facet tilts, " : "")});
 }
 
@@ -153,7 +154,8 @@ void check_zones(const design::Design& design, const JobRequest& request) {
   const std::vector<geometry::PartZone>& zones = design.zoned()->spec.zones;
   for (std::size_t z = 0; z < zones.size(); ++z) {
     const InputLocation where = design.where(schema::path_of_entry("zone", z));
-    if (is_prism(zones[z].elements)) throw InputError(where, "must have cube corners to be cut, got prisms");
+    if (is_prism(zones[z].elements))
+      throw InputError(where, "only cube corners can be cut in a part with zones, got prisms");
     if (zones[z].elements.element.index() != zones.front().elements.element.index())
       throw InputError(where,
                        "must have the same kind of cube corners (hexagonal or triangular) as the preceding zones");
@@ -241,7 +243,7 @@ void check_job_request(const JobRequest& request) {
   const fabrication::Machine machine = machine_at_field(machine_of(request));
   if (is_dmc(request) != (machine.tilt == fabrication::Tilt::head))
     throw InputError(Field{"machine"},
-                     fmt::format("must be a machine whose {} tilts for strategy {}, got {}",
+                     fmt::format("must be a machine with a tilting {} for strategy {}, got {}",
                                  is_dmc(request) ? "head" : "table", request.strategy, in_quotes(request.machine)));
   process_of(request);
 }
@@ -249,7 +251,7 @@ void check_job_request(const JobRequest& request) {
 void check_cuts_zones(const JobRequest& request) {
   if (!is_dmc(request))
     throw InputError(Field{"strategy"},
-                     fmt::format("must be dmc for a part of zones, got {}", in_quotes(request.strategy)));
+                     fmt::format("must be dmc for a part with zones, got {}", in_quotes(request.strategy)));
 }
 
 void check_element(const design::Design& design, const JobRequest& request) {
@@ -290,8 +292,9 @@ namespace {
 void check_substrate(const design::Design& design, const JobRequest& request) {
   if (design.zoned() || !design.part().substrate) return;
   if (design.part().is_pin_bundle)
-    throw InputError({design.source_name(), 0, "array.arrangement"},
-                     "pins are ground one by one and bundled, not cut: must be \"honeycomb\" for a job, got \"pins\"");
+    throw InputError(
+        {design.source_name(), 0, "array.arrangement"},
+        "must be \"honeycomb\" for a job, because pins are not cut but ground one by one and bundled, got \"pins\"");
   if (request.workpiece != fabrication::kWorkpieceWords[0])
     throw InputError(Field{"workpiece"},
                      "must be mould for a design with [substrate], got " + in_quotes(request.workpiece));

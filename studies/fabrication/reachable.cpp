@@ -76,15 +76,17 @@ void check_design(const design::Design& design, const JobRequest& request) {
   design::require_supported(design, {.what = "retrace job --reachable", .wet_backs = true});
   const geometry::PartSpec& part = design.part();
   if (std::holds_alternative<geometry::RtpElement>(part.element))
-    throw InputError(Field{"reachable"}, "is only for cube corners, because a chisel reaches every point of a prism");
+    throw InputError(Field{"reachable"},
+                     "only allowed for cube corners, because a chisel reaches every point of a prism");
   if (request.strategy == "dmc")
     throw InputError(Field{"reachable"},
-                     "is only for strategies with a chisel, because dmc reaches every point of a cube corner");
+                     "only allowed for strategies with a chisel, because dmc reaches every point of a cube corner");
   if (part.array.extent == geometry::Extent::infinite)
     throw InputError({design.source_name(), 0, "array.extent"}, "must be \"finite\" to be cut, got \"infinite\"");
   if (geometry::cant_of(part.element).deg != 0.0)
     throw InputError({design.source_name(), 0, "element.cant_deg"},
-                     "must be 0 to be cut in this version, got " + shortest(geometry::cant_of(part.element).deg));
+                     "must be 0, because canted cube corners cannot be cut in this version, got " +
+                         shortest(geometry::cant_of(part.element).deg));
   if (request.shrinkage_percent != 0.0)
     throw InputError(Field{"shrinkage_percent"}, fmt::format("must be 0 with {}, got {}", reference({"reachable"}),
                                                              shortest(request.shrinkage_percent)));

@@ -379,16 +379,16 @@ std::string why_none(const OptimiseRequest& request, const std::vector<Exclusion
   std::string text;
   for (std::size_t k = 0; k < exclusions.size(); ++k)
     if (exclusions[k].designs == judged) {
-      text += fmt::format("{}{} excludes all {} designs", text.empty() ? "" : ", and ", request.constraints[k].text(),
-                          judged);
+      text += fmt::format("{}the constraint {} excludes all {} designs", text.empty() ? "" : ", and ",
+                          request.constraints[k].text(), judged);
       if (std::isfinite(exclusions[k].min_violation))
         text += fmt::format(" (the closest design violates it by {:.3g})", exclusions[k].min_violation);
     }
   if (!text.empty()) return text;
   for (std::size_t k = 0; k < exclusions.size(); ++k)
     if (exclusions[k].designs > 0)
-      text += fmt::format("{}{} excludes {} of {} designs", text.empty() ? "" : ", ", request.constraints[k].text(),
-                          exclusions[k].designs, judged);
+      text += fmt::format("{}the constraint {} excludes {} of {} designs", text.empty() ? "" : ", ",
+                          request.constraints[k].text(), exclusions[k].designs, judged);
   return text.empty() ? "the objective has no value for any design" : text + ": no design satisfies all constraints";
 }
 

@@ -85,7 +85,7 @@ SetRay ArraySource::ray(std::size_t number) const {
   SetRay ray;
   ray.position_mm = three(arrays_.origins_mm, number, "origins");
   const std::optional<Vec3> direction = unit_along(three(arrays_.directions, number, "directions"));
-  if (!direction) refuse("directions", number, "must not be 0");
+  if (!direction) refuse("directions", number, "the direction must not be the zero vector");
   ray.direction = *direction;
   const std::size_t at = arrays_.stokes.size() == 4 ? 0 : 4 * number;
   ray.radiant_w = arrays_.stokes[at];

@@ -63,7 +63,7 @@ const char* orthogonalize_stokes_axis(SetRay& ray) {
     ray.axis = ray.direction.unitOrthogonal();
     return nullptr;
   }
-  if (sum > 1.0 + kRounding) return "the squares of S1, S2 and S3 must add up to 1 at most";
+  if (sum > 1.0 + kRounding) return "the squares of S1, S2 and S3 must add up to at most 1";
   if (sum > 1.0)
     for (double& s : ray.stokes) s /= std::sqrt(sum);
   const Vec3 axis = moderate(ray.axis);

@@ -103,8 +103,8 @@ void check_engine(const design::Design& design, const raytrace::EngineFacts& fac
                                                     name, source, option));
     case Obstacle::unequal_cells:
       throw InputError(Field{"engine"},
-                       fmt::format("cell supports only infinite arrays, and arrays of equal elements that are more "
-                                   "than two elements away from every border, but {} is neither: use {} embree",
+                       fmt::format("cell supports only infinite arrays, and arrays of equal elements that extend more "
+                                   "than two elements from every border, but {} is neither: use {} embree",
                                    source, option));
     case Obstacle::texture: throw refused_beams("rough facets scatter");
     case Obstacle::form: throw refused_beams("facets with a form deflect");

@@ -144,7 +144,7 @@ bool is_still(const std::vector<ElementCutPlanes>& before, const std::vector<Ele
 std::string why_no_setup_light(const Job& job) {
   if (job.workpiece.kind == WorkpieceKind::direct) return "the light of parts that are cut directly is not computed";
   if (job.substrate) return "the light of elements on a substrate is not computed";
-  if (!job.zones.empty()) return "the light of parts of zones is not computed";
+  if (!job.zones.empty()) return "the light of parts with zones is not computed";
   return {};
 }
 

@@ -25,8 +25,9 @@ std::optional<double> nm_per(std::string_view unit) {
 void check_size(const Source& source, int line, double columns, double rows) {
   const bool is_whole = columns == std::floor(columns) && rows == std::floor(rows);
   if (!is_whole || columns < 1.0 || rows < 1.0 || columns * rows > static_cast<double>(kMaxPoints))
-    source.fail(line, fmt::format("a map must have 1 to {} points in whole columns and rows, got {} x {}", kMaxPoints,
-                                  columns, rows));
+    source.fail(
+        line, fmt::format("a map must have whole numbers of columns and rows, and 1 to {} points in total, got {} x {}",
+                          kMaxPoints, columns, rows));
 }
 
 std::optional<std::string_view> Lines::next() {

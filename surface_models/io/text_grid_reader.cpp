@@ -294,7 +294,7 @@ class TextReader {
     const std::size_t wanted = has_y ? 3 : 2;
     if (columns_ != wanted)
       source_.fail(first_line_,
-                   fmt::format("a list of points must have {} values in a line, got {}", wanted, columns_));
+                   fmt::format("a list of points must have {} values on each line, got {}", wanted, columns_));
     const std::optional<double> um = lateral_um();
     if (!um)
       source_.fail(

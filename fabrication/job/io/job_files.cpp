@@ -382,7 +382,7 @@ void check_zones(const Job& job, const Refuse& refuse) {
   std::size_t elements = 0;
   for (const CutZone& zone : job.zones) elements += zone.apexes_mm.size();
   if (elements > kMaxZoneElements)
-    refuse("zone", fmt::format("must have at most {} elements in all, got {}", kMaxZoneElements, elements));
+    refuse("zone", fmt::format("must have at most {} elements in total, got {}", kMaxZoneElements, elements));
   if (const std::optional<ZoneError> misfit = first_zone_error(job))
     refuse(path_in(path_of_entry("zone", misfit->zone), "apexes_mm"), misfit->text);
 }

@@ -107,7 +107,7 @@ void set_source(Sourced<Type>& item, const Value& value) {
 
 template <class Type>
 std::string nameless_source(const Sourced<Type>& item) {
-  return item.source.empty() ? "must give the source of the value, got \"\"" : "";
+  return item.source.empty() ? "must state where the value comes from, got \"\"" : "";
 }
 std::string no_direction(const Sourced<Vec3>& item) {
   if (item.value.norm() > kMinLength) return {};

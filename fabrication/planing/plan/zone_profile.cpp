@@ -24,7 +24,7 @@ ZoneProfile::ZoneProfile(const ZoneLens& lens) : lens_(lens) {
     if (!(vertex_distance_mm(zone) > 0.0))
       throw InputError(
           fmt::format("the lens has more zones than its focal length allows: zone {} would begin beyond the "
-                      "focus; wavelength_mm / (refractive_index - 1) is {}",
+                      "focus; each zone is offset by wavelength_mm / (refractive_index - 1) = {} mm",
                       zone + 1, fixed(step_mm_, 6)));
     const double to = position_in_zone_mm(zone, step_mm_);
     zones_.push_back({from, std::min(to, lens.half_width_mm)});

@@ -77,7 +77,7 @@ Measurement measurement_of(const CsvReader& row, const Columns& columns) {
   if (columns.at && !row[*columns.at].empty()) {
     m.along_edge = row.number(*columns.at, kAlongEdge);
     if (m.what != FacetQuantity::cut_end)
-      row.fail(*columns.at, "is allowed only for end_nm, as the position along the edge at which a cut ends");
+      row.fail(*columns.at, "only allowed for end_nm, where it is the position along the edge at which a cut ends");
   }
   return m;
 }
@@ -103,7 +103,7 @@ class Reader {
       m.value = table_.number(columns_.value, kValue);
       result_.measurements.push_back(m);
     }
-    if (result_.measurements.empty()) table_.fail("must have a row with a value");
+    if (result_.measurements.empty()) table_.fail("must contain at least one row with a value");
     return std::move(result_);
   }
 

@@ -48,10 +48,12 @@ std::vector<double> signed_numbers(const CsvReader& row, Column column, std::str
   if (both) text.remove_prefix(2);
   const std::optional<double> value = number_in(text);
   if (!value || !(std::abs(*value) <= kMaxEntranceDeg) || (both && !(*value > 0.0)))
-    row.fail(column,
-             fmt::format("must be a number from -{0} to {0}, or +- and a number above 0{1}, got {2}",
-                         shortest(kMaxEntranceDeg), column == kV ? ", or two such angles, as in \"0 or +-5\"" : "",
-                         in_quotes(row[column])));
+    row.fail(
+        column,
+        fmt::format(
+            "must be a number from -{0} to {0}, or +- and a number above 0 for both signs, as in \"+-10\"{1}, got {2}",
+            shortest(kMaxEntranceDeg), column == kV ? ", or two such angles, as in \"0 or +-5\"" : "",
+            in_quotes(row[column])));
   if (both) return {*value, -*value};
   return {*value};
 }
@@ -113,9 +115,9 @@ LimitFactor factor_of(const CsvReader& row) {
   const std::vector<std::string_view> words = split(row[kMinimum], ' ');
   const std::optional<double> times = number_in(words.front());
   if (words.size() != 3 || words[1] != "x" || words[2].empty() || !times || !(*times > 0.0 && *times <= kMaxFactor))
-    row.fail(kMinimum,
-             fmt::format("must be a number above 0 and at most {}, x and a colour, as in \"2.5 x red\", got {}",
-                         shortest(kMaxFactor), in_quotes(row[kMinimum])));
+    row.fail(kMinimum, fmt::format("must have the form \"FACTOR x COLOUR\" with a factor above 0 and at most {}, such "
+                                   "as \"2.5 x red\", got {}",
+                                   shortest(kMaxFactor), in_quotes(row[kMinimum])));
   factor.factor = *times;
   factor.reference_colour = printable(words[2]);
   factor.status = static_cast<LimitStatus>(row.one_of(kStatus, kStatuses));
@@ -130,8 +132,9 @@ LimitArea area_of(const CsvReader& row) {
   const bool is_begun = words.size() == 3 && words[0] == "at" && (words[1] == "most" || words[1] == "least");
   const std::optional<double> cm2 = is_begun ? number_in(words[2]) : std::nullopt;
   if (!cm2 || !(*cm2 > 0.0 && *cm2 <= kMaxBoundCm2))
-    row.fail(kMinimum, fmt::format("must be \"at most\" or \"at least\" and a number above 0 and at most {}, got {}",
-                                   shortest(kMaxBoundCm2), in_quotes(row[kMinimum])));
+    row.fail(kMinimum,
+             fmt::format("must be \"at most\" or \"at least\", followed by a number above 0 and at most {}, got {}",
+                         shortest(kMaxBoundCm2), in_quotes(row[kMinimum])));
   area.is_maximum = words[1] == "most";
   area.area_cm2 = *cm2;
   area.status = static_cast<LimitStatus>(row.one_of(kStatus, kStatuses));
@@ -149,15 +152,16 @@ void read_boundary(const CsvReader& row, ColourBoundary& boundary) {
                       (words.size() == 3 || is_sloping);
   if (!is_one || !constant || !slope || !(std::abs(*constant) <= kMaxColourCoefficient) ||
       !(std::abs(*slope) <= kMaxColourCoefficient))
-    row.fail(kMinimum, fmt::format("must be a boundary such as \"z <= 0.008\" or \"y >= 0.146 + 0.489 x\", of x, y or "
-                                   "z and with numbers from -{0} to {0}, got {1}",
+    row.fail(kMinimum, fmt::format("must be a boundary in x, y or z, such as \"z <= 0.008\" or \"y >= 0.146 + 0.489 "
+                                   "x\", whose numbers are from -{0} to {0}, got {1}",
                                    shortest(kMaxColourCoefficient), in_quotes(row[kMinimum])));
   // Moves all terms to the left side and replaces z by 1 - x - y.
   const bool is_z = word(0) == "z";
   const double of_x = (word(0) == "x" ? 1.0 : is_z ? -1.0 : 0.0) - (word(3) == "-" ? -*slope : *slope);
   const double of_y = word(0) == "y" ? 1.0 : is_z ? -1.0 : 0.0;
   const double most = *constant - (is_z ? 1.0 : 0.0);
-  if (of_x == 0.0 && of_y == 0.0) row.fail(kMinimum, "must limit the colour, got " + in_quotes(row[kMinimum]));
+  if (of_x == 0.0 && of_y == 0.0)
+    row.fail(kMinimum, "must be a boundary of the colour, but x cancels out, got " + in_quotes(row[kMinimum]));
   const double sign = word(1) == "<=" ? 1.0 : -1.0;
   boundary.x_coefficient = sign * of_x;
   boundary.y_coefficient = sign * of_y;

@@ -68,7 +68,8 @@ void refuse_setting(const Document& document, const Study& study, const std::str
 void check_settings_have_effect(const Document& document, const Study& study) {
   if (is_traced(study, "rre")) return;
   refuse_setting(document, study, "analysis.target_error",
-                 "needs a quantity of RRE, because other quantities have no target error");
+                 "needs a quantity with kind = \"rre\", \"ledger\" or \"far_field\", because other quantities have no "
+                 "target error");
   const bool is_exact = raytrace::may_be_exact(document.choice<raytrace::Engine>("analysis.engine")) ||
                         parameter_of(study, "analysis.engine") != nullptr;
   if (!is_exact && is_traced(study, "photometry"))

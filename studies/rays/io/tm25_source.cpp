@@ -79,7 +79,8 @@ void Tm25Source::fail(std::uint64_t byte, std::string_view text) const {
 /// \param what name of these bytes, for messages
 std::string_view Tm25Source::take(std::uint64_t bytes, std::string_view what) {
   if (bytes > bytes_ - at_)
-    fail(at_, fmt::format("the file is too short: {} needs {} bytes, but only {} are left", what, bytes, bytes_ - at_));
+    fail(at_,
+         fmt::format("the file is too short: {} needs {} bytes, but only {} bytes remain", what, bytes, bytes_ - at_));
   buffer_.resize(bytes);
   stream_->read(buffer_.data(), static_cast<std::streamsize>(bytes));
   if (static_cast<std::uint64_t>(stream_->gcount()) != bytes) fail(at_, "cannot be read");
@@ -212,8 +213,9 @@ void Tm25Source::find_rays(std::int32_t items, std::int32_t text_bytes) {
   record_bytes_ = 4 * static_cast<std::size_t>(columns);
   const std::uint64_t left = bytes_ - at_;
   if (left / record_bytes_ == *info_.rays && left % record_bytes_ == 0) return;
-  fail(at_, fmt::format("{} rays of {} bytes must fill the rest of the file, which has {} bytes", *info_.rays,
-                        record_bytes_, left));
+  fail(at_,
+       fmt::format("the rest of the file must contain {} bytes for each ray (number of rays: {}), but has {} bytes",
+                   record_bytes_, *info_.rays, left));
 }
 
 double Tm25Source::fraction_read() const {
@@ -251,7 +253,7 @@ SetRay Tm25Source::ray_at(const char* record, std::uint64_t byte) {
   for (double& coordinate : ray.position_mm) coordinate = next("a coordinate");
   for (double& cosine : ray.direction) cosine = next("a direction cosine");
   const double length2 = ray.direction.squaredNorm();
-  if (!(length2 > 0.0)) fail(byte + 12, "a direction must not be 0");
+  if (!(length2 > 0.0)) fail(byte + 12, "a direction must not be the zero vector");
   if (std::abs(length2 - 1.0) > kUnitTolerance) ++not_unit_;
   ray.direction /= std::sqrt(length2);
   if (info_.has_radiant) radiant_w_ += ray.radiant_w = flux_of("the radiant flux of a ray");
