@@ -41,8 +41,9 @@ void check_roughness_of_face(const Document& document) {
     document.fail("entrance.correlation_length_um",
                   "must be > 0 because roughness_sq_nm is given, got " + shortest(length_um));
   if (document.count(kThickLayers) > 0 || document.number("entrance.film_coverage") > 0.0)
-    document.fail("entrance.roughness_sq_nm",
-                  "must be 0 together with layers or a film_coverage, because they fill the roughness");
+    document.fail(
+        "entrance.roughness_sq_nm",
+        "must be 0 if layers or film_coverage are given, because layers and films fill the valleys of the roughness");
 }
 
 /// Returns the first key of the table [entrance] that makes the face scatter light. Returns an empty text if there is

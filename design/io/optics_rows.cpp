@@ -105,7 +105,7 @@ constexpr Row kLayerRows[] = {
      "coefficient above 0."}};
 
 constexpr Condition kNoSpectrum[] = {
-    is_absent("spectrum", "not allowed together with spectrum: one of the two says what the light is")};
+    is_absent("spectrum", "not allowed together with spectrum: give either wavelength_nm or spectrum")};
 constexpr Condition kWithSpectrum[] = {is_given("spectrum", "only allowed together with spectrum")};
 constexpr Condition kLinearOnly[] = {is("polarisation", kLinear)};
 

@@ -125,7 +125,7 @@ class Automation1Reader {
     for (; !axes.empty(); axes.remove_prefix(axes.size() > 1 ? 2 : 1)) {
       const std::size_t axis = axis_index(axes.front());
       const bool is_one = axes.size() == 1 || axes[1] == ',';
-      if (axis == kNcAxes || !is_one) lines_.fail("has an axis that is not understood, " + in_quotes(axes));
+      if (axis == kNcAxes || !is_one) lines_.fail("has an unknown axis, " + in_quotes(axes));
       iso.set_axis(axis, take_number(text, lines_));
       if (axes.size() > 1 && !text.starts_with(','))
         lines_.fail("needs a list of axes and a list of as many positions");
@@ -163,8 +163,7 @@ class Automation1Reader {
     NcCubic cubic;
     for (std::size_t k = 0; k < count; ++k) {
       const std::size_t axis = axis_index(axes[2 * k]);
-      if (axis == kNcAxes || (k > 0 && axes[2 * k - 1] != ','))
-        lines_.fail("has an axis that is not understood, " + in_quotes(axes));
+      if (axis == kNcAxes || (k > 0 && axes[2 * k - 1] != ',')) lines_.fail("has an unknown axis, " + in_quotes(axes));
       iso.set_cubic(axis, places[k], velocities[k].value, cubic);
     }
     cubic.time_s = take_number(text, lines_).value;

@@ -44,7 +44,7 @@ std::string with_marked_comments(std::string_view line, const NcLines& lines) {
     if (open == std::string_view::npos) break;
     result += kNcCommentMark;
     const std::size_t close = line.find(')', open);
-    if (close == std::string_view::npos) lines.fail("has a comment without an end");
+    if (close == std::string_view::npos) lines.fail("has a comment that is not closed");
     line.remove_prefix(close + 1);
   }
   return without_blanks(result);
@@ -119,7 +119,7 @@ class FanucReader {
     if (axis_index(word.letter) < kNcAxes) line.block.decimals = std::max(line.block.decimals, word.number.decimals);
     if (word.letter == 'N') return check_line_number(word.number, lines_);
     if (word.letter == 'P') {
-      if (line.p) lines_.fail("has two words P");
+      if (line.p) lines_.fail("has the word P twice");
       line.p = word.number.value;
       line.p_has_point = word.number.has_point;
     } else if (word.letter == 'M' && word.number.value == 98) {

@@ -162,7 +162,7 @@ class SinumerikReader {
       }
       const NcWord word = take_assignment(text, block);
       if (word.letter == 'F') {
-        if (feed) lines_.fail("has two words F");
+        if (feed) lines_.fail("has the word F twice");
         feed = word;
       } else {
         read_word(word, iso, block);

@@ -41,8 +41,8 @@ void check_count(const PartSpec& spec) {
         kMaxDistinctElements, count));
 }
 
-/// Returns the facet normals, towards the light, of an element and of its rotated neighbour, if the array has rotated
-/// elements.
+/// Returns the facet normals of an element, towards the light. If the array has rotated elements, the facet normals of
+/// a rotated element are also returned.
 std::vector<Vec3> facet_normals(const PartSpec& spec) {
   std::vector<Vec3> normals;
   for (const CellFacet& facet : element_cell(spec.element, spec.angle_errors).facets) {
@@ -65,8 +65,9 @@ void check_steepness(const PartSpec& spec, const SubstrateSurface& surface, cons
   const double spare = 6.0 * spec.random_tilts.sigma_arcmin / 60.0;
   const double steepest = std::acos(std::clamp(least, -1.0, 1.0)) / kRadPerDegree + spare;
   if (steepest > kSteepestFacet)
-    throw InputError(fmt::format("must keep all facets at most {} degrees steep, but the steepest facet has {} degrees",
-                                 kSteepestFacet, fixed_apart(steepest, kSteepestFacet, 2)));
+    throw InputError(
+        fmt::format("every facet must have a slope of at most {} degrees, but the steepest facet has {} degrees",
+                    kSteepestFacet, fixed_apart(steepest, kSteepestFacet, 2)));
 }
 
 /// Checks that pins touch their neighbours. Pins touch along their sides. If a pin is shifted along its axis by more
@@ -83,8 +84,8 @@ void check_contact(const PartSpec& spec, const SubstrateSurface& surface, const 
   });
   if (most >= depth)
     throw InputError(
-        fmt::format("must keep pins in contact: neighbouring pins are shifted along their axis by up to {} mm, but the "
-                    "shift must be less than the depth of their tips, {} mm",
+        fmt::format("neighbouring pins must touch: they are shifted along their axis by up to {} mm, but the shift "
+                    "must be less than the depth of their tips, {} mm",
                     fixed_apart(most, depth, 4), shortest(depth)));
 }
 

@@ -74,7 +74,7 @@ std::vector<Triangle> turned_up(const TriangleMesh& mesh, MeshSide side) {
   return triangles;
 }
 
-/// Returns how far rounding to single precision may have moved a corner.
+/// Returns the maximum distance by which rounding to single precision may have moved a corner.
 double rounding_mm(const TriangleMesh& mesh) {
   double largest_mm = 0.0;
   for (const Vec3& p : mesh.vertices) largest_mm = std::max(largest_mm, p.cwiseAbs().maxCoeff());
@@ -91,7 +91,7 @@ std::vector<Vec3> moved(const std::vector<Vec3>& vertices, const Vec3& move_mm) 
 std::string refusal_text(const MeshCover& cover, MeshSide side) {
   const bool is_nearly_all = cover.fraction > 0.999 && cover.fraction < 1.001;
   std::string text =
-      fmt::format("the {} of the mesh must cover the whole part one time, but covers {} % of it",
+      fmt::format("the {} of the mesh must cover the whole part exactly one time, but covers {} % of it",
                   side == MeshSide::top ? "top" : "bottom", fixed(100.0 * cover.fraction, is_nearly_all ? 6 : 2));
   if (cover.gap)
     text += fmt::format("; at x = {}, y = {} mm of its frame, {}", fixed(cover.gap->at_mm.x(), 4),

@@ -166,10 +166,9 @@ void check_apart(const std::vector<Lenslet>& lenslets, std::uint32_t a, std::uin
     const double angle = kTwoPi * i / kAngles;
     const Vec2 p = first.point_mm(angle);
     if (second.contains(p.x(), p.y()))
-      throw InputError(
-          where,
-          fmt::format("must be so far apart that their blends do not overlap, but lenslets {} and {} overlap at {}",
-                      a + 1, b + 1, place_elements(p.x(), p.y())));
+      throw InputError(where, fmt::format("must be far enough apart that their blends do not overlap, but the blends "
+                                          "of lenslets {} and {} overlap at {}",
+                                          a + 1, b + 1, place_elements(p.x(), p.y())));
   }
 }
 

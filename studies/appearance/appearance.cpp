@@ -25,8 +25,8 @@ namespace {
 
 using geometry::Vec2, geometry::Vec3;
 
-// Number of spectral intervals of the photometer with which the table is compared at random geometries. This comparison
-// uses only the eye's response.
+// Number of spectral intervals of the photometer that checks the table at random geometries. This check uses only the
+// eye's response.
 constexpr std::size_t kPartsOfProbes = 4;
 // Azimuth of the test light by which back_of() distinguishes prisms from cube corners. At this azimuth, prisms and cube
 // corners return light into clearly different directions.
@@ -40,7 +40,7 @@ void check_engine(const design::Design& design, PhotometrySettings request) {
   const Photometer photometer(design, request, kIntervalsPerFunction);
   if (!photometer.is_exact())
     throw InputError(design.where_facets(),
-                     "a material is computed by the exact engine, which does not support this design: " +
+                     "materials are computed only by the exact engine, which does not support this design: " +
                          text_of(photometer.why_undiffracted()));
 }
 

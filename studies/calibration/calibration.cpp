@@ -177,8 +177,8 @@ void check_signs(const MeasuredParts& measured, const std::vector<CutPart>& part
     const FabricationResult& plan = measured.plan_of(worst.part);
     throw InputError(
         {measured.file, lines.front(), "value"},
-        fmt::format("all measurements of {} of facet {}{} of {} (line{} {}) contradict the other rows: check the "
-                    "sign, a positive value means \"{}\" at {}0 C0",
+        fmt::format("all values of {} for facet {}{} of {} (line{} {}) contradict the other rows: check their sign. A "
+                    "positive value means \"{}\" at {}0 C0",
                     kFacetQuantityWords[static_cast<std::size_t>(worst.what)], worst.at.facet + 1,
                     plan.plan.elements[worst.at.element].rotated ? " of rotated elements" : "",
                     measured.jobs[worst.part], lines.size() > 1 ? "s" : "", fmt::join(lines, ", "),

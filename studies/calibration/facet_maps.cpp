@@ -184,9 +184,9 @@ class Registration {
       throw InputError(
           {map.file, 0, ""},
           fmt::format(
-              "fits no position on the part within half an element of x = {}, y = {} mm: at best, half of its "
-              "points are more than {} nm from the design, but {} nm are allowed. Rows must be parallel to X of "
-              "the workpiece",
+              "does not match the part at any position within half an element of x = {}, y = {} mm: at the best "
+              "position, the median deviation from the design is {} nm, but at most {} nm are allowed. The rows of "
+              "the map must be parallel to X of the workpiece",
               shortest(map.centre_mm.x()), shortest(map.centre_mm.y()), fixed(1e6 * least, 0), fixed(1e6 * most, 0)));
     return best;
   }

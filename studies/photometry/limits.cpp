@@ -108,9 +108,10 @@ void add_boundary(const LimitTable& table, const ColourBoundary& boundary, TestP
     return std::tie(b.observation_deg, b.v_deg, b.substitute_v_deg, b.h_deg);
   };
   if (!programme.boundaries.empty() && geometry(programme.boundaries.front()) != geometry(boundary))
-    throw InputError(
-        {printable(table.source, std::string::npos), boundary.line, ""},
-        fmt::format("must limit the colour at the same angles as line {}", programme.boundaries.front().line));
+    throw InputError({printable(table.source, std::string::npos), boundary.line, ""},
+                     fmt::format("must have the same observation_deg, v_deg and h_deg as line {}, because the colour "
+                                 "is measured only one time",
+                                 programme.boundaries.front().line));
   programme.boundaries.push_back(boundary);
 }
 

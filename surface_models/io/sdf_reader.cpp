@@ -87,7 +87,8 @@ class SdfReader {
         const std::string_view word = text.substr(0, text.find_first_of(" \t"));
         text = trimmed(text.substr(word.size()));
         if (raw.heights.size() == wanted)
-          source_.fail(lines_.number(), fmt::format("there are more than the {} heights of the header", wanted));
+          source_.fail(lines_.number(),
+                       fmt::format("the file contains more heights than the {} that its header specifies", wanted));
         raw.heights.push_back(height(word));
       }
     }

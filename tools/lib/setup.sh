@@ -67,7 +67,7 @@ need_cmake() {
   wanted=$(sed --quiet 's/^cmake_minimum_required(VERSION \([0-9.]*\)).*/\1/p' "$root/CMakeLists.txt")
   found=$(cmake --version 2>/dev/null | sed --quiet 's/^cmake version \([0-9.]*\).*/\1/p') || true
   printf '%s\n' "$wanted" "${found:-0}" | sort --version-sort --check=quiet ||
-    give_up "$place is CMake ${found:-of no version}, $wanted or later is needed: put a newer one first in PATH (Debian 12 has it in the package cmake)"
+    give_up "$place is CMake ${found:-of an unknown version}, but $wanted or later is required: put a newer version first in PATH (Debian 12 has it in the package cmake)"
 }
 
 is_root() { [[ $(id -u) == 0 ]]; }
@@ -104,18 +104,18 @@ need_packages() {
   ((${#missing[@]})) || return 0
 
   local command="apt-get install --no-install-recommends ${missing[*]}"
-  [[ $may_install == yes ]] || give_up "missing packages; install them as root with:  $command"
-  command -v apt-get >/dev/null || give_up "missing packages, and no apt-get to install them: ${missing[*]}"
+  [[ $may_install == yes ]] || give_up "packages are missing; install them as root with:  $command"
+  command -v apt-get >/dev/null || give_up "packages are missing, and there is no apt-get to install them: ${missing[*]}"
   if ! is_root; then
-    command -v sudo >/dev/null || give_up "missing packages, and neither root nor sudo to install them; ask for:  $command"
+    command -v sudo >/dev/null || give_up "packages are missing, and only root can install them, because there is no sudo; ask your administrator to run:  $command"
     # Without a terminal, sudo would wait forever for a password.
     [[ -t 0 ]] || sudo --non-interactive true 2>/dev/null ||
-      give_up "missing packages, and sudo wants a password; install them with:  sudo $command"
+      give_up "packages are missing, and sudo needs a password; install them with:  sudo $command"
   fi
 
   say "will install with apt-get: ${missing[*]}"
-  local no_lists="apt-get could not fetch the package lists: see to the network or apt's sources, then run this again"
-  local not_installed="apt-get could not install packages, see above; with a network and apt's sources in order, run this again"
+  local no_lists="apt-get could not fetch the package lists: check the network and apt's sources, then run this again"
+  local not_installed="apt-get could not install packages, see above: check the network and apt's sources, then run this again"
   if ! compgen -G '/var/lib/apt/lists/*_Packages*' >/dev/null; then
     apt_update || give_up "$no_lists"
     apt_install "${missing[@]}" || give_up "$not_installed"
@@ -152,7 +152,7 @@ configure() {
       rm -rf "$folder"
       rmdir --ignore-fail-on-non-empty "$root/build" 2>/dev/null || true
     fi
-    give_up "cmake could not configure $folder: install what it names above, of docs/dependencies.md"
+    give_up "cmake could not configure $folder: install the missing software that its messages above name, see docs/dependencies.md"
   fi
   printf '%s\n' "$root $presets $preset" >"$folder/.configured"
 }

@@ -98,7 +98,7 @@ void ToolLife::check(const ToolWear& visit, std::int32_t element) const {
   if (most_min && minutes > *most_min)
     throw InputError(
         job_.where("process.stop_every_min"),
-        fmt::format("must be at least {}, the time of the move to element {} (with warm-up) and one visit, got {}",
+        fmt::format("must be at least {}, the time for the warm-up, the move to element {} and one visit, got {}",
                     fixed(std::ceil(minutes * 1e3) * 1e-3, 3), element, shortest(*most_min)));
 }
 

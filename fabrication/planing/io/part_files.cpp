@@ -177,7 +177,7 @@ void check_sizes(const Document& file) {
   const double step_mm = part.lens.wavelength_mm / (part.lens.refractive_index - 1.0);
   const auto refuse_form = [&](std::string_view limit, double limit_mm) {
     file.fail("tolerance.form_mm",
-              fmt::format("must be {} ({}), got {}", limit, fixed_apart(limit_mm, part.tolerance_mm, 6),
+              fmt::format("must be {} ({} mm), got {}", limit, fixed_apart(limit_mm, part.tolerance_mm, 6),
                           shortest(part.tolerance_mm)));
   };
   if (part.tolerance_mm > 0.5 * step_mm) refuse_form("<= half the depth of a zone", 0.5 * step_mm);

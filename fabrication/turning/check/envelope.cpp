@@ -23,7 +23,8 @@ void CutRecorder::motion(const NcMotion& motion, const NcSettings&) {
     return;
   }
   if (findings_.empty() && motion.is_exact_stop)
-    findings_.push_back({"stops", "", motion.location.line, -1, "the cut stops at every point", 0.0, 0.0, 1});
+    findings_.push_back(
+        {"stops", "", motion.location.line, -1, "the tool stops at every point of the cut (exact stop)", 0.0, 0.0, 1});
   if (findings_.empty() && !(motion.duration_s > 0.0))
     findings_.push_back({"untimed", "", motion.location.line, -1, "a move of the cut has no duration", 0.0, 0.0, 1});
   const auto add = [&](const AxisPositions& p, double duration_s) {

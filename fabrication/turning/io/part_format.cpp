@@ -108,7 +108,8 @@ constexpr Table kAxes[] = {limits("x", "Limits of X."), limits("y", "Limits of Y
                            limits("servo", "Limits of a fast tool servo.")};
 
 constexpr Condition kRoundOnly[] = {
-    is("path.strategy", only(geometry::kStrategies, "spiral"), "must not be given for a raster: meshes are round")};
+    is("path.strategy", only(geometry::kStrategies, "spiral"),
+       "only allowed for strategy = \"spiral\", because meshes are made only for round parts")};
 constexpr Row kInspectRows[] = {
     {"form_tolerance_nm", kPositive, 10.0,
      "Maximum form error. The part fails the inspection if its form error, or the depth of a cut below the surface, "

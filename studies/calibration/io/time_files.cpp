@@ -138,7 +138,7 @@ class TimeReader {
       if (table_.rows() > kMaxRows) table_.fail(fmt::format("at most {} rows are allowed", kMaxRows));
       add_row();
     }
-    if (result_.rows.empty()) table_.fail("must have a row with a time");
+    if (result_.rows.empty()) table_.fail("must contain at least one row with a time");
     return std::move(result_);
   }
 
