@@ -119,7 +119,7 @@ class Automation1Reader {
   void read_axes(std::string_view& text, IsoBlock& iso) {
     const bool is_list = text.starts_with('[');
     const std::size_t end = is_list ? text.find("],[") : text.find(',');
-    if (end == std::string_view::npos) lines_.fail("needs a list of axes and a list of as many positions");
+    if (end == std::string_view::npos) lines_.fail("needs a list of axes and a list with the same number of positions");
     std::string_view axes = text.substr(is_list ? 1 : 0, end - (is_list ? 1 : 0));
     text.remove_prefix(end + (is_list ? 3 : 1));
     for (; !axes.empty(); axes.remove_prefix(axes.size() > 1 ? 2 : 1)) {
@@ -128,10 +128,11 @@ class Automation1Reader {
       if (axis == kNcAxes || !is_one) lines_.fail("has an unknown axis, " + in_quotes(axes));
       iso.set_axis(axis, take_number(text, lines_));
       if (axes.size() > 1 && !text.starts_with(','))
-        lines_.fail("needs a list of axes and a list of as many positions");
+        lines_.fail("needs a list of axes and a list with the same number of positions");
       if (axes.size() > 1) text.remove_prefix(1);
     }
-    if (is_list && !text.starts_with(']')) lines_.fail("needs a list of axes and a list of as many positions");
+    if (is_list && !text.starts_with(']'))
+      lines_.fail("needs a list of axes and a list with the same number of positions");
     if (is_list) text.remove_prefix(1);
   }
 

@@ -325,9 +325,9 @@ Warnings HeightMapScatter::warnings(double index, double wavelength_nm) const {
                          " is above " + shortest(kMaxSlopeWithoutWarning) +
                          ": masking, and light that is reflected several times on the surface, are not modelled"});
   if (t.sq_nm > 0.0 && std::abs(t.kurtosis - 3.0) > 1.0)
-    found.push_back(
-        {"heights_not_gaussian", "kurtosis of the heights is " + fixed(t.kurtosis, 2) +
-                                     ", not the 3 of Gaussian heights: small specular fractions are inaccurate"});
+    found.push_back({"heights_not_gaussian",
+                     "kurtosis of the heights is " + fixed(t.kurtosis, 2) +
+                         " instead of 3, the value of Gaussian heights: small specular fractions are inaccurate"});
   return found;
 }
 

@@ -110,12 +110,13 @@ void settle_skew(TurnedPart& part, const InputLocation& where) {
   if (figures.clears(part.tool)) return;
   const auto skew = min_skew_deg(part.tool, slopes, kTestedSkewDeg);
   throw InputError(
-      where, fmt::format("the tool does not clear the surface: a clearance of {} and a window of {} degrees are "
-                         "required, got {} and {}; {}",
-                         fixed(std::max(0.0, figures.clearance_needed_deg), 2), fixed(figures.window_needed_deg, 2),
-                         shortest(part.tool.clearance_deg), shortest(part.tool.window_deg),
-                         skew ? fmt::format("a skew of {} degrees is sufficient", fixed(*skew, 2))
-                              : std::string("no skew is sufficient")));
+      where,
+      fmt::format("the tool does not clear the surface: a clearance of {} and a window of {} degrees are "
+                  "required, got {} and {}; {}",
+                  fixed(std::max(0.0, figures.clearance_needed_deg), 2), fixed(figures.window_needed_deg, 2),
+                  shortest(part.tool.clearance_deg), shortest(part.tool.window_deg),
+                  skew ? fmt::format("with a skew of {} degrees, the given angles are sufficient", fixed(*skew, 2))
+                       : std::string("the given angles are not sufficient at any skew")));
 }
 
 }  // namespace
