@@ -121,7 +121,7 @@ class A3200Reader {
     while (!rest.empty() && !rest.starts_with("TIME")) {
       const NcWord word = take_word(rest, lines_);
       const std::size_t axis = axis_index(word.letter);
-      if (axis == kNcAxes || !rest.starts_with(',')) lines_.fail("PVT must have axes, each with position, velocity");
+      if (axis == kNcAxes || !rest.starts_with(',')) lines_.fail("PVT must give position,velocity for each axis");
       rest.remove_prefix(1);
       iso.set_cubic(axis, word.number, take_number(rest, lines_).value, cubic);
     }

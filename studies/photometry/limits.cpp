@@ -55,13 +55,13 @@ std::string choice(const std::vector<std::string>& there_are, const std::optiona
   }
   if (!asked) {
     if (there_are.size() == 1) return there_are.front();
-    throw InputError(field, fmt::format("is required for {}: one of {}", printable(of_what),
+    throw InputError(field, fmt::format("is required for {}; give one of {}", printable(of_what),
                                         printable(fmt::format("{}", fmt::join(there_are, ", ")), 400)));
   }
   if (holds(there_are, *asked)) return *asked;
-  throw InputError(
-      field, fmt::format("must be {} for {}, got {}", printable(fmt::format("{}", fmt::join(there_are, ", ")), 400),
-                         printable(of_what), in_quotes(*asked)));
+  throw InputError(field, fmt::format("must be one of {} for {}, got {}",
+                                      printable(fmt::format("{}", fmt::join(there_are, ", ")), 400), printable(of_what),
+                                      in_quotes(*asked)));
 }
 
 std::vector<std::string> classes_of(const LimitTable& table, const std::string& standard) {
