@@ -16,7 +16,7 @@ namespace retrace::app {
 /// If the program was started with SIGHUP ignored, for example by nohup, SIGHUP remains ignored.
 void install_interrupt_handlers();
 
-/// While an object of this class exists, the first interrupt only requests the computation to stop, so that finished
+/// While an object of this class exists, the first interrupt only asks the computation to stop, so that finished
 /// results are written. The second interrupt ends the program immediately.
 class OrderlyInterrupt {
  public:
@@ -25,9 +25,9 @@ class OrderlyInterrupt {
   OrderlyInterrupt(const OrderlyInterrupt&) = delete;
   OrderlyInterrupt& operator=(const OrderlyInterrupt&) = delete;
 
-  /// Runs a computation that regularly checks whether it is requested to stop. If the computation does not stop within
-  /// one second after the interrupt, the program ends and writes no results. If it stops in time, writing its results
-  /// has no time limit.
+  /// Runs a computation that regularly checks whether it should stop. If the computation does not stop within one
+  /// second after the interrupt, the program ends and writes no results. If it stops in time, writing its results has
+  /// no time limit.
   /// \param threads number of threads; if there is no value or it is 0, the number of cores
   /// \param work computation; its parameter is the request to stop
   void run(std::optional<unsigned> threads, const std::function<void(const Cancellation*)>& work) const;

@@ -1,6 +1,6 @@
 # Builds the engine of the live page with emscripten (tools/live_page): the parts of retrace that can run in a browser.
-# Only header-only libraries are available. CMake lists of folders omit sources that need other libraries, and functions
-# in live/engine/stand_ins/ replace them and report an error.
+# Only header-only libraries are available. The CMakeLists.txt of each folder omits sources that need other libraries.
+# Functions in live/engine/stand_ins/ replace these sources and report an error.
 
 set(RETRACE_LIVE_PAGE ON)
 set(RETRACE_WARNINGS_AS_ERRORS OFF)

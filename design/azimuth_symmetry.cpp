@@ -23,7 +23,7 @@ bool is_regular(const geometry::PartSpec& part) {
 }
 
 /// Returns the symmetry of an array of cube corners. Returns nothing if they are canted.
-/// \param cube complete cube corner, which is mirror-symmetric to three planes through its axis
+/// \param cube complete cube corner; it is mirror-symmetric about three planes through its axis
 template <class Cube>
 std::optional<AzimuthSymmetry> of_cubes(const Cube& cube, double period_deg) {
   if (cube.cant.deg != 0.0) return std::nullopt;

@@ -72,11 +72,11 @@ struct HeightMapTexture {
 /// Surface texture of the retro facets. The alternatives have the same order as the words of `surface.model`.
 using SurfaceFinish = std::variant<SmoothTexture, HarveyShackTexture, AbgTexture, MicrofacetTexture, HeightMapTexture>;
 
-/// Term of a polynomial over a facet: height_um x^level y^down. x is the horizontal coordinate and y the coordinate
-/// down the facet, both in units of the facet's radius.
+/// Term of a polynomial over a facet: height_um * x^x_power * y^y_power. x is the horizontal coordinate and y the
+/// coordinate down the facet, both in units of the facet's radius.
 struct FormTerm {
   int x_power = 0;
-  int y_power = 0;         ///< level + down is at most 8
+  int y_power = 0;         ///< x_power + y_power is at most 8
   double height_um = 0.0;  ///< coefficient; positive is out of the body
 };
 struct FormMap {
@@ -261,8 +261,8 @@ struct EntranceState {
   double film_coverage = 0.0;
   double water_index = 1.333;
   double drop_coverage = 0.0;
-  /// Set if `drop_coverage` is above 0. Other optional members, except the azimuth, are set if their coverage or `haze`
-  /// is above 0.
+  /// Contact angle of the drops. Each optional member, except the azimuth of the scratches, is set if the coverage to
+  /// which it belongs (or `haze`) is above 0.
   std::optional<double> drop_contact_angle_deg;
   double dust_coverage = 0.0;
   std::optional<double> dust_albedo;

@@ -1,7 +1,7 @@
 #pragma once
 
 // Builds the part of a design that consists of elements, and applies its mask and its table of facet planes. Also makes
-// designs with only one element of another design.
+// designs that contain only one element of another design.
 
 #include "design/design.h"
 #include "geometry/part/part.h"
@@ -13,7 +13,7 @@ namespace retrace::design {
 /// \throw InputError under the same conditions as geometry::build_part(), and for an invalid table or mask
 geometry::Part part_of(const Design& design);
 
-/// Returns a design with only one element of the array. Its plate is the piece of the design's plate that belongs to
+/// Returns a design with only one element of the array. Its plate is the portion of the design's plate that belongs to
 /// this element.
 /// \pre the design consists of elements
 Design single_element_of(const Design& design);

@@ -19,12 +19,13 @@ namespace retrace::design {
 surface_models::HeightMap facet_aligned_map(const std::filesystem::path& file, HeightMapAxis level_axis,
                                             const std::string& source, Warnings& warnings);
 
-/// Returns the form of the retro facets of the design's element without errors and cant. Warnings are appended.
+/// Returns the form of the retro facets. The facets are those of the design's element, without angle errors and cant.
+/// Warnings are appended.
 /// \throw InputError that names file, line and key if a map cannot be read or does not cover a facet, and for slopes
 /// above 0.03
 surface_models::FacetForm form_of_design(const Design& design, Warnings& warnings);
 
-/// Figures of a form over a facet of the element without errors and cant.
+/// Characteristic values of a form over a facet. The facet is that of an element without angle errors and cant.
 struct FormReport {
   double radius_mm = 0.0;  ///< distance from the centre of the facet to its farthest corner
   double lowest_um = 0.0;  ///< minimum height above the plane; positive is out of the body
@@ -33,7 +34,7 @@ struct FormReport {
   double tilt_mrad = 0.0;  ///< tilt of the best-fitting plane
   double steepest_mrad = 0.0;
 };
-/// Returns the figures of a form.
+/// Returns the characteristic values of a form.
 /// \pre the design has elements
 FormReport report_form(const Design& design, const surface_models::FacetForm& form);
 

@@ -41,7 +41,7 @@ struct OpticalModel {
   std::size_t nearest_wavelength() const;
 };
 
-/// Entrance faces that a caller supports: only a plane face, or also a curved one.
+/// Entrance faces that a caller supports: only plane faces, or also curved faces.
 enum class Entrances { plane, any };
 
 /// Builds the part, finds the material and selects the wavelengths of the light.

@@ -10,7 +10,7 @@
 namespace retrace::design {
 
 /// Returns the part of a design. It is built from the elements, or read from the mesh and checked with CGAL. A mesh
-/// must be closed and free of self-intersections. With `allow_open`, openings are closed by flat pieces.
+/// must be closed and free of self-intersections. With `allow_open`, openings are closed by flat patches.
 /// \param warnings receives warnings about a mesh; may be null
 /// \throw InputError that names file and line
 geometry::Part part_of_design(const Design& design, Warnings* warnings);

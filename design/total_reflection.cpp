@@ -10,9 +10,9 @@
 namespace retrace::design {
 namespace {
 
-/// Returns the directions, inside the part, from which light is incident normally on a facet. There is one direction
-/// for each facet and each order of reflections. A facet that light hits after reflections is replaced by its mirror
-/// image, which unreflected light hits at the same angle.
+/// Returns the directions inside the part from which light is incident normally on a facet. There is one direction for
+/// each facet and each order of reflections. A facet that light hits after reflections is replaced by its mirror image,
+/// which unreflected light hits at the same angle.
 std::vector<geometry::Vec3> square_directions(const geometry::PartSpec& part) {
   std::vector<geometry::Vec3> normals;
   for (const geometry::CellFacet& facet : geometry::element_cell(part.element, part.angle_errors).facets)

@@ -13,7 +13,8 @@ namespace {
 
 using geometry::ArrayCell, geometry::ArrayPlan, geometry::Vec2;
 
-/// Tolerance, as a fraction of an element, within which centres of elements are in one row or column.
+/// Elements are in one row or column if their centres agree within this tolerance, which is a fraction of an element's
+/// size.
 constexpr double kSameLine = 1e-6;
 
 /// Positions of the rows or columns of elements.
@@ -125,8 +126,8 @@ void check_zones(const ZonedPart& part, const std::function<InputLocation(const 
   if (fault->subject != Of::elements)
     throw InputError(where(fault->subject == Of::rotation ? zone + ".rotation_deg" : zone), fault->text);
   if (!part.changes[fault->zone].empty()) throw InputError(where(zone + ".set"), fault->text);
-  // The faulty zone has no changes. The fault is a difference from zone 1, so that the changes of zone 1 must cause it.
-  // The message therefore names the `set` key of zone 1.
+  // The faulty zone has no changes. The fault is a difference from zone 1. It must therefore be caused by the changes
+  // of zone 1. The message therefore names the `set` key of zone 1.
   throw InputError(
       where(schema::path_of_entry("zone", 0) + ".set"),
       fmt::format("must not change the outlines and positions of the elements, which must be the same as in zone {}",

@@ -1,6 +1,7 @@
 #pragma once
 
-// Assigns the elements of an array to zones, if zones are rows, columns or masks of elements and not regions.
+// Assigns the elements of an array to zones, if the zones are given as rows, columns or masks of elements instead of
+// regions.
 
 #include <functional>
 #include <string>
@@ -27,7 +28,7 @@ void check_zones(const ZonedPart& part, const std::function<InputLocation(const 
 
 /// Returns the zones of a design, including the cells of masks.
 /// \pre design.zoned()
-/// \throw InputError for an invalid mask, and if an element belongs to no zone or to two
+/// \throw InputError for an invalid mask, and if an element belongs to no zone or to two zones
 geometry::ZonedSpec zones_of(const Design& design);
 
 }  // namespace retrace::design

@@ -12,8 +12,9 @@ namespace {
 /// Spacing in nm of grid points for the trapezium rule. They are used in addition to the wavelengths of the lamp's
 /// table.
 constexpr double kTableStepNm = 5.0;
-/// Distance in nm from a knee to the first grid point of the trapezium rule. A knee is a wavelength near which the
-/// property changes like the square root of the distance from it. Point j is at j^2 times this distance from the knee.
+/// Distance in nm from a knee to the first grid point of the trapezium rule. A knee is a wavelength near which an
+/// integrated property of the part varies as the square root of the difference from this wavelength. Grid point j is at
+/// j^2 times this distance from the knee.
 constexpr double kFirstStepNm = 0.05;
 constexpr int kStepsAtKnee = 10;
 
@@ -25,7 +26,7 @@ struct Interval {
   bool has_knee_at_high = false;
 
   /// Converts a wavelength to the integration variable of the Gauss rule. As a function of this variable, the square
-  /// root of the distance from a knee is smooth. The variable increases with the wavelength.
+  /// root of the difference from a knee is smooth. The variable increases with the wavelength.
   double coordinate(double wavelength_nm) const {
     const double share = std::clamp((wavelength_nm - low_nm) / (high_nm - low_nm), 0.0, 1.0);
     if (has_knee_at_low && has_knee_at_high) return std::asin(std::sqrt(share));

@@ -34,12 +34,13 @@ struct TangentialFields {
   Complex other;  ///< initially the admittance of the medium behind the stack
 };
 
-/// Transfers the fields from the far side of a layer to its near side with the characteristic matrix. Let `turn` be 2
-/// pi times the thickness in wavelengths, so that the layer changes the phase by w turn. The matrix is multiplied by
-/// exp(i w turn), so that nothing grows even if the layer absorbs strongly.
+/// Transfers the fields from the far side of a layer to its near side with the characteristic matrix. Let w be the
+/// normal component of the wave vector in the layer, and let `turn` be 2 pi times the thickness in wavelengths. The
+/// layer then changes the phase by the product w * turn. The matrix is multiplied by exp(i * w * turn), so that no
+/// element grows even if the layer absorbs strongly.
 /// \param along scaled diagonal element of the matrix
-/// \param across scaled i sin(w turn) / w, from which the off-diagonal elements are computed
-/// \param w2 square of the normal component w of the wave vector
+/// \param across scaled i * sin(w * turn) / w, from which the off-diagonal elements are computed
+/// \param w2 square of w
 /// \param weight ratio of the admittance to w: 1 for s, 1 / permittivity for p
 void pass(TangentialFields& at, Complex along, Complex across, Complex w2, Complex weight) {
   const Complex far = at.field;

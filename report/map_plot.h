@@ -27,7 +27,7 @@ struct MapPanel {
   bool is_periodic = false;         ///< true if the rectangular outline repeats periodically; its surroundings are
                                     ///< drawn paler
   std::vector<MapLine> lines;       ///< lines that are not drawn if they are too close together
-  std::vector<MapLine> fine_lines;  ///< finer lines, which are also not drawn if they are too close together
+  std::vector<MapLine> fine_lines;  ///< finer lines; like `lines`, not drawn if too close together
   std::vector<MapRegion> regions;   ///< coloured regions; the remaining area of the outline is hatched
 };
 

@@ -27,8 +27,8 @@ struct DetectorRequest {
   /// Method of tracing: beams (exact), rays (montecarlo or embree, which are the same here), or auto: exact if
   /// possible.
   std::string engine = "auto";
-  /// Minimum power of a beam that is followed, as a fraction of the incident power; > 0 and < 1. Default: truncates at
-  /// most 1e-5.
+  /// Minimum power of a beam that is followed, as a fraction of the incident power; > 0 and < 1. Default: such that at
+  /// most 1e-5 of the power is truncated.
   std::optional<double> cutoff = {};
   /// Number of Monte Carlo rays; a whole number >= 1 and <= 68719476736. Default: 4194304.
   std::optional<std::uint64_t> samples = {};
@@ -71,10 +71,10 @@ struct CameraRequest {
   std::optional<double> field_mm = {};
   /// Width and height of the sheet that shows an infinite design, in mm. Default: 100x100.
   std::optional<std::array<double, 2>> film_mm = {};
-  /// Radius of the cylinder around which the sheet is bent, in mm; negative: inside it; >= -1e+09 and <= 1e+09.
-  /// Default: plane.
+  /// Radius of the cylinder around which the sheet is bent, in mm; negative: the sheet is on the inside of the
+  /// cylinder; >= -1e+09 and <= 1e+09. Default: plane.
   std::optional<double> cylinder_mm = {};
-  /// Relative noise of the pixels at which the picture ends; > 0 and < 1.
+  /// Relative noise of the pixels at which the computation of the picture ends; > 0 and < 1.
   double noise = 0.02;
   /// Number of passes, each with four light paths per pixel; not together with the noise; a whole number >= 2 and <=
   /// 65536. Default: as many as the noise requires.

@@ -12,8 +12,8 @@ namespace retrace {
 struct JobRequest {
   /// Name of a shipped machine, or a machine file.
   std::string machine = "ideal";
-  /// Width of the tool between the outer ends of its cutting edges, in mm; 0.1 to 2, or 0.01 to 10 with the strategy
-  /// dmc; >= 0.01 and <= 10. Required.
+  /// Width of the tool between the outer ends of its cutting edges, in mm; 0.1 to 2 mm with all strategies except dmc;
+  /// >= 0.01 and <= 10. Required.
   double tool_width_mm = 0.0;
   /// Cutting strategy: unidirectional, bidirectional or two-step for prisms; dmc (diamond micro chiseling) for cube
   /// corners.

@@ -24,7 +24,8 @@ struct MetrologyRequest {
   std::optional<std::string> lateral_unit = {};
   /// Channel of a GWY file; a whole number >= 0 and <= 999999. Default: the first.
   std::optional<std::size_t> channel = {};
-  /// Feed of the cut, for waves in Hz, in mm/min; > 0. Default: no frequencies.
+  /// Feed of the cut, in mm/min; if it is given, the frequencies of waves are also reported in Hz; > 0. Default: no
+  /// frequencies.
   std::optional<double> feed_mm_per_min = {};
   /// Rows are profiles across an edge: fit its radius and chamfer.
   bool edge = false;

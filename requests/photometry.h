@@ -14,9 +14,9 @@ namespace retrace {
 struct PhotometryRequest {
   /// Standard of the test: r150, j594, bicycle, d4956, iso20471, stvzvo, or a file with limits. Required.
   std::string standard = {};
-  /// Class of the part in the standard, such as IA. Default: required if the standard has several classes.
+  /// Class of the part in the standard, such as IA. Required if the standard has several classes.
   std::optional<std::string> part_class = {};
-  /// Colour of the part: white, amber, red, yellow and so on. Default: required if the standard has several colours.
+  /// Colour of the part: white, amber, red, yellow and so on. Required if the standard has several colours.
   std::optional<std::string> colour = {};
   /// Area of the whole part in cm2; the design can describe a section of the part; > 0 and <= 1e+06. Required.
   double area_cm2 = 0.0;

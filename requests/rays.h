@@ -34,14 +34,14 @@ struct RaysRequest {
   std::optional<double> azimuth_deg = {};
   /// Distance of the source from the centre of the entrance face, in mm; > 0 and <= 1e+09. Default: 10.
   std::optional<double> distance_mm = {};
-  /// Position of the source's origin in the part frame, in mm; it is given instead of angles and distance. Default: the
-  /// origin of the part, for a file of rays.
+  /// Position of the source's origin in the part frame, in mm; it is given instead of angles and distance. Default: for
+  /// a file of rays, the origin of the part.
   std::optional<std::array<double, 3>> at_mm = {};
-  /// Point, in the part frame, at which the source's +z axis is aimed, in mm. Default: parallel to the +z axis of the
-  /// part, for a file of rays.
+  /// Point, in the part frame, at which the source's +z axis is aimed, in mm. Default: for a file of rays, none: the +z
+  /// axes of source and part are parallel.
   std::optional<std::array<double, 3>> aim_mm = {};
-  /// Minimum power of the reflected and the refracted branch, as a fraction of the launched ray, at which both are
-  /// followed; 1: only one branch, chosen at random; >= 0 and <= 1.
+  /// The reflected and the refracted branch are both followed if each has at least this fraction of the power of the
+  /// launched ray; otherwise, one branch is chosen at random; 1: always one branch; >= 0 and <= 1.
   double split = 1.0;
   /// Minimum power of a branch that is followed, as a fraction of the power of the launched ray; >= 0 and <= 1.
   double cutoff = 1e-10;
@@ -58,8 +58,8 @@ struct RaysRequest {
 /// Settings of trace(), which traces rays in memory. Each member has the same meaning as the member of RaysRequest with
 /// the same name.
 struct TraceRequest {
-  /// Minimum power of the reflected and the refracted branch, as a fraction of the launched ray, at which both are
-  /// followed; 1: only one branch, chosen at random; >= 0 and <= 1.
+  /// The reflected and the refracted branch are both followed if each has at least this fraction of the power of the
+  /// launched ray; otherwise, one branch is chosen at random; 1: always one branch; >= 0 and <= 1.
   double split = 1.0;
   /// Minimum power of a branch that is followed, as a fraction of the power of the launched ray; >= 0 and <= 1.
   double cutoff = 1e-10;

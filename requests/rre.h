@@ -29,7 +29,7 @@ struct RreRequest {
   /// Minimum power of light that is followed, as a fraction of the incident power; >= 0 and < 1. Default: 1e-10; exact:
   /// determined by the target error.
   std::optional<double> cutoff = {};
-  /// Method of sampling: stratified, or plain, which is random points without splitting, for comparison.
+  /// Method of sampling: stratified, or plain (random points without splitting, for comparison).
   std::string sampling = "stratified";
   /// Seed of the random numbers; a whole number >= 0 and <= 4294967295.
   std::uint32_t seed = 1;

@@ -10,7 +10,8 @@
 namespace retrace::surface_models {
 
 /// Returns the smallest number >= `min_length` whose only prime factors are 2, 3, 5 and 7. Transforms of such lengths
-/// are fast. \pre least >= 1
+/// are fast.
+/// \pre min_length >= 1
 std::size_t fast_length(std::size_t min_length);
 
 /// Real field of rows x columns and its transform F(j, k) = sum z(r, c) exp(-2 pi i (j r / rows + k c / columns)). Only

@@ -28,7 +28,7 @@ struct LeastSquaresEstimate {
 /// Computes the estimate. The vector and both matrices are divided by the standard uncertainties of the observations.
 /// \param nuisance_derivatives derivatives with respect to the nuisance unknowns; no columns if there are none
 /// \param max_uncertainty standard uncertainty above which a combination with norm 1 counts as unobservable
-/// \pre derivatives, of_nuisance and observations have the same number of rows; most_uncertain > 0
+/// \pre `derivatives`, `nuisance_derivatives` and `observations` have the same number of rows; max_uncertainty > 0
 LeastSquaresEstimate estimate(const Eigen::MatrixXd& derivatives, const Eigen::MatrixXd& nuisance_derivatives,
                               const Eigen::VectorXd& observations, double max_uncertainty);
 

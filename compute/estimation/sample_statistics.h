@@ -49,12 +49,14 @@ struct Spread {
   double min = 0.0, max = 0.0;
 };
 /// Returns the spread of values.
-/// \pre values is not empty
+/// \param confidence probability that Spread::mean_interval contains the true mean, in 0..1
+/// \pre `values` is not empty
 Spread spread_of(const std::vector<double>& values, double confidence);
 
-/// Returns the value below which the fraction `fraction` of all values is located, with linear interpolation (type 7 of
-/// Hyndman and Fan 1996).
-/// \pre values is ascending and not empty, 0 <= share <= 1
+/// Returns a quantile of the values, with linear interpolation (type 7 of Hyndman and Fan 1996).
+/// \param ascending values in ascending order
+/// \param fraction fraction of the values that are below the quantile
+/// \pre `ascending` is not empty, 0 <= fraction <= 1
 double percentile(const std::vector<double>& ascending, double fraction);
 
 }  // namespace retrace::compute

@@ -55,7 +55,8 @@ struct MailboxState {
   std::set<int> forgotten;
   std::vector<Clock::time_point> heard;
 
-  // Members that only the thread with MPI calls uses. They are lists because MPI stores addresses of their elements.
+  // Members that are used only by the thread that makes the MPI calls. The transfers are stored in lists because MPI
+  // stores addresses of their elements.
   std::list<Transfer> outgoing;
   std::list<Transfer> incoming;
   std::list<Transfer> given_up;  ///< transfers of forgotten ranks; MPI may access their memory until the process ends

@@ -219,8 +219,8 @@ std::optional<GlassCatalogueFile> read_catalogue(const Document& document) {
   return GlassCatalogueFile{document.text("body.catalogue"), document.file("body.catalogue")};
 }
 
-/// Returns the name of the material. For a file with a single index record it is the name of the file, which a design
-/// need not repeat.
+/// Returns the name of the material. If the catalogue is a file with a single index record, the name of the file is
+/// returned, and a design need not give the name of the material.
 std::string read_material(const Document& document) {
   std::string material = document.text("body.material");
   if (!document.has("body.catalogue") || !materials::is_index_record(document.file("body.catalogue"))) return material;
@@ -423,7 +423,7 @@ Design with(const Design& design, std::span<const std::string> overrides) {
 }
 
 /// Keys whose values are names of files, in the order in which the stores of studies list the files of a design. The
-/// order determines the identity of a study, so that new keys must be appended at the end.
+/// order determines the identity of a study. New keys must therefore be appended at the end.
 constexpr std::array<std::string_view, 9> kFilesOfStores = {"part.mesh",
                                                             "array.mask",
                                                             "surface.height_map",

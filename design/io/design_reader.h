@@ -24,7 +24,7 @@ Design parse_design(std::string_view text, const std::string& source_name, std::
 
 /// Returns a variant of a design with other values of some keys. The variant is read again, so that all checks of
 /// designs are applied to it.
-/// \pre a design that was read from a file has not been changed since
+/// \pre if the design was read from a file, the Design object has not been modified since then
 /// \param overrides as for read_design()
 /// \throw InputError under the same conditions as read_design()
 Design with(const Design& design, std::span<const std::string> overrides);

@@ -1,7 +1,7 @@
 #pragma once
 
-// Rows that describe the keys in the tables of design files, and the words and ranges that several tables use. Internal
-// to design.
+// Descriptions (schema::Row) of the keys in the tables of design files, and allowed words and ranges that several
+// tables share. Internal to design/.
 
 #include <span>
 #include <string_view>

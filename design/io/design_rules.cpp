@@ -60,7 +60,7 @@ void check_square(const Document& document, const PartSpec& part) {
                                                 shortest(rtp.base_mm), shortest(rtp.width_mm)));
 }
 
-/// Bounding box of an element's aperture in mm, and area of the cell in which the element repeats in mm^2.
+/// Bounding box of an element's aperture, in mm, and area, in mm^2, of the cell in which the element repeats.
 struct Footprint {
   double x_mm;
   double y_mm;
@@ -227,7 +227,7 @@ void check_scratches(const Document& document, const PartSpec& part) {
   for (std::size_t i = 0; i < part.scratches.size(); ++i) check_scratch(document, part, i);
 }
 
-/// Returns the key that messages about angle errors name: the first such key that was given.
+/// Returns the key that is named in messages about angle errors: the first of these keys that was given.
 std::string_view blamed_error(const Document& document, std::string_view otherwise) {
   for (const std::string_view key : {kDihedralError, kFacetTilt})
     if (document.has(key)) return key;
@@ -247,7 +247,7 @@ void check_angles(const Document& document, const PartSpec& part) {
     return;
   }
   constexpr double steepest_deg = 88.0;
-  // Limit of random tilts in standard deviations; fewer than 1 in 10^8 facets exceeds it.
+  // Limit of random tilts in standard deviations; fewer than 1 in 10^8 facets exceed it.
   constexpr double deviations = 6.0;
   const double deg = geometry::steepest_facet_deg(part.element, part.angle_errors) +
                      deviations * part.random_tilts.sigma_arcmin / 60.0;

@@ -9,7 +9,7 @@
 namespace retrace::design {
 
 /// Returns the rules between keys of a design file. The rules of parts are checked in this order, so that each rule may
-/// rely on those before it.
+/// rely on the rules before it.
 std::span<const schema::Rule> design_rules();
 
 }  // namespace retrace::design

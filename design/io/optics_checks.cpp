@@ -142,7 +142,8 @@ void check_layers(const Document& document) {
                   fmt::format("must have at most one layer without thickness_nm, which is opaque, got {}", opaque));
 }
 
-/// Checks that coatings are given only one time, and together with no key that they make ineffective.
+/// Checks that no coating is given by two keys, and that no coating is given together with a key that it makes
+/// ineffective.
 void check_coating(const Document& document) {
   if (document.count(kFacetLayers) > 0) {
     if (document.text("body.facet_coating") != "none")

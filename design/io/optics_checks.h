@@ -38,7 +38,8 @@ void check_ball_mirror(const schema::Document& document);
 void check_wet_back(const schema::Document& document);
 /// Checks that at most one layer on the facets is opaque, and no layer on the entrance face.
 void check_layers(const schema::Document& document);
-/// Checks that coatings come together with no key that they make ineffective.
+/// Checks that no coating is given by two keys, and that no coating is given together with a key that it makes
+/// ineffective.
 void check_coating(const schema::Document& document);
 /// Checks that the state of the entrance face is complete and free of contradictions. Implemented in
 /// entrance_checks.cpp.

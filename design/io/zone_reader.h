@@ -11,7 +11,7 @@ namespace retrace::design {
 
 /// Reads the zones of a design.
 /// \pre has_zones(document)
-/// \throw InputError if zones overlap or leave parts uncovered, if regions are not convex polygons, and for
+/// \throw InputError if zones overlap or do not cover the whole part, if regions are not convex polygons, and for
 /// invalid changes
 ZonedPart read_zones(const schema::Document& document);
 

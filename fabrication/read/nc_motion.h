@@ -28,7 +28,8 @@ struct NcMotion {
   AxisPositions to;
   /// Feed of a linear move; 0 if the program gives no feed or gives the time of the move.
   double feed_mm_per_min = 0.0;
-  /// Time of a linear move if the program gives the time, or a feed of all axes together (Aerotech). Otherwise 0.
+  /// Time of a linear move for which the program gives either the time or a feed of all axes together (Aerotech); 0 for
+  /// all other moves.
   double duration_s = 0.0;
   bool is_exact_stop = true;  ///< true: the axes stop at the end point
   bool is_continued = false;  ///< true for each segment of a cubic move except its last one

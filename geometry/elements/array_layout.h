@@ -10,7 +10,8 @@ namespace retrace::geometry {
 
 enum class Arrangement { single, aligned, offset, checker, honeycomb, triangular };
 enum class Extent { finite, infinite };
-/// Rows of an offset array that are shifted. Rows count from 1 at y = 0. An array with a single row is never shifted.
+/// Parity of the rows of an offset array that are shifted. Rows are counted from 1 at y = 0. An array with a single row
+/// is never shifted.
 enum class RowParity { even, odd };
 /// Treatment of an element that the border crosses.
 enum class PartialElements { cut, omit };

@@ -12,7 +12,7 @@
 namespace retrace::geometry {
 namespace {
 
-/// Maximum relative deviation of a length from a whole number of elements that still counts as whole.
+/// Maximum relative deviation between a length and a whole number of elements at which the length counts as whole.
 constexpr double kWhole = 1e-9;
 // kEndlessPeriods is the number of periods of an infinite array's sheet on each side of the origin. kEndlessReaches is
 // the margin by which the block of cube corners on a substrate extends beyond the sheet, in multiples of the sheet's

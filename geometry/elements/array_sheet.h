@@ -69,7 +69,7 @@ struct ArraySheet {
   void measure_cells();
 };
 
-/// Position of a lattice cell. Lengths are relative to the origin of its SheetPortion.
+/// Position of a lattice cell. Coordinates are relative to the origin of its SheetPortion.
 struct SheetCell {
   Vec2 shift_mm = Vec2::Zero();  ///< shift on the sheet, relative to the cell's position in the lattice
   Polygon on_sheet;

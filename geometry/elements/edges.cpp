@@ -18,10 +18,10 @@ namespace {
 // from rounding errors and are omitted. Narrower edges are not built.
 constexpr double kSliver = 1e-9;
 constexpr double kMinEdge = 1e-7;
-// Number of times that the spherical triangle at a corner is subdivided: 16 faces.
+// Number of times that the spherical triangle at a corner is subdivided. Two subdivisions give 16 faces.
 constexpr int kSphereHalvings = 2;
-// Minimum angle between two planes (approximately, in radians) for a rim to be rounded. A rim is the edge between an
-// element and its neighbour.
+// A rim is rounded only if the angle between its two planes is at least this value (approximately, in radians). A rim
+// is the edge between an element and its neighbour.
 constexpr double kMinEdgeAngle = 1e-3;
 
 double size_of(const Polygon& outline) {
@@ -109,7 +109,7 @@ void add_arc(std::vector<CellFacet>& planes, const Vec3& normal_a, const Vec3& n
   }
 }
 
-/// Adds faces with their corners on a sphere, over the spherical triangle of three directions.
+/// Adds faces whose corners are on a sphere. The faces cover the spherical triangle between three directions.
 void add_sphere_faces(std::vector<CellFacet>& planes, const Vec3& centre, double radius_mm,
                       const std::array<Vec3, 3>& triangle, int halvings) {
   const auto& [a, b, c] = triangle;
@@ -131,7 +131,8 @@ void add_sphere_faces(std::vector<CellFacet>& planes, const Vec3& centre, double
 /// `corner`. No ball is added to chamfers.
 void add_sphere(std::vector<CellFacet>& planes, const std::array<Vec3, 3>& normals, const Vec3& corner,
                 const Rounding& how) {
-  // minimum volume of the normals' parallelepiped; planes that nearly share a line have no ball
+  // minimum volume of the parallelepiped of the three normals; if it is smaller, the planes nearly share a line, and no
+  // ball is added
   constexpr double least_volume = 0.05;
   if (how.radius_mm <= 0.0) return;
   Eigen::Matrix3d rows;
@@ -235,7 +236,7 @@ EdgeShape without_negligible(EdgeShape edges, double size_mm) {
   return edges;
 }
 
-/// Returns whether land separates a prism from its neighbours.
+/// Returns Beyond::land if land separates a prism from its neighbours, and Beyond::mirror_image otherwise.
 Beyond beyond_rims(const PartSpec& spec, bool rotated) {
   return (rotated ? spec.array.y_gap_mm : spec.array.x_gap_mm) > 0.0 ? Beyond::land : Beyond::mirror_image;
 }

@@ -70,7 +70,7 @@ Vec2 reference_position(const PartSpec& spec, const Cell& cell);
 
 /// Returns the element at the position of `cell`, with individual facet planes. Each facet ends where its plane
 /// intersects the planes of the other facets.
-/// \param centre_mm reference position of the cell, as returned by place_of(), in the coordinates of the cell
+/// \param centre_mm reference position of the cell, as returned by reference_position(), in the coordinates of the cell
 Cell cell_with_planes(const Cell& cell, const ElementPlanes& element, const Vec2& centre_mm);
 
 /// Returns land on z = 0 that replaces a missing hexagonal cube corner, without the corners that the flares cut off.

@@ -30,15 +30,16 @@ struct Cant {
   double azimuth_deg = 0.0;
 };
 
-/// Full cube corner with a hexagonal aperture, apex down, one dihedral edge over +x.
+/// Full cube corner with a hexagonal aperture and its apex at the bottom. In plan, one dihedral edge points towards +x.
 struct HexagonalCube {
-  double aperture_mm = 0.0;  ///< diameter of the circle round the hexagon, 2 a sqrt(2/3) for cube edge a; > 0
+  double aperture_mm = 0.0;  ///< diameter of the hexagon's circumscribed circle: 2 a sqrt(2/3) for cube edge a; > 0
   Cant cant = {};
 };
 
-/// Cube corner with a triangular aperture, apex down, one dihedral edge over +x (rotated cells: over -x).
+/// Cube corner with a triangular aperture and its apex at the bottom. In plan, one dihedral edge points towards +x
+/// (rotated cells: towards -x).
 struct TriangularCube {
-  double aperture_mm = 0.0;  ///< diameter of the circle round the triangle, whose side is a sqrt(2); > 0
+  double aperture_mm = 0.0;  ///< diameter of the triangle's circumscribed circle; > 0
   Cant cant = {};
 };
 
@@ -59,7 +60,7 @@ struct AngleErrors {
   friend bool operator==(const AngleErrors&, const AngleErrors&) = default;
 };
 
-/// Random tilts of single facets, which differ from element to element.
+/// Random tilts of individual facets. They differ from element to element.
 struct RandomTilts {
   double sigma_arcmin = 0.0;  ///< standard deviation of the tilt of each facet; Gaussian and independent; >= 0
   std::uint32_t seed = 1;

@@ -12,7 +12,7 @@
 namespace retrace::geometry {
 namespace {
 
-/// Maximum fraction of its size by which an element may cross the border and still count as inside.
+/// Maximum distance, relative to its size, by which an element that counts as inside may cross the border.
 constexpr double kMaxCrossingFraction = 1e-9;
 
 /// Iterates over the elements of a sheet.
@@ -75,7 +75,7 @@ class Walk {
 
   const ArraySheet sheet_;
   const SheetPortion piece_;
-  /// Index, in the lattice, of the cell of each element in a period. The keys are y and x of the element.
+  /// For each element of a period, the index of its cell in the lattice. The keys are y and x of the element.
   std::map<double, std::map<double, std::size_t>> rows_;
   std::int32_t row_ = 0;  ///< row number among the rows with complete elements
   std::int32_t column_ = 0;

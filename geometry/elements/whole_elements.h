@@ -79,9 +79,9 @@ struct PlacedElement {
 /// \throw InputError if the array is smaller than one element
 std::vector<PlacedElement> place_elements(const PartSpec& spec);
 
-/// Returns the complete elements of a flat array, in the order of place(). Prisms fill a block in the centre of the
-/// extent. For cube corners, the apex of an element that is not rotated is at the centre of the extent. For `single`,
-/// the centre of the aperture's bounding box is at the centre of the extent (CONVENTIONS.md, section 3).
+/// Returns the complete elements of a flat array, in the order of place_elements(). Prisms fill a block in the centre
+/// of the extent. For cube corners, the apex of an element that is not rotated is at the centre of the extent. For
+/// `single`, the centre of the aperture's bounding box is at the centre of the extent (CONVENTIONS.md, section 3).
 /// \pre the array is finite; the pattern has the array's numbers of rows and cells
 std::vector<WholeElement> whole_elements(const ArrayLayout& array, const Element& element);
 

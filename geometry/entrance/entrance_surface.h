@@ -49,7 +49,7 @@ struct EntranceRange {
   double highest_mm = 0.0;
   Vec2 lowest_at_mm = Vec2::Zero();
   Vec2 highest_at_mm = Vec2::Zero();
-  double steepest_slope = 0.0;  ///< maximum of samples
+  double steepest_slope = 0.0;  ///< maximum slope of all samples
 };
 
 /// Returns the lowest and highest point of an entrance surface within rounding errors. The density of the samples

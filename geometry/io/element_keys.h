@@ -26,7 +26,7 @@ inline constexpr std::string_view kArrangementMeaning = "Arrangement of the elem
 /// Words of `array.shifted_rows`, in the order of the enumerators of RowParity.
 inline constexpr schema::Words kRowParityWords = {"even", "odd"};
 
-/// Keys whose numbers are sizes. The range of sizes and gaps depends on the format.
+/// Keys whose values are lengths. The allowed ranges of sizes and gaps depend on the file format.
 struct SizeKeys {
   constexpr SizeKeys(schema::Kind size, schema::Kind gap)
       : base_mm("base_mm", size, schema::kRequired, "Length of a prism in plan, across its roof edge."),

@@ -27,7 +27,7 @@ constexpr std::size_t kCaps = 6;
 constexpr double kMaxTiltDeg = 5.0;
 constexpr double kMaxHeightFraction = 0.1;
 
-/// Line of the table of planes.
+/// Row of the table of facet planes.
 struct FacetRow {
   Vec2 centre_mm = Vec2::Zero();
   std::size_t facet = 0;
@@ -92,8 +92,8 @@ class Reader {
 
   /// Returns true if a plane is similar to the nominal plane. For a facet, this is the plane of the nominal facet. A
   /// flare has the slope of the facet that is opposite to the flare's corner.
-  /// \param rotated true: compare with the rotated element: by 90 degrees in a checker, 180 degrees in a triangular
-  ///        array
+  /// \param rotated true: compare with the rotated element, which is rotated by 90 degrees in a checker array and by
+  /// 180 degrees in a triangular array
   bool resembles(const FacetRow& row, bool rotated) const {
     const std::size_t facet = row.facet < kFlares ? row.facet : (row.facet - kFlares + 1) % 3;
     Vec2 slope = nominal_slopes_[facet];

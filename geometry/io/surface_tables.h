@@ -22,7 +22,7 @@ std::span<const schema::Table> surface_tables();
 /// Reads the surface that these tables describe.
 /// \throw InputError with file, line and key
 FreeformSurface read_surface(const schema::Document& file);
-/// Returns the location, in the file, that error messages about the whole surface name.
+/// Returns the location in the file that is named in error messages about the whole surface.
 InputLocation surface_location(const schema::Document& file);
 
 /// Keys of the table [path] that define the machined region of the surface.

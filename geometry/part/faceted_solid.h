@@ -35,8 +35,8 @@ double area_mm2(const BoundaryMesh& mesh);
 /// shared by more than two triangles.
 bool is_closed_manifold(const BoundaryMesh& mesh);
 
-/// Joins neighbouring triangles in one plane to faces, and removes vertices on straight edges. Triangles are not joined
-/// if the outline of the face would touch itself.
+/// Joins neighbouring triangles in the same plane to form faces, and removes vertices on straight edges. Triangles are
+/// not joined if the outline of the face would touch itself.
 /// \param mesh a mesh for which is_closed_manifold() is true
 /// \throw std::logic_error for other meshes
 FacetedSolid faceted_solid(const BoundaryMesh& mesh);

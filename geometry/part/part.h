@@ -80,7 +80,7 @@ struct Part {
 
 /// Builds the part.
 /// \param origin_mm shift in the plane (finite parts only), for tests of numerical robustness
-/// \pre the specification is consistent (studies::parse_design checks it)
+/// \pre the specification is consistent (design::parse_design() checks it)
 /// \throw InputError if the part contains no complete element, or if a rim reaches the entrance face
 Part build_part(const PartSpec& spec, const Vec2& origin_mm = Vec2::Zero());
 

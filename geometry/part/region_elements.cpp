@@ -15,11 +15,11 @@
 namespace retrace::geometry {
 namespace {
 
-// Maximum angle between the normals of two regions at a concave edge at which both regions are treated as parts of one
-// curved facet. Form errors cause angles of a few minutes of arc.
+// Two regions that meet at a concave edge are treated as parts of one curved facet if the angle between their normals
+// is at most this value. Form errors cause angles of a few minutes of arc.
 constexpr double kSmoothBend_rad = std::numbers::pi / 180.0;
-// Maximum total length of the common edges of two regions at which these edges are ignored. The length is in multiples
-// of the maximum error of a vertex. Rounding makes the directions of such short edges uncertain.
+// The common edges of two regions are ignored if their total length is at most this value. The value is in multiples of
+// the maximum error of a vertex. Rounding makes the directions of such short edges uncertain.
 constexpr double kRoundingsOfEdge = 16.0;
 
 /// Two adjacent regions and the length of the edges that join them. An edge joins its two regions into one element if

@@ -21,7 +21,7 @@ struct Tile {
   std::uint32_t cell = 0;  ///< cell of the tile; tiles of one cell must be consecutive in the input
   /// if false, the tile is not output; it only provides walls and shared vertices for its neighbours
   bool is_output = true;
-  std::optional<Vec2> centroid_mm = {};  ///< position defined by CellFacet::middle_mm
+  std::optional<Vec2> centroid_mm = {};  ///< position defined by CellFacet::centroid_mm
 };
 
 /// A plane, convex face of the back surface.
@@ -31,7 +31,7 @@ struct PatchFacet {
   std::uint32_t first_corner = 0;
   std::uint32_t corner_count = 0;
   FacetRole role = FacetRole::retro_facet;
-  std::optional<Vec2> centroid_mm = {};  ///< as CellFacet::middle_mm
+  std::optional<Vec2> centroid_mm = {};  ///< as CellFacet::centroid_mm
 };
 
 /// Consecutive facets of one cell, and their bounding box.
@@ -55,10 +55,10 @@ struct SurfacePatch {
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<std::uint32_t> triangle_facet;
 
-  /// Borders of the surface. `border_walls` are vertical walls between the surface and z = 0, where the surface is
-  /// below z = 0. `border_rim` are the lower borders of the plate's sides, with the part on the left as seen from +z. A
-  /// side begins at z = 0, or at the surface where the surface is above z = 0. The two ends of a rim are the highest
-  /// vertices at their (x, y).
+  /// Borders of the surface. `border_walls` contains the vertical walls between the surface and z = 0, where the
+  /// surface is below z = 0. `border_rim` contains the lower borders of the plate's sides, with the part on the left as
+  /// seen from +z. A side begins at z = 0, or at the surface where the surface is above z = 0. The two ends of a rim
+  /// are the highest vertices at their (x, y).
   std::vector<std::vector<std::uint32_t>> border_walls;
   std::vector<std::vector<std::uint32_t>> border_rim;
 };

@@ -241,7 +241,7 @@ class Tiler {
       }
   }
 
-  /// \param piece its numbers of elements are increased
+  /// \param piece patch whose numbers of elements are increased
   void collect(Piece& piece, const IndexRange& range) {
     tiles_.clear();
     visit_cells(range, [&](const Index& index, std::uint32_t number, const Vec2& shift_mm, bool owned) {
@@ -272,7 +272,7 @@ class Tiler {
   }
 
   /// Appends the part of a cell that is inside the borders.
-  /// \param piece counts the cell; null if the cell belongs to a neighbour
+  /// \param piece patch that counts the cell; null if the cell belongs to a neighbouring patch
   void add_cell(Piece* piece, const Index& index, const Vec2& shift_mm) {
     const SheetCell place = here_->sheet_cell(index.number, shift_mm);
     if (here_->is_clear_of_part(place)) return;
@@ -318,7 +318,7 @@ class Tiler {
     }
   }
 
-  /// Returns the cell at its position on the substrate.
+  /// Returns the cell, moved to its position on the substrate.
   Cell cell_at(const Index& index, const SheetCell& place) const {
     if (!sheet_.is_upright) return cell_along_normal(index, place);
     Cell cell = upright_cell(index);

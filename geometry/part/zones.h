@@ -1,6 +1,6 @@
 #pragma once
 
-// Builds parts with zones. A zone is a set of regions or cells of one plate that contains elements of its own.
+// Builds parts with zones. A zone is a set of regions, or of cells, of a plate. Each zone has its own kind of elements.
 
 #include <cstdint>
 #include <optional>
@@ -11,8 +11,8 @@
 
 namespace retrace::geometry {
 
-/// Cell of an array in the part frame: an element, or land (flat surface) between elements. Cells have the same numbers
-/// in two arrays whose cells have the same positions, even if the elements differ.
+/// Cell of an array in the part frame: an element, or land (flat surface) between elements. If the cells of two arrays
+/// have the same positions, they also have the same numbers, even if the elements differ.
 struct ArrayCell {
   std::uint32_t number = 0;
   Polygon outline;  ///< complete outline, even if it crosses the border

@@ -264,7 +264,7 @@ bool is_blend_concavity_bounded(const Lenslet& lenslet, const Sag& base, double 
   // If the blend and the base have no common slope, the surface has a sharp edge at their boundary.
   if (lenslet.blend_order < 1 || !lenslet.ends_on_base || lenslet.sag.formula || base.formula) return false;
   const std::vector<double> breaks = breaks_of(lenslet);
-  // length up to which an interval is a rounding error between equal knots of the two boundaries
+  // an interval up to this length is a rounding error between equal knots of the two boundaries
   constexpr double kNone = 1e-12;
   for (std::size_t i = 0; i + 1 < breaks.size(); ++i)
     if (breaks[i + 1] - breaks[i] > kNone && !is_proved_in_parts(lenslet, base, limit_per_mm, breaks[i], breaks[i + 1]))

@@ -77,7 +77,7 @@ class FreeformSurface {
 void place_on_base(Lenslet& lenslet, const FreeformSurface& base, double x_mm, double y_mm, double height_mm,
                    bool tilted, const InputLocation& where);
 
-/// Slope above which a surface counts as vertical: 89 degrees.
+/// Slope above which a surface counts as vertical: the tangent of 89 degrees.
 inline constexpr double kMaxSlope = 57.28996163075943;
 
 /// Checks the surface within `radius_mm` of the origin at samples on circles.

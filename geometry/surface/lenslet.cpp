@@ -31,7 +31,7 @@ Series<T, 1> residual_and_slope(const Lenslet& lenslet, const T& x, const T& y, 
                   line_series<T, 1>(z, constant_like(x, 1.0), 1));
 }
 
-/// Point on the lenslet, relative to its origin along the axes of the part.
+/// Point on the lenslet. Its coordinates are relative to the origin of the lenslet, along the axes of the part frame.
 struct Root {
   double z = 0.0;      ///< NaN under an overhang
   double slope = 0.0;  ///< derivative of F with respect to z

@@ -46,7 +46,7 @@ struct ZernikeTerm {
 };
 
 /// Returns the sum of the terms as a polynomial in x / radius and y / radius. The conversion is exact.
-/// \pre 0 <= n <= kMostPolynomialDegree, |m| <= n, n - m even
+/// \pre 0 <= n <= kMaxPolynomialDegree, |m| <= n, n - m even
 XyPolynomial polynomial_of(const std::vector<ZernikeTerm>& terms, double radius_mm);
 
 /// Sag z(x, y) in mm: the sum of the members. The formula has the variables x, y, r, theta, cx and cy (in mm and rad).

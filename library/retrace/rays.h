@@ -62,7 +62,8 @@ struct TracedRays {
 RETRACE_API std::vector<std::string> ray_accounts();
 
 /// Traces rays in memory and returns the rays that leave the part.
-/// \throw InputError with the name of the array that is invalid, BudgetError
+/// \throw InputError if an array is invalid; the error names the array
+/// \throw BudgetError if the budget of memory or beams is exhausted
 RETRACE_API TracedRays trace(const Design& design, const RayArrays& rays, const TraceRequest& request = {},
                              const Running& running = {});
 

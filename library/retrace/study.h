@@ -18,7 +18,7 @@ namespace retrace {
 /// Content of a study file. It is checked when the study is carried out.
 struct Study {
   std::string text;
-  std::string source;  ///< path of the file in messages; file names in the text are relative to its folder
+  std::string source;  ///< path of the study file, for messages; file names in the text are relative to its folder
   std::map<std::string, std::string> designs;  ///< texts of design files by file name, used instead of the files
 
   /// Reads a study file.

@@ -1,6 +1,7 @@
 #pragma once
 
-// Describes the keys of the design format for the page's form, and returns the values of a document for them.
+// Describes the keys of the design format for the page's form, and returns the values that a document has for these
+// keys.
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>

@@ -125,7 +125,8 @@ class Verification(Result):
         if self._core is None:
             request = _core.VerificationRequest()
             for name, value in self._asked.items():
-                # An object that was pickled by a former version has the former name of a field.
+                # Objects that were pickled by former versions contain the former name of the field
+                # next_stage.
                 setattr(request, "next_stage" if name == "standing" else name, value)
             self._core = _core.verify(request, None, 0)
         _core.write_as_machined(self._core, file)

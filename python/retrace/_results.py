@@ -334,7 +334,8 @@ class Result:
     arrays with one value per object, and NaN where a key is missing.
     """
 
-    #: Key of the list of objects whose keys also become attributes.
+    #: Key of a list of objects in the document. The keys of these objects are also attributes of
+    #: the result.
     _rows: ClassVar[str] = ""
     #: Drawings that take long to make: pages contain them only if they were made before.
     _costly: ClassVar[Sequence[str]] = ()

@@ -23,7 +23,7 @@ class Picture(Mapping[str, Array]):
     def __init__(self, name: str, channels: dict[str, Array], drawing: Any) -> None:
         self.name = name
         self._channels = channels
-        #: Drawing of the picture for viewing.
+        #: Drawing that displays this picture.
         self.drawing = Drawing(drawing)
 
     def __getitem__(self, channel: str) -> Array:

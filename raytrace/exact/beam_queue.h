@@ -1,6 +1,6 @@
 #pragma once
 
-// Queues of the beams of a run, with their power and their memory.
+// Queues of the beams of a run. They also record the total power and the memory use of the beams.
 
 #include <cstdint>
 #include <memory>
@@ -55,7 +55,7 @@ class BeamQueue {
   void require_memory() const;
 
  private:
-  /// List of beams, with their total power and their memory in bytes.
+  /// List of beams, with their total power and their memory use in bytes.
   struct Waiting {
     WaitingBeams beams;
     double power = 0.0;

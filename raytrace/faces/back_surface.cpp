@@ -134,7 +134,8 @@ struct BackSurface::Boxes {
     return made;
   }
 
-  /// Returns true if instances save most of the boxes. Instances are at least as fast, and faster in large arrays.
+  /// Returns true if instances reduce the number of boxes by more than a factor of 4. With instances, tracing is never
+  /// slower than without, and in large arrays it is faster.
   bool repeats_much() const {
     std::size_t different = 0;
     std::size_t all = 0;

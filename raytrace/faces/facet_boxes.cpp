@@ -10,8 +10,8 @@ namespace {
 constexpr std::uint32_t kFewFacets = 16;
 // Maximum number of boxes per facet.
 constexpr double kMaxBoxes = 8.0;
-// Minimum cosine of the angle between the longest direction of a facet and the nearest coordinate axis, for the facet
-// to have a single box. The box of such a facet contains little empty space.
+// A facet has a single box if the cosine of the angle between its longest direction and the nearest coordinate axis is
+// greater than this value. This box then contains little empty space.
 constexpr double kAlongAnAxis = 0.98;
 
 std::vector<Vec3> corners_of(const geometry::SurfacePatch& patch, const geometry::PatchFacet& facet) {

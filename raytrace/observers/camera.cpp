@@ -394,7 +394,7 @@ std::optional<PixelProjection> CameraTracer::Impl::place_of(std::uint32_t pixel)
   return PixelProjection{at[0], at[1] - at[0], at[2] - at[0], tile_of(pixel)};
 }
 
-/// Returns the points of a pixel through which paths start in a pass.
+/// Returns the points of a pixel at which the paths of a pass start.
 std::array<PixelGuide::Point, CameraTracer::kPointsPerPass> CameraTracer::Impl::points_of(std::uint32_t pixel,
                                                                                           std::uint32_t pass) const {
   if (is_guided(pixel)) {

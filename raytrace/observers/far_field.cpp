@@ -25,8 +25,9 @@ constexpr double kPointsToARadius = 48.0;
 constexpr std::uint32_t kTailPoints = 1U << 15;
 // Maximum distance of the kTailPoints points from the axis of the cone, in the plane of direction cosines.
 constexpr double kFarthestCosine = 20.0;
-// Distance from the axis of the cone, in units of the largest deflection by facet forms, beyond which forms are
-// neglected. At larger distances, the density is low, and forms change it only by a small fraction.
+// Maximum distance from the axis of the cone at which facet forms are taken into account, divided by the largest
+// deflection that the forms cause. At larger distances, the density is low, and forms change it only by a small
+// fraction.
 constexpr double kFarInBends = 4.0;
 constexpr std::uint64_t kTailKey = 0x2545f4914f6cdd1dU;
 

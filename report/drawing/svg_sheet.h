@@ -20,8 +20,8 @@ struct PaperBox {
   Size size() const { return {upper.x - lower.x, upper.y - lower.y}; }
 };
 
-/// Elements of an SVG document, each in a style class of the sheet, in units of 1/96 inch, y down. The group records
-/// its bounding box.
+/// Group of elements of an SVG document. Each element has a style class of the sheet. Coordinates are in units of 1/96
+/// inch, with y down. The group records its bounding box.
 class SvgGroup {
  public:
   void faces(std::string_view style, const std::vector<std::vector<Point>>& polygons);

@@ -48,7 +48,7 @@ Rating rating_of(const std::string& verdict);
 std::string name_of_design(const Json& design);
 /// Returns the keys that occur in the first 20 objects of a list, in the order in which the keys first occur.
 std::vector<std::string> keys_of(const Json& rows);
-/// Returns the texts in a list.
+/// Returns the strings in a JSON list.
 std::vector<std::string> words(const Json& values);
 
 }  // namespace retrace::report::document

@@ -21,7 +21,7 @@ struct FormerName {
 /// Returns all renamed keys and values. If a key and a key within its value were renamed, the outer key comes first.
 std::span<const FormerName> former_names();
 
-/// Returns the current version of the documents of a kind, such as 2 for "inspect".
+/// Returns the current version of a kind of document, for example 2 for the kind "inspect".
 int current_version(std::string_view kind);
 
 /// Kind and version of a result document. For "retrace.inspect/1", they are "inspect" and "1".

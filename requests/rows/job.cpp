@@ -33,7 +33,7 @@ constexpr Row kJobRows[] = {
     {.name = "tool_width_mm",
      .kind = Number{{.low = 0.01, .high = 10.0}},
      .meaning =
-         "width of the tool between the outer ends of its cutting edges; 0.1 to 2, or 0.01 to 10 with the strategy dmc",
+         "width of the tool between the outer ends of its cutting edges; 0.1 to 2 mm with all strategies except dmc",
      .access = access<&JobRequest::tool_width_mm>,
      .spelling = {.value = "W"},
      .is_required = true},

@@ -66,7 +66,7 @@ constexpr Row kMetrologyRows[] = {
      {.value = "N", .otherwise = "the first"}},
     {"feed_mm_per_min",
      Number{kPositive},
-     "feed of the cut, for waves in Hz",
+     "feed of the cut; if it is given, the frequencies of waves are also reported in Hz",
      access<&MetrologyRequest::feed_mm_per_min>,
      {.value = "F", .otherwise = "no frequencies"}},
     {"edge", schema::Flag{}, "rows are profiles across an edge: fit its radius and chamfer",

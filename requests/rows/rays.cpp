@@ -29,8 +29,8 @@ template <class Type>
 constexpr Row split_row() {
   return {"split",
           Number{kFraction},
-          "minimum power of the reflected and the refracted branch, as a fraction of the launched ray, at which both "
-          "are followed; 1: only one branch, chosen at random",
+          "the reflected and the refracted branch are both followed if each has at least this fraction of the power of "
+          "the launched ray; otherwise, one branch is chosen at random; 1: always one branch",
           access<&Type::split>,
           {.value = "W"}};
 }
@@ -101,7 +101,7 @@ constexpr Row kRaysRows[] = {
      Numbers{3, kPlaceMm},
      "position of the source's origin in the part frame; it is given instead of angles and distance",
      access<&RaysRequest::at_mm>,
-     {.value = "X,Y,Z", .notation = Notation::commas, .otherwise = "the origin of the part, for a file of rays"},
+     {.value = "X,Y,Z", .notation = Notation::commas, .otherwise = "for a file of rays, the origin of the part"},
      kNeedNoAngles},
     {"aim_mm",
      Numbers{3, kPlaceMm},
@@ -109,7 +109,7 @@ constexpr Row kRaysRows[] = {
      access<&RaysRequest::aim_mm>,
      {.value = "X,Y,Z",
       .notation = Notation::commas,
-      .otherwise = "parallel to the +z axis of the part, for a file of rays"}},
+      .otherwise = "for a file of rays, none: the +z axes of source and part are parallel"}},
     split_row<RaysRequest>(),
     cutoff_row<RaysRequest>(),
     {"stokes",

@@ -99,7 +99,7 @@ constexpr Row kRreRows[] = {
      kRreNeedCutoff},
     {"sampling",
      Word{kRreSamplings},
-     "method of sampling: stratified, or plain, which is random points without splitting, for comparison",
+     "method of sampling: stratified, or plain (random points without splitting, for comparison)",
      access<&RreRequest::sampling>,
      {.value = "KIND"},
      kRreNeedRays},

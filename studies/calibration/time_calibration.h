@@ -42,7 +42,7 @@ struct TimedPrograms {
   std::size_t empty_rows = 0;  ///< number of rows without a time
 };
 
-/// Quantities that program times determine, in the order of TimeCalibration::quantities.
+/// Quantities that are determined from the run times of programs, in the order of TimeCalibration::quantities.
 enum class TimeQuantity : std::uint8_t { settling, linear_acceleration, linear_ramp, rotary_acceleration };
 inline constexpr std::size_t kTimeQuantities = 4;
 
@@ -59,7 +59,7 @@ inline constexpr std::array<TimeQuantityWords, kTimeQuantities> kTimeQuantityWor
 
 struct CalibratedTime {
   bool is_observable = false;
-  double value = 0.0;  ///< estimated value, or the value in the machine file if is_told is false
+  double value = 0.0;  ///< estimated value, or the value in the machine file if is_observable is false
   double uncertainty = 0.0;
 };
 

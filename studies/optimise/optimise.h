@@ -81,17 +81,17 @@ struct Optimum {
   std::string infeasible_reason;  ///< text that explains why no design is feasible; empty if there is a best design
   /// Effect of each constraint, in the order of the constraints. Empty if there is a best design.
   std::vector<Exclusion> exclusions;
-  std::vector<Variant> front;  ///< feasible designs that no other design dominates
+  std::vector<Variant> front;  ///< Pareto front: feasible designs that no other design dominates
   std::vector<Rejected> rejected;
-  /// Design of the front that loses at most 1 % of the objective and is best on the first axis that is not part of the
-  /// objective.
+  /// Design of the Pareto front that is the best on the first axis that is not part of the objective, among the designs
+  /// that lose at most 1 % of the objective.
   std::optional<Variant> cheaper;
   std::vector<ToleranceBand> bands;
   std::string method;  ///< method of the refinement: "exact slopes" or "no slopes"
   std::size_t evaluations = 0;
   std::size_t budget_failures =
       0;  ///< number of designs that failed because the budget of memory or beams was exhausted
-  std::string budget_failure_reason;  ///< error message of the first of the designs that `ran_out` counts
+  std::string budget_failure_reason;  ///< error message of the first design that `budget_failures` counts
   bool complete = true;
 };
 

@@ -34,8 +34,8 @@ struct IndexAt {
 };
 
 /// Returns a table of refractive indices at wavelengths in steps of at most kIndexStepNm. The table excludes both ends
-/// of the spectrum, which have the fraction kLeastShare of the flux each. Wavelengths for which the material has no
-/// data are omitted.
+/// of the spectrum, each of which has the fraction kIgnoredFluxFraction of the flux. Wavelengths for which the material
+/// has no data are omitted.
 /// \param flux spectrum whose weights add up to 1
 std::vector<IndexAt> index_table(const design::Design& design, const materials::Spectrum& flux) {
   double low_nm = flux.wavelengths_nm.front(), high_nm = flux.wavelengths_nm.back();

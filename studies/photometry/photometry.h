@@ -60,7 +60,7 @@ struct PhotometrySettings {
   /// True: the power in directions inside and outside of the window (see window_deg) is integrated. This check is slow.
   bool window_power = false;
   bool advice = true;   ///< true: if the design fails, the study searches for a change with which it passes
-  bool colour = false;  ///< true: the chromaticity of the returned light is computed; not for the design's own light
+  bool colour = false;  ///< true: compute the chromaticity; not with PhotometricLight::of_design
 };
 
 /// Returns a diameter in minutes of arc, rounded so that the errors of the conversion from radians disappear.

@@ -94,8 +94,9 @@ double wave_number_per_nm(double wavelength_nm) {
   return 2.0 * pi / wavelength_nm;
 }
 
-/// \param k_out wave vector of the scattered light along the facet, less than `index`
-/// \param along unit vector of the incident wave vector along the facet
+/// \param k_out component of the wave vector of the scattered light along the facet, in units of the wave number in
+/// air; its length is less than `index`
+/// \param along direction of the component of the incident wave vector along the facet; a unit vector
 DiffractedOnce leaving_light(const Vec2& k_out, const Vec2& along, double index, Lobe lobe,
                              const Polarisation2& coherency) {
   const double k = k_out.norm();

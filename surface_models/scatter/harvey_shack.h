@@ -120,8 +120,8 @@ class HarveyShack {
   /// Returns the fraction of light into `direction` that the waviness does not mask. The direction is in the frame of
   /// the mean surface.
   double unmasked_fraction(const Vec3& direction) const { return slopes_.visible_fraction(direction); }
-  /// Checks that a scatter model is valid for the rms slope of the roughness. Only spatial frequencies that scatter
-  /// count.
+  /// Checks that a scatter model is valid for the rms slope of the roughness. The slope includes only the spatial
+  /// frequencies that cause scatter.
   /// \throw InputError if this slope is above kMaxModelledSlope
   void require_in_range(double index, double wavelength_nm) const;
   /// Returns a warning for each condition of the model that is violated at this wavelength. The index is that of the

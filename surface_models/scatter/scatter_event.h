@@ -48,7 +48,8 @@ struct Facet {
 /// terms. For the covariance between two lobes, rms_rad^2 is replaced by the product of the two values of rms_rad.
 struct PhaseTexture {
   struct Term {
-    double rms_rad = 0.0;    ///< negative if heights out of the material shorten the optical path
+    /// Rms phase. It is negative if a height increase (outwards from the material) shortens the optical path.
+    double rms_rad = 0.0;
     double length_mm = 1.0;  ///< > 0
   };
   std::array<Term, 2> terms;  ///< terms for roughness and for waviness

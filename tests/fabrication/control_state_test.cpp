@@ -249,7 +249,7 @@ TEST_P(ControlState, DwellsInTheMaterial) {
     EXPECT_EQ(kinds_in(spoilt), "");
     spoilt[i] = as_long_as(dwell, 0.5);
     EXPECT_EQ(kinds_in(spoilt), "missing_dwell");
-    // Dwells at one position are added up. A stop may take any time, because the operator continues it.
+    // Dwells at one position are added up. A stop may take any time, because the operator resumes the program.
     spoilt.insert(spoilt.begin() + static_cast<std::ptrdiff_t>(i), spoilt[i]);
     EXPECT_EQ(kinds_in(spoilt), "");
     spoilt.insert(spoilt.begin() + static_cast<std::ptrdiff_t>(i), 5, spoilt[i]);

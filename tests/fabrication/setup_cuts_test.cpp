@@ -20,7 +20,8 @@
 #include "tests/fabrication/jobs.h"
 
 // Tests of programs that are planned for a machine without errors and cut on a machine with an error. For each quantity
-// of the set-up, the facets that the verifier measures must agree with the derivatives of the set-up.
+// of the set-up, the changes of the facets that the verifier measures must agree with the changes that the derivatives
+// predict.
 
 namespace retrace::fabrication::test::setup_cuts_test {
 namespace {

@@ -202,8 +202,9 @@ class Reference {
   struct Amplitudes {
     Complex r, t;
   };
-  /// Returns the amplitudes of a stack of layers, of E for s and of H for p. They are computed by recursion over
-  /// interfaces and phases, beginning with the last medium, from normal wave numbers without angles of refraction.
+  /// Returns the amplitudes of a stack of layers, of E for s and of H for p. They are computed recursively over
+  /// interfaces and phases, from the last medium to the first. Only normal wave numbers are used, no angles of
+  /// refraction.
   /// \param indices refractive indices of all media, including the first and the last
   /// \param waves thicknesses of the layers in wavelengths
   static Amplitudes amplitudes(const std::vector<Complex>& indices, const std::vector<double>& waves, double ci,

@@ -285,9 +285,9 @@ Losses losses_by_gratings(double index_from, double index_to, double incidence_d
   return sum;
 }
 
-// The way in which the loss is divided between R and T is an effect of second order. The model divides it by a rule,
-// whose accuracy docs/theory/scatter.md states. The sum is correct, and beyond the critical angle only reflected light
-// has a loss.
+// The split of the loss between R and T is an effect of second order. The model uses an approximate rule for it;
+// docs/theory/scatter.md states the accuracy of this rule. The sum is correct, and beyond the critical angle only
+// reflected light has a loss.
 TEST(FirstOrder, ReflectedAndTransmittedLightShareTheLoss) {
   struct Split {
     double length_um, incidence_deg, within_s, within_p;  ///< maximum relative errors of the loss of R, for s and p

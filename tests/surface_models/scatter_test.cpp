@@ -86,7 +86,7 @@ TEST(HarveyShack, ConservesEnergy) {
     }
 }
 
-// The fraction is measured by drawing, so that the test is independent of the formula.
+// The specular fraction is also measured by random sampling, so that the test is independent of the formula.
 TEST(HarveyShack, SpecularShareIsTheClosedForm) {
   constexpr std::uint32_t kDraws = 200000;
   std::uint32_t seed = 100;
@@ -104,7 +104,7 @@ TEST(HarveyShack, SpecularShareIsTheClosedForm) {
       }
 }
 
-// The specular fraction is also measured by drawing in transmission and for light from outside.
+// The specular fraction is also measured by random sampling for transmitted light and for light from outside.
 TEST(HarveyShack, SpecularShareIsTheClosedFormOnBothSides) {
   std::uint32_t seed = 700;
   for (const Case& c : cases())

@@ -50,7 +50,9 @@ def sentence(field: dict) -> str:
     parts = [meaning(field), range_of(field)]
     otherwise = field.get("usual") or field.get("otherwise")
     text = "; ".join(part for part in parts if part) + "."
-    if otherwise:
+    if otherwise and otherwise.startswith("required "):
+        text += f" {otherwise[0].upper()}{otherwise[1:]}."
+    elif otherwise:
         text += f" Default: {otherwise}."
     if field.get("required"):
         text += " Required."

@@ -156,7 +156,7 @@ CavityMap::CavityMap(const std::vector<Cavity>& grooves) : cavities_(grooves) {
 }
 
 CavityMap::Cell CavityMap::cell_of(double x_mm, double y_mm, int dx, int dy) const {
-  constexpr double furthest = 1e9;  // limit that keeps wrong positions of faulty programs in the range of Cell
+  constexpr double furthest = 1e9;  // limit that keeps the positions of faulty programs within the range of Cell
   const auto index = [&](double v) {
     return static_cast<Cell>(std::floor(std::clamp(v / cell_mm_, -furthest, furthest)));
   };

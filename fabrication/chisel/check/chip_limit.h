@@ -44,7 +44,7 @@ class ChipLimit {
   double rake_slope_ = 0.0;  ///< tangent of the angle between the rake face and the plunged facet
   Angle apex_;
   double ratio_ = 0.0;     ///< limit divided by depth of cut, for kinds of cuts that have a constant ratio
-  double reach_mm_ = 0.0;  ///< V-shaped tool: distance from the neighbouring dihedral edge up to which `share_` applies
+  double reach_mm_ = 0.0;  ///< V-shaped tool: distance from the neighbouring dihedral edge up to which `ratio_` applies
   std::array<double, 2> kinks_mm_{};
 };
 

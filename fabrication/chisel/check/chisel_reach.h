@@ -26,7 +26,7 @@ struct ChiselReach {
   double fraction = 0.0;
   double core_mm = 0.0;           ///< height of the remaining core above the apex
   std::array<ChiselCap, 3> caps;  ///< planes in the part frame; the remaining material is below all three planes
-  double cut_fraction = 0.0;      ///< same as `share`, computed by simulating 1201 plunges on each facet
+  double cut_fraction = 0.0;      ///< same as `fraction`, computed by simulating 1201 plunges on each facet
   double cut_core_mm = 0.0;       ///< same as `core_mm`, computed by this simulation
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 
-// Assigns cutting moves to elements where neighbouring cuts overlap, as on curved and inclined blanks.
+// Determines the element to which a cutting move belongs if the cuts of neighbouring elements overlap. This is the case
+// on curved and inclined blanks.
 
 #include <cstddef>
 #include <optional>

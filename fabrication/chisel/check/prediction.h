@@ -1,7 +1,7 @@
 #pragma once
 
 // Predicts form errors that the axes of a machine cannot avoid. The prediction does not depend on any program. The
-// checks subtract the predicted errors before they compare with the tolerance.
+// checks subtract the predicted errors from the measured errors before they compare the result with the tolerance.
 
 #include <array>
 #include <vector>

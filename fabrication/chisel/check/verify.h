@@ -60,7 +60,7 @@ struct Verification {
   double root_chamfer_um = 0.0;
   double root_ridge_um = 0.0;  ///< height of the ridge between the strips of two facets, above the dihedral edge
   /// Volume that is unavoidably removed outside of the apertures of hexagonal cube corners. Their cavities are
-  /// triangular, so that the outermost ones extend beyond the array.
+  /// triangular. The outermost cavities therefore extend beyond the array.
   double border_overcut_mm3 = 0.0;
   /// Maximum depth by which cuts of neighbouring elements unavoidably go below the rims of an element. This happens
   /// where the rims have different heights.
@@ -86,7 +86,7 @@ struct Verification {
 /// Simulates the programs in their order and compares the machined surface with the design. It shares no code with the
 /// planner and the writers of programs. All predictions are computed from the job and the machine.
 /// \param others machines for which a program may have been made by mistake
-/// \throw InputError for a program that cannot be simulated, or one that was made for another machine
+/// \throw InputError for a program that cannot be simulated, and for a program that was made for another machine
 Verification verify_programs(const Job& job, const Machine& machine, const std::vector<NcProgram>& programs,
                              const VerifyOptions& options, const std::vector<Machine>& others,
                              const Cancellation* cancellation = nullptr);

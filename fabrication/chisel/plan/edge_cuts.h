@@ -20,9 +20,9 @@ struct FacetEdgeCut {
   EdgeCut cut;
 };
 
-/// Returns the cuts that produce facets, in the order of cutting. In every visit of an element, it is the last cut
-/// along each facet that this visit cuts. A V-shaped tool makes two cuts along one facet: down one dihedral edge and up
-/// another edge. A routine with ploughing makes one cut along each of the two facets.
+/// Returns the cuts that produce facets, in the order of cutting. For every visit of an element and each facet that the
+/// visit cuts, only the last cut along the facet is returned. A V-shaped tool makes two cuts along one facet: down one
+/// dihedral edge and up another edge. A routine with ploughing makes one cut along each of the two facets.
 /// \param elements indices of the elements to include, ascending; empty: all elements
 std::vector<FacetEdgeCut> facet_edge_cuts(const Job& job, const Plan& plan,
                                           const std::vector<std::size_t>& elements = {});

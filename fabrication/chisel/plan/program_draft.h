@@ -62,7 +62,7 @@ class ProgramDraft {
   int c_rotations() const { return c_rotations_; }
 
   /// Returns the program.
-  /// \param all subroutines of the plan, in the order of Visit::subroutine
+  /// \param all subroutines of the plan, in the order of CycleCall::subroutine
   /// \param only_used true: the program contains only the subroutines that it calls; false: it contains all subroutines
   Program take(const std::vector<Subroutine>& all, bool only_used);
 

@@ -55,7 +55,7 @@ struct Section {
 struct CuttingPose {
   FacetChoice facet;
   std::int32_t orientation = 0;                                          ///< CutElement::orientation of the elements
-  Eigen::Matrix3d workpiece_from_element = Eigen::Matrix3d::Identity();  ///< CutElement::turn of the elements
+  Eigen::Matrix3d workpiece_from_element = Eigen::Matrix3d::Identity();  ///< CutElement::workpiece_from_element
   /// Cube corner that is cut by micro chiseling, in its orientation at C = 0.
   CubeCorner corner;
   RotaryUnits a = 0;    ///< position of the tilting axis, rounded, as written in programs
@@ -90,7 +90,7 @@ void set_rotary_pose(CuttingPose& pose, const Machine& machine, const geometry::
 /// Orientation of the elements that a pose cuts, and height of the blank above their rims.
 struct ElementPose {
   std::int32_t orientation = 0;                                          ///< CutElement::orientation of the elements
-  Eigen::Matrix3d workpiece_from_element = Eigen::Matrix3d::Identity();  ///< CutElement::turn of the elements
+  Eigen::Matrix3d workpiece_from_element = Eigen::Matrix3d::Identity();  ///< CutElement::workpiece_from_element
   std::size_t zone = 0;
   double stock_mm = 0.0;      ///< height of the blank's face above the rims
   double start_mm = 0.0;      ///< height above the rims from which the clearance is measured at the start of a cut

@@ -17,7 +17,7 @@
 namespace retrace::fabrication {
 namespace {
 
-// Distance of the points of a lathe's profile, divided by the tolerance of the path.
+// Spacing of the points on a lathe's profile, divided by the tolerance of the path.
 constexpr double kPointsPerTolerance = 1.0;
 constexpr std::size_t kMaxPoints = 40000;
 

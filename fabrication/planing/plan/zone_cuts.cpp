@@ -38,8 +38,8 @@ double ZoneCutter::cusp_height_mm(std::size_t zone, const ZoneCut* before, const
   const double x = static_cast<double>(cut.x) * grid_mm_;
   const double depth = static_cast<double>(cut.depth) * grid_mm_;
   const double from = before != nullptr ? static_cast<double>(before->x) * grid_mm_ : profile_.zones()[zone].from_mm;
-  // The flank is steeper than the profile. Most material therefore remains just outside of the previous cut, or where
-  // the flank leaves the blank.
+  // The flank is steeper than the profile. The remaining material is therefore highest directly outside of the previous
+  // cut, or at the point where the flank leaves the blank.
   const double worst = std::min(x, std::max(from, x - depth / flank_slope_));
   return profile_.depth_in_zone_mm(zone, worst) - std::max(0.0, depth - flank_slope_ * (x - worst));
 }

@@ -36,8 +36,8 @@ struct Pose {
 struct EdgeContact {
   double touches_mm = kNowhere;         ///< Z at which any point of the arc touches the surface
   double touches_within_mm = kNowhere;  ///< Z at which a point of the arc inside the region touches the surface
-  double angle_rad = 0.0;               ///< angle, on the arc, of the point for `touches_mm`
-  double angle_within_rad = 0.0;        ///< angle, on the arc, of the point for `touches_within_mm`
+  double angle_rad = 0.0;               ///< angle of the point on the arc that touches at `touches_mm`
+  double angle_within_rad = 0.0;        ///< angle of the point on the arc that touches at `touches_within_mm`
 };
 
 /// Finds the point of contact between edge and surface. It maximizes the height of the surface above the edge along the

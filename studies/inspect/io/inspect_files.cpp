@@ -177,7 +177,7 @@ std::string place_text(const geometry::ElementChoice& choice) {
       choice);
 }
 
-/// Returns the lines on the elements that have another medium behind them.
+/// Returns the lines of the report about elements that have another medium behind their facets.
 std::string wet_back_text(const Inspection& i) {
   if (!i.wet_back) return {};
   return fmt::format("  wet back            {} of {} elements, index {} behind their facets: {}\n",

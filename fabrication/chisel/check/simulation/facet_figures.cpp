@@ -56,7 +56,7 @@ class Measurer {
   }
 
   /// Returns the facet that the first cut plunges. In the pose of that cut, the normal of the plunged facet is more
-  /// nearly opposite to the normal of the clearance face than the normal of the other facet.
+  /// nearly opposite to the normal of the clearance face than the normal of the other facet is.
   std::size_t plunged_facet() const {
     const Vec3 n = poses_[sweeps_.front().pose].direction(groove_.facets[0].normal);
     const Vec3 up = wedge_.sides[0].outward;
@@ -276,8 +276,8 @@ class Measurer {
   /// facets.
   double sine_between() const { return groove_.facets[1].normal.dot(groove_.facets[0].up_slope); }
 
-  /// Returns by how much a line normal to a facet approaches the other facet, in mm per mm. Returns 0 if the angle
-  /// between the facets is 90 degrees or more.
+  /// Returns the rate at which a line normal to a facet approaches the other facet, in mm per mm. Returns 0 if the
+  /// angle between the facets is 90 degrees or more.
   double approach_of_other() const {
     constexpr double kParallel = 1e-9;
     const double towards = -groove_.facets[0].normal.dot(groove_.facets[1].normal);

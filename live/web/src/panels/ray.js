@@ -1,4 +1,5 @@
-// Light paths as text: the list of paths, and one path interface by interface with its angles and critical angles.
+// Shows light paths as text: the list of all paths, and the interfaces of one path with their angles and critical
+// angles.
 import { h } from "../dom.js";
 import { panel } from "../frame.js";
 import { percent, short, words } from "../units.js";
