@@ -206,7 +206,7 @@ std::string rule_table(const Table& root) {
     if (const Precedence* const precedence = std::get_if<Precedence>(&rule))
       text += fmt::format("| `{}` | {} |\n", fmt::join(precedence->keys, "`, `"), precedence->meaning);
   }
-  return text.empty() ? text : "| keys | what holds of them together |\n|---|---|\n" + text;
+  return text.empty() ? text : "| keys | rule for these keys |\n|---|---|\n" + text;
 }
 
 std::string key_tables(const Format& format) {
