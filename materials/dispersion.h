@@ -28,7 +28,8 @@ struct PowerSeries {
   std::vector<Term> terms;
 };
 
-/// n^2 = 1 + sum of strength * w^2 / (w^2 - resonance_um2) + the terms of `rest`, w in um (Sellmeier).
+/// n^2 = 1 + sum of strength * w^2 / (w^2 - resonance_um2) + the terms of `power_terms`, where w is the wavelength in
+/// um (Sellmeier).
 struct Sellmeier {
   struct Term {
     double strength = 0.0;

@@ -12,7 +12,7 @@
 
 namespace retrace::compute {
 
-/// Interval from `least` to `most`. Missing limits are infinite.
+/// Interval from `lower` to `upper`. Missing limits are infinite.
 struct Bounds {
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();

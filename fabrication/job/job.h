@@ -164,8 +164,8 @@ struct CutElement {
   geometry::Vec3 origin_mm = geometry::Vec3::Zero();  ///< point of the blank's face above the root's centre or the apex
   /// Rotation from an element on a flat blank to this element. Its third column is the element's axis.
   Eigen::Matrix3d workpiece_from_element = Eigen::Matrix3d::Identity();
-  /// Number of the orientation. Elements with equal `turn` have equal numbers. In a job with zones, all elements of a
-  /// zone have the same number.
+  /// Number of the orientation. Elements with equal `workpiece_from_element` have equal numbers. In a job with zones,
+  /// all elements of a zone have the same number.
   std::int32_t orientation = 0;
   std::size_t zone = 0;  ///< index of the zone in the job; 0 without zones
 };

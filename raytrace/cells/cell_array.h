@@ -24,7 +24,7 @@ class CellArray {
     double offset_mm = 0.0;                          ///< normal . p for points p of the plane
     geometry::HeightPlane height;                    ///< the same plane as a function z(x, y)
     geometry::FacetRole role = geometry::FacetRole::retro_facet;
-    std::optional<geometry::Vec2> centroid_mm = {};  ///< CellFacet::middle_mm
+    std::optional<geometry::Vec2> centroid_mm = {};  ///< CellFacet::centroid_mm
   };
   /// Neighbouring column on the other side of an edge of a cell. An edge may have several neighbours, each along one
   /// interval of the edge.

@@ -22,7 +22,7 @@ class CellEntrance {
 
   /// Reserves memory for `count` rays that start at the face.
   void reserve(std::size_t count);
-  /// Returns the rays just below the face. Before enter(), the caller must set their positions. Before fall(), the
+  /// Returns the rays just below the face. Before enter(), the caller must set their positions. Before descend(), the
   /// caller must set all their values.
   RayStore& rays() { return descending_; }
   /// Sends incident light into the part at the positions of rays().
@@ -47,8 +47,8 @@ class CellEntrance {
   const PathPolicy& policy_;
   const CellArray& array_;
   double height_mm_;                               ///< height of the entrance face above the top of the back surface
-  std::vector<lanes::LinearForm> fragment_edges_;  ///< edges of CellArray::pieces() as linear forms
-  std::vector<std::uint32_t> fragment_starts_;  ///< first index in `pieces_` of each piece, then the size of `pieces_`
+  std::vector<lanes::LinearForm> fragment_edges_;  ///< edges of CellArray::fragments() as linear forms
+  std::vector<std::uint32_t> fragment_starts_;     ///< first index in `fragment_edges_` of each fragment, then its size
   RayStore descending_;
   std::vector<lanes::Label> labels_;  ///< index of the piece below each ray of `descending_`
   RayStore exited_;                   ///< rays that leave through the face; used only with a score or an observer

@@ -17,7 +17,7 @@ namespace retrace::raytrace {
 class CellObserver {
  public:
   virtual ~CellObserver() = default;
-  /// Called when light leaves through the entrance face, see ExitObserver::leaves().
+  /// Called when light leaves through the entrance face, see ExitObserver::on_exit().
   virtual void on_exit(std::uint32_t owner, const Vec3& position, const Vec3& direction, double power) = 0;
   /// Called when light leaves through the back.
   virtual void on_transmission(std::uint32_t owner, double power) = 0;

@@ -19,7 +19,7 @@ namespace retrace::raytrace {
 /// surfaces of other columns.
 enum class RayLocation : std::uint8_t { inside, below, below_after_leaving };
 
-/// Identifies a stream. A stream contains the rays of one column with the same `place` and the same `scattered`.
+/// Identifies a stream. A stream contains the rays of one column with the same `location` and the same `scattered`.
 struct StreamKey {
   std::uint32_t column = 0;
   RayLocation location = RayLocation::inside;

@@ -148,12 +148,13 @@ struct Beam {
   /// Displacements from this beam to all identical beams at identical elements, including the displacement 0 of this
   /// beam. The pointer is null if the beam represents only itself.
   std::shared_ptr<const InstanceOffsets> instance_offsets;
-  /// Index in TranslationalSymmetry::regions() of the region that contains all `places`. It is used only for parts with
-  /// zones (regions with different arrays).
+  /// Index in TranslationalSymmetry::regions() of the region that contains all `instance_offsets`. It is used only for
+  /// parts with zones (regions with different arrays).
   std::uint32_t region = 0;
 
   double instance_count() const { return instance_offsets ? static_cast<double>(instance_offsets->size()) : 1.0; }
-  /// Returns the power of this beam and of all identical beams in `places`, as a fraction of the incident power.
+  /// Returns the power of this beam and of all identical beams in `instance_offsets`, as a fraction of the incident
+  /// power.
   double total_power() const { return instance_count() * power; }
 };
 

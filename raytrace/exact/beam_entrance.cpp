@@ -95,7 +95,7 @@ class Division {
 
   const Beam& whole() const { return whole_; }
   /// Queues a fragment.
-  /// \param places displacements to its copies (Beam::places); empty for the displacements of the whole beam
+  /// \param places displacements to its copies (Beam::instance_offsets); empty for the displacements of the whole beam
   /// \param region parts with zones: index in TranslationalSymmetry::regions()
   void add(Corners corners, InstanceOffsets places = {}, std::uint32_t region = 0) {
     if (corners.empty()) return;
@@ -108,7 +108,7 @@ class Division {
     entered_ += piece.area_fraction * (piece.instance_count() / whole_.instance_count());
     queue_.push(std::move(piece));
   }
-  /// Returns the part of the whole beam's Beam::share that the queued fragments and their copies contain.
+  /// Returns the part of the whole beam's Beam::area_fraction that the queued fragments and their copies contain.
   double entered() const { return entered_; }
 
  private:
@@ -197,8 +197,8 @@ void keep_half(const TranslationalSymmetry& equal, Beam& whole, BeamQueue& queue
   whole.instance_offsets = queue.shared({Vec2::Zero(), *by});
 }
 
-/// Divides the incident beam into fragments according to the symmetry of the part. Returns the part of Beam::share that
-/// these fragments contain.
+/// Divides the incident beam into fragments according to the symmetry of the part. Returns the part of
+/// Beam::area_fraction that these fragments contain.
 double divide(const BeamScene& scene, const Beam& whole, const Vec2& most_step, BeamQueue& queue) {
   if (scene.symmetry == nullptr || scene.setup.infinite() || scene.symmetry->regions().empty()) {
     Division into(scene, whole, queue);

@@ -9,7 +9,7 @@
 namespace retrace::raytrace {
 
 /// Queues the beams that enter through the entrance face. Light that is lost by rounding is added to `record`. If
-/// BeamScene::equal is set, beams at equivalent positions of the array become one beam.
+/// BeamScene::symmetry is set, beams at equivalent positions of the array become one beam.
 void enter_beams(const BeamScene& scene, BeamRecord& record, BeamQueue& queue);
 
 }  // namespace retrace::raytrace

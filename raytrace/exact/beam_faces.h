@@ -22,7 +22,7 @@ struct BeamStep {
 /// Fragment of the cross-section of a beam.
 struct Fragment {
   const FlatPolygon& polygon;
-  double area_fraction = 0.0;  ///< its part of Beam::share
+  double area_fraction = 0.0;  ///< its part of Beam::area_fraction
 };
 
 /// Processes a fragment that meets a facet.

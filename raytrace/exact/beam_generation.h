@@ -20,8 +20,8 @@ class BeamWalk;
 /// beams lead to similar results, so that this order reduces the variance (Array-RQMC: L'Ecuyer, Lecot and Tuffin,
 /// Operations Research 56, 958, 2008).
 ///
-/// A beam may represent copies at several positions (Beam::places). In a finite part, each copy may survive separately.
-/// In an infinite part, a survivor represents all copies of its beam.
+/// A beam may represent copies at several positions (Beam::instance_offsets). In a finite part, each copy may survive
+/// separately. In an infinite part, a survivor represents all copies of its beam.
 class BeamGeneration {
  public:
   /// \param part the part, whose period or outline is used to compare positions
@@ -34,7 +34,8 @@ class BeamGeneration {
   /// Returns the number of survivors if the power of a survivor must not exceed `max_power`.
   double survivor_count(double max_power) const;
   /// Selects survivors by systematic resampling and calls `follow` for each of them. Each survivor has at most the
-  /// power `max_power`, and their total power is that of the generation. There are no survivors if counts() is false.
+  /// power `max_power`, and their total power is that of the generation. There are no survivors if is_significant() is
+  /// false.
   /// \param offset position of the first of the equally spaced sampling points, in [0, 1)
   /// \param walk computes the copy of a beam at another position
   /// \param follow receives the survivors in order; each reference is valid only during the call

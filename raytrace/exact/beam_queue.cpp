@@ -10,7 +10,7 @@ namespace {
 // Maximum number of beams below the cut-off that are kept for a later pass with a lower cut-off. They take about 150
 // MB. Their memory is also limited to three quarters of beam_memory_bytes().
 constexpr std::size_t kMaxDeferred = 200'000;
-// Work of storing one displacement in a list Beam::places, in units of BeamWalk::work().
+// Work of storing one displacement in a list Beam::instance_offsets, in units of BeamWalk::work().
 constexpr std::uint64_t kWorkOfPlace = 1;
 
 /// Returns the memory in bytes of a queued beam, without its list of positions.

@@ -44,10 +44,10 @@ class BeamQueue {
 
   /// Returns the power of all pending and deferred beams, including the discarded beams.
   double open_power() const { return pending_.power + deferred_.power; }
-  /// Returns a shared list of displacements (Beam::places), or null for a single displacement. The list counts as
-  /// memory of this run until the last beam that uses it is destroyed.
+  /// Returns a shared list of displacements (Beam::instance_offsets), or null for a single displacement. The list
+  /// counts as memory of this run until the last beam that uses it is destroyed.
   std::shared_ptr<const InstanceOffsets> shared(InstanceOffsets offsets);
-  /// Returns the work of making the lists Beam::places, in units of BeamWalk::work().
+  /// Returns the work of making the lists Beam::instance_offsets, in units of BeamWalk::work().
   std::uint64_t work() const { return work_; }
   /// Checks that the beams fit into the memory.
   /// \throw BudgetError if the beams of this run exceed the memory budget

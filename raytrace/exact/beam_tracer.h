@@ -82,9 +82,9 @@ struct ReturnedBeam {
   std::uint32_t depth = 0;  ///< number of interfaces inside the part; 0 if the light never entered
   std::size_t cone = 0;     ///< index of the narrowest cone that contains the beam, or the number of cones if none does
   /// Convex polygons on the entrance face through which the beam enters and leaves. They are counter-clockwise and in
-  /// the part frame. In an infinite part, `entry_polygon_mm` is located within the central period.
-  /// If the face reflects the beam from outside, `entry_polygon_mm` is empty. In this case `left_mm` is the whole face
-  /// of a finite part, and empty for an infinite part.
+  /// the part frame. In an infinite part, `entry_polygon_mm` is located within the central period. If the face reflects
+  /// the beam from outside, `entry_polygon_mm` is empty. In this case `exit_polygon_mm` is the whole face of a finite
+  /// part, and empty for an infinite part.
   geometry::Polygon entry_polygon_mm;
   geometry::Polygon exit_polygon_mm;
   /// Maps the point of the entrance face where light leaves to the point where it entered. Both points are relative to
@@ -122,25 +122,25 @@ using BeamObserver = std::function<void(const ReturnedBeam&)>;
 
 /// Traces parallel beams of polygonal cross-section from facet to facet. Plane smooth facets split a beam into a finite
 /// number of beams, so that no sampling is needed. Power below the cut-off, or lost between polygons by rounding, is
-/// added to `truncated`. Weak beams can be resampled instead (BeamPolicy::weak).
+/// added to `truncated`. Weak beams can be resampled instead (BeamPolicy::population_control).
 ///
 /// Facets with a form are treated as planes, and the points where beams meet them are recorded. Coplanar facets of
 /// neighbouring cells are joined, so that a recorded point may belong to several facets. It belongs to a single facet
-/// if BeamPolicy::by_cell is set. At textured facets, only the mean field is traced (mean_field(),
+/// if BeamPolicy::separate_cells is true. At textured facets, only the mean field is traced (mean_field(),
 /// mean_field_fraction()). The scattered power is added to `truncated`, except with BeamPolicy::keeps_phases. All
 /// threads may share one tracer.
 class BeamTracer {
  public:
   enum class Elements { individual, instanced };
   /// \param elements `instanced` traces identical beams in identical elements as one beam. The beam is split near a
-  ///        border of the array, where the paths differ. The observer receives it with ReturnedBeam::places.
+  /// border of the array, where the paths differ. The observer receives it with ReturnedBeam::instance_offsets.
   /// \pre `part` outlives the tracer
   explicit BeamTracer(const geometry::Part& part, Elements elements = Elements::individual);
 
-  /// Traces the beams above the cut-off. If BeamPolicy::weak is set, the beams below it are resampled, and their mean
-  /// over the replicates is added to the result.
-  /// \param progress receives the finished fraction of the expected work; may be null; not used if BeamPolicy::weak is
-  ///        set
+  /// Traces the beams above the cut-off. If BeamPolicy::population_control is set, the beams below it are resampled,
+  /// and their mean over the replicates is added to the result.
+  /// \param progress receives the finished fraction of the expected work; may be null; not used if
+  /// BeamPolicy::population_control is set
   /// \throw BudgetError if `max_beams` is reached; the message contains the power that was not accounted for
   BeamResult trace(const Optics& optics, const Illumination& illumination, const std::vector<double>& cones_deg,
                    const BeamPolicy& policy, const Cancellation* cancel = nullptr, const BeamObserver& observer = {},

@@ -49,7 +49,7 @@ BeamWalk::End BeamWalk::run(std::uint64_t max_work, const Cancellation* cancel) 
       queue_.require_memory();
       Beam beam = queue_.pop();
       if (power_for_cutoff(beam) < cutoff_) {
-        // CutoffMode::kept keeps all beams. The other approaches discard beams while the queue is full. A lower cut-off
+        // CutoffMode::deferring keeps all beams. The other modes discard beams while the queue is full. A lower cut-off
         // then requires a new trace.
         queue_.defer(std::move(beam), mode_ != CutoffMode::deferring);
         if (queue_.deferred().size() >= max_deferred_) return End::paused;

@@ -22,9 +22,10 @@ class BeamWalk {
 
   enum class CutoffMode { decreasing, fixed, deferring };
   /// Starts the trace.
-  /// \param cutoff minimum power of traced beams. CutoffMode::fixed does not change it. CutoffMode::falling lowers it
-  /// until
-  ///        the truncated power is small enough. CutoffMode::kept keeps weaker beams until lower_cutoff_to() is called.
+  /// \param cutoff minimum power of traced beams. CutoffMode::fixed does not change it. CutoffMode::decreasing lowers
+  /// it
+  ///        until the truncated power is small enough. CutoffMode::deferring keeps weaker beams until
+  ///        lower_cutoff_to() is called.
   void enter(double cutoff, CutoffMode approach);
   enum class End { done, paused, cancelled, cutoff_too_high };
   /// Traces beams above the cut-off until the goal is reached, the total work is `max_work`, or the number of kept
@@ -32,13 +33,13 @@ class BeamWalk {
   End run(std::uint64_t max_work, const Cancellation* cancel);
 
   /// Returns the beams below the cut-off, in the order in which they were found.
-  /// \pre the approach is CutoffMode::kept, and run() has returned End::done
+  /// \pre the mode is CutoffMode::deferring, and run() has returned End::done
   const WaitingBeams& deferred() const { return queue_.deferred(); }
   /// Makes run() pause when this number of beams below the cut-off is kept. Then call take_deferred().
   void pause_at_deferred(std::size_t most) { max_deferred_ = most; }
   WaitingBeams take_deferred() { return queue_.take_deferred(); }
   /// Lowers the cut-off. The next run() traces the kept beams that are not below the new cut-off.
-  /// \pre the approach is CutoffMode::kept, and run() has returned End::done
+  /// \pre the mode is CutoffMode::deferring, and run() has returned End::done
   void lower_cutoff_to(double cutoff);
   /// Traces a single beam to the next faces. The resulting beams are queued, see take_waiting().
   void step(const Beam& beam, const Cancellation* cancel);
@@ -46,7 +47,7 @@ class BeamWalk {
   WaitingBeams take_waiting();
   /// See BeamRecord::set_replicate().
   void set_replicate(std::uint32_t replicate) { record_.set_replicate(replicate); }
-  /// See BeamRecord::collect().
+  /// See BeamRecord::collect_scatter_sites().
   void collect_scatter_sites(std::vector<ScatterSite>& sites) { record_.collect_scatter_sites(sites); }
   /// Adds power that is not traced further to the ledger.
   void add_truncated(double power) { record_.add_truncated(power); }
@@ -54,7 +55,7 @@ class BeamWalk {
   /// Returns the power that is compared with the cut-off (see BeamPolicy::cutoff).
   double power_for_cutoff(const Beam& beam) const { return scene_.setup.infinite() ? beam.power : beam.total_power(); }
   /// Returns one of the copies that a beam represents. The returned beam represents only itself.
-  /// \param index index in Beam::places
+  /// \param index index in Beam::instance_offsets
   Beam instance(const Beam& beam, std::size_t index) const;
 
   BeamResult result() const;

@@ -20,7 +20,7 @@ struct Candidate {
   FlatPolygon overlap;  ///< intersection of the facet and the beam, including parts that other facets hide
   PlanBox box;
   bool is_processed = false;             ///< true if the candidate has been processed
-  std::optional<Vec2> centroid_mm = {};  ///< PatchFacet::middle_mm, displaced to the position of the cell
+  std::optional<Vec2> centroid_mm = {};  ///< PatchFacet::centroid_mm, displaced to the position of the cell
 };
 
 /// Facets that may block a beam in its next step. One object serves all beams of a run, one after the other.

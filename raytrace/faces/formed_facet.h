@@ -18,7 +18,7 @@ struct FacetFrame {
 
   FacetFrame() = default;
   /// \param normal unit normal of the plane normal . p = offset_mm, which points out of the part
-  /// \param centroid_mm see PatchFacet::middle_mm
+  /// \param centroid_mm see PatchFacet::centroid_mm
   FacetFrame(const Vec3& normal, double offset_mm, const Vec2& centroid_mm);
 
   Vec2 local(const Vec3& p) const { return {horizontal.dot(p - origin_mm), down.dot(p - origin_mm)}; }

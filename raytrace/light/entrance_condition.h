@@ -29,7 +29,7 @@ struct Dust {
 /// directions outside of the unit disc are omitted.
 struct Haze {
   double fraction = 0.0;  ///< fraction of the light that is deflected at each passage, 0 to 1
-  double spread = 0.0;    ///< > 0 if `share` is > 0
+  double spread = 0.0;    ///< > 0 if `fraction` is > 0
 };
 
 /// Fine scratches. Light that meets a scratch is deflected: its direction cosine perpendicular to the scratch is

@@ -254,7 +254,7 @@ struct CameraTracer::Impl::GuideTraining {
   std::size_t pixels;
   std::size_t stride = (pixels * kPointsPerPass + kMostLooks - 1) / kMostLooks;  ///< every stride-th pixel is sampled
   PixelGuide guide;
-  std::vector<float> levels;                 ///< see Hidden::levels
+  std::vector<float> levels;                 ///< see Impl::levels
   std::vector<PixelGuide::Samples> samples;  ///< indexed by block
 
  private:

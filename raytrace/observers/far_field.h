@@ -142,7 +142,7 @@ class FarField {
 };
 
 /// Computes a far field from the returned beams of one direction of incidence.
-/// \pre the beams are traced with BeamPolicy::by_cell
+/// \pre the beams are traced with BeamPolicy::separate_cells
 class FarFieldCollector {
  public:
   /// \param illumination its Stokes parameters must have the power 1
@@ -205,8 +205,8 @@ class FarFieldCollector {
   /// Beams in the window. A beam that several cells have in common is stored one time.
   std::vector<CollectedBeam> beams_;
   std::map<CoherenceKey, BeamsOfCell> cells_;
-  std::uint64_t unique_keys_ = 0;  ///< number of values of Place that belong to a single wave or beam
-  /// Values of Place::beam, by CellTrail::met and the key of a wave.
+  std::uint64_t unique_keys_ = 0;  ///< number of values of CoherenceKey::beam so far
+  /// Values of CoherenceKey::beam, by CellTrail::sequence_hash and the key of a wave.
   std::map<std::pair<std::uint64_t, WaveKey>, std::uint64_t> mixed_;
   geometry::PointLookup<std::size_t> directions_;  ///< indices into FarField::rays()
 };

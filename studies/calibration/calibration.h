@@ -41,10 +41,10 @@ struct MeasuredParts {
 struct CalibratedQuantity {
   const fabrication::SetupQuantity* quantity = nullptr;
   bool is_observable = false;  ///< true if the measurements determine the value of the quantity
-  /// Estimated difference of the real machine from the machine file of the job, in um or arcsec. If is_told is false,
-  /// the measurements do not determine this difference.
+  /// Estimated difference of the real machine from the machine file of the job, in um or arcsec. If is_observable is
+  /// false, the measurements do not determine this difference.
   double value = 0.0;
-  /// Standard uncertainty of `value`. If is_told is false, it covers only the observable part of the quantity.
+  /// Standard uncertainty of `value`. If is_observable is false, it covers only the observable part of the quantity.
   double uncertainty = 0.0;
 };
 

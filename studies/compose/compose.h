@@ -49,7 +49,7 @@ struct ComposeRequest {
 struct FamilyCell {
   std::uint64_t point = 0;  ///< number of the point in the store
   PointValues values;
-  MixedCell mixed;  ///< goals in the order of the request; means in the order of `of_part`, then the mean for the front
+  MixedCell mixed;  ///< goals in the order of the request; means of `part_constraints`, then of `front`
 };
 
 struct Zone {
@@ -73,9 +73,10 @@ struct FrontPart {
 
 /// Yield of random parts.
 struct PartYield {
-  std::vector<double> min_goals;        ///< minimum goal of each part, in ascending order
-  std::optional<std::size_t> good;      ///< number of parts that reach ComposeRequest::min_goal
-  std::optional<double> mean_of_worst;  ///< mean of the minimum goal over the fraction worst_share of the parts
+  std::vector<double> min_goals;    ///< minimum goal of each part, in ascending order
+  std::optional<std::size_t> good;  ///< number of parts that reach ComposeRequest::min_goal
+  std::optional<double>
+      mean_of_worst;  ///< mean of the minimum goal over the fraction ErrorSpread::worst_fraction of the parts
 };
 
 /// Composition that is optimized for the worst random parts: the mean of the minimum goal over these parts is maximal.
@@ -109,8 +110,8 @@ struct Composition {
   std::vector<FamilyCell> catalogue;  ///< all cells that satisfy the constraints, in the order of their evaluation
   std::optional<PartOfZones> best;    ///< none if no mixture satisfies the bounds
   std::string infeasible_reason;      ///< bounds that exclude all mixtures; empty if there is a best part
-  /// Indices of those bounds over the part (see ComposeRequest::of_part) that together exclude all mixtures. Empty if
-  /// there is a best part, or if the mixtures are excluded for other reasons, such as limits on zones.
+  /// Indices of those bounds over the part (see ComposeRequest::part_constraints) that together exclude all mixtures.
+  /// Empty if there is a best part, or if the mixtures are excluded for other reasons, such as limits on zones.
   std::vector<std::size_t> infeasible_bounds;
   std::optional<FamilyCell> single;  ///< cell of the best part that has only one kind of cell
   Proof proof = Proof::none;

@@ -53,7 +53,7 @@ class Evaluator {
   compute::ResultStore& store_;
   OptimiseObserver* observer_;
   const Cancellation* cancel_;
-  /// Index in `seen_` of each evaluated design; the key is a text of its parameter values.
+  /// Index in `evaluated_` of each evaluated design; the key is a text of its parameter values.
   std::map<std::string, std::size_t> numbers_;
   std::map<std::string, compute::StoredPoint>
       stored_;  ///< points of an earlier run; the key is a text of the parameter values

@@ -67,7 +67,7 @@ struct LimitArea : LimitLine {
   std::string text() const;  ///< returns a text such as "at most 100 cm2"
 };
 
-/// Line that limits the chromaticity of the returned light: of_x x + of_y y <= most.
+/// Line that limits the chromaticity (x, y) of the returned light: x_coefficient * x + y_coefficient * y <= limit.
 struct ColourBoundary : LimitLine {
   double observation_deg = 0.0;
   double v_deg = 0.0;

@@ -117,7 +117,7 @@ class Photometer {
     /// Fewer resampled beams represent the weak beams. Such values may guide a search, but must not be shown to the
     /// user.
     search,
-    /// Preliminary values that are shown with their errors. As with `guide`, fewer resampled beams are used. The
+    /// Preliminary values that are shown with their errors. As with `search`, fewer resampled beams are used. The
     /// cut-off power of beams is also higher. Another photometer measures the part at the same time, so that the search
     /// structures of the part may use at most half of their memory budget.
     first_answer

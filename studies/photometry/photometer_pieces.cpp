@@ -44,7 +44,7 @@ constexpr double kMinMirrorTrace = 1.0;
 constexpr double kMaxLatticePoints = 300'000.0;
 
 // Maximum truncated power, as a fraction of the incident power, that is neglected. If more power is truncated,
-// Piece::missing_per_sr is computed.
+// WavelengthReading::missing_per_sr is computed.
 constexpr double kMaxNeglectedPower = 1e-9;
 // Factor of the cut-off power for the coarse trace in estimate_missing().
 constexpr double kCoarseness = 20.0;
@@ -236,12 +236,11 @@ std::vector<Photometer::WavelengthReading> Photometer::measure_exactly(const std
   return pieces;
 }
 
-/// Sets Piece::missing_per_sr to the sum of three estimates:
-/// (1) Truncated light is assumed to return with the angular distribution of the other returned light.
-/// (2) The intensity that truncated beams would add is extrapolated from a coarse trace with a higher cut-off power.
-/// The middle wavelength represents all wavelengths. This estimate is omitted if weak beams are resampled, because
-/// hardly any light is then truncated.
-/// (3) Scattered light of unknown direction is assumed to have the angular distribution of the other scattered light.
+/// Sets WavelengthReading::missing_per_sr to the sum of three estimates: (1) Truncated light is assumed to return with
+/// the angular distribution of the other returned light. (2) The intensity that truncated beams would add is
+/// extrapolated from a coarse trace with a higher cut-off power. The middle wavelength represents all wavelengths. This
+/// estimate is omitted if weak beams are resampled, because hardly any light is then truncated. (3) Scattered light of
+/// unknown direction is assumed to have the angular distribution of the other scattered light.
 void Photometer::estimate_missing(const std::vector<PhotometerSetting>& settings,
                                   const EquivalentDirections& directions, std::size_t wavelength, const Traced& traced,
                                   const raytrace::BeamTracer& tracer, const Cancellation* cancel,

@@ -1,7 +1,7 @@
 #pragma once
 
-// Coefficients of retroreflection at the test points of a standard, and the verdict. This study is behind `retrace
-// photometry`.
+// Coefficients of retroreflection at the test points of a standard, and the verdict. The command `retrace photometry`
+// runs this study.
 
 #include <cstdint>
 #include <memory>
@@ -172,7 +172,7 @@ struct UndeterminedReason {
 /// Boundary of the allowed colours, and distance of the returned light's colour from it.
 struct ColourPoint {
   ColourBoundary boundary;
-  double margin = 0.0;     ///< most - of_x x - of_y y; the boundary is satisfied if it is >= 0
+  double margin = 0.0;     ///< limit - x_coefficient * x - y_coefficient * y; >= 0 if the boundary is satisfied
   double std_error = 0.0;  ///< standard error of the margin
 };
 

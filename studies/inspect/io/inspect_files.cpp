@@ -26,7 +26,8 @@ std::string total_reflection(const Inspection& i) {
                      is_rtp ? "across the roof edge" : "at every azimuth");
 }
 
-/// Returns the lines on the refractive index and, for a spectrum, on its range and the indices at its wavelengths.
+/// Returns the lines of the report about the refractive index. For a spectrum, they also contain the range of the
+/// traced wavelengths and the indices at both ends of this range.
 std::string light_text(const Inspection& i) {
   const std::string wavelength = i.design.light.spectrum() ? fixed(i.wavelength_nm, 1) : shortest(i.wavelength_nm);
   const std::optional<double>& temperature_c = i.design.substance.temperature_c;
@@ -120,7 +121,7 @@ std::string layer_text(const design::CoatingLayer& layer) {
   return layer.thickness_nm ? fmt::format("{} {} nm", name, shortest(*layer.thickness_nm)) : name + ", opaque";
 }
 
-/// Returns the lines on the coating of a face. Empty if it has none.
+/// Returns the lines of the report about the coating of a face, or an empty text if it has no coating.
 /// \param label text of at most 20 characters
 std::string coating_text(std::string_view label, const std::optional<CoatingReport>& face) {
   if (!face) return {};
@@ -132,7 +133,7 @@ std::string coating_text(std::string_view label, const std::optional<CoatingRepo
                      fixed(100.0 * face->absorptance, 3));
 }
 
-/// Returns the lines on the contamination and damage of the entrance face.
+/// Returns the lines of the report about the contamination and damage of the entrance face.
 std::string entrance_state_text(const Inspection& i) {
   if (!i.entrance_state) return {};
   const EntranceStateReport& face = *i.entrance_state;
@@ -151,7 +152,7 @@ std::string entrance_state_text(const Inspection& i) {
   return text;
 }
 
-/// Returns the lines on the coatings of the faces and on the state of the entrance face.
+/// Returns the lines of the report about the coatings of the faces and the state of the entrance face.
 std::string coatings_text(const Inspection& i) {
   return coating_text("facets", i.coating.facets) + coating_text("entrance face", i.coating.entrance) +
          entrance_state_text(i);
@@ -242,7 +243,8 @@ std::string ball_json(const Inspection& i) {
   return result_text("retrace.inspect/2", json, i.warnings);
 }
 
-/// Returns the lines on the zones of a part: their sizes, elements and the distance that light travels across zones.
+/// Returns the lines of the report about the zones of a part: their sizes, their elements, and the distance that light
+/// travels across zones.
 std::string zones_text(const Inspection& i) {
   std::string text;
   if (!i.zones) return text;
