@@ -43,7 +43,7 @@ Range drawable(Range range);
 
 /// Returns the ticks within `range`, after the range has been changed by drawable().
 /// \param max_intervals approximate maximum number of intervals
-/// \pre most >= 1
+/// \pre max_intervals >= 1
 Ticks make_ticks(Range range, int max_intervals);
 
 /// Returns an axis range whose ends are ticks. The step of the ticks divides the data into at most about

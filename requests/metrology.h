@@ -11,8 +11,7 @@ namespace retrace {
 /// Settings of the evaluation of a measured surface, as in `retrace metrology`. If only the spacing of the points along
 /// x is given, the spacing along y is equal to it.
 struct MetrologyRequest {
-  /// Form to remove: none, plane or poly2 to poly8; "none", "plane", "poly2", "poly3", "poly4", "poly5", "poly6",
-  /// "poly7" or "poly8".
+  /// Form to remove: none, plane, or a polynomial of degree 2 to 8: poly2, poly3, poly4, poly5, poly6, poly7 or poly8.
   std::string form = "plane";
   /// Cut-off of the Gaussian filter between roughness and waviness, in um; > 0.
   double cutoff_um = 80.0;

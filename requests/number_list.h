@@ -13,8 +13,8 @@ namespace retrace::requests {
 /// Reads a list of numbers `a,b,c` and ranges `start:stop:step`. The values of a range are start + i * step. They
 /// include stop if stop is a whole number of steps away from start. Duplicates are removed.
 /// \param field field that is named in error messages
-/// \throw InputError if the list is empty, has more than 100,000 values, or contains text that is not a finite number;
-/// also if the step of a range is 0 or leads from start away from stop
+/// \throw InputError if the list is empty, has more than 100,000 values, or contains text that is not a finite number
+/// \throw InputError if the step of a range is 0 or leads from start away from stop
 std::vector<double> read_number_list(std::string_view text, Field field);
 
 /// List of numbers that may contain ranges `start:stop:auto`, in which the program chooses the points.

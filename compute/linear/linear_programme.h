@@ -36,7 +36,7 @@ class LinearProgramme {
 
   /// Adds a column.
   /// \return index of the column
-  /// \pre all numbers are finite except for infinite bounds, and least <= most
+  /// \pre all numbers are finite except for infinite bounds, and lower <= upper
   std::size_t add_column(const Bounds& bounds, double objective);
   /// Adds a row.
   /// \return index of the row

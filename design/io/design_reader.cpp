@@ -220,7 +220,7 @@ std::optional<GlassCatalogueFile> read_catalogue(const Document& document) {
 }
 
 /// Returns the name of the material. If the catalogue is a file with a single index record, the name of the file is
-/// returned, and a design need not give the name of the material.
+/// returned. The design then need not give the name of the material.
 std::string read_material(const Document& document) {
   std::string material = document.text("body.material");
   if (!document.has("body.catalogue") || !materials::is_index_record(document.file("body.catalogue"))) return material;

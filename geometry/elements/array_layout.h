@@ -29,10 +29,10 @@ struct ArrayLayout {
   double x_offset_mm = 0.0;  ///< width of the flat margin without elements at both ends along x
   double y_offset_mm = 0.0;
   double overlap_percent = 50.0;  ///< shift of alternate rows of `offset`, in percent of the base
-  /// Mask of complete elements: one text per row, beginning with the row of largest y, with x ascending. '#' marks an
-  /// element that exists, '-' marks an element that is missing. An empty mask means that all elements exist.
-  /// The last column of a shifted row is beyond the border and is ignored. A row of cube corners has as many characters
-  /// as there are complete cells at the y of this row.
+  /// Mask of complete elements. There is one text per row, beginning with the row of largest y. The characters of a row
+  /// are in the order of ascending x. '#' marks an element that exists, '-' marks an element that is missing. An empty
+  /// mask means that all elements exist. The last column of a shifted row is beyond the border and is ignored. A row of
+  /// cube corners has as many characters as there are complete cells at the y of this row.
   std::vector<std::string> pattern;
 };
 

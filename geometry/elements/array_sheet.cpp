@@ -14,14 +14,14 @@ namespace {
 
 /// Maximum relative deviation between a length and a whole number of elements at which the length counts as whole.
 constexpr double kWhole = 1e-9;
-// kEndlessPeriods is the number of periods of an infinite array's sheet on each side of the origin. kEndlessReaches is
-// the margin by which the block of cube corners on a substrate extends beyond the sheet, in multiples of the sheet's
-// size. Both are larger than any region that is traced or drawn.
+// kEndlessPeriods is the number of periods of an infinite array's sheet on each side of the origin. kEndlessReaches
+// applies to cube corners on a substrate: it is the margin by which their block extends beyond the sheet, in multiples
+// of the sheet's size. Both are larger than any region that is traced or drawn.
 constexpr double kEndlessPeriods = 1e3;
 constexpr double kEndlessReaches = 10.0;
 
-/// Snaps the part to the block: each bound of the part that equals the corresponding bound of the block within rounding
-/// errors is set to exactly that bound.
+/// Snaps the part to the block. If a bound of the part equals the corresponding bound of the block within rounding
+/// errors, it is set to exactly this bound.
 void snap(Rectangle& part, const Rectangle& block, const Vec2& length) {
   const auto one = [](double& bound, double to, double scale) {
     if (std::abs(bound - to) <= 2.0 * kWhole * scale) bound = to;

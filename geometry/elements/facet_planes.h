@@ -25,9 +25,9 @@ struct ElementPlanes {
   /// elements are triangular and extend into the corners of this land. Cut k removes the corner at 120 k degrees, up to
   /// the line between the two adjacent corners.
   std::array<std::optional<HeightPlane>, 3> flares;
-  /// Cube corner: planes that a chisel with a straight edge leaves at the apex, in front of facet k. The height of the
-  /// surface is the maximum of two heights: that of the highest facet plane, and that of the lowest of these three
-  /// planes. Either all three planes are given or none.
+  /// Cube corner: planes that a chisel with a straight edge leaves at the apex, in front of facet k. At each point, the
+  /// height of the surface is the height of the highest facet plane or the height of the lowest of these three planes,
+  /// whichever is greater. Either all three planes are given or none.
   std::array<std::optional<HeightPlane>, 3> caps;
 };
 

@@ -149,8 +149,8 @@ EntranceSurface::SurfaceSample EntranceSurface::at(const Vec2& point_mm) const {
   return {origin_mm_.z() + surface_.height_mm(place.x(), place.y()), slope_across(place)};
 }
 
-/// Returns the slope from central differences. It is used where the gradient is not finite, such as at r = 0: there, a
-/// formula of the radius r has no derivative although its surface may be smooth.
+/// Returns the slope from central differences. It is used where the gradient is not finite. For example, a formula of
+/// the radius r has no derivative at r = 0, although its surface may be smooth there.
 Vec2 EntranceSurface::slope_across(const Vec2& p) const {
   constexpr double kStep = 1e-5;
   return Vec2(surface_.height_mm(p.x() + kStep, p.y()) - surface_.height_mm(p.x() - kStep, p.y()),

@@ -174,8 +174,8 @@ class PartBuilder {
   }
 
   /// Moves a vertex that is near a corner or side of the outline onto this corner or side. Returns the projection onto
-  /// the directions in which the vertex may still move: along z on a corner, within the side's plane on a side, and any
-  /// direction elsewhere.
+  /// the directions in which the vertex may still move. On a corner, it may move along z. On a side, it may move within
+  /// the side's plane. Elsewhere, it may move in any direction.
   VertexConstraint settle(Vec3& p) const {
     for (const Vec2& corner : outline_)
       if ((p.head<2>() - corner).norm() <= 2.0 * tolerance_mm_) {

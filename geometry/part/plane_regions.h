@@ -40,8 +40,8 @@ struct PlaneRegions {
 using VertexConstraint = Eigen::Matrix3d;
 
 /// Groups triangles into plane regions. A region grows from one triangle. An adjacent triangle joins the region if all
-/// its vertices are near the region's plane: the distance must be at most `rounding_mm` plus the uncertainty of the
-/// plane at the vertex.
+/// its vertices are near the region's plane. The distance of a vertex must be at most `rounding_mm` plus the
+/// uncertainty of the plane at this vertex.
 /// \param rounding_mm maximum error of a vertex, mm
 PlaneRegions plane_regions(const std::vector<Vec3>& vertices, const std::vector<MeshTriangle>& triangles,
                            double rounding_mm);

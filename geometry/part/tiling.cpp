@@ -227,8 +227,8 @@ class Tiler {
     std::uint32_t number = 0;
   };
 
-  /// Visits the cells of a range and of one additional period on all sides. `visit` gets the cell, a consecutive
-  /// number, its shift from the lattice, and whether it is within the range.
+  /// Visits the cells of a range and of one additional period on all sides. The arguments of `visit` are the cell, a
+  /// consecutive number, the shift of the cell from the lattice, and true if the cell is within the range.
   template <class Visit>
   void visit_cells(const IndexRange& range, const Visit& visit) const {
     std::uint32_t number = 0;

@@ -40,7 +40,7 @@ constexpr Row kMetrologyRows[] = {
      {.value = "P|PX,PY", .notation = Notation::commas, .otherwise = "as in the file"}},
     {"form",
      Word{kForms},
-     "form to remove: none, plane or poly2 to poly8",
+     "form to remove: none, plane, or a polynomial of degree 2 to 8: poly2, poly3, poly4, poly5, poly6, poly7 or poly8",
      access<&MetrologyRequest::form>,
      {.value = "FORM"},
      kNeedNoEdge},

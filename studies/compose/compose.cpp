@@ -287,7 +287,7 @@ class Composer {
 
   /// Returns a text for the user that explains why no mixture of cells satisfies the bounds.
   /// \param relaxed best mixture without limits on the number of zones and on the minimum area of a zone
-  /// \pre composition.excluding is set
+  /// \pre composition.infeasible_bounds is set
   std::string why_none(const Composition& composition, const Mixture& relaxed) const {
     if (composition.catalogue.empty())
       return composition.failed > 0 ? fmt::format("no cell can be computed: {}", composition.first_failure)

@@ -1,7 +1,7 @@
 #pragma once
 
-// Computes how much of a cube corner a chisel with a straight edge can cut: the fraction of the facets, and the height
-// of the core that remains above the apex.
+// Computes which part of a cube corner a chisel with a straight edge can cut. The results are the fraction of the
+// facets that is cut, and the height of the core that remains above the apex.
 
 #include <array>
 

@@ -18,9 +18,9 @@ struct PloughedFloor {
   double slope = 0.0;          ///< rise of the surface along the root, in mm per mm
   double half_width_mm = 0.0;  ///< half of the width of the pass, along the root
   double drift = 0.0;          ///< displacement of the pass along the root, in mm per mm of distance from the root
-  /// Distance, along the root, between two points at the root: the centre of the ploughed surface, and the intersection
-  /// of the root with the plane in which the centre of the edge moves. It is not 0 because the centre of a tilted edge
-  /// is above the facet.
+  /// Distance between two points of the root. The first point is the centre of the ploughed surface. The second point
+  /// is the intersection of the root with the plane in which the centre of the edge moves. It is not 0 because the
+  /// centre of a tilted edge is above the facet.
   double shift_mm = 0.0;
 };
 

@@ -11,8 +11,8 @@
 namespace retrace::fabrication {
 
 /// Checks programs from stop to stop. Adds findings for cuts before the end of the warm-up, for cuts beyond the tool
-/// life of the edge, and for cuts too long after the last stop. Also adds a finding if an element is finished without
-/// an inspection after its roughing.
+/// life of the edge, and for cuts that are made too long after the last stop. Also adds a finding if an element is
+/// finished without an inspection after its roughing.
 class StopCheck {
  public:
   /// \pre all arguments outlive this object

@@ -91,9 +91,9 @@ struct Plan {
 ///     applicable to the job
 Plan make_plan(const Job& job, const Machine& machine, const PlanOptions& options = {});
 
-/// Returns the minimum Z position, in mm, at which the rotary axes may move. It is the maximum height of the corners of
-/// the blank's face while A moves from 0 to the poses and C rotates by a full turn, plus `rotary_clearance_mm` and
-/// `clearance_mm`.
+/// Returns the minimum Z position, in mm, at which the rotary axes may move. It is the sum of `rotary_clearance_mm`,
+/// `clearance_mm`, and the maximum height of the corners of the blank's face. This maximum is reached while A moves
+/// from 0 to the poses and C rotates by a full turn.
 /// \pre the whole blank is below z = 0 of the workpiece
 double safe_height_mm(const Job& job, const Machine& machine, const std::vector<CuttingPose>& poses);
 

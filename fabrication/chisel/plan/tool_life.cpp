@@ -36,7 +36,7 @@ double fraction_below(double from_mm, double to_mm) {
 double length_of_cut_mm(const Job& job, const Machine& machine, const CutElement& element, const CuttingPose& pose,
                         const CycleCall& visit, const Subroutine& routine, double stock_mm) {
   // Distance from the tool reference point down to the intersection of two tangents of the edge circle (the rounded
-  // edge): its tangents in the planes of the two facets (docs/theory/verification.md).
+  // edge). The tangents are in the planes of the two facets (docs/theory/verification.md).
   const double below_mm = cuts_prisms(job) ? pose.section.edge_mm / std::sin(pose.section.apex.rad()) : 0.0;
   const Vec3 tip = edge_frame(machine) * Vec3(0.0, 0.0, -below_mm);
   const auto height_mm = [&](const Vec3& words) {

@@ -17,8 +17,8 @@ struct Plane {
   double bound_mm = 0.0;
 };
 
-/// Returns the planes of the body that a wedge sweeps. They are the sides of the wedge, moved outward if the travel
-/// points outward, and the planes that are spanned by the travel and one of the wedge's edges.
+/// Returns the planes of the body that a wedge sweeps. They are of two kinds. The sides of the wedge are moved outward
+/// if the travel points outward. Further planes are spanned by the travel and one of the wedge's edges.
 std::vector<Plane> planes_of(const SweptVolume& sweep, const RigidMotion& back, const ToolWedge& wedge) {
   const Vec3 travel = sweep.to_mm - sweep.from_mm;
   const std::array<Vec3, 2> tips = {sweep.from_mm - wedge.half_width_mm * wedge.edge,

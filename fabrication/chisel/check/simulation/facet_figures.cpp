@@ -55,8 +55,8 @@ class Measurer {
     find_burr();
   }
 
-  /// Returns the facet that the first cut plunges. In the pose of that cut, the normal of the plunged facet is more
-  /// nearly opposite to the normal of the clearance face than the normal of the other facet is.
+  /// Returns the facet that the first cut plunges. In the pose of that cut, it is the facet whose normal is most nearly
+  /// opposite to the normal of the clearance face.
   std::size_t plunged_facet() const {
     const Vec3 n = poses_[sweeps_.front().pose].direction(groove_.facets[0].normal);
     const Vec3 up = wedge_.sides[0].outward;
@@ -187,8 +187,8 @@ class Measurer {
     along.erase(std::unique(along.begin(), along.end(), is_same), along.end());
   }
 
-  /// Returns the distances from the root at which a facet is measured: on both sides of every corner that the tip of
-  /// the tool leaves, midway between the corners, and at equal steps over the facet.
+  /// Returns the distances from the root at which a facet is measured. They are on both sides of every corner that the
+  /// tip of the tool leaves, midway between these corners, and at equal steps over the facet.
   std::vector<double> slant_positions(std::size_t facet) const {
     std::vector<double> corners = {strip_mm_, burr_end_mm_, groove_.facet_length_mm};
     for (const SweptVolume& sweep : sweeps_)
