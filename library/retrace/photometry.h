@@ -38,7 +38,8 @@ struct PhotometryResult {
 };
 
 /// Computes the coefficients at all test points and compares them with the limits of the standard.
-/// \throw InputError; BudgetError if the ray tracer lost power
+/// \throw InputError
+/// \throw BudgetError if the ray tracer lost power
 RETRACE_API PhotometryResult photometry(const Design& design, const PhotometryRequest& request,
                                         const Running& running = {});
 

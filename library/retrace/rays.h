@@ -25,7 +25,9 @@ struct RaysResult {
 };
 
 /// Traces the rays of a file or an emitter.
-/// \throw InputError, OutputError, BudgetError
+/// \throw InputError if the request is not allowed or a file of rays cannot be read
+/// \throw OutputError if the file of rays cannot be written
+/// \throw BudgetError if power is lost because a ray inside the part missed every face, or if a budget is exhausted
 RETRACE_API RaysResult rays(const Design& design, const RaysRequest& request, const Running& running = {});
 
 /// Rays in memory, in the frame of the part. Each array contains the numbers of ray 0, then those of ray 1, and so on.
@@ -63,7 +65,7 @@ RETRACE_API std::vector<std::string> ray_accounts();
 
 /// Traces rays in memory and returns the rays that leave the part.
 /// \throw InputError if an array is invalid; the error names the array
-/// \throw BudgetError if the budget of memory or beams is exhausted
+/// \throw BudgetError if power is lost because a ray inside the part missed every face, or if a budget is exhausted
 RETRACE_API TracedRays trace(const Design& design, const RayArrays& rays, const TraceRequest& request = {},
                              const Running& running = {});
 
