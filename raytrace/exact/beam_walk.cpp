@@ -49,8 +49,8 @@ BeamWalk::End BeamWalk::run(std::uint64_t max_work, const Cancellation* cancel) 
       queue_.require_memory();
       Beam beam = queue_.pop();
       if (power_for_cutoff(beam) < cutoff_) {
-        // CutoffMode::deferring keeps all beams. The other modes discard beams while the queue is full. A lower cut-off
-        // then requires a new trace.
+        // CutoffMode::deferring stores all beams. The other modes discard beams while the queue is full. A lower
+        // cut-off then requires a new trace.
         queue_.defer(std::move(beam), mode_ != CutoffMode::deferring);
         if (queue_.deferred().size() >= max_deferred_) return End::paused;
         continue;
@@ -72,11 +72,13 @@ BeamWalk::End BeamWalk::run(std::uint64_t max_work, const Cancellation* cancel) 
   return End::done;
 }
 
-/// Returns true if the trace may stop. With a falling cut-off, this is the case if the power of the beams not yet
-/// traced (the open power) is at most the goal. Until BeamPolicy::spare_work has been done, the finest goal is used
-/// instead. The function can be called at any time, because the open power never increases. For the finest goals, the
-/// sum of the power of pending beams is too inaccurate. The trace then stops when the queue is empty and the power
-/// below the cut-off is at most the goal. With the other approaches, the trace stops when the queue is empty.
+/// Returns true if the present pass may stop. This depends on the mode:
+/// - CutoffMode::decreasing: the open power is at most the goal. Until BeamPolicy::spare_work has been done, the goal
+///   is kFinestGoal, because fast traces can afford a higher accuracy. The pass may stop at any time, because the open
+///   power never increases.
+/// - CutoffMode::decreasing with a goal of at most kFinestGoal: no beam is pending, and the power of the deferred beams
+///   is at most the goal. The power of pending beams is not used, because its rounding errors are too large.
+/// - Other modes: no beam is pending.
 bool BeamWalk::may_stop() const {
   const BeamPolicy& policy = scene_.policy;
   if (mode_ != CutoffMode::decreasing) return !queue_.has_pending();
@@ -95,7 +97,7 @@ void BeamWalk::lower_cutoff_to(double cutoff) {
   queue_.resume_deferred();
 }
 
-/// Ends the trace. The power of all beams that have not been traced is added to `truncated`.
+/// Ends the trace. The open power is added to `truncated`.
 void BeamWalk::close() {
   queue_.discard_pending();
   record_.add_truncated(queue_.deferred_power());
@@ -195,6 +197,7 @@ void BeamWalk::advance(const Beam& beam, const Cancellation* cancel) {
   record_.add_rounding_loss(beam, beam.area_fraction - used);
 }
 
+/// Throws the error for a trace that exceeds BeamPolicy::max_beams.
 void BeamWalk::fail_on_budget() const {
   throw TraceBudgetError(fmt::format(
       "the budget of {} beams ran out with {:.3g} of the power not accounted for; use a larger {} to follow "

@@ -15,30 +15,48 @@
 namespace retrace::raytrace {
 
 /// Traces beams through a part until the remaining power is small enough. An object is used for one trace.
+///
+/// A beam that has not been traced is pending (it is traced next) or deferred (its power is below the cut-off). If the
+/// list of deferred beams is full, further beams are discarded and only their power is stored. The open power is the
+/// power of all pending, deferred and discarded beams. Power that is never traced is added to `truncated` in the
+/// ledger. The goal is BeamPolicy::truncated_goal.
+///
+/// There are two ways to use an object. enter() and run() trace all beams that enter the part. step() and
+/// take_waiting() trace given beams one interface at a time; resampling uses them for the survivors (see
+/// follow_survivors()).
 class BeamWalk {
  public:
   BeamWalk(const BeamScene& scene, BeamObserver observer)
       : scene_(scene), record_(scene, std::move(observer)), facets_(scene) {}
 
-  enum class CutoffMode { decreasing, fixed, deferring };
+  /// Treatment of the cut-off, which is the minimum power of traced beams.
+  enum class CutoffMode {
+    decreasing,  ///< run() lowers the cut-off until the open power is at most the goal
+    fixed,       ///< the power of all weaker beams is added to `truncated`
+    deferring    ///< all weaker beams are stored, until the caller takes them or lowers the cut-off
+  };
   /// Starts the trace.
-  /// \param cutoff minimum power of traced beams. CutoffMode::fixed does not change it. CutoffMode::decreasing lowers
-  /// it
-  ///        until the truncated power is small enough. CutoffMode::deferring keeps weaker beams until
-  ///        lower_cutoff_to() is called.
+  /// \param cutoff minimum power of traced beams. With CutoffMode::decreasing and a goal above kFinestGoal, it is a
+  ///        multiple of the mean power of the beams that enter the part.
   void enter(double cutoff, CutoffMode approach);
-  enum class End { done, paused, cancelled, cutoff_too_high };
-  /// Traces beams above the cut-off until the goal is reached, the total work is `max_work`, or the number of kept
-  /// beams reaches the limit of pause_at_deferred().
+  enum class End {
+    done,            ///< the trace has ended; with CutoffMode::deferring, no beam above the cut-off is left
+    paused,          ///< `max_work` or the limit of pause_at_deferred() was reached; run() can be called again
+    cancelled,       ///< the user cancelled the computation
+    cutoff_too_high  ///< a lower cut-off is required, but the list of deferred beams is full; a new trace is required
+  };
+  /// Traces beams above the cut-off until the trace ends, the total work is `max_work`, or the number of deferred beams
+  /// reaches the limit of pause_at_deferred(). With CutoffMode::decreasing, the trace ends when the open power is at
+  /// most the goal. With the other modes, it ends when no beam above the cut-off is left.
   End run(std::uint64_t max_work, const Cancellation* cancel);
 
-  /// Returns the beams below the cut-off, in the order in which they were found.
+  /// Returns the deferred beams, in the order in which they were found.
   /// \pre the mode is CutoffMode::deferring, and run() has returned End::done
   const WaitingBeams& deferred() const { return queue_.deferred(); }
-  /// Makes run() pause when this number of beams below the cut-off is kept. Then call take_deferred().
+  /// Makes run() pause when this number of beams is deferred. Then call take_deferred().
   void pause_at_deferred(std::size_t most) { max_deferred_ = most; }
   WaitingBeams take_deferred() { return queue_.take_deferred(); }
-  /// Lowers the cut-off. The next run() traces the kept beams that are not below the new cut-off.
+  /// Lowers the cut-off. The next run() traces the deferred beams that are not below the new cut-off.
   /// \pre the mode is CutoffMode::deferring, and run() has returned End::done
   void lower_cutoff_to(double cutoff);
   /// Traces a single beam to the next faces. The resulting beams are queued, see take_waiting().
@@ -59,7 +77,9 @@ class BeamWalk {
   Beam instance(const Beam& beam, std::size_t index) const;
 
   BeamResult result() const;
+  /// Returns the number of traced beams.
   std::uint64_t beams() const { return beams_; }
+  /// Returns the maximum number of interfaces on the path of a traced beam.
   std::uint32_t depth() const { return depth_; }
   double cutoff() const { return cutoff_; }
   double deferred_power() const { return queue_.deferred_power(); }
@@ -84,7 +104,7 @@ class BeamWalk {
   std::size_t max_deferred_ = std::numeric_limits<std::size_t>::max();
   double cutoff_ = 0.0;
   CutoffMode mode_ = CutoffMode::fixed;
-  /// State at the start of the pass with the present cut-off.
+  /// State at the start of the present pass. A pass traces all beams above one cut-off.
   struct Pass {
     double work = 0.0;
     double power = 1.0;  ///< open power

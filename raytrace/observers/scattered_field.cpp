@@ -33,11 +33,12 @@ constexpr double kOnePlane = 1e-8, kOneOffset = 1e-3;
 constexpr double kNoPlaces = 1e-9;
 // Corners are merged if their distance is less than this fraction of the polygon's size.
 constexpr double kMergedCorners = 1e-9;
-// Ratio of the singular values of a map below which the map is treated as a reflection at a line.
+// Ratio of the singular values of Moves::matrix below which the map is treated as a reflection at a line. For an
+// exact reflection, the matrix has rank 1 and the ratio is 0.
 constexpr double kFolded = 0.1;
-// Width of the term that is subtracted from fringes where two partner points coincide, relative to the width of the
-// covariance. Light at partner points of the entrance face has met the same points of facets. For a reflection at a
-// line, the remaining integral is that of the complementary error function.
+// Width of the Gaussian term that is subtracted from fringes where two partner points coincide (see Shared), relative
+// to the width of the covariance. With this width, the integral of the term across a line of reflection is equal to the
+// integral of the complementary error function.
 constexpr double kDipWidth = 2.0 / pi;
 // Minimum common area as a fraction of the polygon's area. Smaller areas are neglected.
 constexpr double kMinCommonFraction = 1e-6;
@@ -76,9 +77,10 @@ double covariance(const std::vector<HitPair>& pairs, const Vec2& distance_mm) {
 
 }  // namespace
 
-/// Displacements between points r of `here` and their partners turn r + shift: r - (turn r + shift) = matrix r - shift.
+/// Displacements between points r of `here` and their partners turn r + shift (see Shared). `turn` is any linear map,
+/// such as a rotation by 180 degrees or a reflection. The displacement is r - (turn r + shift) = matrix r - shift.
 struct ScatteredField::Moves {
-  Eigen::Matrix2d matrix;
+  Eigen::Matrix2d matrix;  ///< identity minus `turn`
   Vec2 shift_mm;
   double stretch = 0.0;            ///< largest singular value of `matrix`
   bool is_folded = false;          ///< true if the map is nearly a reflection at a line
@@ -87,6 +89,7 @@ struct ScatteredField::Moves {
 
   explicit Moves(const Shared& shared);
 
+  /// Returns the point whose displacement is `distance_mm`.
   Vec2 place_that_moves_by(const Vec2& distance_mm) const { return matrix.inverse() * (distance_mm + shift_mm); }
 
   /// Returns the integral, over the points r of a polygon, of a normal density at the displacement of r.
@@ -120,7 +123,9 @@ struct ScatteredField::Shared {
   Eigen::Matrix2d turn = Eigen::Matrix2d::Identity();
   Vec2 shift_mm = Vec2::Zero();
   std::vector<HitPair> pairs;
-  double log_means = 0.0;  ///< logarithm of the product of the factors exp(-variance / 2) of both mean fields
+  /// Logarithm of exp(-variance / 2) of `here` times exp(-variance / 2) of `there`. These are the factors by which the
+  /// textures reduce the mean fields.
+  double log_means = 0.0;
 
   /// Returns the maximum distance between the images of a corner of `here` under this map and under another map.
   double farthest_from(const Eigen::Matrix2d& other_turn, const Vec2& other_shift_mm) const {
@@ -129,6 +134,7 @@ struct ScatteredField::Shared {
       most = std::max(most, ((turn - other_turn) * r + shift_mm - other_shift_mm).norm());
     return most;
   }
+  /// Returns true if the map is the identity, so that each point is its own partner.
   bool is_in_place(double tolerance_mm) const {
     return farthest_from(Eigen::Matrix2d::Identity(), Vec2::Zero()) < tolerance_mm;
   }
@@ -291,11 +297,10 @@ void ScatteredField::add_fringes(const Shared& shared, double copies) {
   const FlatPolygon common = shared.common_places(Vec2::Zero());
   const double common_mm2 = common.size() < 3 ? 0.0 : area(common);
   if (!(common_mm2 > kMinCommonFraction * shared.here->transform.area_mm2())) return;
-  // Displacements between points and their partners.
   const Moves moves(shared);
-  double whole_mm2 = 0.0;
-  double strength_mm4 = 0.0;  // includes the reduction of the common area at the edges of both polygons
-  double still_mm2 = 0.0;
+  double whole_mm2 = 0.0;     // integral of the correlation over all distances
+  double strength_mm4 = 0.0;  // integral of the correlation times the common area, which decreases with the distance
+  double still_mm2 = 0.0;     // part of `whole_mm2` at distances that are displacements of points of the common area
   Eigen::Matrix2d moments = Eigen::Matrix2d::Zero();
   for (const Ring& ring : coarse_rings_)
     for (std::size_t k = 0; k < ring.angles; ++k) {
@@ -316,6 +321,8 @@ void ScatteredField::add_fringes(const Shared& shared, double copies) {
   // Gaussian term with the width of the covariance is subtracted, so that the total power of the fringes is 0.
   const double still = moves.is_folded ? moves.places_at_line(common, spread_mm2)
                                        : still_mm2 / whole_mm2 / std::abs(moves.matrix.determinant());
+  // `still` is the area of points per unit area of their displacements, for displacements near 0. Its product with the
+  // integral of the Gaussian term is an area.
   const Eigen::Matrix2d dip_mm2 = kDipWidth * kDipWidth * spread_mm2;
   const double dip_mm2_of_places = still * 2.0 * pi * std::sqrt(dip_mm2.determinant());
   if (!(dip_mm2_of_places < 0.5 * common_mm2)) return;

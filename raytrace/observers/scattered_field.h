@@ -21,14 +21,17 @@ namespace retrace::raytrace {
 ///
 /// Correlations of nearby points of the entrance face cause lobes. The angular width of a lobe is the wavelength
 /// divided by the correlation length. Correlations of distant points, for example of a path and its reverse, cause
-/// interference fringes about the direction to the source. The angular width of a fringe is the wavelength divided by
-/// the cell size.
+/// interference fringes about the direction to the source (coherent backscattering). The angular width of a fringe is
+/// the wavelength divided by the cell size.
+///
+/// A resampled beam represents many weak beams (PopulationControl). Resampling is repeated in independent replicates,
+/// whose spread gives the standard error.
 class ScatteredField {
  public:
   ScatteredField() = default;
   /// \param coherency matrix of the incident light
   /// \param reach_cosine maximum distance from the specular directions, in direction cosines, at which lobes are
-  ///        computed
+  ///        accurate. It determines the fineness of the grid of distances.
   /// \param groups all groups that will be passed to add()
   /// \param replicates number of replicates of resampled beams; 0 if there are none
   ScatteredField(double wavelength_mm, const Eigen::Matrix2cd& coherency, double reach_cosine,
@@ -41,9 +44,10 @@ class ScatteredField {
 
   /// Returns the power of the scattering lobes per unit area of direction cosines.
   double lobes_per_cosines(const geometry::Vec2& cosines) const;
-  /// Returns the power of the lobes per unit area of direction cosines, averaged with the kernel. Element 0 is the
-  /// power of beams without a replicate. Element 1 + k is the power of replicate k divided by the number of replicates.
-  /// \param cosines_per_rad derivatives of the direction cosines with respect to two rotation angles of the direction
+  /// Returns the power of the lobes per unit area of direction cosines, averaged with the kernel over the discs of
+  /// source and receiver. Element 0 is the power of beams that were not resampled. Element 1 + k is the power of
+  /// replicate k divided by the number of replicates.
+  /// \param cosines_per_rad derivatives of the direction cosines with respect to two angles that rotate the direction
   Eigen::ArrayXd lobes_by_replicate(const geometry::Vec2& cosines, const Eigen::Matrix2d& cosines_per_rad,
                                     const ApertureKernel& kernel) const;
   /// Returns the power of the lobes within an ellipse in the plane of direction cosines.
@@ -58,22 +62,26 @@ class ScatteredField {
   double power() const { return power_; }
 
  private:
-  /// A distance between two points of the entrance face, and the correlation of all pairs of points at this distance.
-  /// The lobes are the Fourier sum over all distances.
+  /// A distance vector between two points of the entrance face, and the sum of the correlations of all pairs of points
+  /// at this distance, multiplied by the quadrature weight. The lobes are the Fourier sum over all distances.
   struct Distance {
     geometry::Vec2 mm;
     std::complex<double> weight;
   };
-  /// Grid points at one distance, over a half circle.
+  /// Quadrature points of distance vectors with one length. In the grid of the lobes they cover a half circle, because
+  /// opposite distances contribute complex conjugates. In the grid of the fringes they cover the full circle.
   struct Ring {
     double radius_mm = 0.0;
-    double weight_mm = 0.0;
-    std::size_t angles = 0;
+    double weight_mm = 0.0;  ///< weight of the radius in the Gauss quadrature
+    std::size_t angles = 0;  ///< number of points
   };
-  struct Shared;
-  struct Moves;
+  struct Shared;  ///< map between the points of two polygons whose light has met the same points of facets
+  struct Moves;   ///< displacements between the points that such a map connects
 
+  /// Adds the contribution of two polygons if the map is the identity.
+  /// \param copies number of equal contributions: number of cells, times 2 for two different polygons
   void add_lobe(const Shared& shared, const CoherentGroup& group, double copies);
+  /// Adds the contribution of two polygons if the map is not the identity. The parameter is that of add_lobe().
   void add_fringes(const Shared& shared, double copies);
 
   double wave_number_ = 0.0;  ///< rad per mm

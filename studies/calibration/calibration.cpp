@@ -127,6 +127,7 @@ std::pair<std::size_t, double> worst(const compute::LeastSquaresEstimate& estima
   return found;
 }
 
+/// Returns the deviation, in standard uncertainties, above which a measurement is rejected as an outlier.
 double max_by_chance(std::size_t measurements) {
   const double tail = 0.5 * kFalseAlarm / static_cast<double>(measurements);
   return boost::math::quantile(boost::math::complement(boost::math::normal(), tail));
@@ -224,6 +225,7 @@ void tell_source(Machine& machine, const CalibratedQuantity& found, const std::s
   }
 }
 
+/// Sets the results of a calibration: machine, quantities, unobservable combinations and residuals.
 void tell(Calibration& result, const compute::LeastSquaresEstimate& fitted) {
   const Machine& nominal = result.parts.plans.front().machine;
   const auto quantities = setup_quantities(nominal.tilt);

@@ -22,13 +22,15 @@ struct Outlier {
   double deviations = 0.0;  ///< deviation from the fit, in standard deviations
 };
 
-/// Parts that a machine cut, and their measurements.
+/// Parts that a machine cut, and their measurements. There are two kinds of input:
+/// - A table of measurements, in which heights are relative to the face of the blank. Each part has its own plan.
+/// - Height maps of one part. Each map counts as a part, because the pose of the part differs from map to map. All maps
+///   have the same plan.
 struct MeasuredParts {
-  std::string file;               ///< name of the measurement file, for messages
-  std::vector<std::string> jobs;  ///< names of the jobs, as given in the file
-  std::vector<FabricationResult> plans;
-  /// Height and tilts of the blank's face in each height map, if all `parts` are height maps of one part (the first
-  /// plan). Empty if the parts are measured relative to their face, which is then the reference.
+  std::string file;                      ///< name of the table, or of the job for height maps, for messages
+  std::vector<std::string> jobs;         ///< name of each job as given in the table, or name of each height map
+  std::vector<FabricationResult> plans;  ///< plan of each job
+  /// Height and tilts of the blank's face in each height map, where the map shows the face. Empty for a table.
   std::vector<std::optional<FaceFigures>> map_faces;
   std::vector<Measurement> measurements;
   std::size_t empty_rows = 0;  ///< number of rows without a value
@@ -37,7 +39,7 @@ struct MeasuredParts {
   const FabricationResult& plan_of(std::size_t part) const { return map_faces.empty() ? plans[part] : plans.front(); }
 };
 
-/// Estimate of a quantity of the set-up.
+/// Estimate of a quantity of the set-up: an error of an axis or of the tool.
 struct CalibratedQuantity {
   const fabrication::SetupQuantity* quantity = nullptr;
   bool is_observable = false;  ///< true if the measurements determine the value of the quantity

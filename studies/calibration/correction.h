@@ -21,7 +21,9 @@ struct Correction {
   std::vector<FacetMap> maps;
   std::vector<RegisteredMap> registered;  ///< registrations, in the order of the maps
   Calibration calibration;                ///< calibration in which each map counts as a part
-  DeviationPrediction before;             ///< predicted deviations if the job's programs run on the calibrated machine
+  /// Predicted deviations of the next part if it is cut with the present programs. They are computed for the calibrated
+  /// machine, which is the machine with its estimated errors.
+  DeviationPrediction before;
   /// Common waves of the facets, the highest first. They are reported, not corrected.
   std::vector<FacetWave> waves;
   std::vector<FacetMark> marks;  ///< common marks of the facets; they are reported, not corrected

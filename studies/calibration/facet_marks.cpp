@@ -70,6 +70,8 @@ struct Found {
   Thing thing;
 };
 
+/// Returns the length of the measured area of the facet in the direction of the wave, in mm. Multiplied by the
+/// frequency of the wave, it gives the number of periods.
 double periods(const Found<SpectralPeak>& wave) {
   const Eigen::Index axis = wave.thing.axis == MapAxis::x ? 0 : 1;
   return wave.rest->high_mm[axis] - wave.rest->low_mm[axis];

@@ -22,15 +22,15 @@
 namespace retrace::studies {
 
 /// Transformation of points of a facet to coordinates of its cut: x along the cutting edge, from the centre of the
-/// edge, and y up the facet.
+/// edge, and y up the facet. All members are vectors in these coordinates.
 struct CutCoordinates {
-  geometry::Vec2 root_mm = geometry::Vec2::Zero();      ///< coordinates of the facet's root or apex
-  geometry::Vec2 up_step_mm = geometry::Vec2::UnitY();  ///< coordinates of a step of 1 mm up the facet
-  /// Coordinates of a step of 1 mm along the facet's horizontal line.
+  geometry::Vec2 root_mm = geometry::Vec2::Zero();      ///< position of the facet's root or apex
+  geometry::Vec2 up_step_mm = geometry::Vec2::UnitY();  ///< step of 1 mm up the facet
+  /// Step of 1 mm along the facet's horizontal line.
   geometry::Vec2 along_step_mm = geometry::Vec2::UnitX();
 
   /// Returns the coordinates of a point.
-  /// \param p distances from the root, up the facet and along its horizontal line
+  /// \param p point in coordinates of the facet, relative to the root: x up the facet, and y along its horizontal line
   geometry::Vec2 position_mm(const geometry::Vec3& p) const {
     return root_mm + p.x() * up_step_mm + p.y() * along_step_mm;
   }

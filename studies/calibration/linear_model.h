@@ -17,10 +17,13 @@ namespace retrace::studies {
 /// measurement.
 struct LinearModel {
   Eigen::MatrixXd setup_jacobian;  ///< derivatives with respect to the quantities of setup_quantities()
-  /// Derivatives with respect to the poses of the parts. Each part has shifts along X and Y and three rotations. The
-  /// height of a part is not an unknown, because measured heights are relative to the face on which the tool was
-  /// touched off. For height maps, the height is an unknown as well; the figures of the blank's face determine it. The
-  /// two rotations of the face in the machine are common to all maps of a part.
+  /// Derivatives with respect to the poses of the parts. Each part has six columns: three rotations, then the shifts
+  /// along X, Y and Z. The last two columns are the rotations of the blank's face in the machine (see
+  /// PartPose::face_rotation_arcsec), which are common to all maps of a part.
+  ///
+  /// For a table of measurements, the column of Z and the last two columns are 0, because measured heights are relative
+  /// to the face on which the tool was touched off. For height maps, the figures of the blank's face determine the
+  /// height and the rotations of the face.
   Eigen::MatrixXd pose_jacobian;
   Eigen::VectorXd residual;  ///< measured values minus the values that the machine would produce
 };

@@ -52,7 +52,7 @@ struct Measurement {
   /// Reference facet: the measured value is the difference from the value of this facet. For `angle`, it is the other
   /// facet of the angle.
   std::optional<FacetId> from;
-  double along_edge = 0.0;  ///< for `end`: position along the edge; -1 and 1 at its ends, 0 at its centre
+  double along_edge = 0.0;  ///< for `cut_end`: position along the edge; -1 and 1 at its ends, 0 at its centre
   int line = 0;             ///< line in the file; 0 for values from height maps
   /// For `distance`: position on the facet, up the facet from the root and along the root. If it is empty, the distance
   /// is measured at the centre of the facet.
@@ -71,8 +71,8 @@ struct FaceFigures {
 struct PartPose {
   geometry::Vec3 shift_um = geometry::Vec3::Zero();
   geometry::Vec3 rotation_arcsec = geometry::Vec3::Zero();  ///< rotation vector
-  /// For height maps: rotation of the facets relative to the blank's face, about X and Y. It is applied before
-  /// `turn_arcsec`.
+  /// For height maps: rotation of the facets relative to the blank's face, about X and Y. The reason for it is that the
+  /// face was not exactly perpendicular to Z in the machine. It is applied before `rotation_arcsec`.
   geometry::Vec2 face_rotation_arcsec = geometry::Vec2::Zero();
 
   /// Rotation matrices of the blank's face (face_rotation()) and of the facets (rotation()).
@@ -90,11 +90,11 @@ class CutPart {
   std::string obstacle_for(const Measurement& measurement) const;
   /// Returns the meaning of a positive value of a measurement, such as "rises towards +Y". Directions are machine axes
   /// at A = C = 0 (or B = C = 0).
-  /// \pre fault_of() is empty
+  /// \pre obstacle_for() is empty
   std::string positive_sense(const Measurement& measurement) const;
   /// Returns the value that would be measured.
   /// \param real machine that cut the part
-  /// \pre fault_of() is empty
+  /// \pre obstacle_for() is empty
   double predicted(const Measurement& measurement, const fabrication::Machine& real, const PartPose& pose) const;
 
  private:

@@ -14,8 +14,8 @@ namespace retrace::studies {
 /// otherwise 0.
 std::size_t angles_of(const Study& study, const PointValues& values);
 
-/// Returns the goals of the cell for each set of errors, in minutes of arc. The errors are added to the cell's own
-/// errors. Several sets are computed in parallel.
+/// Returns the goals of the cell for each set of angle errors. Several sets are computed in parallel.
+/// \param errors_arcmin sets of errors, which are added to the errors that the design of the cell specifies
 /// \pre each set has angles_of() errors
 /// \throw Interrupted if the computation is cancelled
 /// \throw InputError if a cell with errors cannot be computed

@@ -155,8 +155,8 @@ class Composer {
   }
 
   /// Adds cells with a positive gain (see gain() in mixture.h). The search uses the dual prices of the best mixture
-  /// without a limit on the number of zones. If the limit lowers the merit, a second search uses the dual prices of the
-  /// best mixture with the limit.
+  /// without the limits on zones, which are the maximum number and the minimum area. If these limits lower the merit, a
+  /// second search uses the dual prices of the best mixture with the limits.
   void search_by_prices(Composition& composition) {
     for (std::size_t round = 0; round < request_.rounds; ++round) {
       const Mixture relaxed = mixture_of(composition, relaxed_rules());

@@ -27,10 +27,12 @@ struct ErrorSpread {
 };
 
 struct ComposeRequest {
-  std::vector<std::string> goals;                     ///< quantities whose minimum is maximized
-  std::vector<Constraint> cell_constraints;           ///< constraints that each cell of the family must satisfy
-  std::vector<Constraint> part_constraints;           ///< constraints on means over the part
-  std::vector<std::pair<std::string, double>> price;  ///< quantity, and reduction of the merit per unit of its mean
+  std::vector<std::string> goals;            ///< quantities whose minimum is maximized
+  std::vector<Constraint> cell_constraints;  ///< constraints that each cell of the family must satisfy
+  std::vector<Constraint> part_constraints;  ///< constraints on means over the part
+  /// Costs, such as the price of an hour of machining: quantity, and reduction of the merit per unit of its mean. They
+  /// are given, unlike the dual prices (MixturePrices), which are results.
+  std::vector<std::pair<std::string, double>> price;
   /// Quantity whose mean is one axis of the Pareto front. The minimum goal is the other axis.
   std::optional<FrontAxis> front;
   std::size_t front_points = 9;
@@ -113,7 +115,8 @@ struct Composition {
   /// Indices of those bounds over the part (see ComposeRequest::part_constraints) that together exclude all mixtures.
   /// Empty if there is a best part, or if the mixtures are excluded for other reasons, such as limits on zones.
   std::vector<std::size_t> infeasible_bounds;
-  std::optional<FamilyCell> single;  ///< cell of the best part that has only one kind of cell
+  /// Cell of the best part that has only one kind of cell. Its search ignores the prices and the constraints on means.
+  std::optional<FamilyCell> single;
   Proof proof = Proof::none;
   bool has_converged = false;         ///< true if the last search by dual prices found no cell with a positive gain
   double unlimited_merit = 0.0;       ///< merit without limits on the number and the areas of zones
@@ -130,6 +133,8 @@ struct Composition {
 /// none.
 std::vector<Zone> robust_zones(const Composition& composition);
 
+/// Returns the layout of the store for the evaluated cells. It does not depend on the constraints and objectives of
+/// the study, so that compositions with other goals can use the same store.
 compute::StoreLayout compose_layout(const Study& study);
 
 /// Returns the cells of the first scan as points of a sweep, so that they can be computed before the search.

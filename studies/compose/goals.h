@@ -15,7 +15,7 @@ namespace retrace::studies {
 /// \param goal index of the goal in the request
 const Quantity& goal_of(const Study& study, const ComposeRequest& request, std::size_t goal);
 
-/// Returns true if all goals are margins to limits.
+/// Returns true if all goals are margins to limits. The margin of a value is value / limit - 1.
 bool are_margins(const Study& study, const ComposeRequest& request);
 
 /// Returns the contribution of a zone to a goal. For margins, it is the contribution to value / limit, so that the sum

@@ -31,8 +31,9 @@ std::vector<double> min_goals_of(const RandomParts& parts, const std::vector<dou
 /// \param fraction fraction of the values that counts as the worst, above 0 and at most 1
 double mean_of_worst(std::vector<double> values, double fraction);
 
-/// Computes the fractions of the area for which the mean minimum goal of the worst parts is largest. This is a linear
-/// programme (Rockafellar and Uryasev 2000) with a row for each part and each goal that may be the minimum.
+/// Computes the fractions of the area for which the mean minimum goal of the worst parts is largest. This mean is the
+/// conditional value at risk. The problem is a linear programme (Rockafellar and Uryasev 2000) with a row for each part
+/// and each goal that may be the minimum.
 /// \param bounds bounds of each fraction
 /// \return nothing if the computation was cancelled or no fractions are allowed
 std::optional<std::vector<double>> best_fractions(const RandomParts& parts, double worst_fraction,

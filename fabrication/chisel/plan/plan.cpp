@@ -24,6 +24,7 @@ bool is_named(const Stage& stage, std::string_view name) {
          (name == "finishing" && stage.name.starts_with(name));
 }
 
+/// Throws an InputError for a name that is neither a stage nor a group of stages of the job.
 [[noreturn]] void refuse_phase(const Plan& plan, Field field, const std::string& name) {
   std::vector<std::string> names;
   for (const Stage& stage : plan.stages) names.push_back(stage.name);
@@ -77,6 +78,7 @@ void check_options(const PlanOptions& options, std::size_t elements, std::size_t
     throw InputError(Field{"from_pass"}, fmt::format("must be 1 to {}, got {}", most_passes, *options.from_pass));
 }
 
+/// Returns the properties of the cutting process: plunging for prisms, micro chiseling for cube corners.
 ProcessFacts facts_of(const Job& job, const Plan& plan) {
   const auto facts = cuts_prisms(job) ? plunging_facts : chiseling_facts;
   return facts(job, plan.stock_mm, plan.elements.size());

@@ -1,6 +1,7 @@
 #pragma once
 
-// Plans a chisel job for a machine: poses, stages, programs and machining time.
+// Plans a chisel job for a machine: poses, stages, programs and machining time. The facets of prisms are plunged, and
+// cube corners are cut by micro chiseling.
 
 #include <cstdint>
 #include <optional>
@@ -26,7 +27,9 @@ struct PlanOptions {
   std::optional<std::int64_t> from_pass;
   std::optional<std::int64_t> stop_every;  ///< number of visits between optional stops
   std::optional<double> split_hours;       ///< maximum run time of a program, unless a single visit takes longer
-  std::string before;  ///< only the stages before this stage or group of stages are planned; empty: no restriction
+  /// Only the stages before this stage or group of stages are planned. Empty: no restriction. Verification sets it
+  /// from the option `next_stage`, to obtain the programs that were run before that stage.
+  std::string before;
 };
 
 /// Machining time in seconds, divided by kind of motion.
@@ -45,11 +48,13 @@ struct Stage {
   std::string name;      ///< "roughing", "finishing-1-facet-1", "layer-3-facet-2", with "-turned" for rotated elements
   std::size_t pose = 0;  ///< index in Plan::poses
   std::uint32_t subroutine = 0;
+  /// True for roughing of prisms and for layers of cube corners. False for finishing cuts and for layers of prisms.
   bool roughs = false;
-  int cut = 0;                   ///< number of this layer or finishing cut, from 1; 0 for roughing in one stage
-  int cuts = 0;                  ///< total number of layers, or of finishing cuts, on each facet
-  double remaining_mm = 0.0;     ///< thickness of the material that remains on the cut facets after this stage
-  std::int64_t cycle_calls = 0;  ///< number of planned visits
+  int cut = 0;                ///< number of this layer or finishing cut, from 1; 0 for roughing in one stage
+  int cuts = 0;               ///< total number of layers, or of finishing cuts, on each facet
+  double remaining_mm = 0.0;  ///< thickness of the material that remains on the cut facets after this stage
+  /// Number of planned visits of elements. A visit consists of one call of the subroutine for each parallel pass.
+  std::int64_t cycle_calls = 0;
   TimeBreakdown time;
 };
 
