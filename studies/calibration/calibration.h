@@ -52,7 +52,7 @@ struct CalibratedQuantity {
 
 struct Calibration {
   MeasuredParts parts;           ///< measurements without outliers
-  fabrication::Machine machine;  ///< calibrated machine: the machine of the job with the estimated values
+  fabrication::Machine machine;  ///< calibrated machine: the machine of the job with the estimated errors
   std::vector<CalibratedQuantity> quantities;
   Eigen::MatrixXd covariance;             ///< covariance matrix, in the order of the quantities
   std::vector<std::string> unobservable;  ///< unobservable combinations, as text

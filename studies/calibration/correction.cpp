@@ -14,6 +14,7 @@ namespace {
 using namespace fabrication;
 using Eigen::Index;
 
+/// Increases a maximum deviation to the absolute value of a deviation if that is larger.
 void take(DeviationPrediction& outlook, FacetQuantity what, double value) {
   double& most = what == FacetQuantity::distance ? outlook.distance_nm : outlook.tilt_arcsec;
   most = std::max(most, std::abs(value));

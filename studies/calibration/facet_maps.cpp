@@ -73,6 +73,7 @@ class DesignSurface {
       if (z_of(*element, f, x_mm, y_mm) > z_of(*element, region.facet, x_mm, y_mm)) region.facet = f;
     return region;
   }
+  /// Returns the height of the design's surface, which is at most 0, the height of the blank's face.
   double z(double x_mm, double y_mm) const {
     const Region r = region(x_mm, y_mm);
     return r.is_face ? 0.0 : std::min(0.0, z_of(r.element, r.facet, x_mm, y_mm));
@@ -168,6 +169,8 @@ class Registration {
                                                       3 * kMinPoints, points_.size()));
   }
 
+  /// Returns the best pose of the map on the part.
+  /// \throw InputError if no pose fits
   RigidMotion best(const FacetMap& map) const {
     std::vector<std::pair<double, RigidMotion>> tried = coarse(map);
     RigidMotion best;
@@ -195,6 +198,7 @@ class Registration {
   double margin_mm() const { return margin_mm_; }
 
  private:
+  /// Returns the best poses of a grid of rotations and positions, each with its median deviation from the design.
   std::vector<std::pair<double, RigidMotion>> coarse(const FacetMap& map) const {
     std::vector<std::pair<double, RigidMotion>> all;
     for (const double turn_deg : kTurnsDeg)
@@ -380,6 +384,7 @@ double pitch_mm(const FacetMap& map, const RigidMotion& part_from_map, const Vec
                          map.heights.y_pixel_um / std::max(std::abs(seen.y()), 1e-6));
 }
 
+/// Adds the distance and both tilts of a facet to the measurements of a map.
 void add_figures(RegisteredMap& result, const Region& region, const RegionFit& fit) {
   const auto add = [&](FacetQuantity what, double value, double uncertainty) {
     Measurement m;

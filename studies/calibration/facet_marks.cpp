@@ -59,6 +59,7 @@ HeightMap laid_out(const FacetResiduals& rest, std::span<const Vec3> left) {
   return laid_out(unmarked, rest.low_mm, rest.high_mm, rest.pitch_mm);
 }
 
+/// Returns the coordinate axis perpendicular to a mark: 0 for x, 1 for y.
 Eigen::Index across(MapAxis along) {
   return along == MapAxis::y ? 0 : 1;
 }
@@ -77,6 +78,7 @@ double periods(const Found<SpectralPeak>& wave) {
   return wave.rest->high_mm[axis] - wave.rest->low_mm[axis];
 }
 
+/// Returns the common wave of a group of facets: mean frequency and root mean square of the amplitudes.
 FacetWave gathered(const std::vector<Found<SpectralPeak>>& waves, double feed_mm_per_min) {
   FacetWave wave;
   wave.is_along_edge = waves.front().thing.axis == MapAxis::x;
@@ -94,6 +96,8 @@ FacetWave gathered(const std::vector<Found<SpectralPeak>>& waves, double feed_mm
   return wave;
 }
 
+/// Returns the common mark of a group of facets: mean position, height and width.
+/// \param rests residuals of all facets, to count the facets whose measured area contains the mark
 FacetMark gathered(const std::vector<Found<Scratch>>& marks, const std::vector<FacetResiduals>& rests) {
   FacetMark mark;
   const MapAxis along = marks.front().thing.along;

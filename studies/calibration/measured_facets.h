@@ -111,7 +111,10 @@ class CutPart {
     }
   };
 
+  /// Returns the facet as the given machine cuts it, displaced by the pose of the part.
   MachinedFacet machined_facet(const FacetId& at, const fabrication::Machine& real, const PartPose& pose) const;
+  /// Returns the value of a quantity for one facet, without the reference facet. depth_nm() and end_nm() return it for
+  /// FacetQuantity::depth and FacetQuantity::cut_end.
   double of_one(const Measurement& measurement, const FacetId& at, const fabrication::Machine& real,
                 const PartPose& pose) const;
   double depth_nm(const FacetId& at, const fabrication::Machine& real, const PartPose& pose) const;

@@ -59,6 +59,7 @@ design::Design test_design(const design::Design& design, double apex_angle_deg, 
   return test;
 }
 
+/// Returns all possible measurements of a part with four test prisms, without values.
 std::vector<Measurement> all_figures(std::size_t part) {
   std::vector<Measurement> figures;
   const auto add = [&](std::size_t element, std::size_t facet, FacetQuantity what, double at) {
@@ -73,6 +74,7 @@ std::vector<Measurement> all_figures(std::size_t part) {
   return figures;
 }
 
+/// Returns the model that has only the chosen rows, which are measurements.
 LinearModel rows_of(const LinearModel& all, const std::vector<Index>& chosen) {
   return {all.setup_jacobian(chosen, Eigen::all), all.pose_jacobian(chosen, Eigen::all), all.residual(chosen)};
 }
@@ -112,7 +114,7 @@ class Chooser {
            });
   }
 
-  /// Takes the measurement that most reduces the uncertainties of the observable quantities. Each uncertainty is
+  /// Chooses the measurement that most reduces the uncertainties of the observable quantities. Each uncertainty is
   /// divided by the uncertainty that the quantity has with all possible measurements.
   Index take() {
     Index best = 0;
@@ -140,6 +142,7 @@ class Chooser {
   std::vector<Index> told_;
 };
 
+/// Sets the expected results of the test cuts for each quantity of the set-up, and the unobservable combinations.
 void tell(TestCuts& cuts, const LinearModel& chosen, Tilt tilt) {
   const compute::LeastSquaresEstimate all = estimate_of(chosen);
   std::vector<compute::LeastSquaresEstimate> without;

@@ -65,6 +65,7 @@ double longest_ramp_s(const Machine& machine) {
   return std::max({ramp_s(machine.x), ramp_s(machine.y), ramp_s(machine.z)});
 }
 
+/// Returns the unknowns for the values of a machine file. Both acceleration factors are 1.
 Unknowns of_machine(const Machine& machine) {
   Unknowns unknowns = Unknowns::Zero();
   unknowns[at(TimeQuantity::settling)] = machine.settling_s.value / kTooUncertain[at(TimeQuantity::settling)];
@@ -72,6 +73,7 @@ Unknowns of_machine(const Machine& machine) {
   return unknowns;
 }
 
+/// Returns the machine with the settling time, ramps and accelerations of the unknowns.
 Machine with_times(Machine machine, const Unknowns& unknowns) {
   machine.settling_s.value = value_of(unknowns, TimeQuantity::settling);
   // The ratios between the ramps of the axes do not change. If the machine file has no jerks, all ramps are equal.
@@ -154,6 +156,7 @@ class Fit {
     return unknowns;
   }
 
+  /// Returns the best local minimum of searches from several starts.
   Unknowns best() const {
     Unknowns found = nearest(of_machine(nominal_));
     for (const double ramp : kFirstRampsS)
@@ -175,6 +178,7 @@ class Fit {
   const Machine& nominal_;
 };
 
+/// Records the calibrated values and their uncertainties in the texts that name the sources of the machine's values.
 void tell_sources(TimeCalibration& result) {
   const auto tell = [&](auto& sourced, TimeQuantity quantity) {
     const CalibratedTime& found = result.quantities[static_cast<std::size_t>(quantity)];
@@ -193,6 +197,7 @@ void tell_sources(TimeCalibration& result) {
     tell(axis->acceleration_deg_per_s2, TimeQuantity::rotary_acceleration);
 }
 
+/// Returns the groups of quantities that the times do not separate.
 std::vector<std::string> not_told_apart(const compute::LeastSquaresEstimate& fitted) {
   const Eigen::MatrixXd combinations = compute::reduced_combinations(fitted.unobservable);
   std::vector<std::string> words;
@@ -207,6 +212,7 @@ std::vector<std::string> not_told_apart(const compute::LeastSquaresEstimate& fit
   return words;
 }
 
+/// Adds a warning for each row that differs from the fit by more than kManyDeviations.
 void warn_of_misses(TimeCalibration& result, const compute::LeastSquaresEstimate& fitted) {
   for (std::size_t k = 0; k < result.residuals.size(); ++k) {
     const auto row = static_cast<Index>(k);

@@ -14,6 +14,7 @@ constexpr double kMinFraction = 1e-12;
 /// Minimum improvement of the merit that counts, relative to 1 + |merit|.
 constexpr double kAsGood = 1e-10;
 
+/// Returns the minimum difference by which a merit must be exceeded to count as an improvement.
 double as_good(double merit) {
   return kAsGood * (1.0 + std::abs(merit));
 }
@@ -49,6 +50,7 @@ compute::LinearProgramme test_plan_of(const std::vector<MixedCell>& cells, const
   return programme;
 }
 
+/// Returns the prices of a mixture from the dual values of the rows of the linear programme.
 MixturePrices prices_of(const std::vector<double>& of_rows, std::size_t goals, std::size_t means) {
   MixturePrices prices;
   for (std::size_t k = 0; k < goals; ++k) prices.goals.push_back(-of_rows[k]);

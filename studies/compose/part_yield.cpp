@@ -21,12 +21,14 @@ struct PartGoal {
   auto operator<=>(const PartGoal&) const = default;
 };
 
+/// Returns the value of a goal of a random part, which is the mean of its zones' values weighted by area.
 double value_of(const std::vector<std::vector<double>>& zones, const std::vector<double>& shares, std::size_t goal) {
   double value = 0.0;
   for (std::size_t z = 0; z < zones.size(); ++z) value += shares[z] * zones[z][goal];
   return value;
 }
 
+/// Returns the index of the minimum goal of a random part.
 std::size_t worst_goal(const std::vector<std::vector<double>>& zones, const std::vector<double>& shares) {
   std::size_t worst = 0;
   double least = std::numeric_limits<double>::infinity();
