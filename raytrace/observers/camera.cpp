@@ -223,14 +223,14 @@ struct CameraTracer::Impl {
 /// Training samples for a PixelGuide, collected during one pass.
 struct CameraTracer::Impl::GuideTraining {
   /// Maximum number of paths that are used as samples.
-  static constexpr std::size_t kMostLooks = std::size_t{1} << 22U;
+  static constexpr std::size_t kMaxSamples = std::size_t{1} << 22U;
 
   explicit GuideTraining(const Impl& h)
       : hidden(h),
         pixels(h.scene.view.columns * h.scene.view.rows),
         guide(h.guide ? *h.guide
                       : PixelGuide(h.cells->period_mm(), h.tiles_along * h.tiles_along,
-                                   std::min(kMostLooks, pixels * kPointsPerPass))),
+                                   std::min(kMaxSamples, pixels * kPointsPerPass))),
         levels(h.levels) {
     if (levels.empty()) levels.resize(pixels);
   }
@@ -252,7 +252,7 @@ struct CameraTracer::Impl::GuideTraining {
 
   const Impl& hidden;
   std::size_t pixels;
-  std::size_t stride = (pixels * kPointsPerPass + kMostLooks - 1) / kMostLooks;  ///< every stride-th pixel is sampled
+  std::size_t stride = (pixels * kPointsPerPass + kMaxSamples - 1) / kMaxSamples;  ///< every stride-th pixel is sampled
   PixelGuide guide;
   std::vector<float> levels;                 ///< see Impl::levels
   std::vector<PixelGuide::Samples> samples;  ///< indexed by block

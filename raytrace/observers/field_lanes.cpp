@@ -15,7 +15,7 @@ using D = hn::ScalableTag<double>;
 using V = hn::Vec<D>;
 
 // Fringes are neglected at directions where the lobe of scattered light is below this fraction of its maximum.
-constexpr double kLeastLobe = 1e-12;
+constexpr double kMinLobe = 1e-12;
 
 HWY_INLINE V splat(double value) {
   return hn::Set(D(), value);
@@ -150,7 +150,7 @@ void add_fringes(const Fringes& fringes, double wave_number, const Block& x, con
     const Plane there = difference(fringes.second_cosines, k);
     const Plane back = product(fringes.rotation.transpose(), there);
     const V height = gaussian(fringes.spread_mm2, there);
-    is_dark = is_dark && hn::AllTrue(D(), hn::Lt(height, splat(kLeastLobe)));
+    is_dark = is_dark && hn::AllTrue(D(), hn::Lt(height, splat(kMinLobe)));
     hn::StoreU(hn::Sub(here.x, back.x), D(), kx.data() + k);
     hn::StoreU(hn::Sub(here.y, back.y), D(), ky.data() + k);
     hn::StoreU(height, D(), lobe.data() + k);

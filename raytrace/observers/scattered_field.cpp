@@ -30,7 +30,7 @@ constexpr double kOneMap = 0.3;
 // Tolerances for equal facet planes: components of the normals, and offsets as a fraction of the correlation length.
 constexpr double kOnePlane = 1e-8, kOneOffset = 1e-3;
 // Minimum determinant of the map from the entrance face to a facet. At smaller values, light is at grazing incidence.
-constexpr double kNoPlaces = 1e-9;
+constexpr double kMinDeterminant = 1e-9;
 // Corners are merged if their distance is less than this fraction of the polygon's size.
 constexpr double kMergedCorners = 1e-9;
 // Ratio of the singular values of Moves::matrix below which the map is treated as a reflection at a line. For an
@@ -161,13 +161,13 @@ struct ScatteredField::Shared {
         if ((a.normal - b.normal).norm() > kOnePlane || std::abs(a.offset_mm - b.offset_mm) > kOneOffset * shortest_mm)
           continue;
         const Eigen::Matrix2d square = b.slope.transpose() * b.slope;
-        if (square.determinant() < kNoPlaces) continue;
+        if (square.determinant() < kMinDeterminant) continue;
         Shared one{&here, &there, Eigen::Matrix2d::Identity(), Vec2::Zero(), {{&a, &b}}, log_means};
         if (&a != &b) {
           const Eigen::Matrix<double, 2, 3> inverse = square.inverse() * b.slope.transpose();
           one.turn = inverse * a.slope;
           one.shift_mm = inverse * (a.constant_mm - b.constant_mm);
-          if (std::abs(one.turn.determinant()) < kNoPlaces) continue;
+          if (std::abs(one.turn.determinant()) < kMinDeterminant) continue;
         }
         const auto same = std::find_if(found.begin(), found.end(), [&](const Shared& s) {
           return s.farthest_from(one.turn, one.shift_mm) < kOneMap * shortest_mm;
@@ -324,11 +324,11 @@ void ScatteredField::add_fringes(const Shared& shared, double copies) {
   // `still` is the area of points per unit area of their displacements, for displacements near 0. Its product with the
   // integral of the Gaussian term is an area.
   const Eigen::Matrix2d dip_mm2 = kDipWidth * kDipWidth * spread_mm2;
-  const double dip_mm2_of_places = still * 2.0 * pi * std::sqrt(dip_mm2.determinant());
-  if (!(dip_mm2_of_places < 0.5 * common_mm2)) return;
+  const double dip_area_mm2 = still * 2.0 * pi * std::sqrt(dip_mm2.determinant());
+  if (!(dip_area_mm2 < 0.5 * common_mm2)) return;
   const Amplitude field = copies * (shared.here->amplitude * coherency_ * shared.there->amplitude.adjoint()).trace() *
                           std::pow(wave_number_ / (2.0 * pi), 2.0);
-  const Amplitude coefficient = strength_mm4 / (common_mm2 - dip_mm2_of_places) * field;
+  const Amplitude coefficient = strength_mm4 / (common_mm2 - dip_area_mm2) * field;
   const PolygonTransform places({common.begin(), common.end()});
   fringes_.push_back({field_lanes::Outline(places),
                       shared.turn,
@@ -338,7 +338,7 @@ void ScatteredField::add_fringes(const Shared& shared, double copies) {
                       {coefficient.real(), coefficient.imag()},
                       spread_mm2,
                       dip_mm2,
-                      dip_mm2_of_places});
+                      dip_area_mm2});
 }
 
 double ScatteredField::lobes_per_cosines(const Vec2& cosines) const {

@@ -30,8 +30,8 @@ constexpr double kFalseAlarm = 0.01;
 constexpr double kMaxOutliers = 0.1;
 /// Assumed standard deviations of the unobservable combinations. They are typical of axes that are set with dial gauges
 /// and of tools that are set under a microscope.
-constexpr double kUntoldArcsec = 50.0;
-constexpr double kUntoldUm = 2.0;
+constexpr double kUnobservableArcsec = 50.0;
+constexpr double kUnobservableUm = 2.0;
 /// Leverage above which a measurement is the only one that determines some unknown, so that no other measurement can
 /// check it.
 constexpr double kUnchecked = 1.0 - 1e-9;
@@ -44,11 +44,12 @@ void check(const MeasuredParts& measured, const std::vector<CutPart>& parts) {
 
 /// Returns the covariance of the observable combinations that is due to the unobservable ones. Unobservable errors
 /// change the measurements by terms of second order: products of two unobservable errors, or of an unobservable and an
-/// observable error. The covariance is the mean over random machines with the assumed deviations kUntoldArcsec and
-/// kUntoldUm.
-Eigen::MatrixXd spread_of_untold(const std::vector<CutPart>& parts, const MeasuredParts& measured,
-                                 const compute::LeastSquaresEstimate& fitted,
-                                 const compute::LeastSquaresEstimate& first, const std::vector<PartPose>& poses) {
+/// observable error. The covariance is the mean over random machines with the assumed deviations kUnobservableArcsec
+/// and kUnobservableUm.
+Eigen::MatrixXd covariance_of_unobservable(const std::vector<CutPart>& parts, const MeasuredParts& measured,
+                                           const compute::LeastSquaresEstimate& fitted,
+                                           const compute::LeastSquaresEstimate& first,
+                                           const std::vector<PartPose>& poses) {
   constexpr int kMachines = 64;
   const auto quantities = setup_quantities(measured.plans.front().machine.tilt);
   const Machine& nominal = measured.plans.front().machine;
@@ -64,7 +65,8 @@ Eigen::MatrixXd spread_of_untold(const std::vector<CutPart>& parts, const Measur
   for (int k = 0; k < kMachines; ++k) {
     VectorXd errors(first.unobservable.rows());
     for (Index q = 0; q < errors.size(); ++q)
-      errors[q] = normal(bits) * (quantities[static_cast<std::size_t>(q)].is_angle() ? kUntoldArcsec : kUntoldUm);
+      errors[q] =
+          normal(bits) * (quantities[static_cast<std::size_t>(q)].is_angle() ? kUnobservableArcsec : kUnobservableUm);
     const VectorXd untold = first.unobservable * (first.unobservable.transpose() * errors);
     VectorXd change = VectorXd::Zero(model.residual.size());
     change.head(now.size()) =
@@ -98,16 +100,16 @@ compute::LeastSquaresEstimate fit(const std::vector<CutPart>& parts, const Measu
     const std::span<const double> amounts(result.value.data(), static_cast<std::size_t>(result.value.size()));
     model = with_pose_priors(
         linear_model(parts, measured.measurements, with_errors(nominal, amounts), measured.map_faces, poses), poses);
-    const Eigen::MatrixXd of_told = model.setup_jacobian * told;
+    const Eigen::MatrixXd of_observable = model.setup_jacobian * told;
     const compute::LeastSquaresEstimate next = compute::estimate(
-        of_told, model.pose_jacobian, model.residual + of_told * before, 2.0 * kMaxObservableUncertainty);
-    left = model.residual - of_told * (next.value - before);
+        of_observable, model.pose_jacobian, model.residual + of_observable * before, 2.0 * kMaxObservableUncertainty);
+    left = model.residual - of_observable * (next.value - before);
     result.value = told * next.value;
     result.covariance = told * next.covariance * told.transpose();
     result.residual = next.residual;
     result.leverage = next.leverage;
     if ((next.value - before).cwiseQuotient(next.covariance.diagonal().cwiseSqrt()).norm() < kLastStep) {
-      result.covariance += spread_of_untold(parts, measured, result, first, poses);
+      result.covariance += covariance_of_unobservable(parts, measured, result, first, poses);
       return result;
     }
   }

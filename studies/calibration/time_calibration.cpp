@@ -198,7 +198,7 @@ void tell_sources(TimeCalibration& result) {
 }
 
 /// Returns the groups of quantities that the times do not separate.
-std::vector<std::string> not_told_apart(const compute::LeastSquaresEstimate& fitted) {
+std::vector<std::string> unseparated_groups(const compute::LeastSquaresEstimate& fitted) {
   const Eigen::MatrixXd combinations = compute::reduced_combinations(fitted.unobservable);
   std::vector<std::string> words;
   for (Index k = 0; k < combinations.cols(); ++k) {
@@ -264,7 +264,7 @@ TimeCalibration calibrate_times(TimedPrograms programs, const Machine& machine) 
     const double deviation = kTooUncertain[k] * std::sqrt(fitted.covariance(at(quantity), at(quantity)));
     told.uncertainty = deviation * std::max(1.0, result.scatter) * (is_bounded(at(quantity)) ? 1.0 : told.value);
   }
-  result.unobservable = not_told_apart(fitted);
+  result.unobservable = unseparated_groups(fitted);
   tell_sources(result);
   warn_of_misses(result, fitted);
   return result;

@@ -27,7 +27,7 @@ struct CellSet {
 
 /// Returns the linear programme of a set of cells. Its variables (columns) are the fractions of the cells and the
 /// minimum goal. It has a constraint (row) for each goal, for each mean, and for the sum of the fractions.
-compute::LinearProgramme test_plan_of(const std::vector<MixedCell>& cells, const CellSet& set,
+compute::LinearProgramme programme_of(const std::vector<MixedCell>& cells, const CellSet& set,
                                       const MixtureRules& rules) {
   compute::LinearProgramme programme;
   for (const std::size_t cell : set.cells)
@@ -85,7 +85,7 @@ void add_up(const std::vector<MixedCell>& cells, const CellSet& set, const std::
 /// Returns the best mixture of a set of cells, without a limit on their number.
 Mixture mixture_of(const std::vector<MixedCell>& cells, const CellSet& set, const MixtureRules& rules,
                    const Cancellation* cancel) {
-  const compute::LinearOptimum optimum = solve(test_plan_of(cells, set, rules), cancel);
+  const compute::LinearOptimum optimum = solve(programme_of(cells, set, rules), cancel);
   Mixture mixture;
   if (optimum.kind == compute::LinearOptimum::Kind::interrupted) {
     mixture.kind = Mixture::Kind::interrupted;

@@ -42,14 +42,14 @@ std::size_t worst_goal(const std::vector<std::vector<double>>& zones, const std:
 
 /// Returns the linear programme of best_fractions(). Its variables (columns) are the fractions of the area, the value
 /// below which a part is among the worst, and the shortfall of each part below this value.
-compute::LinearProgramme yield_programme(const RandomParts& parts, double worst_share, const compute::Bounds& bounds,
+compute::LinearProgramme yield_programme(const RandomParts& parts, double worst_fraction, const compute::Bounds& bounds,
                                          const std::set<PartGoal>& rows) {
   compute::LinearProgramme programme;
   const std::size_t zones = parts.front().size();
   std::vector<compute::LinearProgramme::Term> whole;
   for (std::size_t z = 0; z < zones; ++z) whole.emplace_back(programme.add_column(bounds, 0.0), 1.0);
   const std::size_t threshold = programme.add_column({}, 1.0);
-  const double weight = -1.0 / (worst_share * static_cast<double>(parts.size()));
+  const double weight = -1.0 / (worst_fraction * static_cast<double>(parts.size()));
   const std::size_t first = threshold + 1;
   for (std::size_t part = 0; part < parts.size(); ++part) programme.add_column({.lower = 0.0}, weight);
   programme.add_row({1.0, 1.0}, whole);

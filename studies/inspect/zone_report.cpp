@@ -92,7 +92,7 @@ class LateralShiftSampler {
 }  // namespace
 
 ZonesReport report_zones(const design::Design& design, const design::OpticalModel& model) {
-  const LateralShiftSampler wanderer(design, model);
+  const LateralShiftSampler sampler(design, model);
   ZonesReport report;
   for (const geometry::ZoneElements& zone : model.part.zones) report.zones.push_back({zone, std::nullopt});
   if (design.entrance) return report;  // the paths are computed only behind a plane entrance face
@@ -101,7 +101,7 @@ ZonesReport report_zones(const design::Design& design, const design::OpticalMode
     double changed = 0.0;
     const int azimuths = incidence_deg == 0.0 ? 1 : kAzimuths;
     for (int a = 0; a < azimuths; ++a) {
-      const std::vector<LateralShiftSampler::Way> ways = wanderer.follow(incidence_deg, 360.0 * a / azimuths);
+      const std::vector<LateralShiftSampler::Way> ways = sampler.follow(incidence_deg, 360.0 * a / azimuths);
       for (std::size_t z = 0; z < ways.size(); ++z) {
         power += ways[z].power;
         changed += ways[z].power_that_changes;

@@ -137,7 +137,9 @@ TEST(OptionNeeds, AreCheckedForEveryOptionOfEveryCommand) {
         // The message may name any option that has the violated requirement, not only the tested one.
         const bool is_refused = std::ranges::any_of(command["arguments"], [&](const Json& other) {
           const bool has_need = other.contains("needs") && std::ranges::count(other["needs"], violated) > 0;
-          return has_need && outcome.err.starts_with("retrace: " + name_of(other) + ": needs ");
+          const std::string begin = "retrace: " + name_of(other) + ": ";
+          return has_need && (outcome.err.starts_with(begin + "needs ") ||
+                              outcome.err.starts_with(begin + "not allowed together with "));
         });
         EXPECT_EQ(is_refused, !violated.empty()) << outcome.err;
         EXPECT_EQ(folder.names(), std::vector<std::string>{}) << "something was written";

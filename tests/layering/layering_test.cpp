@@ -137,7 +137,7 @@ TEST_F(SyntheticTree, UpwardIncludesAreNamedWithFileAndLine) {
 TEST_F(SyntheticTree, RoomsSeeOnlyWhatTheyMay) {
   add("design/reader.cpp", "#include \"studies/rre/rre.h\"\n");
   add("studies/inspect/inspect.cpp", "#include \"studies/rre/rre.h\"\n");
-  add("studies/novel/novel.cpp", "#include \"design/design.h\"\n");
+  add("studies/novel/novel.cpp", "#include \"studies/rre/rre.h\"\n");
   EXPECT_EQ(found(), (Lines{"design/reader.cpp:1: design/ may not include studies/rre/rre.h",
                             "studies/inspect/inspect.cpp:1: studies/inspect/ may not include studies/rre/rre.h",
                             "studies/novel/novel.cpp:1: room studies/novel/ has no place in the order of rooms"}));

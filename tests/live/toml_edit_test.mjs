@@ -20,9 +20,9 @@ assert.equal(edited(current, { "substrate.incline_deg": 7 }), current.replace("5
 assert.equal(edited("# [base] and front.mesh are former names\n" + current, {}), "# [base] and front.mesh are former names\n" + current);
 
 // The former names of designs are those in the rows and tables of the format.
-const rows = readdirSync(join(SOURCE, "studies", "design", "io"))
+const rows = readdirSync(join(SOURCE, "design", "io"))
   .filter((name) => /_(rows|format)\.cpp$/.test(name))
-  .map((name) => textOf("studies", "design", "io", name))
+  .map((name) => textOf("design", "io", name))
   .concat(textOf("geometry", "io", "substrate_rows.cpp"))
   .join("\n");
 const keys = [...rows.matchAll(/renamed\(\s*"(\w+)"/g)].map(([, name]) => name);

@@ -413,7 +413,7 @@ TEST(Photometry, WhatCannotPassIsToldWithTheBestThatWasTried) {
   const PhotometryResult result = run(design, request);
   ASSERT_TRUE(result.change);
   EXPECT_EQ(result.change->verdict, Verdict::fail);
-  EXPECT_NE(photometry_table(result).find("not enough"), std::string::npos);
+  EXPECT_NE(photometry_table(result).find("not sufficient"), std::string::npos);
 }
 
 // The manual defines the default cut-off. It is 1e-5 of the power that enters one element. For resampled beams of a

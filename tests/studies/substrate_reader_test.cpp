@@ -102,7 +102,7 @@ TEST(SubstrateReader, SaysWhatIsWrongAndWhere) {
 TEST(SubstrateReader, RefusesWhatASubstrateCannotHave) {
   const std::string balls =
       "[element]\nkind = \"ball\"\ndiameter_mm = 1\n[substrate]\nkind = \"plane\"\nincline_deg = 5\n";
-  EXPECT_EQ(complaint(balls).substr(0, 12), "d.toml:4: ba") << complaint(balls);
+  EXPECT_EQ(complaint(balls).substr(0, 12), "d.toml:4: su") << complaint(balls);
   EXPECT_EQ(complaint(balls), "d.toml:4: substrate");
   const std::string rounded = design(kPrisms, "kind = \"sphere\"\nradius_mm = 30") + "[surface]\nrim_radius_um = 20\n";
   EXPECT_EQ(complaint(rounded), "d.toml:10: substrate.radius_mm");

@@ -73,9 +73,9 @@ void check_options(const PlanOptions& options, std::size_t elements, std::size_t
   const auto most = static_cast<std::int64_t>(elements) - 1;
   if (options.from_element && (*options.from_element < 0 || *options.from_element > most))
     throw InputError(Field{"from_element"}, fmt::format("must be 0 to {}, got {}", most, *options.from_element));
-  const auto most_passes = static_cast<std::int64_t>(passes);
-  if (options.from_pass && (*options.from_pass < 1 || *options.from_pass > most_passes))
-    throw InputError(Field{"from_pass"}, fmt::format("must be 1 to {}, got {}", most_passes, *options.from_pass));
+  const auto max_passes = static_cast<std::int64_t>(passes);
+  if (options.from_pass && (*options.from_pass < 1 || *options.from_pass > max_passes))
+    throw InputError(Field{"from_pass"}, fmt::format("must be 1 to {}, got {}", max_passes, *options.from_pass));
 }
 
 /// Returns the properties of the cutting process: plunging for prisms, micro chiseling for cube corners.

@@ -43,7 +43,7 @@ std::string light_text(const Inspection& i) {
 }
 
 nlohmann::ordered_json substrate_json(const SubstrateReport& substrate) {
-  const auto& [area_mm2, lowest_mm, highest_mm, steepest_deg, least_radius_mm] = substrate.measures;
+  const auto& [area_mm2, lowest_mm, highest_mm, steepest_deg, min_radius_mm] = substrate.measures;
   nlohmann::ordered_json json = {{"area_mm2", area_mm2},
                                  {"height_range_mm", highest_mm - lowest_mm},
                                  {"steepest_deg", steepest_deg},
@@ -51,7 +51,7 @@ nlohmann::ordered_json substrate_json(const SubstrateReport& substrate) {
                                  {"highest_step_mm", substrate.walls.highest_mm},
                                  {"pocket_walls_mm2", substrate.walls.area_mm2},
                                  {"pocket_projected_mm2", substrate.walls.projected_mm2}};
-  if (std::isfinite(least_radius_mm)) json["min_radius_mm"] = least_radius_mm;
+  if (std::isfinite(min_radius_mm)) json["min_radius_mm"] = min_radius_mm;
   return json;
 }
 
@@ -99,13 +99,14 @@ nlohmann::ordered_json coating_json(const CoatingReport& face) {
 
 void add_entrance_state(const Inspection& i, nlohmann::ordered_json& json) {
   if (!i.entrance_state) return;
-  const auto& [clean_share, reflectance, transmittance, absorptance, specular, haze_share, dust] = *i.entrance_state;
-  json["entrance"] = {{"clean_fraction", clean_share},
+  const auto& [clean_fraction, reflectance, transmittance, absorptance, specular, haze_fraction, dust] =
+      *i.entrance_state;
+  json["entrance"] = {{"clean_fraction", clean_fraction},
                       {"reflectance", reflectance},
                       {"transmittance", transmittance},
                       {"absorptance", absorptance},
                       {"specular_transmittance", specular}};
-  if (haze_share > 0.0) json["entrance"]["haze_fraction"] = haze_share;
+  if (haze_fraction > 0.0) json["entrance"]["haze_fraction"] = haze_fraction;
   if (i.design.surface.entrance.dust_coverage > 0.0) json["entrance"]["dust_cd_per_lx_m2"] = dust;
 }
 
@@ -200,8 +201,8 @@ nlohmann::ordered_json wet_back_json(const Inspection& i) {
 
 std::string substrate_text(const Inspection& i) {
   if (!i.substrate) return {};
-  const auto& [area_mm2, lowest_mm, highest_mm, steepest_deg, least_radius_mm] = i.substrate->measures;
-  const std::string radius = std::isfinite(least_radius_mm) ? fixed(least_radius_mm, 4) + " mm" : "plane";
+  const auto& [area_mm2, lowest_mm, highest_mm, steepest_deg, min_radius_mm] = i.substrate->measures;
+  const std::string radius = std::isfinite(min_radius_mm) ? fixed(min_radius_mm, 4) + " mm" : "plane";
   return fmt::format("  substrate           {} mm2, {} mm high, slopes up to {} degrees\n", fixed(area_mm2, 4),
                      fixed(highest_mm - lowest_mm, 4), fixed_visible(steepest_deg, 2)) +
          fmt::format("  minimum radius      {}; an element is {} mm wide\n", radius,
@@ -253,13 +254,13 @@ std::string zones_text(const Inspection& i) {
     std::string changes;
     for (const design::ZoneChange& change : i.design.zoned()->changes[k]) changes += "; " + change.text;
     const double turn_deg = i.design.zoned()->spec.zones[k].rotation_deg;
-    std::string wander;
+    std::string shift;
     if (zone.lateral_shift_mm)
-      wander = fmt::format(", mean lateral shift of the light {} mm", fixed(*zone.lateral_shift_mm, 4));
+      shift = fmt::format(", mean lateral shift of the light {} mm", fixed(*zone.lateral_shift_mm, 4));
     text += fmt::format(
         "  {:<20}{} %, {} full elements, {} cut{}{}{}\n", fmt::format("zone {}", k + 1),
         fixed(100.0 * zone.elements.area_mm2 / i.entrance_area_mm2, 3), zone.elements.full, zone.elements.partial,
-        wander, turn_deg != 0.0 ? fmt::format("; rotated by {} degrees", shortest(turn_deg)) : "", printable(changes));
+        shift, turn_deg != 0.0 ? fmt::format("; rotated by {} degrees", shortest(turn_deg)) : "", printable(changes));
   }
   for (const ZoneCrossing& crossing : i.zones->crossings)
     text += fmt::format("  {:<20}{} % of the light that is returned at {} degrees of incidence crosses two zones\n", "",

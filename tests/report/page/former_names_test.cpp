@@ -155,7 +155,9 @@ TEST(FormerNames, AreThoseOfTheTableOfTheProject) {
   using Name = std::tuple<std::string, std::string, std::string>;
   std::set<Name> expected;
   for (const Json& entry : table)
-    if (entry.at("kind") == "document") expected.insert({entry.at("format"), entry.at("former"), entry.at("current")});
+    if (entry.at("kind") == "document")
+      expected.emplace(entry.at("format").get<std::string>(), entry.at("former").get<std::string>(),
+                       entry.at("current").get<std::string>());
   std::set<Name> names;
   for (const FormerName& name : former_names())
     if (!name.kind.empty()) names.insert({std::string(name.kind), std::string(name.former), std::string(name.current)});

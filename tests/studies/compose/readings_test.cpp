@@ -84,7 +84,7 @@ TEST(Readings, TellWhatTheyAreOfAndWhatTheLimitIs) {
       reflector("0", photometry("r", "points = \"each_reading\"\nrotation_deg = [-5, 0]\n") +
                          "[[quantity]]\nkind = \"rre\"\nover_directions = \"each\"\nincidence_deg = [0, 20]\n"),
       test::kStudies + "study.toml");
-  EXPECT_EQ(study.quantities[0]->label(), "20' V 5 H 0, turned -5");
+  EXPECT_EQ(study.quantities[0]->label(), "20' V 5 H 0, rotated -5");
   EXPECT_EQ(study.quantities[3]->label(), "20' V -5 H 0");
   EXPECT_EQ(study.quantities[0]->limit()->value, 300.0);
   EXPECT_EQ(study.quantities[0]->limit()->unit, "mcd/lx");

@@ -145,7 +145,7 @@ TEST_F(Rays, WrongInputIsRefusedAndNothingIsWritten) {
   folder_.write("image.tm25ray", "\x89PNG");
   folder_.write("wrong.csv", "x_mm,y_mm,z_mm,dx,dy,dz,power_w\n1,1,1,0,0,-1,1\n1,1,1,0,0,-1,-2\n");
   expect_refused(folder_,
-                 {{{}, "rays"},
+                 {{{}, "--source"},
                   {{"--source=none.csv"}, "none.csv"},
                   {{"--source=."}, "--source"},
                   {{"--source=lamp.ray"}, "--source"},
