@@ -11,7 +11,7 @@ using studies::closed_forms::edge_cosines;
 using studies::closed_forms::hexagonal_fraction;
 using studies::closed_forms::honeycomb_rre;
 using studies::closed_forms::kDeg;
-using studies::closed_forms::triangular_rre;
 using studies::closed_forms::triangular_fraction;
+using studies::closed_forms::triangular_rre;
 
 }  // namespace retrace::testing

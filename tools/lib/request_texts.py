@@ -79,6 +79,11 @@ def with_comments(header: str, request: str, fields: list[dict]) -> str:
     return header[: found.start(1)] + "\n".join(lines) + "\n" + header[found.end(1) :]
 
 
+def any_of(words: list[str]) -> str:
+    """Returns the words as a list in a sentence: "auto, exact or montecarlo"."""
+    return " or ".join(filter(None, [", ".join(words[:-1]), *words[-1:]]))
+
+
 def needs_text(field: dict, fields: list[dict]) -> str:
     """Returns the conditions of a field as sentences: "Not with `--lamp`."."""
     options = {other["name"]: other["option"] for other in fields if "option" in other}
@@ -93,7 +98,7 @@ def needs_text(field: dict, fields: list[dict]) -> str:
         else:
             parts = []
             for name, one in zip(names, need):
-                words = " or ".join(one.get("one_of", []))
+                words = any_of(one.get("one_of", []))
                 parts.append(f"without {name}" if one.get("is") == "absent" else f"with {name} {words}".strip())
             sentences.append(f"Only {', or '.join(parts)}.")
     return " ".join(sentences)
