@@ -22,17 +22,17 @@ title = "Right triangular prisms in brick rows"
 
 [element]
 kind = "rtp"                      # right triangular prism
-base_mm = 0.5                     # across the roof edge (x)
-width_mm = 0.5                    # along the roof edge (y)
+base_mm = 0.5                     # length across the roof edge (x)
+width_mm = 0.5                    # length along the roof edge (y)
 # apex_angle_deg = 90             # included angle of the two facets, 60 to 120
 
 [array]
 arrangement = "offset"            # single | aligned (default) | offset (brick rows) | checker (base = width)
 shifted_rows = "odd"              # offset only: "even" (default) shifts rows 2, 4, ...; "odd" rows 1, 3, ...
-# overlap_percent = 50            # offset only: by how much of the base rows are shifted
-x_length_mm = 10                  # not for "single" and extent = "infinite"
+# overlap_percent = 50            # offset only: shift of the rows, in percent of the base
+x_length_mm = 10                  # length of the part along x; not for "single" or extent = "infinite"
 y_length_mm = 10
-# x_gap_mm = 0                    # flat land between elements
+# x_gap_mm = 0                    # width of the flat land between elements, along x
 # y_gap_mm = 0
 )";
 
@@ -44,11 +44,11 @@ title = "Hexagonal cube corners in a honeycomb"
 
 [element]
 kind = "hexagonal_icc"            # inverted cube corner, hexagonal aperture
-aperture_mm = 1.632993161855452   # circle round the hexagon, 2 a sqrt(2/3); here the cube's edge a is 1 mm
+aperture_mm = 1.632993161855452   # diameter of the circumscribed circle: 2 a sqrt(2/3), for a cube edge a of 1 mm
 
 [array]
 arrangement = "honeycomb"         # honeycomb (default) | single
-x_length_mm = 10                  # not for "single" and extent = "infinite"
+x_length_mm = 10                  # length of the part along x; not for "single" or extent = "infinite"
 y_length_mm = 10
 )";
 
@@ -60,69 +60,69 @@ title = "Triangular cube corners"
 
 [element]
 kind = "triangular_icc"           # inverted cube corner, triangular aperture
-aperture_mm = 1.632993161855452   # circle round the triangle, whose side is a sqrt(2); here the cube's edge a is 1 mm
+aperture_mm = 1.632993161855452   # diameter of the circumscribed circle: 2 a sqrt(2/3), for a cube edge a of 1 mm
 
 [array]
 arrangement = "triangular"        # triangular (default) | single
-x_length_mm = 10                  # not for "single" and extent = "infinite"
+x_length_mm = 10                  # length of the part along x; not for "single" or extent = "infinite"
 y_length_mm = 10
 )";
 
-constexpr std::string_view kCommonTail = R"(# x_offset_mm = 0                 # flat margin kept free on both borders
+constexpr std::string_view kCommonTail = R"(# x_offset_mm = 0                 # flat margin at both ends in x
 # y_offset_mm = 0
-# extent = "finite"               # "infinite" is one periodic cell and takes no lengths
-# partial_elements = "cut"        # what the border leaves of an element; "omit" leaves flat back face there
+# extent = "finite"               # "infinite" is one periodic cell, without x_length_mm and y_length_mm
+# partial_elements = "cut"        # elements are cut at the border; "omit" replaces them by flat back
 
 [body]
-thickness_mm = 2.0                # plate between the entrance face and the rims of the elements
-material = "PMMA"                 # `retrace list materials` shows what there is
-# refractive_index = 1.4917       # wins over the material
-# absorption_per_mm = 0           # Napierian, for power; wins over the material
+thickness_mm = 2.0                # thickness of the plate between the entrance face and the rims
+material = "PMMA"                 # `retrace list materials` shows the available materials
+# refractive_index = 1.4917       # takes precedence over the index of the material
+# absorption_per_mm = 0           # Napierian, for power; takes precedence over the material
 
 [light]
 wavelength_nm = 587.56            # or spectrum = "A", "D65", "lamp.csv", [[wavelength_nm, power], ...]
 # polarisation = "unpolarised"    # "linear" (polarisation_angle_deg), "right_circular", "left_circular", [i, q, u, v]
 
 [detector]
-acceptance_half_angle_deg = 0.5   # in air; a list such as [0.2, 0.5, 1] gives RRE against acceptance
+acceptance_half_angle_deg = 0.5   # in air; a list such as [0.2, 0.5, 1] gives RRE for each half-angle
 
 [surface]
-# roughness_sq_nm = 0             # of the retro facets; needs correlation_length_um
-# root_radius_um = 0              # rounded roots, where facets of one element meet; or root_chamfer_um
-# rim_radius_um = 0               # rounded rims, where elements meet; or rim_chamfer_um
-# dihedral_error_arcmin = 0       # opens the angle between facets; cube corners: one value or three
-# facet_tilt_arcmin = 0           # or a list with one value for each facet
+# roughness_sq_nm = 0             # RMS roughness of the retro facets; requires correlation_length_um
+# root_radius_um = 0              # radius of the roots, where facets of one element meet; or root_chamfer_um
+# rim_radius_um = 0               # radius of the rims, where elements meet; or rim_chamfer_um
+# dihedral_error_arcmin = 0       # added to the angle between facets; cube corners: one value or three
+# facet_tilt_arcmin = 0           # list with one value for each facet; positive tilts open the element
 
-# [idealisation]                  # for checks against theory
-# facets = "real"                 # "mirror": facets reflect everything at every angle
+# [idealisation]                  # for comparison with theory
+# facets = "real"                 # "mirror": facets reflect all light at every angle
 # entrance = "real"               # "lossless": the entrance face refracts with T = 1
 )";
 
 constexpr std::string_view kRoundZoneLens =
-    R"(# A round lens of zones for millimetre waves, turned on a lathe. Lengths in mm.
+    R"(# A round zone lens for millimetre waves, turned on a lathe. Lengths in mm.
 # Lines that begin with "#" show defaults and alternatives.
 schema = "retrace.planed_part/1"
 title = "Round zone lens, 60 GHz"
 
 [element]
 kind = "round_zone_lens"
-focal_length_mm = 200             # from the middle of the stepped face
+focal_length_mm = 200             # distance of the focus from the centre of the stepped face
 wavelength_mm = 5                 # in air
 refractive_index = 1.52           # polyethylene
 width_mm = 180                    # diameter
 
 [tolerance]
-form_mm = 0.05                    # distance from what the tool's nose can leave of the profile
+form_mm = 0.05                    # form tolerance: maximum distance from the surface that the nose can produce
 
 [lathe]                           # X is the radius
 feed_mm_per_min = 200
-spindle_rpm = 800                 # whole, 1 to 99999
+spindle_rpm = 800                 # a whole number, 1 to 99999
 spindle_direction = "clockwise"   # M3; or "counterclockwise", M4
-# depth_of_cut_mm = 1             # of a pass
-# clear_mm = 2                    # height over the blank of moves beside the cut
-# nose_radius_mm = 0              # of the tool
-# spindle_start = "M103"          # for --dialect pmac, a3200 and automation1, which have no spindle words of their own:
-# spindle_stop = "M105"           # the lines that start the spindle at that speed and stop it, as your control wants them
+# depth_of_cut_mm = 1             # maximum depth of cut of a pass
+# clear_mm = 2                    # height above the blank of moves without cutting
+# nose_radius_mm = 0              # radius of the tool's nose
+# spindle_start = "M103"          # line that starts the spindle at this speed; for --dialect pmac, a3200, automation1
+# spindle_stop = "M105"           # line that stops the spindle; other dialects have words for the spindle
 )";
 
 }  // namespace

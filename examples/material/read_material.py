@@ -1,4 +1,4 @@
-"""Reads a table that `retrace export DESIGN material.json` writes (docs/theory/appearance.md), without packages."""
+"""Reads a table that `retrace export DESIGN material.json` writes (docs/theory/appearance.md). Requires no packages."""
 import csv, json
 from math import atan2, degrees, hypot
 from pathlib import Path

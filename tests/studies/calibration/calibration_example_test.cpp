@@ -146,9 +146,10 @@ void measure(Example& example, const design::Design& design, std::mt19937& bits)
                      {5e-3 * normal(bits), 5e-3 * normal(bits), 0.0}});
   }
   example.measurements =
-      "# Made, not measured: the programs of the test cuts were carried out on machine \"ideal\" with these errors, um "
-      "and\n"
-      "# arcsec, each part was laid askew by some 20 arcsec and 5 um, and figures got noise of their uncertainty:\n" +
+      "# Simulated, not measured: the programs of the test cuts were executed on machine \"ideal\" with the errors "
+      "below (um and\n"
+      "# arcsec). Each part was displaced by some 5 um and rotated by some 20 arcsec. Values have noise of their "
+      "uncertainty:\n" +
       told(hidden());
   const std::string table = test_cuts_csv(cuts);
   std::istringstream rows(table);
@@ -185,10 +186,10 @@ void look(Example& example, const design::Design& design, std::mt19937& bits) {
                             bits, 150);
   const double lowest = *std::ranges::min_element(map.heights.heights_nm);
   example.map = fmt::format(
-      "# Made, not measured: the part of part.toml as its programs for the calibrated machine leave it on the machine "
+      "# Simulated, not measured: the part of part.toml, cut by its programs for the calibrated machine on the machine "
       "of\n"
-      "# machine_as_it_is.toml, seen askew with 5 nm of noise, by an edge that is chipped {} um from its middle, {} nm "
-      "deep.\n"
+      "# machine_as_it_is.toml. The map is tilted, with 5 nm of noise. The edge has a chip {} um from its centre, {} "
+      "nm deep.\n"
       "# pixel_um = {}\n# height_unit = nm\n",
       shortest(kChipUm), shortest(kChipDepthNm), shortest(map.heights.x_pixel_um));
   for (std::size_t row = 0; row < map.heights.rows; ++row)
