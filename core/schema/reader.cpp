@@ -548,10 +548,10 @@ std::vector<TomlRename> former_names(const Format& format) {
   std::vector<TomlRename> names;
   add_former_names(format.root, "", names);
   // The rows of one key have the same former name, so the list may contain equal entries, which are next to each other.
-  const auto repeated = std::ranges::unique(names, [](const TomlRename& a, const TomlRename& b) {
+  const auto is_same = [](const TomlRename& a, const TomlRename& b) {
     return a.table == b.table && a.former == b.former && a.key == b.key;
-  });
-  names.erase(repeated.begin(), repeated.end());
+  };
+  names.erase(std::unique(names.begin(), names.end(), is_same), names.end());
   return names;
 }
 

@@ -3,10 +3,10 @@
 #include "design/entrance_of_design.h"
 #include "live/engine/stand_ins/absent.h"
 
-namespace retrace::studies {
+namespace retrace::design {
 
 geometry::Entrance entrance_of_design(const Design&, const geometry::Part&) {
   live::fail_as_absent("no access to other files than the design");
 }
 
-}  // namespace retrace::studies
+}  // namespace retrace::design

@@ -5,10 +5,10 @@
 
 namespace retrace::surface_models {
 
-struct RealFft::Hidden {};
+struct RealFft::Impl {};
 
-std::size_t fast_length(std::size_t least) {
-  return least;
+std::size_t fast_length(std::size_t min_length) {
+  return min_length;
 }
 
 RealFft::RealFft(std::size_t rows, std::size_t columns) : rows_(rows), columns_(columns) {

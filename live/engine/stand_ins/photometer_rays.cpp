@@ -5,7 +5,7 @@
 namespace retrace::studies {
 
 bool Photometer::measure_by_rays(const std::vector<PhotometerSetting>&, Progress*, const Cancellation*,
-                                 std::vector<std::vector<Piece>>&) const {
+                                 std::vector<std::vector<WavelengthReading>>&) const {
   live::fail_as_absent("no Monte Carlo");
 }
 
