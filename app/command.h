@@ -20,7 +20,7 @@ namespace retrace::app {
 /// Options that all commands have.
 struct CommonOptions {
   std::string json;  ///< file for the JSON document, or "-" for standard output; if empty, no document is written
-  std::string out;   ///< output folder, or output file of some commands; if empty, no files are written
+  std::string out;   ///< output folder or, for some commands, output file; if empty, no files are written
   std::optional<std::uint32_t> threads;
   std::optional<double> memory_gib;  ///< memory budget of beams and elements in GiB; empty: 1 GiB
   std::uint32_t seed = 1;
@@ -61,8 +61,8 @@ struct Traits {
   /// Extension of allowed files. "" allows any file, and "/" allows folders. No value means that the argument is not a
   /// file.
   std::optional<std::string> files = {};
-  std::uint64_t min = 0;                       ///< minimum of a whole number
-  std::uint64_t max = std::uint64_t{1} << 36;  ///< maximum of a whole number
+  std::uint64_t min = 0;                       ///< minimum value of an argument that is a whole number
+  std::uint64_t max = std::uint64_t{1} << 36;  ///< maximum value of an argument that is a whole number
   /// True if the argument must be given. A positional argument can also be required by the type of its target variable.
   bool required = false;
   std::string excludes = {};     ///< name of an option that cannot be given together with this option

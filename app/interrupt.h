@@ -32,7 +32,7 @@ class OrderlyInterrupt {
   /// \param work computation; its parameter is the request to stop
   void run(std::optional<unsigned> threads, const std::function<void(const Cancellation*)>& work) const;
   /// Runs a computation like the overload above and shows a progress bar.
-  /// \param common options of the command, from which the number of threads and --quiet are used
+  /// \param common options of the command; only the number of threads and --quiet are used
   /// \param text texts of the progress bar
   /// \param work computation; its parameters are the progress bar and the request to stop
   void run(const CommonOptions& common, const RunText& text,

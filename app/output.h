@@ -60,7 +60,7 @@ class ResultFiles {
   /// Adds a file in the output folder that this class checks but does not write. The caller writes it.
   /// \return path of the file; empty if there is no output folder
   std::filesystem::path reserve(const std::string& name);
-  /// Adds the file that an option names. Does nothing if `file` is empty.
+  /// Adds an output file whose name is given by an option. Does nothing if `file` is empty.
   void add_named(const std::string& option, const std::filesystem::path& file, Content content);
 
   /// Checks that no output file is also an input file or another output file. Files are compared after links are
@@ -133,7 +133,7 @@ class TextFiles {
 ExitCode write_text(const CommonOptions& common, std::string_view schema, nlohmann::ordered_json content,
                     const std::string& text);
 
-/// Writes one line to standard error. Control characters are printed as escapes. Errors of writing are ignored.
+/// Writes one line to standard error. Control characters are printed as escapes. Write errors are ignored.
 void print_to_stderr(std::string_view text);
 
 /// Writes warnings to standard error, one line each. Does nothing if --quiet is given.

@@ -110,9 +110,9 @@ Condition condition_of(const requests::Request& request, const schema::Condition
   return {Condition::Kind::value, option, words_of_list(condition.words)};
 }
 
-/// Returns the conditions under which an option is allowed. If options such as "--camera" select the request, one of
-/// the requests that have this option must be selected. If all fields of the option have the same conditions, these
-/// conditions must also hold.
+/// Returns the conditions under which an option is allowed. If options such as "--camera" select the request of the
+/// command, a request to which `option` belongs must be selected. The conditions of its fields are added only if they
+/// are the same for all fields.
 std::vector<Need> needs_of(const SharedOption& option) {
   std::vector<Need> needs;
   Words modes;

@@ -56,8 +56,8 @@ void remove_if_abandoned(const fs::path& file) {
   ::close(descriptor);
 }
 
-/// Removes temporary files from the folder of `target` that earlier processes left behind. Such a process was killed
-/// while it wrote `target`.
+/// Removes the temporary files that earlier processes left in the folder of `target` because they were killed while
+/// writing `target`.
 void remove_abandoned(const fs::path& target) {
   const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
   const std::string prefix = temporary_prefix(target);
@@ -256,8 +256,8 @@ void write_file_atomically(const fs::path& path, std::string_view content) {
   file.move_to(target);
 }
 
-/// Implementation of GrowingFile. Collects appended bytes in a buffer, because many calls of append() have only few
-/// bytes.
+/// Implementation of AtomicFileWriter. Appended bytes are collected in a buffer, because many calls of append() add
+/// only a few bytes.
 class AtomicFileWriter::Impl {
  public:
   explicit Impl(fs::path target) : target_(std::move(target)), file_(target_) {}

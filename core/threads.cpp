@@ -41,7 +41,8 @@ struct Loop {
   std::atomic<unsigned> handed_back{0};
 };
 
-/// Marks the execution of a part of a loop by one thread. The destructor marks its end, also if the part throws.
+/// Marks the execution of a part of a loop by one thread. The destructor marks the end of the execution, even if the
+/// part throws an exception.
 class Piece {
  public:
   explicit Piece(Loop& loop) : loop_(loop) { static_cast<void>(loop_.handed_out.load(std::memory_order_acquire)); }

@@ -29,7 +29,8 @@ struct TomlItem {
 
 /// Name that a key, a table or a word of a file format had in former versions of the program.
 struct TomlRename {
-  std::string table;    ///< path of the table that contains the key or table, without indices; empty for the root
+  /// Path of the table that contains the key or table, in current names and without indices; empty for the root.
+  std::string table;
   std::string former;   ///< former name of the key or table, or former word
   std::string current;  ///< name or word that replaces it
   bool is_word = false;
@@ -147,8 +148,8 @@ std::optional<std::string_view> unset_key(std::string_view override_text);
 /// \param max_bytes maximum length of the text in bytes
 /// \param overrides texts of the form KEY=VALUE, which set a key, or KEY=, which remove a key. Messages about an
 /// override quote the override instead of the name of the file.
-/// \param names former names, which are replaced in the text and in the overrides. The list is applied in its order,
-/// so that a table comes before the keys that it contains.
+/// \param names former names, which are replaced by current names in the text and in the overrides. They are replaced
+/// in the order of the list. A renamed table must therefore precede the renamed keys that it contains.
 /// \throw InputError if the text is not TOML, is longer than `max_bytes`, or has keys that nest too deeply
 /// \throw InputError if an override is neither KEY=VALUE nor KEY=
 /// \throw InputError if a table contains both a name and its former name

@@ -256,13 +256,13 @@ struct ThickCoatingLayer {
 };
 
 /// Contamination and damage of the entrance face. Coverages are fractions of its area; haze is a fraction of the light.
+/// If a coverage or `haze` is above 0, the optional members that describe it are set. Only `scratch_azimuth_deg` may be
+/// empty in this case.
 struct EntranceState {
   std::vector<ThickCoatingLayer> layers;  ///< outside of the coating, ordered from the body outwards
   double film_coverage = 0.0;
   double water_index = 1.333;
   double drop_coverage = 0.0;
-  /// Contact angle of the drops. Each optional member, except the azimuth of the scratches, is set if the coverage to
-  /// which it belongs (or `haze`) is above 0.
   std::optional<double> drop_contact_angle_deg;
   double dust_coverage = 0.0;
   std::optional<double> dust_albedo;
@@ -328,7 +328,7 @@ struct Design {
   /// Document of the design file. Null if the design was not read from a file.
   std::shared_ptr<const schema::Document> document;
 
-  /// Returns the paths, from the working directory, of all files whose names are values of keys of the design.
+  /// Returns the paths of all files to which keys of the design refer, relative to the working directory.
   std::vector<std::filesystem::path> files() const;
   /// Returns a warning for each key of the design file that has no effect because of another key.
   Warnings warnings() const;
@@ -339,8 +339,8 @@ struct Design {
   InputLocation where_texture() const;
   /// Returns the position of the key that determines the form of the facets.
   InputLocation where_form() const;
-  /// Returns the position of the key because of which the facets are not smooth planes. It is the key of the texture,
-  /// or the key of the form if the facets are smooth.
+  /// Returns the position of the key that makes the facets differ from smooth planes. This is the key of the texture
+  /// or, if the facets are smooth, the key of the form.
   InputLocation where_facets() const { return surface.is_smooth() ? where_form() : where_texture(); }
   std::string_view entrance_key() const;
   /// Sets the position that messages about a key report.
@@ -365,7 +365,7 @@ struct Design {
 
   /// Returns the name of the design in messages.
   std::string source_name() const { return source == "-" ? "standard input" : source; }
-  /// Returns the position of the key because of which the entrance face scatters light.
+  /// Returns the position of the key that makes the entrance face scatter light.
   /// \pre surface.entrance.scatters()
   InputLocation where_entrance_scatters() const;
   /// Returns true if the retro facets reflect by total internal reflection, that is, without mirror coating.

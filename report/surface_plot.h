@@ -1,6 +1,6 @@
 #pragma once
 
-// Plots of measured surfaces: height maps with colour bars, and spectra over logarithmic axes.
+// Plots of measured surfaces: height maps with colour bars, and spectra on logarithmic axes.
 
 #include <cstddef>
 #include <string>
@@ -29,7 +29,7 @@ struct LogCurve {
   std::vector<double> y;
 };
 
-/// Curves over two logarithmic axes. Values that are not positive are omitted.
+/// Curves in a diagram with two logarithmic axes. Values that are not positive are omitted.
 struct LogPanel {
   std::string title;
   std::string x_label;
@@ -37,7 +37,7 @@ struct LogPanel {
   std::vector<LogCurve> curves;
 };
 
-/// Panels under one title, two in a row.
+/// Panels under one title, arranged in rows of two.
 struct SurfacePlot {
   std::string title;
   std::vector<std::variant<GridPanel, LogPanel>> panels;

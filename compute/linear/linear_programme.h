@@ -40,7 +40,8 @@ class LinearProgramme {
   std::size_t add_column(const Bounds& bounds, double objective);
   /// Adds a row.
   /// \return index of the row
-  /// \pre as for add_column(); the columns exist, and each occurs at most one time
+  /// \pre the numbers meet the conditions of add_column(); every column in `terms` exists, and no column occurs in more
+  /// than one term
   std::size_t add_row(const Bounds& bounds, std::vector<Term> terms);
 
   const std::vector<Column>& columns() const { return columns_; }

@@ -57,8 +57,8 @@ class MpiMailbox {
 };
 
 /// Starts MPI.
-/// \param sign_of_life time between two signs of life. Rank 0 sends them to all other ranks, and these send them to
-/// rank 0
+/// \param sign_of_life time between two signs of life. Rank 0 sends signs of life to all other ranks. Each other rank
+/// sends its signs of life only to rank 0.
 /// \throw OutputError if the module that contains MPI cannot be loaded
 std::unique_ptr<MpiMailbox> open_mpi_mailbox(std::chrono::milliseconds sign_of_life);
 

@@ -18,9 +18,9 @@ namespace {
 
 using Step = Formula::Step;
 
-/// Records the operations of a formula while muParser evaluates the formula. The values with which muParser computes
-/// are indices of nodes. The grammar is therefore that of muParser. Derivatives, which muParser does not support, are
-/// computed from the nodes.
+/// Records the operations of a formula as nodes while muParser evaluates the formula. During this evaluation, each
+/// value is the index of a node instead of a number, so muParser only determines the order of the operations.
+/// Derivatives, which muParser does not support, are computed from the nodes.
 struct Recorder {
   std::vector<Formula::Node> nodes;
 

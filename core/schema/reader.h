@@ -54,7 +54,7 @@ void fill(const Document& document, const Table& table, const std::string& path,
 
 /// Checks the rules of a table. fill() calls this function as well.
 /// \param path path of the table in the document
-/// \param object object of the table, or the document for formats that are only read as documents
+/// \param object object of the table, or the address of `document` if the format is only read as a document
 /// \throw InputError if a combination of values violates a rule
 void check(const Document& document, const Table& table, const std::string& path, const void* object);
 /// Checks the rules of a table for an object that was not read from a document.

@@ -31,8 +31,9 @@ class NcLines {
   /// \throw InputError with the file, the line number, `text` and the complete line
   [[noreturn]] void fail(std::string_view text) const;
   /// Throws an error which states that the first word of `remainder` is not understood.
-  /// \param remainder remainder of the current line without blanks, with marks instead of comments, and perhaps in
-  /// capitals \throw InputError as in fail()
+  /// \param remainder remainder of the current line without blanks, with kNcCommentMark instead of each comment; it may
+  /// have been converted to capitals
+  /// \throw InputError as in fail()
   [[noreturn]] void fail_word(std::string_view remainder) const;
 
  private:

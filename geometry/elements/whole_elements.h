@@ -54,7 +54,7 @@ struct WholeElement {
   /// centre of a prism's aperture or apex of a cube corner, relative to the centre of the extent
   Vec2 centre_mm = Vec2::Zero();
   std::int32_t row = 0;     ///< counted from 0 at the smallest y
-  std::int32_t column = 0;  ///< counted from 0, x ascending
+  std::int32_t column = 0;  ///< counted from 0 in the direction of ascending x
   /// true for a prism rotated by 90 degrees about z, or a cube corner rotated by 180 degrees
   bool is_rotated = false;
   bool is_there = true;  ///< false if the array's pattern omits the element
@@ -72,9 +72,9 @@ struct PlacedElement {
   SubstrateFrame frame;
 };
 
-/// Returns all elements that are not outside the border, row by row in order of y, x ascending. The pattern is ignored.
-/// The row and column numbers of prisms count all positions on the sheet. The numbers of cube corners count only
-/// complete elements.
+/// Returns all elements that are not outside the border, sorted by row (ascending y), and within a row by ascending x.
+/// The pattern is ignored. The row and column numbers of prisms count all positions on the sheet. The numbers of cube
+/// corners count only complete elements.
 /// \pre the array is finite and not `single`
 /// \throw InputError if the array is smaller than one element
 std::vector<PlacedElement> place_elements(const PartSpec& spec);

@@ -123,7 +123,7 @@ class GapFinder {
     }));
   }
 
-  /// Returns the fault at a gap from the number of triangles above the points on both sides of it.
+  /// Determines the kind of fault at a gap by counting the triangles that cover a point on each side of the gap.
   TilingFault fault_by_cover(const SheetSide& side, const Vec2& middle) const {
     constexpr double kBeside = 1e-4;
     const Vec2 along = plan(side.to) - plan(side.from);

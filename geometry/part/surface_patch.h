@@ -56,9 +56,9 @@ struct SurfacePatch {
   std::vector<std::uint32_t> triangle_facet;
 
   /// Borders of the surface. `border_walls` contains the vertical walls between the surface and z = 0, where the
-  /// surface is below z = 0. `border_rim` contains the lower borders of the plate's sides, with the part on the left as
-  /// seen from +z. A side begins at z = 0, or at the surface where the surface is above z = 0. The two ends of a rim
-  /// are the highest vertices at their (x, y).
+  /// surface is below z = 0. `border_rim` contains the lower borders of the plate's sides. A side begins at z = 0, or
+  /// at the surface where the surface is above z = 0. The vertices of a rim are ordered such that the part is on the
+  /// left as seen from +z. The first and the last vertex of a rim are the highest vertices at their (x, y).
   std::vector<std::vector<std::uint32_t>> border_walls;
   std::vector<std::vector<std::uint32_t>> border_rim;
 };

@@ -24,7 +24,8 @@ class RETRACE_API Design {
   /// \throw InputError with file, line and key
   static Design load(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
   /// Reads a design from the text of a design file.
-  /// \param source path of the file in messages; file names in the text are relative to the folder of this path
+  /// \param source path of the file, as shown in messages; file names in the text are relative to the folder of this
+  /// path
   /// \param overrides texts as in load()
   /// \throw InputError with source, line and key
   static Design parse(std::string_view text, const std::string& source, const std::vector<std::string>& overrides = {});

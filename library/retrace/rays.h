@@ -36,8 +36,8 @@ struct RayArrays {
   std::vector<double> directions;  ///< three numbers per ray; vectors of any length > 0
   /// Stokes parameters: four for each ray, the first of which is its power; or four that apply to all rays.
   std::vector<double> stokes;
-  /// Reference axes of the Stokes parameters, three numbers per ray. If it is empty, each axis is +x, projected normal
-  /// to the direction of the ray.
+  /// Reference axes of the Stokes parameters, three numbers per ray. If the array is empty, each axis is the direction
+  /// +x, projected onto the plane normal to the ray.
   std::vector<double> axes;
   /// One per ray, or one for all rays; if empty, the wavelengths of the design are used.
   std::vector<double> wavelengths_nm;

@@ -36,14 +36,14 @@ struct FormerName {
   /// Path of the key in documents of former versions. "[]" is appended to the name of a list. If the value was renamed
   /// and not the key, "=" and the former value are appended.
   std::string former;
-  std::string current;  ///< path in the same form in documents of the current version
+  std::string current;  ///< path in documents of the current version, in the same form as `former`
 };
 
 /// Returns all renamed keys and values of result documents.
 RETRACE_API std::vector<FormerName> former_names();
 
-/// Returns a result document in the current version: with the current names and the current `schema`. A document that
-/// is of the current version is returned unchanged.
+/// Converts a result document to the current version: former names and `schema` are replaced by the current ones. A
+/// document of the current version is returned unchanged.
 /// \param text the document as JSON; any other text is returned unchanged
 /// \throw InputError if the version of the document is later than the current version
 RETRACE_API std::string current_document(const std::string& text);

@@ -34,7 +34,8 @@ struct StudyResult {
   std::string json;   ///< JSON document retrace.sweep/1, retrace.tolerance/2 or retrace.optimum/1
   std::string csv;    ///< one line per point; after an optimisation, the Pareto front
   std::string table;  ///< summary as text
-  Drawing drawing;    ///< plot of the fraction of parts below a value, after a tolerance study; otherwise empty
+  /// Tolerance study: plot of the fraction of parts whose result is below a value. Empty for other studies.
+  Drawing drawing;
 };
 
 /// Computes designs and directions over ranges of parameters.

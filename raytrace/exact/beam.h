@@ -1,6 +1,6 @@
 #pragma once
 
-// Beams of the exact tracer: parallel light with a polygonal cross-section, its path length and where it entered.
+// Beams of the exact tracer: parallel light with a polygonal cross-section, its path length and its entry point.
 
 #include <Eigen/Geometry>
 #include <boost/container/deque.hpp>
@@ -101,9 +101,10 @@ struct TexturedHit {
   Vec3 constant_mm = Vec3::Zero();
   Eigen::Matrix3d slope = Eigen::Matrix3d::Identity();
   surface_models::PhaseTexture phase;
-  FacetFrame frame;              ///< frame in which the form of the facet is defined
-  double path_per_height = 0.0;  ///< change of the optical path per height of the form, which is positive out of the
-                                 ///< part; 0 for facets without form
+  FacetFrame frame;  ///< frame in which the form of the facet is defined
+  /// Change of the optical path per height of the form. Heights that point out of the part are positive. The value is 0
+  /// for facets without form.
+  double path_per_height = 0.0;
 
   Vec3 of(const Vec3& p) const { return constant_mm + slope * p; }
 
@@ -128,8 +129,8 @@ struct Beam {
   CoherentLight light;    ///< light, not reduced by the absorption in the material; see `transmission`
   double phase_mm = 0.0;  ///< phase of the plane wave, extrapolated to the origin, as an optical path length
   CellTrail trail;
-  double area_fraction =
-      1.0;  ///< fraction of the area of the entrance face through which the light of this beam entered
+  /// Fraction of the area of the entrance face through which the light of this beam entered.
+  double area_fraction = 1.0;
   /// Transmittance of the material along the path from the entrance face to the start of this beam. It is the mean over
   /// the polygon `corners`.
   double transmission = 1.0;
@@ -141,8 +142,8 @@ struct Beam {
   std::vector<TexturedHit> hits;
   Plane start;  ///< the beam is in the half space start.height(p) >= 0
   bool inside = true;
-  geometry::FacetRole last_exit_role =
-      geometry::FacetRole::retro_facet;     ///< last face through which light left the part
+  /// Role of the last face through which light left the part.
+  geometry::FacetRole last_exit_role = geometry::FacetRole::retro_facet;
   std::uint32_t depth = 0;                  ///< number of interfaces so far
   std::uint32_t steps_since_interface = 0;  ///< number of steps since the last interface
   /// Displacements from this beam to all identical beams at identical elements, including the displacement 0 of this

@@ -45,9 +45,10 @@ class BeamGeneration {
 
  private:
   struct Entry {
-    std::uint64_t order;  ///< sorting key: rank of the direction in the upper bits, Morton code of the position below
+    std::uint64_t
+        order;  ///< sorting key: rank of the direction (upper bits) and Morton code of the position (lower bits)
     std::size_t beam;
-    double power_up_to;  ///< cumulative power: sum over all entries up to this entry, which is included
+    double power_up_to;  ///< cumulative power: sum over all entries up to and including this entry
   };
   const WaitingBeams& beams_;
   bool is_infinite_;
@@ -60,7 +61,7 @@ struct Resampling {
   double max_power = 0.0;  ///< maximum power of a survivor
   std::uint32_t seed = 1;
   std::uint32_t replicate = 0;
-  std::uint32_t round = 0;  ///< number of the round; each round has a first generation of its own
+  std::uint32_t round = 0;  ///< number of the round; each round has its own first generation
 
   /// Returns the random offset for for_each_survivor(). Each generation has an independent offset.
   double offset(std::uint32_t generation) const;

@@ -38,7 +38,7 @@ class TranslationalSymmetry {
   /// Divides the copies of a beam into groups. All copies of a group meet identical facets.
   /// \param places displacements of the copies from the beam; they are multiples of the periods
   /// \param sweep box in x and y around all facets that the beam itself may meet
-  /// \param region parts with zones: index of the region that contains the copies
+  /// \param region index of the region that contains the copies; it is used only for parts with zones
   /// \return the displacements of each group; empty if all copies form one group
   std::vector<InstanceOffsets> divided(const InstanceOffsets& places, const geometry::Rectangle& sweep,
                                        std::uint32_t region) const;

@@ -10,7 +10,8 @@
 
 namespace retrace::raytrace {
 
-/// Content of a bounding box: consecutive facets of a cell, or one of several parts of equal length of a single facet.
+/// Content of a bounding box: consecutive facets of a cell, or a part of a single facet that is divided into parts of
+/// equal length.
 struct BoxContent {
   ExactSurface::FacetRange range;
   std::uint16_t part = 0;   ///< index of the part of the facet
@@ -22,8 +23,8 @@ struct FacetBox {
   Vec3 upper;
 };
 
-/// Returns the contents of all boxes of a patch. A cell with few facets has one box. In other cells, each facet has a
-/// box, and long oblique facets have several.
+/// Returns the contents of all boxes of a patch. A cell with few facets has one box. In other cells, each facet has one
+/// box, and a long oblique facet has several boxes.
 std::vector<BoxContent> box_contents(const geometry::SurfacePatch& patch);
 
 /// Returns the bounding box of a content, in the patch's coordinates.

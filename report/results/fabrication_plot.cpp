@@ -97,13 +97,14 @@ namespace {
 /// Adjacent elements of a row that are drawn as one outline.
 struct DrawnElements {
   Polygon outline;
-  std::size_t count = 1;    ///< number of elements
-  std::int64_t places = 0;  ///< sum of the positions of the elements in the order of cutting, for their mean
+  std::size_t count = 1;  ///< number of elements
+  /// Sum of the elements' positions in the cutting sequence. It is used to compute their mean position.
+  std::int64_t places = 0;
 };
 
 /// Returns the outline of the element `first`. If there are more than kMaxDrawnElements elements, returns the outline
 /// of a group of adjacent prisms that begins with `first`.
-/// \param places position of each element in the order of cutting
+/// \param places position of each element in the cutting sequence
 /// \param in_plan function that converts coordinates of the workpiece to coordinates of the drawing
 template <class InPlan>
 DrawnElements drawn_from(std::size_t first, const std::vector<fabrication::CutElement>& elements,

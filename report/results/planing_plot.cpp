@@ -23,7 +23,8 @@ LinePlot plot_over_distance(const studies::PlaningResult& result, const std::str
   return plot;
 }
 
-/// Returns the number of samples from one drawn sample to the next. With it, a drawing has some thousand points.
+/// Returns the distance, in samples, from one drawn sample to the next. It is chosen such that at most 2 * kPoints
+/// samples are drawn.
 std::size_t stride_of(std::size_t samples) {
   constexpr std::size_t kPoints = 6000;
   return std::max<std::size_t>(1, samples / kPoints);

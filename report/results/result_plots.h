@@ -58,14 +58,14 @@ inline constexpr std::size_t kMaxFootprintPanels = 24;
 /// \pre a footprint was requested
 MapPlot footprint_plot(const studies::RreResult& result);
 
-/// Returns a plot of RRE over the Sa of the roughness, see roughness_plot() in report/plot_contents.h.
+/// Returns a plot of RRE against the Sa of the roughness, see roughness_plot() in report/plot_contents.h.
 LinePlot roughness_plot(const studies::RoughnessResult& result);
 
-/// Returns a plot of R_A over the directions around the direction to the source. It shows the test points and has one
-/// panel for each map of the result.
+/// Returns a plot of R_A as a function of direction, for directions around the direction to the source. It shows the
+/// test points and has one panel for each map of the result.
 PolarPlot far_field_plot(const studies::PhotometryResult& result);
 
-/// Returns a plot of R_A over the observation angle, with one curve for each entrance angle.
+/// Returns a plot of R_A against the observation angle, with one curve for each entrance angle.
 LinePlot observation_plot(const studies::PhotometryResult& result);
 
 /// Returns a plot of the cumulative distribution of the study's first quantity: the fraction of parts whose value is
@@ -90,7 +90,8 @@ std::vector<std::pair<std::string, std::string>> picture_texts(const char* kind,
 /// Returns a plot with two maps of the light that leaves the entrance face. One map shows where the light leaves the
 /// face, and the other shows where the same light entered it.
 ImagePlot irradiance_plot(const studies::DetectorResult& result);
-/// Returns a plot of the light over the directions around the direction to the source, with logarithmic colours.
+/// Returns a plot of the light as a function of its direction, for directions around the direction to the source. The
+/// colour scale is logarithmic.
 ImagePlot angular_plot(const studies::DetectorResult& result);
 /// Returns a picture with the channels `leaving` and `entering`, and with their standard errors if there are any.
 FloatPicture irradiance_picture(const studies::DetectorResult& result);
@@ -100,7 +101,7 @@ FloatPicture luminance_picture(const studies::CameraResult& result);
 /// Returns the luminance, tone-mapped to approximate its visual appearance, with three bytes per pixel (red, green,
 /// blue).
 std::vector<unsigned char> tone_mapped_pixels(const std::vector<double>& luminance);
-/// Returns a plot of the luminance with logarithmic colours.
+/// Returns a plot of the luminance with a logarithmic colour scale.
 ImagePlot false_colour_plot(const studies::CameraResult& result);
 
 /// Returns a PNG file with the driver's views of the road next to each other. All views have the same exposure.
@@ -123,11 +124,11 @@ MapPlot arrangement_plot(const studies::FabricationResult& result);
 /// programs.
 SurfacePlot error_map_plot(const studies::ErrorMap& map);
 
-/// Returns a plot of the forces on the tool over time, with one curve for each axis of the machine.
+/// Returns a plot of the forces on the tool against time, with one curve for each axis of the machine.
 LinePlot forces_plot(const studies::ForcesResult& result);
 
-/// Returns a plot of the acceleration of the Z axis or of the servo, over two revolutions around the largest jump of
-/// the acceleration.
+/// Returns a plot of the acceleration of the Z axis or of the servo. It covers two revolutions around the largest jump
+/// of the acceleration.
 LinePlot turning_acceleration_plot(const studies::TurningResult& result);
 /// Returns a plot of the deviation of the machined surface from the design, along a line across a few cuts.
 LinePlot turning_profile_plot(const studies::TurningResult& result);
@@ -135,13 +136,13 @@ LinePlot turning_profile_plot(const studies::TurningResult& result);
 /// from it.
 ImagePlot turning_maps(const studies::TurningResult& result);
 
-/// Returns a plot of the depth over the distance from the centre. It shows the design and the machined surface. For a
-/// lathe, the machined surface consists of the straight chords that the programs cut.
+/// Returns a plot of the depth against the distance from the centre. It shows the design and the machined surface. For
+/// a lathe, the machined surface consists of the straight chords that the programs cut.
 LinePlot planing_profile_plot(const studies::PlaningResult& result);
 /// Returns a plot of the end points of cuts. For a mill, it shows the strokes, coloured by the set of programs that
 /// contains them. For a lathe, it shows the end points of the chords.
 LinePlot planing_zones_plot(const studies::PlaningResult& result);
-/// Returns a plot of the material that remains above the design over the distance from the centre.
+/// Returns a plot of the height of the remaining material above the design, against the distance from the centre.
 /// \pre the part is cut on a mill
 LinePlot planing_error_plot(const studies::PlaningResult& result);
 

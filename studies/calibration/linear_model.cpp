@@ -12,8 +12,9 @@ using fabrication::Machine, fabrication::SetupQuantity, fabrication::kNmPerMm;
 
 /// Step of the difference quotients, in um and arcsec. Measurements are smooth over millions of such steps.
 constexpr double kStep = 1.0;
-/// Numbers of unknowns of a part's pose. The first kTurns unknowns are rotations. Shifts along X, Y and Z follow, so
-/// that there are kPose unknowns. The indices kPose and kPose + 1 are the rotations of the face about X and Y.
+/// Indices of the unknowns of a part's pose: the kTurns rotations have the indices from 0, and the shifts along X, Y
+/// and Z have the indices from kTurns. The pose has kPose unknowns in total. Two further unknowns, the rotations of the
+/// face about X and Y, have the indices kPose and kPose + 1.
 constexpr Index kTurns = 3;
 constexpr Index kPose = 6;
 constexpr double kUmInMm = 1e3;
@@ -23,7 +24,7 @@ constexpr double kShiftByEye = 100.0;
 constexpr double kTurnByEye = 3600.0;
 
 /// Adds an amount to an unknown of a pose.
-/// \param unknown index of an unknown of the part, or kPose and kPose + 1 for the rotations of the face
+/// \param unknown index of an unknown of the part's pose, or kPose or kPose + 1 for a rotation of the face
 void move_one(PartPose& pose, Index unknown, double amount) {
   if (unknown >= kPose)
     pose.face_rotation_arcsec[unknown - kPose] += amount;

@@ -18,9 +18,10 @@ namespace retrace::studies {
 /// Goals of the cells in random parts, indexed by part, zone and goal.
 using RandomParts = std::vector<std::vector<std::vector<double>>>;
 
-/// Returns random parts. Each zone has random angle errors, Gaussian and independent. All cells of a zone have the same
-/// errors.
-/// \param responses response of each zone; it includes the effect of errors from cell to cell
+/// Returns random parts. The angle errors of each zone are random, Gaussian and independent, and they are equal in all
+/// cells of the zone.
+/// \param responses response of each zone; it already includes the mean effect of further errors that differ from cell
+/// to cell
 RandomParts random_parts(const std::vector<ErrorResponse>& responses, double sigma_arcmin, std::size_t parts,
                          std::uint32_t seed);
 

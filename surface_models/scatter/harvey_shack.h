@@ -35,8 +35,8 @@ struct Dielectrics {
 };
 
 /// Mean number of diffractions at a facet before light leaves it. This is the mean of a Poisson distribution. For
-/// correlation lengths well above the wavelength it is equal to the phase variance. Values are by polarisation, s
-/// before p.
+/// correlation lengths well above the wavelength it is equal to the phase variance. Each array contains the values for
+/// s and for p.
 struct DiffractionMeans {
   std::array<double, 2> reflected{};
   std::array<double, 2> transmitted{};
@@ -85,14 +85,15 @@ class HarveyShack {
   /// \pre is_between_dielectrics(); the indices of the event are those of the media of the model
   DiffractionMeans diffraction_means(const ScatterEvent& event, const Facet& facet,
                                      const materials::FresnelCoefficients& fresnel) const;
-  /// Draws light that is diffracted once, to both sides of the facet. Returns nothing if no direction is found.
+  /// Draws light that is diffracted once. It may leave to either side of the facet. Returns nothing if no direction is
+  /// found.
   /// \param s_axis unit vector normal to event.direction_in and to the facet's normal
   /// \param coherency coherency of the incident light along s_axis and p, with the trace 1
   /// \pre is_between_dielectrics(); the indices of the event are those of the media of the model
   std::optional<DiffractedOnce> draw_diffracted_once(const ScatterEvent& event, const Facet& facet, const Vec3& s_axis,
                                                      const Polarisation2& coherency, RandomStream& random) const;
-  /// Returns the light that is diffracted once into a direction. The trace of its coherency is the density over
-  /// direction cosines with which draw_diffracted_once() draws.
+  /// Returns the light that is diffracted once into a direction. The trace of its coherency is the probability density,
+  /// per unit area of direction cosines, with which draw_diffracted_once() selects this direction.
   /// \param direction unit vector in the frame of the event, on the side of the lobe
   DiffractedOnce diffracted_once_into(const ScatterEvent& event, const Facet& facet, const Vec3& s_axis,
                                       const Polarisation2& coherency, const Vec3& direction) const;
@@ -136,8 +137,8 @@ class HarveyShack {
   const SlopeDistribution& slopes() const { return slopes_; }
 
  private:
-  /// Heights that scatter in an event: the rms height of roughness and waviness together, and the spread of direction
-  /// cosines that roughness and waviness cause.
+  /// Statistics of the spatial frequencies that scatter in an event: the rms height of roughness and waviness together,
+  /// and the spread of direction cosines that each of them causes.
   struct Band {
     double sq_nm = 0.0;
     double roughness_fraction = 0.0;         ///< fraction of sq_nm^2 that is due to roughness
@@ -161,8 +162,8 @@ class HarveyShack {
   /// Returns the fractions of the power of s and of p that are scattered according to first-order theory, summed over
   /// both sides.
   std::array<double, 2> first_order_fractions(const ScatterEvent& event, const Facet& facet) const;
-  /// Returns light whose coherency is scaled: its trace is the density over wave vectors along the facet, as a fraction
-  /// of the incident power.
+  /// Returns the scattered light. The trace of its coherency is the scattered fraction of the incident power, per unit
+  /// area of wave vectors along the facet.
   DiffractedOnce scattered_once(const ScatterEvent& event, const Facet& facet, Lobe lobe, const Vec3& s_axis,
                                 const Polarisation2& coherency, const Vec2& k_out) const;
 

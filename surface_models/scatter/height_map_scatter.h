@@ -1,7 +1,7 @@
 #pragma once
 
-// Scatter from a measured height map. The map scatters by diffraction at its spectrum, or by its slopes if its heights
-// are large compared with the wavelength.
+// Scatter from a measured height map. It is computed as diffraction by the spectrum of the map. If the heights are
+// large compared with the wavelength, it is computed from the slopes of the map instead.
 
 #include <memory>
 

@@ -19,7 +19,7 @@ class Microfacet {
   /// \param rms_slope areal rms slope, for example from waviness_rms_slope(); >= 0
   /// \throw InputError if the slope is out of range
   Microfacet(SlopeShape shape, double rms_slope);
-  /// Returns a model for waves with this rms height and period.
+  /// Returns a model for waviness with this rms height and period.
   /// \throw InputError if the slope is out of range
   static Microfacet of_waviness(SlopeShape shape, double waviness_sq_nm, double waviness_length_um);
 
@@ -42,7 +42,9 @@ class Microfacet {
   double jacobian(const ScatterEvent& event, Lobe lobe, const Vec3& direction, const Vec3& normal) const;
 
   SlopeDistribution slopes_;
-  double waviness_sq_nm_ = 0.0;  ///< 0 if unknown; there is then no warning about waves that are too low for facets
+  /// Rms height of the waviness. If it is unknown, it is 0, and warnings() does not report waviness that is too low for
+  /// this model.
+  double waviness_sq_nm_ = 0.0;
 };
 
 }  // namespace retrace::surface_models

@@ -20,8 +20,8 @@ TurningTool read_tool(const Document& file) {
           file.number("tool.rake_deg"), file.number_if("tool.skew_deg").value_or(0.0)};
 }
 
-/// Returns the tolerance of blending: a tenth of the form tolerance, in whole nanometres as in programs. The check adds
-/// it to the form error.
+/// Returns the path tolerance of blending, in mm. It is a tenth of the form tolerance, rounded down to whole nanometres
+/// but at least 1 nm. Programs contain the same rounded value. The check adds it to the form error.
 double blend_mm(double form_tolerance_nm) {
   return 1e-6 * std::max(1.0, std::floor(0.1 * form_tolerance_nm));
 }

@@ -14,7 +14,7 @@ namespace retrace::fabrication::turning {
 /// less concave than the nose: z'' < 1 / r along every line (docs/theory/turning.md, section Paths).
 class SingleContactMap {
  public:
-  /// Creates an empty map: nothing is proved at any position.
+  /// Creates an empty map, for which has_single_contact() is false at every position.
   SingleContactMap() = default;
   /// Computes the map by interval arithmetic. The proof is possible only inside of the base's boundary, only for bases
   /// and lenslets that are not given by a formula, and only for tools without rake.
@@ -32,7 +32,8 @@ class SingleContactMap {
  private:
   static constexpr std::size_t kCells = 256;  ///< number of cells along each side of the map
 
-  /// Marks the surroundings of a rectangle, up to the radius of the nose, as not proved.
+  /// Marks the cells of a rectangle, and all cells within the radius of the nose around it, as cells without a proved
+  /// single contact.
   void clear_around(const geometry::Vec2& low, const geometry::Vec2& high, double nose_mm);
 
   double half_mm_ = 0.0;
