@@ -8,9 +8,9 @@ FOLDER/_fields.py contains the fields of each request of the library.
 SOURCES are Python files that are copied to FOLDER. In the copies, three kinds of lines are replaced
 by code for the request NAME:
     # generated: keywords of the request NAME
-        Replaced by one keyword per field, in the signature of a function that also has other keywords.
+        Replaced by one keyword per field. The function also has other keywords.
     **fields: object,  # generated: keywords of the request NAME
-        Replaced by one keyword per field, in the signature of a function that has no other keywords.
+        Replaced by one keyword per field. The function has no other keywords.
     request = _core.X()  # generated: sets the fields of the request NAME
         Replaced by code that creates a request and sets its fields to the values of the keywords.
 """

@@ -45,8 +45,8 @@ class BeamGeneration {
 
  private:
   struct Entry {
-    std::uint64_t
-        order;  ///< sorting key: rank of the direction (upper bits) and Morton code of the position (lower bits)
+    /// Sorting key: rank of the direction (upper bits) and Morton code of the position (lower bits).
+    std::uint64_t order;
     std::size_t beam;
     double power_up_to;  ///< cumulative power: sum over all entries up to and including this entry
   };

@@ -1,7 +1,7 @@
 #pragma once
 
-// Internal functions of the far field: Fourier transforms of polygons, and the power of fields. SIMD
-// instructions process many directions at a time.
+// Internal functions of the far field: Fourier transforms of polygons, and the power of fields. SIMD instructions
+// process many directions at a time.
 
 #include <Eigen/Core>
 #include <array>

@@ -369,8 +369,8 @@ TEST(NcReader, EveryCutOffFileIsRecognised) {
   }
 }
 
-/// The file contains the end label of a subroutine but not the complete block of this line. The subroutine is therefore
-/// incomplete.
+/// The file ends within the line of the end label of a subroutine. It contains the label, but the block after the label
+/// is incomplete. The subroutine is therefore incomplete.
 TEST(NcReader, AFileThatStopsInTheLineOfALabelLacksItsSubroutine) {
   const std::string text = "G0 A45. C=-0.1\nCALL BLOCK RT101 TO RE101\nM30\nRT101:\nG91\nG1 F50. Z-0.25\nRE101:1.5 Y";
   const std::string outcome = refusal(text, NcDialect::sinumerik);

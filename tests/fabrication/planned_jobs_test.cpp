@@ -147,8 +147,8 @@ TEST(PlannedJobs, EveryKeyIsCutAsDesigned) {
         const std::string what = fmt::format("{}, {}, strategy {}", variant.what, name, static_cast<int>(strategy));
         EXPECT_TRUE(v.passes()) << what << "\n" << listed(v);
         EXPECT_EQ(v.elements_cut, static_cast<std::int64_t>(cut_elements(job).size())) << what;
-        // Ploughs side by side form steps, whose mean plane is tilted less than one ploughed facet. The angle is
-        // therefore checked only for two_step, where no facet is ploughed.
+        // Several ploughs next to each other form steps. The mean plane of the steps is tilted less than the facet of a
+        // single plough. The angle is therefore checked only for two_step, where no facet is ploughed.
         if (strategy == Strategy::two_step) {
           EXPECT_LT(v.facet_angle_arcmin_max, 0.01) << what;
         }
@@ -183,8 +183,8 @@ TEST(PlannedJobs, AnEdgeThatTheProgramForgotIsFound) {
       EXPECT_TRUE(has_kind(v, kind)) << name << " " << apex_deg << "\n" << listed(v);
       const double apex = Angle::from_deg(apex_deg).rad();
       const double missed_nm = 1e3 * (1.0 - std::sin(apex) + std::cos(apex));
-      // Use the smallest deviation, which belongs to the floor, the facet along which the tool ploughs. Lines normal to
-      // the wall intersect the floor at a small angle close to the root and give larger deviations.
+      // Use the smallest deviation. It belongs to the floor, that is, to the facet along which the tool ploughs. Lines
+      // normal to the wall intersect the floor at a small angle close to the root and give larger deviations.
       double found_nm = 1e9;
       for (const Finding& f : v.findings)
         if (f.kind == kind) found_nm = std::min(found_nm, std::abs(f.value));

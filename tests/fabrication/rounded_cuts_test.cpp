@@ -178,7 +178,7 @@ TEST(RoundedCuts, PeaksAreNoHigherThanTheFormula) {
         tips[f] = std::copysign(rounded_across_mm(1.0), uniform(-1, 1)) * normal + rounded_along_mm(1.0) * along;
       }
       // The height of each sample exceeds the bound above two of the facets, and is random above the third facet. A
-      // point that is lower than this may belong to the fin along the edge between these facets.
+      // lower point may belong to the fin along the edge between these two facets.
       geometry::Vec3 heights(uniform(0, 2), uniform(0, 2), uniform(0, 2));
       heights = (heights * bound).cwiseMax(3.0 * rounded_along_mm(1.0));
       for (const int facet : {k % 3, (k + 1) % 3}) heights[facet] = std::max(heights[facet], bound * 1.0001);
@@ -273,7 +273,8 @@ TEST(RoundedCuts, RandomNosesPass) {
 }
 
 /// On a machine with alignment errors, the tool is rotated relative to the facets, which changes the overlap of the
-/// cuts at dihedral edges. A job with zones is refused for fins there, or it passes verification.
+/// cuts at dihedral edges. A job with zones must either be refused, because fins would remain at these edges, or pass
+/// verification.
 TEST(RoundedCuts, RandomNosesPassOnMachinesWithErrors) {
   const int noses = retrace::test::sample_size(40, 500);
   std::mt19937 bits(19);
@@ -298,8 +299,8 @@ TEST(RoundedCuts, RandomNosesPassOnMachinesWithErrors) {
   EXPECT_GT(refused, 0);
 }
 
-/// A Fanuc control rounds positions to its increments. A job of cube corners passes verification, or it is refused with
-/// the name of the key to change.
+/// A Fanuc control rounds positions to its increments. A job of cube corners must either pass verification or be
+/// refused with an error that names the key to change.
 TEST(RoundedCuts, CubeCornersOfEveryIncrementSystemPassOrAreRefused) {
   for (const IncrementSystem system : {IncrementSystem::b, IncrementSystem::c, IncrementSystem::d, IncrementSystem::e})
     for (const bool is_hexagonal : {false, true})

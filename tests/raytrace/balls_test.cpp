@@ -1,5 +1,5 @@
-// Tests of balls with mirrors behind them. The tracer of spheres is compared with closed forms, and with sums over
-// ray heights that use plane angles only instead of vectors.
+// Tests of balls with mirrors behind them. The tracer of spheres is compared with closed forms, and with sums over ray
+// heights. These sums are computed from plane angles instead of vectors.
 
 #include <gtest/gtest.h>
 
@@ -63,8 +63,8 @@ std::vector<double> power_by_cone(const BallLayer& layer, const Optics& optics, 
   return power;
 }
 
-/// Returns the power that comes back within the cone for a ray of unit power. The calculation uses only angles
-/// about the center of the ball. The mirror is ideal and covers the back half of the ball.
+/// Returns the power that is returned within the cone for a ray of unit power. The calculation uses only angles about
+/// the center of the ball. The mirror is ideal and covers the back half of the ball.
 /// \param height distance of the ray from the axis, divided by the radius
 /// \param turn_rad azimuth of the ray about the axis, from the plane of incidence
 double returned_by_angles(double height, double index, double turn_rad, double incidence_rad, double half_angle_rad) {
@@ -259,8 +259,8 @@ TEST(Balls, NothingButTheMirrorAndTheGlassAbsorbs) {
   EXPECT_NEAR(result.cones[0].ledger[Account::absorbed], 0.0, 1e-12);
 }
 
-/// Returns the fraction of the plane through the centers of the balls that light does not reach. For each point of
-/// the plane, the line towards the source is tested against all balls.
+/// Returns the shaded fraction of the plane through the centers of the balls. A point of the plane is shaded if the
+/// line from this point towards the source hits a ball.
 double shaded_share(double pitch_mm, double radius_mm, double incidence_rad, double azimuth_rad) {
   const Vec3 to_source(std::sin(incidence_rad) * std::cos(azimuth_rad), std::sin(incidence_rad) * std::sin(azimuth_rad),
                        std::cos(incidence_rad));

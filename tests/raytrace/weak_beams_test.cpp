@@ -108,8 +108,9 @@ TEST(PopulationControl, AreUnbiasedAndIntervalsHoldOverSeeds) {
   }
 }
 
-/// The beams above the cut-off are the same as in a run that truncates weak beams. The power of all returned beams,
-/// where each beam of one of the 16 replicates counts by 1/16, must equal the returned light of the ledger.
+/// The beams above the cut-off are the same as in a run that truncates weak beams. The sum of the powers of all
+/// returned beams must equal the returned light of the ledger. The beams of the 16 replicates have the weight 1/16 in
+/// this sum.
 TEST(PopulationControl, LeaveStrongBeamsAsTheyAre) {
   for (const Question& question : questions()) {
     const BeamTracer tracer(question.part);
@@ -198,8 +199,8 @@ Question wide_cubes() {
   return {"wide cubes", build_part(spec), from(20, 10)};
 }
 
-/// Without interference, intensities are unbiased: their mean over many seeds is that of a trace with a lower cut-off.
-/// The reported errors agree with the spread over the seeds.
+/// Without interference, intensities are unbiased: their mean over many seeds equals the result of a trace with a lower
+/// cut-off. The reported errors agree with the spread over the seeds.
 TEST(PopulationControl, FarFieldIsUnbiased) {
   constexpr std::uint32_t kSeeds = 60;
   const Question question = wide_cubes();
@@ -237,7 +238,7 @@ TEST(PopulationControl, FarFieldIsUnbiased) {
   }
 }
 
-/// Resampled light does not interfere with other light. In the diffracted far field, the effect of this is small.
+/// Resampled light does not interfere with other light. The effect on the diffracted far field is small.
 TEST(PopulationControl, DiffractedFarFieldAgreesWithBeams) {
   const ApertureKernel kernel({Angle::from_deg(10.0 / 60.0), Angle::from_deg(10.0 / 60.0)});
   const Question question = wide_cubes();

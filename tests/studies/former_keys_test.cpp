@@ -88,8 +88,8 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
-/// A store is continued only if the parts of the study are equal. They are equal whichever names the files, their
-/// words and the overrides use.
+/// A store is continued only if the parts of the study are equal. The parts must not depend on whether files, words and
+/// overrides use former or current names.
 TEST(FormerKeys, StoresCanBeContinuedAfterFilesAreRenamed) {
   const std::string study =
       "design = \"d.toml\"\n[[parameter]]\nkey = \"element.base_mm\"\nvalues = [0.4, 0.5]\n[[quantity]]\nkind = "
@@ -111,7 +111,7 @@ TEST(FormerKeys, StoresCanBeContinuedAfterFilesAreRenamed) {
   EXPECT_NE(parts(replaced(study, "90", "91"), design, overrides), expected);
 }
 
-/// Each example is rewritten with former names, and read to the same values as the example itself.
+/// Each example is rewritten with former names. It must then be read with the same values as the original example.
 TEST(FormerKeys, ExamplesWithFormerNamesHaveTheSameValues) {
   std::map<std::string, const schema::Format*> by_id;
   for (const auto& [name, format] : formats()) by_id[std::string(format->id)] = format;

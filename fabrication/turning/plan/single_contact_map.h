@@ -32,7 +32,7 @@ class SingleContactMap {
  private:
   static constexpr std::size_t kCells = 256;  ///< number of cells along each side of the map
 
-  /// Marks the cells of a rectangle, and all cells within the radius of the nose around it, as cells without a proved
+  /// Marks the cells of a rectangle, and all cells within the radius of the nose around it, as cells without a proven
   /// single contact.
   void clear_around(const geometry::Vec2& low, const geometry::Vec2& high, double nose_mm);
 

@@ -52,7 +52,8 @@ TEST(Readings, OfAPointHaveItsValueAsTheirLeast) {
   for (int point = 1; point <= 14; ++point)
     EXPECT_EQ(least(values, "r." + std::to_string(point) + "."), values.at("p." + std::to_string(point))) << point;
   EXPECT_EQ(least(values, "r."), values.at("w"));
-  // Two of the points are measured at V = 5 and V = -5. Each geometry is measured at two rotations of the part.
+  // Two of the points are each measured at both V = 5 and V = -5. Every geometry is measured at two rotations of the
+  // part.
   EXPECT_EQ(std::ranges::count_if(values, [](const auto& v) { return v.first.starts_with("r."); }), 12 * 2 + 2 * 4);
 }
 
