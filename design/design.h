@@ -63,7 +63,7 @@ struct MicrofacetTexture {
 };
 struct HeightMapTexture {
   std::string name;  ///< name of the file, as given
-  /// Path of the file, from the working directory; make_model() checks the file when it reads it.
+  /// Path of the file, relative to the working directory; make_model() checks the file when it reads it.
   std::filesystem::path file;
   /// Axis of the map that is horizontal on a facet. For a prism, it is parallel to the roof edge.
   HeightMapAxis horizontal_axis = HeightMapAxis::x;
@@ -81,12 +81,12 @@ struct FormTerm {
 };
 struct FormMap {
   std::string name;  ///< name of the file, as given
-  /// Path of the file, from the working directory; make_model() checks the file when it reads it.
+  /// Path of the file, relative to the working directory; make_model() checks the file when it reads it.
   std::filesystem::path file;
   HeightMapAxis horizontal_axis = HeightMapAxis::x;
   int degree = 4;  ///< degree of the polynomial that is fitted to the map, 2..8
 };
-/// Deviation of the retro facets from planes, the same for all facets. It is the sum of the three members.
+/// Deviation of the retro facets from planes. It is the sum of the three members, and it is equal for all facets.
 struct FormOfFacets {
   /// Sag of a paraboloid into the body, from the farthest corner of the facet to the facet's centre.
   double sink_um = 0.0;
@@ -115,7 +115,7 @@ struct LightSpectrum {
   };
   Kind kind = Kind::illuminant_a;
   std::string name;            ///< name of the file, as given; empty if there is none
-  std::filesystem::path file;  ///< path of the file, from the working directory; empty if there is none
+  std::filesystem::path file;  ///< path of the file, relative to the working directory; empty if there is none
   std::vector<Line> lines;     ///< in ascending order of wavelength
   bool photopic = true;        ///< true: results are fractions of the luminous flux; false: of the power
 };
@@ -123,14 +123,14 @@ struct LightSpectrum {
 /// Image that selects elements of an array: the array has elements where pixels are dark.
 struct ArrayMask {
   std::string name;            ///< name of the file, as given
-  std::filesystem::path file;  ///< path of the file, from the working directory
+  std::filesystem::path file;  ///< path of the file, relative to the working directory
   double threshold = 0.7;      ///< pixels with grey < threshold * 255 are dark and have elements
 };
 
 /// File with planes of individual facets. They replace the nominal planes of the facets.
 struct FacetPlanesFile {
   std::string name;  ///< name of the file, as given
-  /// Path of the file, from the working directory; part_of() checks the file when it reads it.
+  /// Path of the file, relative to the working directory; part_of() checks the file when it reads it.
   std::filesystem::path file;
   /// Planes that replace those of the file. If the pointer is null, the file is read.
   std::shared_ptr<const geometry::FacetPlanes> planes = {};
@@ -146,7 +146,7 @@ struct ElementArray {
 /// Mesh that is the whole part.
 struct PartMesh {
   std::string name;            ///< name of the STL file, as given
-  std::filesystem::path file;  ///< path of the file, from the working directory; part_of_design() reads the file
+  std::filesystem::path file;  ///< path of the file, relative to the working directory; part_of_design() reads the file
   /// True if a mesh that is not closed is traced. Its openings are then closed by flat patches.
   bool allow_open = false;
   std::optional<double> thickness_mm;  ///< thickness that the mesh must have; not checked if empty
@@ -190,9 +190,10 @@ using Shape = std::variant<ElementArray, PartMesh, Plate, ZonedPart, raytrace::B
 
 /// File with a curved entrance face. It replaces the plane entrance face.
 struct EntranceFile {
-  std::string name;            ///< name of the file, as given
-  std::filesystem::path file;  ///< path of the file, from the working directory; entrance_of_design() reads the file
-  bool is_mesh = false;        ///< true: an STL file; false: the file of a turned part
+  std::string name;  ///< name of the file, as given
+  /// Path of the file, relative to the working directory; entrance_of_design() reads the file.
+  std::filesystem::path file;
+  bool is_mesh = false;  ///< true: an STL file; false: the file of a turned part
   /// True if the mesh is a counterpart that is located above the entrance face. The entrance face then consists of the
   /// triangles of the mesh that face downward.
   bool mesh_bottom = false;
@@ -203,7 +204,7 @@ struct EntranceFile {
 /// Glass catalogue.
 struct GlassCatalogueFile {
   std::string name;  ///< name of the file, as given
-  /// Path of the file, from the working directory; make_model() checks the file when it reads it.
+  /// Path of the file, relative to the working directory; make_model() checks the file when it reads it.
   std::filesystem::path file;
 };
 

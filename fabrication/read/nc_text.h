@@ -101,7 +101,7 @@ bool starts_with_word(std::string_view text, std::string_view word);
 struct NcCode {
   double number = 0.0;
   int group = 0;  ///< modal group; a line may have one code of each group; 0 for no group
-  /// Effect on the block; null for a dwell, whose time is another word of the line.
+  /// Effect on the block; null for a dwell, because another word of the line gives its time.
   void (*effect)(NcBlock&) = nullptr;
 };
 

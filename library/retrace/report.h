@@ -1,6 +1,6 @@
 #pragma once
 
-// Makes one HTML page of several results, and reads results of former versions.
+// Creates one HTML page from several results, and converts results of former versions to the current version.
 
 #include <string>
 #include <vector>

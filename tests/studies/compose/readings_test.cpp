@@ -1,5 +1,5 @@
-// Tests of quantities that are single readings or single directions, whose values can be added for mixtures. They are
-// compared with quantities that are the minimum or the mean of several readings or directions.
+// Tests of quantities that are single readings or single directions. The values of such quantities can be added for
+// mixtures. The tests compare these quantities with the minimum or the mean of several readings or directions.
 
 #include <gtest/gtest.h>
 
