@@ -239,6 +239,9 @@ struct CoatingLayer {
   bool operator==(const CoatingLayer&) const = default;
 };
 
+/// Layer that `facet_coating = "aluminium"` describes.
+inline const CoatingLayer kPlainAluminium = {"aluminium", 1.0, 0.0, {}};
+
 /// Coatings of the faces of a part. The layers of each list are ordered from the body outwards.
 struct Coating {
   std::vector<CoatingLayer> facets;    ///< at most one layer is opaque
@@ -344,8 +347,6 @@ struct Design {
   /// or, if the facets are smooth, the key of the form.
   InputLocation where_facets() const { return surface.is_smooth() ? where_form() : where_texture(); }
   std::string_view entrance_key() const;
-  /// Sets the position that messages about a key report.
-  void set_where(const std::string& key, InputLocation place);
 
   // Each of these functions returns the shape, or null if the shape is of another kind.
   const ElementArray* elements() const { return std::get_if<ElementArray>(&shape); }

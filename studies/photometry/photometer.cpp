@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/task_progress.h"
+#include "design/io/design_reader.h"
 #include "design/part_of_design.h"
 #include "materials/io/spectrum_reader.h"
 #include "raytrace/engines/wavelengths.h"
@@ -101,7 +102,7 @@ design::Design lit(design::Design design, const PhotometrySettings& request, con
   spectrum.photopic = false;
   for (const double w : light.wavelengths_nm) spectrum.lines.push_back({w, 1.0});
   design.light.colour = spectrum;
-  design.set_where("body.absorption_per_mm", {request.dye, 0, "absorption_per_mm"});
+  set_where(design, "body.absorption_per_mm", {request.dye, 0, "absorption_per_mm"});
   return design;
 }
 

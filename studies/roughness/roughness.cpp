@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/number_format.h"
 #include "core/task_progress.h"
+#include "design/io/design_reader.h"
 #include "requests/descriptions.h"
 #include "surface_models/scatter/phase.h"
 
@@ -33,7 +34,7 @@ design::Design textured(const design::Design& design, const RoughnessPoint& poin
   design::Design rough = design;
   rough.surface.texture = design::HarveyShackTexture{gaussian_sq_nm(point.roughness_sa_nm), point.correlation_length_um,
                                                      gaussian_sq_nm(point.waviness_sa_nm), waviness_length_um};
-  rough.set_where("surface.model", where);
+  set_where(rough, "surface.model", where);
   return rough;
 }
 

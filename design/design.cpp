@@ -1,0 +1,143 @@
+#include "design/design.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <variant>
+
+#include "core/overloaded.h"
+#include "core/schema/reader.h"
+#include "geometry/io/substrate_rows.h"
+
+namespace retrace::design {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> Design::files() const {
+  return document ? document->files() : std::vector<fs::path>();
+}
+
+namespace {
+
+/// Returns a warning for each correlation length or waviness period whose rms height is missing in the document. An
+/// explicit height of 0 causes no warning, because parameter studies vary heights starting from 0.
+Warnings lengths_without_heights(const schema::Document& document) {
+  Warnings warnings;
+  for (const auto& [length, height] : {std::pair("surface.correlation_length_um", "surface.roughness_sq_nm"),
+                                       {"surface.correlation_length_down_um", "surface.roughness_sq_nm"},
+                                       {"surface.waviness_length_um", "surface.waviness_sq_nm"},
+                                       {"entrance.correlation_length_um", "entrance.roughness_sq_nm"}})
+    if (document.number_if(length).value_or(0.0) > 0.0 && document.has(length) && !document.has(height))
+      warnings.push_back(
+          {"key_without_effect",
+           InputError(document.where(length), fmt::format("has no effect: give {} as well, or remove it", height))
+               .what()});
+  return warnings;
+}
+
+}  // namespace
+
+Warnings Design::warnings() const {
+  if (!document) return {};
+  Warnings warnings = schema::renamed_keys(*document);
+  append(warnings, schema::superseded_keys(*document));
+  append(warnings, lengths_without_heights(*document));
+  return warnings;
+}
+
+InputLocation Design::where(std::string_view key) const {
+  return document ? document->where(key) : InputLocation{source, 0, std::string(key)};
+}
+
+InputLocation Design::where_texture() const {
+  for (const std::string_view key : {"surface.height_map", "surface.model", "surface.roughness_sq_nm"})
+    if (document && document->has(key)) return where(key);
+  return where("surface.waviness_sq_nm");
+}
+
+InputLocation Design::where_form() const {
+  for (const std::string_view key : {"form.map", "form.terms", "form.sink_um"})
+    if (document && document->has(key)) return where(key);
+  return where("form");
+}
+
+InputLocation Design::where_entrance_scatters() const {
+  const EntranceState& face = surface.entrance;
+  return where(face.drop_coverage > 0.0      ? "entrance.drop_coverage"
+               : face.dust_coverage > 0.0    ? "entrance.dust_coverage"
+               : face.scratch_coverage > 0.0 ? "entrance.scratch_coverage"
+               : face.haze > 0.0             ? "entrance.haze"
+                                             : "entrance.roughness_sq_nm");
+}
+
+bool Coating::has_opaque_facets() const {
+  return std::ranges::any_of(facets, [](const CoatingLayer& layer) { return !layer.thickness_nm; });
+}
+
+bool Coating::has_only_aluminium_on_facets() const {
+  return facets.size() == 1 && facets[0] == kPlainAluminium;
+}
+
+std::optional<GlassCatalogueFile> with_absolute_path(const std::optional<GlassCatalogueFile>& catalogue) {
+  if (!catalogue) return std::nullopt;
+  const fs::path file = fs::absolute(catalogue->file).lexically_normal();
+  return GlassCatalogueFile{file.string(), file};
+}
+
+std::string_view Design::entrance_key() const {
+  return entrance && entrance->is_mesh ? "entrance_surface.mesh" : "entrance_surface.turned_part";
+}
+
+const ArrayMask* Design::mask() const {
+  return elements() != nullptr && elements()->mask ? &*elements()->mask : nullptr;
+}
+
+const FacetPlanesFile* Design::facet_planes() const {
+  return elements() != nullptr && elements()->facet_planes ? &*elements()->facet_planes : nullptr;
+}
+
+double Design::thickness_mm() const {
+  return std::visit(Overloaded{[](const ElementArray& array) { return array.part.thickness_mm; },
+                               [](const PartMesh& mesh) { return mesh.thickness_mm.value_or(0.0); },
+                               [](const Plate& plate) { return plate.thickness_mm; },
+                               [](const ZonedPart& zoned) { return zoned.spec.thickness_mm; },
+                               [](const raytrace::BallLayer&) { return 0.0; }},
+                    shape);
+}
+
+void require_supported(const Design& design, const Capabilities& capabilities) {
+  const std::string what(capabilities.what);
+  const auto refuse_solid = [&](std::string_view key, std::string_view solid) {
+    if (!capabilities.solids)
+      throw InputError(
+          design.where(key),
+          fmt::format("{} does not support a {}, only a part that is described by one [element] and one [array]", what,
+                      solid));
+  };
+  std::visit(Overloaded{[&](const ElementArray& array) {
+                          if (array.part.substrate && !capabilities.substrates)
+                            throw InputError(design.where(geometry::substrate_shape_key(*array.part.substrate)),
+                                             what + " does not support a [substrate], only elements on a plane");
+                        },
+                        [&](const PartMesh&) { refuse_solid("part.mesh", "mesh"); },
+                        [&](const Plate&) { refuse_solid("part.plate_mm", "plate"); },
+                        [&](const ZonedPart&) {
+                          if (!capabilities.zones) refuse_solid("zone", "part with zones");
+                        },
+                        [&](const raytrace::BallLayer&) {
+                          if (!capabilities.balls)
+                            throw InputError(design.where("element.kind"),
+                                             "balls are supported only by retrace rre, photometry and inspect");
+                        }},
+             design.shape);
+  if (design.entrance && !capabilities.entrances)
+    throw InputError(design.where(design.entrance_key()),
+                     what + " does not support an [entrance_surface], only a plane entrance face");
+  if (design.wet_back && !capabilities.wet_backs)
+    throw InputError(design.where("wet_back.index"),
+                     what + " does not support a [wet_back], only the same medium behind all elements");
+}
+
+}  // namespace retrace::design
