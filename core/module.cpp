@@ -21,8 +21,8 @@ void* module_function(const Module& module) {
   void* const function = loaded == nullptr ? nullptr : ::dlsym(loaded, std::string(module.function).c_str());
   if (function != nullptr) return function;
   const char* const why = ::dlerror();
-  throw OutputError(fmt::format("{}: {}; {} is in the Debian package {}", module.missing_message,
-                                why != nullptr ? why : "the module is damaged", module.library, module.package));
+  throw OutputError(fmt::format("{}: {}; install the Debian package {}, which contains {}", module.missing_message,
+                                why != nullptr ? why : "the module is damaged", module.package, module.library));
 }
 
 }  // namespace retrace

@@ -320,8 +320,7 @@ class Values {
   void refuse(const std::string& path, const Row& row, TomlTable& source) {
     if (row.zero_is_none && source.shape_of(row.key) == Shape::number && source.number(row.key) == 0.0)
       return document_.drop(path);
-    document_.fail(path,
-                   fmt::format("{}, got {}", refusal(*document_.refused_by(row.when, path)), source.shown(row.key)));
+    document_.fail(path, refusal(*document_.refused_by(row.when, path)));
   }
 
   /// Refuses a word that the row `served`, which applies, does not allow although another row of the key allows it. The

@@ -66,7 +66,7 @@ void check_absorption(const Document& document) {
       document.fail(kAbsorption, fmt::format("wavelengths must ascend, got {} after {}", shortest(curve[k][0]),
                                              shortest(curve[k - 1][0])));
   if (curve.size() < 2)
-    document.fail(kAbsorption, "must be a number or a list of two or more pairs, got a list of one");
+    document.fail(kAbsorption, "must be a number or a list of two or more pairs, got a list of one pair");
 }
 
 void check_lines(const Document& document) {

@@ -160,7 +160,7 @@ class Reader {
   /// Adds a cap to its element. Caps must follow the facets of their element, in the order of the facets.
   void take_cap(const FacetRow& row) {
     if (elements_.empty() || elements_.back().planes.empty() || elements_.back().centre_mm != row.centre_mm)
-      fail(row.line, "facet", "must follow the three facets of its element");
+      fail(row.line, "facet", "must come after the rows of the three facets of its element");
     auto& caps = elements_.back().caps;
     const std::size_t k = row.facet - kCaps;
     if (caps[k] || (k > 0 && !caps[k - 1])) fail(row.line, "facet", "must be in the order 7, 8, 9");

@@ -378,8 +378,9 @@ std::optional<ZoneFault> fault_of_zones(const ZonedSpec& spec) {
       covered_mm2 += area(region);
     }
   if (spec.area_mm2() - covered_mm2 > near_mm2)
-    return ZoneFault{spec.zones.size() - 1, fmt::format("the zones leave {:.6g} of {:.6g} mm2 of the part uncovered",
-                                                        spec.area_mm2() - covered_mm2, spec.area_mm2())};
+    return ZoneFault{spec.zones.size() - 1,
+                     fmt::format("the zones leave {:.6g} mm2 of the part uncovered, which has {:.6g} mm2",
+                                 spec.area_mm2() - covered_mm2, spec.area_mm2())};
   return std::nullopt;
 }
 
