@@ -20,8 +20,8 @@ constexpr Words kPartialElements = {"cut", "omit"};
 constexpr Words kSides = {"top", "bottom"};
 
 constexpr Condition kElementOfNoBall = is_not(kKind, kBall, "not allowed for kind = \"ball\", which has diameter_mm");
-constexpr Condition kArrayOfNoBall =
-    is_not(kKind, kBall, "not allowed for kind = \"ball\", because a layer of balls is infinite and its spacing is gap_mm");
+constexpr Condition kArrayOfNoBall = is_not(
+    kKind, kBall, "not allowed for kind = \"ball\", because a layer of balls is infinite and its spacing is gap_mm");
 
 constexpr Condition kPrismOnly[] = {kElementOfNoBall,
                                     is(kKind, kRtp, "only allowed for kind = \"rtp\"; other kinds have aperture_mm")};
