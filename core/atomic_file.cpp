@@ -211,24 +211,24 @@ fs::path followed(const fs::path& path) {
   throw InputError(InputLocation{path.string(), 0, ""}, "cannot be read: " + why);
 }
 
-[[noreturn]] void refuse_long(const std::string& name, std::size_t most_bytes) {
-  throw InputError(InputLocation{name, 0, ""}, fmt::format("must have at most {} bytes, but is larger", most_bytes));
+[[noreturn]] void refuse_long(const std::string& name, std::size_t max_bytes) {
+  throw InputError(InputLocation{name, 0, ""}, fmt::format("must have at most {} bytes, but is larger", max_bytes));
 }
 
-/// Reads a stream to its end. Stops after `most_bytes` + 1 bytes, because the stream may be infinite.
+/// Reads a stream to its end. Stops after `max_bytes` + 1 bytes, because the stream may be infinite.
 /// \param name name of the stream in messages
-/// \throw InputError if the stream has more than `most_bytes` bytes or cannot be read
-std::string read_all(std::istream& stream, const std::string& name, std::size_t most_bytes) {
+/// \throw InputError if the stream has more than `max_bytes` bytes or cannot be read
+std::string read_all(std::istream& stream, const std::string& name, std::size_t max_bytes) {
   constexpr std::size_t kPieceBytes = std::size_t{1} << 20;
   std::string text;
-  while (stream && text.size() <= most_bytes) {
+  while (stream && text.size() <= max_bytes) {
     const std::size_t before = text.size();
-    text.resize(before + std::min(kPieceBytes, most_bytes + 1 - before));
+    text.resize(before + std::min(kPieceBytes, max_bytes + 1 - before));
     stream.read(text.data() + before, static_cast<std::streamsize>(text.size() - before));
     text.resize(before + static_cast<std::size_t>(stream.gcount()));
   }
   if (stream.bad()) refuse_unreadable(name, "read error");
-  require_short_text(text, name, most_bytes);
+  require_short_text(text, name, max_bytes);
   return text;
 }
 

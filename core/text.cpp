@@ -20,6 +20,10 @@ std::string_view without_byte_order_mark(std::string_view text) {
   return text;
 }
 
+std::string path_in(std::string_view around, std::string_view name) {
+  return around.empty() ? std::string(name) : std::string(around).append(".").append(name);
+}
+
 std::string lower_case(std::string_view text) {
   std::string lower(text);
   for (char& c : lower)

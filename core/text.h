@@ -21,6 +21,9 @@ std::string_view without_byte_order_mark(std::string_view text);
 /// Returns `text` with the letters A to Z in lower case. Other characters are unchanged.
 std::string lower_case(std::string_view text);
 
+/// Returns the path of a key or table with the given name within the table at the path `around`.
+std::string path_in(std::string_view around, std::string_view name);
+
 /// Splits `text` at each separator and trims the parts. The result has at least one part, which may be empty.
 std::vector<std::string_view> split(std::string_view text, char separator);
 

@@ -37,6 +37,9 @@ struct TomlRename {
   std::string key = {};  ///< key whose value is the word; if empty, the word may be the value of any key of the table
 };
 
+/// Returns the replacements of current names by former ones, in the order that parse_toml() requires.
+std::vector<TomlRename> reversed(std::vector<TomlRename> renames);
+
 /// Former name that was found in an input and replaced by the current one.
 struct RenamedInput {
   InputLocation where;  ///< location with the former path of a key or table, or with the path of the key of a word

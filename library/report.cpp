@@ -24,8 +24,7 @@ ReportPage report_page(const std::vector<ReportPart>& parts, const std::string& 
 
 std::vector<FormerName> former_names() {
   std::vector<FormerName> names;
-  for (const report::FormerName& name : report::former_names())
-    names.push_back({std::string(name.kind), std::string(name.former), std::string(name.current)});
+  for (const report::FormerName& name : report::former_names()) names.push_back({name.kind, name.former, name.current});
   return names;
 }
 

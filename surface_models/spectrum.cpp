@@ -17,7 +17,7 @@ constexpr std::size_t kMinPoints = 8;
 /// 35 deviations with a probability of 1 in 2e7. The mean over many lines scatters less, so weaker peaks are detected.
 constexpr double kPeakHeight = 3.0;
 constexpr double kPeakDeviations = 35.0;
-constexpr double kMinPeakPower = 0.01;
+constexpr double kMinRelativePeakPower = 0.01;
 /// kLobe is the number of bins on each side that the main lobe of a Hann window occupies. kSurroundings is the number
 /// of bins beyond them, on each side, that are the surroundings of a peak.
 constexpr std::size_t kLobe = 2;
@@ -196,7 +196,7 @@ std::vector<SpectralPeak> dominant_peaks(const HeightMap& map) {
   std::stable_sort(peaks.begin(), peaks.end(),
                    [](const SpectralPeak& a, const SpectralPeak& b) { return a.sq_nm > b.sq_nm; });
   std::erase_if(peaks, [&](const SpectralPeak& peak) {
-    return peak.sq_nm * peak.sq_nm < kMinPeakPower * peaks.front().sq_nm * peaks.front().sq_nm;
+    return peak.sq_nm * peak.sq_nm < kMinRelativePeakPower * peaks.front().sq_nm * peaks.front().sq_nm;
   });
   if (peaks.size() > kMaxPeaks) peaks.resize(kMaxPeaks);
   return peaks;

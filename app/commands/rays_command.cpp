@@ -70,9 +70,10 @@ Command rays_command() {
           .summary = "paths of the rays of a file or an emitter",
           .manual =
               "Traces the rays of a file (IES TM-25, or a table), or of an emitter. Writes every ray that leaves the "
-              "part, with its term of the ledger, to the file of `--out`, whose ending selects the format. Positions "
+              "part to the file of `--out`, with the term of the ledger to which it belongs. The extension of the file "
+              "selects the format. Positions "
               "are in the frame of the part, in mm. A source is moved and rotated by `--at-mm` and `--aim-mm`, or by "
-              "`--incidence`, `--azimuth` and `--distance-mm`.\n\nMemory does not grow with the number of rays.",
+              "`--incidence`, `--azimuth` and `--distance-mm`.\n\nThe memory does not depend on the number of rays.",
           .reads = {"retrace.design/1", "rays (IES TM-25, CSV)"},
           .writes = {"retrace.rays/1", "rays (IES TM-25, CSV)"},
           .begin = begins<RaysOptions>(arguments, run)};

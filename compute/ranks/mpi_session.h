@@ -35,7 +35,7 @@ class MpiSession {
   int rank() const;
 
   /// Deals out tasks to the other ranks, and computes tasks in this process, `slots` at a time. Only for rank 0.
-  /// \pre deal() has not been called before
+  /// \pre distribute_tasks() has not been called before
   /// \return true if all tasks are finished
   /// \throw Error of the ledger, or of a task that rank 0 computed
   bool distribute_tasks(const ComputeTask& compute, TaskLedger& ledger, std::size_t slots, const Cancellation* cancel);

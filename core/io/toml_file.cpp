@@ -155,10 +155,6 @@ struct TomlSource {
 
 namespace {
 
-std::string path_in(std::string_view table, std::string_view name) {
-  return table.empty() ? std::string(name) : fmt::format("{}.{}", table, name);
-}
-
 /// Calls `act` with each table at a path, which may lead through lists of tables, and with its path in messages.
 template <class Act>
 void visit_tables(toml::table& table, std::string_view path, const std::string& shown, const Act& act) {
@@ -190,7 +186,8 @@ void replace(const TomlRename& name, toml::table& table, const std::string& show
   if (node == nullptr) return;
   const InputLocation where = source.location(*node, path_in(shown, name.former));
   if (table.contains(name.current))
-    throw InputError(where, fmt::format("is the former name of {}, which is also given; remove it", name.current));
+    throw InputError(
+        where, fmt::format("is the former name of {}, which is also given; remove the former name", name.current));
   source.renamed.push_back({where, name.former, name.current});
   node->visit([&](auto& value) { table.insert_or_assign(name.current, std::move(value)); });
   table.erase(name.former);
@@ -203,6 +200,12 @@ void replace_all(std::span<const TomlRename> names, toml::table& root, TomlSourc
 }
 
 }  // namespace
+
+std::vector<TomlRename> reversed(std::vector<TomlRename> renames) {
+  for (TomlRename& rename : renames) std::swap(rename.former, rename.current);
+  std::reverse(renames.begin(), renames.end());
+  return renames;
+}
 
 std::string current_path(std::string_view path, std::span<const TomlRename> names) {
   std::string current(path);

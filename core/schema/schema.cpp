@@ -97,10 +97,6 @@ const Table* table_at(const Table& root, std::string_view path) {
   return found != outer->tables.end() ? &*found : nullptr;
 }
 
-std::string path_in(std::string_view around, std::string_view name) {
-  return around.empty() ? std::string(name) : fmt::format("{}.{}", around, name);
-}
-
 std::string path_of_entry(std::string_view list, std::size_t index) {
   return fmt::format("{}[{}]", list, index);
 }

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "core/number_range.h"
+#include "core/text.h"
 
 namespace retrace::schema {
 
@@ -276,8 +277,7 @@ SplitPath split_path(std::string_view path);
 /// Returns the table at a path, or null if there is no such table. An empty path is the root.
 const Table* table_at(const Table& root, std::string_view path);
 
-/// Returns the path of a key or table with the given name within the table at the path `around`.
-std::string path_in(std::string_view around, std::string_view name);
+using retrace::path_in;
 /// Returns the path of an entry of a list of tables, such as "hole[1]". Indices start at 0.
 std::string path_of_entry(std::string_view list, std::size_t index);
 

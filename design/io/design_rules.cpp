@@ -113,7 +113,8 @@ void check_room(const Document& document, const PartSpec& part) {
 void check_array_on_substrate(const Document& document, const PartSpec& part) {
   constexpr std::string_view key = "substrate.kind";
   if (!document.has("substrate")) return;
-  if (part.array.extent == Extent::infinite) document.fail(key, "not allowed for extent = \"infinite\": give lengths");
+  if (part.array.extent == Extent::infinite)
+    document.fail(key, "not allowed for extent = \"infinite\": give x_length_mm and y_length_mm instead");
   if (part.array.arrangement == Arrangement::single) document.fail(key, "not allowed for arrangement = \"single\"");
   if (part.array.x_offset_mm > 0.0 || part.array.y_offset_mm > 0.0)
     document.fail(key, "not allowed together with array.x_offset_mm and y_offset_mm");
@@ -313,7 +314,7 @@ void check_entrance(const Document& document) {
   if (!document.has(key))
     document.fail(key, "missing: give the file of a turned part, or an STL file with entrance_surface.mesh");
   if (has_elements(document) && document.text("array.extent") == "infinite")
-    document.fail(key, "not allowed for extent = \"infinite\": give lengths");
+    document.fail(key, "not allowed for extent = \"infinite\": give x_length_mm and y_length_mm instead");
 }
 
 constexpr std::string_view kFormTerms = "form.terms";

@@ -106,7 +106,7 @@ void check_wet_back(const Document& document) {
   if (document.text("array.extent") == "infinite")
     document.fail(key,
                   "[wet_back] is not allowed for extent = \"infinite\", because all elements of an infinite array are "
-                  "equal: give lengths");
+                  "equal: give x_length_mm and y_length_mm instead");
   if (document.text("array.arrangement") == "single")
     document.fail(key, "[wet_back] is not allowed for arrangement = \"single\": give body.back_index");
   if (document.has("substrate")) document.fail(key, "[wet_back] is not allowed together with [substrate]");

@@ -97,7 +97,7 @@ constexpr Row kArrayRows[] = {
     where(kSizeKeys.y_offset_mm, kFiniteOnly, kZeroIsNone),
     {"partial_elements", Word{kPartialElements}, "cut",
      "Treatment of elements that cross the border of the part. `\"cut\"`: they are cut at the border. `\"omit\"`: they "
-     "are replaced by flat back.",
+     "are replaced by a flat back.",
      kNoBallArray},
     where(kSizeKeys.x_gap_mm, kGapOnly, kZeroIsNone),
     where(kSizeKeys.y_gap_mm, kGapOnly, kZeroIsNone),

@@ -120,7 +120,7 @@ double stock_mm(const Job& job, const std::vector<CutElement>& elements, double 
   const geometry::Element element = blank_element(job);
   const std::array<Opening, 2> openings = {opening_of(element, false), opening_of(element, true)};
   constexpr int kMaxRounds = 60;
-  constexpr double kMaxDepths = 3.0;
+  constexpr double kMaxStockDepths = 3.0;
   constexpr double kSettledMm = 1e-8;
   double stock = 0.0;
   for (const CutElement& cut : elements) {
@@ -139,11 +139,11 @@ double stock_mm(const Job& job, const std::vector<CutElement>& elements, double 
       }
       const double more = highest - stock;
       stock = highest;
-      if (stock > kMaxDepths * opening.depth_mm || round + 1 == kMaxRounds)
+      if (stock > kMaxStockDepths * opening.depth_mm || round + 1 == kMaxRounds)
         throw InputError(fmt::format(
             "is too steep: the tool cannot leave its cuts, because next to the element at x = {}, y = {} mm "
             "of the blank, the substrate is more than {} element depths above the rims",
-            fixed(cut.origin_mm.x(), 4), fixed(cut.origin_mm.y(), 4), shortest(kMaxDepths)));
+            fixed(cut.origin_mm.x(), 4), fixed(cut.origin_mm.y(), 4), shortest(kMaxStockDepths)));
       if (more <= kSettledMm) break;
     }
   }

@@ -102,7 +102,7 @@ struct Comment {
 struct Message {
   std::string text;
 };
-/// Visit of one element: rapid moves to the start of a subroutine, and its call.
+/// Call of a subroutine at an element, after rapid moves to its start. A visit of an element is one call for each pass.
 struct CycleCall {
   std::int32_t element = 0;
   std::uint32_t subroutine = 0;  ///< index in Program::subroutines

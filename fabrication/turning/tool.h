@@ -80,7 +80,7 @@ std::vector<SlopeSample> slopes_along(const geometry::FreeformSurface& surface, 
 
 ClearanceFigures clearance_figures(const TurningTool& tool, const std::vector<SlopeSample>& samples);
 
-/// Returns the skew closest to 0, within +-most_deg, with which the tool clears all samples. The resolution is 0.01
+/// Returns the skew closest to 0, within +-`max_deg`, with which the tool clears all samples. The resolution is 0.01
 /// degrees. Returns nothing if there is no such skew.
 std::optional<double> min_skew_deg(TurningTool tool, const std::vector<SlopeSample>& samples, double max_deg);
 

@@ -14,10 +14,10 @@ namespace retrace::geometry {
 
 namespace {
 
-// Minimum width of a facet (kSliver) and of an edge (kMinEdge), relative to an element's size. Narrower facets result
-// from rounding errors and are omitted. Narrower edges are not built.
+// Minimum width of a facet (kSliver) and of an edge (kMinRelativeEdgeWidth), relative to an element's size. Narrower
+// facets result from rounding errors and are omitted. Narrower edges are not built.
 constexpr double kSliver = 1e-9;
-constexpr double kMinEdge = 1e-7;
+constexpr double kMinRelativeEdgeWidth = 1e-7;
 // Number of times that the spherical triangle at a corner is subdivided. Two subdivisions give 16 faces.
 constexpr int kSphereHalvings = 2;
 // A rim is rounded only if the angle between its two planes is at least this value (approximately, in radians). A rim
@@ -232,7 +232,7 @@ std::vector<CellFacet> rim_planes(const Cell& cell, const CellFacet& facet, cons
 
 EdgeShape without_negligible(EdgeShape edges, double size_mm) {
   for (double* width_mm : {&edges.root_radius_mm, &edges.root_chamfer_mm, &edges.rim_radius_mm, &edges.rim_chamfer_mm})
-    if (*width_mm < kMinEdge * size_mm) *width_mm = 0.0;
+    if (*width_mm < kMinRelativeEdgeWidth * size_mm) *width_mm = 0.0;
   return edges;
 }
 

@@ -25,7 +25,7 @@ constexpr std::size_t kFlares = 3;
 /// element.
 constexpr std::size_t kCaps = 6;
 constexpr double kMaxTiltDeg = 5.0;
-constexpr double kMaxHeightFraction = 0.1;
+constexpr double kMaxHeightDeviationFraction = 0.1;
 
 /// Row of the table of facet planes.
 struct FacetRow {
@@ -131,11 +131,11 @@ class Reader {
            fmt::format("the angle to the plane of facet {1} of the design's element must be at most {0} degrees",
                        shortest(kMaxTiltDeg), row.facet + 1));
     const double nominal_mm = nominal_height_mm(row);
-    if (std::abs(row.plane.height_mm - nominal_mm) > kMaxHeightFraction * depth_mm_)
+    if (std::abs(row.plane.height_mm - nominal_mm) > kMaxHeightDeviationFraction * depth_mm_)
       fail(row.line, "height_mm",
            fmt::format("must be {} to {}, near the root of the design's element, got {}",
-                       fixed_apart(nominal_mm - kMaxHeightFraction * depth_mm_, row.plane.height_mm, 6),
-                       fixed_apart(nominal_mm + kMaxHeightFraction * depth_mm_, row.plane.height_mm, 6),
+                       fixed_apart(nominal_mm - kMaxHeightDeviationFraction * depth_mm_, row.plane.height_mm, 6),
+                       fixed_apart(nominal_mm + kMaxHeightDeviationFraction * depth_mm_, row.plane.height_mm, 6),
                        shortest(row.plane.height_mm)));
   }
 

@@ -99,10 +99,10 @@ def search(
         ends[key] = (low_high[0], low_high[1])
     rows: list[dict[str, Any]] = []
 
-    def loss(shares: Sequence[float]) -> float:
+    def loss(fractions: Sequence[float]) -> float:
         values = {
-            key: low + min(1.0, max(0.0, float(share))) * (high - low)
-            for share, (key, (low, high)) in zip(shares, ends.items())
+            key: low + min(1.0, max(0.0, float(fraction))) * (high - low)
+            for fraction, (key, (low, high)) in zip(fractions, ends.items())
         }
         row: dict[str, Any] = dict(values)
         rows.append(row)
@@ -118,7 +118,7 @@ def search(
         row["objective"] = value
         return math.inf if math.isnan(value) else value if minimize else -value
 
-    looked = [(loss(shares), shares) for shares in _first_look(len(ends), scan)]
+    looked = [(loss(fractions), fractions) for fractions in _first_look(len(ends), scan)]
     start = min(looked, key=lambda one: one[0])[1]
     step = 0.5 / max(2, round(scan ** (1 / len(ends))))
     left = max(1, evaluations - len(rows))
@@ -131,8 +131,8 @@ def search(
         method = "Nelder-Mead (scipy)"
         simplex = [start] + [
             [
-                share + (step if share < 0.5 else -step) * (k == axis)
-                for k, share in enumerate(start)
+                fraction + (step if fraction < 0.5 else -step) * (k == axis)
+                for k, fraction in enumerate(start)
             ]
             for axis in range(len(start))
         ]

@@ -40,8 +40,8 @@ class StochasticBeams {
   /// \param sampling provides the seed and the target error
   /// \param scattered tracer of the scattered light for the same part and illumination; null if facets are smooth
   /// \param observer is called one time for each returned beam that is traced exactly
-  /// \pre the engine `stochastic` can trace the model, see why_not(); `tracer`, `scattered` and `cancel` outlive this
-  /// object
+  /// \pre the engine `stochastic` can trace the model, see obstacle_for(); `tracer`, `scattered` and `cancel` outlive
+  /// this object
   StochasticBeams(const BeamTracer& tracer, const ScatteredLight* scattered, const Optics& optics,
                   const Illumination& illumination, const std::vector<double>& cones_deg, const Sampling& sampling,
                   const Cancellation* cancel = nullptr, BeamObserver observer = {});

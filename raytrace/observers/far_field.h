@@ -185,7 +185,7 @@ class FarFieldCollector {
   void put(CollectedBeam piece, const ReturnedBeam& beam);
   WaveKey wave_of(const CollectedBeam& piece) const;
   CollectedBeam moved_to_first_copy(const ReturnedBeam& beam) const;
-  /// Indices into pieces_.
+  /// Indices into beams_.
   using BeamsOfCell = std::vector<std::uint32_t>;
   geometry::Vec2 centroid_of(const BeamsOfCell& numbers) const;
   std::vector<CoherentGroup> groups_of(const BeamsOfCell& numbers, const geometry::Vec2& middle_mm) const;

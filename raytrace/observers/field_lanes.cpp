@@ -148,7 +148,7 @@ void add_fringes(const Fringes& fringes, double wave_number, const Block& x, con
   for (std::size_t k = 0; k < kBlock; k += hn::Lanes(D())) {
     const Plane here = difference(fringes.first_cosines, k);
     const Plane there = difference(fringes.second_cosines, k);
-    const Plane back = product(fringes.rotation.transpose(), there);
+    const Plane back = product(fringes.partner_map.transpose(), there);
     const V height = gaussian(fringes.spread_mm2, there);
     is_dark = is_dark && hn::AllTrue(D(), hn::Lt(height, splat(kMinLobe)));
     hn::StoreU(hn::Sub(here.x, back.x), D(), kx.data() + k);

@@ -50,17 +50,17 @@ void add_power(const std::vector<Use>& uses, const std::vector<ComplexBlock>& tr
 
 /// Interference fringes of scattered light. They arise if two paths, such as a path and its reverse, meet the same
 /// points of a rough facet. Light of such a point leaves the entrance face at r on the first path. On the second path,
-/// it leaves at rotation * r + shift_mm (docs/theory/photometry.md).
+/// it leaves at partner_map * r + shift_mm (docs/theory/photometry.md).
 struct Fringes {
   Outline outline;  ///< polygon that contains all points r
-  Eigen::Matrix2d rotation;
+  Eigen::Matrix2d partner_map;
   geometry::Vec2 shift_mm;
   geometry::Vec2 first_cosines,
       second_cosines;                 ///< direction cosines of the specular light of the first and second path
   std::array<double, 2> coefficient;  ///< real and imaginary part of the amplitude of the fringes
   Eigen::Matrix2d spread_mm2;         ///< second moments of the covariance; a symmetric matrix
   /// Second moments of a Gaussian term; a symmetric matrix. Its subtraction removes the contribution of points r that
-  /// nearly coincide with rotation * r + shift_mm.
+  /// nearly coincide with partner_map * r + shift_mm.
   Eigen::Matrix2d dip_mm2;
   double dip_area_mm2;  ///< area of the points r from which the term of `dip_mm2` is subtracted
 };

@@ -22,7 +22,7 @@ constexpr double kReachInLengths = 3.6 * 1.2;
 constexpr double kMaxPhase = 200.0;
 // Numbers of grid points: minimum per interval of the radius, minimum per half circle, and increase per radian of
 // phase.
-constexpr double kMinAlong = 8.0, kMinRound = 24.0, kAlongPerRad = 0.5;
+constexpr double kMinRadialPoints = 8.0, kMinAngularPoints = 24.0, kAlongPerRad = 0.5;
 constexpr std::size_t kCoarseAlong = 6, kCoarseRound = 24;
 // Two maps between points are treated as equal if their images differ by less than this fraction of the correlation
 // length.
@@ -77,10 +77,11 @@ double covariance(const std::vector<HitPair>& pairs, const Vec2& distance_mm) {
 
 }  // namespace
 
-/// Displacements between points r of `here` and their partners turn r + shift (see Shared). `turn` is any linear map,
-/// such as a rotation by 180 degrees or a reflection. The displacement is r - (turn r + shift) = matrix r - shift.
+/// Displacements between points r of `here` and their partners partner_map r + shift (see Shared). `partner_map` is any
+/// linear map, such as a rotation by 180 degrees or a reflection. The displacement is r - (partner_map r + shift) =
+/// matrix r - shift.
 struct ScatteredField::Moves {
-  Eigen::Matrix2d matrix;  ///< identity minus `turn`
+  Eigen::Matrix2d matrix;  ///< identity minus `partner_map`
   Vec2 shift_mm;
   double stretch = 0.0;            ///< largest singular value of `matrix`
   bool is_folded = false;          ///< true if the map is nearly a reflection at a line
@@ -115,12 +116,12 @@ struct ScatteredField::Moves {
 };
 
 /// Correlation between two polygons, which may be identical. Light at a point r of `here` and light at the point
-/// turn r + shift of `there` have met the same points of facets. These facets are listed in `pairs`. The two points are
-/// called partners.
+/// partner_map r + shift of `there` have met the same points of facets. These facets are listed in `pairs`. The two
+/// points are called partners.
 struct ScatteredField::Shared {
   const FieldPolygon* here = nullptr;
   const FieldPolygon* there = nullptr;
-  Eigen::Matrix2d turn = Eigen::Matrix2d::Identity();
+  Eigen::Matrix2d partner_map = Eigen::Matrix2d::Identity();
   Vec2 shift_mm = Vec2::Zero();
   std::vector<HitPair> pairs;
   /// Logarithm of exp(-variance / 2) of `here` times exp(-variance / 2) of `there`. These are the factors by which the
@@ -128,10 +129,10 @@ struct ScatteredField::Shared {
   double log_means = 0.0;
 
   /// Returns the maximum distance between the images of a corner of `here` under this map and under another map.
-  double farthest_from(const Eigen::Matrix2d& other_turn, const Vec2& other_shift_mm) const {
+  double farthest_from(const Eigen::Matrix2d& other_map, const Vec2& other_shift_mm) const {
     double most = 0.0;
     for (const Vec2& r : here->transform.polygon())
-      most = std::max(most, ((turn - other_turn) * r + shift_mm - other_shift_mm).norm());
+      most = std::max(most, ((partner_map - other_map) * r + shift_mm - other_shift_mm).norm());
     return most;
   }
   /// Returns true if the map is the identity, so that each point is its own partner.
@@ -146,9 +147,9 @@ struct ScatteredField::Shared {
   FlatPolygon common_places(const Vec2& distance_mm) const {
     const double merge_mm = kMergedCorners * here->transform.size_mm();
     FlatPolygon partners;
-    const Eigen::Matrix2d back = turn.inverse();
+    const Eigen::Matrix2d back = partner_map.inverse();
     for (const Vec2& r : there->transform.polygon()) partners.push_back(back * (r - shift_mm - distance_mm));
-    if (turn.determinant() < 0.0) std::reverse(partners.begin(), partners.end());
+    if (partner_map.determinant() < 0.0) std::reverse(partners.begin(), partners.end());
     return intersection(flat_outline(here->transform.polygon()), partners, merge_mm);
   }
 
@@ -165,12 +166,12 @@ struct ScatteredField::Shared {
         Shared one{&here, &there, Eigen::Matrix2d::Identity(), Vec2::Zero(), {{&a, &b}}, log_means};
         if (&a != &b) {
           const Eigen::Matrix<double, 2, 3> inverse = square.inverse() * b.slope.transpose();
-          one.turn = inverse * a.slope;
+          one.partner_map = inverse * a.slope;
           one.shift_mm = inverse * (a.constant_mm - b.constant_mm);
-          if (std::abs(one.turn.determinant()) < kMinDeterminant) continue;
+          if (std::abs(one.partner_map.determinant()) < kMinDeterminant) continue;
         }
         const auto same = std::find_if(found.begin(), found.end(), [&](const Shared& s) {
-          return s.farthest_from(one.turn, one.shift_mm) < kOneMap * shortest_mm;
+          return s.farthest_from(one.partner_map, one.shift_mm) < kOneMap * shortest_mm;
         });
         if (same == found.end())
           found.push_back(std::move(one));
@@ -182,7 +183,7 @@ struct ScatteredField::Shared {
 };
 
 ScatteredField::Moves::Moves(const Shared& shared)
-    : matrix(Eigen::Matrix2d::Identity() - shared.turn), shift_mm(shared.shift_mm) {
+    : matrix(Eigen::Matrix2d::Identity() - shared.partner_map), shift_mm(shared.shift_mm) {
   const Eigen::JacobiSVD<Eigen::Matrix2d> singular(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
   stretch = singular.singularValues()[0];
   is_folded = singular.singularValues()[1] < kFolded * stretch;
@@ -213,11 +214,12 @@ ScatteredField::ScatteredField(double wavelength_mm, const Eigen::Matrix2cd& coh
   double width_mm = 0.5 * shortest_mm_ / std::sqrt(std::max(1.0, greatest_variance));
   for (double from = 0.0; from < reach_mm;) {
     const double until = std::min(from + width_mm, reach_mm);
-    const auto along = static_cast<std::size_t>(kMinAlong + kAlongPerRad * phase_per_mm * (until - from));
+    const auto along = static_cast<std::size_t>(kMinRadialPoints + kAlongPerRad * phase_per_mm * (until - from));
     const GaussRule fine = gauss_legendre(along);
     for (std::size_t k = 0; k < along; ++k) {
       const double r = std::lerp(from, until, fine.nodes[k]);
-      rings_.push_back({r, (until - from) * fine.weights[k], static_cast<std::size_t>(kMinRound + phase_per_mm * r)});
+      rings_.push_back(
+          {r, (until - from) * fine.weights[k], static_cast<std::size_t>(kMinAngularPoints + phase_per_mm * r)});
     }
     const GaussRule coarse = gauss_legendre(kCoarseAlong);
     for (std::size_t k = 0; k < kCoarseAlong; ++k)
@@ -258,8 +260,8 @@ void ScatteredField::add_lobe(const Shared& shared, const CoherentGroup& group, 
       is_one ? 0.0 : (here.centroid_mm() - there.centroid_mm()).norm() - here.size_mm() - there.size_mm();
   const Amplitude field = copies * (shared.here->amplitude * coherency_ * shared.there->amplitude.adjoint()).trace() *
                           std::pow(wave_number_ / (2.0 * pi), 2.0);
-  const Vec2 turn = wave_number_ * (shared.there->cosines - shared.here->cosines);
-  const bool is_parallel = turn.norm() * here.size_mm() < 1e-6;
+  const Vec2 phase_gradient = wave_number_ * (shared.there->cosines - shared.here->cosines);
+  const bool is_parallel = phase_gradient.norm() * here.size_mm() < 1e-6;
   std::size_t at = 0;
   for (const Ring& ring : rings_) {
     if (ring.radius_mm < gap_mm) {
@@ -278,7 +280,7 @@ void ScatteredField::add_lobe(const Shared& shared, const CoherentGroup& group, 
         const FlatPolygon common = shared.common_places(distance);
         if (common.size() < 3) continue;
         Amplitude places = area(common);
-        if (!is_parallel) places = PolygonTransform({common.begin(), common.end()}).at(turn);
+        if (!is_parallel) places = PolygonTransform({common.begin(), common.end()}).at(phase_gradient);
         const Amplitude one =
             field * correlation * phasor(-wave_number_ * shared.there->cosines.dot(distance)) * places;
         if (is_one) {
@@ -331,7 +333,7 @@ void ScatteredField::add_fringes(const Shared& shared, double copies) {
   const Amplitude coefficient = strength_mm4 / (common_mm2 - dip_area_mm2) * field;
   const PolygonTransform places({common.begin(), common.end()});
   fringes_.push_back({field_lanes::Outline(places),
-                      shared.turn,
+                      shared.partner_map,
                       shared.shift_mm,
                       shared.here->cosines,
                       shared.there->cosines,

@@ -11,6 +11,9 @@
 #include "core/error.h"
 #include "core/json_text.h"
 #include "core/message_text.h"
+#include "core/schema/reader.h"
+#include "core/text.h"
+#include "design/io/design_format.h"
 
 namespace retrace::report {
 namespace {
@@ -19,18 +22,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kSchema = "retrace.";
 
-constexpr FormerName kFormerNames[] = {
-    {"", "base", "substrate"},
-    {"", "base.elements", "substrate.element_axes"},
-    {"", "front", "entrance_surface"},
-    {"", "front.turned", "entrance_surface.turned_part"},
-    {"", "zone[].share", "zone[].area_fraction"},
-    {"", "wet_back.share", "wet_back.fraction"},
-    {"", "entrance.dust_forward_share", "entrance.dust_forward_fraction"},
-    {"", "surface.height_map_level_axis", "surface.height_map_horizontal_axis"},
-    {"", "form.map_level_axis", "form.map_horizontal_axis"},
-    {"", "form.terms[].level", "form.terms[].x_power"},
-    {"", "form.terms[].down", "form.terms[].y_power"},
+/// Renamed keys and values of documents, as kind, former and current name.
+constexpr std::string_view kOfDocuments[][3] = {
     {"inspect", "base", "substrate"},
     {"inspect", "base.least_radius_mm", "substrate.min_radius_mm"},
     {"inspect", "front", "entrance_surface"},
@@ -131,8 +124,20 @@ constexpr FormerName kFormerNames[] = {
     {"reach", "reached_share_cut", "reached_fraction_cut"},
 };
 
+std::vector<FormerName> all_former_names() {
+  std::vector<FormerName> names;
+  const std::vector<TomlRename> of_designs = schema::former_names(design::design_format());
+  const std::vector<TomlRename> back = reversed(of_designs);
+  for (const TomlRename& rename : of_designs)
+    names.push_back(
+        {"", path_in(current_path(rename.table, back), rename.former), path_in(rename.table, rename.current)});
+  for (const auto& [kind, former, current] : kOfDocuments)
+    names.push_back({std::string(kind), std::string(former), std::string(current)});
+  return names;
+}
+
 /// Divides a text at a separator. The second part is empty if the text does not contain the separator.
-std::pair<std::string_view, std::string_view> split(std::string_view text, std::size_t at) {
+std::pair<std::string_view, std::string_view> split_at(std::string_view text, std::size_t at) {
   if (at == std::string_view::npos) return {text, {}};
   return {text.substr(0, at), text.substr(at + 1)};
 }
@@ -148,7 +153,7 @@ void for_objects_at(Json& json, std::string_view path, const std::function<void(
     apply(json);
     return;
   }
-  auto [name, rest] = split(path, path.find('.'));
+  auto [name, rest] = split_at(path, path.find('.'));
   if (name.ends_with("[]")) name.remove_suffix(2);
   if (const auto found = json.find(std::string(name)); found != json.end()) for_objects_at(*found, rest, apply);
 }
@@ -169,10 +174,10 @@ void rename_value(Json& object, const std::string& key, std::string_view former,
 
 /// Replaces the former names of one kind. The objects that contain the keys already have their current names.
 void replace_names(Json& json, std::string_view kind) {
-  for (const FormerName& name : kFormerNames) {
+  for (const FormerName& name : former_names()) {
     if (name.kind != kind) continue;
-    const auto [former_path, former_value] = split(name.former, name.former.find('='));
-    const auto [path, value] = split(name.current, name.current.find('='));
+    const auto [former_path, former_value] = split_at(name.former, name.former.find('='));
+    const auto [path, value] = split_at(name.current, name.current.find('='));
     const std::size_t dot = path.rfind('.');
     const std::string_view parent = dot == std::string_view::npos ? std::string_view() : path.substr(0, dot);
     const std::string key(path.substr(dot + 1));
@@ -195,12 +200,13 @@ int number_of(const std::string& version) {
 
 }  // namespace
 
-std::span<const FormerName> former_names() {
-  return kFormerNames;
+const std::vector<FormerName>& former_names() {
+  static const std::vector<FormerName> names = all_former_names();
+  return names;
 }
 
 int current_version(std::string_view kind) {
-  return !kind.empty() && std::ranges::any_of(kFormerNames, [&](const FormerName& name) { return name.kind == kind; })
+  return !kind.empty() && std::ranges::any_of(former_names(), [&](const FormerName& name) { return name.kind == kind; })
              ? 2
              : 1;
 }
@@ -209,7 +215,7 @@ DocumentSchema schema_of(const Json& document) {
   if (!document.is_object() || !document.contains("schema") || !document["schema"].is_string()) return {};
   const auto schema = document["schema"].get<std::string>();
   if (!schema.starts_with(kSchema)) return {};
-  const auto [kind, version] = split(schema, schema.find('/'));
+  const auto [kind, version] = split_at(schema, schema.find('/'));
   return {std::string(kind.substr(kSchema.size())), std::string(version)};
 }
 

@@ -3,23 +3,24 @@
 // Reads result documents of former versions, such as retrace.inspect/1, in which some keys had other names.
 
 #include <nlohmann/json_fwd.hpp>
-#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace retrace::report {
 
 /// Key of result documents, or text value of such a key, that has been renamed.
 struct FormerName {
-  std::string_view kind;  ///< kind of the document, such as "inspect"; empty for keys of designs in all documents
+  std::string kind;  ///< kind of the document, such as "inspect"; empty for keys of designs in all documents
   /// Path of the key in documents of former versions. "[]" is appended to the name of a list. If the value was renamed
   /// and not the key, "=" and the former value are appended.
-  std::string_view former;
-  std::string_view current;  ///< path in the same form in documents of the current version
+  std::string former;
+  std::string current;  ///< path in the same form in documents of the current version
 };
 
-/// Returns all renamed keys and values. If a key and a key within its value were renamed, the outer key comes first.
-std::span<const FormerName> former_names();
+/// Returns all renamed keys and values. Those of designs are the former names of the format of design files. If a key
+/// and a key within its value were renamed, the outer key comes first.
+const std::vector<FormerName>& former_names();
 
 /// Returns the current version of a kind of document, for example 2 for the kind "inspect".
 int current_version(std::string_view kind);

@@ -70,7 +70,7 @@ Warnings add_scene(Page& page, const ResultFolder& folder) {
           "path is drawn. Weaker branches, such as the reflection at the entrance face, are not drawn but are part of "
           "RRE.";
       if (!scene.remarks.empty())
-        text += fmt::format(" To keep the drawing clear, {}.", fmt::join(scene.remarks, ", "));
+        text += fmt::format(" To keep the drawing clear, {}.", fmt::join(scene.remarks, "; "));
       section.paragraphs.push_back(text);
     } catch (const Error& error) {
       section.paragraphs.push_back(std::string("The design cannot be shown here: ") + error.what());

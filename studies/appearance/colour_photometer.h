@@ -30,14 +30,14 @@ PhotometrySettings photometry_of(const MaterialRequest& request, const geometry:
 
 /// Returns a photometer for the response x, y or z. The photometer ignores light that the entrance face reflects
 /// specularly, because this light does not return to the source.
-/// \param parts number of spectral intervals, see kParts
+/// \param parts number of spectral intervals, see kIntervalsPerFunction
 Photometer photometer_of(const design::Design& design, const PhotometrySettings& request, std::size_t response,
                          std::size_t parts);
 
 /// Far fields for one direction of light.
 struct ColourFields {
   std::array<std::vector<Photometer::WeightedField>, 3> by_response;  ///< far fields for the responses x, y and z
-  /// All fields of `of_response`, with their weights in red, green and blue.
+  /// All fields of `by_response`, with their weights in red, green and blue.
   std::vector<raytrace::BandedField> weighted;
 };
 

@@ -34,7 +34,7 @@ class DirectionList {
   /// \param most maximum number of directions, from which the progress is estimated
   DirectionList(const ColourPhotometer& photometer, const LightLattice& lattice, std::size_t most,
                 ReflectionTable& table)
-      : photometer_(photometer), lattice_(lattice), max_(most), table_(table) {}
+      : photometer_(photometer), lattice_(lattice), max_directions_(most), table_(table) {}
 
   /// Returns the lattice positions of those directions of the cells that have not been computed yet.
   std::vector<LatticeIndex> missing(const std::vector<PlannedCell>& cells) const {
@@ -95,12 +95,12 @@ class DirectionList {
     const auto done = static_cast<double>(table_.directions.size());
     if (first_count_ == 0) return 0.5 * done / static_cast<double>(first);
     const auto before = static_cast<double>(first_count_);
-    return 0.5 + 0.5 * (done - before) / std::max(static_cast<double>(max_) - before, done - before);
+    return 0.5 + 0.5 * (done - before) / std::max(static_cast<double>(max_directions_) - before, done - before);
   }
 
   const ColourPhotometer& photometer_;
   const LightLattice& lattice_;
-  std::size_t max_;
+  std::size_t max_directions_;
   ReflectionTable& table_;
   std::map<LatticeIndex, std::size_t> known_;  ///< index of each lattice position in the table's list of directions
   std::size_t first_count_ = 0;                ///< number of directions of the first cells; 0 until they are computed

@@ -27,7 +27,7 @@ constexpr int kMaxSteps = 20;
 /// Probability that a calibration with correct measurements rejects one of them as an outlier.
 constexpr double kFalseAlarm = 0.01;
 /// Maximum fraction of the measurements that may be outliers.
-constexpr double kMaxOutliers = 0.1;
+constexpr double kMaxOutlierFraction = 0.1;
 /// Assumed standard deviations of the unobservable combinations. They are typical of axes that are set with dial gauges
 /// and of tools that are set under a microscope.
 constexpr double kUnobservableArcsec = 50.0;
@@ -278,7 +278,7 @@ Calibration calibrate(MeasuredParts measured) {
   check(measured, parts);
   Calibration result;
   std::vector<Measurement>& measurements = measured.measurements;
-  const auto most = static_cast<std::size_t>(std::ceil(kMaxOutliers * static_cast<double>(measurements.size())));
+  const auto most = static_cast<std::size_t>(std::ceil(kMaxOutlierFraction * static_cast<double>(measurements.size())));
   const double by_chance = max_by_chance(measurements.size());
   compute::LeastSquaresEstimate fitted = fit(parts, measured);
   for (auto [at, deviations] = worst(fitted, measurements.size()); deviations > by_chance;) {

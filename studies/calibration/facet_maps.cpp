@@ -35,7 +35,7 @@ constexpr double kTurnsDeg[] = {-2.0, -1.0, 0.0, 1.0, 2.0};
 constexpr std::size_t kFollowed = 4;
 /// Maximum number of refinement steps with all points, and also of the following steps with only the points away from
 /// edges.
-constexpr int kMaxMoves = 20;
+constexpr int kMaxRefinementSteps = 20;
 constexpr double kRoughMove = 1e-6;  ///< length of the last step with all points, in mm or rad
 /// Length of the last step with points away from edges, in mm or rad. Smaller changes have no effect, because
 /// the calibration estimates the pose again.
@@ -239,7 +239,7 @@ class Registration {
   /// Improves a pose by Gauss-Newton steps, which minimize the distances of the points from the planes below them.
   /// \param is_clear true: only points away from edges are used
   void refine(RigidMotion& pose, bool is_clear) const {
-    for (int step = 0; step < kMaxMoves; ++step) {
+    for (int step = 0; step < kMaxRefinementSteps; ++step) {
       std::vector<std::pair<Vec3, Region>> placed;
       std::vector<double> off;
       std::vector<double> off_facets;

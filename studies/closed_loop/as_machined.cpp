@@ -22,11 +22,11 @@ using namespace fabrication;
 constexpr double kArcminPerRad = 180.0 * 60.0 / std::numbers::pi;
 constexpr double kUmPerMm = 1e3;
 
-// Fractions of the published Sa that are roughness and waviness. Five facets that were finished by plunging have a mean
-// Sa of 48.9 nm. After separation at a cut-off wavelength of 80 um, their roughness has a mean Sa of 19.7 nm, and their
-// waviness has 29.9 nm (Milliken 2017, Table 3.4). Other motions are assumed to have the same fractions.
-constexpr double kRoughnessFraction = 19.7 / 48.9;
-constexpr double kWavinessFraction = 29.9 / 48.9;
+// Ratios of the Sa of roughness and of waviness to the published Sa. Five facets that were finished by plunging have a
+// mean Sa of 48.9 nm. After separation at a cut-off wavelength of 80 um, their roughness has a mean Sa of 19.7 nm, and
+// their waviness has 29.9 nm (Milliken 2017, Table 3.4). Other motions are assumed to have the same ratios.
+constexpr double kRoughnessSaRatio = 19.7 / 48.9;
+constexpr double kWavinessSaRatio = 29.9 / 48.9;
 // Temporal frequency of feed marks. They have 42.4 periods per mm at a feed of 10 mm/min (Milliken, 3.3.5).
 constexpr double kFeedMarksHz = 7.07;
 constexpr double kCorrelationLengthUm = 5.0;  // assumed; smaller than the resolution of the profilometer
@@ -52,8 +52,8 @@ double sa_of(const Job& job) {
 PredictedTexture predicted_texture(const Job& job) {
   PredictedTexture texture;
   texture.sa_nm = sa_of(job);
-  texture.roughness_sq_nm = kRoughnessFraction * texture.sa_nm * kSqPerSa;
-  texture.waviness_sq_nm = kWavinessFraction * texture.sa_nm * kSqPerSa;
+  texture.roughness_sq_nm = kRoughnessSaRatio * texture.sa_nm * kSqPerSa;
+  texture.waviness_sq_nm = kWavinessSaRatio * texture.sa_nm * kSqPerSa;
   texture.correlation_length_um = kCorrelationLengthUm;
   const double feed_mm_per_min =
       has_finishing_cuts(job) ? job.process.finishing_feed_mm_per_min : job.process.roughing_feed_mm_per_min;

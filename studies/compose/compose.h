@@ -51,7 +51,8 @@ struct ComposeRequest {
 struct FamilyCell {
   std::uint64_t point = 0;  ///< number of the point in the store
   PointValues values;
-  MixedCell mixed;  ///< goals in the order of the request; means of `part_constraints`, then of `front`
+  MixedCell mixed;  ///< values of the goals in the order of the request, then the means for `part_constraints`, then
+                    ///< those for `front`
 };
 
 struct Zone {

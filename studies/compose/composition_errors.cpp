@@ -16,7 +16,7 @@ namespace {
 /// for polynomials up to the fifth degree.
 const double kStepOfSpread = std::sqrt(3.0);
 /// Minimum step, in minutes of arc, used if the errors have no spread.
-constexpr double kMinStep = 0.1;
+constexpr double kMinStepArcmin = 0.1;
 /// Number of random sets of errors per zone at which the polynomials are compared with computed goals.
 constexpr std::size_t kChecked = 2;
 /// Maximum number of cells that are candidates for the composition optimized for the worst random parts. The number is
@@ -25,7 +25,7 @@ constexpr std::size_t kMaxCells = 8;
 
 /// Returns the largest angle error, in minutes of arc, for which goals are computed.
 double step_of(const ErrorSpread& spread) {
-  return std::max(kMinStep, kStepOfSpread * std::max(spread.cell_sigma_arcmin, spread.zone_sigma_arcmin));
+  return std::max(kMinStepArcmin, kStepOfSpread * std::max(spread.cell_sigma_arcmin, spread.zone_sigma_arcmin));
 }
 
 /// Returns random angle errors between minus and plus `step_arcmin`.

@@ -10,7 +10,7 @@ namespace retrace::studies {
 namespace {
 
 /// Fraction of the area below which a cell is not part of a mixture.
-constexpr double kMinFraction = 1e-12;
+constexpr double kFractionTolerance = 1e-12;
 /// Minimum improvement of the merit that counts, relative to 1 + |merit|.
 constexpr double kAsGood = 1e-10;
 
@@ -55,7 +55,7 @@ MixturePrices prices_of(const std::vector<double>& of_rows, std::size_t goals, s
   MixturePrices prices;
   for (std::size_t k = 0; k < goals; ++k) prices.goals.push_back(-of_rows[k]);
   for (std::size_t k = 0; k < means; ++k) prices.means.push_back(of_rows[goals + k]);
-  prices.fraction = of_rows[goals + means];
+  prices.area = of_rows[goals + means];
   return prices;
 }
 
@@ -70,7 +70,7 @@ void add_up(const std::vector<MixedCell>& cells, const CellSet& set, const std::
   mixture.means.assign(cells.front().means.size(), 0.0);
   double cost = 0.0;
   for (std::size_t k = 0; k < set.cells.size(); ++k) {
-    if (!(shares[k] > kMinFraction)) continue;
+    if (!(shares[k] > kFractionTolerance)) continue;
     const MixedCell& cell = cells[set.cells[k]];
     mixture.zones.push_back({set.cells[k], shares[k]});
     cost += shares[k] * cell.cost;
@@ -106,7 +106,7 @@ class PriceBound {
   PriceBound(const std::vector<MixedCell>& cells, const MixtureRules& rules, const MixturePrices& prices) {
     // Part of the merit that is equal for all cells: the price of each active bound on a mean times this bound, and the
     // price of the whole area.
-    double constant = prices.fraction;
+    double constant = prices.area;
     for (std::size_t k = 0; k < rules.means.size(); ++k)
       if (prices.means[k] != 0.0)
         constant += prices.means[k] * (prices.means[k] > 0.0 ? rules.means[k].upper : rules.means[k].lower);
@@ -129,7 +129,7 @@ class PriceBound {
     return std::ranges::any_of(set, [&](std::size_t cell) { return merits_[cell] > merit; });
   }
   /// Returns the upper bound of the merit for mixtures of the set.
-  double max_of(const std::vector<std::size_t>& set) const {
+  double upper_bound_of(const std::vector<std::size_t>& set) const {
     double most = -std::numeric_limits<double>::infinity();
     for (const std::size_t cell : set) most = std::max(most, merits_[cell]);
     return most;
@@ -225,7 +225,7 @@ class SetSearch {
       std::vector<std::size_t> larger = set;
       larger.push_back(cell);
       double most = mixture.merit + gain(mixture.prices, cells_[cell]);
-      for (const PriceBound& bound : bounds_) most = std::min(most, bound.max_of(larger));
+      for (const PriceBound& bound : bounds_) most = std::min(most, bound.upper_bound_of(larger));
       if (most > to_beat()) next.emplace_back(most, cell);
     }
     std::ranges::stable_sort(next, [](const auto& a, const auto& b) { return a.first > b.first; });
@@ -250,7 +250,7 @@ class SetSearch {
   /// to the minimum.
   void take(Mixture mixture) {
     if (mixture.zones.size() > max_zones_) return;
-    if (rules_.min_fraction > 0.0 && mixture.zones.back().fraction < rules_.min_fraction - kMinFraction) {
+    if (rules_.min_fraction > 0.0 && mixture.zones.back().fraction < rules_.min_fraction - kFractionTolerance) {
       CellSet set{{}, rules_.min_fraction};
       for (const ZoneFraction& zone : mixture.zones) set.cells.push_back(zone.cell);
       mixture = mixture_of(cells_, set, rules_, cancel_);
@@ -333,7 +333,7 @@ class SetSearch {
 }  // namespace
 
 double gain(const MixturePrices& prices, const MixedCell& cell) {
-  return weighted_sum(prices.goals, cell.goals) - cell.cost - weighted_sum(prices.means, cell.means) - prices.fraction;
+  return weighted_sum(prices.goals, cell.goals) - cell.cost - weighted_sum(prices.means, cell.means) - prices.area;
 }
 
 Mixture best_mixture(const std::vector<MixedCell>& cells, const MixtureRules& rules, const Cancellation* cancel,
@@ -342,8 +342,9 @@ Mixture best_mixture(const std::vector<MixedCell>& cells, const MixtureRules& ru
   all.cells.resize(cells.size());
   std::iota(all.cells.begin(), all.cells.end(), std::size_t{0});
   Mixture relaxed = mixture_of(cells, all, rules, cancel);
-  const bool holds_all = relaxed.zones.size() <= rules.max_zones &&
-                         (relaxed.zones.empty() || relaxed.zones.back().fraction >= rules.min_fraction - kMinFraction);
+  const bool holds_all =
+      relaxed.zones.size() <= rules.max_zones &&
+      (relaxed.zones.empty() || relaxed.zones.back().fraction >= rules.min_fraction - kFractionTolerance);
   if (!relaxed.is_feasible() || holds_all) return relaxed;
   return SetSearch(cells, rules, cancel, max_sets).run(relaxed);
 }

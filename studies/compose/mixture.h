@@ -32,7 +32,7 @@ struct MixtureRules {
 struct MixturePrices {
   std::vector<double> goals;  ///< price of each goal of the part; the sum is 1
   std::vector<double> means;  ///< price of each active bound of a mean; 0 if no bound is active
-  double fraction = 0.0;      ///< price of the constraint that the fractions add up to 1
+  double area = 0.0;          ///< price of the constraint that the fractions add up to 1
 };
 
 /// Returns the gain of a cell: the increase of the mixture's merit per unit of area that the cell replaces, at the

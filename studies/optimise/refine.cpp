@@ -17,7 +17,7 @@ double fraction_of(const Interval& interval, double value) {
 namespace {
 
 /// Maximum number of computed derivatives (slopes). A derivative takes about as much time as a hundred evaluations.
-constexpr int kMaxSlopes = 12;
+constexpr int kMaxDerivatives = 12;
 constexpr double kSmallestStep = 1e-8;
 constexpr double kDifference = 1e-6;
 
@@ -143,7 +143,7 @@ void run(nlopt::algorithm algorithm, const OptimiseRequest& request, Problem& pr
   optimiser.set_max_objective(objective_for_nlopt, &problem);
   std::vector<Side> sides = sides_of(request, problem);
   for (Side& side : sides) optimiser.add_inequality_constraint(excess_for_nlopt, &side, 1e-12);
-  optimiser.set_maxeval(algorithm == nlopt::LN_COBYLA ? limits.max_evaluations : kMaxSlopes);
+  optimiser.set_maxeval(algorithm == nlopt::LN_COBYLA ? limits.max_evaluations : kMaxDerivatives);
   optimiser.set_xtol_abs(kSmallestStep);
   if (algorithm == nlopt::LN_COBYLA) optimiser.set_initial_step(limits.first_step);
   std::vector<double> shares = problem.fractions();

@@ -62,8 +62,8 @@ VariedParameter size_knob(const design::Design& design) {
 
 class Search {
  public:
-  Search(const VariedParameter& knob, const TestPlan& programme, const TableOfDesign& table)
-      : knob_(knob), programme_(programme), table_(table) {}
+  Search(const VariedParameter& knob, const TestPlan& test_plan, const TableOfDesign& table)
+      : knob_(knob), test_plan_(test_plan), table_(table) {}
 
   /// Searches for the smallest change that makes the design pass. If no change does, keeps the change with the best
   /// ratio. A ratio is the minimum, over all readings, of a reading divided by its limit.
@@ -97,7 +97,7 @@ class Search {
     const auto points = table_(knob_.with(found.to), materials::kSpectralParts, kWholeTable);
     if (!points) return std::nullopt;
     found.points = *points;
-    found.verdict = verdict_of(found.points, programme_);
+    found.verdict = verdict_of(found.points, test_plan_);
     return found;
   }
 
@@ -128,7 +128,7 @@ class Search {
   }
 
   const VariedParameter& knob_;
-  const TestPlan& programme_;
+  const TestPlan& test_plan_;
   const TableOfDesign& table_;
   double best_ = knob_.from;
   bool is_cancelled_ = false;

@@ -34,9 +34,9 @@ bool is_of_class(const LimitLine& line, const std::string& name) {
 }
 
 /// Returns true if a line applies to a test plan. Lines without a colour apply to all colours.
-bool concerns(const LimitLine& line, const TestPlan& programme) {
-  return line.standard == programme.standard && is_of_class(line, programme.part_class) &&
-         (line.colour.empty() || known_colour(line.colour) == programme.colour);
+bool concerns(const LimitLine& line, const TestPlan& test_plan) {
+  return line.standard == test_plan.standard && is_of_class(line, test_plan.part_class) &&
+         (line.colour.empty() || known_colour(line.colour) == test_plan.colour);
 }
 
 /// Returns the requested name, or the only available name if no name was requested. Returns an empty name if there are
@@ -103,16 +103,16 @@ bool same_geometry(const TestPoint& a, const TestPoint& b) {
 }
 
 /// Adds a boundary of the colour. All boundaries must have one geometry, because the colour is measured only one time.
-void add_boundary(const LimitTable& table, const ColourBoundary& boundary, TestPlan& programme) {
+void add_boundary(const LimitTable& table, const ColourBoundary& boundary, TestPlan& test_plan) {
   const auto geometry = [](const ColourBoundary& b) {
     return std::tie(b.observation_deg, b.v_deg, b.substitute_v_deg, b.h_deg);
   };
-  if (!programme.boundaries.empty() && geometry(programme.boundaries.front()) != geometry(boundary))
+  if (!test_plan.boundaries.empty() && geometry(test_plan.boundaries.front()) != geometry(boundary))
     throw InputError({printable(table.source, std::string::npos), boundary.line, ""},
                      fmt::format("must have the same observation_deg, v_deg and h_deg as line {}, because the colour "
                                  "is measured only one time",
-                                 programme.boundaries.front().line));
-  programme.boundaries.push_back(boundary);
+                                 test_plan.boundaries.front().line));
+  test_plan.boundaries.push_back(boundary);
 }
 
 void refuse_doubles(const LimitTable& table, const std::vector<TestPoint>& points) {
@@ -162,37 +162,37 @@ TestPlan test_plan_of(const LimitTable& table, const std::optional<std::string>&
                       const std::optional<std::string>& part_class, const std::optional<std::string>& colour) {
   std::vector<std::string> standards;
   for (const LimitRow& row : table.rows) add_once(standards, row.standard);
-  TestPlan programme;
-  programme.standard = choice(standards, standard, {"standard"}, table.source);
-  programme.part_class = choice(classes_of(table, programme.standard), part_class, {"part_class"}, programme.standard);
+  TestPlan test_plan;
+  test_plan.standard = choice(standards, standard, {"standard"}, table.source);
+  test_plan.part_class = choice(classes_of(table, test_plan.standard), part_class, {"part_class"}, test_plan.standard);
   const std::optional<std::string> asked = colour ? std::optional(known_colour(*colour)) : std::nullopt;
-  programme.colour =
-      choice(colours_of(table, programme.standard, programme.part_class), asked, {"colour"}, programme.standard);
+  test_plan.colour =
+      choice(colours_of(table, test_plan.standard, test_plan.part_class), asked, {"colour"}, test_plan.standard);
 
   const auto add_rows = [&](const std::string& of_colour, const LimitFactor* by) {
     for (const LimitRow& row : table.rows)
-      if (row.standard == programme.standard && is_of_class(row, programme.part_class) &&
+      if (row.standard == test_plan.standard && is_of_class(row, test_plan.part_class) &&
           known_colour(row.colour) == of_colour)
-        add_points(row, by, programme.points);
+        add_points(row, by, test_plan.points);
   };
-  add_rows(programme.colour, nullptr);
+  add_rows(test_plan.colour, nullptr);
   for (const LimitFactor& factor : table.factors) {
-    if (!concerns(factor, programme)) continue;
-    const std::size_t before = programme.points.size();
+    if (!concerns(factor, test_plan)) continue;
+    const std::size_t before = test_plan.points.size();
     add_rows(known_colour(factor.reference_colour), &factor);
-    if (programme.points.size() == before)
+    if (test_plan.points.size() == before)
       throw InputError({printable(table.source, std::string::npos), factor.line, "minimum"},
                        fmt::format("must be a multiple of a colour that the table contains, got the colour {}",
                                    in_quotes(factor.reference_colour)));
   }
-  refuse_doubles(table, programme.points);
+  refuse_doubles(table, test_plan.points);
   for (const LimitArea& area : table.areas)
-    if (concerns(area, programme)) programme.areas.push_back(area);
+    if (concerns(area, test_plan)) test_plan.areas.push_back(area);
   for (const ColourBoundary& boundary : table.boundaries)
-    if (concerns(boundary, programme)) add_boundary(table, boundary, programme);
+    if (concerns(boundary, test_plan)) add_boundary(table, boundary, test_plan);
   for (const LimitGap& gap : table.gaps)
-    if (concerns(gap, programme)) programme.is_complete = false;
-  return programme;
+    if (concerns(gap, test_plan)) test_plan.is_complete = false;
+  return test_plan;
 }
 
 }  // namespace retrace::studies

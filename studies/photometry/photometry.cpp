@@ -458,12 +458,12 @@ bool add_change(const Photometer& photometer, const Plan& plan, Progress* progre
 bool add_colour(const Photometer& photometer, Progress* progress, const Cancellation* cancel,
                 PhotometryResult& result) {
   const PhotometrySettings& request = result.request;
-  const TestPlan& programme = request.test_plan;
+  const TestPlan& test_plan = request.test_plan;
   if (!measures_colour(request)) return true;
   const bool mirrors = mirrors_source(result.design);
-  const std::vector<double> v_deg = programme.boundaries.empty()
-                                        ? measured_v_deg(programme.points.front(), mirrors)
-                                        : measured_v_deg(programme.boundaries.front(), mirrors);
+  const std::vector<double> v_deg = test_plan.boundaries.empty()
+                                        ? measured_v_deg(test_plan.points.front(), mirrors)
+                                        : measured_v_deg(test_plan.boundaries.front(), mirrors);
   result.colour = measured_colour(result.design, request, photometer, v_deg, progress, cancel);
   return result.colour.has_value();
 }

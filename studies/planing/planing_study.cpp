@@ -23,7 +23,7 @@ void check_spindle(const fabrication::PlanedPart& part, const std::string& diale
 PlaningResult plane(const std::string& part_file, const std::string& dialect) {
   using namespace fabrication;
   PlaningResult result;
-  const std::string ending(ending_of(dialect));  // refuses unknown dialects before the planning begins
+  const std::string ending(fabrication::ending_of(dialect));  // refuses unknown dialects before the planning begins
   result.part = read_planed_part(part_file);
   result.warnings = result.part.warnings;
   check_spindle(result.part, dialect);

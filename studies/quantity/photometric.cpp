@@ -85,8 +85,8 @@ class PhotometricQuantity final : public Quantity {
     return result.complete ? Points{result.points, result.measured, result.readings, result.reason.text} : Points{};
   }
 
-  /// Returns the margin to the limit. Refuses a margin that lacks requested diffraction, because it would be mistaken
-  /// for a verdict.
+  /// Returns the margin to the limit.
+  /// \throw BudgetError if diffraction was requested but is not included, because the margin would not be a verdict
   Measured margin_of(const PhotometricPoint& point, const std::string& reason) const {
     if (point.lacks_diffraction && table_->request.diffraction)
       throw BudgetError(fmt::format("the margin of the photometry is undetermined: {}", reason));

@@ -38,15 +38,15 @@ RreRequest request_of(const AngleWindow& window, const AnalysisSettings& analysi
 }
 
 /// Fraction of the incident power, with its standard error.
-struct Share {
+struct ValueWithError {
   double value = 0.0;
   double std_error = 0.0;
 };
 
 /// Returns the weighted mean. All directions use the same random numbers. Therefore their errors are correlated and are
 /// added linearly.
-Share mean_of(const std::vector<Share>& shares, const std::vector<double>& weights) {
-  Share mean;
+ValueWithError mean_of(const std::vector<ValueWithError>& shares, const std::vector<double>& weights) {
+  ValueWithError mean;
   double total = 0.0;
   for (std::size_t k = 0; k < shares.size(); ++k) {
     mean.value += weights[k] * shares[k].value;
@@ -57,9 +57,9 @@ Share mean_of(const std::vector<Share>& shares, const std::vector<double>& weigh
   return {};
 }
 
-Share min_of(const std::vector<Share>& shares) {
+ValueWithError min_of(const std::vector<ValueWithError>& shares) {
   return *std::min_element(shares.begin(), shares.end(),
-                           [](const Share& a, const Share& b) { return a.value < b.value; });
+                           [](const ValueWithError& a, const ValueWithError& b) { return a.value < b.value; });
 }
 
 class FractionQuantity final : public Quantity {
@@ -71,14 +71,14 @@ class FractionQuantity final : public Quantity {
     const RreResult result = study.run(candidate.progress(), cancel);
     if (!result.complete) return std::nullopt;
     const std::size_t cones = result.designs.front().detector.acceptance_half_angle_deg.size();
-    std::vector<Share> shares;
+    std::vector<ValueWithError> shares;
     std::vector<double> weights;
     for (std::size_t k = 0; k < result.points.size(); k += cones) {
       shares.push_back(fraction_at(&result.points[k], cones));
       const double sine = std::sin(Angle::from_deg(result.points[k].incidence_deg).rad());
       weights.push_back(spec_.window.by_solid_angle ? std::abs(sine) : 1.0);
     }
-    const Share share = spec_.reduction == Reduction::min ? min_of(shares) : mean_of(shares, weights);
+    const ValueWithError share = spec_.reduction == Reduction::min ? min_of(shares) : mean_of(shares, weights);
     return Measured{share.value, share.std_error};
   }
 
@@ -107,7 +107,7 @@ class FractionQuantity final : public Quantity {
     if (request.cutoff) request.target_error.reset();
     const RreResult result = RreStudy({design_of(candidate)}, resolve(request)).run(nullptr, cancel);
     if (!result.complete) return std::nullopt;
-    std::vector<Share> slopes;
+    std::vector<ValueWithError> slopes;
     std::vector<double> weights;
     for (const RrePoint& point : result.points) {
       const auto found = std::find_if(point.derivatives.begin(), point.derivatives.end(),
@@ -130,7 +130,7 @@ class FractionQuantity final : public Quantity {
     return design;
   }
 
-  Share fraction_at(const RrePoint* points, std::size_t cones) const {
+  ValueWithError fraction_at(const RrePoint* points, std::size_t cones) const {
     const RrePoint& widest = points[cones - 1];
     if (cones == 2) return {widest.rre - points[0].rre, widest.std_error + points[0].std_error};
     return {widest.ledger.power[spec_.account], widest.std_error};

@@ -57,7 +57,7 @@ class AdaptiveCurve {
     double low = 0.0, high = 0.0;
     /// Interpolation error at the centre of the wider gap that was divided into this gap and its neighbour.
     double interpolation_error = 0.0;
-    bool parent_passed = false;  ///< `miss` was within the allowed error
+    bool parent_passed = false;  ///< `interpolation_error` was within the allowed error
   };
 
   void begin(const CurveSpan& span, const std::vector<double>& kinks);

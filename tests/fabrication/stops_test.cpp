@@ -292,7 +292,7 @@ TEST_P(Stops, RestartsFromAnyVisit) {
       const Plan partial = make_plan(c.job, machine, options);
       for (const Item& item : partial.programs.front().items)
         if (const auto* const visit = std::get_if<CycleCall>(&item)) order.push_back(*visit);
-      const std::int64_t passes = whole.stages[k].cycle_calls * whole.passes;
+      const std::int64_t passes = whole.stages[k].visits * whole.passes;
       for (std::int64_t n = 0; n < passes; ++n, ++behind) {
         if (behind == 0 || (c.name == "dmc" && n > 1)) continue;
         options.from_element = order[static_cast<std::size_t>(n)].element;

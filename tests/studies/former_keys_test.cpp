@@ -75,13 +75,6 @@ TEST(FormerKeys, AreThoseOfTheTable) {
   }
 }
 
-/// Returns replacements of current names by former ones.
-std::vector<TomlRename> reversed(std::vector<TomlRename> renames) {
-  for (TomlRename& rename : renames) std::swap(rename.former, rename.current);
-  std::ranges::reverse(renames);
-  return renames;
-}
-
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;

@@ -41,7 +41,7 @@ class CollisionCheck {
   void outside(const SweptVolume& sweep, std::span<const geometry::Vec3> corners);
 
   const BlankFace& face() const { return face_; }
-  double min_free_tool_mm() const { return min_free_tool_mm_; }
+  double required_free_tool_mm() const { return min_free_tool_mm_; }
 
  private:
   void rotary_move_from_unknown(const NcMotion& motion);

@@ -46,7 +46,7 @@ class ProgramCheck : public NcSink {
   const std::vector<RotaryPose>& rounded_poses() const { return rounded_poses_; }
   std::vector<RigidMotion> poses() const;
   const ProgramTime& time() const { return time_; }
-  double min_free_tool_mm() const { return collisions_.min_free_tool_mm(); }
+  double required_free_tool_mm() const { return collisions_.required_free_tool_mm(); }
   /// Returns the maximum depth by which the tool cuts into the walls at the ends of the elements.
   double deepest_wall_mm() const { return deepest_wall_mm_; }
   const ToolWedge& wedge() const { return wedge_; }

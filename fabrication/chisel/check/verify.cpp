@@ -269,20 +269,20 @@ ChipFigures chips_of(const VerificationModel& workpiece, const BlankFace& face, 
 }
 
 /// Simulates the programs.
-/// \param standing number of programs, at the beginning of the list, whose findings are discarded
+/// \param unchecked_programs number of programs, at the beginning of the list, whose findings are discarded
 /// \return run time of these programs
-ProgramTime simulate(const std::vector<NcProgram>& programs, std::size_t standing, ProgramCheck& check,
+ProgramTime simulate(const std::vector<NcProgram>& programs, std::size_t unchecked_programs, ProgramCheck& check,
                      FindingList& findings) {
-  ProgramTime standing_time;
+  ProgramTime unchecked_time;
   for (std::size_t k = 0; k < programs.size(); ++k) {
     check.begin(programs[k]);
     check.end(run_nc(programs[k], check));
-    if (k + 1 != standing) continue;
+    if (k + 1 != unchecked_programs) continue;
     findings.take();
-    standing_time = check.time();
+    unchecked_time = check.time();
   }
   check.finish();
-  return standing_time;
+  return unchecked_time;
 }
 
 /// Returns the rotary poses of all cuts, in the order of the programs.
@@ -334,14 +334,14 @@ MeasuredElements measured(const VerificationModel& workpiece, const ProgramCheck
 }
 
 /// Adds the maximum chip thicknesses to the result. Also adds the findings about chips, except for findings of the
-/// first `standing` programs.
-void add_chips(const std::vector<ChipFigures>& chips, const std::vector<NcProgram>& programs, std::size_t standing,
-               FindingList& findings, Verification& result) {
+/// first `unchecked_programs` programs.
+void add_chips(const std::vector<ChipFigures>& chips, const std::vector<NcProgram>& programs,
+               std::size_t unchecked_programs, FindingList& findings, Verification& result) {
   for (const ChipFigures& figures : chips) {
     result.chip_um_max = std::max(result.chip_um_max, 1e3 * figures.thickest_mm);
     result.chip_ratio_max = std::max(result.chip_ratio_max, figures.max_thickness_ratio);
     for (std::size_t k = 0; k < figures.findings.size(); ++k) {
-      if (figures.programs[k] < standing) continue;
+      if (figures.programs[k] < unchecked_programs) continue;
       Finding finding = figures.findings[k];
       finding.program = programs[figures.programs[k]].file;
       findings.add(std::move(finding));
@@ -407,7 +407,7 @@ Verification verify_programs(const Job& job, const Machine& given_machine, const
       verification_model_of(job, machine, options.tolerance_nm.value_or(default_tolerance_nm(machine, programs)));
   FindingList findings;
   ProgramCheck check(workpiece, findings, visits_of(workpiece, programs));
-  const ProgramTime standing_time = simulate(programs, options.unchecked_programs, check, findings);
+  const ProgramTime unchecked_time = simulate(programs, options.unchecked_programs, check, findings);
   const std::string first =
       programs.size() <= options.unchecked_programs ? std::string() : programs[options.unchecked_programs].file;
   Verification result;
@@ -430,8 +430,8 @@ Verification verify_programs(const Job& job, const Machine& given_machine, const
     result.root_radius_um = job.tool.edge_radius_um;
   else
     cut_with_nose(workpiece, check, poses, result);
-  result.free_tool_length_mm = check.min_free_tool_mm();
-  result.time = check.time() - standing_time;
+  result.free_tool_length_mm = check.required_free_tool_mm();
+  result.time = check.time() - unchecked_time;
   result.findings = findings.take();
   return result;
 }

@@ -54,7 +54,7 @@ struct Stage {
   int cuts = 0;               ///< total number of layers, or of finishing cuts, on each facet
   double remaining_mm = 0.0;  ///< thickness of the material that remains on the cut facets after this stage
   /// Number of planned visits of elements. A visit consists of one call of the subroutine for each parallel pass.
-  std::int64_t cycle_calls = 0;
+  std::int64_t visits = 0;
   TimeBreakdown time;
 };
 

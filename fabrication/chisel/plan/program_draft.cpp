@@ -63,17 +63,17 @@ void ProgramDraft::traverse(Axis axis, double to_mm) {
   add(move);
 }
 
-void ProgramDraft::add_cycle_call(const CycleCall& visit, const LinearPosition& end, const TimeBreakdown& routine,
+void ProgramDraft::add_cycle_call(const CycleCall& call, const LinearPosition& end, const TimeBreakdown& routine,
                                   Stage& stage) {
-  for (const Move& move : approach(at_, visit))
+  for (const Move& move : approach(at_, call))
     go(move, just_raised_ ? &TimeBreakdown::fixed_s : &TimeBreakdown::rapid_s, &stage);
   just_raised_ = false;
   for (double TimeBreakdown::*const part :
        {&TimeBreakdown::cutting_s, &TimeBreakdown::dwell_s, &TimeBreakdown::retract_s})
     add_time(part, routine.*part, &stage);
-  go_to(at_, linear_words(visit.start + end));
-  add(visit);
-  used_.insert(visit.subroutine);
+  go_to(at_, linear_words(call.start + end));
+  add(call);
+  used_.insert(call.subroutine);
 }
 
 void ProgramDraft::cut(double mm) {

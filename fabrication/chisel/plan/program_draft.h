@@ -38,10 +38,10 @@ class ProgramDraft {
   void rotate_to(RotaryUnits a, RotaryUnits c);
   /// Moves one linear axis to a position.
   void traverse(Axis axis, double to_mm);
-  /// Adds a visit: the rapid moves to its start, and the call of its subroutine.
+  /// Adds a call of a subroutine, after the rapid moves to its start.
   /// \param end end point of the subroutine's moves, relative to its start
   /// \param routine run time of the subroutine
-  void add_cycle_call(const CycleCall& visit, const LinearPosition& end, const TimeBreakdown& routine, Stage& stage);
+  void add_cycle_call(const CycleCall& call, const LinearPosition& end, const TimeBreakdown& routine, Stage& stage);
   /// Adds a length of cut to the use of the cutting edge.
   void cut(double mm);
   /// Moves the tool up to the height of the first move, and the rotary axes to 0.

@@ -73,9 +73,9 @@ void warm_up(const Machine& machine, ProgramDraft& program) {
 
 /// Computes the parallel passes of the tool at each visited element. Their order is reversed from one visit to the
 /// next.
-class CyclePasses {
+class VisitPasses {
  public:
-  CyclePasses(const Job& job, const Machine& machine, const std::vector<double>& offsets_mm)
+  VisitPasses(const Job& job, const Machine& machine, const std::vector<double>& offsets_mm)
       : job_(job), machine_(machine), offsets_mm_(offsets_mm) {}
 
   /// Skips visits. An odd number of skipped visits reverses the order of the passes.
@@ -100,11 +100,11 @@ class CyclePasses {
   }
 
  private:
-  void check_limits(const CycleCall& visit, const MoveExtent& reach) const {
+  void check_limits(const CycleCall& call, const MoveExtent& reach) const {
     const std::array<const LinearAxis*, 3> axes = {&machine_.x, &machine_.y, &machine_.z};
     for (const Axis axis : {kX, kY, kZ})
-      check_axis(job_, machine_, "XYZ"[axis], visit.start[axis] + reach.low[axis], visit.start[axis] + reach.high[axis],
-                 axes[axis]->limits_mm.value, visit.element);
+      check_axis(job_, machine_, "XYZ"[axis], call.start[axis] + reach.low[axis], call.start[axis] + reach.high[axis],
+                 axes[axis]->limits_mm.value, call.element);
   }
 
   const Job& job_;
@@ -309,21 +309,21 @@ class ProgramMaker {
       program_->add_cycle_call(pass, start.extent.end, routine_times_[stage.subroutine], stage);
     }
     since_stop_.has_roughed = stage.roughs;
-    ++stage.cycle_calls;
+    ++stage.visits;
     ++visits_;
     if (options_.stop_every && visits_ % *options_.stop_every == 0) program_->add(OptionalStop{});
     if (stage.roughs) roughing_.add_visit(*program_);
   }
 
-  /// Moves to the safe height if the direct path to a visit would come too close to the blank.
-  void clear_way(const CycleCall& visit, const CuttingPose& pose) {
-    if (way_.is_clear(program_->at(), visit, pose)) return;
+  /// Moves to the safe height if the direct path to a call would come too close to the blank.
+  void clear_way(const CycleCall& call, const CuttingPose& pose) {
+    if (way_.is_clear(program_->at(), call, pose)) return;
     program_->raise();
-    if (way_.is_clear(program_->at(), visit, pose)) return;
+    if (way_.is_clear(program_->at(), call, pose)) return;
     throw InputError(job_.where("machine"),
                      fmt::format("element {}: at {}{} C{}, the tool cannot approach this element without coming nearer "
                                  "to the blank than process.clearance_mm ({})",
-                                 visit.element, machine_.tilt_letter(), fixed(pose.rounded.a_deg, 4),
+                                 call.element, machine_.tilt_letter(), fixed(pose.rounded.a_deg, 4),
                                  fixed(pose.rounded.c_deg, 4), shortest(job_.process.clearance_mm)));
   }
 
@@ -339,7 +339,7 @@ class ProgramMaker {
   bool has_kinds_;
   ApproachClearance way_;
   StageOrders orders_;
-  CyclePasses passes_;
+  VisitPasses passes_;
   RoughingProgress roughing_;
   std::vector<TimeBreakdown> routine_times_;
   SafeHeights heights_;

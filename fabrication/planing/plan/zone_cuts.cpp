@@ -20,11 +20,11 @@ double flank_slope_of(const ZoneProfile& profile) {
 ZoneCutter::ZoneCutter(const ZoneProfile& profile, double grid_mm, double tolerance_mm)
     : profile_(profile), grid_mm_(grid_mm), tolerance_mm_(tolerance_mm), flank_slope_(flank_slope_of(profile)) {}
 
-std::int64_t ZoneCutter::first_position(std::size_t zone) const {
+std::int64_t ZoneCutter::first_grid_index(std::size_t zone) const {
   return static_cast<std::int64_t>(std::ceil(profile_.zones()[zone].from_mm / grid_mm_));
 }
 
-std::int64_t ZoneCutter::last_position(std::size_t zone) const {
+std::int64_t ZoneCutter::last_grid_index(std::size_t zone) const {
   return std::llround(profile_.zones()[zone].to_mm / grid_mm_);
 }
 
@@ -50,9 +50,9 @@ std::optional<ZoneCut> ZoneCutter::at_depth(std::size_t zone, std::int64_t depth
   const auto place = [&](double depth_mm) {
     return profile_.position_in_zone_mm(zone, std::max(depth_mm, 0.0)) / grid_mm_;
   };
-  const std::int64_t last = last_position(zone);
+  const std::int64_t last = last_grid_index(zone);
   const std::int64_t low =
-      std::max(first_position(zone), static_cast<std::int64_t>(std::ceil(place(middle - 0.5 * grid_mm_))));
+      std::max(first_grid_index(zone), static_cast<std::int64_t>(std::ceil(place(middle - 0.5 * grid_mm_))));
   const std::int64_t high = std::min(last, static_cast<std::int64_t>(std::floor(place(middle + 0.5 * grid_mm_))));
   if (low == high) return ZoneCut{zone, low, depth};  // exactly one grid point is at this depth
   if (low < high) {
@@ -67,7 +67,7 @@ std::optional<ZoneCut> ZoneCutter::at_depth(std::size_t zone, std::int64_t depth
   }
   // No grid point is at this depth. Cut at the nearest one only if a cut at the next depth would leave more than the
   // tolerance.
-  const std::int64_t nearest = std::clamp<std::int64_t>(std::llround(place(middle)), first_position(zone), last);
+  const std::int64_t nearest = std::clamp<std::int64_t>(std::llround(place(middle)), first_grid_index(zone), last);
   const auto next =
       std::min(last, static_cast<std::int64_t>(std::llround(place(static_cast<double>(next_depth) * grid_mm_))));
   if (next <= nearest || cusp_height_mm(zone, before, cut_at(zone, next)) <= tolerance_mm_) return std::nullopt;
@@ -77,7 +77,7 @@ std::optional<ZoneCut> ZoneCutter::at_depth(std::size_t zone, std::int64_t depth
 std::optional<std::vector<ZoneCut>> ZoneCutter::cuts_at_depths(std::size_t zone, std::int64_t quantum) const {
   const Zone& range = profile_.zones()[zone];
   const double shallowest = profile_.depth_in_zone_mm(zone, range.from_mm);
-  const ZoneCut deepest = cut_at(zone, last_position(zone));
+  const ZoneCut deepest = cut_at(zone, last_grid_index(zone));
   std::vector<ZoneCut> cuts;
   const auto before = [&]() { return cuts.empty() ? nullptr : &cuts.back(); };
   for (std::int64_t depth = quantum; depth < deepest.depth; depth += quantum) {
@@ -94,8 +94,8 @@ std::optional<std::vector<ZoneCut>> ZoneCutter::cuts_at_depths(std::size_t zone,
 
 std::vector<ZoneCut> ZoneCutter::sequential_cuts(std::size_t zone) const {
   std::vector<ZoneCut> cuts;
-  const std::int64_t last = last_position(zone);
-  std::int64_t at = first_position(zone) - 1;
+  const std::int64_t last = last_grid_index(zone);
+  std::int64_t at = first_grid_index(zone) - 1;
   while (at < last) {
     const ZoneCut* const before = cuts.empty() ? nullptr : &cuts.back();
     std::int64_t fits = at;

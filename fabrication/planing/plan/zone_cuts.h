@@ -47,8 +47,8 @@ class ZoneCutter {
   double cusp_height_mm(std::size_t zone, const ZoneCut* before, const ZoneCut& cut) const;
 
  private:
-  std::int64_t first_position(std::size_t zone) const;
-  std::int64_t last_position(std::size_t zone) const;
+  std::int64_t first_grid_index(std::size_t zone) const;
+  std::int64_t last_grid_index(std::size_t zone) const;
   ZoneCut cut_at(std::size_t zone, std::int64_t x) const;
   std::optional<ZoneCut> at_depth(std::size_t zone, std::int64_t depth, std::int64_t next_depth,
                                   const ZoneCut* before) const;

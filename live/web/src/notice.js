@@ -16,7 +16,7 @@ export class Notice {
     this.remarks = h("div", { class: "remarks", role: "status" });
     this.trouble = h("div", { class: "remarks", role: "status" });
     this.node = h("div", { class: "notice" }, this.refusal, this.trouble, this.remarks);
-    this.told = "";
+    this.shown = "";
   }
 
   start() {
@@ -34,9 +34,9 @@ export class Notice {
   }
 
   tell(design) {
-    const told = JSON.stringify([design.traces, design.why_not, design.command, design.notes, design.warnings, design.source]);
-    if (told === this.told) return;
-    this.told = told;
+    const shown = JSON.stringify([design.traces, design.why_not, design.command, design.notes, design.warnings, design.source]);
+    if (shown === this.shown) return;
+    this.shown = shown;
     const lines = [...(design.notes || []), ...(design.warnings || [])].map((text) => h("p", {}, text));
     if (!design.traces) {
       lines.unshift(h("p", { class: "cannot" }, h("strong", {}, "This page cannot trace this design: "), design.why_not));

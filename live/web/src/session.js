@@ -7,7 +7,7 @@ import { Rest } from "./rest_work.js";
 import { AT_ONCE, MOVING } from "./target_errors.js";
 
 const REST_MS = 260; // time without changes after which the computations in rest_work.js begin
-const MOST_S = 1.5; // maximum time for one direction during changes
+const MAX_SECONDS = 1.5; // maximum time for one direction during changes
 const PACE_MS = 66; // minimum time between two directions during changes, so that the page has time to draw
 const SOON_MS = 30; // time to wait after a change, because a drag often causes another change within this time
 const FRESH_MS = 3; // a change younger than this time is traced immediately
@@ -142,7 +142,7 @@ export class Session {
     if (Object.keys(this.changes).length > 0) Object.assign(job, { changes: { ...this.changes }, adapt: this.adapt });
     const at = { ...this.direction };
     job.asks = [
-      { ask: "direction", ...at, target_error: this.target_error, seconds: MOST_S },
+      { ask: "direction", ...at, target_error: this.target_error, seconds: MAX_SECONDS },
       this.spot ? { ask: "path", ...at, at_mm: this.spot } : { ask: "stories", ...at },
     ];
     if (job.changes || job.wanted || !this.part) job.asks.push({ ask: "part" });

@@ -27,8 +27,8 @@ export function short(value, digits = 4) {
   return value == null ? "–" : String(Number(value.toPrecision(digits))).replace("-", "−");
 }
 
-export function percent(share, decimals = 2) {
-  return share == null ? "–" : `${(100 * share).toFixed(decimals).replace("-", "−")} %`;
+export function percent(fraction, decimals = 2) {
+  return fraction == null ? "–" : `${(100 * fraction).toFixed(decimals).replace("-", "−")} %`;
 }
 
 /** Formats an angle in degrees, or in minutes of arc if it is small. */

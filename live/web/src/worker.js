@@ -3,7 +3,7 @@
 // jobs can run in between. `urgent` jobs run before all waiting jobs.
 import { edited } from "./toml_edit.js";
 
-const MOST_OPEN = 40;
+const MAX_OPEN = 40;
 let call = null;
 const opened = new Map(); // open designs by source and text; the most recently used design is the last
 
@@ -17,7 +17,7 @@ function ask(request) {
 function keep(key, response) {
   opened.delete(key);
   opened.set(key, response);
-  if (opened.size <= MOST_OPEN) return;
+  if (opened.size <= MAX_OPEN) return;
   const [oldest, { design }] = opened.entries().next().value;
   opened.delete(oldest);
   ask({ ask: "close", design });

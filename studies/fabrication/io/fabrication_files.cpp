@@ -123,7 +123,7 @@ std::string fabrication_json(const FabricationResult& result, const Json& setup)
     stages.push_back({{"name", stage.name},
                       {tilt_key(result.machine), pose.rounded.a_deg},
                       {"c_deg", pose.rounded.c_deg},
-                      {"elements", stage.cycle_calls},
+                      {"elements", stage.visits},
                       {"time_s", stage.time.total_s()}});
   }
   const fabrication::CuttingAngles plunge = fabrication::plunge_angles(result.job.tool);
@@ -165,7 +165,7 @@ std::string stages_csv(const FabricationResult& result) {
   for (const fabrication::Stage& stage : result.plan.stages) {
     const fabrication::CuttingPose& pose = result.plan.poses[stage.pose];
     const TimeBreakdown& t = stage.time;
-    csv.row(stage.name, pose.rounded.a_deg, pose.rounded.c_deg, stage.cycle_calls, t.total_s(), t.cutting_s, t.dwell_s,
+    csv.row(stage.name, pose.rounded.a_deg, pose.rounded.c_deg, stage.visits, t.total_s(), t.cutting_s, t.dwell_s,
             t.retract_s, t.rapid_s, t.fixed_s);
   }
   return csv.text();
@@ -192,7 +192,7 @@ std::string fabrication_table(const FabricationResult& result) {
     const fabrication::Stage& stage = plan.stages[k];
     const fabrication::CuttingPose& pose = plan.poses[stage.pose];
     text += fmt::format("  {:<28} {}{} C{}  {} elements, {}\n", stage.name, result.machine.tilt_letter(),
-                        fixed(pose.rounded.a_deg, 4), fixed(pose.rounded.c_deg, 4), stage.cycle_calls,
+                        fixed(pose.rounded.a_deg, 4), fixed(pose.rounded.c_deg, 4), stage.visits,
                         hours_text(stage.time.total_s()));
   }
   if (plan.stages.size() > kMaxStages) text += fmt::format("  and {} more\n", plan.stages.size() - kMaxStages);

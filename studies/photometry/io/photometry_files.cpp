@@ -103,7 +103,7 @@ Json colour_json(const PhotometricColour& colour) {
   return json;
 }
 
-Json programme_json(const PhotometryResult& result) {
+Json test_plan_json(const PhotometryResult& result) {
   const PhotometrySettings& asked = result.request;
   return {{"standard", asked.test_plan.standard},
           {"class", asked.test_plan.part_class},
@@ -170,11 +170,11 @@ std::string_view light_text(PhotometricLight light) {
 
 /// Returns a line with the verdict.
 /// \param reason reason of an undetermined verdict
-std::string verdict_text(Verdict verdict, const TestPlan& programme, const std::string& reason = {}) {
+std::string verdict_text(Verdict verdict, const TestPlan& test_plan, const std::string& reason = {}) {
   switch (verdict) {
     case Verdict::pass: return "verdict: pass\n";
     case Verdict::unconfirmed:
-      return programme.is_complete ? "verdict: unconfirmed - every point passes, but not every limit is confirmed\n"
+      return test_plan.is_complete ? "verdict: unconfirmed - every point passes, but not every limit is confirmed\n"
                                    : "verdict: unconfirmed - every point passes, but the table does not contain all "
                                      "requirements of the standard\n";
     case Verdict::undetermined:
@@ -184,12 +184,12 @@ std::string verdict_text(Verdict verdict, const TestPlan& programme, const std::
   return {};
 }
 
-std::string change_text(const PhotometricChange& change, const TestPlan& programme) {
+std::string change_text(const PhotometricChange& change, const TestPlan& test_plan) {
   std::string text =
       fmt::format("\n{} {} = {} (now {}):\n",
                   change.passes() ? "change that passes:" : "best change that was tried, not sufficient:", change.key,
                   shortest(change.to), shortest(change.from));
-  return text + rows_of(change.points) + verdict_text(change.verdict, programme);
+  return text + rows_of(change.points) + verdict_text(change.verdict, test_plan);
 }
 
 }  // namespace
@@ -200,7 +200,7 @@ std::string photometry_json(const PhotometryResult& result) {
                {"engine_requested", raytrace::engine_name(asked.engine)},
                {"diffraction", result.has_diffraction},
                {"design", design::to_json(result.design)},
-               {"test_plan", programme_json(result)},
+               {"test_plan", test_plan_json(result)},
                {"area_cm2", asked.area_cm2},
                {"area_limits", areas_json(asked)},
                {"light", light_name(asked.light)},
@@ -262,17 +262,17 @@ std::string first_answer_table(const PhotometricFirstAnswer& answer) {
 }
 
 std::string photometry_table(const PhotometryResult& result) {
-  const TestPlan& programme = result.request.test_plan;
-  std::string table = printable(programme.standard);
-  if (!programme.part_class.empty()) table += ", class " + printable(programme.part_class);
-  table += fmt::format(", {}, {} cm2, {}{}\n", printable(programme.colour), shortest(result.request.area_cm2),
+  const TestPlan& test_plan = result.request.test_plan;
+  std::string table = printable(test_plan.standard);
+  if (!test_plan.part_class.empty()) table += ", class " + printable(test_plan.part_class);
+  table += fmt::format(", {}, {} cm2, {}{}\n", printable(test_plan.colour), shortest(result.request.area_cm2),
                        light_text(result.request.light),
                        result.request.dye.empty() ? "" : ", dye " + printable(result.request.dye));
   table += rows_of(result.points);
   table += areas_text(result.request);
   if (result.colour) table += colour_text(*result.colour);
-  if (!result.points.empty()) table += verdict_text(result.verdict, programme, result.reason.text);
-  if (result.change) table += change_text(*result.change, programme);
+  if (!result.points.empty()) table += verdict_text(result.verdict, test_plan, result.reason.text);
+  if (result.change) table += change_text(*result.change, test_plan);
   return table;
 }
 

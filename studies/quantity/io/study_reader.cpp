@@ -12,6 +12,7 @@
 #include "core/named_file.h"
 #include "core/number_format.h"
 #include "core/schema/reader.h"
+#include "core/text.h"
 #include "core/toml_file.h"
 #include "design/io/design_format.h"
 #include "design/io/design_reader.h"
@@ -201,17 +202,11 @@ std::vector<std::string> entries_of(const Document& document, const std::string&
   return paths;
 }
 
-std::string lower(std::string text) {
-  for (char& c : text)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return text;
-}
-
 /// Checks that the names of columns are unique, ignoring upper and lower case.
 void check_columns(const Study& study, const std::vector<InputLocation>& quantity_locations) {
   std::set<std::string> taken = {"point", "failed", "reason", "elapsed_s", "version", "status"};
   const auto take = [&](const std::string& name, const InputLocation& where, std::string_view what) {
-    if (name.empty() || name.size() > 128 || printable(name, 200) != name || !taken.insert(lower(name)).second)
+    if (name.empty() || name.size() > 128 || printable(name, 200) != name || !taken.insert(lower_case(name)).second)
       throw InputError(
           where, fmt::format("{} {} is already used or is not a valid name: give another name", what, in_quotes(name)));
   };
@@ -256,10 +251,8 @@ std::string fingerprints(const std::vector<design::NamedFile>& files) {
 /// names of the first version. Stores of former versions contain such texts.
 std::vector<TomlRename> names_of_stores(const schema::Format& format) {
   std::vector<TomlRename> names = schema::former_names(format);
-  for (std::size_t i = names.size(); i-- > 0;) {
-    names.push_back(names[i]);
-    std::swap(names.back().former, names.back().current);
-  }
+  const std::vector<TomlRename> back = reversed(names);
+  names.insert(names.end(), back.begin(), back.end());
   return names;
 }
 

@@ -60,7 +60,7 @@ Json document_of(std::string_view kind, int version) {
 std::set<std::string> renamed_kinds() {
   std::set<std::string> kinds;
   for (const FormerName& name : former_names())
-    if (!name.kind.empty()) kinds.insert(std::string(name.kind));
+    if (!name.kind.empty()) kinds.insert(name.kind);
   return kinds;
 }
 
@@ -94,9 +94,9 @@ TEST(FormerNames, DocumentsOfFormerVersionsGiveTheSamePages) {
 /// Former names are replaced one by one, so that each entry of the table has an effect.
 TEST(FormerNames, EachNameIsReplaced) {
   for (const FormerName& name : former_names()) {
-    SCOPED_TRACE(std::string(name.kind) + " " + std::string(name.former));
+    SCOPED_TRACE(name.kind + " " + name.former);
     const bool is_of_design = name.kind.empty();
-    Json former = {{"schema", "retrace." + (is_of_design ? "rre" : std::string(name.kind)) + "/1"}};
+    Json former = {{"schema", "retrace." + (is_of_design ? "rre" : name.kind) + "/1"}};
     Json current = former;
     for (auto* const one : {&former, &current}) {
       const std::string path(one == &former ? name.former : name.current);
@@ -160,7 +160,7 @@ TEST(FormerNames, AreThoseOfTheTableOfTheProject) {
                        entry.at("current").get<std::string>());
   std::set<Name> names;
   for (const FormerName& name : former_names())
-    if (!name.kind.empty()) names.insert({std::string(name.kind), std::string(name.former), std::string(name.current)});
+    if (!name.kind.empty()) names.emplace(name.kind, name.former, name.current);
   EXPECT_EQ(names, expected);
 }
 

@@ -141,7 +141,7 @@ TEST(PartYield, SetsForTheWorstAreNeverWorseThanAGridOfEach) {
 }
 
 /// A goal as a function of the angle error of a prism. The goals with side = 0.5 and side = -0.5 have the same value at
-/// an error of one arcmin, where their minimum is largest.
+/// an error of one arcmin, where the smaller of the two is largest.
 class Peak : public Quantity {
  public:
   explicit Peak(double side) : Quantity(side > 0.0 ? "g.1" : "g.2"), side_(side) {}

@@ -86,7 +86,7 @@ TEST(Mixture, HoldsDuality) {
     std::vector<double> share(cells.size(), 0.0);
     for (const ZoneFraction& zone : mixture.zones) shares += share[zone.cell] = zone.fraction;
     EXPECT_NEAR(shares, 1.0, 1e-9);
-    double dual = mixture.prices.fraction + 0.4 * mixture.prices.means[0];
+    double dual = mixture.prices.area + 0.4 * mixture.prices.means[0];
     for (std::size_t k = 0; k < cells.size(); ++k) {
       const double gained = gain(mixture.prices, cells[k]);
       if (share[k] < 0.3 - 1e-9) {

@@ -31,10 +31,10 @@ double face_height_mm(const SectionPlane& plane, const DesignElement& element, c
   double up_mm = element.to_face_mm(foot, plane.up);
   if (face.is_flat()) return up_mm;
   constexpr int kRounds = 6;
-  constexpr double kMinRise = 0.05;
+  constexpr double kMinNormalCosine = 0.05;
   for (int round = 0; round < kRounds; ++round) {
     const BlankFace::Projection under = face.projection_of(foot + up_mm * plane.up);
-    up_mm -= under.height_mm / std::max(kMinRise, under.normal.dot(plane.up));
+    up_mm -= under.height_mm / std::max(kMinNormalCosine, under.normal.dot(plane.up));
   }
   return up_mm;
 }

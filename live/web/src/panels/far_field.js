@@ -3,10 +3,10 @@ import { h, s } from "../dom.js";
 import { panel } from "../frame.js";
 import { angle, percent, short } from "../units.js";
 
-const MOST = 6; // maximum number of spots in the list
+const MAX_SPOTS = 6; // maximum number of spots in the list
 const HALF = 110; // half width of the drawing in its units
 const REACHES_DEG = [0.1, 0.2, 0.5, 1, 2, 5, 10, 30, 90, 180];
-const LEAST = 1e-5; // minimum power of a spot that influences the range of the drawing
+const MIN_POWER = 1e-5; // minimum power of a spot that influences the range of the drawing
 
 export class FarFieldPanel {
   constructor(session) {
@@ -42,7 +42,7 @@ export class FarFieldPanel {
 
   /** Returns the half width of the drawing in degrees. It contains the cone and the near spots, or all spots. */
   width() {
-    const away = this.field.spots.filter(({ power }) => power > LEAST).map(({ deviation_deg }) => deviation_deg);
+    const away = this.field.spots.filter(({ power }) => power > MIN_POWER).map(({ deviation_deg }) => deviation_deg);
     const near = this.reach.value === "near" ? away.filter((deg) => deg <= Math.max(5, 3 * this.cone_deg)) : away;
     const most = 1.15 * Math.max(this.cone_deg, ...near);
     return REACHES_DEG.find((deg) => deg >= most) || 180;
@@ -76,7 +76,7 @@ export class FarFieldPanel {
     const radius = Math.max(1.4, 13 * Math.sqrt(power));
     const group = s("g", { class: depth === 0 ? "spot front" : "spot" }, s("circle", { cx: x, cy: y, r: radius }, s("title", {}, `${percent(power)} at ${angle(deviation_deg)}`)));
     const isFree = !this.labels.some(([lx, ly]) => Math.hypot(lx - x, ly - y) < 8);
-    if (k < MOST && isFree) {
+    if (k < MAX_SPOTS && isFree) {
       this.labels.push([x, y]);
       group.append(s("text", { x: x + radius + 2, y: y + 3 }, String(k + 1)));
     }
@@ -86,7 +86,7 @@ export class FarFieldPanel {
   list() {
     const { spots, other_power, total_power } = this.field;
     this.rows.replaceChildren(
-      ...spots.slice(0, MOST).map((spot, k) =>
+      ...spots.slice(0, MAX_SPOTS).map((spot, k) =>
         h(
           "tr",
           {},
@@ -98,7 +98,7 @@ export class FarFieldPanel {
         ),
       ),
     );
-    const more = spots.slice(MOST).reduce((sum, { power }) => sum + power, other_power || 0);
+    const more = spots.slice(MAX_SPOTS).reduce((sum, { power }) => sum + power, other_power || 0);
     this.rest.textContent = `The coloured ring is the acceptance cone, ${angle(this.cone_deg)}. ${percent(total_power)} of the light leaves the entrance face; ${percent(more)} in directions that are not in this list.`;
   }
 }

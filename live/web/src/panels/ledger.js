@@ -3,7 +3,7 @@
 import { h } from "../dom.js";
 import { percent, words } from "../units.js";
 
-const LEAST = 5e-5; // minimum fraction of the power for an account to be labelled
+const MIN_LABELLED = 5e-5; // minimum fraction of the power for an account to be labelled
 
 export class Ledger {
   constructor(session) {
@@ -33,7 +33,7 @@ export class Ledger {
       const share = ledger[k] || 0;
       piece.style.width = `${100 * share}%`;
       value.textContent = percent(share, 2);
-      line.hidden = share < LEAST && name !== "retroreflected";
+      line.hidden = share < MIN_LABELLED && name !== "retroreflected";
     });
     this.bar.dataset.sum = ledger.reduce((sum, share) => sum + share, 0);
   }

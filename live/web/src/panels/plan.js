@@ -32,7 +32,7 @@ function boxOf(points) {
   return { x: Math.min(...xs), y: Math.min(...ys), width: Math.max(...xs) - Math.min(...xs), height: Math.max(...ys) - Math.min(...ys) };
 }
 
-const MOST_TILES = 3; // number of periods on each side of the central period
+const MAX_TILES = 3; // number of periods on each side of the central period
 
 /** Plan of a part. It does not change while the direction of light changes. */
 class Plan {
@@ -59,7 +59,7 @@ class Plan {
   tiles() {
     if (this.periods.length < 2) return [[0, 0]];
     const [a, b] = this.periods;
-    const steps = Array.from({ length: 2 * MOST_TILES + 1 }, (_, k) => k - MOST_TILES);
+    const steps = Array.from({ length: 2 * MAX_TILES + 1 }, (_, k) => k - MAX_TILES);
     return steps.flatMap((i) => steps.map((j) => [i * a[0] + j * b[0], i * a[1] + j * b[1]]));
   }
 
