@@ -80,8 +80,8 @@ class DexelFacet {
     }
     const Vec3 travel = pose.rotation.transpose() * (sweep.to_mm - sweep.from_mm);
     const Vec3 looks = pose.rotation.transpose() * wedge.sides[0].outward;
-    // True if the move runs along the facet. A V-shaped tool runs along two facets at the same time; only the facet
-    // that its clearance face faces counts.
+    // True if the move runs along the facet. A V-shaped tool runs along two facets at the same time. Its move is
+    // assigned to the facet that its clearance face faces.
     const bool goes_along = std::abs(travel.normalized().dot(normal_)) < 0.02;
     return goes_along && (!is_cube_ || looks.dot(normal_) < -0.9) ? chip : Chip{};
   }
@@ -97,8 +97,8 @@ class DexelFacet {
     return -p.z() / normal_.z();
   }
 
-  /// Adds the interval from `low` to `high` to the disjoint intervals `parts`. Returns the length of the interval that
-  /// they did not cover before.
+  /// Adds the interval from `low` to `high` to the disjoint intervals `parts`. Returns the length that is added to
+  /// their union.
   static double take(std::vector<std::pair<double, double>>& parts, double low, double high) {
     double length = high - low;
     if (length <= 0.0) return 0.0;
@@ -155,7 +155,7 @@ double true_excess_um(const Job& job, const Machine& m, const std::string& text)
       fields.emplace_back(f, DexelFacet(groove, f, {0.0, 0.0, -0.1 * length_mm}, {length_mm, length_mm, top}, 24));
       continue;
     }
-    // One field covers the whole facet, and a finer field covers the part close to the root.
+    // One field covers the whole facet. A finer field covers the region close to the root.
     fields.emplace_back(f, DexelFacet(groove, f, {-0.01, 0.0, -0.1}, {0.01, length_mm, top}, 60));
     fields.emplace_back(f, DexelFacet(groove, f, {-0.01, 0.0, -0.1}, {0.01, 0.1, top}, 60));
   }
@@ -281,16 +281,17 @@ TEST_P(ChipFaults, AStageThatIsGoneOrStandsTooHighIsFound) {
         for (const std::optional<Nanometres> by_nm : {std::optional<Nanometres>(), {Nanometres{60'000}}}) {
           const std::string text = changed_stage(plan, k, by_nm);
           if (!verified(job, m, text).passes()) continue;
-          // The first layer can be so thin that a program without it is correct. The next layer then removes its
-          // material.
+          // The first layer can be so thin that a program without this layer is still correct. In this case, the next
+          // layer removes the material of the first layer.
           const std::string& title = plan.subroutines[k].title;
           EXPECT_TRUE(title.starts_with("layer-1") && true_excess_um(job, m, text) < 0.0) << title << " of " << cuts;
         }
     }
 }
 
-/// On a substrate, the strip that a tilted edge leaves can be as wide as the depth of cut, and chips can be thicker by
-/// the same amount. The verifier therefore finds missing finishing cuts by counting them.
+/// On a substrate, a tilted edge can leave a strip as wide as the depth of cut, so that chips can be thicker by this
+/// amount. The thickness of chips therefore does not show a missing finishing cut. The verifier must count the
+/// finishing cuts.
 TEST(FinishingFaults, AFinishingCutThatIsMissingIsFoundWhereTheEdgeIsTilted) {
   Job job = square_job(2, geometry::Arrangement::aligned);
   job.substrate = {geometry::PlaneSubstrate{0.35, 90.0}, geometry::ElementAxes::normal};

@@ -19,7 +19,8 @@
 #include "tests/fabrication/findings_text.h"
 #include "tests/fabrication/substrate_jobs.h"
 
-// Tests of the chip thickness: the measured values for known geometry, and correct programs of jobs of every kind.
+// Tests of the chip thickness. It is compared with closed forms for known geometry, and must be within its limit for
+// correct programs of jobs of every kind.
 
 namespace retrace::fabrication::test::chip_test {
 namespace {
@@ -63,8 +64,9 @@ int count_of(const std::vector<ConvexPolygon>& pieces, const Vec2& p) {
       std::count_if(pieces.begin(), pieces.end(), [&](const auto& piece) { return holds(piece, p); }));
 }
 
-/// The removed and the remaining pieces add up to the original area without overlaps, and the removed pieces are inside
-/// the body.
+/// Tests subtract(), which divides polygons into pieces inside a body (removed) and outside it (remaining). The areas
+/// of all pieces must add up to the original area. Pieces must not overlap, and the removed pieces must be inside the
+/// body.
 RC_GTEST_PROP(Chips, TakingAwayKeepsTheArea, ()) {
   const auto number = [] { return 1e-4 * *rc::gen::inRange(-10000, 10001); };
   std::vector<ConvexPolygon> pieces = {{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
@@ -126,8 +128,8 @@ RC_GTEST_PROP(Chips, HalfSpacesOfASweepHoldItsLines, ()) {
   RC_ASSERT(std::abs(std::min(span->high, 1e3) - high) < 1e-6);
 }
 
-/// A tip moves one depth of cut beyond the facet that it is not cutting. Its rake face, at 53 degrees to the wall, then
-/// removes tan 53 degrees times this depth.
+/// The tip moves one depth of cut beyond the facet that it is not cutting. The rake face, at 53 degrees to the wall,
+/// then removes a chip whose thickness is tan 53 degrees times this depth.
 TEST(Chips, ThickestOfRightProgramsIsThatOfTheRakeFace) {
   const double slope = std::tan(53.0 * M_PI / 180.0);
   Job job = square_job(1);

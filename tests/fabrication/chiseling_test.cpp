@@ -188,7 +188,7 @@ TEST(Chiseling, ANoseLeavesTheStripsOfTheFormulaAndARidge) {
       EXPECT_TRUE(v.passes()) << listed(v);
       EXPECT_EQ(v.facet_distance_nm_max, sharp.facet_distance_nm_max);
       // The formula assumes that the arc of the nose is in the plane of the facet. The arc is tilted by the clearance
-      // angle, which changes the strip by the square of this angle.
+      // angle. The relative error of the strip width is of the order of this angle squared.
       const double clearance = Angle::from_deg(job.tool.clearance_deg).rad();
       EXPECT_NEAR(v.root_chamfer_um, 1e3 * std::sqrt(2.0) * nose_strip_mm(job.tool), clearance * clearance * radius_um);
       const RoundV tool(job.tool);
@@ -215,8 +215,8 @@ TEST(Chiseling, StripsBesideEdgesShowAMissingLayer) {
 }
 
 /// The union of overlapping triangular cavities is the full-cube array (docs/theory/micro_chiseling.md). The surface
-/// and the volume of a dexel simulation are compared with a staircase of unit cubes. The cubes are identified by
-/// integer coordinates only.
+/// and the volume of a dexel simulation are compared with a staircase of unit cubes, each identified by three integer
+/// coordinates.
 TEST(Chiseling, OverlappingTriangularCavitiesAreTheFullCubeArray) {
   const Job job = cube_job(true, 0.3);
   const Machine m = machine();
@@ -482,7 +482,7 @@ TEST_F(ChiselingFaults, AWordForAnAxisThatTheMachineHasNot) {
 TEST_F(ChiselingFaults, TheTableTurnsWithTheToolInTheBlank) {
   const std::size_t turn = text_.find("G0 B", text_.find("o101 call"));
   const std::size_t lift = text_.rfind("G0 Z", turn);
-  // The rotation about B raises the tip by 100 (1 - cos B) = 18.35 mm above the position of the word Z.
+  // The rotation about B raises the tip by 100 (1 - cos B) = 18.35 mm above its programmed Z position.
   EXPECT_NE(kinds(replaced(text_, text_.substr(lift, text_.find('\n', lift) - lift), "G1 Z-18.4 F50.", lift - 1))
                 .find("rotation_too_low"),
             std::string::npos);

@@ -344,8 +344,8 @@ TEST_P(ControlState, TurnsKeepTheirClearance) {
   EXPECT_GE(found, 1);
 }
 
-/// A tilted edge leaves a strip at the root. The test ends one finishing plunge 20 nm (for Fanuc 100 nm) too high. The
-/// verifier must report that the strip at this root is then higher than the plunge should leave.
+/// A tilted edge leaves a strip at the root. The test ends one finishing plunge 20 nm (100 nm for Fanuc) too high. The
+/// verifier must report that the strip at this root is higher than expected.
 TEST_P(ControlState, RootsAreThoseOfTheirPlunge) {
   const std::string feed = fmt::format(" F{:.3f}", job_.process.finishing_feed_mm_per_min);
   int tried = 0;
@@ -399,7 +399,8 @@ TEST_P(ControlState, WhatControlsRefuse) {
   EXPECT_EQ(kinds_in(lines_), "setup");
 }
 
-/// The deviation of facets due to a coarse increment is at most the tolerance, even where two facets meet.
+/// A coarse increment of the control rounds positions and displaces facets. The displacement must be at most the
+/// tolerance, even where two facets meet.
 TEST_P(ControlState, CoarseIncrementsLeaveWhatTheyRound) {
   if (GetParam() != NcDialect::fanuc) return;
   for (const IncrementSystem system : {IncrementSystem::d, IncrementSystem::c})

@@ -35,9 +35,9 @@ SweptVolume sweep_of(const Vec3& from, const Vec3& to, std::uint32_t pose = 0) {
   return {pose, {1, 0}, false, from, to};
 }
 
-/// Returns the volume that is removed from the blank z < 0 below a rectangle. It is integrated from lines along z. Each
-/// line is exact. Across x and y, the integrand is piecewise linear, and the test places the borders of the cells at
-/// its corners.
+/// Returns the volume that is removed from the blank z < 0 below a rectangle. The volume is integrated from lines along
+/// z, each of which is computed exactly. Across x and y, the depth is piecewise linear. Cells must therefore end where
+/// the slope of the depth changes.
 double volume_by_lines(const std::vector<SweptVolume>& sweeps, const std::vector<RigidMotion>& poses,
                        const ToolWedge& wedge, double x_end, double y_low, double y_high, int cells) {
   double volume = 0.0;
@@ -130,7 +130,7 @@ RC_GTEST_PROP(Cutting, SpansAgreeWithMembership, ()) {
   const auto span = swept_span(wedge, sweep, point, direction);
   const auto is_swept = [&](const Vec3& p) {
     // Each side of the wedge bounds the path parameter t, which is 0 at the start of the move and 1 at its end. The
-    // point is swept if a value of t meets all bounds.
+    // point is swept if a value of t satisfies all bounds.
     double low = 0.0;
     double high = 1.0;
     for (const auto& side : wedge.sides) {
@@ -153,7 +153,7 @@ RC_GTEST_PROP(Cutting, SpansAgreeWithMembership, ()) {
   }
 }
 
-/// Convex hulls: a tetrahedron, and a box that approaches one of its faces.
+/// Tests whether convex hulls intersect: a tetrahedron, and a box that approaches one of its faces.
 TEST(Bodies, HullsMeetWhereTheyDo) {
   const std::vector<Vec3> tetrahedron = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   const auto cube_at = [](double corner) {
@@ -163,15 +163,16 @@ TEST(Bodies, HullsMeetWhereTheyDo) {
                         corner + ((i & 4) != 0 ? 0.5 : 0.0));
     return cube;
   };
-  // The box leaves the face x + y + z = 1 if `corner` exceeds 1 / 3, although the bounding boxes overlap until it
-  // exceeds 1.
+  // The box intersects the tetrahedron until `corner` exceeds 1 / 3, where the box passes the face x + y + z = 1. The
+  // bounding boxes overlap until `corner` exceeds 1.
   for (const double corner : {0.0, 0.2, 0.333}) EXPECT_TRUE(hulls_meet(tetrahedron, cube_at(corner))) << corner;
   for (const double corner : {0.334, 0.4, 0.9, 1.5}) EXPECT_FALSE(hulls_meet(tetrahedron, cube_at(corner))) << corner;
   EXPECT_FALSE(hulls_meet(cube_at(-0.501), tetrahedron));
   EXPECT_TRUE(hulls_meet(cube_at(-0.499), tetrahedron));
 }
 
-/// Random hulls that are built on both sides of a plane, or that have a common point.
+/// Tests random pairs of convex hulls. Hulls on opposite sides of a plane do not intersect, and hulls with a common
+/// point do.
 RC_GTEST_PROP(Bodies, HullsAgreeWithPlanesBetweenThem, ()) {
   const auto coordinate = [] { return 1e-3 * *rc::gen::resize(100, rc::gen::inRange(-1000, 1001)); };
   const auto vector = [&] {
@@ -246,8 +247,8 @@ TEST(Cutting, DexelsAgreeInVolume) {
   }
 }
 
-/// The error field must agree with the exact figures. For correct programs, it shows only unavoidable errors. If an
-/// element is raised, it shows this error at the position of the element.
+/// The error field must agree with the exact values. For correct programs, it shows only unavoidable errors. If an
+/// element is raised, the field shows this error at the position of the element.
 TEST(Cutting, TheErrorFieldShowsFaultsWhereTheyAre) {
   Job job = square_job(2, Arrangement::aligned);
   job.process.roughing_depth_um = 50;
@@ -356,7 +357,8 @@ TEST_P(Mutations, NoneThatMovesTheSurfaceGoesUnreported) {
       worst_mm = std::max(worst_mm, std::abs(before.lowest_mm[i] - after.lowest_mm[i]));
       worst_mm = std::max(worst_mm, std::abs(before.removed_mm[i] - after.removed_mm[i]));
     }
-    // A distance of 10 nm normal to a facet is sqrt(2) times as long along z. This is the maximum, except for rounding.
+    // Maximum change that may go unreported: 10 nm normal to a facet, which are sqrt(2) times as much along z, plus
+    // rounding.
     const double kMostMm = (1e-5 + 1e-12) * std::sqrt(2.0);
     if (worst_mm > kMostMm) ++moved;
     EXPECT_TRUE(is_reported || worst_mm <= kMostMm)

@@ -16,8 +16,8 @@ std::vector<MeasuredForce> table() {
   return parse_forces(read_file(std::string(RETRACE_SOURCE_DIR) + "/data/cutting_forces.csv"), "cutting_forces.csv");
 }
 
-/// Returns experiment 1: a prism of 1 mm, the third last of 142 cuts at 5 um, and the second last of 71 cuts at 10 um.
-/// Both cuts are 0.697 mm long.
+/// Returns the cut of experiment 1 on a prism of 1 mm. At a depth of 5 um, it is the third last of 142 cuts. At 10 um,
+/// it is the second last of 71 cuts. Both cuts are 0.697 mm long.
 CutConditions experiment_1(double depth_um) {
   CutConditions cut;
   cut.depth_of_cut_um = depth_um;
@@ -34,8 +34,8 @@ CutConditions experiment_2() {
   return cut;
 }
 
-/// Experiment 2 was not used for the calibration. The force at full chip load is predicted. The peaks are not
-/// predicted, and the model is not tuned to them.
+/// Experiment 2 was not used for the calibration. The model predicts the measured force at full chip load. It does not
+/// predict the measured peaks, and is not tuned to them.
 TEST(Forces, ExperimentTwoIsPredicted) {
   const ForceEvents two = force_events(calibrate(table()), experiment_2());
   EXPECT_NEAR(two.full_chip_fz_n, -1.31, 0.005);
@@ -46,8 +46,8 @@ TEST(Forces, ExperimentTwoIsPredicted) {
   EXPECT_NEAR(two.peak_fy_n, -2.77, 0.005) << "measured -1.73";
 }
 
-/// Times of the events of Figure 4.8: contact 1.00, full chip 1.07, before the root 5.18, root 5.23, ploughing from
-/// 5.33 with its peak at 5.36 s.
+/// Times of the events in Figure 4.8 of the thesis, in s: contact 1.00, full chip 1.07, before the root 5.18, root
+/// 5.23, begin of ploughing 5.33, peak of ploughing 5.36.
 TEST(Forces, ProfileOverTheEventsOfTheThesis) {
   CutConditions cut = experiment_1(5);
   cut.clearance_mm = 10.0 / 60.0;  // a clearance that takes one second

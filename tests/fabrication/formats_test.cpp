@@ -143,7 +143,7 @@ TEST(ProcessFile, DefaultsAreThoseOfAProcess) {
   EXPECT_TRUE(same(p, Process{}));
 }
 
-/// Returns the message for a process file with one wrong line, which is its last.
+/// Returns the error message for a process file whose last line is wrong.
 std::string refusal(const std::string& line) {
   return refusal_of(
       [&] {

@@ -132,7 +132,7 @@ RC_GTEST_PROP(JobFile, ReadsBackToTheSameJob, ()) {
   job.workpiece.kind = *rc::gen::element(WorkpieceKind::mould, WorkpieceKind::direct);
   job.strategy = *rc::gen::element(Strategy::unidirectional, Strategy::bidirectional, Strategy::two_step);
   job.tool.width_mm = real(0.1, 0.451);
-  // Choose a wedge angle for which no fin remains between plunges and chips have enough room.
+  // Choose a wedge angle that gives chips enough room and for which no fin remains between plunges.
   job.tool.wedge_deg = std::max(50.0, 0.5 * prism_of(job).apex_angle_deg);
   job.tool.edge_radius_um = real(0.0, 5.0);
   job.tool.side_clearance_deg = real(0.1, 1.0);

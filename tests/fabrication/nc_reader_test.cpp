@@ -359,7 +359,7 @@ TEST(NcReader, TextThatIsNoProgram) {
 TEST(NcReader, EveryCutOffFileIsRecognised) {
   for (const NcDialect dialect : kAll) {
     const std::string whole = sample(dialect);
-    // A missing last line end makes no difference to a controller.
+    // A missing line end after the last line makes no difference to a controller.
     for (std::size_t length = 1; length + 1 < whole.size(); ++length) {
       bool is_complete = false;
       const std::string refused =

@@ -111,7 +111,8 @@ TEST_P(PartialPrograms, AProgramGoesOnWhereAnotherWasStopped) {
         if (const auto* const visit = std::get_if<CycleCall>(&item)) visited.push_back(visit->element);
       options.from_element = visited[1];
       const std::string next = texts(c, options).front();
-      // The first item of the next program must be in the first program, after the line at which it stopped.
+      // The first program must contain the first item of the restarted program, after the line at which the operator
+      // stopped.
       std::size_t passed = 0;
       for (std::size_t k = 0; k < stage; ++k)
         passed += static_cast<std::size_t>(std::count_if(whole.programs.front().items.begin(),

@@ -168,8 +168,8 @@ TEST(PlannedJobs, AnotherApexIsFound) {
 }
 
 /// An edge of radius r extends beyond a sharp edge by r (1 - sin a + cos a) towards the floor, where a is the apex
-/// angle. A program for a sharp edge that runs with a blunt edge gouges where this distance is positive. It leaves
-/// excess material where the distance is negative.
+/// angle. The test runs a program for a sharp edge with a blunt edge. The edge gouges if this distance is positive, and
+/// leaves excess material if it is negative.
 TEST(PlannedJobs, AnEdgeThatTheProgramForgotIsFound) {
   for (const auto& [apex_deg, kind] : {std::pair{85.0, "gouge"}, {95.0, "excess"}}) {
     Job planned = square_job(2, Arrangement::aligned);

@@ -163,8 +163,8 @@ TEST(ReadBack, ModuloAxesOfASinumerik) {
   EXPECT_NE(nc_text(program, "sinumerik").find("G0 A-1.0000000 C-0.1192463\n"), std::string::npos);
 }
 
-/// Times of moves on an Aerotech control follow from the path length, with mm and degrees combined, and the programmed
-/// speed.
+/// The duration of a move on an Aerotech control is the path length divided by the programmed speed. The path length
+/// combines mm and degrees.
 TEST(ReadBack, TimesOfAnAerotechsPathAreThoseOfItsWays) {
   Program program;
   Move up, over, cut;
@@ -185,7 +185,7 @@ TEST(ReadBack, TimesOfAnAerotechsPathAreThoseOfItsWays) {
   EXPECT_NE(nc_text(program, "pmac"), "");
 }
 
-/// The minimum feed of a job is the minimum that every dialect can express.
+/// No dialect rounds the minimum feed of a job to 0. A feed that is lower by 0.1 % is rounded to 0.
 TEST(ReadBack, TheLeastFeedIsNoneOfZero) {
   Job job = square_job(1);
   for (const auto& [feed, is_said] : {std::pair{kMinFeedMmPerMin, true}, {0.999 * kMinFeedMmPerMin, false}}) {
@@ -197,7 +197,7 @@ TEST(ReadBack, TheLeastFeedIsNoneOfZero) {
   }
 }
 
-/// If the last digit of every word is removed, the comparison must fail.
+/// If the last digit of one word is changed, the positions that are read back must differ by 1 nm.
 TEST(ReadBack, ANanometreIsSeen) {
   const Plan plan = make_plan(square_job(1), machine("paper"));
   std::string text = nc_text(plan.programs.front(), "rs274ngc");

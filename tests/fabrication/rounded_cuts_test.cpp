@@ -133,7 +133,8 @@ bool leaves_a_peak(const RandomCuts& cuts) {
   return false;
 }
 
-/// Cuts can leave a peak above the apex although they overlap along every dihedral edge.
+/// Cuts can leave a peak above the apex although they overlap along every dihedral edge. If the formula predicts no
+/// such peak, a search on a grid of directions must find none.
 TEST(RoundedCuts, PeaksAreWhereTheFormulaHasThem) {
   std::mt19937 bits(5);
   int peaks = 0;

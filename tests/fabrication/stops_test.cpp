@@ -137,8 +137,8 @@ TEST_P(Stops, EdgesCutNoMoreThanTheirLifeAndNoLess) {
       const std::vector<NcProgram> read = programs(plan);
       const Verification v = verify_programs(c.job, machine, read, {}, {});
       EXPECT_TRUE(v.passes()) << c.name << "\n" << listed(v);
-      // Planner and verifier count the same length of cut. If the edge life is slightly shorter than the longest
-      // length, the verifier must report it.
+      // Planner and verifier compute the same length of cut. The verifier must report an edge life that is slightly
+      // shorter than the longest length.
       const double most_mm = *std::max_element(cut_mm.begin(), cut_mm.end());
       EXPECT_LE(most_mm, *c.job.tool.edge_life_mm) << c.name;
       Job shorter = c.job;

@@ -409,8 +409,8 @@ double lowest_cut_mm(const std::vector<Cavity>& grooves, double x_mm, double y_m
   return lowest_mm;
 }
 
-/// The surface from a dexel simulation of all programs is, at every point, the lowest of the cavities of all elements.
-/// The cut of an element therefore enters a neighbour only where the cavity of the element does.
+/// A dexel simulation of all programs gives the machined surface. At every point, it must be the lowest of the cavities
+/// of all elements. The cut of an element may therefore enter a neighbour only where the cavity of the element does.
 TEST(OnSubstrate, WhatIsLeftIsTheLowestOfAllCavities) {
   for (const Named& named : jobs()) {
     SCOPED_TRACE(named.what);

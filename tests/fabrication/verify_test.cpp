@@ -382,8 +382,8 @@ TEST_F(Faults, StartOfFacet2UsedAtC0) {
 }
 
 TEST_F(Faults, AxisVectorScaledByOnePercent) {
-  // Plan the program with directions of the axes that are not normalised. Rodrigues' formula then stretches in addition
-  // to the rotation.
+  // Plan the program with axis directions that are not normalised. In this case, the formula of Rodrigues does not only
+  // rotate, but also stretches.
   Machine spoilt = machine("paper");
   spoilt.a.direction.value *= 1.01;
   std::string text;

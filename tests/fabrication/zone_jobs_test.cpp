@@ -250,8 +250,8 @@ TEST(ZoneJobs, EveryNumberOfEveryZoneMatters) {
   }
 }
 
-/// Over all poses, C rotates in one direction and skips only the widest gap between their angles. The facets of each
-/// zone are cut in the order 1, 2, 3.
+/// Over all poses, C rotates in one direction. It skips the widest gap between the angles of the poses. The facets of
+/// each zone are cut in the order 1, 2, 3.
 TEST(ZoneJobs, PosesTurnAsLittleAsTheyCan) {
   const Plan plan = make_plan(zoned_job(), machine());
   ASSERT_EQ(plan.poses.size(), 9U);

@@ -255,7 +255,7 @@ TEST(Planing, TheExampleIsMadeInTwoHalves) {
   EXPECT_LE(json["form_error_mm_max"].get<double>(), 0.2);
   EXPECT_EQ(json["published_seconds_per_block"], nlohmann::json({7.2, 8.2}));
   for (const auto& program : json["programs"]) EXPECT_LE(program["hours"].get<double>(), 8.0);
-  // Inner zones are too flat for one cut at each depth. Outer zones are steep enough.
+  // Inner zones are too flat to be finished by one cut at each depth. Outer zones are steep enough.
   EXPECT_EQ(json["zones"].front()["method"], "one_after_another");
   EXPECT_EQ(json["zones"].back()["method"], "by_depths");
   EXPECT_NEAR(json["seconds_per_block"].get<double>() * json["blocks"].get<double>(),

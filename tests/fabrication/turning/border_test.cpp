@@ -20,8 +20,8 @@ using fabrication::test::border_places;
 using fabrication::test::deviations;
 using fabrication::test::PlainCut;
 
-/// First lines of a part file. The surface is a bowl with a cubic term. Because of its slope, the point of contact is
-/// farther out than the lowest point of the nose.
+/// First lines of a part file. The surface is a bowl with a cubic term. Because the surface is inclined, the point of
+/// contact is farther from the axis than the lowest point of the nose.
 const std::string kHead =
     "schema = \"retrace.turned_part/1\"\n[base]\nkind = \"xy_polynomial\"\nterms = [[2, 0, 0.05], [0, 2, 0.03], [3, 0, "
     "0.02]]\n[tool]\nnose_radius_mm = 0.5\nclearance_deg = 15\n";

@@ -275,8 +275,8 @@ TEST(CubicPath, MovesAreNoShorterThanTheControlCarriesOut) {
   EXPECT_THROW(planned(Plane{.rpm = 6000.0, .acceleration = 1e6, .error_nm = 0.1}.file()), InputError);
 }
 
-/// Limits of the machine are checked for cubic moves as for straight moves. The expected motion is computed from closed
-/// forms.
+/// The limits of the machine are checked for cubic moves in the same way as for straight moves. The expected motion is
+/// computed from closed forms.
 TEST(CubicPath, LimitsOfTheMachineAreThose) {
   const Plane plane{.x_slope = 0.2, .y_slope = 0.0, .radius_mm = 0.3, .rpm = 60.0};
   const Planned plan = planned(plane.file());
@@ -286,8 +286,8 @@ TEST(CubicPath, LimitsOfTheMachineAreThose) {
       std::nullopt, findings);
   EXPECT_NEAR(check.motion.spindle_rpm, 60.0, 1e-3);
   EXPECT_NEAR(check.motion.c_acceleration_deg_per_s2, plane.acceleration, 0.01 * plane.acceleration);
-  // At one revolution per second, Z moves about as it would on a circle slightly inside the rim. At the rim itself, C
-  // is still accelerating.
+  // The motion of Z at one revolution per second is compared with a circle slightly inside the rim. At the rim itself,
+  // C is still accelerating.
   double acceleration = 0.0;
   double jerk = 0.0;
   for (int c_deg = 0; c_deg < 360; ++c_deg) {

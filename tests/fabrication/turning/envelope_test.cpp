@@ -247,7 +247,8 @@ TEST(TurningEnvelope, FindsAnErrorOfTheProgram) {
 }
 
 TEST(TurningEnvelope, EveryTurnIsMetWhereItBegins) {
-  // With a skew, the points at which the edge passes at C = 0 are on a curve. No revolution may be lost there.
+  // With a skew, the points that the edge passes at C = 0 form a curve. The simulation must include every revolution at
+  // this curve.
   TurningTool tool;
   tool.skew_deg = -27.0;
   PathOptions o = spiral_of(0.8, 0.02);

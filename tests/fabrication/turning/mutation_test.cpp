@@ -178,8 +178,8 @@ std::string fault_of(const TurnedPart& part, const PlainProgram& program, std::v
     for (int k = 0; k < 30; ++k) {
       std::string fault;
       if (is_spiral) {
-        // Skip the centre, where the part rotates under a nearly fixed edge. Also skip the rim, where a neighbouring
-        // cut exists on one side only.
+        // Skip the centre, where the part rotates under a nearly fixed edge. Also skip the rim, where only one
+        // neighbouring cut exists.
         const double r = 0.25 * reach + (0.75 * reach - part.path.feed_mm) * (i + 0.5) / 10.0;
         const double angle = 2.0 * std::numbers::pi * (k + 0.3 * i) / 30.0;
         fault = fault_at(r * std::cos(angle), r * std::sin(angle));
