@@ -55,8 +55,8 @@ TEST_F(ChiselingCommand, EveryDialectVerifiesAndTakesItsTime) {
     EXPECT_EQ(made["elements"], 9);
     EXPECT_EQ(made["plunge_rake_deg"], 22.0);
     EXPECT_NEAR(made["poses"][0]["b_deg"].get<double>(), 35.2643897, dialect == "fanuc" ? 5e-7 : 1e-7);
-    // Each layer requires six rotations. There are four layers of 15 um and two of 5 um, because the face of the blank
-    // is 61 um above every facet. The return is one more rotation.
+    // Each layer requires six rotations, and the return requires one more. The face of the blank is 61 um above every
+    // facet. This depth is removed in four layers of 15 um and two of 5 um.
     EXPECT_EQ(made["cuts_per_facet"], 4);
     const std::string file = dialect + "/" + made["programs"][0].get<std::string>();
     const Json json = retrace_json(folder_, {"verify", "job.toml", file});
@@ -90,18 +90,18 @@ TEST_F(ChiselingCommand, HexagonsAsMachinedHaveFlares) {
       folder_, {"verify", "job.toml", "rs274ngc/program.ngc", "--as-machined", "part.toml", "--map", "map.png"});
   EXPECT_EQ(json["verdict"], "pass");
   ASSERT_EQ(json["elements_cut"], 7);
-  // The outline of seven hexagons has 12 corners at dihedral edges. The cuts beyond the outline have a volume of 5 / 6
-  // cubes, because (12 - 7) / 6 = 5 / 6.
+  // The outline of seven hexagons has 12 corners at which a dihedral edge ends. The total volume of the cuts beyond the
+  // outline is (12 - 7) / 6 = 5 / 6 of the volume of a cube.
   const double a = 0.3 * std::sqrt(3.0 / 8.0);
   EXPECT_NEAR(json["border_overcut_mm3"].get<double>(), 5.0 / 6.0 * a * a * a, 1e-12);
   ASSERT_NE(folder_.read("part.toml").find("facets = \"part_facets.csv\""), std::string::npos);
   const Json inspected = retrace_json(folder_, {"inspect", "part.toml"});
   EXPECT_EQ(inspected["elements_full"], 7);
   EXPECT_EQ(inspected["boundary"], "closed, free of self-intersections");
-  // Each element has three squares. The flares (cuts beyond the hexagons) within the extent add to the area.
+  // Each element has three square facets. The area of the flares (cuts beyond the hexagons) within the extent is added.
   EXPECT_GT(inspected["facet_area_mm2"].get<double>(), 21.0 * a * a);
   write_smooth("part.toml", "smooth.toml");
-  // The hexagons return the same light as in the design. At normal incidence, flares add little or no light.
+  // The hexagons return as much light as in the design. At normal incidence, flares add little or no light.
   EXPECT_NEAR(rre_of("smooth.toml"), rre_of("design.toml"), 0.05);
 }
 
@@ -111,8 +111,9 @@ std::string cube_design(bool is_hexagonal) {
          "thickness_mm = 1\nrefractive_index = 1.4917\n";
 }
 
-/// The triangular region at the apex that a chisel cannot reach is half as high as its edge is long. The material that
-/// remains above the apex ends where three rake faces meet. The planes of the cut must give the same height.
+/// A chisel cannot reach a triangular region of each facet at the apex. The height of the region is half the length of
+/// the edge of the chisel. The material that remains above the apex ends where three rake faces meet. The planes of the
+/// cut must give the same height of this material.
 TEST(ReachablePart, IsAllButTheApexAndIsTraced) {
   const TemporaryFolder folder;
   for (const bool is_hexagonal : {false, true}) {
@@ -142,8 +143,8 @@ TEST(ReachablePart, IsAllButTheApexAndIsTraced) {
     const double whole = rre("d.toml");
     const double part = rre("part.toml");
     EXPECT_LT(part, whole);
-    // Light that meets the core is lost, both incident and returning light. The core covers 3 (0.2 / 2)^2 / sqrt(3) of
-    // each cell in plan.
+    // Light that meets the core is lost, both incident and returning light. Seen from above, the core covers 3 (0.2 /
+    // 2)^2 / sqrt(3) mm^2 of each cell.
     EXPECT_GT(part, 0.4 * whole);
   }
 }

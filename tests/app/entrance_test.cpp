@@ -119,7 +119,7 @@ double miss_deg(double radius, double thickness, double n, double x, double y) {
   return std::acos(std::min(1.0, d[2])) * 180.0 / std::numbers::pi;
 }
 
-// The fraction of a cap in front of a mirror that returns light within a cone must agree with rays that the test traces
+// The fraction of light that a cap in front of a mirror returns within a cone must agree with rays that the test traces
 // itself.
 TEST_F(Entrance, CapOverAMirrorReturnsWhatRaysByHandReturn) {
   folder_.write("lens.toml", turned(kCap));
@@ -209,7 +209,8 @@ TEST_F(Entrance, InspectTellsAndDrawsIt) {
                                                        "out/inspect.json"}));
 }
 
-// A report must not draw a plane entrance face instead of the curved entrance surface that was traced.
+// A report does not show the curved entrance surface that was traced. It must warn about this instead of drawing a
+// plane entrance face.
 TEST_F(Entrance, ReportSaysThatItIsNotShown) {
   folder_.write("lens.toml", turned(kCap));
   rre(kPlate + kFront + kBody, {"--samples", "64", "-o", "out"});
@@ -218,7 +219,8 @@ TEST_F(Entrance, ReportSaysThatItIsNotShown) {
   EXPECT_EQ(warnings_of(outcome).size(), 1U) << outcome.err;
 }
 
-// Freeform lenslets of the example of `retrace turn`, including their steep blends, in front of prisms.
+// No light is lost in a plate with prisms behind the freeform lenslets of an example of `retrace turn`. The lenslets
+// have steep blends.
 TEST_F(Entrance, FreeformLensletsOverPrismsKeepAllLight) {
   const Json json =
       rre("[element]\nkind = \"rtp\"\nbase_mm = 0.05\nwidth_mm = 0.05\n[array]\nx_length_mm = 0.5\ny_length_mm = 0.4\n"

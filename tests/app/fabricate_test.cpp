@@ -65,7 +65,7 @@ TEST(Fabricate, WritesProgramsPicturesAndTimesTheSameInEveryRun) {
 }
 
 TEST(Fabricate, TakesAsManyCutsAsTheThesis) {
-  // Milliken 2017, 4.1.3: a prism of 1 mm with depths of cut of 10 um and 5 um.
+  // Expected numbers of cuts: Milliken 2017, 4.1.3, for a prism of 1 mm with depths of cut of 10 um and 5 um.
   const TemporaryFolder folder;
   folder.write("d.toml", design("single", 0));
   const std::pair<std::string, int> cases[] = {{"thesis-forces-10um", 71}, {"thesis-forces", 142}};
@@ -112,7 +112,8 @@ TEST(Fabricate, SplitsAndResumes) {
 
 TEST(Fabricate, TakesAMask) {
   const TemporaryFolder folder;
-  // Pixels up to 178 are cut, and pixels from 179 are not. The first row of the picture has the largest y.
+  // Cells whose pixels are at most 178 are cut. Cells whose pixels are 179 or more are not. The first row of the
+  // picture has the largest y.
   folder.write("m.pgm", grey_map(3, 2, {255, 178, 179, 0, 255, 255}));
   folder.write("d.toml",
                "[element]\nkind = \"rtp\"\nbase_mm = 0.5\nwidth_mm = 0.5\n[array]\nx_length_mm = 1.5\n"

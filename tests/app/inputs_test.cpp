@@ -223,7 +223,7 @@ void add_named(const fs::path& root, const fs::path& file, std::set<std::string>
   }
 }
 
-// The test needs no list of files. It assumes that an example reads every existing file that it names.
+// The test has no list of files. It assumes that an example reads every existing file that is named in the example.
 TEST(Inputs, WhatExamplesReadIsNotOverwritten) {
   const TemporaryFolder folder;
   fs::copy(fs::path(example("rtp_gaps.toml")).parent_path(), folder.path(), fs::copy_options::recursive);
@@ -299,7 +299,7 @@ TEST(Inputs, LongFilesAreRefusedWithTheirLimit) {
     EXPECT_NE(outcome.err.find(" " + std::to_string(c.max_bytes) + " "), std::string::npos) << outcome.err;
     EXPECT_FALSE(fs::exists(folder.path() / "r.json"));
     fs::remove(folder.path() / c.file);
-    // A folder with the name of the file is also refused, like a file that is too long.
+    // Replace the file by a folder of the same name. The folder must be refused as well.
     if (c.command.front() == "report") continue;
     fs::create_directory(folder.path() / c.file);
     const Outcome as_folder = retrace(folder, arguments);

@@ -77,7 +77,7 @@ INSTANTIATE_TEST_SUITE_P(
                 {"photometry", "finite.toml", "--threads=1", "--standard=r150", "--class=IA", "--colour=red",
                  "--area-cm2=1.44", "--engine=exact", "--light=design", "-o", "p"},
                 SIGINT,
-                3.0},  // all beams have been traced by then; the sum over their polygons takes minutes
+                3.0},  // at this time, all beams are traced; the sum over their polygons takes minutes
         LongRun{"photometry_by_rays",
                 {"photometry", kReflector, "--threads=1", "--standard=r150", "--class=IA", "--colour=red",
                  "--area-cm2=30", "--engine=montecarlo", "--samples=4294967296"},
@@ -91,7 +91,7 @@ INSTANTIATE_TEST_SUITE_P(
                 {"photometry", kReflector, "--threads=1", "--standard=r150", "--class=IA", "--colour=red",
                  "--area-cm2=1e-3", "--rotation=0,20,40,60", "--quiet"},
                 SIGINT,
-                2.0},  // the table is finished by then, which is a third of the work
+                2.0},  // at this time, the table is finished, which is a third of the work
         LongRun{"image_detector",
                 {"image", example("rtp_brick_2mm.toml"), "--detector", "--threads=1", "--engine=montecarlo",
                  "--samples=1000000000", "-o", "i"}},

@@ -119,7 +119,7 @@ TEST(MemoryBudget, ASearchWithoutAnAnswerBecauseOfItEndsWith3) {
   folder.write("exact.toml", study("exact"));
   const Measured ended = measured(folder, {"optimize", "exact.toml", "--memory-gib", "0.02", "-o", "out"});
   EXPECT_EQ(ended.code, 3) << ended.out << ended.err;
-  // A search that uses rays finds an optimum with the same memory budget.
+  // An optimization that uses rays finds an optimum with the same memory budget.
   folder.write("auto.toml", study("auto"));
   const Measured found = measured(folder, {"optimize", "auto.toml", "--memory-gib", "0.02", "-o", "other"});
   EXPECT_EQ(found.code, 0) << found.err;

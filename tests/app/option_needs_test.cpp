@@ -115,8 +115,8 @@ std::string text_of(const Arguments& arguments) {
   return text;
 }
 
-/// Runs each command with each requirement met, and with each requirement violated. The design files do not exist, so
-/// that retrace reports a missing file if it accepts the options.
+/// Runs each command with each requirement met, and with each requirement violated. The design files do not exist. If
+/// retrace accepts the options, it therefore reports a missing file.
 TEST(OptionNeeds, AreCheckedForEveryOptionOfEveryCommand) {
   const TemporaryFolder folder;
   const Json manual = retrace_json(folder, {"manual"});

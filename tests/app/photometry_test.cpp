@@ -24,7 +24,7 @@ Arguments photometry(const Arguments& more) {
   return arguments;
 }
 
-// Apertures so wide that the source and receiver discs of run_limits() hide the effect of diffraction.
+// Override with an aperture so large that the source and receiver discs of run_limits() hide the effect of diffraction.
 const std::string kWide = "--set=element.aperture_mm=5";
 
 Outcome run_limits(const TemporaryFolder& folder, const std::string& rows, const Arguments& more = {}) {
@@ -175,7 +175,7 @@ TEST(Photometry, RoughDesignsAreTracedByMonteCarlo) {
   EXPECT_GT(json["points"][0]["std_error_mcd_per_lx"].get<double>(), 0.0);
 }
 
-// The comment of this example suggests these settings. A roughness of 0.1 nm must not make the example fail.
+// The comment in this example suggests these settings. The example must also pass with a roughness of 0.1 nm.
 TEST(Photometry, AnExampleOfATenthOfANanometrePasses) {
   const TemporaryFolder folder;
   const Outcome outcome =

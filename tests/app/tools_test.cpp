@@ -53,10 +53,10 @@ class ToolsRun : public ::testing::Test {
                       arguments))
         .wait();
   }
-  /// Returns the arguments of apt-get calls, one call per line.
+  /// Returns the arguments of all calls of apt-get, one call per line.
   std::string asked() const { return fs::exists(folder_.path() / "asked") ? folder_.read("asked") : ""; }
-  /// Expects that tools/run ended with exit code 3 and did not create a build folder. Exactly `others` + 1 lines of
-  /// standard error, including the last one, must begin with "run: ", which marks messages of tools/run itself.
+  /// Expects that tools/run ended with exit code 3 and did not create a build folder. Messages of tools/run itself
+  /// begin with "run: ". There must be exactly `others` + 1 of them on standard error, including its last line.
   /// \param named name of a command, version or system that the last line must contain
   /// \return the last line of standard error
   std::string expect_gives_up(const Outcome& outcome, const std::string& named = "", std::ptrdiff_t others = 0) const {
@@ -134,7 +134,7 @@ TEST(PackageList, IsWhatTheDebianPackageIsBuiltWith) {
   ASSERT_GT(end - begin, 20);
   for (auto line = begin + 1; line != end; ++line) {
     const std::string package = line->substr(0, line->find(' '));
-    // The compiler exists in every build of packages, and mpirun is not required for such a build.
+    // Every environment that builds Debian packages contains the compiler. mpirun is not needed to build the package.
     if (package.empty() || package == "g++" || package == "openmpi-bin") continue;
     EXPECT_TRUE(std::any_of(control.begin(), control.end(),
                             [&](const std::string& wanted) {

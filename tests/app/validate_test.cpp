@@ -22,7 +22,7 @@ TEST(Validate, MeetsEveryFigureAndWritesThePageOfTheDocumentation) {
   const TemporaryFolder folder;
   const Outcome outcome = retrace(folder, {"validate", "-o", "validation.md", "--json", "validation.json"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  // A slow machine gets a note about a long run.
+  // A slow machine prints a note about a long run.
   for (const std::string& line : lines_of(outcome.err)) EXPECT_TRUE(line.starts_with("note: ")) << line;
   EXPECT_EQ(outcome.out, "wrote validation.md\n");
   EXPECT_EQ(folder.names(), (Arguments{"validation.json", "validation.md"}));

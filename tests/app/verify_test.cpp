@@ -292,7 +292,7 @@ TEST_F(VerifyCommand, ElementsThatAreNotCutAreNotThere) {
   EXPECT_EQ(json["elements_full"], 3);
   EXPECT_EQ(json["boundary"], "closed, free of self-intersections");
   EXPECT_EQ(json["design"]["part"]["facets"], "part_facets.csv");
-  // The elements at the lower left, lower right and upper left exist. The element at the upper right does not.
+  // The elements at the lower left, lower right and upper left exist. No element exists at the upper right.
   const std::string csv = folder_.read("part_facets.csv");
   for (const char* place : {"0.2255,0.2255,", "0.6765,0.2255,", "0.2255,0.6765,"})
     EXPECT_NE(csv.find(place), std::string::npos) << place << "\n" << csv;

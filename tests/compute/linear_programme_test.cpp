@@ -42,7 +42,7 @@ TEST(LinearProgramme, SaysWhichRowsExcludeEachOther) {
   programme.add_row({.lower = -5.0}, {{x, 1.0}});
   const LinearOptimum optimum = solve(programme);
   ASSERT_EQ(optimum.kind, LinearOptimum::Kind::infeasible);
-  // The sum of the rows times their Farkas multipliers requires more than the bounds of the columns allow.
+  // The bounds of the columns cannot satisfy the sum of the rows, each multiplied by its Farkas multiplier.
   const std::vector<double>& m = optimum.prices;
   EXPECT_NEAR(std::abs(m[0]) + std::abs(m[1]) + std::abs(m[2]), 1.0, 1e-12);
   EXPECT_LE(*std::ranges::max_element(m), 0.0);

@@ -43,8 +43,8 @@ class Store : public ::testing::Test {
   std::string message(const StoreLayout& layout, IfExists if_exists) const {
     return refusal_of([&] { const ResultStore store(file(), layout, if_exists); });
   }
-  /// Returns the place that the error reports if the store is refused. Used for stores that are damaged at random:
-  /// their messages come from SQLite and are not recorded.
+  /// Returns the position that the error contains if the store is refused. The tests use this function for stores with
+  /// random damage, because their messages come from SQLite and are not recorded.
   std::string unrecorded_message(const StoreLayout& layout, IfExists if_exists) const {
     return unrecorded_refusal_of([&] { const ResultStore store(file(), layout, if_exists); });
   }

@@ -54,7 +54,7 @@ struct Outcome {
   double worst_error = 0.0;
 };
 
-/// Differentiates many functions at many points, with many first steps.
+/// Differentiates many functions at many points, with many sizes of the first step.
 Outcome try_many(double noise, bool one_sided) {
   std::mt19937 engine(7);
   std::uniform_real_distribution<double> unit(0.0, 1.0);

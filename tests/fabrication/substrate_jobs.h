@@ -26,7 +26,7 @@ inline Substrate formula_substrate(const std::string& text, geometry::ElementAxe
   return {geometry::formula_substrate(text), element_axes};
 }
 
-/// Returns a job of n x n adjacent prisms on a substrate. The process leaves room for tilted elements.
+/// Returns a job of n x n adjacent prisms on a substrate. The roughing depth is large enough for tilted elements.
 inline Job prisms_on(const Substrate& substrate, int n = 3,
                      geometry::Arrangement arrangement = geometry::Arrangement::aligned) {
   Job job = square_job(n, arrangement);
@@ -36,7 +36,7 @@ inline Job prisms_on(const Substrate& substrate, int n = 3,
   return job;
 }
 
-/// Returns a job of cube corners on a substrate. The tool has enough room for blanks that extend above the rims.
+/// Returns a job of cube corners on a substrate. The tool is wide enough for blanks that extend above the rims.
 inline Job cubes_on(const Substrate& substrate, bool is_hexagonal, double aperture_mm = 0.15) {
   Job job = cube_job(is_hexagonal, aperture_mm);
   job.array.pattern.clear();

@@ -1,4 +1,5 @@
-// Any text is either read as a formula or refused in one line. A formula has the same value for every number type.
+// For any text, the reader either returns a formula or throws an InputError of one line. A formula has the same value
+// for every number type.
 
 #include <algorithm>
 #include <array>

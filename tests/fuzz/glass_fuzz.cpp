@@ -1,5 +1,5 @@
-// Reads any bytes as a glass catalogue. Each glass is either understood or refused in one line, and each index is a
-// finite number.
+// Reads any bytes as a glass catalogue. Each glass is either read or refused with a message of one line. Each
+// refractive index is a finite number.
 
 #include <algorithm>
 #include <cmath>

@@ -16,7 +16,7 @@
 namespace retrace::fuzz {
 
 /// Reads a height map.
-/// \param begin first bytes of each content, which select the reader
+/// \param begin bytes that are put in front of the fuzz input, so that the reader of one format is selected
 /// \param name file name, whose extension may select the format
 inline void read_height_map(const std::string& begin, const std::uint8_t* data, std::size_t size,
                             const std::string& name) {

@@ -1,4 +1,5 @@
-// Any text of a job file is either read as a job, which can be written and read back unchanged, or refused in one line.
+// For any text, the reader either returns a job or throws an InputError of one line. A job can be written and read back
+// unchanged.
 
 #include <algorithm>
 #include <cstddef>

@@ -1,5 +1,5 @@
-// Reads any bytes as a photometric file, LM-63 or EULUMDAT depending on the first byte. The file is either understood
-// or refused in one line. A lamp that is read has a flux, and an intensity in every direction.
+// Reads any bytes as a photometric file. The first byte selects the format, LM-63 or EULUMDAT. The file is either read
+// or refused with a message of one line. A lamp that is read has a flux, and an intensity in every direction.
 
 #include <algorithm>
 #include <cmath>

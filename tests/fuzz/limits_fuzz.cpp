@@ -1,5 +1,5 @@
 // For any limits file, the reader either returns limits that satisfy its postconditions or throws an InputError of one
-// line. Selecting a test plan from the file has one of these two results, too.
+// line. If limits are returned, a test plan can be selected from them, or the selection throws such an error.
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // For any table of measurements, the reader either returns measurements that satisfy its postconditions or throws an
-// InputError of one line. A calibration from these measurements has one of these two results, too.
+// InputError of one line. If measurements are returned, a calibration with them succeeds or throws such an error.
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-// Any text of a planed-part file is either read or refused in one line.
+// Any text of a planed-part file is either read or refused with a message of one line.
 
 #include <algorithm>
 #include <cstddef>

@@ -1,7 +1,7 @@
 #pragma once
 
-// Reads any bytes as a file of rays. The file is either understood or refused in one line. Rays that are read can be
-// traced.
+// Reads any bytes as a file of rays. The file is either read or refused with a message of one line. Rays that are read
+// can be traced.
 
 #include <algorithm>
 #include <cmath>

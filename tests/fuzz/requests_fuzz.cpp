@@ -1,5 +1,5 @@
-// The first two bytes of an input select a field of a request. The rest is the text of the field as on the command
-// line. Any text either gives a value or causes an InputError of one line. The value is converted to text again, and
+// The first two bytes of an input select a field of a request. The remaining bytes are the text of the field, as on the
+// command line. The text either gives a value or causes an InputError of one line. If a value is converted to text,
 // this text must give the same value.
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// Any spectrum file of a lamp is either read as wavelengths and weights with the sum 1, or refused in one line.
+// Any spectrum file of a lamp is either read as wavelengths and weights with the sum 1, or refused with a message of
+// one line.
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
-// Any study file is either accepted by every command or refused in one line that contains the position. Its designs are
-// in a temporary folder. Quantities are not computed.
+// For any study file, every command either accepts the file or refuses it with a message of one line. The design of the
+// study is in a temporary folder. Quantities are not computed.
 
 #include <unistd.h>
 
@@ -46,7 +46,7 @@ extern "C" int LLVMFuzzerInitialize(int*, char***) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string text(reinterpret_cast<const char*>(data), size);
-  // Names with a path are skipped, because files outside of the folder may be infinite.
+  // Skip texts that contain a path, because a file outside of the folder may be infinite, such as a device.
   if (text.find('/') != std::string::npos || text.find('\\') != std::string::npos) return 0;
   refused_in_one_line([&] {
     const studies::Study study = studies::parse_study(text, "study.toml");

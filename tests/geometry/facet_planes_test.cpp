@@ -202,8 +202,9 @@ TEST(FacetPlanes, CapsLeaveACoreOverTheApex) {
     const Vec2 centre = -bounding_box(element_cell(element).outline).lower;
     ElementPlanes planes = cube_at(element, centre);
     for (std::size_t k = 0; k < 3; ++k) {
-      // The plane of the cap contains two features: a horizontal line on the facet, half the chisel's edge up the facet
-      // from the apex, and the point on the axis at the height `core` above the apex.
+      // The plane of the cap contains a horizontal line on the facet and a point on the axis. The distance of the line
+      // from the apex, up the facet, is half the length of the edge of the chisel. The point is at the height `core`
+      // above the apex.
       const double plan = 0.5 * width / std::numbers::sqrt3;
       const double azimuth = std::numbers::pi / 3.0 * (2.0 * static_cast<double>(k) + 1.0);
       const double slope = (std::numbers::sqrt2 * plan - core) / plan;

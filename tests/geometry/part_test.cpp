@@ -107,8 +107,8 @@ TEST(Part, CubeCornerOrientation) {
   EXPECT_NEAR(opposite.y(), 0.0, 1e-14);
 }
 
-// Equal portions of an array share a patch. A large array therefore has few distinct patches. None of its area is
-// missing.
+// Equal portions of an array share a patch. A large array must therefore have few distinct patches. The facets must
+// cover the area of the whole array.
 TEST(Part, LargeArraysShareTheirPieces) {
   const Part rtp = build_part(rtp_array(0.451, 0.451, 222 * 0.451, Arrangement::offset));
   EXPECT_EQ(rtp.elements_full, 222 * 222 - 111);

@@ -18,8 +18,8 @@
 #include "tests/support/part_specs.h"
 #include "tests/support/refusals.h"
 
-// Tests of elements on inclined, curved and freeform substrates: positions of the elements, and whether the part is
-// a closed solid.
+// Tests of elements on inclined, curved and freeform substrates: the elements are at the correct positions, and the
+// part is a closed solid.
 
 namespace retrace::geometry::substrate_part_test {
 namespace {

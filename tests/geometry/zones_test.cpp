@@ -276,8 +276,8 @@ TEST(Zones, RegionsAreConvexPolygonsThatGoRoundOnce) {
   EXPECT_NEAR(width({{0, 0}, {4, 0}, {0, 3}}), 2.4, 1e-12);
 }
 
-/// Returns a plate whose elements are assigned to the zones in turn, one kind per zone. The land belongs to the
-/// first zone.
+/// Returns a plate whose elements are assigned to the zones in turn. Each zone has one kind of element. The flat land
+/// belongs to the first zone.
 ZonedSpec dealt_out(const Vec2& size_mm, const std::vector<PartZone>& kinds) {
   ZonedSpec spec = plate(size_mm, kinds);
   spec.is_by_cell = true;

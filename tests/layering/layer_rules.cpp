@@ -142,8 +142,8 @@ struct Source {
   Names other_types;                      ///< the remaining types, and parameters of templates
 };
 
-/// Returns the path of an included file relative to the root of the tree. Installed headers of the library include each
-/// other in the way in which users include them.
+/// Returns the path of an included file relative to the root of the tree. Installed headers of the library name each
+/// other by their paths after installation.
 std::string from_root(const std::string& header, const std::string& path) {
   if ((path.starts_with("library/") || path.starts_with("python/")) && header.starts_with("retrace/"))
     return "library/" + header;
@@ -229,7 +229,7 @@ class NameReader {
     if (is_qualifier || (last_ == "namespace" && last_but_one_ == "using")) source_.namespaces.emplace(word, line);
     if (std::isupper(static_cast<unsigned char>(word[0])) != 0) source_.names.emplace(word, line);
     if (keys.contains(word)) {
-      // In `enum class`, the keyword `enum` is the word that may be the first word of the line.
+      // Both words of `enum class` are keywords. Only the position of `enum` in its line counts.
       if (last_ != "enum") key_starts_line_ = starts_line;
       key_ = last_ == "friend" || last_ == "using" ? "" : word;
     } else if (!key_.empty() && !is_qualifier && !word.starts_with("RETRACE_")) {
@@ -337,7 +337,8 @@ class Checker {
           report(path, include.line, include.header + " brings " + std::string(library->name) + " out of its room");
   }
 
-  /// Checks the types and namespaces that a file uses. Headers of types may be included indirectly or not at all.
+  /// Checks the types and namespaces that a file uses. A type counts even if its header is included only indirectly or
+  /// not at all.
   void check_names(const std::string& path, const Source& source) {
     const Place from = place_of(path);
     for (const auto& [name, line] : source.names) {
@@ -374,7 +375,7 @@ class Checker {
     }
   }
 
-  /// Checks rules that also apply to headers that are included indirectly.
+  /// Checks rules that apply to headers even if they are included indirectly.
   void check_sight(const std::string& path, int line, const std::string& header) {
     const Side side = side_of(path);
     const Side other = side_of(header);

@@ -1,4 +1,4 @@
-"""The modules of the pages can be ordered: no module imports itself, directly or through other modules.
+"""Tests that no module of the pages imports itself, directly or through other modules.
 
     python3 modules_test.py SOURCE
 """
@@ -19,7 +19,7 @@ def imported(module):
 
 
 def circle(imports):
-    """Returns the modules of a circle, the first one again at the end, or an empty list.
+    """Returns the modules of a circle of imports, or an empty list. The first module is repeated at the end.
 
     \\param imports for each module, the modules that it imports
     """

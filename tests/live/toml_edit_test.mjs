@@ -1,4 +1,5 @@
-// Tests of changes in the text of a design: texts with former names of tables or keys are left to the engine.
+// Tests of changes in the text of a design. A text with former names of tables or keys is not changed here, because the
+// engine must convert it.
 //
 //     node toml_edit_test.mjs SOURCE
 

@@ -265,7 +265,7 @@ def key(random_):
 
 class Fuzz(unittest.TestCase):
     def test_reader_of_dicts(self):
-        """Any dictionary gives either a design or an InputError."""
+        """Every dictionary gives either a design or an InputError."""
         random_ = random.Random(1)
         tables = [
             "element",

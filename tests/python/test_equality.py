@@ -17,7 +17,7 @@ class Equality(unittest.TestCase):
     maxDiff = 2000
 
     def walk(self, files, of_program, of_package, least):
-        """Compares program and package for all files; at least `least` files must have a result."""
+        """Compares program and package for all files. At least `least` files must give a result."""
         answers = 0
         for file in files:
             with self.subTest(file=os.path.relpath(file, program.EXAMPLES)):

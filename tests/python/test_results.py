@@ -194,7 +194,8 @@ class Designs(unittest.TestCase):
         self.assertNotEqual(design.replace({"title": "yours"}), design)
 
     def test_keys_are_unset(self):
-        """None unsets a key. A warning names a key without effect and the key that takes precedence."""
+        """The value None unsets a key. If a key has no effect, a warning names this key and the key that
+        takes precedence."""
         plain = rt.Design.load(PRISM).replace({"body.refractive_index": None})
         given = plain.replace({"body.refractive_index": 1.6, "body.material": "PC"})
         self.assertEqual(plain.warnings, [])
@@ -207,7 +208,7 @@ class Designs(unittest.TestCase):
         self.assertEqual(unset.json, plain.replace({"body.material": "PC"}).json)
 
     def test_every_example_of_its_keys(self):
-        """A design that is made of the keys of an example equals the design of the file."""
+        """A design that is made from the keys of an example file equals the design in this file."""
         import tomllib
 
         for file in program.designs():

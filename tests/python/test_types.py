@@ -1,4 +1,4 @@
-"""Tests of type hints: of the package, of its stubs, and of a program that uses the package."""
+"""Tests of the type hints of the package, of its stubs, and of a program that uses the package."""
 
 import os
 import pathlib

@@ -86,8 +86,8 @@ inline Value some_value(const Kind& kind) {
       kind);
 }
 
-/// Selects one key at random from each set of keys of which exactly one must be given. Returns true for the selected
-/// keys and false for the others of these sets.
+/// For each set of keys of which exactly one must be given, selects one key at random. The result is true for the
+/// selected keys, and false for all other keys of the sets.
 inline std::map<std::string_view, bool> chosen_keys(const Table& table) {
   std::map<std::string_view, bool> chosen;
   for (const Rule& rule : table.rules) {
@@ -99,7 +99,8 @@ inline std::map<std::string_view, bool> chosen_keys(const Table& table) {
   return chosen;
 }
 
-/// Sets all required keys and some of the others. The row of a key is selected after the keys before it have been set.
+/// Sets all required keys and, at random, some optional keys. Keys are set in the order of their rows, because the row
+/// of a key may depend on earlier keys.
 inline void fill(Document& document, const Table& table, const std::string& path) {
   const std::map<std::string_view, bool> chosen = chosen_keys(table);
   for (const Row& row : table.rows) {

@@ -42,7 +42,7 @@ inline geometry::Entrance sphere_entrance(double radius_mm, double top_mm, const
   return entrance_of(std::move(sag), {over_mm.x(), over_mm.y(), top_mm});
 }
 
-/// Returns a surface of bumps and hollows: a cos(k x) cos(k y) about a height.
+/// Returns the surface with the height `height_mm` + a cos(k x) cos(k y), which consists of bumps and hollows.
 /// \param finest_mm size of the finest structure that is passed to the surface
 inline geometry::Entrance egg_box_entrance(double height_mm, double a, double k, double finest_mm) {
   return formula_entrance(fmt::format("{} + {} * cos({} * x) * cos({} * y)", height_mm, a, k, k), finest_mm);

@@ -120,7 +120,7 @@ std::string line(std::string_view key, std::string_view otherwise, std::string_v
   return fmt::format("| `{}` | {} | {} |\n", key, otherwise, text);
 }
 
-/// Returns the rules of a table that name keys.
+/// Returns the meanings of all rules of the table that contain names of keys.
 std::string rule_words(const Table& table) {
   std::string text;
   for (const Rule& rule : table.rules)
@@ -129,8 +129,8 @@ std::string rule_words(const Table& table) {
   return text;
 }
 
-/// Returns the allowed values of a table that is written in one line: those of its first key. For a list of tables,
-/// returns all keys.
+/// Returns the allowed values of a table that is written in one line. They are the allowed values of the first key of
+/// the table. For a list of tables, returns all keys with their allowed values.
 std::string in_line_words(const Table& table) {
   if (table.presence != Presence::list) return allowed_words(table.rows.front().kind);
   std::string text = "a list of tables";
@@ -154,7 +154,7 @@ std::string rows_text(const Table& table) {
   return text;
 }
 
-/// Returns the text after the rows of a table.
+/// Returns the text that follows the rows of a table.
 std::string rules_text(const Table& table) {
   const std::string rules = rule_words(table);
   return rules.empty() ? "" : fmt::format("\n{}\n", rules.substr(1));

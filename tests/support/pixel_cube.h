@@ -39,7 +39,7 @@ class PixelCube {
  public:
   using Vec2 = geometry::Vec2;
   using Vec3 = geometry::Vec3;
-  using Field = Eigen::Matrix<std::complex<double>, 3, 2>;  ///< columns: fields for unit incident fields along x and y
+  using Field = Eigen::Matrix<std::complex<double>, 3, 2>;  ///< columns: result for a unit incident field along x and y
 
   explicit PixelCube(const PixelCubeSpec& spec) : spec_(spec), edge_(spec.aperture_mm / (2.0 * std::sqrt(2.0 / 3.0))) {
     for (std::size_t k = 0; k < 3; ++k) {

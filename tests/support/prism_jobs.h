@@ -70,8 +70,8 @@ inline std::vector<fabrication::NcProgram> programs_of(const studies::Fabricatio
   return programs;
 }
 
-/// Returns random errors of a machine for all quantities that the set-up leaves uncertain: up to 1 um and up to 0.02
-/// degrees. With larger errors, roughing cuts would go deeper than the finished surface.
+/// Returns random errors of a machine for all quantities that the set-up leaves uncertain. The errors are up to 1 um
+/// and up to 0.02 degrees. With larger errors, roughing cuts would be deeper than the finished surface.
 template <class Bits>
 std::vector<double> hidden_errors(Bits& bits) {
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);

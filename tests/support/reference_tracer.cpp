@@ -30,8 +30,10 @@ struct Ray {
   double flux = 1.0;           ///< power at unit field strength
   bool inside = false;
   bool entered = false;
-  FacetRole left_through = FacetRole::entrance;  ///< before the ray has entered: role of the first face that it meets
-  bool has_met = false;                          ///< true if the ray has met a face
+  /// Role of the face through which the ray last left the part. Before the ray has entered the part, it is the role of
+  /// the first face that the ray meets.
+  FacetRole left_through = FacetRole::entrance;
+  bool has_met = false;  ///< true if the ray has met a face
 
   double power() const { return 0.5 * flux * (field[0].squaredNorm() + field[1].squaredNorm()); }
 };
@@ -85,7 +87,8 @@ class Reference {
   }
 
  private:
-  /// Returns the axes of polarisation: +x as seen from the source, and the axis upwards from it.
+  /// Returns the two axes of polarisation, which are perpendicular to the direction to the source. The first axis is
+  /// the projection of +x. The second axis is the cross product of the direction to the source and the first axis.
   static std::array<Vec3, 2> axes_of(const Vec3& to_source) {
     const Vec3 first = (Vec3::UnitX() - to_source.x() * to_source).normalized();
     return {first, to_source.cross(first)};
@@ -97,8 +100,8 @@ class Reference {
 
   static std::array<Vec3c, 2> fields_of(const raytrace::Stokes& stokes, const std::array<Vec3, 2>& axes) {
     const auto& [i, q, u, v] = stokes;
-    // The light propagates along -to_source. A rotation that is clockwise for the receiver is a rotation from the first
-    // to the second axis for the source.
+    // The light propagates along -to_source. A rotation that the receiver sees as clockwise leads from the first to the
+    // second axis.
     Eigen::Matrix2cd coherency;
     coherency << Complex(i + q), Complex(u, -v), Complex(u, v), Complex(i - q);
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2cd> solver(coherency);
@@ -202,9 +205,9 @@ class Reference {
   struct Amplitudes {
     Complex r, t;
   };
-  /// Returns the amplitudes of a stack of layers, of E for s and of H for p. They are computed recursively over
-  /// interfaces and phases, from the last medium to the first. Only normal wave numbers are used, no angles of
-  /// refraction.
+  /// Returns the amplitudes that a stack of layers reflects and transmits: of the electric field for s, and of the
+  /// magnetic field for p. They are computed recursively from the last medium to the first. The recursion uses normal
+  /// wave numbers instead of angles of refraction.
   /// \param indices refractive indices of all media, including the first and the last
   /// \param waves thicknesses of the layers in wavelengths
   static Amplitudes amplitudes(const std::vector<Complex>& indices, const std::vector<double>& waves, double ci,

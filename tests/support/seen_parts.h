@@ -1,7 +1,7 @@
 #pragma once
 
-// A part with four prisms. The verifier computes its facets for a machine whose errors the tested functions do not
-// know. Also simulates measurements of this part.
+// A part with four prisms, and simulated measurements of this part. The verifier computes the facets for a machine with
+// errors. The tested functions do not receive these errors.
 
 #include <Eigen/Geometry>
 #include <Eigen/QR>

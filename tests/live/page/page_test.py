@@ -62,7 +62,7 @@ class LiveCase(BrowserCase):
         return self.script(f"return retraceLive.{what}")
 
     def rest(self):
-        """Waits until nothing moves and the direction is traced completely."""
+        """Waits until no control is moving and the direction is traced completely."""
         self.wait(lambda d: self.script("return !retraceLive.isMoving && !retraceLive.isDue"))
         self.wait(lambda d: not self.all(".accuracy.resting.old") and self.text(".accuracy.resting output") != "–")
 
