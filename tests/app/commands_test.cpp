@@ -116,7 +116,8 @@ TEST(Inspect, DihedralErrorOfAPrismIsItsApexAngle) {
   const Json apex = inspect(plain.substr(0, array) + "apex_angle_deg = 90.5\n" + plain.substr(array));
   for (const char* key : {"element_depth_mm", "facet_area_mm2", "tir_limit_deg"})
     EXPECT_NEAR(error[key].get<double>(), apex[key].get<double>(), 1e-12) << key;
-  // At the limit, light meets the first facet, which is inclined by 44.75 degrees instead of 45, at the critical angle.
+  // At the limit, light hits the first facet at the critical angle. This facet is inclined by 44.75 degrees instead of
+  // 45.
   const double inside = std::asin(std::sin(apex["tir_limit_deg"].get<double>() * std::numbers::pi / 180.0) / 1.4917);
   EXPECT_NEAR(inside, 44.75 * std::numbers::pi / 180.0 - std::asin(1.0 / 1.4917), 1e-9);
 }

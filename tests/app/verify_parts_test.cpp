@@ -27,7 +27,7 @@ class VerifyParts : public ::testing::Test {
 
 TEST_F(VerifyParts, ProgramsOfPlaneInAllDialects) {
   const std::string mill = example("planing/zone_lens_60ghz.toml");
-  // A lathe with a PMAC control requires the lines for its spindle.
+  // With a PMAC control, the file of a lathe must contain the lines that start and stop the spindle.
   std::string lathe = read_text(example("planing/round_zone_lens.toml"));
   folder_.write("lathe.toml", lathe + "spindle_start = \"M103\"\nspindle_stop = \"M105\"\n");
   for (const std::string& part : {mill, std::string("lathe.toml")})

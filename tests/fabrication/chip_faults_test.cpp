@@ -60,8 +60,8 @@ class DexelFacet {
     double left_mm = 0.0;  ///< height above the facet at which the chip begins
   };
 
-  /// Subtracts the volume that a move sweeps from the lines, and returns the thickest chip. If the move does not run
-  /// along the facet, returns an empty Chip.
+  /// Subtracts the swept volume of a move from the lines, and returns the thickest chip. If the move does not run along
+  /// the facet, returns an empty Chip.
   Chip cut(const SweptVolume& sweep, const RigidMotion& pose, const ToolWedge& wedge) {
     RigidMotion from_field;
     from_field.rotation = pose.rotation * from_workpiece_.transpose();

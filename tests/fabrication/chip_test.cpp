@@ -99,7 +99,7 @@ RC_GTEST_PROP(Chips, TakingAwayKeepsTheArea, ()) {
   RC_ASSERT(std::abs(left_area + taken_area - 4.0) < 1e-7);
 }
 
-/// The half-spaces of a swept body must agree with the part of a line that is inside the body.
+/// The part of a line inside a swept body must agree with the part that follows from the half-spaces of the body.
 RC_GTEST_PROP(Chips, HalfSpacesOfASweepHoldItsLines, ()) {
   const auto number = [] { return 1e-4 * *rc::gen::inRange(-10000, 10001); };
   const auto vector = [&] { return Vec3(number(), number(), number()); };

@@ -122,8 +122,8 @@ TEST(Chiseling, MeasuredAxesLeaveTheSameFacets) {
 }
 
 /// A program that is planned for ideal axes is run on a machine with a tilted axis B. The tip still follows the
-/// dihedral edges, but the leading edge leaves the facet. The facet is therefore cut as two planes that meet along the
-/// leading edge.
+/// dihedral edges, but the leading edge of the tool is not in the facet. The facet is therefore cut as two planes that
+/// meet along the leading edge. The deviation is compared with a closed form.
 TEST(Chiseling, PlannedForIdealAxesShowsTheErrorsOfTheMachine) {
   Machine leaning = machine();
   leaning.a.direction.value = Vec3(std::sin(0.005), std::cos(0.005), 0.0);

@@ -116,7 +116,7 @@ TEST_P(ControlState, RightProgramsPass) {
 }
 
 TEST_P(ControlState, EveryWordOfThePreparationIsAskedFor) {
-  // Lines that do not change straight moves, such as selections of planes and cycles.
+  // Lines of the preparation that do not affect straight moves, such as the selection of a plane or the end of a cycle.
   const Lines without_effect = {"G17", "G80", "M5", "X0.", "Y0.", "Z0."};
   int asked = 0;
   // The preparation consists of all lines before the first move that are neither comments nor part of a subroutine.

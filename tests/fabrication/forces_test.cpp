@@ -50,7 +50,7 @@ TEST(Forces, ExperimentTwoIsPredicted) {
 /// 5.23, begin of ploughing 5.33, peak of ploughing 5.36.
 TEST(Forces, ProfileOverTheEventsOfTheThesis) {
   CutConditions cut = experiment_1(5);
-  cut.clearance_mm = 10.0 / 60.0;  // a clearance that takes one second
+  cut.clearance_mm = 10.0 / 60.0;  // the tool crosses this clearance in one second
   const std::vector<ForceSample> profile = force_profile(calibrate(table()), cut);
   const auto at = [&](double time_s, auto force) {
     for (std::size_t i = 1; i < profile.size(); ++i)

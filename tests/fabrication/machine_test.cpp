@@ -57,8 +57,8 @@ RC_GTEST_PROP(Machine, ForwardUndoesInverse, ()) {
   RC_ASSERT((forward(machine, axes).reference_mm - point).norm() < 1e-12);
 }
 
-/// For random directions of the axes, the solved pose moves the facet into the plane in which the tool plunges. In this
-/// plane, the root (the line in which both facets of a prism meet) is rotated by the returned tilt.
+/// Tests poses for random directions of the axes. In the solved pose, the facet is in the plane in which the tool
+/// plunges. In this plane, the root (the line in which both facets of a prism meet) is rotated by the returned tilt.
 RC_GTEST_PROP(Machine, SolvedPoseStandsTheFacet, ()) {
   Machine machine = shipped("ideal");
   machine.a.direction.value = (Vec3(1, 0, 0) + 1e-2 * point_within(1)).normalized();

@@ -17,8 +17,8 @@
 #include "tests/fabrication/jobs.h"
 #include "tests/support/refusals.h"
 
-// Tests of plans: cuts, poses (axis angles at which facets are cut), order, safety of moves and time. The references
-// are figures of the thesis and the forward kinematics of the machine.
+// Tests of plans: cuts, poses (axis angles at which facets are cut), order, safety of moves and time. The expected
+// values are those of the thesis, or follow from the forward kinematics of the machine.
 
 namespace retrace::fabrication::test::plan_test {
 namespace {

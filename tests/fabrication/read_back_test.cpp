@@ -137,8 +137,8 @@ TEST(ReadBack, WhatAnIncrementSystemCannotSayIsRefused) {
   EXPECT_EQ(refusal_of([&] { nc_text(program, "fanuc"); }), "dialect");
 }
 
-/// Words of a modulo axis are within one rotation, and the axis rotates in the shorter direction. In paths, it moves by
-/// increments.
+/// Words of a modulo axis are within one rotation, and the axis rotates in the shorter direction. In paths, the words
+/// of the axis are increments.
 TEST(ReadBack, ModuloAxesOfASinumerik) {
   Program program;
   Move up, turn, back, cut;

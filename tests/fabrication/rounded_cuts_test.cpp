@@ -178,7 +178,7 @@ TEST(RoundedCuts, PeaksAreNoHigherThanTheFormula) {
         along = (along - along.dot(normal) * normal).normalized();
         tips[f] = std::copysign(rounded_across_mm(1.0), uniform(-1, 1)) * normal + rounded_along_mm(1.0) * along;
       }
-      // The height of each sample exceeds the bound above two of the facets, and is random above the third facet. A
+      // Each sample has heights above the bound over two of the facets, and a random height over the third facet. A
       // lower point may belong to the fin along the edge between these two facets.
       geometry::Vec3 heights(uniform(0, 2), uniform(0, 2), uniform(0, 2));
       heights = (heights * bound).cwiseMax(3.0 * rounded_along_mm(1.0));

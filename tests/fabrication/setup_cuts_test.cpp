@@ -159,7 +159,8 @@ TEST(SetupCuts, AMountThatIsKnownIsPlannedFor) {
   EXPECT_TRUE(v.passes()) << listed(v);
 }
 
-/// A tilted edge leaves a strip at the root that the axes cannot correct. The verifier predicts it.
+/// A tilted edge leaves a strip at the root, which cannot be removed by the axes. The verifier predicts the height of
+/// this strip.
 TEST(SetupCuts, AnEdgeThatIsNotLevelLeavesItsRise) {
   Job job = square_job(1);
   job.strategy = Strategy::two_step;

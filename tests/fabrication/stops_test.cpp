@@ -190,8 +190,8 @@ TEST_P(Stops, ElementsAreInspectedBeforeTheyAreFinished) {
   }
 }
 
-/// A program fails verification if any line of a stop is missing. The tested lines begin with the last cut before the
-/// stop and end with the first cut after it.
+/// A program fails verification if any line of a stop is missing. The test removes one line at a time, from the
+/// retraction of the tool before the stop to the first cut after the stop.
 TEST_P(Stops, EveryLineOfAStopIsMissed) {
   for (Case c : cases()) {
     const Machine machine = machine_of(c, 5.0);
@@ -205,8 +205,8 @@ TEST_P(Stops, EveryLineOfAStopIsMissed) {
     int tried = 0;
     for (std::size_t i = 0; i < lines.size(); ++i) {
       if (lines[i] != stop_line()) continue;
-      // A stop begins at the last Z move before it, which retracts the tool. It ends at the next comment that names an
-      // element, except for the comment "Goes on".
+      // The lines of a stop begin with the last Z move before it, which retracts the tool. They end before the next
+      // comment that names an element. The comment "Goes on" does not count.
       const auto is_element = [&](std::size_t k) {
         return lines[k].find("element ") != std::string::npos && lines[k].find("Goes on") == std::string::npos;
       };

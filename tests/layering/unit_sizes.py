@@ -21,7 +21,7 @@ def lines_in(path):
     try:
         with open(path, "rb") as file:
             return sum(1 for _ in file)
-    except FileNotFoundError:  # an older build has used this file, which no longer exists
+    except FileNotFoundError:  # a file of an older build, which no longer exists
         return 0
 
 

@@ -1,5 +1,5 @@
-// Tests of lenses that consist of zones. Profiles are compared with Snell's law. Programs are judged by the moves of
-// their text.
+// Tests of lenses that consist of zones. Profiles are compared with the law of Snell. Programs are checked by the moves
+// in their text.
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 #include "fabrication/turning/finish.h"
 
 // Tests of clearance, skew and finish. The results are compared with closed forms (docs/theory/turning.md) and with the
-// figures of Sohn and Naples.
+// values of Sohn and Naples.
 
 namespace retrace::fabrication::turning::tool_test {
 namespace {
