@@ -194,8 +194,8 @@ class Designs(unittest.TestCase):
         self.assertNotEqual(design.replace({"title": "yours"}), design)
 
     def test_keys_are_unset(self):
-        """The value None unsets a key. If a key has no effect, a warning names this key and the key that
-        takes precedence."""
+        """The value None unsets a key. If a key has no effect, a warning names this key and the key
+        that takes precedence."""
         plain = rt.Design.load(PRISM).replace({"body.refractive_index": None})
         given = plain.replace({"body.refractive_index": 1.6, "body.material": "PC"})
         self.assertEqual(plain.warnings, [])

@@ -144,7 +144,7 @@ class Processes(unittest.TestCase):
         self.assertEqual(ended.stdout.strip(), str([rt.rre(PRISM).rre.tolist()] * 2))
 
     def test_work_after_a_fork_is_refused(self):
-        """Work is refused in a forked process, because the process lacks the threads of its parent."""
+        """A forked process refuses work, because it lacks the threads of its parent."""
         rt.rre(PRISM)
         with multiprocessing.get_context("fork").Pool(1) as pool:
             with self.assertRaises(rt.Error) as refused:
