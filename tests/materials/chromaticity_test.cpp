@@ -28,8 +28,8 @@ SpectralCurve equal_energy() {
   return {{380.0, 780.0}, {1.0, 1.0}};
 }
 
-// CIE 015:2018 gives x, y = 0.44757, 0.40745 for A and 0.31271, 0.32902 for D65, with a table in steps of 1 nm. With
-// steps of 5 nm, the fifth digit differs.
+// Compares the chromaticities with CIE 015:2018: (x, y) = (0.44757, 0.40745) for A and (0.31271, 0.32902) for D65. The
+// published values are sums in steps of 1 nm. Sums in steps of 5 nm differ from them in the fifth digit.
 TEST(Chromaticity, OfIlluminantsIsThatOfTheCie) {
   const CieTable cie = read_cie_table(kData + "cie_v_a_d65_5nm.csv");
   constexpr double digit = 1.5e-5;
@@ -80,8 +80,8 @@ double at(const std::vector<Lobe>& lobes, double wavelength_nm) {
   return sum;
 }
 
-// C. Wyman, P.-P. Sloan and P. Shirley, JCGT 2 (2), 1 (2013): fits by several lobes, which differ from the functions by
-// at most 0.022.
+// Compares the colour matching functions with published fits, which are sums of lobes and differ from the functions by
+// at most 0.022 (C. Wyman, P.-P. Sloan and P. Shirley, JCGT 2 (2), 1 (2013)).
 TEST(ColourMatching, AgreesWithAPublishedFit) {
   const std::array<std::vector<Lobe>, 3> fit = {{
       {{0.362, 442.0, 0.0624, 0.0374}, {1.056, 599.8, 0.0264, 0.0323}, {-0.065, 501.1, 0.0490, 0.0382}},

@@ -42,7 +42,7 @@ TEST(IndexRecord, IsTheGlassThatIsShipped) {
   EXPECT_EQ(read.temperature_c, 20.0);
   EXPECT_FALSE(read.relative_to_vacuum);
   EXPECT_TRUE(read.warnings.empty());
-  // The record itself gives these values.
+  // The record states n_d = 1.5168 and V_d = 64.17.
   const double n_d = index_at(read, 0.58756);
   EXPECT_NEAR(n_d, 1.5168, 1e-5);
   EXPECT_NEAR((n_d - 1.0) / (index_at(read, 0.48613) - index_at(read, 0.65627)), 64.17, 5e-3);
@@ -141,7 +141,7 @@ TEST(IndexRecord, CutTermsAreRefused) {
       coefficients += (count > 1 ? " " : "") + std::to_string(0.01 * count);
       SCOPED_TRACE("formula " + std::to_string(number) + ": " + coefficients);
       const auto read = [&] { formula(number, coefficients); };
-      // One message of each formula is recorded.
+      // Only the message for 8 coefficients is recorded.
       EXPECT_EQ(count == 8 ? refusal_of(read) : unrecorded_refusal_of(read),
                 is_whole(number, count) ? "" : "glass.yml:4: coefficients");
     }

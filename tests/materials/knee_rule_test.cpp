@@ -52,8 +52,8 @@ TEST_F(KneeRule, IsARule) {
   }
 }
 
-// The test function behaves like a reflectance above the knee, and like the phase of total reflection below it. Its
-// mean is accurate with a spectrum that is divided into four spans.
+// The test function behaves like a reflectance above the knee, and like the phase of total reflection below the knee.
+// Its mean must be accurate with a spectrum that is divided into only four spans.
 TEST_F(KneeRule, KneesCostLittle) {
   for (const SpectralCurve* lamp : {&table.illuminant_a, &table.illuminant_d65}) {
     for (double knee = 440.0; knee < 680.0; knee += 7.3) {

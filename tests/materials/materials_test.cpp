@@ -101,7 +101,7 @@ TEST(Temperature, NBK7AsItsDataSheetHasIt) {
         Row{60.0, 80.0, {2.5, 3.1, 3.7}, {1.5, 2.1, 2.7}}})
     for (std::size_t k = 0; k < 3; ++k) {
       const auto n = [&](double c) { return index_relative_to_air(glass, library.air(), lines_nm[k], c); };
-      const auto air = [&, w = lines_nm[k]](double c) {  // expansion of air by Kohlrausch, from 15 degrees
+      const auto air = [&, w = lines_nm[k]](double c) {  // index of air; thermal expansion by Kohlrausch
         return 1.0 + (refractive_index(library.air().dispersion, w) - 1.0) / (1.0 + 3.4785e-3 * (c - 15.0));
       };
       const double per_k = 1e6 / (to_c - from_c);
@@ -122,8 +122,8 @@ TEST(Temperature, PolymersAsTabled) {
   }
 }
 
-// Compares the formula, with every coefficient, with an independent calculation for n = 1.5. The air is replaced by
-// vacuum.
+// Compares the formula, including every coefficient, with an independent calculation for n = 1.5. The test replaces the
+// air by vacuum.
 TEST(Temperature, IsTheClosedForm) {
   Material m;
   m.name = "m";
@@ -188,8 +188,8 @@ TEST(Dispersion, NoRealIndexIsAnError) {
   EXPECT_THROW(refractive_index(Sellmeier{{{1.0, 1.0}}}, 999.0), InputError);
 }
 
-// The values are rows of the table of refractiveindex.info (public domain, CC0), which was computed from the same
-// paper.
+// Compares the index with rows of the table of refractiveindex.info (public domain, CC0), which was computed from the
+// paper of Rakic et al. (1998).
 TEST(Metal, SilverOfRakic1998) {
   const LorentzDrude model = shipped().find_metal("silver").model;
   for (const auto& [wavelength_nm, n, k] : {std::array{397.46, 0.16007, 1.7990}, std::array{503.21, 0.13208, 2.7927},

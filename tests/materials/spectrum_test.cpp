@@ -43,7 +43,8 @@ double mean(const Spectrum& spectrum, const std::function<double(double)>& f) {
   return sum;
 }
 
-// CIE 015:2018, 3.1: S(w) = 100 (560/w)^5 (exp(c / 560) - 1) / (exp(c / w) - 1), c = 1.435e7 / 2848.
+// Compares the table with the formula of CIE 015:2018, 3.1: S(w) = 100 (560/w)^5 (exp(c / 560) - 1) / (exp(c / w) - 1),
+// with c = 1.435e7 / 2848 and the wavelength w in nm.
 TEST(CieTable, IlluminantAIsThatOfItsFormula) {
   const double c = 1.435e7 / 2848.0;
   const SpectralCurve a = cie().illuminant_a;
@@ -74,7 +75,8 @@ TEST(SpectralCurve, IsLinearBetweenItsSamplesAndZeroOutside) {
   EXPECT_EQ(curve.at(600.1), 0.0);
 }
 
-// The trapezoidal rule gives the ends of the table half weight. They carry less than 2e-6 of the flux.
+// Compares the luminous centroids with sums over the table. The trapezoidal rule halves the weights of the two ends of
+// the table, which contain less than 2e-6 of the flux.
 TEST(Spectrum, LuminousCentroidsAreTheSumsOfTheTable) {
   const CieTable table = cie();
   for (const SpectralCurve* lamp : {&table.illuminant_a, &table.illuminant_d65}) {
@@ -163,8 +165,9 @@ TEST(Spectrum, NodesAreEnoughForSmoothProperties) {
     }
 }
 
-// The mean of a step function and the mean of a square-root function of the wavelength have limited errors. The step is
-// like total reflection that ends at a wavelength. The square root is like the reflectance, which falls from 1 there.
+// Tests bounds for the errors of the means of two functions of the wavelength: a step and a square root. Total
+// reflection that ends at a wavelength causes a step. The reflectance, which falls from 1 at this wavelength, changes
+// like a square root.
 TEST(Spectrum, AStepCostsLessThanATenthOfIt) {
   const CieTable table = cie();
   for (const SpectralCurve* lamp : {&table.illuminant_a, &table.illuminant_d65}) {

@@ -46,8 +46,9 @@ double cosine_in(double index, double from_index, double cosine) {
   return std::sqrt(1.0 - std::pow(from_index / index, 2.0) * (1.0 - cosine * cosine));
 }
 
-// A thick layer is the mean of coherent layers over all phases. Means over whole fringes are tested on bare bodies and
-// on thin layers, from both sides, and also beyond the critical angle of air.
+// The result for a thick layer is the mean of the results for coherent layers over a whole fringe, that is over all
+// phases. Bare bodies and bodies with a thin layer are tested for light from both sides, also beyond the critical angle
+// of air.
 TEST(ThickLayers, MeansOverFringesOfCoherentLayers) {
   constexpr int kPoints = 64;
   const LayerStack quarter{{{1.3777, 0.25 / 1.3777}}};
@@ -72,7 +73,8 @@ TEST(ThickLayers, MeansOverFringesOfCoherentLayers) {
         }
 }
 
-// The power in several layers is propagated from face to face until none remains.
+// Compares the results for several layers with a simulation that propagates the power from face to face until no power
+// remains.
 TEST(ThickLayers, PowerThatWalksFromFaceToFace) {
   const std::vector<ThickLayer> layers = {{1.6, 0.4, 0.7}, {1.45, 0.2, 0.0}, {kWater, 0.5, 0.3}};
   const std::vector<double> indices = {kBody, 1.6, 1.45, kWater, 1.0};
@@ -167,7 +169,7 @@ TEST(ThickLayers, PowerIsConservedAndReversible) {
   }
 }
 
-// A layer with the index of the body or of the air has no effect, and neither has such a layer on half of the face.
+// A layer with the index of the body or of the air has no effect, whether it covers the whole face or half of it.
 TEST(ThickLayers, MatchedLayersAreAbsent) {
   for (const StackSide side : {StackSide::body, StackSide::outside})
     for (const double cosine : {1.0, 0.9, 0.6}) {

@@ -46,7 +46,7 @@ Amplitudes interface(Complex n1, Complex w1, Complex n2, Complex w2, bool is_p) 
 
 /// Computes the amplitudes by recursion from the last layer (Rouard; Parratt), with interfaces and phases only and
 /// without matrices.
-/// \param layers in the order in which the wave meets them
+/// \param layers in the order in which the wave reaches them
 Amplitudes by_recursion(const std::vector<ThinLayer>& layers, double from_index, Complex last, double ci, bool is_p) {
   const auto w = [&](Complex n) { return along_normal(n, from_index, ci); };
   const auto n = [&](std::size_t k) { return k == 0 ? Complex(from_index) : layers[k - 1].index; };
