@@ -107,8 +107,8 @@ struct Incidence {
   }
 };
 
-/// Returns incidences from inside and outside, in and across the plane of incidence, with total reflection, and on both
-/// sides of the critical angle (42.1 degrees).
+/// Returns incidences from inside and outside, with gratings along and oblique to the plane of incidence. They include
+/// total reflection, and angles just below and just above the critical angle (42.1 degrees).
 const std::vector<Incidence>& incidences() {
   static const std::vector<Incidence> all = {
       {kIndex, 1.0, 5.0, 0.0, 0.4},     {kIndex, 1.0, 30.0, 35.0, 0.3},  {kIndex, 1.0, 41.9, 180.0, 0.05},
@@ -135,8 +135,8 @@ TEST(FirstOrder, IsTheFirstOrderOfAShallowGrating) {
         if (!grating.propagates(m, lobe)) continue;
         const Vec2 k_out = i.k() + Vec2(m * i.g, 0.0);
         const Polarisation2 f = interface.amplitudes(i.k().norm(), unit(i.k()), k_out, lobe);
-        // The cosine is the sum of both first orders, each with half of the depth: the factor 1/2. Scattered fields are
-        // delayed by a quarter of a period: the factor i.
+        // The factor 1/2 is necessary because the cosine is the sum of both first orders, each with half of the depth.
+        // The factor i is the delay of scattered fields by a quarter of a period.
         const Polarisation2 expected = grating.order(m, lobe) / (Complex(0.0, 1.0) * 0.5 * kDepth);
         EXPECT_LT((f - expected).norm(), 2e-5 * (1.0 + expected.norm()))
             << i.incidence_deg << " deg, order " << m << ", lobe " << static_cast<int>(lobe) << "\n"
@@ -184,8 +184,8 @@ double in_waves(double length_um, double wavelength_nm = 550.0) {
   return 2e3 * std::numbers::pi * length_um / wavelength_nm;
 }
 
-// Tests fractions between the nodes of the table, on both sides of the critical angle, for short and long correlation
-// lengths.
+// Compares the scattered fractions between the nodes of the table with integrals by the midpoint rule. Incidences are
+// on both sides of the critical angle; correlation lengths are short and long.
 TEST(FirstOrder, SharesAreIntegralsOverBothSides) {
   for (const auto& [from, to] : {std::pair(kIndex, 1.0), std::pair(1.0, kIndex), std::pair(kIndex, 1.333)}) {
     const DielectricInterface interface(from, to);

@@ -162,8 +162,8 @@ TEST(HeightMapScatter, IsReciprocalBeforeScaling) {
     }
 }
 
-// The map is a roof with two slopes, p and -q. Light hits a slope with a probability proportional to its area in the
-// map and to its projected area, from either side.
+// The map consists of roofs with two slopes. The probability that light hits a slope is proportional to the area of
+// this slope, projected along the light. Light from both sides of the surface is tested.
 TEST(HeightMapScatter, FacetsAreDrawnByTheirCrossSection) {
   HeightMap map = flat(96, 1.0);
   for (std::size_t r = 0; r < 96; ++r)
@@ -261,7 +261,8 @@ TEST(HeightMapScatter, FacetsHaveTheMapsOrientation) {
     }
     return towards_minus_x / 10000.0;
   };
-  EXPECT_GT(rising(false), 0.65);  // heights rise along x over 3/4 of a period: normals out of the material lean back
+  // Heights rise along x over 3/4 of a period. There, the normals that point out of the material are tilted towards -x.
+  EXPECT_GT(rising(false), 0.65);
   EXPECT_LT(rising(true), 0.35);
 }
 

@@ -155,8 +155,8 @@ TEST(HarveyShack, SmallRoughnessScattersAsThePsd) {
   EXPECT_NEAR(model.unscaled_density(event, {}, Lobe::reflection, beta) / expected, 1.0, 1e-4);
 }
 
-// The density is computed by a series. The reference is the Fourier transform of the surface transfer function less its
-// specular part, as a function of distances in wavelengths (Krywonos et al. 2011).
+// The model computes the density by a series. The reference is the Fourier transform of the surface transfer function
+// without its specular part (Krywonos et al. 2011), computed by numerical integration.
 TEST(HarveyShack, DensityIsTheTransformOfTheSurfaceTransferFunction) {
   const double pi = std::numbers::pi;
   for (const Roughness& r : {Roughness{60.0, 1.2, 0.0, 0.0}, Roughness{25.0, 1.2, 40.0, 12.0}})
