@@ -107,8 +107,8 @@ TEST(ShadedView, NearerFacesHideOthers) {
   EXPECT_GT(shades.size(), 3U);
 }
 
-/// Placements of a large part and borders of partial elements form one surface without gaps: seen from below, no
-/// background is visible.
+/// The repeated patches of a large part and the partial elements at its border form one surface without gaps: seen from
+/// below, no background is visible within the outline.
 TEST(ShadedView, PartsOfManyPiecesHaveNoHoles) {
   const Part part = build_part(finite(RtpElement{0.2, 0.2}, Arrangement::offset, 12.1, 10.3, 0.5));
   ASSERT_GT(part.placements.size(), 1U);

@@ -20,7 +20,7 @@ def files_of(folder):
 def source_hash(names):
     """Returns the hash of source files, computed in the same way as in both build.mjs.
 
-    \\param names names of the files in the hash, and the files
+    \\param names dictionary from the name of a file in the hash to the path of the file
     """
     total = hashlib.sha256()
     for name, file in sorted(names.items()):

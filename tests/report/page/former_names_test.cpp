@@ -148,7 +148,7 @@ TEST(FormerNames, LaterVersionsAreRefused) {
   }
 }
 
-/// The table of all renamed names of the project contains those of documents.
+/// The renamed names of documents are those of the project's table of all renamed names.
 TEST(FormerNames, AreThoseOfTheTableOfTheProject) {
   std::ifstream file(std::string(RETRACE_SOURCE_DIR) + "/tests/data/renames.json");
   const Json table = Json::parse(file);

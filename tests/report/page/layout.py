@@ -19,7 +19,7 @@ const lineage = (element) => {
   return chain;
 };
 
-// Layers are drawn over the content of their own container on purpose: a sticky heading, a legend on a picture.
+// Layers cover the content of their own container on purpose, for example a sticky heading or a legend on a picture.
 const layersOf = (chain) => chain.filter((at) => /absolute|fixed|sticky/.test(styleOf(at).position));
 const containerOf = (layer) => {
   const { position } = styleOf(layer);
@@ -27,7 +27,7 @@ const containerOf = (layer) => {
   return (position === "sticky" ? layer.parentElement : layer.offsetParent) || root;
 };
 
-// The part of a rectangle that boxes with overflow do not cut off.
+// Returns the part of a rectangle that no surrounding box with hidden overflow cuts off.
 const visible = (rectangle, chain) => {
   let { left, top, right, bottom } = rectangle;
   for (const at of chain) {
