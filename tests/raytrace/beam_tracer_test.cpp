@@ -187,9 +187,9 @@ rc::Gen<RandomCase> random_case() {
   });
 }
 
-// Beams and rays share only the geometry and Fresnel's formulas. In 88 % of 200 designs, the difference between beams
-// and rays is within the 95 % interval of the rays. With fewer designs, the observed fraction has a larger standard
-// error, so that `min_coverage` lowers the required fraction.
+// The exact engine and Monte Carlo share only the geometry and Fresnel's formulas. For at least 88 % of 200 random
+// designs, their difference must be within the 95 % interval of Monte Carlo. With fewer designs, the observed fraction
+// has a larger standard error, so that `min_coverage` lowers the required fraction.
 TEST(BeamTracer, AgreesWithMonteCarlo) {
   const std::size_t count = test::sample_size<std::size_t>(40, 200);
   const std::vector<RandomCase> cases =

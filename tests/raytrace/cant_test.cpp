@@ -96,9 +96,9 @@ bool in_polygon(const Polygon& outline, const Vec2& p) {
   return true;
 }
 
-/// Returns the fraction of a regular outline whose light meets all three planes of an unbounded cube, and finally the
-/// entrance face, at points within the outline. In the coordinates along the cube's edges, each reflection reverses one
-/// component of the direction.
+/// Returns the fraction of points of a regular outline for which the light hits all three planes of an unbounded cube,
+/// and finally the entrance face, within the outline. In coordinates along the edges of the cube, each reflection
+/// reverses one component of the direction.
 double share_by_points(const Polygon& outline, const Cant& cant, double depth_mm, double thickness_mm,
                        const Vec3& to_source) {
   constexpr int kSteps = 500;

@@ -25,7 +25,8 @@ EngineFacts facts_with(std::initializer_list<Flag> flags) {
   return facts;
 }
 
-/// Returns the engines that cannot trace a model because of `obstacle`. Other obstacles are errors.
+/// Returns the engines that cannot trace a model because of `obstacle`. The test fails if an engine reports another
+/// obstacle.
 std::set<Engine> refused(const EngineFacts& facts, Obstacle obstacle) {
   std::set<Engine> engines;
   for (const Engine engine : kEngines)

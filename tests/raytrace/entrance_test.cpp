@@ -454,7 +454,7 @@ TEST(Entrance, SurfaceAndItsMeshAgreeOverPrisms) {
   }
 }
 
-// An egg-box surface over a plate has four equivalent azimuths.
+// For an egg-box surface over a plate, four azimuths must give the same result.
 TEST(Entrance, SymmetricFrontsGiveSymmetricAnswers) {
   const Part plate = build_plate({1.2, 1.2}, 0.5);
   const Entrance front = egg_box_entrance(0.6, 0.05, 2.0 * std::numbers::pi / 0.4);

@@ -155,7 +155,8 @@ TEST(TranslationalSymmetry, FarFieldsAreThoseOfEachByItself) {
   }
 }
 
-/// Light that enters the first half of a period is equivalent to light that enters the second half.
+/// In some arrays, light that enters the first half of a period is equivalent to light that enters the second half.
+/// Only one half is then traced, and the results must be those of tracing both halves.
 TEST(TranslationalSymmetry, HalvesOfAPeriodAreAlike) {
   PartSpec quarter = infinite(RtpElement{0.5, 0.4, 90.0}, Arrangement::offset, 1.0);
   quarter.array.overlap_percent = 25.0;

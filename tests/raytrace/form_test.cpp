@@ -126,8 +126,8 @@ std::vector<Vec3> ways_of(const PartSpec& spec, const Optics& optics, const Illu
   return ways;
 }
 
-// A form that is a constant slope down every facet deviates rays like a tilt of all facets, because the normals are the
-// same.
+// A form with a constant slope down every facet must deviate rays like a tilt of all facets, because the normals are
+// the same.
 TEST(FormedFacets, SlopeIsTheTiltOfFacets) {
   constexpr double kTiltArcmin = 2.0;
   FacetForm slope;

@@ -82,9 +82,9 @@ FarField field_of(const Part& part, const Illumination& light) {
   return collector.finish();
 }
 
-/// Light from the mirrored direction must have the mirrored far field. The result must not depend on how the entrance
-/// face is divided for tracing, because this division is not symmetric. Light that passes through several cells is
-/// grouped by these cells.
+/// Light from the mirrored direction must have the mirrored far field. The entrance face is divided for tracing, and
+/// this division is not symmetric. The far field must not depend on the division: light that passes through several
+/// cells is grouped by the cells through which it passes.
 TEST(MirrorSymmetry, MirroredLightHasTheMirroredFarField) {
   PartSpec cubes = finite(HexagonalCube{1.0}, Arrangement::honeycomb, 3.1, 3.4, 1.0);
   cubes.angle_errors.dihedral_error_arcmin.fill(2.0);

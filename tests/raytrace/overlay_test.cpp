@@ -169,7 +169,7 @@ TEST(Fused, RandomOverlaysKeepAreaValueAndPlace) {
 
 TEST(PointLookup, FindsWithinItsToleranceAndNotBeyond) {
   geometry::PointLookup<int> lookup(1e-9);
-  const geometry::Vec3 p(0.3, -0.7, 8e-9);  // on a border of cells
+  const geometry::Vec3 p(0.3, -0.7, 8e-9);  // on the border between two cells of the lookup
   lookup.insert(p, 1);
   const auto count = [&](const geometry::Vec3& at) {
     int found = 0;

@@ -1,5 +1,5 @@
-// Tests of polarised light in all engines: an independent engine with field vectors, Jones matrices of a cube corner,
-// and symmetry.
+// Tests of polarised light in all engines. The results are compared with an independent engine that uses field vectors,
+// and with Jones matrices of a cube corner. Symmetries are also tested.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>

@@ -108,8 +108,9 @@ double power_towards(const std::vector<Spot>& spots, const Vec3& direction) {
   return power;
 }
 
-// f(s -> r) cos t'_s = f(r -> s) cos t'_r, where t' is the angle inside. A beam and its reverse have the same
-// cross-section and the same Fresnel transmittance.
+// Tests the reciprocity of each returned beam: f(s -> r) cos t'_s = f(r -> s) cos t'_r. f(s -> r) is the fraction of
+// the light from the direction s that is returned into the direction r, and t' is the angle to the normal inside the
+// part. A beam and its reverse have the same cross-section and the same Fresnel transmittance.
 int expect_reciprocity(const Part& part, const Optics& optics, const Illumination& illumination) {
   const auto cos_inside = [&](const Vec3& d) {
     return std::sqrt(1.0 - (1.0 - d.z() * d.z()) / (optics.index * optics.index));

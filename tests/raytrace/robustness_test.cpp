@@ -33,9 +33,9 @@ std::vector<Kind> kinds() {
 
 class Leaks : public ::testing::TestWithParam<std::size_t> {};
 
-/// No ray leaks through an edge or a corner. The three kinds share 10^7 path segments, in a long run 10^8. The expected
-/// number of leaks is 0, so the bound does not depend on the sample size. The smallest detectable rate of leaks is
-/// inversely proportional to the sample size.
+/// No ray leaks through an edge or a corner. The test traces 10^7 path segments (10^8 in a long run), divided among the
+/// three kinds of elements. The expected number of leaks is 0 for any number of segments. The smallest detectable rate
+/// of leaks is inversely proportional to the number of segments.
 TEST_P(Leaks, NoSegmentLeaks) {
   const Kind kind = kinds()[GetParam()];
   const std::uint64_t max_segments = test::sample_size<std::uint64_t>(10'000'000, 100'000'000) / kinds().size();

@@ -1,5 +1,5 @@
-// Tests of arcs that consist of chords against true circles with smooth normals. The reference traces rays in the plane
-// across the grooves.
+// Compares arcs that are approximated by chords with true circles, which have smooth normals. The reference traces rays
+// in the plane perpendicular to the grooves.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

@@ -216,9 +216,9 @@ TEST(ContaminatedEntrance, ScratchesThrowLightAcross) {
   }
 }
 
-// Dust on a face returns the fraction rho = c (a b + (a f)^2 R / (1 - a b R)) of the light. R is the mean reflectance
-// of the face for Lambertian light. The fraction c a f (1 - R) / (1 - a b R) enters the part at any angle of incidence.
-// Both are proportional to the coverage c.
+// Dust on a face returns the fraction rho = c (a b + (a f)^2 R / (1 - a b R)) of the light. The fraction c a f (1 - R)
+// / (1 - a b R) enters the part, at any angle of incidence. c is the coverage and a the albedo of the dust; it scatters
+// the fraction f forwards and b = 1 - f backwards. R is the mean reflectance of the face for Lambertian light.
 TEST(ContaminatedEntrance, DustInClosedForm) {
   const double face = diffuse_reflectance();
   const double albedo = 0.8;

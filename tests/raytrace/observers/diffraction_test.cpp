@@ -364,8 +364,8 @@ double mean_over(const FarField& field, const Vec3& direction, const ApertureKer
   return sum;
 }
 
-/// The discs are those of source and receiver. The diffraction patterns of the cells have details wider than the discs,
-/// as wide as the discs and much narrower. Light falls along the normal and obliquely.
+/// Compares means over the discs of source and receiver with quadrature. The details of the diffraction patterns are
+/// wider than the discs, as wide as the discs, or much narrower. Light leaves along the normal or obliquely.
 TEST(DiscMeans, AreMeansOverTheDiscs) {
   for (const double discs_arcmin : {3.0, 10.0})
     for (const double radius_mm : {0.1, 0.4, 1.5})

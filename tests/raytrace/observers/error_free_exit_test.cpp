@@ -129,8 +129,8 @@ std::array<Vec3, 3> normals_of(const PartSpec& spec) {
   return normals;
 }
 
-// Cases are dihedral errors of either sign, and unequal dihedral errors together with facet tilts. Each case is tested
-// with mirrors and with total reflection.
+// Compares the far fields of cube corners with a pixel model. The cube corners have equal dihedral errors of either
+// sign, or unequal dihedral errors and facet tilts. Each case is tested with mirrors and with total reflection.
 TEST(ErrorFreeExit, CubeCornersWithErrorsAgreeWithAPixelModel) {
   const std::vector<AngleErrors> lists = {
       {{-5.0, -5.0, -5.0}, {}}, {{5.0, 5.0, 5.0}, {}}, {{2.0, -7.0, 9.0}, {1.0, 3.0, -4.0}}};

@@ -53,8 +53,8 @@ FacetForm paraboloid(double depth_mm, double radius_mm) {
   return form;
 }
 
-// Two forms are tested: a paraboloid (sink), and a form without symmetry that reveals errors of positions, signs and
-// axes.
+// Compares the far field of a cube corner with a pixel model for two forms: a paraboloid (sink), and a form without
+// symmetry that reveals errors of positions, signs and axes.
 TEST(FormedAperture, CubeCornerAgreesWithAPixelModel) {
   constexpr double kAperture = 0.5;
   const double radius = 0.5 * kAperture / std::sqrt(4.0 / 3.0);  // half the diagonal of a square facet
@@ -119,8 +119,8 @@ TEST(FormedAperture, SunkPrismHasTheProductOfTwoFresnelIntegrals) {
   }
 }
 
-// The form in this test is a constant slope down every facet. Except for terms of second order, the field is that of a
-// cube corner with tilted facets.
+// The form in this test has a constant slope down every facet. Except for terms of second order, the field must equal
+// that of a cube corner with tilted facets.
 TEST(FormedAperture, SlopeIsTheTiltOfFacets) {
   constexpr double kTiltArcmin = 0.7;
   FacetForm slope;

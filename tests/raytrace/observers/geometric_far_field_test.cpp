@@ -239,7 +239,8 @@ TEST(ApertureKernel, IsTheDensityOfTheDifferenceOfTwoDiscs) {
   EXPECT_NEAR(integral, 1.0, 1e-7);
 }
 
-// A Lambertian surface has R_A = rho cos(beta) cos(nu) / pi and R_L = rho cos(beta) / pi.
+// A Lambertian surface has R_A = rho cos(beta) cos(nu) / pi and R_L = rho cos(beta) / pi, with the reflectance rho, the
+// entrance angle beta and the viewing angle nu.
 TEST(Coefficients, LambertianGivesTheCosines) {
   constexpr double kRho = 0.8;
   PhotometricGeometry geometry{Angle::from_deg(1.0), Angle::from_deg(30.0), Angle::from_deg(-15.0), Angle()};

@@ -145,8 +145,8 @@ TEST(PhotometricGeometry, SourceAndObserverOfVAndH) {
   }
 }
 
-// ASTM E808 publishes relations between the goniometer system and the intrinsic system, and relations of both to the
-// entrance angle and the viewing angle.
+// Tests the relations that ASTM E808 publishes between the angles of the goniometer system and those of the intrinsic
+// system, and its formula for the viewing angle.
 TEST(PhotometricGeometry, PublishedRelationsHold) {
   for (std::uint32_t k = 0; k < 1000; ++k) {
     const PhotometricGeometry g = random_geometry(k);
