@@ -226,7 +226,7 @@ TEST(AdaptiveCurve, EndsAtTheMostPlacesAndSaysWhatIsLeft) {
 TEST(AdaptiveCurve, NoiseIsNotFollowed) {
   AdaptiveCurve curve({{0, 20}}, {}, {}, 1e-3);
   const auto places = places_for(curve, [](double x) { return CurveValue{0.01 * std::sin(1e4 * x), 0.01}; });
-  EXPECT_EQ(places.size(), 33U);  // ends of eight gaps that are halved twice
+  EXPECT_EQ(places.size(), 33U);  // end points of eight intervals, each of which is halved two times
 }
 
 }  // namespace

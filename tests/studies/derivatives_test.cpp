@@ -83,7 +83,8 @@ PartSpec brick(double base_mm) {
   return spec;
 }
 
-// RRE = f + (1 - f) 2R / (1 + R) with 2R / (1 + R) = (n - 1)^2 / (n^2 + 1).
+// Compares with derivatives of the closed form RRE = f + (1 - f) 2R / (1 + R), with 2R / (1 + R) = (n - 1)^2 / (n^2 +
+// 1). f is the fraction of the area with whole elements, and R the reflectance of the entrance face.
 TEST(RreDerivatives, IndexOfABrickArray) {
   for (const double base : {5.0, 2.0}) {
     const design::Design design = design_of(brick(base));
@@ -111,8 +112,8 @@ TEST(RreDerivatives, IndexAndIncidenceOfAnIdealHoneycomb) {
   }
 }
 
-// The fraction of returned light is 2 - (4/3) / cos^2 t' up to t' = 19.47 degrees, at any azimuth. t' is the angle
-// inside the plate.
+// Compares with derivatives of the closed form RRE = 2 - (4/3) / cos^2 t', which is valid up to t' = 19.47 degrees at
+// any azimuth. t' is the angle of refraction inside the plate.
 TEST(RreDerivatives, IncidenceOfAnIdealTriangularArray) {
   design::Design design = idealised(design_of(infinite(TriangularCube{kCubeAperture}, Arrangement::triangular, 1.0)));
   design.detector.acceptance_half_angle_deg = {0.01};
@@ -126,7 +127,8 @@ TEST(RreDerivatives, IncidenceOfAnIdealTriangularArray) {
   }
 }
 
-// RRE = exp(-a (2 h + base)) for any width of the prism: docs/theory/closed_forms.md, section 5.
+// Compares with derivatives of the closed form RRE = exp(-a (2 h + base)), which holds for any width of the prism
+// (docs/theory/closed_forms.md, section 5). a is the absorption and h the thickness of the plate.
 TEST(RreDerivatives, ThicknessAndSizeOfAnAbsorbingPrism) {
   for (const double a : {0.01, 0.3, 2.0}) {
     design::Design design = idealised(design_of(single(RtpElement{0.6, 0.4, 90.0}, 0.7)));
@@ -233,7 +235,8 @@ TEST(RreDerivatives, DihedralErrorAgainstRoughDifferences) {
   EXPECT_GT(std::abs(rough), 1e-3);
 }
 
-// Beyond the knee, where total reflection ends, RRE falls like the square root of the angle to the knee.
+// The knee is the incidence at which total reflection ends. Beyond it, RRE falls like the square root of the angle to
+// the knee, so that there is no derivative at the knee.
 TEST(RreDerivatives, KneeOfTotalReflectionIsLeftOut) {
   const design::Design design = design_of(single(RtpElement{0.45, 0.45, 90.0}, 0.5));
   const double knee = std::asin(kPmma * std::sin(45.0 * kDeg - std::asin(1.0 / kPmma))) / kDeg;
@@ -244,13 +247,15 @@ TEST(RreDerivatives, KneeOfTotalReflectionIsLeftOut) {
     EXPECT_EQ(reason(RreParameter::incidence_deg, point_of(design, exactly(at))), std::nullopt) << at;
 }
 
-// At any tilt from the normal, light is lost through the sides of the single prism, so that RRE has a kink.
+// Light that is tilted to either side of the normal is lost through the sides of the single prism. RRE therefore has a
+// kink at normal incidence, and no derivative.
 TEST(RreDerivatives, KinkAtNormalIncidenceIsLeftOut) {
   const design::Design design = design_of(single(RtpElement{0.45, 0.45, 90.0}, 0.5));
   EXPECT_EQ(reason(RreParameter::incidence_deg, point_of(design, exactly(0.0))), NoDerivative::not_smooth);
 }
 
-// The reference derivatives are computed with a negligible cut-off.
+// Tests that the reported errors of derivatives cover the effect of the cut-off. The reference derivatives are computed
+// with a negligible cut-off.
 TEST(RreDerivatives, ErrorEstimateCoversTheCutOff) {
   design::Design prism = design_of(single(RtpElement{0.45, 0.45, 90.0}, 0.5));
   design::Design prisms = design_of(infinite(RtpElement{1.0, 1.0, 90.0}, Arrangement::aligned, 1.0));

@@ -40,7 +40,7 @@ inline std::string with_line(std::size_t number, const std::string& line) {
   return joined(lines);
 }
 
-/// Returns the place of the error when `text` is read. Empty if there is no error.
+/// Returns the place of the error when `text` is read, or an empty text if there is no error.
 inline std::string complaint(const std::string& text, const std::vector<std::string>& overrides = {}) {
   return refusal_of([&] { design::parse_design(text, "d.toml", overrides); });
 }

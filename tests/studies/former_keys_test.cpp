@@ -81,8 +81,8 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
-/// A store is continued only if the parts of the study are equal. The parts must not depend on whether files, words and
-/// overrides use former or current names.
+/// A run resumes from a store only if its `parts`, which are the names and texts that define the study, equal those in
+/// the store. They must not depend on whether the study, the design and the overrides use former or current names.
 TEST(FormerKeys, StoresCanBeContinuedAfterFilesAreRenamed) {
   const std::string study =
       "design = \"d.toml\"\n[[parameter]]\nkey = \"element.base_mm\"\nvalues = [0.4, 0.5]\n[[quantity]]\nkind = "

@@ -244,8 +244,8 @@ TEST(PhotometricColour, IsMeasuredBesideTheMirrorImage) {
 }
 
 // The reported colour is that of the geometry with the smallest margin to any boundary. The margin to the boundary -x
-// <= 5 is large in all geometries. As the only boundary, it selects the geometry with the smaller x. Together with a
-// boundary that is nearer to the colours, it has no effect.
+// <= 5 is large in all geometries. If this is the only boundary, it selects the geometry with the smaller x. If there
+// is also a boundary nearer to the colours, it has no effect.
 TEST(PhotometricColour, SmallestMarginDeterminesTheGeometry) {
   PhotometrySettings request = colour_request();
   const auto v_deg = [&](std::vector<ColourBoundary> boundaries) {

@@ -87,8 +87,8 @@ class Shares : public Progress {
   std::vector<double> shares;
 };
 
-// If only readings are requested, they take the progress to 1. Otherwise a part of the progress is reserved for the
-// colour and for the search for a change with which the design passes.
+// If only readings are requested, the progress is 1 when they are complete. Otherwise, a part of the progress is
+// reserved for the colour, and for the search for a change of the design with which it passes.
 TEST(PhotometricFirstAnswer, ProgressCoversEveryStage) {
   PhotometrySettings request = request_by(raytrace::Engine::automatic);
   for (TestPoint& point : request.test_plan.points) point.minimum = 1e6;

@@ -271,8 +271,8 @@ RreResult rre(const design::Design& design, raytrace::Engine engine, double inci
   return RreStudy({design}, request).run();
 }
 
-// Whole prisms are on both sides of the border between the zones. Light along the normal passes from one facet of a
-// prism to its other facet.
+// The border between the zones cuts no prism, and light along the normal stays within its prism. The RRE must therefore
+// equal that of a part without zones.
 TEST(ZonedDesign, PrismsTurnedInAZoneReturnWhatTheyDoAlone) {
   const std::string lengths = "x_length_mm = 8; y_length_mm = 4";
   const design::Design plain = design::parse_design(design_of(kRtp, lengths), "d.toml");

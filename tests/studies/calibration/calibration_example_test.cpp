@@ -170,7 +170,8 @@ void measure(Example& example, const design::Design& design, std::mt19937& bits)
   example.calibrated = calibrate(std::move(cuts.parts));
 }
 
-/// Simulates a height map of the part that the programs for the calibrated machine cut later.
+/// Simulates the height map of a part. The part is cut later than the test cuts, by programs for the calibrated
+/// machine.
 void look(Example& example, const design::Design& design, std::mt19937& bits) {
   FabricationResult plan = test::planned(job_text(make_job(design, request()).job));
   plan.machine = example.calibrated.machine;
@@ -267,8 +268,8 @@ TEST(CalibrationExample, TestCutsFindWhatIsHidden) {
     }
   }
   EXPECT_EQ(within.size(), 9U);
-  // With a probability of 95 % for each machine, at least 89 of 100 intervals contain the true value in 99 of 100
-  // cases.
+  // If each interval contains the true value with a probability of 95 %, at least 89 of 100 intervals contain it with a
+  // probability of 99 %.
   for (const auto& [key, count] : within) EXPECT_GE(count, 89U) << key;
 }
 

@@ -95,9 +95,9 @@ std::vector<std::string> told(const Calibration& found) {
   return keys;
 }
 
-/// Facets determine only three quantities individually. The other quantities are known only in combinations, or not at
-/// all. Examples are errors that move the edge along itself or in the plane of the facet, the clearance, and a common
-/// shift of all axes.
+/// Measurements of facets determine only three quantities individually. The other quantities are known only in
+/// combinations, or not at all. Quantities that are not known are, for example, errors that move the cutting edge along
+/// itself or in the plane of the facet, the clearance, and a common shift of all axes.
 TEST(Calibration, SaysWhatFacetsDoNotTell) {
   std::mt19937 bits(1);
   const Calibration found = calibrate(measured_on(test_cuts().plans.front().machine, bits));

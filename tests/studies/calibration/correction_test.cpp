@@ -52,8 +52,8 @@ const FoundMachine& found_machine(std::uint32_t seed) {
       .first->second;
 }
 
-/// The intervals of 95 % contain the hidden value on 95 % of the machines. The observed number is within 2.58 standard
-/// deviations of the binomial distribution in 99 of 100 cases.
+/// The 95 % intervals must contain the hidden values on 95 % of the machines. The tolerance is 2.58 standard deviations
+/// of the binomial distribution, which correct intervals exceed with a probability of 1 %.
 TEST(Correction, IntervalsHoldWhatIsHidden) {
   std::map<std::string_view, std::size_t> within;
   for (std::uint32_t seed = 1; seed <= kMachines; ++seed) {

@@ -30,7 +30,7 @@ TEST(Mixture, OfTwoLobesHasSharesAndPricesOfTheClosedForm) {
   const std::vector<MixedCell> cells = {lobe(-0.8, points), lobe(0.7, points)};
   const double f0 = cells[0].goals[0], f2 = cells[0].goals[2], g0 = cells[1].goals[0], g2 = cells[1].goals[2];
   const double x = (g2 - g0) / (f0 - f2 + g2 - g0);
-  // Price of the first goal. With it, both cells have the same value.
+  // Price of the first goal at which both cells have the same value.
   const double price = (g2 - f2) / (f0 - g0 + g2 - f2);
   const Mixture mixture = best_mixture(cells, {});
   ASSERT_EQ(mixture.kind, Mixture::Kind::optimal);

@@ -1,5 +1,5 @@
-// Tests of quantities that are single readings or single directions. The values of such quantities can be added for
-// mixtures. The tests compare these quantities with the minimum or the mean of several readings or directions.
+// Tests of quantities that consist of separate readings or directions, whose values can be added for mixtures of cells.
+// They are compared with the quantities that are the minimum or the mean of all readings or directions.
 
 #include <gtest/gtest.h>
 

@@ -62,8 +62,8 @@ double z_variance(const std::vector<CameraImage>& images, std::size_t pixel) {
   return sum / (kSeeds - 1.0);
 }
 
-/// Returns the upper limit of this mean square, for normally distributed deviations, that none of `pixels` pixels
-/// exceeds with a probability of 99 %.
+/// Returns an upper limit of z_variance() for normally distributed deviations. With a probability of 99 %, none of
+/// `pixels` pixels exceeds this limit.
 double variance_bound(std::size_t pixels) {
   const boost::math::chi_squared distribution(kSeeds - 1.0);
   return boost::math::quantile(boost::math::complement(distribution, sidak_level(pixels))) / (kSeeds - 1.0);

@@ -72,7 +72,8 @@ TEST(ToneMapped, KeepsTheOrderAndTheMiddleAtItsKey) {
   EXPECT_LE(shown[98], 1.0);
   EXPECT_EQ(shown[99], 1.0) << "the brightest burns out";
   EXPECT_EQ(tone_mapped({0.0, 0.0}), (std::vector<double>{0.0, 0.0}));
-  // All values x are equal and therefore also the white point of the tone curve: x (1 + x / x^2) / (1 + x) = 1.
+  // If all pixels have the same value x, the white point of the tone curve is also x. The result is then x (1 + x /
+  // x^2) / (1 + x) = 1.
   for (const double value : tone_mapped({5.0, 5.0})) EXPECT_DOUBLE_EQ(value, 1.0);
   EXPECT_EQ(srgb_byte(0.0), 0);
   EXPECT_EQ(srgb_byte(2.0), 255);

@@ -11,7 +11,7 @@ struct StepFindings {
   int solids = 0;
   int shells = 0;
   int faces = 0;
-  bool is_valid = false;  ///< BRepCheck
+  bool is_valid = false;  ///< result of BRepCheck
   int free_edges = 0;     ///< number of edges that do not belong to two faces
   double volume_mm3 = 0.0;
   double area_mm2 = 0.0;

@@ -11,8 +11,8 @@
 #include "tests/studies/solids/solid_specs.h"
 #include "tests/studies/solids/step_reader.h"
 
-// Tests of STEP files. OpenCASCADE reads them back as one valid solid without free edges. Its volume is that of closed
-// forms.
+// Tests of STEP files. OpenCASCADE must read them back as one valid solid without free edges, whose volume equals a
+// closed form.
 
 namespace retrace::geometry::step_test {
 namespace {

@@ -49,7 +49,7 @@ class ByMpi : public ::testing::Test {
       if (const pid_t process = process_of(rank); process > 0 && is_running(rank)) ::kill(process, SIGKILL);
   }
 
-  /// Returns the process number of a rank. 0 if the rank has not started.
+  /// Returns the process number of a rank, or 0 if the rank has not started.
   pid_t process_of(int rank) const {
     std::ifstream file(folder_.path() / ("pid." + std::to_string(rank)));
     pid_t process = 0;

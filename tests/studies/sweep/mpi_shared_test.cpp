@@ -159,7 +159,8 @@ TEST_F(CommandsByMpi, CameraIsTheSame) {
 }
 
 TEST_F(CommandsByMpi, CameraThatLooksAtItsNoiseIsTheSame) {
-  // More passes are dealt out than the requested noise requires.
+  // The ranks may compute more passes than the requested noise requires. The additional passes must not change the
+  // picture.
   expect_same_by_ranks("image d.toml --camera --pixels 24x18 --film-mm 5x5 --noise 0.2", 3);
 }
 

@@ -187,7 +187,7 @@ TEST(Optimise, FormerKindsAreNamesOfQuantities) {
               kind + "\"\n[optimize]\nmaximize = \"" + name + "\"\n[[constraint]]\nquantity = \"" + name +
               "\"\nmin = 0.1\n",
           kStudies + "study.toml");
-      EXPECT_EQ(study.quantities.at(0)->name(), kind);  // the name of the column is that of the file
+      EXPECT_EQ(study.quantities.at(0)->name(), kind);  // the column has the name that the study file uses
       const OptimiseRequest request = read_optimise(study);
       EXPECT_EQ(request.objective.weights.at(0).first, kind) << name;
       EXPECT_EQ(request.constraints.at(0).quantity, kind) << name;

@@ -265,8 +265,8 @@ TEST_F(PhotometricStudy, WhatIsWrongIsSaidWithItsKey) {
   EXPECT_EQ(message("name = \"q\"\nwidth = 1\n"), "TMP/study.toml:12: quantity[1].width");
 }
 
-/// The surface that results from machining is inserted into the design. If the study also sets one of these values, the
-/// value of the study takes precedence.
+/// The texture and the edge radius that result from machining are inserted into the design. If an override also sets
+/// one of these values, the override takes precedence.
 TEST(MachiningLoop, SurfacesAreThoseThatTheStrategyLeaves) {
   const auto design = [](const std::string& machining, const std::vector<std::string>& overrides = {}) {
     const Study study = parse_study(
