@@ -325,8 +325,8 @@ TEST(Entrance, SlabAtNormalIncidence) {
   EXPECT_NEAR(slab.ledger.total(), 1.0, 1e-12);
 }
 
-// The wedge rises by the slope s over the length L. The width of the beam is measured in the horizontal plane through
-// the upper edge of the wedge. Rays within L s tan t of the lower edge miss the wedge.
+// The wedge rises by the slope s over the length L. The beam covers the horizontal plane through the upper edge of the
+// wedge. At the angle of incidence t, rays within L s tan t of the lower edge miss the wedge and count as transmitted.
 TEST(Entrance, WhatPassesBesideIsTransmitted) {
   const double slope = 0.25;
   const Part plate = build_plate({2.0, 1.0}, 1.0);

@@ -234,7 +234,8 @@ TEST(PhotometricColour, OfNoLightIsUndetermined) {
   EXPECT_EQ(photometry_json(result).find("\"x\""), std::string::npos);
 }
 
-// The colour is measured at V = 5 and V = -5, away from the mirror image. The worse value counts.
+// If the entrance face returns a mirror image of the lamp, the colour is measured at V = 5 and V = -5 instead of V = 0.
+// The worse value counts.
 TEST(PhotometricColour, IsMeasuredBesideTheMirrorImage) {
   PhotometrySettings request = colour_request();
   request.test_plan.boundaries = {at_most(1.0, 0.0, 0.448)};

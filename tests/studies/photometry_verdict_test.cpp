@@ -63,8 +63,8 @@ design::Design rough(design::Design design, double sq_nm) {
   return design;
 }
 
-/// With these parameters and direction cosines up to 2, every facet scatters the fraction pi a ln(1 + 4 / b) of the
-/// light.
+/// With these parameters, every facet scatters the fraction pi a ln(1 + 4 / b) of the light. The direction cosines of
+/// scattered and specular light differ by at most 2.
 constexpr double kAbgA = 1e-3, kAbgB = 1e-3;
 
 design::Design scattering_by_abg(design::Design design, double a = kAbgA) {

@@ -98,9 +98,9 @@ TEST(Footprint, OfPrismsAtNormalIncidenceIsTheWholeFace) {
   }
 }
 
-// A full element returns all light that enters (docs/theory/closed_forms.md, 1). In a half element, which the border of
-// the part cuts, the wall and the entrance face are parallel. A half element therefore returns the light that its wall
-// reflects.
+// A full element returns all light that enters (docs/theory/closed_forms.md, section 1). In a half element, which the
+// border of the part cuts, the wall and the entrance face are parallel. A half element therefore returns only the light
+// that its wall reflects.
 TEST(Footprint, ShowsTheHalvesOfABrickArray) {
   const Footprint footprint = *run(design_of(bricks()), {0.0}).returned.at(0).footprint;
   const double r = std::pow((kPmma - 1.0) / (kPmma + 1.0), 2.0);

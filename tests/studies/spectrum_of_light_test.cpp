@@ -381,7 +381,8 @@ TEST(InspectSpectrum, LimitOfTotalReflectionIsThatOfTheLeastIndex) {
   EXPECT_TRUE(lit.warnings.empty());
 }
 
-// The index behind the facets is chosen such that total reflection ends between the red and the blue wavelengths.
+// Tests the warning if the facets reflect only a part of the spectrum totally. The index behind the facets is chosen
+// such that total reflection ends between the red and the blue wavelengths.
 TEST(InspectSpectrum, WarnsWherePartOfTheLightIsNotTotallyReflected) {
   const auto library = materials::MaterialLibrary::shipped();
   const double index = inspect(design({"light.wavelength_nm=560"}), library).refractive_index;
