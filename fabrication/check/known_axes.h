@@ -11,7 +11,8 @@
 namespace retrace::fabrication {
 
 /// Checks that programs move only axes that the machine has, and that the positions of all axes are known before a
-/// move. A rapid move is allowed if it moves only axes whose positions were unknown, because it gives these positions.
+/// move. Exception: a rapid move may move axes with unknown positions if it moves no other axes, because it makes their
+/// positions known.
 class KnownAxes {
  public:
   /// \param axes axes of the machine, as one bit for each axis of kNcAxisLetters

@@ -43,7 +43,7 @@ struct Workpiece {
 };
 
 /// Chip (notch) in the cutting edge. If the last cut of a facet is made with this edge, a ridge remains on the facet at
-/// this position.
+/// the position of the chip.
 struct EdgeChip {
   double position_um =
       0.0;                ///< position of the chip's centre along the edge, from the edge's centre towards machine +X

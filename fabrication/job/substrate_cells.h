@@ -24,8 +24,8 @@ std::vector<CutElement> elements_on_substrate(const Job& job);
 /// Returns the maximum height, in mm, of the blank's face above the plane of an element's rims (upper edges), inside
 /// the opening of the element's cut. It is 0 on a flat blank, on an inclined blank with elements along its normal, and
 /// on a convex blank.
-/// \param clearance_mm distance from the blank's face that the tool must keep at the start of a cut. The result is such
-///        that a tool at the height result + clearance_mm above the rims keeps this distance
+/// \param clearance_mm distance from the blank's face that the tool must keep at the start of a cut. A tool at the
+///        height result + clearance_mm above the rims keeps this distance
 /// \throw InputError, whose text begins with "must", if the substrate is too steep for the tool to leave the cut
 double stock_mm(const Job& job, const std::vector<CutElement>& elements, double clearance_mm = 0.0);
 

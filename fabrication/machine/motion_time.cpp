@@ -8,7 +8,7 @@ namespace retrace::fabrication {
 namespace {
 
 /// Returns the time from rest to a speed. At low speeds, the acceleration rises and falls without reaching its limit.
-/// Otherwise, rise and fall of the acceleration take acceleration / jerk each.
+/// Otherwise, the rise and the fall of the acceleration each take the time acceleration / jerk.
 double speeding_up_s(double speed, const MotionLimits& limits) {
   if (speed * limits.jerk < limits.acceleration * limits.acceleration) return 2.0 * std::sqrt(speed / limits.jerk);
   return speed / limits.acceleration + limits.acceleration / limits.jerk;

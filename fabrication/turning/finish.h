@@ -11,7 +11,8 @@ namespace retrace::fabrication::turning {
 /// the lowest point is b^2 / a (Sohn, Naples, eqs. 2 and 3; exact for a flat).
 double effective_radius_mm(const TurningTool& tool);
 
-/// Surface finish of a nose that is approximated by a parabola with radius r, at the feed f (closed forms).
+/// Surface finish that a nose leaves at the feed f, in closed form. The nose is approximated by a parabola with the
+/// radius of curvature r.
 struct FinishFigures {
   double peak_to_valley_nm = 0.0;  ///< f^2 / (8 r)
   double ra_nm = 0.0;              ///< f^2 / (18 sqrt(3) r) = f^2 / (31.18 r)

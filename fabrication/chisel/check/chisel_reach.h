@@ -22,7 +22,8 @@ struct ChiselCap {
 /// passes (docs/theory/micro_chiseling.md). Facet k is between the dihedral edges at 120 k and 120 (k + 1) degrees.
 struct ChiselReach {
   double facet_area_mm2 = 0.0;  ///< area of one facet
-  /// Fraction of a facet that is cut: all except a triangle at the apex, as high as half the width of the tool.
+  /// Fraction of the area of a facet that is cut. The remainder is a triangle at the apex, whose height is half of the
+  /// width of the tool.
   double fraction = 0.0;
   double core_mm = 0.0;           ///< height of the remaining core above the apex
   std::array<ChiselCap, 3> caps;  ///< planes in the part frame; the remaining material is below all three planes

@@ -69,8 +69,8 @@ std::vector<RigidMotion> ProgramCheck::poses() const {
 }
 
 std::size_t ProgramCheck::pose_index(const RotaryPose& pose) {
-  // Poses whose C angles differ by full turns are equal. The unit, 1e-8 degrees, is much larger than the rounding
-  // errors of sums.
+  // Poses whose C angles differ by full turns are equal. Angles are compared in units of 1e-8 degrees, which are much
+  // larger than the rounding errors of sums.
   constexpr double kUnitsPerDeg = 1e8;
   constexpr auto kTurn = static_cast<std::int64_t>(360.0 * kUnitsPerDeg);
   const auto units = [](double deg) { return std::llround(deg * kUnitsPerDeg); };

@@ -127,8 +127,9 @@ class Judge {
   }
 
  private:
-  /// Returns the predicted residual material at the root of a facet. It comes from the plunges along the other facet.
-  /// For a unidirectional job, returns the larger of the values of both facets, because only one facet is plunged.
+  /// Returns the predicted residual material at the root of a facet. The plunges along the other facet leave this
+  /// material. For a unidirectional job, returns the larger of the values of both facets, because only one facet is
+  /// plunged.
   double root_limit_mm(const Prediction& prediction, std::size_t facet) const {
     if (!cuts_prisms(*workpiece_.job)) return prediction.fin_mm;
     return workpiece_.job->strategy == Strategy::unidirectional ? prediction.root_mm : prediction.root_of_mm[1 - facet];

@@ -25,9 +25,10 @@ int cuts_per_facet(const Job& job, double stock_mm = 0.0);
 /// \throw InputError naming the key if nothing remains for roughing
 double roughing_across_mm(const Job& job, double stock_mm);
 
-/// Returns the maximum difference, in mm, between the actual and the planned thickness of a first cut. The heights of
-/// the two ends of a tilted edge differ by twice `lift_mm`. The plunge along the other facet has the same difference.
-/// The Y and Z positions of both cuts are also rounded to whole increments.
+/// Returns the maximum difference, in mm, between the actual and the planned chip thickness of the first cut of a
+/// facet. The difference has two causes. The ends of a tilted edge differ in height by twice `lift_mm`, both in this
+/// plunge and in the plunge along the other facet. In addition, the Y and Z positions of both plunges are rounded to
+/// whole increments.
 inline double edge_dip_mm(const Section& section) {
   return 4.0 * section.lift_mm + 2.0 * static_cast<double>(section.step_nm) / kNanometresPerMm;
 }

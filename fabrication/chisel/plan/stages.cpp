@@ -87,8 +87,8 @@ class StageMaker {
     const bool is_dmc = !cuts_prisms(job_);
     const double across_mm =
         is_dmc ? chiseling_across_mm(job_, zone, plan_.stock_mm) : roughing_across_mm(job_, plan_.stock_mm);
-    // The second plunge of the first layer has the thinnest chip. Its material is the remainder of the triangular
-    // cross-section above the rake face of the first plunge.
+    // The second plunge of the first layer has the thinnest chip. The chip is the part of the triangular cross-section
+    // that remains above the rake face of the first plunge.
     double share = 1.0;
     if (!is_dmc) {
       const double apex_rad = plan_.poses.front().section.apex.rad();

@@ -1,6 +1,6 @@
 #pragma once
 
-// Access of the file formats to members that are not in every file: they are written only under a condition.
+// Accessors with which file formats read and write a member that a file contains only under a condition.
 
 #include "core/schema/access.h"
 

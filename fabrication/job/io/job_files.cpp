@@ -45,9 +45,9 @@ constexpr std::size_t kMaxZoneElements = 2'000'000;
 /// Tolerance, in mm, of the check that the tool is not wider than the element.
 constexpr double kFitToleranceMm = 1e-6;
 constexpr std::size_t kMaxChips = 100;
-/// Minimum angle, in degrees, between the rake face and the facet that is not being cut. The chip leaves between them.
-/// The value is an assumption: a wedge angle of 50 and a clearance angle of 15 degrees leave 25 degrees of a right
-/// angle, and half of this remainder is required.
+/// Minimum angle, in degrees, between the rake face and the facet that is not being cut. The chip leaves through the
+/// gap between them. The value is an assumption: if the angle between the facets is 90, the wedge angle 50 and the
+/// clearance angle 15 degrees, the gap is 25 degrees. Half of this gap is required.
 constexpr double kChipRoomDeg = 12.5;
 
 // Conversions between members of Job and values in files.

@@ -103,7 +103,8 @@ constexpr schema::Row kRows[] = {
      "Hamilton et al. (2017).",
      access<&Process::finishing_plunge_sa_nm>}};
 
-/// Returns an error message if a plough is shorter than the chip is thick, because the chip then does not separate.
+/// Returns an error message if the length of a plough is less than the thickness of the chip, because the chip then
+/// does not separate.
 std::string hanging_chip(const Process& p) {
   if (p.shortest_plough || p.plough_length_mm >= 1e-3 * p.roughing_depth_um) return {};
   return fmt::format("must be at least roughing_depth_um ({} um) to free the chip, got {}",

@@ -30,8 +30,8 @@ constexpr NumberRange kPositive{.low = 0.0, .low_included = false, .high = 1e6};
 constexpr NumberRange kLength{.low = -1e4, .high = 1e4};
 constexpr NumberRange kComponent{.low = -1e6, .high = 1e6};
 constexpr NumberRange kDegrees{.low = -3600.0, .high = 3600.0};
-/// Minimum determinant of the directions of the three linear axes, and minimum sine of the angle between the two rotary
-/// axes. A sine of 0.5 is an angle of 30 degrees.
+/// Minimum determinant of the directions of the three linear axes. It is also the minimum sine of the angle between the
+/// two rotary axes, which corresponds to an angle of 30 degrees.
 constexpr double kMinDeterminant = 0.5;
 
 /// Minimum length of a vector that is accepted as a direction. Shorter vectors are refused.

@@ -233,7 +233,7 @@ void LatheCheck::measure() {
   SectionLine reachable = design;
   SectionLine left;
   for (const SectionPoint& p : path) left.push_back({p.x_mm, p.z_mm + nose});
-  // The added thousandth is much larger than the effect of rounded positions.
+  // The tolerance is increased by a thousandth, which is much more than the effect of rounded positions.
   double limit = part_.tolerance_mm * (1.0 + 1e-3);
   if (nose > 0.0) {
     // Include positions of the nose beyond the rim, because the nose also touches the rim from there.

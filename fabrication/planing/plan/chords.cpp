@@ -18,9 +18,9 @@ double distance_to_piece(const ProfilePoint& p, const ProfilePoint& a, const Pro
   return std::hypot(p.x_mm - a.x_mm - t * dx, p.z_mm - a.z_mm - t * dz);
 }
 
-/// Calls visit(j) for every point j at which a chord from `start` may end. The directions of chords that pass all
-/// points so far within the tolerance form an interval. Each further point makes this interval narrower. If it becomes
-/// empty, no later point can be reached.
+/// Calls visit(j) for every point j at which a chord from `start` may end. A chord must pass all points before its end
+/// within the tolerance. The allowed directions of the chord form an interval, which becomes narrower with each point.
+/// If the interval is empty, no later point can be reached.
 template <class Visit>
 void for_each_reached(const std::vector<ProfilePoint>& profile, std::size_t start, double tolerance_mm, Visit visit) {
   const ProfilePoint& from = profile[start];

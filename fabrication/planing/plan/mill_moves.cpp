@@ -69,7 +69,8 @@ double MillMoves::time_of(std::int64_t steps) const {
 }
 
 bool MillMoves::ends_in_time() const {
-  // The time includes the moves back to the centre: Z, and X with a detour of twice its minimum move.
+  // Include the time of the moves back to the centre: a move of Z, and a move of X with a detour of twice its minimum
+  // move.
   const double home_s =
       time_of(state_.position[kZ] - home_[kZ]) + time_of(state_.position[kX]) + time_of(2 * min_steps_[kX]);
   return state_.at.time_s + home_s <= 3600.0 * part_.mill->max_hours;

@@ -70,8 +70,8 @@ double largest_nose_mm(const ZoneProfile& profile) {
 
 double path_tolerance_mm(const ZoneProfile& profile, double nose_mm, double tolerance_mm) {
   if (nose_mm == 0.0) return tolerance_mm;
-  // The two flanks of an edge include the angle 90 degrees - a. If both flanks are displaced by t, the edge is
-  // displaced by t / sin(45 degrees - a / 2).
+  // The angle between the two flanks of an edge is 90 degrees - a, where a is the angle of the steepest slope. If both
+  // flanks are displaced by t, the edge is displaced by t / sin(45 degrees - a / 2).
   return tolerance_mm * std::sin(0.25 * std::numbers::pi - 0.5 * std::atan(profile.steepest_slope()));
 }
 

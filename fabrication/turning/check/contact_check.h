@@ -10,8 +10,8 @@
 
 namespace retrace::fabrication::turning {
 
-/// Point at the border of the region where the edge does not reach the surface. It belongs to a block whose planned
-/// point of contact is outside of the region.
+/// Point at the border of the inspected region at which the edge is above the surface. The planned point of contact of
+/// its block is outside of the region.
 struct BorderPoint {
   geometry::Vec2 at_mm = geometry::Vec2::Zero();
   double edge_nm = 0.0;  ///< height of the edge above the surface at this point, along the surface normal

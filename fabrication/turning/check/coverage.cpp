@@ -64,7 +64,7 @@ class CoverageCheck {
     }
   }
 
-  // Spirals.
+  // Functions for spirals.
 
   static double radius(const CutPass& pass, std::size_t i) { return std::hypot(pass.x_mm[i], pass.y_mm[i]); }
 
@@ -111,7 +111,7 @@ class CoverageCheck {
       add_uncut(last.program, last.line.back(), "the cuts end before they reach the centre", end, path_.feed_mm);
   }
 
-  // Lines of a raster.
+  // Functions for the lines of a raster.
 
   /// Returns a point of a line in the part frame: coordinates across and along the lines.
   geometry::Vec2 place(const CutPass& pass, std::size_t i) const {

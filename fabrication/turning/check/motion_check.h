@@ -1,6 +1,7 @@
 #pragma once
 
-// Checks speed, acceleration and jerk of a lathe's axes along cuts. They are computed from positions and times.
+// Checks the speed, acceleration and jerk of a lathe's axes along cuts. These values are computed from positions and
+// times.
 
 #include <array>
 

@@ -221,8 +221,9 @@ class Measurer {
       if (!is_beside(*sweep, along)) near_.push_back(sweep);
   }
 
-  /// Returns true if a sweep misses all measuring lines of a station, because the tool passes them on one side. The
-  /// tool is as wide as its edge. The result is reliable for points up to kReachRatio facet lengths from the root.
+  /// Returns true if a sweep intersects no measuring line of a station, because the whole tool remains on one side of
+  /// the station. The tool is assumed to be as wide as its edge. The result is reliable for points up to kReachRatio
+  /// facet lengths from the root.
   bool is_beside(const SweptVolume& sweep, double along) const {
     const RigidMotion& pose = poses_[sweep.pose];
     const Vec3 root = pose.direction(groove_.root_direction);

@@ -78,7 +78,7 @@ struct LineSpan {
 std::optional<LineSpan> swept_span(const ToolWedge& wedge, const SweptVolume& sweep, const geometry::Vec3& point_mm,
                                    const geometry::Vec3& direction);
 
-/// Machined surface along a line that comes from inside the material (s = -infinity) and leaves the blank at `exit`.
+/// Machined surface along a line that begins inside the material (s = -infinity) and leaves the blank at s = `exit`.
 struct LineSurface {
   double top = 0.0;           ///< parameter s above which all material is removed
   std::int32_t top_line = 0;  ///< NC line of the move that produced the surface at `top`; 0: the blank's face
