@@ -17,7 +17,7 @@ namespace retrace::app {
 /// Description of a command that computes a list of points and saves them in a store (an SQLite file).
 struct PointsCommand {
   std::string doing;              ///< activity that the progress bar shows, such as "sweeping"
-  std::string fewer_points = {};  ///< advice to the user how to reduce the number of points: "give fewer values"
+  std::string fewer_points = {};  ///< advice on how to reduce the number of points, such as "give fewer values"
   std::string store;              ///< name of the store file in the output folder
   /// Function that reads and checks the study. Under MPI, every rank calls it.
   std::function<studies::Sweep()> read;

@@ -12,7 +12,8 @@
 namespace retrace::app {
 
 /// Returns advice for a shorter study, such as "give a smaller analysis.samples (now 1000000000)".
-/// \param fewer_points additional advice how to reduce the number of points, such as "give fewer values"; may be empty
+/// \param fewer_points additional advice on how to reduce the number of points, such as "give fewer values"; may be
+///        empty
 Words to_shorten_study(const studies::Study& study, const std::string& fewer_points);
 
 /// Progress bar of a search that evaluates an unknown number of designs.

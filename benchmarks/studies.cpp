@@ -30,7 +30,8 @@ namespace fs = std::filesystem;
 
 constexpr std::chrono::milliseconds kPoint{10};
 
-/// Takes 10 ms without using the processor, so that other load on the machine has no influence.
+/// Quantity whose computation takes 10 ms without using the processor, so that other load on the machine has no
+/// influence.
 class Sleep final : public studies::Quantity {
  public:
   Sleep() : Quantity("sleep") {}

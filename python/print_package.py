@@ -121,7 +121,7 @@ def files_module(program: str) -> str:
     lines = [
         '"""Tables of files as dicts, for type checkers and editors: printed by the program.',
         "",
-        "Which keys go together, and their ranges, are checked when a file is read.",
+        "The ranges of keys and their allowed combinations are checked when a file is read.",
         '"""',
         "",
         "from __future__ import annotations",

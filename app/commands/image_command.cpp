@@ -60,8 +60,8 @@ std::vector<Argument> arguments(ImageOptions& options) {
   return all;
 }
 
-/// Checks that pictures can be written. Must be called before a picture is computed, but after cheaper checks: loading
-/// the library that writes pictures takes half a second.
+/// Checks that pictures can be written. The check is made before a picture is computed, but after all faster checks,
+/// because it takes half a second to load the library that writes pictures.
 void check_can_draw(const CommonOptions& common) {
   if (!common.out.empty()) picture_files();
 }

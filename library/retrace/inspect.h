@@ -15,7 +15,7 @@ struct Inspection {
   Warnings warnings;
   std::string json;   ///< JSON document retrace.inspect/2
   std::string table;  ///< summary as text
-  Drawing plan;       ///< SVG; this and the next two drawings are empty if they do not apply to the design
+  Drawing plan;       ///< SVG; each of the first three drawings is empty if it does not apply to the design
   Drawing section;
   Drawing entrance_surface;  ///< profile of a curved entrance surface
   Drawing view;              ///< view in three dimensions; PNG

@@ -18,7 +18,7 @@ struct PhotometricPoint {
   double v_deg = 0.0, h_deg = 0.0;
   double rotation_deg = 0.0;    ///< rotation of the part at which the value is smallest
   double r_i_mcd_per_lx = 0.0;  ///< coefficient of luminous intensity (CIL)
-  double r_a = 0.0;             ///< cd/(lx m^2)
+  double r_a = 0.0;             ///< coefficient of retroreflection R_A, in cd/(lx m^2)
   double std_error_mcd_per_lx = 0.0;
   double limit_mcd_per_lx = 0.0;
   std::string verdict;  ///< pass, unconfirmed, undetermined or fail

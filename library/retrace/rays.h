@@ -39,7 +39,7 @@ struct RayArrays {
   /// Reference axes of the Stokes parameters, three numbers per ray. If the array is empty, each axis is the direction
   /// +x, projected onto the plane normal to the ray.
   std::vector<double> axes;
-  /// One per ray, or one for all rays; if empty, the wavelengths of the design are used.
+  /// Wavelengths: one for each ray, or one for all rays. If the array is empty, the wavelengths of the design are used.
   std::vector<double> wavelengths_nm;
 };
 

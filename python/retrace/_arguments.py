@@ -1,4 +1,4 @@
-"""Checks arguments: every message names the argument and says what is allowed."""
+"""Checks arguments. Every message names the argument and the allowed values."""
 
 from __future__ import annotations
 

@@ -33,7 +33,7 @@ def _whole(keyword: str, value: object, field: Field) -> int:
 
 
 def _converted(keyword: str, value: object, field: Field) -> object:
-    """Converts a value to the type that the library takes. The library checks its range."""
+    """Converts a value to the type that the library requires. The library checks the range."""
     if field.kind == "number":
         return number(keyword, value)
     if field.kind == "whole":

@@ -54,9 +54,10 @@ _FORMER_DRAWINGS = {"front": "entrance_surface"}
 
 @functools.lru_cache(maxsize=None)
 def former_names(kind: str) -> Mapping[str, str]:
-    """Returns the current name of each renamed key in documents of a kind, or in designs if the
-    kind is "". The keys are paths such as "regions[].active_share": the former name after the
-    current names of the objects that contain it."""
+    """Returns the current names of renamed keys as a dict by former paths.
+
+    kind: kind of the documents; "" for designs. In a path such as "regions[].active_share", only
+    the last name is a former name. The objects that contain the key have their current names."""
     names = {}
     for of, former, current in _core.former_names():
         if of == kind and "=" not in current:
@@ -66,7 +67,8 @@ def former_names(kind: str) -> Mapping[str, str]:
 
 
 def names_within(names: Mapping[str, str], parent: str) -> Mapping[str, str]:
-    """Returns the names whose paths begin with a parent such as "regions[].", without it."""
+    """Selects the names whose paths begin with `parent`, such as "regions[].", and removes this
+    beginning from the paths."""
     return {
         former[len(parent) :]: name for former, name in names.items() if former.startswith(parent)
     }
@@ -116,7 +118,7 @@ def column_of(values: Sequence[Any], former: Mapping[str, str] | None = None) ->
     """Converts the values of one key. Numbers become a float64 array in which missing values (None)
     are NaN. Tables become Columns. Other values are not changed.
 
-    former: current names by former names of keys of the tables"""
+    former: dict from former to current names of the keys of the tables"""
     there = [value for value in values if value is not None]
     if all(map(_is_number, there)):
         return frozen([np.nan if value is None else value for value in values])
@@ -149,8 +151,8 @@ class Columns(Mapping[str, Any]):
         names: Sequence[str] = (),
         former: Mapping[str, str] | None = None,
     ) -> None:
-        """names: columns that exist even if there are no rows. former: current names by former
-        names."""
+        """names: columns that exist even if there are no rows. former: dict from former
+        to current names."""
         #: Rows of the list, as in the JSON document.
         self.rows = rows
         self._names = list(dict.fromkeys([*names, *(name for row in rows for name in row)]))
@@ -291,7 +293,7 @@ class Drawing:
 
     @property
     def is_there(self) -> bool:
-        """True if the drawing is available. After unpickling, only drawings made before are."""
+        """True if the drawing is available. An unpickled result has only drawings made before."""
         return self._source is not None or self._svg is not None
 
     @property

@@ -5,8 +5,8 @@
 A table between the marks `<!-- order of NAME -->` and `<!-- end -->` gets a row for each folder (NAME: folders) or for
 each room of the folder NAME, from the lowest to the highest. Its last column lists what the folder or room may include.
 The columns between the first and the last are kept. Between the marks `<!-- picture of folders -->` and `<!-- end -->`,
-the folders are drawn as floors. With --check, no file is written: the names of files with other texts are printed, and
-the exit code is 1 if there are any.
+the folders are listed by layer. With --check, no file is written: the names of files whose texts would change are
+printed, and the exit code is 1 if there are any.
 """
 
 import json
@@ -33,7 +33,7 @@ def table(text: str, order: dict[str, list[str]]) -> str:
 
 
 def picture(folders: dict[str, list[str]]) -> str:
-    """Returns a line for each folder, the highest first: its floor, its name and what it may include."""
+    """Returns a line for each folder, the highest layer first: number of the layer, name, and what it may include."""
     floors: dict[str, int] = {}
     for folder, lower in folders.items():
         floors[folder] = max((floors[other] + 1 for other in lower), default=0)

@@ -3,8 +3,8 @@ options in docs/commands/*.md between the marks `<!-- fields of NAME -->` and `<
 
     python3 request_texts.py PROGRAM [--check]
 
-PROGRAM prints the descriptions (`retrace list requests`). With --check, no file is written: the names of files with other
-texts are printed, and the exit code is 1 if there are any.
+PROGRAM prints the descriptions (`retrace list requests`). With --check, no file is written: the names of files whose
+texts would change are printed, and the exit code is 1 if there are any.
 """
 
 import json
@@ -40,7 +40,7 @@ def range_of(field: dict) -> str:
 
 
 def meaning(field: dict) -> str:
-    """Returns the meaning of a field with its unit, which is put before a semicolon."""
+    """Returns the meaning of a field with its unit. If the meaning has a semicolon, the unit is inserted before it."""
     first, *rest = field["meaning"].split("; ")
     return "; ".join([first + (f", in {field['unit']}" if "unit" in field else ""), *rest])
 

@@ -27,8 +27,8 @@ PICTURE_ENDINGS = (".png", ".svg")
 LANGUAGES = {".toml": "toml", ".h": "cpp", ".cpp": "cpp", ".py": "python", ".slurm": "sh", ".cff": "yaml"}
 MOST_LINES = 200  # maximum number of lines of a file that are shown
 
-# Sections of the navigation, in order. Missing pages are omitted. A pattern matches the pages that no other line names.
-# A dictionary within a section is a second level of the navigation.
+# Sections of the navigation, in order. Missing pages are omitted. A pattern such as docs/*.md matches only pages that
+# are not named individually. A dictionary within a section is a second level of the navigation.
 SECTIONS = {
     "Start": ["README.md", "docs/install.md"],
     "Tutorials": ["docs/tutorials/first_curve.md", "docs/tutorials/regulation.md", "docs/tutorials/nc_program.md",
@@ -358,7 +358,7 @@ def document_page():
 # --- The site ---------------------------------------------------------------------------------------------------------
 
 def named_pages(entries):
-    """Returns the pages and patterns of a list of entries, with those of its second level."""
+    """Returns the pages and patterns of a list of entries, including the entries of its second level."""
     named = set()
     for entry in entries:
         named |= {entry} if isinstance(entry, str) else {page for inner in entry.values() for page in named_pages(inner)}
