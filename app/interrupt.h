@@ -16,8 +16,8 @@ namespace retrace::app {
 /// If the program was started with SIGHUP ignored, for example by nohup, SIGHUP remains ignored.
 void install_interrupt_handlers();
 
-/// While an object of this class exists, the first interrupt only asks the computation to stop, so that finished
-/// results are written. The second interrupt ends the program immediately.
+/// While an object of this class exists, the first interrupt only requests that the computation stops. The finished
+/// results are then written. The second interrupt ends the program immediately.
 class OrderlyInterrupt {
  public:
   OrderlyInterrupt();

@@ -21,7 +21,7 @@
 namespace retrace::fabrication {
 
 /// Kind of workpiece. `mould`: the negative shape from which the part is moulded, in the frame of the part. `direct`:
-/// the optical part itself, rotated by 180 degrees about the part's y axis, so that the array is mirrored in x.
+/// the optical part itself, rotated by 180 degrees about the part's y axis, which mirrors the array in x.
 enum class WorkpieceKind { mould, direct };
 
 enum class Strategy {
@@ -79,7 +79,7 @@ struct Tool {
 /// 2017, section 1.4.2). The three angles add up to 90.
 inline constexpr double kDmcWedgeDeg = 65.0;
 
-/// Minimum feed. Programs contain feeds with three decimals, so that a smaller feed would be rounded to F0.000.
+/// Minimum feed. Programs contain feeds with three decimals. A smaller feed would be rounded to F0.000.
 inline constexpr double kMinFeedMmPerMin = 5e-4;
 
 /// Cutting process: depths of cut, feeds, and optional recommendations of Milliken 2017 (the thesis), which are off by

@@ -38,7 +38,7 @@ struct Interval {
   bool contains(double value) const { return value >= low && value <= high; }
 };
 
-/// Default jerk limit of an axis: no limit, so that the acceleration may change instantaneously.
+/// Default jerk limit of an axis: no limit. The acceleration may then change instantaneously.
 inline const Sourced<double> kNoJerkLimit = {std::numeric_limits<double>::infinity(), Basis::assumed,
                                              "no jerk limit is given"};
 

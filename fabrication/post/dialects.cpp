@@ -64,7 +64,8 @@ constexpr DialectFormats kSinumerik = {
 
 /// Fanuc 30i (operator's manual B-63944). The machine file determines the number of decimals. Messages are written as
 /// comments, because #3006 would stop the machine. Program numbers have four digits. In a path, C may exceed the range
-/// of positions, so that paths are incremental. The increments are differences of rounded positions and do not drift.
+/// of positions. Paths therefore contain increments. The increments are differences of rounded positions and do not
+/// drift.
 constexpr DialectFormats kFanuc = {
     .dialect = {"fanuc", ".nc", "Fanuc, 30i series"},
     .subroutines_first = false,

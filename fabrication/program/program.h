@@ -158,8 +158,8 @@ struct Program {
   Control control;
 };
 
-/// Returns the rapid moves to the start of a visit, with only the positions that change. If Z rises, it moves first. If
-/// it falls, it moves last. There are at most two moves, so that the path stays above an inclined blank.
+/// Returns the rapid moves to the start of a visit, with only the positions that change. There are at most two moves. Z
+/// moves first if it rises, and last if it falls. The path therefore stays above an inclined blank.
 std::vector<Move> approach(const AxisWords& from, const CycleCall& visit);
 
 /// Straight move of a program with absolute positions.

@@ -22,7 +22,7 @@
 namespace retrace {
 
 /// Value of a field. Whole numbers have the type double; words and file names have the type std::string. std::monostate
-/// stands for the default of the field.
+/// means the default of the field.
 using FieldValue = std::variant<std::monostate, bool, double, std::string, std::vector<double>,
                                 std::vector<std::vector<double>>, std::vector<std::string>>;
 

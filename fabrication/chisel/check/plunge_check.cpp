@@ -26,7 +26,7 @@ bool retracts(const DesignElement& groove, const Vec3& travel) {
 void PlungeCheck::move(const CutMove& cut) {
   const Vec3 travel = cut.sweep.to_mm - cut.sweep.from_mm;
   if (retracts(workpiece_.design(cut.element), travel)) return close();
-  // Only a retract may move the tool towards the facet that its clearance face faces.
+  // Only a retract may move the tool towards the facet that is next to the clearance face.
   if (travel.dot(plunged_normal(*workpiece_.machine)) < -kMaxClearanceCosine * travel.norm()) find_clearance_face(cut);
   if (travel.z() < -kMostlyDown * travel.norm()) return plunge(cut);
   plough(cut);

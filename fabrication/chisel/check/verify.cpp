@@ -177,8 +177,8 @@ double design_volume_mm3(const Job& job, std::size_t zone) {
 
 /// Returns the volume that triangular cavities remove outside of the hexagons of their elements. It is (M - N) a^3 / 6
 /// (docs/theory/micro_chiseling.md). Here, a is the edge length of the cubes, and N is the number of cut elements. M is
-/// the number of distinct hexagon corners at their dihedral edges. On a substrate, the formula applies to the unrolled
-/// array.
+/// the number of distinct hexagon corners at which dihedral edges end. On a substrate, the formula applies to the
+/// unrolled array.
 double border_overcut_mm3(const VerificationModel& workpiece, const std::vector<ElementResult>& elements) {
   std::set<std::pair<std::int64_t, std::int64_t>> corners;
   std::int64_t cut = 0;

@@ -9,10 +9,9 @@
 
 namespace retrace::fabrication {
 
-/// Checks that rapid moves keep clear of the blank. The axes of a rapid move may arrive one after the other, so that
-/// the tool may pass through any point of a box. The tip, or both ends of a chisel's edge, are checked at the corners
-/// of this box. Over a blank that is not flat, points inside the box are checked too, in steps of a quarter of an
-/// element.
+/// Checks that rapid moves keep clear of the blank. The axes of a rapid move may arrive one after the other, so the
+/// tool may pass through any point of a box. The tip, or both ends of a chisel's edge, are checked at the corners of
+/// this box. Over a blank that is not flat, points inside the box are checked too, in steps of a quarter of an element.
 class ApproachClearance {
  public:
   ApproachClearance(const Job& job, const Machine& machine);

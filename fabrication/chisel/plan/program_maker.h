@@ -13,7 +13,7 @@ namespace retrace::fabrication {
 /// Adds programs, stops and machining times to a plan.
 /// \param starts start of each subroutine of the plan
 /// \param stages_before stages of the job before the stages of the plan. The order of parallel passes alternates from
-///     visit to visit, so that it depends on the number of earlier visits.
+///     visit to visit and therefore depends on the number of earlier visits.
 /// \pre the plan contains elements, poses, stages, subroutines and the safe height
 /// \throw InputError if an axis would leave its limits, if the tool cannot reach an element without coming too close to
 ///     the blank, or if a visit exceeds the tool life or the maximum run time

@@ -67,7 +67,7 @@ PlaningPlan plan_with(const PlanedPart& part, const ZoneProfile& profile, const 
     const auto by_depths = cutter.cuts_at_depths(zone, quantum);
     const std::vector<ZoneCut> cuts = by_depths ? *by_depths : cutter.sequential_cuts(zone);
     plan.uses_depth_method.push_back(by_depths.has_value());
-    // Zone numbers start at 1 for users, so that zone 0 belongs to the odd zones.
+    // Zone numbers start at 1 for users. Zone 0 therefore belongs to the odd zones.
     std::vector<ZoneCut>& set = !by_depths ? inner : (zone % 2 == 0 ? odd : even);
     set.insert(set.end(), cuts.begin(), cuts.end());
     plan.cuts.insert(plan.cuts.end(), cuts.begin(), cuts.end());

@@ -15,7 +15,7 @@ namespace retrace::fabrication::turning {
 struct BorderPoint {
   geometry::Vec2 at_mm = geometry::Vec2::Zero();
   double edge_nm = 0.0;  ///< height of the edge above the surface at this point, along the surface normal
-  /// Height of the edge above the surface at this point, if the edge touched the surface at its point of contact.
+  /// Height of the edge above the surface at this point for a cut that touches the surface at its point of contact.
   double touching_nm = 0.0;
   std::size_t program = 0;
   std::int32_t line = 0;

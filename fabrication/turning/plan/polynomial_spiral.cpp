@@ -46,7 +46,7 @@ double steepest_bend(const RadialPolynomial& line, int degree, double reach_mm) 
 }
 
 /// Returns the height of the nose's lowest point at radius r. It is the maximum, over the lateral distance w, of p(r +
-/// w) minus the height of the nose at w. This function is concave, so that Newton's method finds its only maximum.
+/// w) minus the height of the nose at w. This function is concave, so Newton's method finds its only maximum.
 double touching_height(RadialPolynomial& line, int degree, double r, double nose_mm, double most_aside) {
   double w = line.aside_mm;
   for (int step = 0; step < 12; ++step) {
