@@ -17,7 +17,7 @@ struct FinishFigures {
   double peak_to_valley_nm = 0.0;  ///< f^2 / (8 r)
   double ra_nm = 0.0;              ///< f^2 / (18 sqrt(3) r) = f^2 / (31.18 r)
   double rq_nm = 0.0;              ///< f^2 / (12 sqrt(5) r)
-  double rq_of_paper_nm = 0.0;     ///< f^2 / (24 r): Sohn, Naples, eq. 4, which is the mean height of the cusps
+  double rq_of_paper_nm = 0.0;     ///< f^2 / (24 r): "Rq" of Sohn and Naples, eq. 4; actually the mean height of cusps
 };
 
 /// Computes the surface finish. The centre of the nose moves on a parallel curve of the surface. Points of contact are

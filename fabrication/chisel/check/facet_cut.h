@@ -14,7 +14,7 @@ namespace retrace::fabrication {
 struct FacetCut {
   std::size_t facet = 0;
   double remaining_mm = 0.0;     ///< minimum distance between the swept plane and the facet
-  bool is_by_clearance = false;  ///< true if the tool's clearance face faces this facet, as in a plunge with a chisel
+  bool is_by_clearance = false;  ///< true if the clearance face is next to this facet, as in a plunge with a chisel
 };
 
 /// Returns the facet along which a move cuts. Returns nothing if the move is along no facet, such as a retract between

@@ -36,7 +36,8 @@ void MillMoves::begin() {
   const double nm = kNanometresPerMm * part_.mill->grid_mm;
   state_.at.program.header = {"one half of the lens: turn the part by 180 degrees and run it again",
                               "begins where the axes stand at its first three words"};
-  // The first moves only give the positions at which the machine was set to zero, so the axes do not move.
+  // The first moves only contain the start positions, at which the axes were set to zero. The axes therefore do not
+  // move.
   state_.at.program.has_mist = false;
   for (const Axis axis : {kZ, kX, kY}) {
     Move here;

@@ -1,6 +1,7 @@
 #pragma once
 
-// Spirals as functions: position of the tool as a function of the spindle's turns, and turns as a function of time.
+// Spirals as functions: position of the tool as a function of the spindle angle, and spindle angle as a function of
+// time.
 
 #include "fabrication/turning/plan/path.h"
 
