@@ -57,7 +57,7 @@ struct PlaningLathe {
   /// Program line that starts the spindle, for dialects without codes for the spindle. It is empty if the part file
   /// does not define the line.
   std::string spindle_start;
-  /// Program line that stops the spindle. It is given only together with spindle_start.
+  /// Program line that stops the spindle. The part file defines either both lines of the spindle or none of them.
   std::string spindle_stop;
   InputLocation spindle_start_at;    ///< location of spindle_start in the file
   bool has_unchecked_lines = false;  ///< true: spindle_start and spindle_stop are not checked
