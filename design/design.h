@@ -143,7 +143,7 @@ struct ElementArray {
   std::optional<FacetPlanesFile> facet_planes;  ///< finite parts only; not together with a mask
 };
 
-/// Mesh that is the whole part.
+/// Part whose shape is given by a mesh.
 struct PartMesh {
   std::string name;            ///< name of the STL file, as given
   std::filesystem::path file;  ///< path of the file, relative to the working directory; part_of_design() reads the file
@@ -164,7 +164,7 @@ struct ElementsOfZone {
   std::vector<double> columns;    ///< numbers of columns, from 1 at the smallest x
   std::optional<double> every;    ///< period after which the numbers of rows or columns repeat
   std::optional<ArrayMask> mask;  ///< elements whose centroid is on a dark pixel
-  bool is_remainder = false;      ///< true: all elements that no other zone has
+  bool is_remainder = false;      ///< true: all elements that belong to no other zone
 };
 
 /// Change of a key of the design in a zone.
@@ -379,7 +379,7 @@ struct Capabilities {
   std::string_view what;  ///< name of the study for messages, such as "retrace job"
   bool balls = false;
   bool solids = false;  ///< meshes and plates are supported
-  bool zones = false;   ///< parts of zones are supported, even if `solids` is false
+  bool zones = false;   ///< parts with zones are supported, even if `solids` is false
   bool substrates = true;
   bool entrances = false;
   bool wet_backs = false;

@@ -22,7 +22,7 @@ InputLocation position_of(const Design& design, raytrace::Obstacle obstacle) {
     case form: return design.where_facets();
     case scattering_entrance: return design.where_entrance_scatters();
     case plain_sampling:
-    case unequal_cells: break;  // no single key is the cause
+    case unequal_cells: break;  // several keys together are the cause, or a key of the request
   }
   return {design.source_name(), 0, ""};
 }

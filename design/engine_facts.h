@@ -12,7 +12,8 @@ namespace retrace::design {
 /// \param optics optical properties of the design; null: facts that depend on them are not set
 raytrace::EngineFacts engine_facts(const Design& design, const raytrace::Optics* optics);
 
-/// Returns the position of the key in the design file that causes an obstacle.
+/// Returns the position of the key in the design file that causes an obstacle (a reason why an engine cannot trace the
+/// design). If no single key is the cause, returns a position without a key.
 InputLocation position_of(const Design& design, raytrace::Obstacle obstacle);
 
 }  // namespace retrace::design

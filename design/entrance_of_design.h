@@ -9,8 +9,8 @@
 namespace retrace::design {
 
 /// Reads the curved entrance face of a design and transforms it to the part frame. Heights in the file are relative to
-/// z = thickness_mm, and the origin of the file is at EntranceFile::centre_mm. The face must cover the whole part. If
-/// it is a turned face, only its turned region counts. The face must be above the highest point of the part's back.
+/// z = thickness_mm, and the origin of the file is at EntranceFile::centre_mm. The face must cover the whole part, and
+/// it must be above the highest point of the part's back. A turned face must cover the part with its turned region.
 /// \throw InputError that names file and line
 /// \pre design.entrance
 geometry::Entrance entrance_of_design(const Design& design, const geometry::Part& part);

@@ -11,7 +11,7 @@ namespace retrace::design {
 /// Checks that a design names no files, for environments that have only the text of the design.
 /// \pre the design was read from a file
 /// \throw InputError at the key that names a file
-/// \param why reason for the message, such as "which the live page cannot read"
+/// \param why relative clause that the message ends with, such as "which the live page cannot read"
 void require_no_files(const Design& design, std::string_view why);
 
 /// Returns the factor that converts the unit of a design's STL file to mm.

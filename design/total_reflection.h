@@ -37,8 +37,8 @@ std::vector<double> total_reflection_edges_deg(const geometry::PartSpec& part, d
 
 /// Returns the margin of total reflection for each facet and each order in which light can hit the facets of an
 /// element. The margin is cos(i) - cos(c), where i is the angle of incidence on the facet and c the critical angle.
-/// Light is totally reflected if the margin is below 0. Just above 0, the reflectance falls like the square root of the
-/// margin.
+/// Light is totally reflected if the margin is below 0. Just above 0, the loss of reflectance increases with the square
+/// root of the margin.
 /// \param to_source unit vector towards the source, outside the part
 /// \param index refractive index of the part
 /// \param back_index refractive index of the medium behind the facets

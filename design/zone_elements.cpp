@@ -126,8 +126,8 @@ void check_zones(const ZonedPart& part, const std::function<InputLocation(const 
   if (fault->subject != Of::elements)
     throw InputError(where(fault->subject == Of::rotation ? zone + ".rotation_deg" : zone), fault->text);
   if (!part.changes[fault->zone].empty()) throw InputError(where(zone + ".set"), fault->text);
-  // The faulty zone has no changes. The fault is a difference from zone 1. It must therefore be caused by the changes
-  // of zone 1. The message therefore names the `set` key of zone 1.
+  // The elements of this zone differ from those of zone 1, but this zone has no changes. The changes of zone 1
+  // therefore cause the difference, and the message names the key `set` of zone 1.
   throw InputError(
       where(schema::path_of_entry("zone", 0) + ".set"),
       fmt::format("must not change the outlines and positions of the elements, which must be the same as in zone {}",

@@ -49,8 +49,9 @@ Ticks make_ticks(Range range, int max_intervals);
 /// Returns an axis range whose ends are ticks. The step of the ticks divides the data into at most about
 /// `max_intervals` intervals. If the values are positive and their spread exceeds half of the maximum, the range starts
 /// at 0, so that heights can be compared. Otherwise the range fits the values closely. Error bars that extend beyond
-/// the range by less than a twentieth of a step are ignored. \param data range of the values \param with_errors range
-/// of the values with their error bars
+/// the range by less than a twentieth of a step are ignored.
+/// \param data range of the values
+/// \param with_errors range of the values with their error bars
 Range rounded_range(Range data, Range with_errors, int max_intervals);
 
 }  // namespace retrace::report

@@ -16,7 +16,7 @@ constexpr Colour kRing{0.85, 0.85, 0.85};
 constexpr Colour kHolds{1.0, 1.0, 1.0};
 constexpr Font kPolarLabelFont{12.0, false};
 constexpr Font kPolarTickFont{10.0, false};
-constexpr double kDisc = 250.0;  ///< diameter
+constexpr double kDisc = 250.0;  ///< diameter of a disc
 constexpr Size kPolarCell{290.0, 304.0};
 constexpr double kBarRoom = 96.0;
 constexpr double kPolarBarWidth = 14.0;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Private to report/: colours and elements that all plots have in common.
+// Colours and elements that all plots have in common. This header is private to report/.
 
 #include <array>
 #include <string_view>

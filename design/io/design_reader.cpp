@@ -293,8 +293,8 @@ Design with(const Design& design, std::span<const std::string> overrides) {
   return changed;
 }
 
-/// Keys whose values are names of files, in the order in which the stores of studies list the files of a design. The
-/// order determines the identity of a study. New keys must therefore be appended at the end.
+/// Keys whose values are names of files. A store of study results lists the files of a design in this order and is
+/// valid only for this list. New keys must therefore be appended at the end.
 constexpr std::array<std::string_view, 9> kFilesOfStores = {"part.mesh",
                                                             "array.mask",
                                                             "surface.height_map",

@@ -228,7 +228,8 @@ void check_scratches(const Document& document, const PartSpec& part) {
   for (std::size_t i = 0; i < part.scratches.size(); ++i) check_scratch(document, part, i);
 }
 
-/// Returns the key that is named in messages about angle errors: the first of these keys that was given.
+/// Returns the key that a message about angle errors names. It is the first key of angle errors that the document
+/// contains. If the document contains none, `otherwise` is returned.
 std::string_view blamed_error(const Document& document, std::string_view otherwise) {
   for (const std::string_view key : {kDihedralError, kFacetTilt})
     if (document.has(key)) return key;

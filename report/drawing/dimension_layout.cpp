@@ -56,7 +56,7 @@ class SideLayout {
     bool is_between = false;
     double from = 0.0;
     double to = 0.0;
-    double line = 0.0;  ///< away
+    double line = 0.0;  ///< distance of the dimension line from the figure
     double text = 0.0;  ///< centre of the text along the dimension line
     Block text_block;
     Block line_block;

@@ -12,7 +12,7 @@ using geometry::BoundaryMesh, geometry::FacetRole, geometry::Vec2, geometry::Vec
 
 constexpr std::size_t kFiner = 3;         ///< number of sample points along each side of a pixel
 constexpr double kMarginFraction = 0.04;  ///< margin on every side, as a fraction of the picture
-constexpr double kEdgeWidth = 1.1;        ///< pixels
+constexpr double kEdgeWidth = 1.1;        ///< width of edges in pixels
 /// Depth tolerance for edges, as a fraction of the depth of the scene. Edges are on the surface, so rounding may move
 /// them behind it. They are still drawn if they are behind the surface by less than this tolerance.
 constexpr double kBias = 2e-3;

@@ -22,7 +22,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kSchema = "retrace.";
 
-/// Renamed keys and values of documents, as kind, former and current name.
+/// Renamed keys and values of documents. Each entry contains the kind of document, the former name and the current
+/// name.
 constexpr std::string_view kOfDocuments[][3] = {
     {"inspect", "base", "substrate"},
     {"inspect", "base.least_radius_mm", "substrate.min_radius_mm"},
@@ -172,7 +173,7 @@ void rename_value(Json& object, const std::string& key, std::string_view former,
   if (found != object.end() && found->is_string() && found->get<std::string>() == former) *found = std::string(current);
 }
 
-/// Replaces the former names of one kind. The objects that contain the keys already have their current names.
+/// Replaces the former names of one kind. Objects are renamed before the keys that they contain.
 void replace_names(Json& json, std::string_view kind) {
   for (const FormerName& name : former_names()) {
     if (name.kind != kind) continue;

@@ -18,8 +18,8 @@ struct FormerName {
   std::string current;  ///< path in the same form in documents of the current version
 };
 
-/// Returns all renamed keys and values. Those of designs are the former names of the format of design files. If a key
-/// and a key within its value were renamed, the outer key comes first.
+/// Returns all renamed keys and values. Those for designs are taken from the format of design files. If a key and a key
+/// within its value were renamed, the outer key comes first.
 const std::vector<FormerName>& former_names();
 
 /// Returns the current version of a kind of document, for example 2 for the kind "inspect".

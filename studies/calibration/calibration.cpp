@@ -32,8 +32,8 @@ constexpr double kMaxOutlierFraction = 0.1;
 /// and of tools that are set under a microscope.
 constexpr double kUnobservableArcsec = 50.0;
 constexpr double kUnobservableUm = 2.0;
-/// Leverage above which a measurement is the only one that determines some unknown, so that no other measurement can
-/// check it.
+/// Leverage above which no other measurement can check a measurement, because an unknown is determined by this
+/// measurement only.
 constexpr double kUnchecked = 1.0 - 1e-9;
 
 void check(const MeasuredParts& measured, const std::vector<CutPart>& parts) {

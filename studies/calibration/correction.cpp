@@ -14,7 +14,7 @@ namespace {
 using namespace fabrication;
 using Eigen::Index;
 
-/// Increases a maximum deviation to the absolute value of a deviation if that is larger.
+/// Sets the maximum deviation in `outlook` to the absolute value of `value` if the latter is larger.
 void take(DeviationPrediction& outlook, FacetQuantity what, double value) {
   double& most = what == FacetQuantity::distance ? outlook.distance_nm : outlook.tilt_arcsec;
   most = std::max(most, std::abs(value));

@@ -33,8 +33,8 @@ constexpr int kPlaces = 12;
 constexpr double kTurnsDeg[] = {-2.0, -1.0, 0.0, 1.0, 2.0};
 /// Number of the best poses of the coarse search that are refined.
 constexpr std::size_t kFollowed = 4;
-/// Maximum number of refinement steps with all points, and also of the following steps with only the points away from
-/// edges.
+/// Maximum number of refinement steps. The limit applies to the steps with all points, and again to the following
+/// steps, which use only points away from edges.
 constexpr int kMaxRefinementSteps = 20;
 constexpr double kRoughMove = 1e-6;  ///< length of the last step with all points, in mm or rad
 /// Length of the last step with points away from edges, in mm or rad. Smaller changes have no effect, because

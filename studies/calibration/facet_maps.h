@@ -27,12 +27,12 @@ struct RegisteredMap {
   fabrication::RigidMotion part_from_map;  ///< transformation of points relative to the centre of the map
   double rms_nm = 0.0;                     ///< rms deviation from the design after registration
   std::vector<Measurement> figures;        ///< distance and both tilts of every facet that the map shows
-  std::optional<FaceFigures> face;         ///< figures of the blank's face; none if the map shows too little of it
-  std::vector<FacetResiduals> residuals;   ///< waves and marks of the measured facets
+  std::optional<FaceFigures>
+      face;  ///< height and tilts of the blank's face; none if the map shows too little of the face
+  std::vector<FacetResiduals> residuals;  ///< waves and marks of the measured facets
 };
 
-/// Registers a map to the design and measures its facets. Points on marks of chips and scratches are left out of the
-/// measurement.
+/// Registers a map to the design and measures its facets. Points on marks of chips and scratches are ignored.
 /// \param plan plan of the programs that cut the part
 /// \throw InputError for a map that fits no position on the design, or shows no facet
 RegisteredMap registered(const FacetMap& map, const FabricationResult& plan);

@@ -76,7 +76,8 @@ struct FacetWave {
 struct FacetMark {
   bool is_along_cut = false;  ///< true: along the cut; false: along the edge
   bool is_of_edge = false;    ///< true: the edge causes the mark, which most facets with this position have
-  /// Position along the edge, from its centre, or up the facet, from the last position of the edge's tip.
+  /// Position of the mark: along the edge from the centre of the edge, or up the facet from the last position of the
+  /// edge's tip.
   double position_um = 0.0;
   double height_nm = 0.0;  ///< mean height; negative for a groove
   double width_um = 0.0;   ///< full width at half of the height

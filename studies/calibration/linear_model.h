@@ -22,8 +22,8 @@ struct LinearModel {
   /// PartPose::face_rotation_arcsec), which are common to all maps of a part.
   ///
   /// For a table of measurements, the column of Z and the last two columns are 0, because measured heights are relative
-  /// to the face on which the tool was touched off. For height maps, the figures of the blank's face determine the
-  /// height and the rotations of the face.
+  /// to the face on which the tool was touched off. For height maps, the measured height and tilts of the blank's face
+  /// determine these unknowns.
   Eigen::MatrixXd pose_jacobian;
   Eigen::VectorXd residual;  ///< measured values minus the values that the machine would produce
 };

@@ -59,8 +59,9 @@ struct Measurement {
   std::optional<geometry::Vec2> position_mm = {};
 };
 
-/// Figures of the blank's face in a height map, at the centroid of the measured points of the face: height relative to
-/// the nominal face in nm, and tilts that rise along X and Y of the workpiece in arcsec.
+/// Height and tilts of the blank's face in a height map, at the centroid of the measured points of the face. The height
+/// is relative to the nominal face, in nm. The tilts, in arcsec, are positive if the face rises along X and Y of the
+/// workpiece.
 struct FaceFigures {
   geometry::Vec2 centroid_mm = geometry::Vec2::Zero();
   geometry::Vec3 value = geometry::Vec3::Zero();
@@ -71,8 +72,8 @@ struct FaceFigures {
 struct PartPose {
   geometry::Vec3 shift_um = geometry::Vec3::Zero();
   geometry::Vec3 rotation_arcsec = geometry::Vec3::Zero();  ///< rotation vector
-  /// For height maps: rotation of the facets relative to the blank's face, about X and Y. The reason for it is that the
-  /// face was not exactly perpendicular to Z in the machine. It is applied before `rotation_arcsec`.
+  /// For height maps: rotation of the facets relative to the blank's face, about X and Y. It is not 0 if the face was
+  /// not exactly perpendicular to Z in the machine. It is applied before `rotation_arcsec`.
   geometry::Vec2 face_rotation_arcsec = geometry::Vec2::Zero();
 
   /// Rotation matrices of the blank's face (face_rotation()) and of the facets (rotation()).
@@ -113,8 +114,8 @@ class CutPart {
 
   /// Returns the facet as the given machine cuts it, displaced by the pose of the part.
   MachinedFacet machined_facet(const FacetId& at, const fabrication::Machine& real, const PartPose& pose) const;
-  /// Returns the value of a quantity for one facet, without the reference facet. depth_nm() and end_nm() return it for
-  /// FacetQuantity::depth and FacetQuantity::cut_end.
+  /// Returns the value of a quantity for one facet. The value of the reference facet is not subtracted. depth_nm() and
+  /// end_nm() return the values of FacetQuantity::depth and FacetQuantity::cut_end.
   double of_one(const Measurement& measurement, const FacetId& at, const fabrication::Machine& real,
                 const PartPose& pose) const;
   double depth_nm(const FacetId& at, const fabrication::Machine& real, const PartPose& pose) const;

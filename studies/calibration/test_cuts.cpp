@@ -74,7 +74,7 @@ std::vector<Measurement> all_figures(std::size_t part) {
   return figures;
 }
 
-/// Returns the model that has only the chosen rows, which are measurements.
+/// Returns the model with only the chosen rows. Each row is one measurement.
 LinearModel rows_of(const LinearModel& all, const std::vector<Index>& chosen) {
   return {all.setup_jacobian(chosen, Eigen::all), all.pose_jacobian(chosen, Eigen::all), all.residual(chosen)};
 }

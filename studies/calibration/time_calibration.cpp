@@ -24,8 +24,8 @@ constexpr auto at(TimeQuantity quantity) {
   return static_cast<Index>(quantity);
 }
 
-/// Standard uncertainties above which an unknown counts as undetermined. Settling and ramp are in s, accelerations in
-/// the logarithm of their factor.
+/// Standard uncertainties above which an unknown counts as undetermined. Settling and ramp are in s, and accelerations
+/// are natural logarithms of their factors.
 constexpr double kTooUncertain[kTimeQuantities] = {0.05, 0.7, 0.05, 0.7};
 /// Length of the last step of the search, as a fraction of kTooUncertain.
 constexpr double kLastTimeStep = 1e-7;
@@ -46,7 +46,8 @@ bool is_bounded(Index unknown) {
   return unknown == at(TimeQuantity::settling) || unknown == at(TimeQuantity::linear_ramp);
 }
 
-/// Returns the maximum of an unknown that a machine file may contain: 10 s, or a factor of 100.
+/// Returns the maximum value of an unknown in a calibrated machine: 10 s for settling and ramp, a factor of 100 for
+/// accelerations.
 double most(Index unknown) {
   return (is_bounded(unknown) ? 10.0 : std::log(100.0)) / kTooUncertain[unknown];
 }

@@ -88,7 +88,8 @@ std::vector<geometry::Scratch> scratches_of(const Job& job) {
 /// Returns the tilts of an element's facets, in arcmin. A positive tilt opens the element.
 std::vector<double> tilts_of(const ElementResult& element) {
   std::vector<double> tilt(element.figures.facets.size());
-  // A facet that rises above the design up its slope leans into the groove and closes it.
+  // If the height of a facet above the design increases up its slope, the facet leans into the groove. This closes the
+  // element, so that the tilt is negative.
   for (std::size_t f = 0; f < tilt.size(); ++f)
     tilt[f] = -std::atan(element.figures.facets[f].slope_up) * kArcminPerRad;
   return tilt;

@@ -51,8 +51,8 @@ struct ComposeRequest {
 struct FamilyCell {
   std::uint64_t point = 0;  ///< number of the point in the store
   PointValues values;
-  MixedCell mixed;  ///< values of the goals in the order of the request, then the means for `part_constraints`, then
-                    ///< those for `front`
+  MixedCell mixed;  ///< values of the goals, in the order of the request, and values whose means over the part are
+                    ///< used: first those for `part_constraints`, then that for `front`
 };
 
 struct Zone {

@@ -52,8 +52,8 @@ std::vector<double> ErrorResponse::at(const std::vector<double>& errors) const {
   return goals;
 }
 
-/// Independent random errors increase the mean of a quadratic polynomial. The increase is half the variance times the
-/// sum of the curvatures.
+/// Independent random errors change the mean of a quadratic polynomial by half the variance times the sum of the
+/// curvatures.
 ErrorResponse ErrorResponse::spread(double sigma_arcmin) const {
   ErrorResponse mean = *this;
   for (std::size_t k = 0; k < angles(); ++k)

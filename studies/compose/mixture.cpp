@@ -14,7 +14,7 @@ constexpr double kFractionTolerance = 1e-12;
 /// Minimum improvement of the merit that counts, relative to 1 + |merit|.
 constexpr double kAsGood = 1e-10;
 
-/// Returns the minimum difference by which a merit must be exceeded to count as an improvement.
+/// Returns the minimum increase of a merit that counts as an improvement.
 double as_good(double merit) {
   return kAsGood * (1.0 + std::abs(merit));
 }
@@ -124,7 +124,8 @@ class PriceBound {
     const auto end = std::ranges::partition_point(order_, [&](std::size_t cell) { return merits_[cell] > merit; });
     return static_cast<std::size_t>(end - order_.begin());
   }
-  /// Returns true if the upper bound of the set is above a value, so that a mixture of the set can have a higher merit.
+  /// Returns true if the upper bound of the set is above `merit`. A mixture of the set can then have a merit above
+  /// `merit`.
   bool lets_pass(const std::vector<std::size_t>& set, double merit) const {
     return std::ranges::any_of(set, [&](std::size_t cell) { return merits_[cell] > merit; });
   }
@@ -246,8 +247,8 @@ class SetSearch {
     if (bounds_.size() < kMaxBounds) bounds_.emplace_back(cells_, rules_, prices);
   }
 
-  /// Keeps a mixture as the best if it satisfies the rules and is better. Fractions that are too small are first raised
-  /// to the minimum.
+  /// Stores a mixture as the best mixture if it satisfies the rules and its merit is higher than that of the stored
+  /// one. Fractions that are too small are first raised to the minimum.
   void take(Mixture mixture) {
     if (mixture.zones.size() > max_zones_) return;
     if (rules_.min_fraction > 0.0 && mixture.zones.back().fraction < rules_.min_fraction - kFractionTolerance) {
@@ -258,8 +259,8 @@ class SetSearch {
     if (mixture.is_feasible() && mixture.merit > to_beat()) best_ = std::move(mixture);
   }
 
-  /// Searches all sets that contain this set and no cell that is marked in is_out_. Sets that cannot be better than the
-  /// best mixture according to the bounds are left out.
+  /// Searches all sets that contain this set and no cell that is marked in is_out_. Sets are skipped if the bounds show
+  /// that they cannot be better than the best mixture.
   /// \param mixture best mixture of the set; without cells for an empty set
   void grow(const std::vector<std::size_t>& set, const Mixture& mixture) {
     if (set.size() >= max_zones_) return;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Positions and pitches of an array that its drawing shows and dimensions.
+// Positions and pitches of an array, for its drawing with dimension lines.
 
 #include "design/design.h"
 #include "geometry/part/part.h"
@@ -25,7 +25,7 @@ struct ArrayFigures {
   bool has_neighbours = false;      ///< true: there are elements in the next column
 };
 
-/// Returns the figures of an array.
+/// Returns the positions and pitches of an array.
 /// \param part part of the design
 ArrayFigures array_figures(const design::Design& design, const geometry::Part& part);
 

@@ -113,7 +113,7 @@ PlanPanel panel_of(const Part& part, const Rectangle& window, const char* title)
   return panel;
 }
 
-/// Returns the window of the detail: the first elements of the array, or those in its centre.
+/// Returns the window of the detail: the first elements of the array, or the elements at its centre.
 Rectangle detail_window(const PartSpec& spec, const ArrayFigures& a) {
   const Vec2 beyond = kBeyond * a.size_mm;
   Rectangle window;

@@ -71,7 +71,7 @@ void add_patch(DesignView& view, const SurfacePatch& patch, const std::vector<Ed
   }
 }
 
-/// Returns a design with fewer elements of the same kind: the first ones of a large or infinite array.
+/// Returns a design with only the first elements of a large or infinite array.
 design::Design piece_of(const design::Design& design, std::vector<std::string>& remarks) {
   design::Design piece = design;
   if (!design.elements() || design.mask() || design.facet_planes()) return piece;

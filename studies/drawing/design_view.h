@@ -29,7 +29,7 @@ DesignView view_of(const geometry::Part& part);
 /// \throw InputError under the same conditions as part_of_design()
 DesignView view_of(const design::Design& design);
 
-/// Number of elements along a side if an array is not shown as a whole.
+/// Number of elements that are shown along a side of an array that is too large to be shown as a whole.
 inline constexpr double kExcerptElements = 8.0;
 /// Maximum number of elements along a side of an array that is shown as a whole.
 inline constexpr double kMaxElementsAcross = 60.0;

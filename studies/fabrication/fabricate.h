@@ -33,8 +33,8 @@ struct FabricationResult {
 FabricationResult fabricate(const std::filesystem::path& job, const FabricationRequest& request = {});
 
 /// Move of the tool in one element, in a section. For a prism, the section is across the root: u points to the side of
-/// facet 2 and z up, measured from the root. For a cube corner, the section is the plane of facet 1: u points along its
-/// horizontal line towards its second dihedral edge and z up the facet, measured from the apex.
+/// facet 2 and z up, measured from the root. For a cube corner, the section is the plane of facet 1: u points along the
+/// horizontal line of the facet, towards the facet's second dihedral edge, and z up the facet, measured from the apex.
 struct SectionMove {
   fabrication::Motion motion = fabrication::Motion::translate;
   double from_u_mm = 0.0;

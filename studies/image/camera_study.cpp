@@ -74,7 +74,7 @@ bool is_inside(const geometry::Part& part, const Vec3& p) {
   return true;
 }
 
-/// Returns true if a point is on that side of the sheet on which the body of the part is located.
+/// Returns true if a point is on the side of the sheet where the body of the part is.
 bool is_behind(const raytrace::Film& film, double thickness_mm, const Vec3& p) {
   if (!film.radius_mm) return p.z() <= thickness_mm;
   const double from_axis = std::hypot(p.x(), p.z() - thickness_mm + *film.radius_mm);
@@ -159,8 +159,8 @@ CameraStudy::CameraStudy(design::Design design, CameraRequest request, raytrace:
 
 namespace {
 
-/// Returns the number of passes that reaches the requested noise. A pass adds one sample to every pixel. The noise is
-/// inversely proportional to the square root of the number of passes.
+/// Returns the number of passes after which the noise is as low as requested. A pass adds one sample to every pixel.
+/// The noise is inversely proportional to the square root of the number of passes.
 double passes_needed(const raytrace::CameraImage& image, const CameraRequest& request) {
   return image.passes * std::pow(image.relative_noise() / request.noise, 2.0);
 }

@@ -55,8 +55,7 @@ class CameraStudy {
   /// Computes the picture.
   /// \param after_pass function that receives the picture after every pass; one call at a time
   /// \param distribute function that distributes the passes among several processes with equal studies. Without it,
-  /// this
-  ///        process traces all passes.
+  ///        this process traces all passes.
   CameraResult run(Progress* progress = nullptr, const Cancellation* cancel = nullptr,
                    const std::function<void(const raytrace::CameraImage&)>& after_pass = {},
                    const DistributeTasks& distribute = {}) const;

@@ -44,17 +44,17 @@ struct RoadScene {
 
 /// Reflector that is illuminated by both headlamps.
 struct RoadReflector {
-  double observation_deg[2] = {0.0, 0.0};  ///< for the left and the right headlamp
+  double observation_deg[2] = {0.0, 0.0};  ///< observation angles for the left and the right headlamp
   double r_a[2] = {0.0, 0.0};              ///< cd/(lx m^2)
-  double illuminance_lx[2] = {0.0, 0.0};   ///< perpendicular to the light
-  double luminance = 0.0;                  ///< cd/m^2, in the direction of the eye
+  double illuminance_lx[2] = {0.0, 0.0};   ///< illuminance of a plane perpendicular to the light
+  double luminance = 0.0;                  ///< luminance of the reflector as seen by the driver, in cd/m^2
 };
 
 /// Picture of the front car as the driver sees it from one distance.
 struct RoadView {
   double distance_m = 0.0;
   std::array<RoadReflector, 2> reflectors;  ///< left, right
-  std::vector<double> luminance;            ///< cd/m^2, row by row from above
+  std::vector<double> luminance;            ///< luminance of the pixels in cd/m^2, row by row from the top
   std::vector<double> coloured;             ///< part of the luminance that comes from the reflectors
 };
 
@@ -72,7 +72,7 @@ struct RoadResult {
 /// Study of a checked request, ready to run.
 class RoadStudy {
  public:
-  /// \throw InputError for numbers out of range, and for designs that Photometer refuses
+  /// \throw InputError for numbers out of range, and for designs that Photometer does not support
   RoadStudy(design::Design design, RoadRequest request);
 
   RoadResult run(Progress* progress = nullptr, const Cancellation* cancel = nullptr) const;

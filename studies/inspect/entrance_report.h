@@ -1,6 +1,6 @@
 #pragma once
 
-// Figures of a curved entrance face for `retrace inspect`: heights, profiles, maximum slope.
+// Heights, profiles and maximum slope of a curved entrance face, for `retrace inspect`.
 
 #include <vector>
 
@@ -9,7 +9,7 @@
 
 namespace retrace::studies {
 
-/// Figures of a curved entrance face.
+/// Heights, profiles and maximum slope of a curved entrance face.
 struct EntranceReport {
   geometry::EntranceRange range;  ///< heights in the part frame
   double steepest_deg = 0.0;      ///< maximum slope of sampled points
@@ -22,7 +22,7 @@ struct EntranceReport {
   Profile along_y;
 };
 
-/// Returns the figures of a curved entrance face.
+/// Returns the report on a curved entrance face.
 /// \pre the entrance face covers the part (entrance_of_design())
 EntranceReport report_entrance(const geometry::Entrance& entrance, const geometry::Part& part);
 

@@ -9,7 +9,7 @@
 
 namespace retrace::studies {
 
-/// Figures for light from the air at normal incidence, averaged over the light.
+/// Optical properties for light from the air at normal incidence, averaged over the wavelengths of the light.
 struct EntranceStateReport {
   double clean_fraction = 1.0;          ///< fraction of the area without drops, dust or scratches
   double reflectance = 0.0;             ///< reflectance of the clean face with its layers and film
@@ -20,7 +20,7 @@ struct EntranceStateReport {
   double dust_cd_per_lx_m2 = 0.0;       ///< R_A of dust and the face under it, along the normal
 };
 
-/// Returns the figures of an entrance face, or nothing for a clean face.
+/// Returns the optical properties of an entrance face, or nothing for a clean face.
 std::optional<EntranceStateReport> report_entrance_state(const design::Design& design,
                                                          const design::OpticalModel& model);
 

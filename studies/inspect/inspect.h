@@ -22,13 +22,15 @@
 
 namespace retrace::studies {
 
-/// Figures of a layer of balls, or of a single ball, for light along its axis, in closed form (docs/theory/beads.md).
+/// Properties of a layer of balls, or of a single ball, for light along its axis. They are computed in closed form
+/// (docs/theory/beads.md).
 struct BallFigures {
   double packing_fraction = 0.0;  ///< fraction of the plan that balls cover
   /// Derivative of the return error with respect to h / radius at h = 0, in rad. h is the distance of the light from
   /// the axis of the ball. If the derivative is 0, light near the axis returns parallel to it.
   double paraxial_error = 0.0;
-  std::optional<double> focal_offset_mm;  ///< mirror offset for which the paraxial error is 0; none if there is none
+  std::optional<double>
+      focal_offset_mm;  ///< mirror offset for which the paraxial error is 0; none if no offset has this effect
   double largest_return_error_deg = 0.0;  ///< maximum over the aperture, due to spherical aberration
   /// Fraction of the aperture whose light returns within the narrowest acceptance cone of the detector. It follows from
   /// geometry only, without Fresnel losses.
@@ -36,7 +38,7 @@ struct BallFigures {
   double mirror_half_angle_deg = 0.0;
 };
 
-/// Figures of a base under the elements.
+/// Measures of a base under the elements.
 struct SubstrateReport {
   geometry::SubstrateMeasures measures;
   /// Width of an element. The minimum radius of curvature of the base must be at least as large.
@@ -83,7 +85,7 @@ struct Inspection {
   CoatingReports coating;
   std::optional<EntranceStateReport> entrance_state;  ///< state of a face that is not clean
   double dead_zone_fraction = 0.0;  ///< fraction of an element's plan that rounded and chamfered edges occupy
-  /// Figures for kind = "ball". If they are set, only this member, the light, the counts and the areas are valid.
+  /// Properties for kind = "ball". If they are set, only this member, the light, the counts and the areas are valid.
   std::optional<BallFigures> balls;
   std::string boundary;  ///< result of the boundary check
   Warnings warnings;

@@ -12,7 +12,7 @@
 
 namespace retrace::studies {
 
-/// Figures of a zone of a part.
+/// Elements of a zone, and the distance that light travels sideways in the zone.
 struct ZoneReport {
   geometry::ZoneElements elements;
   /// Mean distance, in plan, between the first and the last point at which returned light hits the back of the part. It
@@ -32,9 +32,9 @@ struct ZonesReport {
   std::vector<ZoneCrossing> crossings;
 };
 
-/// Computes the figures of the zones with single rays from low-discrepancy points on the entrance face. At every
-/// interface, only the stronger branch is traced. The figures are accurate to a few percent of their values. Rough
-/// facets are treated as smooth.
+/// Computes the report on the zones with single rays from low-discrepancy points on the entrance face. At every
+/// interface, only the stronger branch is traced. The results have relative errors of a few percent. Rough facets are
+/// treated as smooth.
 /// \pre design.zoned()
 ZonesReport report_zones(const design::Design& design, const design::OpticalModel& model);
 

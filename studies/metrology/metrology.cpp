@@ -23,7 +23,7 @@ constexpr std::size_t kMaxEdgeProfiles = 256;
 constexpr double kMinPointsPerCutoff = 2.0;
 constexpr double kMaxMissingFraction = 0.05;
 constexpr double kMinPointsPerLength = 2.0;
-/// Range on each side of a scratch with which the scratch is compared, in cut-off lengths.
+/// Width of the strip on each side of a scratch with which the scratch is compared, in cut-off lengths.
 constexpr double kBesideScratch = 0.25;
 
 /// Checks that the cut-off wavelength is at least twice the point spacing of a height map.

@@ -1,7 +1,7 @@
 #pragma once
 
-// Evaluates measured height maps: roughness, waviness and edge radii, in the quantities with which designs describe
-// surfaces. This study is behind `retrace metrology`.
+// Evaluates measured height maps: roughness, waviness and edge radii, as quantities that designs use to describe
+// surfaces. `retrace metrology` runs this study.
 
 #include <cstddef>
 #include <optional>

@@ -83,8 +83,8 @@ struct Optimum {
   std::vector<Exclusion> exclusions;
   std::vector<Variant> front;  ///< Pareto front: feasible designs that no other design dominates
   std::vector<Rejected> rejected;
-  /// Design of the Pareto front that is the best on the first axis that is not part of the objective, among the designs
-  /// that lose at most 1 % of the objective.
+  /// Cheaper alternative to the best design. Among the designs of the Pareto front that lose at most 1 % of the
+  /// objective, it is the best on the first axis that is not part of the objective.
   std::optional<Variant> cheaper;
   std::vector<ToleranceBand> bands;
   std::string method;  ///< method of the refinement: "exact slopes" or "no slopes"

@@ -67,7 +67,7 @@ class Search {
 
   /// Searches for the smallest change that makes the design pass. If no change does, keeps the change with the best
   /// ratio. A ratio is the minimum, over all readings, of a reading divided by its limit.
-  /// \param than changes whose ratio is not above this value are ignored
+  /// \param than minimum ratio; changes whose ratio is not above it are ignored
   /// \return best ratio of the tried changes, or `than` if no ratio is above it
   double run(double than) {
     double best_ratio = than;

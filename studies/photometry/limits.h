@@ -44,9 +44,9 @@ struct LimitLine {
 /// Test point of a limits file. Its colour is always given.
 struct LimitRow : LimitLine {
   double observation_deg = 0.0;
-  std::vector<double> v_deg;  ///< one angle, or both signs of an angle
-  std::vector<double>
-      substitute_v_deg{};  ///< angles that replace v_deg if the face mirrors the lamp there; may be empty
+  std::vector<double> v_deg;               ///< one angle, or both signs of an angle
+  std::vector<double> substitute_v_deg{};  ///< angles that replace v_deg if the face reflects the lamp to the receiver
+                                           ///< at v_deg; may be empty
   std::vector<double> h_deg;
   double minimum = 0.0;
   PhotometricUnit unit = PhotometricUnit::mcd_per_lx;

@@ -182,8 +182,8 @@ class Photometer {
   std::optional<Traced> traced(const geometry::Vec3& to_source, std::size_t wavelength,
                                const raytrace::BeamTracer& tracer, const Cancellation* cancel,
                                double coarseness = 1.0) const;
-  /// Measures all settings whose light comes from one direction, from a single traced far field. Returns one Piece for
-  /// each element of `directions`, in this order.
+  /// Measures all settings whose light comes from one direction, from a single traced far field. Returns one reading
+  /// for each element of `directions`, in this order.
   std::vector<WavelengthReading> measure_exactly(const std::vector<PhotometerSetting>& settings,
                                                  const EquivalentDirections& directions, std::size_t wavelength,
                                                  const raytrace::BeamTracer& tracer, const Cancellation* cancel) const;

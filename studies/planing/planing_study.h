@@ -1,7 +1,7 @@
 #pragma once
 
-// Studies behind `retrace plane` and `retrace verify` for planed parts. They plan a flat lens, write its programs, and
-// check the text of programs.
+// Plans a flat lens, writes its programs, and checks the text of programs. `retrace plane` runs this study, and so does
+// `retrace verify` for planed parts.
 
 #include <string>
 #include <vector>

@@ -26,7 +26,7 @@ namespace {
 constexpr std::size_t kRaysAtATime = 16384;
 // Minimum number of rays that are traced together.
 constexpr std::size_t kFewestAtATime = 1024;
-// Maximum number of surfaces that a branch of a ray meets, and maximum number of segments of all branches of a ray.
+// Maximum number of surfaces that a branch of a ray hits, and maximum number of segments of all branches of a ray.
 constexpr std::uint32_t kMaxSurfaces = 10'000;
 constexpr std::uint64_t kMaxSegments = 1'000'000;
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// Retroreflective efficiency of a design as a function of the roughness and waviness of its facets. This study is
-// behind `retrace roughness`.
+// Retroreflective efficiency of a design as a function of the roughness and waviness of its facets. `retrace roughness`
+// runs this study.
 
 #include <cstdint>
 #include <memory>
@@ -64,9 +64,8 @@ class RoughnessStudy {
   ~RoughnessStudy();
 
   /// Computes all points.
-  /// \param distribute function that distributes the points among several processes with equal studies; none: this
-  /// process
-  ///        traces all
+  /// \param distribute function that distributes the points among several processes with equal studies. Without it,
+  ///        this process traces all points.
   /// \throw BudgetError if power is lost because a ray inside the part missed every face, or if a budget is exhausted
   RoughnessResult run(Progress* progress = nullptr, const Cancellation* cancel = nullptr,
                       const DistributeTasks& distribute = {}) const;

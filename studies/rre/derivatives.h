@@ -69,8 +69,8 @@ struct TracedDirection {
 
 /// Computes the derivatives of RRE for each acceptance cone, in the order of parameters_of(). Truncated power counts as
 /// noise. A derivative is omitted with a reason if RRE has a kink or a discontinuity, if noise hides the derivative, or
-/// if it needs too many beams. Several parameters are computed in parallel; the result does not depend on the threads.
-/// Returns nothing if the computation was cancelled.
+/// if it needs too many beams. Several parameters are computed in parallel; the result does not depend on the number of
+/// threads. Returns nothing if the computation was cancelled.
 std::optional<std::vector<std::vector<RreDerivative>>> rre_derivatives(const TracedDirection& at,
                                                                        const Cancellation* cancel);
 

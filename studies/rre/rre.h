@@ -1,7 +1,7 @@
 #pragma once
 
 // Retroreflective efficiency (RRE) of designs for given directions of light. Also the ledger, which accounts for all
-// power that is not retroreflected. This study is behind `retrace rre`.
+// power that is not retroreflected. `retrace rre` runs this study.
 
 #include <cstdint>
 #include <memory>

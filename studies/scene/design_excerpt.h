@@ -52,20 +52,20 @@ class DesignExcerpt {
   const std::vector<std::string>& remarks() const { return remarks_; }
   const geometry::Vec2& centre_mm() const { return centre_mm_; }
 
-  /// Returns the position in the piece that corresponds to a position of the whole part at z = 0. If several positions
-  /// in the piece are equivalent, returns the one nearest to the centre of the piece.
+  /// Returns the position in the excerpt that corresponds to a position in the whole part at z = 0. If several
+  /// positions in the excerpt are equivalent, returns the one nearest to the centre of the excerpt.
   geometry::Vec2 equivalent_position(const geometry::Vec2& at_mm) const;
-  /// Returns the point at which light must enter the piece in order to hit the same points of elements as light that
-  /// enters the whole part at `at_mm`. The two plates may have different thicknesses.
+  /// Returns the point at which light must enter the excerpt so that it hits the same points of elements as light that
+  /// enters the whole part at `at_mm`. The plates of excerpt and part may have different thicknesses.
   geometry::Vec2 entry_of(const SceneLight& light, const geometry::Vec2& at_mm) const;
   /// Returns the path of light that enters at a point.
   raytrace::LightPath path(const SceneLight& light, const geometry::Vec2& entry_mm) const;
   /// Returns a path of each of up to three kinds, the most frequent kind first. The light enters in an area as large as
-  /// one element around the centre of the piece.
+  /// one element around the centre of the excerpt.
   std::vector<ScenePath> typical_paths(const SceneLight& light) const;
 
  private:
-  /// Position of the piece relative to the lattice of the whole array.
+  /// Position of the excerpt relative to the lattice of the whole array.
   struct Lattice {
     geometry::Vec2 from_design_mm = geometry::Vec2::Zero();
     geometry::Vec2 period_mm = geometry::Vec2::Zero();
@@ -79,7 +79,7 @@ class DesignExcerpt {
   geometry::BoundaryMesh mesh_;
   std::vector<std::array<std::uint32_t, 2>> edges_;
   geometry::Vec2 centre_mm_ = geometry::Vec2::Zero();
-  std::optional<Lattice> lattice_;  ///< none if the piece is the whole part, or if positions of the part do not repeat
+  std::optional<Lattice> lattice_;  ///< none if the excerpt is the whole part, or if the part is not periodic
   std::optional<raytrace::ExactSurface> surface_;
 };
 

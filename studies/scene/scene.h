@@ -19,7 +19,8 @@ struct DesignScene {
   std::vector<std::string> remarks;  ///< differences from the design, as texts for the user
 };
 
-/// Returns a still picture of a Piece, with up to three kinds of paths for each direction.
+/// Returns a still picture of a few elements of a design (DesignExcerpt), with up to three kinds of paths for each
+/// direction.
 /// \throw InputError in the same cases as make_model()
 DesignScene make_scene(const design::Design& design, const std::vector<SceneLight>& lights);
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Elements, parts and moulds as closed solids for CAD and other programs. This study is behind `retrace export`.
+// Elements, parts and moulds as closed solids for CAD and other programs. `retrace export` runs this study.
 
 #include <cstdint>
 #include <string>

@@ -14,8 +14,10 @@ std::optional<std::string> compute_shared(const Sweep& sweep, std::uint64_t numb
 /// Returns the function that computes the points of a sweep as tasks.
 ComputeTask compute_task(Sweep sweep);
 
-/// Computes the points that are not in the store, like run_sweep(). `distribute` distributes them as tasks among
-/// processes. \throw OutputError in the same cases as run_sweep() \throw Error if `distribute` throws it
+/// Computes the points that are not in the store, like run_sweep().
+/// \param distribute function that distributes the points as tasks among processes
+/// \throw OutputError in the same cases as run_sweep()
+/// \throw Error if `distribute` throws it
 bool distribute_sweep(const Sweep& sweep, compute::ResultStore& store, SweepObserver* observer,
                       const DistributeTasks& distribute);
 

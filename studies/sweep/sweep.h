@@ -1,7 +1,7 @@
 #pragma once
 
-// Computes the quantities of a study at every point of a grid or a sample, on one or several machines. This study is
-// behind `retrace sweep`.
+// Computes the quantities of a study at every point of a grid or a sample, on one or several machines. `retrace sweep`
+// runs this study.
 
 #include <cstdint>
 #include <memory>

@@ -1,7 +1,7 @@
 #pragma once
 
 // Spread and yield of quantities when parameters vary in manufacture, and the contribution of each parameter to the
-// spread. This study is behind `retrace tolerance`.
+// spread. `retrace tolerance` runs this study.
 
 #include <cstddef>
 #include <cstdint>
@@ -29,7 +29,7 @@ struct ToleranceRequest {
 
 /// Points of a tolerance study. The first is the nominal part with all parameters at their medians. The rows follow. A
 /// row begins with a random part A. If Sobol indices are requested, it also contains a random part B, and one point for
-/// each parameter. This point is equal to A, except that the parameter has its value of B.
+/// each parameter. This point is equal to A, except that this parameter has the value of B.
 class TolerancePlan final : public PointPlan {
  public:
   /// \pre every parameter has a distribution

@@ -78,8 +78,8 @@ bool near(const std::vector<double>& a, const std::vector<double>& b, double mos
                     [most](double one, double other) { return std::abs(one - other) <= most; });
 }
 
-/// Returns the values at the ends of blocks. Other points are ignored, because the number of pieces into which a cubic
-/// is divided depends on rounded velocities.
+/// Returns the values at the ends of blocks. Other points are ignored, because the number of segments into which a
+/// cubic is divided depends on rounded velocities.
 std::vector<double> at_ends(const turning::CutPass& pass, const std::vector<double>& values) {
   std::vector<double> ends;
   for (std::size_t i = 0; i < values.size(); ++i)

@@ -1,7 +1,7 @@
 #pragma once
 
-// Studies behind `retrace turn` and `retrace verify` for turned parts. They plan a turned part, write its programs, and
-// check the text of programs.
+// Plans a turned part, writes its programs, and checks the text of programs. `retrace turn` runs this study, and so
+// does `retrace verify` for turned parts.
 
 #include <array>
 #include <optional>

@@ -122,7 +122,7 @@ double knee_of_cubes_deg(double index, double cant_deg, const Cancellation* canc
 }
 
 /// Returns the angle, in minutes of arc, between returned light and the direction to the source, as a mean weighted by
-/// power. Only light that has met the given number of interfaces counts.
+/// power. Only light that has hit the given number of interfaces counts.
 double deviation_arcmin(const PartSpec& spec, std::uint32_t interfaces, const Cancellation* cancel) {
   const Part part = build_part(spec);
   double power = 0.0;

@@ -1,7 +1,7 @@
 #pragma once
 
-// Compares values that retrace computes with published values, closed forms and independent computations. This study is
-// behind `retrace validate`.
+// Compares values that retrace computes with published values, closed forms and independent computations. `retrace
+// validate` runs this study.
 
 #include <cstddef>
 #include <functional>

@@ -18,7 +18,7 @@ bool is_setting(std::string_view key);
 
 /// Returns the key of an override.
 std::string key_of(const std::string& override_text);
-/// Returns the path of a key of a design or a study without former names.
+/// Returns the path of a key of a design or a study, with former names replaced by current names.
 std::string current_key(std::string_view key);
 
 /// Selects overrides by the file to which they apply: the study file if `study` is true, otherwise design files.

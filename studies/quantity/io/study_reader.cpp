@@ -247,8 +247,8 @@ std::string fingerprints(const std::vector<design::NamedFile>& files) {
   return parts;
 }
 
-/// Returns replacements of names after which texts with former and with current names are equal: both then contain the
-/// names of the first version. Stores of former versions contain such texts.
+/// Returns replacements that convert former and current names of keys to the names of the first version. Stores contain
+/// texts with these names, so that stores of former versions remain valid.
 std::vector<TomlRename> names_of_stores(const schema::Format& format) {
   std::vector<TomlRename> names = schema::former_names(format);
   const std::vector<TomlRename> back = reversed(names);
@@ -256,7 +256,7 @@ std::vector<TomlRename> names_of_stores(const schema::Format& format) {
   return names;
 }
 
-/// Returns the text of an override for stores.
+/// Returns the text of an override with the key name that stores contain, see names_of_stores().
 std::string override_of_stores(const std::string& text) {
   const std::string key = key_of(text);
   const std::string stored =
