@@ -216,7 +216,7 @@ struct Substance {
   std::string material = "PMMA";
   std::optional<GlassCatalogueFile> catalogue;  ///< catalogue that contains the material; empty for shipped materials
   std::optional<double> refractive_index;  ///< takes precedence over the index of the material; relative to air, >= 1
-  std::optional<double> temperature_c;     ///< temperature of part and air; if empty, that of the material's data
+  std::optional<double> temperature_c;  ///< temperature of part and air; if empty, the temperature of the material data
   Absorption absorption_per_mm;
   double back_index = 1.0;  ///< refractive index of the medium behind the facets, relative to air; 1..3
 

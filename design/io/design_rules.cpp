@@ -73,13 +73,13 @@ struct FootprintOf {
   Footprint operator()(const RtpElement& rtp) const {
     return {rtp.base_mm, rtp.width_mm, (rtp.base_mm + part.array.x_gap_mm) * (rtp.width_mm + part.array.y_gap_mm)};
   }
-  /// The hexagon has vertices on the positive and negative x axis.
+  /// Returns the footprint of a hexagon with vertices on the positive and negative x axis.
   Footprint operator()(const HexagonalCube& cube) const {
     const double radius = cube.aperture_mm / 2.0;
     return {2.0 * radius, std::numbers::sqrt3 * radius, 1.5 * std::numbers::sqrt3 * radius * radius};
   }
-  /// The apex must be at the centre of the part, one radius away from the vertex on +x. The part therefore needs two
-  /// radii along x.
+  /// Returns the footprint of a triangle whose apex is at the centre of the part. A vertex of the triangle is on the x
+  /// axis, one radius from the apex. The part therefore extends over two radii along x.
   Footprint operator()(const TriangularCube& cube) const {
     const double radius = cube.aperture_mm / 2.0;
     return {2.0 * radius, std::numbers::sqrt3 * radius, 0.75 * std::numbers::sqrt3 * radius * radius};

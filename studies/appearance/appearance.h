@@ -43,7 +43,7 @@ struct AppearanceResult {
   Warnings warnings;
 };
 
-/// Returns the errors of values against the probes.
+/// Returns the errors of values compared with the photometer readings of the probes.
 /// \param r_a value at each probe
 /// \pre `r_a` has one value for each probe, and there is at least one
 AppearanceError appearance_error(const std::vector<AppearanceProbe>& probes, const std::vector<double>& r_a);

@@ -18,9 +18,9 @@ namespace {
 
 using geometry::Vec3;
 
-// Threshold for halving a cell along a side. The mean third difference of the values is computed along each of the two
-// sides. A cell is halved along a side if the third difference along it is at least this fraction of the larger third
-// difference, or if the cell cannot be halved along its other side.
+// Threshold for halving a cell along a side. For each of the two sides, the mean third difference of the values is
+// computed. A cell is halved along a side if its third difference is at least this fraction of the larger of the two,
+// or if the other side cannot be halved.
 constexpr double kMinDifferenceRatio = 0.3;
 // Number of directions of light that are computed in parallel.
 constexpr std::size_t kBatch = 16;

@@ -11,9 +11,9 @@
 namespace retrace::studies {
 
 /// BRDF over the directions of light and view. The x and y components of a direction are a point in the unit disc.
-/// Shirley and Chiu's map converts it to a point in the unit square. For light, the direction is -to_source; for view,
-/// it is to_observer. Equal areas of the square are equal projected solid angles; the area of the whole square
-/// corresponds to pi. Leaves are hypercubes with the side 2^-level. The BRDF is 0 outside the listed leaves.
+/// Shirley and Chiu's map converts this point to a point in the unit square. For light, the direction is -to_source;
+/// for view, it is to_observer. Equal areas of the square are equal projected solid angles; the area of the whole
+/// square corresponds to pi. Leaves are hypercubes with the side 2^-level. The BRDF is 0 outside the listed leaves.
 struct TensorTree {
   int level = 0;
   /// Numbers and values of all leaves that are not 0, in ascending order. The hexadecimal digits of a number are the

@@ -18,8 +18,8 @@ std::size_t first_columns(const MaterialRequest& request, const ReflectionTable&
 std::vector<Rgb> grid_of(const ReflectionTable& table, const geometry::Vec3& to_source, const ColourFields& fields,
                          const raytrace::ApertureKernel& kernel, const Cancellation* cancel);
 
-/// Increases the number of grid points until interpolation between view directions is accurate enough. It is tested
-/// with one direction of light at the centre of the ranges of entrance angle and azimuth. Returns false if the
+/// Increases the number of grid points until interpolation between view directions is accurate enough. The accuracy is
+/// tested with one direction of light at the centre of the ranges of entrance angle and azimuth. Returns false if the
 /// computation was cancelled.
 /// \param error requested relative error of the table
 bool refine_grid(const ColourPhotometer& photometer, double error, ReflectionTable& table, const Cancellation* cancel);

@@ -60,7 +60,7 @@ struct FacetResiduals {
 /// \param left coordinates of CutCoordinates and residual heights, in mm
 /// \param pitch_mm distances between points of the map
 FacetResiduals marks_of(const FacetId& at, std::span<const geometry::Vec3> left, const geometry::Vec2& pitch_mm);
-/// Adds the waves of a facet. Points inside the marks of `rest` are left out.
+/// Adds the waves of a facet. Points inside the marks of `rest` are ignored.
 void add_waves(FacetResiduals& rest, std::span<const geometry::Vec3> left);
 
 /// Wave that facets have in common.

@@ -97,7 +97,7 @@ std::vector<double> tilts_of(const ElementResult& element) {
 
 /// Differences between the machined elements and a design in which all elements are equal.
 struct ElementDifferences {
-  double along_arcmin = 0.0;   ///< maximum rotation of a facet that raises one end of its root
+  double along_arcmin = 0.0;   ///< maximum rotation of a facet by which one end of its root rises
   double spread_arcmin = 0.0;  ///< maximum deviation of a tilt from the mean
   std::int64_t missing = 0;
 };

@@ -104,7 +104,7 @@ class Composer {
   }
 
   /// Fills the catalogue with the cells that this run has evaluated. Cells that only earlier runs have evaluated are
-  /// left out, so that the result does not depend on the contents of the store.
+  /// not used, so that the result does not depend on the contents of the store.
   void read_catalogue(Composition& composition) const {
     composition.catalogue.clear();
     composition.failed = 0;
@@ -203,7 +203,7 @@ class Composer {
   }
 
   /// Returns the starting points of a search. The cells of the mixture come first, in descending order of their areas.
-  /// The cells with the highest gain follow. Cells near an earlier starting point are left out.
+  /// The cells with the highest gain follow. Cells near an earlier starting point are skipped.
   std::vector<PointValues> starts_of(const Composition& composition, const Mixture& mixture) const {
     std::vector<std::size_t> order;
     for (const ZoneFraction& zone : mixture.zones) order.push_back(zone.cell);

@@ -66,8 +66,8 @@ struct Mixture {
 };
 
 /// Computes the mixture with the largest merit: the minimum goal minus the cost. A limit on zones and a minimum
-/// fraction are enforced by branch and bound over sets of cells. The search uses that, at any prices, a set that is
-/// better than the best set found so far contains a cell with a positive gain.
+/// fraction are enforced by branch and bound over sets of cells. The search is based on the following fact: at any dual
+/// prices, a set that is better than the best set found so far contains a cell with a positive gain.
 /// \param max_sets maximum number of tried sets
 /// \pre all cells have the same number of goals, at least one, and as many means as the rules
 Mixture best_mixture(const std::vector<MixedCell>& cells, const MixtureRules& rules,

@@ -257,7 +257,7 @@ RoadResult RoadStudy::run(Progress* progress, const Cancellation* cancel) const 
     const Vec3 eye = eye_at(result.scene, distance_m);
     std::vector<PhotometerSetting> settings;
     for (const auto& [side, lamp] : {Pair{0, 0}, Pair{0, 1}, Pair{1, 0}, Pair{1, 1}}) {
-      // The reflector is mounted on the car, so that its frame is that of the scene.
+      // The reflector is mounted on the car without rotation, so that its axes are those of the scene.
       const Vec3 reflector = reflector_place(result.scene, side);
       settings.push_back(setting_of({(lamps[lamp] - reflector).normalized(), (eye - reflector).normalized()}));
     }

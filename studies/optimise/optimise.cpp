@@ -183,8 +183,8 @@ class Search {
   }
 
  private:
-  /// Searches along a line of designs, by bisection, for the points at which the constraints begin or cease to be
-  /// satisfied. The best design may be the last feasible design before such a point.
+  /// Searches along a line of designs, by bisection, for the points at which a constraint changes between satisfied and
+  /// violated. The best design may be the last feasible design before one of these points.
   void look_at_edges(const std::vector<Variant>& line) {
     if (continuous_.size() != 1) return;
     for (std::size_t k = 0; k + 1 < line.size(); ++k)
@@ -402,7 +402,7 @@ void search(const Study& study, const OptimiseRequest& request, Evaluator& evalu
     return;
   }
   std::vector<Rejected> neighbours = searching.neighbours(*optimum.best);
-  // A neighbour may be better than the result of the search. It then replaces the result.
+  // If a neighbour is better than the result of the search, it replaces the result.
   if (const auto best = searching.best_seen();
       *best->objective > *optimum.best->objective + kForRoundness * std::abs(*optimum.best->objective)) {
     optimum.best = best;

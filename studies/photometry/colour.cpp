@@ -53,8 +53,8 @@ std::optional<std::vector<MeasuredTristimulus>> measured_tristimulus(const desig
   return measured;
 }
 
-/// Returns the standard error of of_x x + of_y y. Its derivatives with respect to X, Y and Z are (of_x - m, of_y - m,
-/// -m) / (X + Y + Z), where m = of_x x + of_y y.
+/// Returns the standard error of m = of_x x + of_y y. The derivatives of m with respect to X, Y and Z are (of_x - m,
+/// of_y - m, -m) / (X + Y + Z).
 double error_of(double of_x, double of_y, const materials::Chromaticity& at, const MeasuredTristimulus& measured) {
   const double sum = measured.values[0] + measured.values[1] + measured.values[2];
   const double mean = of_x * at.x + of_y * at.y;

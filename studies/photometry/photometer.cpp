@@ -27,8 +27,8 @@ Angle deg(double value) {
   return Angle::from_deg(value);
 }
 
-/// Returns the spectral absorption of a design's body. Empty if the absorption is a single number or that of the
-/// material.
+/// Returns the spectral absorption of a design's body. Empty if the absorption is a single number or is taken from the
+/// data of the material.
 materials::SpectralCurve absorption_per_mm(const design::Design& design) {
   materials::SpectralCurve curve;
   if (const auto* const given =
@@ -40,8 +40,8 @@ materials::SpectralCurve absorption_per_mm(const design::Design& design) {
   return curve;
 }
 
-/// Returns the path length, inside a design, of light that enters, is reflected at the elements and leaves. It
-/// determines the absorption by a dye.
+/// Returns the path length, inside a design, of light that enters, is reflected at the elements and leaves. The
+/// absorption by a dye depends on this length.
 double way_through_mm(const design::Design& design) {
   if (design.balls()) return 2.0 * design.balls()->diameter_mm;
   const geometry::Part part = design::part_of_design(design, nullptr);

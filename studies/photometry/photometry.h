@@ -253,8 +253,8 @@ class PhotometryStudy {
   /// Returns true if light is traced as beams, and false if it is traced as rays. If beam tracing needs too many beams,
   /// it may later be replaced by ray tracing.
   bool uses_beams() const;
-  /// Returns the cut-off power of beams, as a fraction of the power that falls on one element. It is that of the
-  /// request or the default.
+  /// Returns the cut-off power of beams, as a fraction of the power that falls on one element. It is the value in the
+  /// request, or the default value.
   double cutoff() const;
 
   /// Computes the readings.

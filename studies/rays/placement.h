@@ -15,7 +15,8 @@ namespace retrace::studies {
 struct RayPlacementRequest {
   std::optional<std::array<double, 3>> at_mm;   ///< origin of the source in the part frame
   std::optional<std::array<double, 3>> aim_mm;  ///< point at which the +z axis of the source is aimed
-  // Direction and distance of the source from the centre of the entrance face. Its +z axis points at this centre.
+  // Direction and distance of the source from the centre of the entrance face. The +z axis of the source points at this
+  // centre.
   std::optional<double> incidence_deg;
   std::optional<double> azimuth_deg;
   std::optional<double> distance_mm;

@@ -11,7 +11,7 @@
 
 namespace retrace::studies {
 
-/// Source of rays. They have a fixed order and are in the frame of the source.
+/// Source of rays. The rays have a fixed order and are in the frame of the source.
 class RaySource {
  public:
   virtual ~RaySource() = default;

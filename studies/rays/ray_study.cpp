@@ -68,8 +68,8 @@ double radius_of_face(const geometry::Part& part) {
 }
 
 /// Sets the size of the emitter to that of the entrance face. For an infinite part, the emitter is a parallelogram that
-/// is congruent to one period and parallel to the face. Parallel rays from it cover one period evenly, whatever their
-/// direction.
+/// is congruent to one period and parallel to the face. Parallel rays from the emitter cover one period evenly for
+/// every direction of the rays.
 void cover_face(const geometry::Part& part, const RayPlacement& placement, Emitter& emitter) {
   if (!part.period_mm) {
     emitter.disc_mm = 2.0 * radius_of_face(part);

@@ -23,8 +23,8 @@ namespace retrace::studies {
 struct RayRequest {
   RayPlacementRequest placement;
   std::optional<EmitterRequest> emitter = {};  ///< requested emitter; empty: a file or the caller gives the rays
-  /// Minimum fraction of a ray's power for which both branches at an interface are traced. Below it, one branch is
-  /// chosen at random and carries the power of both. With 1, at most one ray leaves for each incident ray.
+  /// Minimum fraction of a ray's power for which both branches at an interface are traced. Below this fraction, one
+  /// branch is chosen at random and carries the power of both. With 1, at most one ray leaves for each incident ray.
   double split = 1.0;
   double cutoff = 1e-10;     ///< fraction of an incident ray's power below which a branch is not traced further
   bool keep_missed = false;  ///< true: rays that miss the part are also written

@@ -189,7 +189,8 @@ class TraceByParameter {
 
 std::optional<NoDerivative> why_not(const Derivative& derivative) {
   if (derivative.converged()) return {};
-  // Fraction of the error above which noise is given as the reason; noise also increases the error itself.
+  // If the noise is above this fraction of the error of the derivative, it is reported as the reason. The error also
+  // grows with the noise.
   constexpr double kShows = 0.2;
   return derivative.noise > kShows * derivative.error ? NoDerivative::truncated_power : NoDerivative::not_smooth;
 }

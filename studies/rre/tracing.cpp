@@ -13,8 +13,8 @@
 namespace retrace::studies {
 namespace {
 
-/// Work, in units of BeamTrace::work(), for which beams are traced even if their error is already below the requested
-/// error. It takes about 3 ms.
+/// Amount of work, in units of BeamTrace::work(), up to which beams are traced even if their error is already below the
+/// requested error. It takes about 3 ms.
 constexpr std::uint64_t kSpareWork = 100'000;
 
 raytrace::Sampling sampling_of(const RreSettings& request) {

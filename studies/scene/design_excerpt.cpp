@@ -68,7 +68,7 @@ FewElements few_elements(const design::Design& design, double elements) {
   return few;
 }
 
-/// Returns the edges at which two triangles meet that are not in one plane.
+/// Returns the edges between triangles that are not in one plane.
 std::vector<std::array<std::uint32_t, 2>> sharp_edges(const geometry::BoundaryMesh& mesh) {
   std::vector<std::array<std::uint32_t, 2>> edges;
   if (!geometry::is_closed_manifold(mesh)) return edges;

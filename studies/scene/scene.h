@@ -24,8 +24,8 @@ struct DesignScene {
 /// \throw InputError in the same cases as make_model()
 DesignScene make_scene(const design::Design& design, const std::vector<SceneLight>& lights);
 
-/// Returns the design from the JSON of a result (to_json()) for a picture. Texture, spectrum and polarisation are left
-/// out.
+/// Returns the design from the JSON of a result (to_json()) for a picture. Texture, spectrum and polarisation are
+/// omitted.
 /// \throw InputError if the JSON does not describe a design
 design::Design design_of_json(const nlohmann::ordered_json& json);
 

@@ -29,7 +29,7 @@ struct ToleranceRequest {
 
 /// Points of a tolerance study. The first is the nominal part with all parameters at their medians. The rows follow. A
 /// row begins with a random part A. If Sobol indices are requested, it also contains a random part B, and one point for
-/// each parameter. This point is equal to A, except that this parameter has the value of B.
+/// each parameter. Each of these points is equal to A except for its parameter, which has the value of B.
 class TolerancePlan final : public PointPlan {
  public:
   /// \pre every parameter has a distribution
@@ -58,7 +58,7 @@ struct QuantityTolerance {
   std::size_t parts = 0;          ///< number of parts with a value
   std::size_t missing_parts = 0;  ///< number of parts that could not be computed or have no value
   std::optional<compute::Spread> spread;
-  /// Pairs: a fraction of the parts, and the value below which this fraction of the parts lies.
+  /// Pairs of a fraction and of the value below which this fraction of the parts lies.
   std::vector<std::pair<double, double>> percentiles;
   /// Sobol indices, in the order of the parameters; empty if they were not requested or are not defined.
   std::vector<compute::SobolIndex> indices;

@@ -15,13 +15,13 @@ namespace {
 
 using fabrication::CutConditions, fabrication::ForceEvents, fabrication::ForceModel;
 
-/// Returns the conditions of experiment 1, with prisms of 1 mm. They are those of the third last of 142 cuts at a depth
-/// of 5 um, and of the second last of 71 cuts at 10 um.
+/// Returns the conditions of experiment 1, with prisms of 1 mm. For a depth of 5 um, they are the conditions of the
+/// third last of 142 cuts; for 10 um, of the second last of 71 cuts.
 CutConditions experiment_1(double depth_um) {
   CutConditions cut;
   cut.depth_of_cut_um = depth_um;
   cut.width_mm = 0.982;
-  // From first contact to the root: recorded times in s, and a feed of 10 mm/min.
+  // Length of the plunge from the first contact to the root, from recorded times in s and a feed of 10 mm/min.
   cut.plunge_mm = (5.23 - 1.0) * 10.0 / 60.0;
   cut.plough_mm = 0.25;
   return cut;

@@ -17,8 +17,8 @@ namespace {
 
 using namespace fabrication::turning;
 
-/// Returns the finish of a plane surface that is cut with a nose radius of 0.25 mm at a feed of 1 um. The cusps are
-/// those of the exact circle, integrated numerically.
+/// Returns the finish of a plane surface that is cut with a nose radius of 0.25 mm at a feed of 1 um. The finish is
+/// computed from the cusps of the exact circle by numerical integration.
 FinishFigures measured_finish() {
   return exact_finish({.nose_radius_mm = 0.25}, 1e-3);
 }

@@ -22,7 +22,7 @@ using geometry::Rectangle, geometry::Vec2;
 constexpr std::string_view kTurn = "analysis.rotation_deg";
 /// Minimum height of a row of a zone, in elements. With this height, most elements in the row are whole.
 constexpr double kElementsOfRow = 8.0;
-/// Maximum number of rows of all zones, limited by what a design file can contain.
+/// Maximum number of rows of all zones together. It limits the number of regions in a design file.
 constexpr double kMaxRows = 120.0;
 
 /// Divides a rectangle into blocks for the zones from `first` to `end`. The zones are split into two groups of about

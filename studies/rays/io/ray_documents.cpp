@@ -38,7 +38,7 @@ Json source_json(const RayResult& result) {
   return json;
 }
 
-/// Returns the power of an account. The account after those of the ledger is the power of rays that miss the part.
+/// Returns the power of an account of the ledger, or the power of rays that miss the part for kMissedAccount.
 double power_in(const raytrace::RayLedger& ledger, std::size_t account) {
   return account == kMissedAccount ? ledger.missed : ledger.ledger.power[account];
 }

@@ -42,7 +42,7 @@ constexpr const char* kLeftOut =
     "are not published\n"
     "  ([theory/planing.md](theory/planing.md)).\n";
 
-/// Returns the number of decimals that shows a hundredth of the allowed difference. It is at most 9.
+/// Returns the number of decimals with which a hundredth of the allowed difference is visible, but at most 9.
 int decimals_of(double allowed) {
   return std::clamp(static_cast<int>(std::ceil(1.0 - std::log10(allowed) - 1e-9)), 0, 9);
 }
