@@ -140,7 +140,7 @@ struct FacetPlanesFile {
 struct ElementArray {
   geometry::PartSpec part;
   std::optional<ArrayMask> mask;
-  std::optional<FacetPlanesFile> facet_planes;  ///< finite parts only; not together with a mask
+  std::optional<FacetPlanesFile> facet_planes;  ///< planes of individual facets; only for finite parts without a mask
 };
 
 /// Part whose shape is given by a mesh.

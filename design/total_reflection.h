@@ -28,9 +28,8 @@ std::optional<double> total_reflection_from_deg(const geometry::PartSpec& part, 
                                                 Angle azimuth);
 
 /// Returns all angles of incidence at this azimuth at which total reflection of retroreflected light begins or ends at
-/// a facet. The angles are between -90 and 90 degrees. The facet may be the first, second or third that light hits.
-/// They are in ascending order. As a function of incidence, RRE (the retroreflective efficiency) has kinks at these
-/// angles.
+/// a facet. The angles are between -90 and 90 degrees and in ascending order. The facet may be the first, second or
+/// third that light hits. As a function of incidence, RRE (the retroreflective efficiency) has kinks at these angles.
 /// \pre both indices are >= 1
 std::vector<double> total_reflection_edges_deg(const geometry::PartSpec& part, double index, double back_index,
                                                Angle azimuth);

@@ -23,7 +23,7 @@ struct Range {
 struct Ticks {
   double step = 0.0;
   std::vector<double> positions;    ///< in ascending order
-  std::vector<std::string> labels;  ///< as many as positions; a true minus sign (U+2212), never "-0"
+  std::vector<std::string> labels;  ///< one label for each position; with the minus sign U+2212, and never "-0"
 };
 
 /// Maps values to drawing units along one axis. The low end of the range is mapped to `first`.

@@ -15,7 +15,7 @@ namespace retrace::studies {
 /// Height map of a region of a part's surface. Its rows are parallel to x of the workpiece and follow each other along
 /// y, except for a rotation about z and an unknown small tilt.
 struct FacetMap {
-  std::string file;  ///< for messages
+  std::string file;  ///< name of the file, for messages
   surface_models::HeightMap heights;
   /// Centre of the map in the workpiece frame, accurate to half an element.
   geometry::Vec2 centre_mm = geometry::Vec2::Zero();

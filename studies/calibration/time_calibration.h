@@ -79,7 +79,7 @@ struct TimeCalibration {
 
 /// Estimates the quantities by least squares with Gauss-Newton steps. Settling and ramp have the lower bound 0. If
 /// TimeCalibration::scatter is above 1, the residuals are larger than the uncertainties of the rows explain. The
-/// uncertainties of the results are then multiplied by it.
+/// uncertainties of the results are then multiplied by this value.
 /// \throw InputError if there are no rows
 TimeCalibration calibrate_times(TimedPrograms programs, const fabrication::Machine& machine);
 

@@ -18,8 +18,8 @@ namespace retrace::studies {
 /// Standard deviations of random errors of the angles between facets, in minutes of arc. All errors are Gaussian and
 /// independent.
 struct ErrorSpread {
-  double cell_sigma_arcmin = 0.0;  ///< from cell to cell; these errors average out over a zone
-  double zone_sigma_arcmin = 0.0;  ///< from zone to zone; all cells of a zone have the same error
+  double cell_sigma_arcmin = 0.0;  ///< standard deviation from cell to cell; these errors average out over a zone
+  double zone_sigma_arcmin = 0.0;  ///< standard deviation from zone to zone; all cells of a zone have the same error
   std::size_t parts = 1024;        ///< number of random parts
   /// Fraction of the random parts that counts as the worst. If it is given, a further part is optimized for these worst
   /// parts.
@@ -62,7 +62,7 @@ struct Zone {
 
 /// Best part with a limited number of zones.
 struct PartOfZones {
-  std::vector<Zone> zones;    ///< the largest first
+  std::vector<Zone> zones;    ///< zones, the largest first
   Mixture mixture;            ///< mixture whose cells are indices in Composition::catalogue
   std::size_t max_zones = 0;  ///< maximum number of zones
 };
@@ -85,7 +85,7 @@ struct PartYield {
 /// Composition that is optimized for the worst random parts: the mean of the minimum goal over these parts is maximal.
 /// Its cells are chosen from the best compositions of all numbers of zones.
 struct RobustPart {
-  std::vector<Zone> zones;  ///< the largest first
+  std::vector<Zone> zones;  ///< zones, the largest first
   PartYield yield;
 };
 

@@ -29,8 +29,8 @@ class ErrorResponse {
 
  private:
   std::vector<double> nominal_;
-  std::vector<std::vector<double>> slopes_;                   ///< indexed by angle
-  std::vector<std::vector<std::vector<double>>> curvatures_;  ///< second derivatives, indexed by two angles
+  std::vector<std::vector<double>> slopes_;                   ///< first derivatives, indexed by angle and goal
+  std::vector<std::vector<std::vector<double>>> curvatures_;  ///< second derivatives, indexed by two angles and by goal
 };
 
 }  // namespace retrace::studies

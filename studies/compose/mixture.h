@@ -53,7 +53,7 @@ struct Mixture {
     interrupted
   };
   Kind kind = Kind::infeasible;
-  std::vector<ZoneFraction> zones;  ///< the largest first
+  std::vector<ZoneFraction> zones;  ///< cells and their fractions, the largest first
   double min_goal = 0.0;            ///< minimum goal
   double merit = 0.0;               ///< minimum goal minus the cost of the cells
   double bound = 0.0;               ///< upper bound of the merit of any allowed mixture of these cells

@@ -31,7 +31,7 @@ struct BallFigures {
   double paraxial_error = 0.0;
   std::optional<double>
       focal_offset_mm;  ///< mirror offset for which the paraxial error is 0; none if no offset has this effect
-  double largest_return_error_deg = 0.0;  ///< maximum over the aperture, due to spherical aberration
+  double largest_return_error_deg = 0.0;  ///< maximum return error over the aperture, due to spherical aberration
   /// Fraction of the aperture whose light returns within the narrowest acceptance cone of the detector. It follows from
   /// geometry only, without Fresnel losses.
   double fraction_within_acceptance = 0.0;

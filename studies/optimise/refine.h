@@ -9,7 +9,7 @@ namespace retrace::studies {
 /// Limits of a refinement without derivatives.
 struct RefineLimits {
   int max_evaluations = 60;
-  double first_step = 0.02;  ///< as a fraction of each interval
+  double first_step = 0.02;  ///< first step, as a fraction of each interval
 };
 
 /// Improves the continuous values of a feasible design within bounds and constraints. It uses exact derivatives of the

@@ -33,9 +33,10 @@ struct PhotometricTable {
 struct PhotometricChoice {
   std::optional<std::size_t> point;  ///< index of the test point, from 0; none: the minimum over all points
   /// Selection of one reading of a test point. If it is not set, the minimum of all readings of the point is used.
-  /// `v_index` is the index of the angle V. There are several such angles for V = 0, where the entrance face reflects
-  /// the lamp directly to the receiver, so that readings are taken at angles near 0. For a part without this mirror
-  /// image, all these angles are equal to V of the point. `rotation_index` is the index of the rotation of the part.
+  /// `v_index` is the index of the angle V. A test point has several such angles if V is 0 and the entrance face
+  /// reflects the lamp directly to the receiver there: readings are then taken at angles near 0. For a part without
+  /// this mirror image, all these angles are equal to V of the point. `rotation_index` is the index of the rotation of
+  /// the part.
   struct Reading {
     std::size_t v_index = 0;
     std::size_t rotation_index = 0;

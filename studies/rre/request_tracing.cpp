@@ -56,7 +56,8 @@ void finish(Direction& direction, const design::Design& design, const design::Op
 
 /// Returns the known kinks of RRE as a function of incidence. Kinks are angles at which total reflection begins or
 /// ends, at any of the requested azimuths and wavelengths. Another kink is at half of an acceptance angle. There, the
-/// light that the entrance face reflects leaves the acceptance cone, because it rotates twice as fast as the part.
+/// light that the entrance face reflects leaves the acceptance cone, because the reflected light rotates twice as fast
+/// as the part.
 std::vector<double> kinks_of(const std::vector<design::Design>& designs,
                              const std::vector<design::OpticalModel>& models, const RreSettings& request) {
   std::vector<double> kinks;

@@ -44,8 +44,8 @@ struct RreSettings {
   raytrace::Engine engine = raytrace::Engine::automatic;
   std::optional<std::uint64_t> rays;  ///< number of rays per point; none: rays are traced until target_error is reached
   /// Maximum standard error (Monte Carlo) or maximum truncated power (exact engine), as a fraction of the incident
-  /// power. The default is kDefaultTargetError, or half of kCurveTolerance if incidences are chosen automatically. It
-  /// is 1e-10 if the exact engine is requested by name or needed for other results.
+  /// power. The default is kDefaultTargetError, or half of kCurveTolerance if incidences are chosen automatically. If
+  /// the exact engine is requested by name or needed for other results, the default is 1e-10.
   std::optional<double> target_error;
   raytrace::Sampling::Kind sampling = raytrace::Sampling::Kind::stratified;  ///< `plain` uses Embree
   bool needs_plain_sampling() const { return sampling == raytrace::Sampling::Kind::plain; }
@@ -107,7 +107,7 @@ struct RreResult {
   std::vector<RrePoint> points;  ///< sorted by design, wavelength, azimuth, incidence, acceptance cone
   /// Results for each direction, in the order of `points`. Empty unless footprints or far fields were requested.
   std::vector<ReturnedLight> returned;
-  std::vector<EntranceFace> faces;  ///< one for each design, if footprints were requested
+  std::vector<EntranceFace> faces;  ///< entrance face of each design, if footprints were requested
   std::uint64_t rays = 0;
   double elapsed_s = 0.0;
   Warnings warnings;

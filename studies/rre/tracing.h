@@ -15,8 +15,8 @@ namespace retrace::studies {
 /// Direction of one design, with its results.
 struct Direction {
   RrePoint at;
-  std::vector<std::vector<RrePoint>> spectral;  ///< indexed by wavelength and cone; empty if not traced yet
-  std::vector<std::uint64_t> rays;              ///< indexed by wavelength
+  std::vector<std::vector<RrePoint>> spectral;  ///< points, indexed by wavelength and cone; empty if not traced yet
+  std::vector<std::uint64_t> rays;              ///< number of traced rays, indexed by wavelength
   std::vector<char> missed_target;  ///< indexed by wavelength; char instead of bool, because threads write concurrently
   std::vector<RrePoint> points;     ///< one for each cone; empty until all wavelengths are traced
   std::optional<Footprint> footprint;

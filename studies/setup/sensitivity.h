@@ -43,7 +43,7 @@ struct Sensitivity {
   double wall_nm = 0.0;
 
   double farthest_nm() const;  ///< maximum absolute displacement over all facets
-  double largest_nm() const;   ///< maximum over facets, chips and roots; walls are not included
+  double largest_nm() const;   ///< maximum effect on facets, chips and roots; walls are not included
 };
 
 struct Sensitivities {

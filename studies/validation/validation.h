@@ -24,7 +24,7 @@ inline constexpr std::string_view kReferenceWords[] = {"published", "closed_form
 
 /// Expected value of one quantity, and the function with which retrace computes the quantity.
 struct ValidationRow {
-  std::string topic = {};  ///< rows of one topic follow each other
+  std::string topic = {};  ///< topic; rows with the same topic are adjacent
   std::string quantity = {};
   std::string unit = {};  ///< unit; empty if the quantity has none
   Reference reference = Reference::closed_form;
