@@ -27,8 +27,8 @@ struct RegisteredMap {
   fabrication::RigidMotion part_from_map;  ///< transformation of points relative to the centre of the map
   double rms_nm = 0.0;                     ///< rms deviation from the design after registration
   std::vector<Measurement> figures;        ///< distance and both tilts of every facet that the map shows
-  std::optional<FaceFigures>
-      face;  ///< height and tilts of the blank's face; none if the map shows too little of the face
+  /// Height and tilts of the blank's face. None if the map shows too little of the face.
+  std::optional<FaceFigures> face;
   std::vector<FacetResiduals> residuals;  ///< waves and marks of the measured facets
 };
 

@@ -29,8 +29,8 @@ struct BallFigures {
   /// Derivative of the return error with respect to h / radius at h = 0, in rad. h is the distance of the light from
   /// the axis of the ball. If the derivative is 0, light near the axis returns parallel to it.
   double paraxial_error = 0.0;
-  std::optional<double>
-      focal_offset_mm;  ///< mirror offset for which the paraxial error is 0; none if no offset has this effect
+  /// Mirror offset for which the paraxial error is 0. None if no offset has this effect.
+  std::optional<double> focal_offset_mm;
   double largest_return_error_deg = 0.0;  ///< maximum return error over the aperture, due to spherical aberration
   /// Fraction of the aperture whose light returns within the narrowest acceptance cone of the detector. It follows from
   /// geometry only, without Fresnel losses.

@@ -24,8 +24,8 @@ struct FacetKind {
 /// Displacement and tilt of the facets of one kind, per um or arcsec of a set-up quantity. The values are those of the
 /// facet whose plane moves farthest.
 struct FacetEffect {
-  double distance_nm =
-      0.0;  ///< displacement of the facet's center along its outward normal; positive if material remains
+  /// Displacement of the facet's center along its outward normal. It is positive if material remains.
+  double distance_nm = 0.0;
   double up_arcmin = 0.0;  ///< tilt, positive if the facet rises away from the root, which narrows the groove
   /// Tilt, positive if the facet rises along the root (cube corners: along the facet's horizontal line).
   double along_arcmin = 0.0;
