@@ -33,7 +33,7 @@ class BallWalker {
 
  private:
   enum class Medium { air, ball, spacer };
-  /// A ray that is queued. Positions are relative to the centre of its ball.
+  /// Ray in the queue. Its position is relative to the centre of its ball.
   struct Ray {
     Medium medium = Medium::air;
     BallIndex ball;

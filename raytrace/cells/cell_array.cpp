@@ -46,8 +46,9 @@ bool is_upper_envelope(const geometry::Cell& cell, const CellArray::Column& colu
   return true;
 }
 
-/// Divides cells so that the surface over each result is the upper envelope of the planes of its facets. Cells with
-/// rounded rims do not have this property and are divided into their facets.
+/// Divides cells into smaller cells such that, over each smaller cell, the surface is the upper envelope of the planes
+/// of all facets. If this does not hold for a cell, for example because its rims are rounded, the cell is divided into
+/// its facets.
 std::vector<geometry::Cell> convex_cells(const std::vector<geometry::Cell>& cells, double tolerance_mm) {
   std::vector<geometry::Cell> convex;
   for (const geometry::Cell& cell : cells) {
@@ -71,8 +72,9 @@ void for_each_shift(const Vec2& period_mm, const Visit& visit) {
     for (int i = -kReach; i <= kReach; ++i) visit(Vec2(i * period_mm.x(), j * period_mm.y()));
 }
 
-/// Returns true if two surfaces have the same height along the line from `a` to `b`. Both surfaces are convex, so that
-/// it is sufficient to compare them where the facets of either surface change along the line.
+/// Returns true if two surfaces have the same height along the line from `a` to `b`. Along this line, both heights are
+/// piecewise linear. It is therefore sufficient to compare them at the ends of the line and at the corners of facets on
+/// the line.
 bool is_level(const geometry::Cell& cell, const CellArray::Column& here, const CellArray::Column& there,
               const geometry::Cell& other, const Vec2& shift, const Vec2& a, const Vec2& b, double tolerance_mm) {
   const Vec2 along = (b - a).normalized();

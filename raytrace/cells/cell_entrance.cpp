@@ -8,7 +8,7 @@ namespace {
 
 using lanes::Hit, lanes::label_of;
 
-// Maximum distance between a ray and its column that rounding errors cause, divided by the period.
+// Maximum distance, divided by the period, by which rounding errors may place a ray outside of its column.
 constexpr double kSlack = 1e-12;
 
 }  // namespace

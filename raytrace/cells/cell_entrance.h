@@ -48,9 +48,9 @@ class CellEntrance {
   const CellArray& array_;
   double height_mm_;                               ///< height of the entrance face above the top of the back surface
   std::vector<lanes::LinearForm> fragment_edges_;  ///< edges of CellArray::fragments() as linear forms
-  std::vector<std::uint32_t> fragment_starts_;     ///< first index in `fragment_edges_` of each fragment, then its size
+  std::vector<std::uint32_t> fragment_starts_;     ///< index in `fragment_edges_` per fragment, then the size
   RayStore descending_;
-  std::vector<lanes::Label> labels_;  ///< index of the piece below each ray of `descending_`
+  std::vector<lanes::Label> labels_;  ///< index of the fragment below each ray of `descending_`
   RayStore exited_;                   ///< rays that leave through the face; used only with a score or an observer
   std::array<RayStore, 2> queued_;    ///< rays just below a contaminated face: [0] unscattered, [1] scattered
   std::optional<ContaminatedEntrance> contaminated_;  ///< set if the face scatters

@@ -71,7 +71,7 @@ using Label = std::int64_t;
 /// Kinds of faces that rays meet.
 enum class Hit : Label {
   facet,     ///< a facet of the column
-  end,       ///< inside: top of the back surface; outside: plane below all facets, where a ray has met nothing
+  end,       ///< rays inside: top of the back surface; rays outside: plane below all facets
   border,    ///< a border of the column
   crossing,  ///< an interval of a border where rays continue in the neighbouring column
   wall,      ///< an interval of a border where rays meet the wall between surfaces of different height
@@ -115,7 +115,7 @@ struct Border {
   struct Interval {
     bool is_flush = true;
     geometry::Vec2 shift = geometry::Vec2::Zero();
-    std::span<const LinearForm> heights;  ///< their maximum is the height of the neighbouring surface
+    std::span<const LinearForm> heights;  ///< linear forms whose maximum is the height of the neighbouring surface
   };
   std::size_t index = 0;           ///< index of the border among the borders of the column
   std::size_t first_interval = 0;  ///< index of its first interval among all intervals of the column's borders
@@ -155,7 +155,7 @@ struct BoundsTest {
   geometry::Vec2 upper = geometry::Vec2::Zero();
 };
 /// Marks rays that are outside of the rectangle after they are extrapolated by the height difference. Only rays with
-/// the label `tested` are tested. The label of a marked ray becomes `beyond`.  Returns the number of marked rays.
+/// the label `tested` are tested. The label of a marked ray becomes `beyond`. Returns the number of marked rays.
 /// \pre rays.have_periods()
 std::size_t mark_beyond(const Rays& rays, std::size_t count, const BoundsTest& reach, Label tested, Label beyond,
                         Label* labels);
@@ -203,8 +203,8 @@ struct Arrivals {
   double absorbed = 0.0;  ///< power that the material absorbs on the path to the entrance face
 };
 /// Moves rays that rise to the entrance face up to this face, and computes their branches there. The Stokes parameters
-/// of light that leaves are added to the element of `returned` for the narrowest cone that contains the light. Their
-/// first axis is source_axis().
+/// of light that leaves are added to the element of `returned` for the narrowest cone that contains the light. The
+/// first axis of these Stokes parameters is source_axis().
 /// \param reflected receives the rays that the face reflects
 /// \param returned sums for each cone; the last element is the sum for light outside of all cones
 /// \param left receives the rays that leave through the entrance face; may be null

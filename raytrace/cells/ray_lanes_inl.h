@@ -87,7 +87,7 @@ HWY_INLINE V3 chosen(M mask, const V3& yes, const V3& no) {
   return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y), hn::IfThenElse(mask, yes.z, no.z)};
 }
 
-/// Stokes parameters.
+/// Stokes parameters of several rays, one ray per SIMD lane.
 struct S {
   V i, q, u, v;
 };

@@ -42,8 +42,8 @@ std::optional<StreamKey> RayStreams::take_fullest(RayStore& rays) {
     while (!waiting_[bits].empty()) {
       const std::size_t index = waiting_[bits].back();
       waiting_[bits].pop_back();
-      // A stream gets a new entry when the bit width of its size grows, and its old entry remains. Old entries are
-      // ignored.
+      // `waiting_` gets a new entry for a stream when the bit width of the stream's size grows. The old entry remains
+      // and is skipped here.
       if (static_cast<std::size_t>(std::bit_width(streams_[index].size())) != bits) continue;
       rays.clear();
       rays.swap(streams_[index]);

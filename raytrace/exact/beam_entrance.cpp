@@ -23,8 +23,9 @@ struct Span {
   std::vector<double> shifts;
 };
 
-/// Divides a side of the entrance face into intervals, with `steps` intervals per period. Intervals that are a multiple
-/// of the period apart are one Span. The last interval of the side may be shorter and is then a Span of its own.
+/// Divides a side of the entrance face into intervals, with `steps` intervals per period. All intervals whose distance
+/// is a multiple of the period form one Span. The last interval of the side may be shorter and is then a Span of its
+/// own.
 std::vector<Span> spans(double lower, double upper, double period, int steps) {
   std::vector<Span> all;
   const double step = period / steps;
@@ -108,7 +109,8 @@ class Division {
     entered_ += piece.area_fraction * (piece.instance_count() / whole_.instance_count());
     queue_.push(std::move(piece));
   }
-  /// Returns the part of the whole beam's Beam::area_fraction that the queued fragments and their copies contain.
+  /// Returns the sum of Beam::area_fraction over all queued fragments and their copies, divided by the number of copies
+  /// of the whole beam.
   double entered() const { return entered_; }
 
  private:
@@ -197,8 +199,8 @@ void keep_half(const TranslationalSymmetry& equal, Beam& whole, BeamQueue& queue
   whole.instance_offsets = queue.shared({Vec2::Zero(), *by});
 }
 
-/// Divides the incident beam into fragments according to the symmetry of the part. Returns the part of
-/// Beam::area_fraction that these fragments contain.
+/// Divides the incident beam into fragments according to the symmetry of the part. Returns the sum of
+/// Division::entered() over all regions of the part.
 double divide(const BeamScene& scene, const Beam& whole, const Vec2& most_step, BeamQueue& queue) {
   if (scene.symmetry == nullptr || scene.setup.infinite() || scene.symmetry->regions().empty()) {
     Division into(scene, whole, queue);

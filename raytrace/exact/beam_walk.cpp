@@ -24,7 +24,8 @@ constexpr double kGentleFall = 0.3;
 constexpr std::uint64_t kWorkOfBeam = 50;
 // Number of copies of a beam that are compared with the borders in one unit of BeamWalk::work().
 constexpr std::size_t kPlacesPerWork = 16;
-// Assumed exponent until two passes have been measured: the work is proportional to (truncated power)^-kUsualSlope.
+// Exponent s of the work, which is proportional to (truncated power)^-s. This value is assumed until two passes have
+// been measured.
 constexpr double kUsualSlope = 0.5;
 
 }  // namespace

@@ -26,9 +26,8 @@ class BackSurface {
   BackSurface& operator=(const BackSurface&) = delete;
   ~BackSurface();
 
-  /// Returns the first facet that the ray meets up to the distance `t_max`. Only the side of a facet from which the ray
-  /// comes counts: rays inside the part meet facets through which they leave, and rays outside meet facets through
-  /// which they enter.
+  /// Returns the first facet that the ray meets up to the distance `t_max`. A ray inside the part meets only facets
+  /// through which it could leave the part. A ray outside meets only facets through which it could enter.
   std::optional<SurfaceHit> first_hit(const SurfaceRay& ray) const;
 
   /// Returns the first facet for a ray that must meet the surface. If first_hit() finds no facet, the search is

@@ -29,9 +29,8 @@ class ExactSurface {
 
   const Facet& facet(FacetRef ref) const { return part_->patches[placements_[ref.placement].patch].facets[ref.facet]; }
 
-  /// Returns the first facet that the ray meets up to the distance `t_max`. Only the side of a facet from which the ray
-  /// comes counts: rays inside the part meet facets through which they leave, and rays outside meet facets through
-  /// which they enter.
+  /// Returns the first facet that the ray meets up to the distance `t_max`. A ray inside the part meets only facets
+  /// through which it could leave the part. A ray outside meets only facets through which it could enter.
   std::optional<SurfaceHit> first_hit(const SurfaceRay& ray) const;
 
   /// Replaces `best` if the ray meets a facet of `range` at a smaller distance than `best`. The result does not depend

@@ -21,7 +21,8 @@ constexpr double kSameHeight = 4e-16;
 // Margin above the highest and below the lowest point, as a fraction of the part's size.
 constexpr double kRoom = 1e-12;
 constexpr int kMaxIterations = 200;
-// Maximum distance from the surface, in units of rounding errors, of a ray that starts on the surface.
+// Maximum distance from the surface, in multiples of Search::same_mm, at which a point of a ray counts as on the
+// surface.
 constexpr double kStillOn = 8.0;
 
 /// Returns the curvature between two points, estimated from the difference of their slopes.
@@ -153,8 +154,9 @@ struct HeightField::Search {
   /// curvature of the surface is too small for a second intersection.
   static double free_way(double slope, double bend) { return bend > 0.0 ? 2.0 * slope / bend : kInfinity; }
 
-  /// Returns a distance that a ray can travel without crossing the surface, if it has this gap (distance from the
-  /// surface, and slope of this distance).
+  /// Returns a distance that a ray can travel without crossing the surface.
+  /// \param g present distance of the ray from the surface, and slope of this distance
+  /// \param bend upper bound of the second derivative of this distance
   static double safe_step(const Gap& g, double bend) {
     const double root = std::sqrt(g.slope * g.slope + 2.0 * bend * g.value);
     if (g.slope < 0.0) return 2.0 * g.value / (root - g.slope);

@@ -49,8 +49,8 @@ struct TexturedReturn {
   double truncated = 0.0;
   double absorbed = 0.0;  ///< power that the layers on the facet absorb
 
-  /// Mirrors directions that point to the wrong side of the facet's plane at this plane. The form of a facet causes
-  /// such directions for light at grazing incidence.
+  /// Finds directions that point to the wrong side of the facet's plane, and mirrors them at this plane. The form of a
+  /// facet causes such directions for light at grazing incidence.
   /// \param plane_normal unit normal of the plane, which points out of the part
   void mirror_to_side(const Vec3& plane_normal);
 };

@@ -25,9 +25,9 @@ std::size_t points_along(double length_rad, double detail_rad) {
   return static_cast<std::size_t>(std::clamp(kPointsAlongADetail * length_rad / detail_rad, kFewest, kMost));
 }
 
-/// Returns the number of uniform steps on a ring. The mean of a wave over the ring is a Bessel function of order 0. The
-/// error of the uniform steps is a Bessel function whose order is the number of steps. This error decreases rapidly if
-/// the number of steps exceeds the argument x by several times x^(1/3).
+/// Returns the number of uniform steps on a ring. The mean of a wave over the ring is a Bessel function of order 0 of
+/// x. With n uniform steps, the error of this mean is a Bessel function of order n. The error decreases rapidly if n
+/// exceeds x by several times x^(1/3).
 std::size_t points_round(double radius_rad, double detail_rad) {
   const double x = 2.0 * pi * radius_rad / detail_rad;
   return static_cast<std::size_t>(std::clamp(std::ceil(x + 4.0 * std::cbrt(x)), kFewest, 4.0 * kMost));

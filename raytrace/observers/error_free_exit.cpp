@@ -94,8 +94,8 @@ std::optional<ErrorFreeExit> error_free_exit(const ReturnedBeam& beam, const Vec
   const Vec2& entered = entry_from_exit.translation();
   const double length_mm = (beam.phase_mm + to_source.head<2>().dot(entered)) / beam.index;
   const Vec3 t = -length_mm * leaving - m.leftCols<2>() * entered;
-  // The apex is a fixed point of the isometry. Its coordinates along the reversed axes follow from M and t. Its other
-  // coordinates are arbitrary, and those of the cell are used.
+  // The apex is a fixed point of the isometry. Its coordinates along the reversed axes follow from M and t. Its
+  // coordinates along the other axes are arbitrary, and those of the cell's position are used.
   const auto& axes = ideal->reversed;
   const Eigen::MatrixXd system = axes.transpose() * (Matrix3d::Identity() - m) * axes;
   const Vec3 reversed_part = axes * system.partialPivLu().solve(axes.transpose() * t);

@@ -108,7 +108,7 @@ void add_power(const std::vector<Use>& uses, const std::vector<ComplexBlock>& tr
     const auto power_of_row = [&](const Complex& a, const Complex& b) {
       const V aa = hn::MulAdd(a.re, a.re, hn::Mul(a.im, a.im));
       const V bb = hn::MulAdd(b.re, b.re, hn::Mul(b.im, b.im));
-      // a conj(b)
+      // Real and imaginary part of a conj(b).
       const V re = hn::MulAdd(a.re, b.re, hn::Mul(a.im, b.im));
       const V im = hn::MulSub(a.im, b.re, hn::Mul(a.re, b.im));
       const V cross = hn::MulSub(splat(coherency[2]), re, hn::Mul(splat(coherency[3]), im));

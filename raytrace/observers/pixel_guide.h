@@ -70,8 +70,8 @@ class PixelGuide {
   /// Updates the map with the training samples of one pass. The points of this pass may have been selected uniformly or
   /// by an earlier map. In both cases, they are uniformly distributed within a bin.
   void train(const std::vector<Samples>& lists);
-  /// Returns true if the map reduces the noise of a pixel. It does not if the map is nearly constant over the pixel, or
-  /// small compared with its mean over the picture.
+  /// Returns true if the map reduces the noise of a pixel. Returns false if the map is nearly constant over the pixel,
+  /// or small there compared with its mean over the picture.
   bool reduces_noise(const PixelProjection& pixel) const;
   /// Returns the sample points of a pixel for one pass.
   /// \param random four random 32-bit words

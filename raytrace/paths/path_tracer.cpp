@@ -21,7 +21,8 @@ constexpr int kMaxWraps = 1000;
 // Maximum number of reflections in mirrors_to_entrance(). Paths in prisms and cube corners have at most three.
 constexpr int kMaxMirrors = 8;
 
-// If there is no cut-off and every branch is traced, the paths of a ray split without end.
+// Throws the error for a ray that splits into too many paths. Without a cut-off, and if every branch is traced, a ray
+// splits without end.
 [[noreturn]] void fail_on_segments(std::uint64_t max_segments) {
   throw BudgetError(
       fmt::format("the paths of one ray have more than {} segments: use a larger {}, or a larger {} of retrace rays",
@@ -150,7 +151,8 @@ std::optional<SurfaceHit> PathWalker::search(const State& state, double t_max) c
   return setup_.surface.first_hit({state.position, state.direction, state.source, state.inside, t_max});
 }
 
-/// Searches the surface for a ray that must meet it, because the ray would otherwise leave the bounds of the part.
+/// Returns the first facet on a path that must meet the back surface, because it would otherwise leave the bounds of
+/// the part. If rounding has left a gap between two facets, facets are slightly enlarged.
 std::optional<SurfaceHit> PathWalker::search_certainly(const State& state) const {
   return setup_.surface.first_hit_with_tolerance(
       {state.position, state.direction, state.source, state.inside, kInfinity});

@@ -7,8 +7,8 @@
 
 namespace retrace::raytrace {
 
-/// Flushes denormal numbers to 0 during its lifetime, as Embree recommends. A whole task is covered, so that all tasks
-/// compute with the same rounding.
+/// Makes the processor flush denormal numbers to 0 during the lifetime of the object, as Embree recommends. Each task
+/// creates one object at its beginning, so that all tasks compute with the same rounding.
 class FlushDenormals {
  public:
   FlushDenormals() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ | _MM_FLUSH_ZERO_ON | _MM_DENORMALS_ZERO_ON); }
