@@ -215,7 +215,7 @@ void add_rim_arc(std::vector<CellFacet>& planes, const Vec3& normal, const Rim& 
   add_arc(planes, normal, rim.normal_beyond, rim.from, how, beyond == Beyond::mirror_image);
 }
 
-/// Returns the planes that round the rims of one facet. They are an upper bound of the surface over this facet.
+/// Returns the planes that round the rims of one facet. Over this facet, the surface is nowhere above these planes.
 std::vector<CellFacet> rim_planes(const Cell& cell, const CellFacet& facet, const EdgeShape& edges, Beyond beyond) {
   std::vector<CellFacet> planes;
   const Vec3 normal = outward_normal(facet.plane);

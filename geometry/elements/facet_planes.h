@@ -32,8 +32,8 @@ struct ElementPlanes {
 };
 
 /// Adds the flares, which are cuts in the land of missing hexagonal cube corners. Hexagonal cube corners are machined
-/// as triangular cavities. A hexagon's corner at a dihedral edge is also a corner of two neighbouring hexagons. If one
-/// of these two elements is missing, a facet of the cavity extends across this corner into its land
+/// as triangular cavities. A hexagon's corner at a dihedral edge is also a corner of two neighbouring hexagons. If a
+/// neighbour is missing, a facet of the hexagon's cavity extends across this corner into the land of the neighbour
 /// (docs/theory/micro_chiseling.md).
 /// \param elements all elements that exist, at least one
 /// \param radius_mm radius of the apertures of the elements

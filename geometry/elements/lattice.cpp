@@ -58,8 +58,9 @@ Lattice rtp_lattice(const PartSpec& spec, bool rows_are_shifted) {
   return lattice;
 }
 
-// Hexagons with corners on +-x. The spacing along y is sqrt(3) R. Neighbouring columns are 1.5 R apart and shifted by
-// half a hexagon along y.
+// Returns the lattice of a honeycomb with the radius R of a hexagon's circumscribed circle. Hexagons have corners in
+// the directions +x and -x. The spacing along y is sqrt(3) R. Neighbouring columns are 1.5 R apart and shifted by half
+// a hexagon along y.
 Lattice honeycomb_lattice(const HexagonalCube& element, const AngleErrors& errors) {
   const double radius = 0.5 * element.aperture_mm;
   Lattice lattice;
@@ -69,7 +70,8 @@ Lattice honeycomb_lattice(const HexagonalCube& element, const AngleErrors& error
   return lattice;
 }
 
-// Each triangle shares its sides with three rotated triangles. The centres of neighbouring triangles are R apart.
+// Returns the lattice of triangles with the radius R of a triangle's circumscribed circle. Each triangle shares its
+// sides with three rotated triangles. The centres of neighbouring triangles are R apart.
 Lattice triangular_lattice(const TriangularCube& element, const AngleErrors& errors) {
   const double radius = 0.5 * element.aperture_mm;
   Lattice lattice;

@@ -38,11 +38,12 @@ class ChosenElements {
   /// \param position_mm position in the part frame
   bool has_wall_at(const Vec2& position_mm) const;
 
-  /// Return the number of chosen elements and the number of all elements, including elements that are cut by the
-  /// border.
+  /// count() returns the number of chosen elements, and of_all() returns the number of all elements. Elements that the
+  /// border cuts are included.
   std::int64_t count() const { return count_; }
   std::int64_t of_all() const { return of_all_; }
-  /// Return whether all facets or no facets are chosen, including land and walls.
+  /// contains_all() returns true if all facets are chosen, and is_empty() returns true if no facet is chosen. Land and
+  /// walls are included.
   bool contains_all() const { return contains_all_; }
   bool is_empty() const { return is_empty_; }
 

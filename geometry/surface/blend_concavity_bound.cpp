@@ -90,8 +90,8 @@ std::optional<Enclosed> enclosed_height(const Lenslet& lenslet, const Interval& 
   return std::nullopt;
 }
 
-/// Returns enclosures of the height on the lenslet and of its derivatives. Derivatives are computed order by order. All
-/// derivatives of the residual vanish, and each is linear in the derivative of its own order.
+/// Returns enclosures of the height on the lenslet and of its derivatives. Derivatives are computed order by order.
+/// Each derivative of the residual is 0 and depends linearly on the derivative of the height of the same order.
 template <int N>
 std::optional<Series<Enclosure, N>> on_lenslet(const Lenslet& lenslet, const Series<Enclosure, N>& x,
                                                const Series<Enclosure, N>& y) {

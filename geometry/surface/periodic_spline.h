@@ -55,7 +55,7 @@ class PeriodicSpline {
   int degree_ = 3;
   std::vector<double> knots_;         // ascending, within one period; as many as sites
   std::vector<double> coefficients_;  // degree + 1 coefficients per piece
-  std::vector<std::size_t> buckets_;  // for the search: the pieces at the beginnings of equal parts of the period
+  std::vector<std::size_t> buckets_;  // for the search: pieces at the beginnings of equal intervals of the period
 };
 
 }  // namespace retrace::geometry
