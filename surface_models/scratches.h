@@ -25,9 +25,8 @@ struct Scratch {
 /// Regular feed marks increase the standard deviation and are therefore not reported as scratches. They appear as peaks
 /// of the spectrum.
 /// \param roughness a map without form and waviness; a profile has no lines
-/// \param neighbourhood_um range of neighbouring lines on each side; wider scratches are not detected, and longer waves
-/// have
-///     no effect
+/// \param neighbourhood_um range of neighbouring lines on each side. Wider scratches are not detected. Longer waves
+///        have no effect.
 std::vector<Scratch> find_scratches(const HeightMap& roughness, Axis along, double neighbourhood_um);
 
 }  // namespace retrace::surface_models

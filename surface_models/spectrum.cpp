@@ -23,7 +23,7 @@ constexpr double kMinRelativePeakPower = 0.01;
 constexpr std::size_t kLobe = 2;
 constexpr std::size_t kSurroundings = 12;
 
-/// Returns the Hann window in its periodic form, without its zero.
+/// Returns the periodic Hann window, sampled at the centres of the intervals. No sample is 0.
 std::vector<double> hann(std::size_t points) {
   std::vector<double> w(points);
   for (std::size_t i = 0; i < points; ++i) {

@@ -28,7 +28,7 @@ struct Cell {
 /// Cumulative values over all cells up to this cell. Cells are sorted by distance from the frequency 0.
 struct Cumulative {
   double fraction = 0.0;
-  Eigen::Matrix2d moment = Eigen::Matrix2d::Zero();  ///< sum of share * f f^T
+  Eigen::Matrix2d moment = Eigen::Matrix2d::Zero();  ///< sum of fraction * f f^T, where f is the frequency of a cell
 };
 
 double hann(std::size_t k, std::size_t count) {

@@ -74,7 +74,7 @@ class PhaseLobe {
  private:
   static constexpr int kMaxTries = 1000000;
 
-  /// First and last order of the sum. The probabilities of all other orders add to less than 1e-16.
+  /// Return the first and the last order of the sum. The probabilities of all other orders add to less than 1e-16.
   static int first_order(double variance);
   static int last_order(double variance);
   /// Returns an upper bound of the probability of `order` over all directions.
