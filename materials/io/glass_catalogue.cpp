@@ -97,7 +97,8 @@ void GlassCatalogue::fail(int line, std::string_view key, std::string_view text)
 }
 
 /// Returns the numbers of a record, beginning with field `first`. If there are fewer than `max_count` numbers, zeros
-/// are appended. \throw InputError if the record has fewer than `min_count` numbers
+/// are appended.
+/// \throw InputError if the record has fewer than `min_count` numbers
 std::vector<double> GlassCatalogue::numbers(const Record& record, std::size_t first, std::size_t min_count,
                                             std::size_t max_count) const {
   const std::string& code = record.front().text;

@@ -29,7 +29,8 @@ inline bool is_index_record(const std::filesystem::path& file) {
 /// \param file name of the file, for messages; the name without its ending becomes the name of the material
 /// \throw InputError with the file and line, if the text is not YAML, or if data of the index are missing or invalid
 Material parse_index_record(std::string_view text, const std::string& file);
-/// \throw InputError also if the file cannot be read
+/// Reads a file and parses it with parse_index_record().
+/// \throw InputError in the same cases as parse_index_record(), and if the file cannot be read
 Material read_index_record(const std::filesystem::path& file);
 
 }  // namespace retrace::materials
