@@ -213,7 +213,7 @@ template <class T, int N>
 Series<T, N> integral(const T& start, const Series<T, N>& slope, int order) {
   Series<T, N> r(order);
   r[0] = start;
-  // Equals r.order; the constant bound helps the compiler, which cannot derive it.
+  // `last` equals r.order. The second argument of std::min is an upper bound that the compiler cannot derive itself.
   const int last = std::min(r.order, static_cast<int>(r.c.size()) - 1);
   for (int k = 1; k <= last; ++k) r[k] = slope[k - 1] / static_cast<double>(k);
   return r;

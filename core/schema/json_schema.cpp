@@ -34,7 +34,7 @@ Json texts_json() {
   return {{"type", "array"}, {"items", {{"type", "string"}}}, {"minItems", 1}};
 }
 
-/// Former words are allowed as well.
+/// Returns the schema of a key whose value is a word. Current and former words are allowed.
 Json word_json(const Word& word) {
   Json words(word.words);
   for (const FormerWord& each : word.former) words.push_back(each.former);

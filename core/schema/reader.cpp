@@ -323,8 +323,8 @@ class Values {
     document_.fail(path, refusal(*document_.refused_by(row.when, path)));
   }
 
-  /// Refuses a word that the row `served`, which applies, does not allow although another row of the key allows it. The
-  /// message names the key and value on which the choice of the row depends, and the allowed words.
+  /// Refuses a word if another row of the key allows it, but not the row `served`, which is the row that applies. The
+  /// message contains the allowed words, and the key and value on which the choice of the row depends.
   /// \throw InputError if only another row of the key allows the word
   void check_word(const Table& table, const Row& served, const std::string& path, const TomlTable& source) {
     const Word* const word = std::get_if<Word>(&served.kind);
