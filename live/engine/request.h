@@ -15,7 +15,8 @@ namespace retrace::live {
 
 using Json = nlohmann::ordered_json;
 
-/// \throw InputError with the key, if it is missing or has another type
+/// Returns the value of a key.
+/// \throw InputError that names the key, if the key is missing or its value has another type
 template <class Type>
 Type get(const Json& request, const char* key) {
   const auto found = request.find(key);
@@ -50,6 +51,7 @@ Type fields_of(const Json& request) {
   return fields;
 }
 
+/// Returns the value of a key, which is a fraction, or `otherwise` if the key is missing.
 /// \throw InputError unless the value is between 0 and 1
 inline double fraction_of(const Json& request, const char* key, double otherwise) {
   const double value = get<double>(request, key, otherwise);
