@@ -25,8 +25,8 @@ constexpr double kLooksForPrisms = 1'000'000.0;
 /// the work of a cell with sharp edges.
 constexpr double kFewFacets = 4.0;
 constexpr double kGrowthWithFacets = 3.0;
-/// Fraction of the predicted time of stochastic beams or rays that exact beams are always granted, as a hedge against a
-/// poor prediction of the time of exact beams.
+/// Minimum time of exact beams, as a fraction of the predicted time of stochastic beams or rays. Exact beams are
+/// granted this time even if their own predicted time is longer, because that prediction may be poor.
 constexpr double kHedge = 0.2;
 /// Work after which the methods are compared for the first time. This work takes about one millisecond.
 constexpr double kFirstLook = 30'000.0;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kLastCutoff = 1e-25;
 // Factors by which the cut-off decreases between passes. A pass traces all beams above the present cut-off. kGentleFall
-// is used for coarse goals, because a pass after a decrease by the factor kFall may trace many more beams than the goal
+// is used for coarse goals. After a decrease by the factor kFall, a pass may trace many more beams than a coarse goal
 // requires.
 constexpr double kFall = 0.1;
 constexpr double kGentleFall = 0.3;

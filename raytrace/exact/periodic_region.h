@@ -30,8 +30,8 @@ class PeriodicRegion {
   const geometry::Polygon& outline_mm() const { return outline_mm_; }
   bool is_periodic() const { return !sides_.empty(); }
 
-  /// Tiles (rectangular pieces of the entrance face above the region) that are whole periods apart from each other.
-  /// Tiles inside the region are lit and act identically.
+  /// Tiles (rectangular pieces of the entrance face above the region) that are whole periods apart from each other. All
+  /// tiles inside the region receive equal light and act on it in the same way.
   struct Tiles {
     geometry::Polygon first;  ///< first tile found that is completely within the outline
     InstanceOffsets inner;    ///< displacements from `first` to all repetitions within the outline, including 0

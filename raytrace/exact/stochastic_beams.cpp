@@ -33,8 +33,8 @@ constexpr std::size_t kMaxDeferred = 200'000;
 // Maximum power of a ray of scattered light: the value in the first round, and the value at which the rounds end.
 constexpr double kFirstRayPower = 1e-3;
 constexpr double kLastRayPower = 1e-10;
-// Fraction of the target error that is allowed for each of two errors, if facets scatter light: the error of the beams,
-// and the error of the rays of scattered light. The two errors add in quadrature.
+// Fraction of the target error that is allowed for the error of the beams, and also for the error of the rays of
+// scattered light. It is used if facets scatter light. The two errors add in quadrature.
 constexpr double kFractionOfTarget = 0.7;
 // Work of tracing a ray segment, in units of BeamTrace::work().
 constexpr std::uint64_t kLooksPerSegment = 25;

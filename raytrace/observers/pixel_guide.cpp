@@ -39,10 +39,10 @@ Pyramid pyramid(PixelGuide::Bins finest) {
   return levels;
 }
 
-/// Returns the estimated means of the bins at each resolution of `found`. An estimate is a weighted mean of the samples
-/// in the bin and of an expected value. The expected value is the mean of the coarser bin that contains the bin. If
-/// `like` is not null, the expected value is multiplied by the mean of the bin in `like` divided by the mean of the
-/// coarser bin in `like`.
+/// Returns the estimated means of the bins at each resolution of `found`. The estimate for a bin is a weighted mean of
+/// the samples in the bin and of an expected value. The expected value is the estimate for the coarser bin that
+/// contains the bin. If `like` is not null, the expected value is also multiplied by the ratio of the two bins' means
+/// in `like`.
 std::vector<std::vector<double>> means_of(const Pyramid& found,
                                           const std::vector<std::vector<double>>* like = nullptr) {
   std::vector<std::vector<double>> means(found.size());

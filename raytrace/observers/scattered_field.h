@@ -62,8 +62,8 @@ class ScatteredField {
   double power() const { return power_; }
 
  private:
-  /// A distance vector between two points of the entrance face, and the sum of the correlations of all pairs of points
-  /// at this distance, multiplied by the quadrature weight. The lobes are the Fourier sum over all distances.
+  /// A distance vector between two points of the entrance face. Its weight is the sum of the correlations of all pairs
+  /// of points at this distance, multiplied by the quadrature weight. The lobes are the Fourier sum over all distances.
   struct Distance {
     geometry::Vec2 mm;
     std::complex<double> weight;

@@ -7,9 +7,9 @@
 
 namespace retrace::raytrace {
 
-/// Digits of a nested scramble. The upper digits form kScrambleBlocks blocks of kScrambleLevels digits, and one hash
-/// gives the random bits of a block. No two points in a block of 2^25 consecutive points, aligned to a multiple of
-/// 2^25, have all upper digits in common. One hash is therefore sufficient for the remaining digits.
+/// Number of digits in a block of a nested scramble, and number of blocks. The blocks contain the upper 25 of 32
+/// digits. One hash gives the random bits of a block. Points in an aligned range of 2^25 consecutive points differ in
+/// their upper 25 digits. One hash is therefore sufficient for all digits below the blocks.
 inline constexpr int kScrambleLevels = 5;
 inline constexpr int kScrambleBlocks = 5;
 inline constexpr int kScrambleRest = 32 - kScrambleLevels * kScrambleBlocks;
