@@ -14,9 +14,9 @@ namespace {
 
 /// Maximum relative deviation between a length and a whole number of elements at which the length counts as whole.
 constexpr double kWhole = 1e-9;
-// kEndlessPeriods is the number of periods of an infinite array's sheet on each side of the origin. kEndlessReaches
-// applies to cube corners on a substrate: it is the margin by which their block extends beyond the sheet, in multiples
-// of the sheet's size. Both are larger than any region that is traced or drawn.
+// kEndlessPeriods is the number of periods of an infinite array's sheet on each side of the origin. kEndlessReaches is
+// the margin of the block of cube corners around the sheet on a substrate, in multiples of the sheet's size. Both are
+// larger than any region that is traced or drawn.
 constexpr double kEndlessPeriods = 1e3;
 constexpr double kEndlessReaches = 10.0;
 

@@ -26,8 +26,8 @@ struct ElementPlanes {
   /// the line between the two adjacent corners.
   std::array<std::optional<HeightPlane>, 3> flares;
   /// Cube corner: planes that a chisel with a straight edge leaves at the apex, in front of facet k. At each point, the
-  /// height of the surface is the height of the highest facet plane or the height of the lowest of these three planes,
-  /// whichever is greater. Either all three planes are given or none.
+  /// lowest of these planes is compared with the highest facet plane, and the surface is at the height of the higher
+  /// one. Either all three planes are given or none.
   std::array<std::optional<HeightPlane>, 3> caps;
 };
 

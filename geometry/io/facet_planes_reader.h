@@ -17,10 +17,11 @@ inline constexpr std::size_t kMaxFacetPlanesBytes = std::size_t{512} << 20;
 /// Reads the planes of individual facets from a CSV table with `#` comments and the header
 /// `x_mm,y_mm,facet,height_mm,x_slope,y_slope`. There is a line for each facet of an element, with z = height_mm +
 /// x_slope (x - x_mm) + y_slope (y - y_mm).
-/// For prisms, `facet` 1 faces -x (-y for a rotated element), and 2 faces the opposite direction. For cube corners, 1
-/// to 3 are the facets between the dihedral edges, starting from the edge at 0 degrees. 4 to 6 are flares, which
-/// replace a missing hexagonal element. 7 to 9 are caps, which a chisel leaves over the apex; their lines follow those
-/// of the element's facets (ElementPlanes::flares, caps).
+/// The numbers in the column `facet` have the following meanings. For prisms, 1 is the facet towards -x (-y for a
+/// rotated element), and 2 is the opposite facet. For cube corners, 1 to 3 are the facets between the dihedral edges,
+/// starting from the edge at 0 degrees. Flares have the numbers 4 to 6 and replace a missing hexagonal element
+/// (ElementPlanes::flares). Caps have the numbers 7 to 9 and are the surfaces that a chisel leaves over the apex
+/// (ElementPlanes::caps). The lines of caps must follow the lines of the element's facets.
 /// \param spec array to which the planes belong; planes may differ from its facets by at most 5 degrees and a tenth of
 ///        the depth
 /// \throw InputError with file, line and column

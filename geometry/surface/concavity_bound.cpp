@@ -48,10 +48,10 @@ Interval along_y(const PlanBox& box) {
   return {box.low_mm.y(), box.high_mm.y()};
 }
 
-/// Returns half the side of a square in the lenslet's frame over which the surface covers the disc of radius `reach_mm`
-/// about the origin in plan. A disc with the radius rho in the lenslet's frame is sufficient if cos(tilt) rho -
-/// sin(tilt) |w| > reach_mm, where w is the sag over that disc. Returns nothing if none of several trial values of rho
-/// is sufficient.
+/// Returns half the side of a square about the origin of the lenslet's frame. The surface over this square covers the
+/// disc of radius `reach_mm` about the origin in plan. A disc of radius rho in the lenslet's frame is sufficient if
+/// cos(tilt) rho - sin(tilt) |w| > reach_mm, where w is the sag over this disc. Returns nothing if none of several
+/// trial values of rho is sufficient.
 std::optional<double> covering(const Lenslet& lenslet, double reach_mm) {
   const double cosine = lenslet.part_from_lenslet(2, 2);
   const double sine = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
