@@ -19,7 +19,7 @@ constexpr double kPeakHeight = 3.0;
 constexpr double kPeakDeviations = 35.0;
 constexpr double kMinRelativePeakPower = 0.01;
 /// kLobe is the number of bins on each side that the main lobe of a Hann window occupies. kSurroundings is the number
-/// of bins beyond them, on each side, that are the surroundings of a peak.
+/// of further bins on each side with which a peak is compared.
 constexpr std::size_t kLobe = 2;
 constexpr std::size_t kSurroundings = 12;
 

@@ -17,8 +17,8 @@ constexpr double kFitReach = 3.5;
 constexpr double kMinFitPoints = 3.0;
 /// Maximum number of distances in a fit. If there are more, every n-th distance is used.
 constexpr std::size_t kMaxSamples = 20000;
-/// Roughness is set to 0 if the variance of the roughness map is at most this factor times the variance of the waviness
-/// that the filter leaves in the map.
+/// Maximum ratio of two variances at which roughness is set to 0: the variance of the roughness map, divided by the
+/// variance of the waviness that the filter leaves in this map.
 constexpr double kExplained = 1.2;
 /// Heights below this value are rounding errors.
 constexpr double kRoundingNm = 1e-6;

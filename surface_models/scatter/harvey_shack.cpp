@@ -157,9 +157,8 @@ std::array<double, 2> HarveyShack::first_order_fractions(const ScatterEvent& eve
 DiffractionMeans HarveyShack::diffraction_means(const ScatterEvent& event, const Facet& facet,
                                                 const materials::FresnelCoefficients& fresnel) const {
   const std::array<double, 2> scattered = first_order_fractions(event, facet);
-  // The scattered power is removed from the specular light on both sides: the reflected and the transmitted light. Each
-  // loses power in proportion to its own power times its phase variance. For long correlation lengths, the losses are
-  // divided in this ratio.
+  // The scattered power is removed from the specular light on both sides: the reflected and the transmitted light. It
+  // is divided between them in proportion to their power times their phase variance, as for long correlation lengths.
   const double reflected_path = 2.0 * event.index_from * event.cos_in();
   const double transmitted_path = event.index_from * event.cos_in() - event.index_to * fresnel.cos_refracted;
   const double a_r = reflected_path * reflected_path, a_t = transmitted_path * transmitted_path;
