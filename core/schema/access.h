@@ -121,9 +121,10 @@ void set_by(void* object, const Value& value) {
 template <auto get, auto set>
 inline constexpr Access access_by = {get_by<get>, set_by<set>};
 
-/// Calls the function of a rule with an object. The function has the form `void (const Object&, const Refuse&)`, or
-/// `void (const Object&)` if it throws itself, or `std::string (const Object&)` if it returns a message, which is empty
-/// if the rule holds.
+/// Calls the function of a rule with an object. The function must have one of three forms:
+/// - `void (const Object&, const Refuse&)`;
+/// - `void (const Object&)`, which throws an error if the rule is violated;
+/// - `std::string (const Object&)`, which returns a message, or an empty text if the rule holds.
 template <auto function>
 void check_by(const void* object, const Refuse& refuse) {
   const auto& typed = *static_cast<const typename FirstOf<decltype(function)>::Type*>(object);
