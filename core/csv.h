@@ -69,8 +69,8 @@ class CsvReader {
   std::size_t rows_ = 0;
 };
 
-/// Writes a table. Numbers are written as the shortest text that reads back as the same number, or as nothing if they
-/// are not finite. Texts are quoted if necessary (RFC 4180).
+/// Writes a table. Numbers are written as the shortest text that reads back as the same number. A number that is not
+/// finite becomes an empty value. Texts are quoted if necessary (RFC 4180).
 class CsvWriter {
  public:
   CsvWriter() = default;

@@ -12,8 +12,8 @@ namespace retrace {
 
 /// Returns a JSON document as text. Keys are in the order in which they were set. Keys with the value NaN or infinity
 /// are omitted. Numbers are written as the shortest text that reads back as the same number. An object that contains
-/// only numbers and texts is written on one line, and so is an array of numbers or of such arrays. The text ends with a
-/// newline.
+/// only numbers and texts is written on one line. Arrays of numbers, and arrays of arrays of numbers, are also written
+/// on one line. The text ends with a newline.
 std::string to_text(const nlohmann::ordered_json& document);
 
 /// Returns the JSON document of a result: the schema, the content, the version of the program, the warnings, and

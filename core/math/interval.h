@@ -1,9 +1,9 @@
 #pragma once
 
-// Interval arithmetic from Boost, for proofs that a function keeps within a bound over a whole region.
+// Interval arithmetic from Boost, for proofs that the values of a function are within a bound over a whole region.
 
-// These are the headers that <boost/numeric/interval.hpp> includes, without the headers for the rounding modes of
-// processors. Those modes are not available on every processor.
+// The following headers are those that <boost/numeric/interval.hpp> includes, except for the headers for the rounding
+// modes of processors. Some processors do not have these modes.
 #include <boost/limits.hpp>
 #include <boost/numeric/interval/arith.hpp>
 #include <boost/numeric/interval/arith2.hpp>
