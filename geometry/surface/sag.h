@@ -1,6 +1,6 @@
 #pragma once
 
-// Heights z(x, y) as closed forms, polynomials and formulas. They are written once as templates for all numeric types
+// Heights z(x, y) as closed forms, polynomials and formulas. They are implemented as templates for all numeric types
 // with derivatives.
 
 #include <array>
