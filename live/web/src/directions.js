@@ -18,7 +18,7 @@ function representative(azimuth_deg, symmetry) {
 }
 
 /**
- * Returns the name of the direction that is traced instead of this direction.
+ * Returns the name of the direction that is traced instead of the given direction.
  * \param symmetry symmetry of the design, or null
  */
 export function nameOf(incidence_deg, azimuth_deg, symmetry) {

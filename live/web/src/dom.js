@@ -31,7 +31,7 @@ export function newId(what) {
   return `live-${what}-${count}`;
 }
 
-/** Canvas with the size and resolution of its element. `draw` is called when the size changes. */
+/** Canvas that fills its parent element, in the resolution of the screen. `draw` is called when the size changes. */
 export class Canvas {
   constructor(element, draw) {
     this.element = element;

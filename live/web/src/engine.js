@@ -46,7 +46,7 @@ export class Engine {
     for (let k = 1; k < countOfWorkers(); ++k) this.add("quick").catch(this.failed);
   }
 
-  /** Starts the worker for slow jobs unless it exists. A late start does not delay the first picture. */
+  /** Starts the worker for slow jobs if there is none. It starts late, so that the first picture is not delayed. */
   prepareSlow() {
     if (!this.hasSlow) this.add("slow").catch(this.failed);
     this.hasSlow = true;
@@ -102,7 +102,7 @@ export class Engine {
 
   take(data) {
     const found = this.waiting.get(data.id);
-    if (!found) return; // withdrawn
+    if (!found) return; // the job was withdrawn
     if (!data.isMore) this.end(data.id);
     found.lane.done(found.job, data);
   }

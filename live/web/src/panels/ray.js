@@ -71,7 +71,7 @@ export class RayPanel {
     this.tell();
   }
 
-  /** Lists the paths to choose from. The list is rebuilt only if more than the angles has changed. */
+  /** Lists the paths to choose from. The list is not rebuilt if only the angles of the paths have changed. */
   listPaths() {
     const { paths, spot } = this.session;
     const texts = paths.map((path) => (path.share == null ? path.fate : `${path.fate} · ${percent(path.share, 0)}`));
