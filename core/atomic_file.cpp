@@ -195,8 +195,8 @@ class TemporaryFile {
   int descriptor_ = -1;
 };
 
-/// Returns the target of a symbolic link, so that the target is replaced and the link is kept. Returns any other path
-/// unchanged.
+/// Returns the target of a symbolic link. A file that is written to this target replaces the target and not the link.
+/// Any other path is returned unchanged.
 /// \throw OutputError if the target cannot be determined, for example because links form a cycle
 fs::path followed(const fs::path& path) {
   std::error_code error;

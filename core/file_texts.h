@@ -1,6 +1,6 @@
 #pragma once
 
-// Contents of files that a caller has in memory. They are used instead of the files of the same names.
+// Contents of files that a caller has in memory. They are used instead of the files with these names.
 
 #include <map>
 #include <string>

@@ -18,8 +18,8 @@ namespace retrace {
 /// \throw Error
 using ComputeTask = std::function<std::optional<std::string>(std::uint64_t task, const Cancellation* cancel)>;
 
-/// List of the tasks that are to be computed, and of their results. One process owns it. Its functions are called by
-/// one thread at a time.
+/// List of the tasks that are to be computed, and of their results. One process owns the list. Only one thread at a
+/// time may call its functions.
 class TaskLedger {
  public:
   virtual ~TaskLedger() = default;

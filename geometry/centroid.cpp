@@ -8,10 +8,10 @@
 namespace retrace::geometry {
 namespace {
 
-/// Polygons with a relative area up to this value are treated as having no area, because the value is of the order of
-/// rounding errors. The relative area is computed from a fan of triangles that share the polygon's first corner. It is
-/// twice the polygon's area, divided by the sum of |p| |q| over all triangles. Here p and q are the two sides of a
-/// triangle at the shared corner, and |.| is the 1-norm.
+/// Maximum relative area of a polygon that is treated as having no area. The value is of the order of rounding errors.
+/// The relative area is computed from a fan of triangles that share the polygon's first corner. It is twice the
+/// polygon's area, divided by the sum of |p| |q| over all triangles. Here p and q are the two sides of a triangle at
+/// the shared corner, and |.| is the 1-norm.
 constexpr double kRelativeAreaRounding = 8.0 * std::numeric_limits<double>::epsilon();
 
 Eigen::Matrix<double, 1, 1> twice_area(const Vec2& p, const Vec2& q) {

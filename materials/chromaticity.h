@@ -23,7 +23,7 @@ struct Chromaticity {
 };
 
 /// Returns X, Y and Z of light with the spectral power `power` (per nm, in any unit). As defined by the CIE, these are
-/// sums over the wavelengths of the colour matching functions.
+/// sums over the wavelengths at which the colour matching functions are tabulated.
 Tristimulus tristimulus(const SpectralCurve& power, const ColourMatching& functions);
 
 /// Returns the chromaticity of tristimulus values.

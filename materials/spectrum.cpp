@@ -10,8 +10,8 @@
 namespace retrace::materials {
 namespace {
 
-/// Fractions of the flux below this value are ignored. They have no visible effect on a mean, but would make the
-/// recurrence ill-conditioned.
+/// Minimum fraction of the flux that is not ignored. Smaller fractions have no visible effect on a mean, but would make
+/// the recurrence ill-conditioned.
 constexpr double kMinFraction = 1e-15;
 
 /// Returns the fluxes divided by their sum.

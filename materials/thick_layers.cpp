@@ -72,7 +72,7 @@ void add(FacePowers& met, double kept, const FacePowers& face) {
   }
 }
 
-/// Returns the coefficients of the face between two media. The face next to the body carries the thin layers.
+/// Returns the coefficients of the face between two media. The thin layers are on the face next to the body.
 FresnelCoefficients face_between(const LayerStack& thin, StackSide from, bool is_next_to_body, double near, double far,
                                  double cosine) {
   return is_next_to_body ? fresnel_layers(thin, from, near, far, cosine) : fresnel(near / far, cosine);

@@ -16,11 +16,11 @@ struct ThickLayer {
   double absorption_per_mm = 0.0;  ///< Napierian, for power
 };
 
-/// Returns the coefficients of a face of the body that carries thin and thick layers. The thin layers are next to the
-/// body. The first of the `thick` layers is nearest to the body. The powers of reflections of different order are
-/// added, and the squares of the coefficients are fractions of power. Within one order, s and p keep their phase
-/// difference. r_coherence and t_coherence are the remaining degree of coherence between s and p. R + T = 1 if nothing
-/// absorbs. Light beyond the critical angle of a layer does not reach the layers behind it.
+/// Returns the coefficients of a face of the body with thin and thick layers. The thin layers are next to the body. The
+/// first of the `thick` layers is nearest to the body. The powers of reflections of different order are added, and the
+/// squares of the coefficients are fractions of power. Within one order, s and p keep their phase difference.
+/// r_coherence and t_coherence are the remaining degrees of coherence between s and p. R + T = 1 if nothing absorbs.
+/// Light beyond the critical angle of a layer does not reach the layers behind it.
 /// \param from_index n of the medium of the incident light, > 0
 /// \param to_index n of the medium on the other side, > 0
 /// \param cos_incidence 0..1

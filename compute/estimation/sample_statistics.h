@@ -21,7 +21,7 @@ struct SobolIndex {
 
 /// Values of a quantity at one row of sample points in the sampling scheme of Saltelli et al. (2010). The row consists
 /// of two independent points A and B and, for each parameter, of a mixed point. The mixed point is equal to A, except
-/// that this parameter is taken from B.
+/// that the value of this parameter is that of B.
 struct SaltelliRow {
   double a = 0.0, b = 0.0;
   std::vector<double> mixed;  ///< for each parameter: value at its mixed point

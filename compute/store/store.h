@@ -55,10 +55,10 @@ enum class IfExists { refuse, resume, overwrite };
 /// no other process computes them. Claims of dead processes are void. Several threads may use the same object.
 class ResultStore {
  public:
-  /// \param file SQLite file. If it is empty, the store is in memory, and only this process can access it
-  /// \throw InputError if the file exists and `if_exists` is `refuse`, or if another process uses the file that is to
-  /// be overwritten. Also thrown if the file is not a store, is damaged, belongs to another study or has a newer
-  /// format. In all these cases, nothing is written
+  /// \param file name of an SQLite file; if it is empty, the store is in memory, and only this process can access it
+  /// \throw InputError if the file exists and `if_exists` is `refuse`, or if it is to be overwritten while another
+  ///        process uses it. Also thrown if an existing file is damaged, is not a store, belongs to another study or
+  ///        has a newer format. Nothing is written in any of these cases
   /// \throw OutputError if the file cannot be written
   ResultStore(const std::filesystem::path& file, const StoreLayout& layout, IfExists if_exists);
   ~ResultStore();

@@ -155,7 +155,8 @@ struct TomlSource {
 
 namespace {
 
-/// Calls `act` with each table at a path, which may lead through lists of tables, and with its path in messages.
+/// Calls `act` for each table at a path. There may be several tables, because the path may contain lists of tables. The
+/// arguments of `act` are the table and its path as text for messages.
 template <class Act>
 void visit_tables(toml::table& table, std::string_view path, const std::string& shown, const Act& act) {
   if (path.empty()) return act(table, shown);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Numerical derivatives with an error estimate, for functions whose values carry noise, such as ray-traced
+// Numerical derivatives with an error estimate, for functions whose values contain noise, such as ray-traced
 // efficiencies.
 
 #include <cmath>

@@ -1,7 +1,7 @@
 #pragma once
 
-// Formulas in files of users, such as a sag z(x, y). They are parsed one time and then evaluated for numbers or for
-// jets, which carry exact derivatives.
+// Formulas in files of users, such as a sag z(x, y). A formula is parsed one time. It is then evaluated for numbers, or
+// for jets, which contain exact derivatives.
 
 #include <string>
 #include <vector>

@@ -2,7 +2,7 @@
 
 // Automatic differentiation along a line: truncated Taylor series in one variable for the elementary functions of
 // formulas (A. Griewank, A. Walther, Evaluating Derivatives, 2nd ed., SIAM 2008, tables 13.1 and 13.2). The
-// coefficients are doubles, intervals for proofs, or numbers that carry derivatives themselves, so series can be
+// coefficients are doubles, intervals for proofs, or numbers that contain derivatives themselves, so that series can be
 // nested. Derivatives with respect to two variables are in partials.h.
 
 #include <algorithm>
@@ -36,8 +36,9 @@ struct Length<kAnyOrder> {
 };
 
 /// Truncated Taylor series c[0] + c[1] t + ... + c[order] t^order. The result of an operation has the smaller order of
-/// its operands. A series whose order is fixed by its type is faster, because the compiler unrolls the loops. Order 2
-/// is used most, by tool paths and proofs. It is therefore implemented without loops, which keeps it in registers.
+/// its operands. A series whose order is fixed by its type is faster, because the compiler unrolls the loops. Tool
+/// paths and proofs mostly use order 2. It is therefore implemented without loops, so that the coefficients stay in
+/// registers.
 template <class T, int N = kAnyOrder>
 struct Series : Length<N> {
   std::array<T, static_cast<std::size_t>(N == kAnyOrder ? kMaxOrder : N) + 1> c{};  ///< coefficients up to `order`

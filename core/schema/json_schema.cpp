@@ -132,8 +132,8 @@ Json row_json(const Row& row) {
   return json;
 }
 
-/// A table that contains the current table of the traversal, or this table itself. `conditions` collects the parts of
-/// the schema that depend on keys of the table.
+/// Table that is being traversed, or a table that contains it. `conditions` collects the parts of the schema that
+/// depend on keys of the table.
 struct Place {
   const Table& table;
   Place* around;

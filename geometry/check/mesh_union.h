@@ -1,6 +1,6 @@
 #pragma once
 
-// Computes the boolean union of the bodies of a mesh, using CGAL with exact constructions. The bodies may intersect or
+// Computes the boolean union of the bodies of a mesh with the exact constructions of CGAL. The bodies may intersect or
 // contain each other.
 
 #include <cstddef>

@@ -90,9 +90,9 @@ Rounding rim_rounding(const EdgeShape& edges) {
   return {edges.rim_radius_mm, edges.rim_chamfer_mm, edges.chords, -1.0};
 }
 
-/// Adds strips over the edge of two planes that meet in `on_edge`. The strips approximate a circle that is tangent to
-/// both planes. They extend from the first plane to the second, or only to the centre if `half` is true. A chamfer is a
-/// single strip.
+/// Adds strips over the edge of two planes. `on_edge` is a point of this edge. The strips approximate a circle that is
+/// tangent to both planes. They extend from the first plane to the second, or only to the centre if `half` is true. A
+/// chamfer is a single strip.
 void add_arc(std::vector<CellFacet>& planes, const Vec3& normal_a, const Vec3& normal_b, const Vec3& on_edge,
              const Rounding& how, bool half) {
   const double between = std::acos(std::clamp(normal_a.dot(normal_b), -1.0, 1.0));

@@ -167,7 +167,7 @@ class Reader {
     caps[k] = row.plane;
   }
 
-  /// Adds a flare. All flares at one position must follow each other.
+  /// Adds a flare. The lines of all flares at one position must be consecutive.
   void take_flare(const FacetRow& row) {
     const bool is_same =
         !elements_.empty() && elements_.back().planes.empty() && elements_.back().centre_mm == row.centre_mm;

@@ -16,7 +16,7 @@ namespace retrace::geometry {
 /// regions are parts of one curved facet.
 /// A wall belongs to the element with which it shares its longest convex edge. A wall does not connect two elements.
 /// \param roles role of each region
-/// \param rounding_mm maximum error of a vertex, mm; edges that are only a few times as long are ignored
+/// \param rounding_mm maximum error of a vertex, mm; edges shorter than a few times this error are ignored
 std::vector<std::uint32_t> elements_of_regions(const std::vector<Vec3>& vertices, const RegionTriangles& mesh,
                                                const std::vector<FacetPlane>& planes,
                                                const std::vector<FacetRole>& roles, double rounding_mm);

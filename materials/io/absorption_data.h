@@ -22,8 +22,8 @@ class AbsorptionData {
   /// \param line line of the file
   /// \param per_mm Napierian absorption coefficient of the power, >= 0
   void add(int line, double wavelength_nm, double per_mm) { samples_.push_back({line, wavelength_nm, per_mm}); }
-  /// Adds a sample with the absorption 0. For use when measurement noise has put the value in the file slightly outside
-  /// its allowed range.
+  /// Adds a sample with the absorption 0. It is used if measurement noise has moved the value in the file slightly out
+  /// of the allowed range.
   /// \param reason text for the warning: the allowed values and the given value
   void add_zero(int line, double wavelength_nm, std::string_view reason);
   /// Counts a sample that cannot be used. The sample is omitted.

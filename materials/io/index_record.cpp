@@ -25,7 +25,7 @@ constexpr std::size_t kMaxFormulaCoefficients = 64;
 /// Largest magnitude of a negative k that is attributed to measurement noise.
 constexpr double kNoiseOfExtinction = 1e-6;
 constexpr double kZeroCelsiusK = 273.15;
-/// Temperatures are equal within this tolerance, because records round 20 degrees C (293.15 K) to 293 K.
+/// Maximum difference of temperatures that are treated as equal. Records round 20 degrees C (293.15 K) to 293 K.
 constexpr double kSameTemperatureK = 0.2;
 
 /// Allowed numbers of coefficients for the formulas 1 to 9, as text for messages.

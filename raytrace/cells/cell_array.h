@@ -30,7 +30,7 @@ class CellArray {
   /// interval of the edge.
   struct Neighbour {
     std::uint32_t column = 0;
-    geometry::Vec2 shift_mm = geometry::Vec2::Zero();  ///< added to this column's coordinates to get the neighbour's
+    geometry::Vec2 shift_mm = geometry::Vec2::Zero();  ///< shift from this column's coordinates to the neighbour's
     double until_mm = 0.0;                             ///< end of the interval along the edge
     bool is_flush = true;                              ///< true if both surfaces have equal heights along the interval
   };
@@ -51,7 +51,7 @@ class CellArray {
   /// Part of a column within the period that starts at the origin.
   struct ColumnFragment {
     std::uint32_t column = 0;
-    geometry::Vec2 shift_mm = geometry::Vec2::Zero();  ///< added to the period's coordinates to get the column's
+    geometry::Vec2 shift_mm = geometry::Vec2::Zero();  ///< shift from the period's coordinates to the column's
   };
 
   /// Inner region of a finite part, in which the borders of the part have no effect.

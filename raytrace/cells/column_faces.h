@@ -22,7 +22,7 @@ class ColumnFaces {
     lanes::Label crossing = 0;         ///< label of rays that continue in the neighbouring column
     std::optional<lanes::Label> wall;  ///< label of rays that meet the wall; set if the surfaces may differ in height
     std::uint32_t column = 0;          ///< the neighbouring column
-    Vec2 shift_mm = Vec2::Zero();      ///< added to the coordinates of this column to get those of the neighbour
+    Vec2 shift_mm = Vec2::Zero();      ///< shift from this column's coordinates to the neighbour's
     Vec3 wall_normal = Vec3::Zero();   ///< unit normal of the wall; points out of the part
   };
 

@@ -34,7 +34,7 @@ class RayStreams {
   void grow(const StreamKey& key, std::size_t more);
   /// Adds `more` rays that come from another column, in the same way as grow(). Rays outside of the inner region are
   /// handed over instead.
-  /// \param shift_mm added to the positions of the rays to get the coordinates of the column
+  /// \param shift_mm shift from the coordinates of the rays to the coordinates of the column
   void grow_from_neighbour(const StreamKey& key, std::size_t more, const Vec2& shift_mm);
   /// Moves the rays of the fullest stream to `rays` and returns the key of the stream. The sizes of streams are
   /// compared by their bit widths. Returns nothing if all streams are empty.

@@ -40,8 +40,8 @@ struct PopulationControl {
 /// Criteria that end the tracing of beams.
 struct BeamPolicy {
   /// Minimum power of a beam that is traced. In a finite part, the powers of identical beams at identical elements are
-  /// added for this comparison. Without a value, the cut-off starts at 100 times `truncated_goal`, but between 1e-6 and
-  /// 1e-3. It then decreases until the truncated power is at most `truncated_goal`.
+  /// added for this comparison. Without a value, the cut-off starts at 100 times `truncated_goal`, limited to the range
+  /// from 1e-6 to 1e-3. It then decreases until the truncated power is at most `truncated_goal`.
   std::optional<double> cutoff;
   /// Resampling of the beams whose power is below `cutoff`. Without a value, these beams are not traced further and
   /// their power is added to `truncated`. Only BeamTracer::trace() supports resampling.

@@ -1,7 +1,7 @@
 #pragma once
 
-// Estimates of the memory and time needed for the search structures of BeamTracer. These structures find the elements
-// that a beam meets. The estimates are available before the structures are built.
+// Estimates the memory and time for building the search structures of BeamTracer, which find the elements that a beam
+// meets.
 
 #include "geometry/part/part.h"
 

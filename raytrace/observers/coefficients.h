@@ -8,9 +8,8 @@
 
 namespace retrace::raytrace {
 
-/// The following coefficients are computed from the intensity per steradian that a part sends towards the receiver, per
-/// unit of the flux on its entrance face. This flux is the illuminance perpendicular to the beam times the projected
-/// area A cos(beta).
+/// The following coefficients are computed from the intensity towards the receiver, divided by the flux on the entrance
+/// face of the part. This flux is the illuminance perpendicular to the beam times the projected area A cos(beta).
 
 /// Returns R_A, the coefficient of retroreflection, in cd/(lx m^2): intensity divided by illuminance and area of the
 /// part.

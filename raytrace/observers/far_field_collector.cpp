@@ -25,7 +25,7 @@ using geometry::Vec2, std::numbers::pi;
 constexpr double kOneDirection_rad = 1e-9;
 // Beams with less power than this value are not diffracted.
 constexpr double kFaint = 1e-10;
-// Up to this number of polygons, all beams are diffracted. The total power of an undiffracted beam goes in a single
+// Up to this number of polygons, all beams are diffracted. The total power of an undiffracted beam has a single
 // direction. If the discs of source and receiver are smaller than a diffraction spot, such a beam appears much too
 // bright.
 constexpr std::size_t kFewPolygons = 256;

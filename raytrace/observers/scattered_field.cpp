@@ -124,8 +124,8 @@ struct ScatteredField::Shared {
   Eigen::Matrix2d partner_map = Eigen::Matrix2d::Identity();
   Vec2 shift_mm = Vec2::Zero();
   std::vector<HitPair> pairs;
-  /// Logarithm of exp(-variance / 2) of `here` times exp(-variance / 2) of `there`. These are the factors by which the
-  /// textures reduce the mean fields.
+  /// Logarithm of the product of exp(-variance / 2) for `here` and for `there`. The textures reduce the two mean fields
+  /// by these factors.
   double log_means = 0.0;
 
   /// Returns the maximum distance between the images of a corner of `here` under this map and under another map.

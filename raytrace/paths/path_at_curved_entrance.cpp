@@ -6,7 +6,8 @@
 
 namespace retrace::raytrace {
 
-/// Starts a path. The beam crosses the plane that touches the curved face from above, inside the part's outline.
+/// Starts a path on the plane that touches the curved entrance face from above. The beam crosses this plane inside the
+/// part's outline.
 void PathWalker::enter_entrance_face(const Vec2& entry_mm) {
   State state;
   state.position = {entry_mm.x(), entry_mm.y(), setup_.entrance_face->highest_mm()};

@@ -20,7 +20,7 @@ struct HeightMapOptions {
   std::optional<std::string> height_unit;   ///< m, mm, um, nm or pm
   std::optional<std::string> lateral_unit;  ///< m, mm, um, nm or pm; for files that contain lengths without a unit
   std::optional<std::size_t> channel;       ///< channel of a Gwyddion file; default: the first
-  /// true if an error message about a spacing or unit that the file lacks may suggest an option of `retrace metrology`
+  /// true if error messages about a missing spacing or unit may suggest an option of `retrace metrology`
   bool suggests_options = true;
 };
 

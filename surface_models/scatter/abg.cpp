@@ -24,8 +24,8 @@ Abg::Abg(double a, double b, double g) : a_(a), b_(b), g_(g) {
   if (!(g > 0.0)) throw InputError({"", 0, "g"}, "must be > 0, got " + shortest(g));
   shoulder_ = std::min(std::pow(b, 1.0 / g), kLargestShift);
   const auto ring = [this](double r) { return 2.0 * pi * r * bsdf_per_sr(r); };
-  // Beyond shoulder_ (the r at which r^g equals B), which may be very small, the integration variable is the logarithm
-  // of r.
+  // Beyond shoulder_, the r at which r^g equals B, the integration variable is the logarithm of r. The reason is that
+  // shoulder_ may be very small.
   boost::math::quadrature::tanh_sinh<double> quadrature;
   total_ = quadrature.integrate(ring, 0.0, shoulder_);
   if (shoulder_ < kLargestShift)

@@ -65,8 +65,8 @@ struct DiffractedOnce {
 /// - Waviness acts by its slopes (tilted facets, Gaussian) if its value of (4 pi n s cos t / w)^2 is at least
 /// kSlopePhase2. Otherwise it is part of the PSD, as a Gaussian term with the same rms slope (correlation length L /
 /// pi).
-/// - The model is reciprocal except for this scaling. It is exactly reciprocal if the lobe is within the unit disc and
-/// its shape depends only on the difference of direction cosines (docs/theory/scatter.md).
+/// - The model is reciprocal except for the scaling of lobes. It is exactly reciprocal if the lobe is within the unit
+/// disc and its shape depends only on the difference of direction cosines (docs/theory/scatter.md).
 ///
 /// Events are in the frame of the facet. Directions are given by their cosines along its x and y.
 class HarveyShack {

@@ -1,5 +1,5 @@
-// Replaces entrance surfaces of turned parts and meshes by a function that reports an error. They are read from files,
-// which the live page does not have.
+// Replaces entrance surfaces of turned parts and meshes by a function that reports an error. Such surfaces are read
+// from files, which the live page does not have.
 #include "design/entrance_of_design.h"
 #include "live/engine/stand_ins/absent.h"
 
