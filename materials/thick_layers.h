@@ -27,8 +27,8 @@ struct ThickLayer {
 FresnelCoefficients fresnel_thick_layers(const LayerStack& thin, std::span<const ThickLayer> thick, StackSide from,
                                          double from_index, double to_index, double cos_incidence);
 
-/// Returns the coefficients of a face that is a fine mixture of two types of area. Their powers are averaged, not their
-/// amplitudes.
+/// Returns the coefficients of a face that is a fine mixture of two types of area. The powers of both types are
+/// averaged, and not the amplitudes.
 /// \param fraction_of_other fraction of the area that has the coefficients `other`
 /// \pre both coefficients are for the same media and angle of incidence
 FresnelCoefficients mixed(const FresnelCoefficients& one, const FresnelCoefficients& other, double fraction_of_other);

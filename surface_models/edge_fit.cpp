@@ -100,7 +100,7 @@ struct Solution {
 };
 
 Solution solve(const Points& points, Shape shape, VectorXd start) {
-  // The step of the numerical derivative is 1e-6 of a parameter. It crosses kinks at few points only.
+  // The step of the numerical derivative is 1e-6 of a parameter. Few points have a kink within this step.
   Eigen::NumericalDiff<Residuals, Eigen::Central> residuals(Residuals{&points, shape, static_cast<int>(start.size())},
                                                             1e-12);
   Eigen::LevenbergMarquardt<decltype(residuals)> search(residuals);

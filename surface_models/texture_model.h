@@ -12,12 +12,12 @@ namespace retrace::surface_models {
 /// Model of a surface as two independent textures: roughness with Gaussian autocorrelation, Sq^2 exp(-(distance /
 /// length)^2), and waviness with one period. The table [surface] of a design file describes this model.
 struct TextureModel {
-  /// 0 if the waviness that the filter leaves in the roughness map explains the variance of this map
+  /// Rms height. It is 0 if the waviness that the filter leaves in the roughness map explains the variance of this map.
   double roughness_sq_nm = 0.0;
   /// Distance at which the autocorrelation is 1/e. Not set if it does not fall to 1/e within a cut-off or if the
   /// roughness is 0.
   std::optional<double> correlation_length_um;
-  /// 0 if the roughness that the filter leaves in the waviness map explains the variance of this map
+  /// Rms height. It is 0 if the roughness that the filter leaves in the waviness map explains the variance of this map.
   double waviness_sq_nm = 0.0;
   std::optional<double> waviness_length_um;  ///< period: 2 pi Sq over the rms slope; not set without waviness
 };

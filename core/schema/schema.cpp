@@ -12,7 +12,7 @@
 namespace retrace::schema {
 namespace {
 
-/// Suffixes of names, and the units that they stand for. If one suffix is the end of another, the longer one comes
+/// Suffixes of names, and the unit that each suffix denotes. If one suffix is the end of another, the longer one comes
 /// first.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 14> kUnits = {{{"_mm_per_min", "mm/min"},
                                                                                    {"_mm_per_s2", "mm/s^2"},

@@ -20,8 +20,8 @@ HWY_INLINE S turned(const S& light, const V3& direction, const V3& axis, const V
           light.v};
 }
 
-/// Reflected and transmitted light at interfaces between transparent media, and its directions. The formulas are those
-/// of materials::fresnel().
+/// Reflected and transmitted light at interfaces between transparent media, with the directions of this light. The
+/// formulas are those of materials::fresnel().
 struct Interface {
   S reflected, transmitted;
   V3 mirrored, refracted;

@@ -195,8 +195,9 @@ FarField::Split FarField::split(const ReturnFrame& frame, double half_angle_rad)
   return split;
 }
 
-/// Returns the diffracted power outside of a cone, integrated over the plane of direction cosines. The points have a
-/// uniform distribution of the logarithm of the distance, because the density decreases as a power of the distance.
+/// Returns the diffracted power outside of a cone, integrated over the plane of direction cosines. The integration
+/// points are distributed uniformly in the logarithm of the distance from the axis, because the density decreases as a
+/// power of the distance.
 double FarField::tail(const ReturnFrame& frame, double half_angle_rad) const {
   const Vec2 middle = frame.to_source.head<2>();
   // The outline of the cone in this plane is further from the axis than `nearest`.

@@ -302,7 +302,7 @@ void ScatteredField::add_fringes(const Shared& shared, double copies) {
   const Moves moves(shared);
   double whole_mm2 = 0.0;     // integral of the correlation over all distances
   double strength_mm4 = 0.0;  // integral of the correlation times the common area, which decreases with the distance
-  double still_mm2 = 0.0;     // part of `whole_mm2` at distances that are displacements of points of the common area
+  double still_mm2 = 0.0;     // as `whole_mm2`, but only over the displacements of points of the common area
   Eigen::Matrix2d moments = Eigen::Matrix2d::Zero();
   for (const Ring& ring : coarse_rings_)
     for (std::size_t k = 0; k < ring.angles; ++k) {
