@@ -100,7 +100,8 @@ struct Solution {
 };
 
 Solution solve(const Points& points, Shape shape, VectorXd start) {
-  // The step of the numerical derivative is 1e-6 of a parameter. Few points have a kink within this step.
+  // The step of the numerical derivative is 1e-6 of a parameter. Only at few points does this step cross a kink of the
+  // shape.
   Eigen::NumericalDiff<Residuals, Eigen::Central> residuals(Residuals{&points, shape, static_cast<int>(start.size())},
                                                             1e-12);
   Eigen::LevenbergMarquardt<decltype(residuals)> search(residuals);

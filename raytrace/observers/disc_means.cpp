@@ -172,8 +172,8 @@ std::vector<Bands> disc_means(std::span<const BandedField> fields, const CosineS
   for (const BandedField& one : fields) detail = std::min(detail, one.field->detail_rad());
   const double step = std::min(detail / kStepsToADetail, kernel.reach_rad() / kStepsToTheReach);
   const bool is_diffracted = std::isfinite(detail);
-  // If the square is wide and the discs are small, direct evaluation at each grid point takes less time than with the
-  // lattice.
+  // If the square is wide and the discs are small, evaluating the light directly at each grid point is faster than
+  // using the lattice.
   const bool is_direct = is_diffracted && Lattice::points(square, kernel.reach_rad(), step) >
                                               static_cast<double>(means.size() * kernel.nodes(detail).size());
   if (is_direct) {
