@@ -93,12 +93,10 @@ TEST(FormerNames, KeepLinesInMessages) {
 
 TEST(FormerNames, ArePathsOfTheCurrentNames) {
   const std::vector<TomlRename> names = former_names(kThing);
-  EXPECT_EQ(current_path("front.surface", names), "face.finish");
-  EXPECT_EQ(current_path("face.surface", names), "face.finish");
-  EXPECT_EQ(current_path("front", names), "face");
-  EXPECT_EQ(current_path("long_mm", names), "length_mm");
-  EXPECT_EQ(current_path("surface", names), "surface");
-  EXPECT_EQ(current_path("frontal.surface", names), "frontal.surface");
+  const std::vector<std::pair<std::string, std::string>> paths = {
+      {"front.surface", "face.finish"}, {"face.surface", "face.finish"}, {"front", "face"},
+      {"long_mm", "length_mm"},         {"surface", "surface"},          {"frontal.surface", "frontal.surface"}};
+  for (const auto& [written, current] : paths) EXPECT_EQ(current_path(written, names), current) << written;
 }
 
 TEST(FormerNames, WordsAreKeptAsTheyWereWritten) {

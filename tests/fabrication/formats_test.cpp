@@ -158,12 +158,12 @@ std::string refusal(const std::string& line) {
 }
 
 TEST(ProcessFile, WhatIsWrongIsRefusedWithFileLineAndKey) {
-  EXPECT_EQ(refusal("plough_length_mm = 0.1\n"), "accepted");
-  EXPECT_EQ(refusal(""), "p.toml: plough_length_mm");
-  EXPECT_EQ(refusal("plough_length_mm = 0.014\n"), "p.toml:10: plough_length_mm");
-  EXPECT_EQ(refusal("plough_length_mm = 0.014\nshortest_plough = true\n"), "accepted");
-  EXPECT_EQ(refusal("plough_length_mm = 0.1\nfinishing_cuts = 1001\n"), "p.toml:11: finishing_cuts");
-  EXPECT_EQ(refusal("plough_length_mm = 0.1\ndwel_s = 1\n"), "p.toml:11: dwel_s");
+  expect_refusals(refusal, {{"plough_length_mm = 0.1\n", "accepted"},
+                            {"", "p.toml: plough_length_mm"},
+                            {"plough_length_mm = 0.014\n", "p.toml:10: plough_length_mm"},
+                            {"plough_length_mm = 0.014\nshortest_plough = true\n", "accepted"},
+                            {"plough_length_mm = 0.1\nfinishing_cuts = 1001\n", "p.toml:11: finishing_cuts"},
+                            {"plough_length_mm = 0.1\ndwel_s = 1\n", "p.toml:11: dwel_s"}});
 }
 
 RC_GTEST_PROP(JobFile, DocumentsReadBackTheSame, ()) {

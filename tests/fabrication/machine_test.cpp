@@ -128,17 +128,18 @@ std::string unrecorded_refusal(const std::string& from, const std::string& to) {
 }
 
 TEST(MachineFile, BadInputIsRefusedOnOneLine) {
-  EXPECT_EQ(refusal("[0.999995, -0.0014502, 0.00268292]", "[0, 0, 0]"), "m.toml:31: a.direction.value");
-  EXPECT_EQ(refusal("[0.999995, -0.0014502, 0.00268292]", "[0, 1]"), "m.toml:31: a.direction.value");
-  EXPECT_EQ(refusal("[0.999995, -0.0014502, 0.00268292]", "[nan, 0, 0]"), "m.toml:31: a.direction.value");
-  EXPECT_EQ(refusal("[0.999995, -0.0014502, 0.00268292]", "[0, 0, 1]"), "m.toml:37: c");
-  EXPECT_EQ(refusal("value = [-120, 120]", "value = [120, -120]"), "m.toml:10: x.limits_mm.value");
-  EXPECT_EQ(refusal("value = 10,", "value = 0,"), "m.toml:34: a.speed_deg_per_s.value");
-  EXPECT_EQ(refusal("sign = { value = 1,", "sign = { value = 2,"), "m.toml:32: a.sign.value");
-  EXPECT_EQ(refusal("assumed = \"square guideways\"", "assumed = \"\""), "m.toml:9: x.direction");
-  EXPECT_EQ(refusal(", assumed = \"square guideways\"", ""), "m.toml:9: x.direction");
-  EXPECT_EQ(refusal("[z]", "[w]"), "m.toml:22: w");
-  EXPECT_EQ(refusal("moves_with = \"tool\"", "moves_with = \"spindle\""), "m.toml:52: body[2].moves_with");
+  expect_change_refusals(refusal,
+                         {{"[0.999995, -0.0014502, 0.00268292]", "[0, 0, 0]", "m.toml:31: a.direction.value"},
+                          {"[0.999995, -0.0014502, 0.00268292]", "[0, 1]", "m.toml:31: a.direction.value"},
+                          {"[0.999995, -0.0014502, 0.00268292]", "[nan, 0, 0]", "m.toml:31: a.direction.value"},
+                          {"[0.999995, -0.0014502, 0.00268292]", "[0, 0, 1]", "m.toml:37: c"},
+                          {"value = [-120, 120]", "value = [120, -120]", "m.toml:10: x.limits_mm.value"},
+                          {"value = 10,", "value = 0,", "m.toml:34: a.speed_deg_per_s.value"},
+                          {"sign = { value = 1,", "sign = { value = 2,", "m.toml:32: a.sign.value"},
+                          {"assumed = \"square guideways\"", "assumed = \"\"", "m.toml:9: x.direction"},
+                          {", assumed = \"square guideways\"", "", "m.toml:9: x.direction"},
+                          {"[z]", "[w]", "m.toml:22: w"},
+                          {"moves_with = \"tool\"", "moves_with = \"spindle\"", "m.toml:52: body[2].moves_with"}});
   const std::string box = "box_mm = { value = [-60, -60, -40, 60, 60, -15]";
   EXPECT_EQ(refusal(box, "points_mm = { value = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]"),
             "m.toml:48: body[1].points_mm.value");

@@ -226,19 +226,19 @@ TEST(NcReader, WhatIsNotUnderstoodOfAnA3200) {
   const auto read = [](const std::string& from, const std::string& to) {
     return refusal(with_replaced(with_replaced(sample(NcDialect::a3200), "M107\n", ""), from, to), NcDialect::a3200);
   };
-  EXPECT_EQ(read("M5", "M5"), "accepted");
-  EXPECT_EQ(read("INPOS", "NOWAIT"), "p:8");
-  EXPECT_EQ(read("G94", "G93"), "p:6");
-  EXPECT_EQ(read("M5", "M7"), "p:9");
-  EXPECT_EQ(read("RAPID Z5.", "CW X1. Y1. R1."), "p:10");
-  EXPECT_EQ(read("RAPID Z5.", "RAPID Z5. ZF25"), "p:10");
-  EXPECT_EQ(read("RAPID Z5.", "G1 Z5. E10"), "p:10");
-  EXPECT_EQ(read("DWELL 0.1", "G4"), "p:24");
-  EXPECT_EQ(read("DWELL 0.1", "G1 P0.1"), "p:24");
-  EXPECT_EQ(read("END PROGRAM\n", ""), "p:20");
-  EXPECT_EQ(read("END PROGRAM\n", "M2\nEND PROGRAM\n"), "accepted");
-  EXPECT_EQ(read("ENDDFS\n", "ENDDFS\nG0 Z9.\n"), "p:29");
-  EXPECT_EQ(read("ENDDFS\n", ""), "cut off at 15");
+  expect_change_refusals(read, {{"M5", "M5", "accepted"},
+                                {"INPOS", "NOWAIT", "p:8"},
+                                {"G94", "G93", "p:6"},
+                                {"M5", "M7", "p:9"},
+                                {"RAPID Z5.", "CW X1. Y1. R1.", "p:10"},
+                                {"RAPID Z5.", "RAPID Z5. ZF25", "p:10"},
+                                {"RAPID Z5.", "G1 Z5. E10", "p:10"},
+                                {"DWELL 0.1", "G4", "p:24"},
+                                {"DWELL 0.1", "G1 P0.1", "p:24"},
+                                {"END PROGRAM\n", "", "p:20"},
+                                {"END PROGRAM\n", "M2\nEND PROGRAM\n", "accepted"},
+                                {"ENDDFS\n", "ENDDFS\nG0 Z9.\n", "p:29"},
+                                {"ENDDFS\n", "", "cut off at 15"}});
   EXPECT_EQ(refusal("G90\nG0 Z5.\n", NcDialect::a3200), "cut off at 2");
   EXPECT_EQ(refusal("END PROGRAM\nDFS A\n", NcDialect::a3200), "cut off at 2");
   EXPECT_EQ(read("DFS PLUNGE", "DFS 101"), "p:21");
@@ -250,20 +250,20 @@ TEST(NcReader, WhatIsNotUnderstoodOfAeroScript) {
     const std::string text = with_replaced(sample(NcDialect::automation1), "  M107\n", "");
     return refusal(with_replaced(text, from, to), NcDialect::automation1);
   };
-  EXPECT_EQ(read("M5", "M5"), "accepted");
-  EXPECT_EQ(read("InPosition", "Auto"), "p:7");
-  EXPECT_EQ(read("DistanceUnits.Primary", "DistanceUnits.Secondary"), "p:3");
-  EXPECT_EQ(read("g90", "g90 G71"), "p:5");
-  EXPECT_EQ(read("G0 Y0.", "G0 y0."), "p:15");
-  EXPECT_EQ(read("MoveLinear([Z], [-0.25])", "MoveLinear([Z], [-0.25], 5)"), "p:22");
-  EXPECT_EQ(read("MoveRapid([Z], [0.2])", "MoveRapid([Z, Y], [0.2])"), "p:12");
-  EXPECT_EQ(read("MoveRapid([Z], [0.2])", "MoveRapid([S], [0.2])"), "p:12");
-  EXPECT_EQ(read("Plunge()\n  N10", "Plunge(1)\n  N10"), "p:13");
-  EXPECT_EQ(read("Plunge()\n  N10", "Plunge(\n  N10"), "p:13");
-  EXPECT_EQ(read("Plunge()\n  N10", "plunge()\n  N10"), "cut off at 13");
-  EXPECT_EQ(read("function Plunge()", "function Plunge($z as real)"), "p:19");
-  EXPECT_EQ(read("program\n", ""), "p:2");
-  EXPECT_EQ(read("// half way", "/* half way */"), "p:11");
+  expect_change_refusals(read, {{"M5", "M5", "accepted"},
+                                {"InPosition", "Auto", "p:7"},
+                                {"DistanceUnits.Primary", "DistanceUnits.Secondary", "p:3"},
+                                {"g90", "g90 G71", "p:5"},
+                                {"G0 Y0.", "G0 y0.", "p:15"},
+                                {"MoveLinear([Z], [-0.25])", "MoveLinear([Z], [-0.25], 5)", "p:22"},
+                                {"MoveRapid([Z], [0.2])", "MoveRapid([Z, Y], [0.2])", "p:12"},
+                                {"MoveRapid([Z], [0.2])", "MoveRapid([S], [0.2])", "p:12"},
+                                {"Plunge()\n  N10", "Plunge(1)\n  N10", "p:13"},
+                                {"Plunge()\n  N10", "Plunge(\n  N10", "p:13"},
+                                {"Plunge()\n  N10", "plunge()\n  N10", "cut off at 13"},
+                                {"function Plunge()", "function Plunge($z as real)", "p:19"},
+                                {"program\n", "", "p:2"},
+                                {"// half way", "/* half way */", "p:11"}});
   EXPECT_EQ(refusal("program\nG90\n", NcDialect::automation1), "cut off at 2");
   EXPECT_EQ(read("G90\nend\n", "G90\n"), "cut off at 13");
 }

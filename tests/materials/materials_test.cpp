@@ -246,17 +246,18 @@ TEST(MaterialLibrary, BadFilesAreRefusedWithTheirLine) {
   const std::string good =
       "[[material]]\nname = \"x\"\ndescription = \"y\"\nformula = \"constant\"\ncoefficients = [1.5]\n"
       "valid_nm = [400, 700]\nsource = \"z\"\n";
-  EXPECT_EQ(read(good), "");
-  EXPECT_EQ(read(good + "temperature_c = 25\nthermo_optic = [1, 0, 0, 0, 0, 0]\nthermo_optic_source = \"s\"\n"), "");
-  EXPECT_EQ(read(good + "temperature_c = \"warm\"\n"), "TMP:8: material[1].temperature_c");
-  EXPECT_EQ(read(good + "thermo_optic = [1, 2]\nthermo_optic_source = \"s\"\n"), "TMP:8: material[1].thermo_optic");
-  EXPECT_EQ(read(good + "thermo_optic = [1, 0, 0, 0, 0, 0]\n"), "TMP:1: material[1].thermo_optic_source");
-  EXPECT_EQ(read(good + "thermo_optic_source = \"s\"\n"), "TMP:8: material[1].thermo_optic_source");
-  EXPECT_EQ(read(good + "absorption_per_mm = [[400, 0.1], [390, 0.2]]\n"), "TMP:8: material[1].absorption_per_mm");
-  EXPECT_EQ(read(good + "absorption_per_mm = [[400, 0.1]]\n"), "TMP:8: material[1].absorption_per_mm");
-  EXPECT_EQ(read(good + "absorption_per_mm = -1\n"), "TMP:8: material[1].absorption_per_mm");
-  EXPECT_EQ(read("material = 1\n"), "TMP:1: material");
-  EXPECT_EQ(read("[\n"), "TMP:1");
+  expect_refusals(read,
+                  {{good, ""},
+                   {good + "temperature_c = 25\nthermo_optic = [1, 0, 0, 0, 0, 0]\nthermo_optic_source = \"s\"\n", ""},
+                   {good + "temperature_c = \"warm\"\n", "TMP:8: material[1].temperature_c"},
+                   {good + "thermo_optic = [1, 2]\nthermo_optic_source = \"s\"\n", "TMP:8: material[1].thermo_optic"},
+                   {good + "thermo_optic = [1, 0, 0, 0, 0, 0]\n", "TMP:1: material[1].thermo_optic_source"},
+                   {good + "thermo_optic_source = \"s\"\n", "TMP:8: material[1].thermo_optic_source"},
+                   {good + "absorption_per_mm = [[400, 0.1], [390, 0.2]]\n", "TMP:8: material[1].absorption_per_mm"},
+                   {good + "absorption_per_mm = [[400, 0.1]]\n", "TMP:8: material[1].absorption_per_mm"},
+                   {good + "absorption_per_mm = -1\n", "TMP:8: material[1].absorption_per_mm"},
+                   {"material = 1\n", "TMP:1: material"},
+                   {"[\n", "TMP:1"}});
 }
 
 TEST(Fresnel, PowerIsConserved) {

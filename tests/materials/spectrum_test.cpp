@@ -237,23 +237,23 @@ TEST(SpectrumReader, ReadsPowerOverWavelength) {
 TEST(SpectrumReader, WhatIsNoSpectrumIsRefusedWithFileLineAndColumn) {
   const auto refused = [](const std::string& text) { return refusal_of([&] { parse_spectral_power(text, "l.csv"); }); };
   const std::string head = "wavelength_nm,power\n";
-  EXPECT_EQ(refused(""), "l.csv");
-  EXPECT_EQ(refused("# only words\n"), "l.csv");
-  EXPECT_EQ(refused("400,1\n500,2\n"), "l.csv:1");
-  EXPECT_EQ(refused("wavelength_nm;power\n"), "l.csv:1");
-  EXPECT_EQ(refused(head), "l.csv");
-  EXPECT_EQ(refused(head + "400,1\n"), "l.csv");
-  EXPECT_EQ(refused(head + "400,1\n500\n"), "l.csv:3");
-  EXPECT_EQ(refused(head + "400,1,2\n"), "l.csv:2");
-  EXPECT_EQ(refused(head + "400,1\n500,nan\n"), "l.csv:3: power");
-  EXPECT_EQ(refused(head + "400,1\n500,inf\n"), "l.csv:3: power");
-  EXPECT_EQ(refused(head + "400,\n"), "l.csv:2: power");
-  EXPECT_EQ(refused(head + "400,1x\x01\n"), "l.csv:2: power");
-  EXPECT_EQ(refused(head + "400,1\n500,-0.5\n"), "l.csv:3: power");
-  EXPECT_EQ(refused(head + "400,1\n400,1\n"), "l.csv:3: wavelength_nm");
-  EXPECT_EQ(refused(head + "500,1\n400,1\n"), "l.csv:3: wavelength_nm");
-  EXPECT_EQ(refused(head + "0.5,1\n"), "l.csv:2: wavelength_nm");
-  EXPECT_EQ(refused(std::string((1U << 20) + 1, '#')), "l.csv");
+  expect_refusals(refused, {{"", "l.csv"},
+                            {"# only words\n", "l.csv"},
+                            {"400,1\n500,2\n", "l.csv:1"},
+                            {"wavelength_nm;power\n", "l.csv:1"},
+                            {head, "l.csv"},
+                            {head + "400,1\n", "l.csv"},
+                            {head + "400,1\n500\n", "l.csv:3"},
+                            {head + "400,1,2\n", "l.csv:2"},
+                            {head + "400,1\n500,nan\n", "l.csv:3: power"},
+                            {head + "400,1\n500,inf\n", "l.csv:3: power"},
+                            {head + "400,\n", "l.csv:2: power"},
+                            {head + "400,1x\x01\n", "l.csv:2: power"},
+                            {head + "400,1\n500,-0.5\n", "l.csv:3: power"},
+                            {head + "400,1\n400,1\n", "l.csv:3: wavelength_nm"},
+                            {head + "500,1\n400,1\n", "l.csv:3: wavelength_nm"},
+                            {head + "0.5,1\n", "l.csv:2: wavelength_nm"},
+                            {std::string((1U << 20) + 1, '#'), "l.csv"}});
 }
 
 TEST(SpectrumReader, FilesThatCannotBeReadAreRefused) {

@@ -225,12 +225,13 @@ TEST(DesignReader, WhatThisVersionCannotDoIsRefusedPlainly) {
 }
 
 TEST(DesignReader, TextThatIsNotTomlIsRefusedWithItsLine) {
-  EXPECT_EQ(complaint("[element]\nkind = \n"), "d.toml:2");
-  EXPECT_EQ(complaint("[\n"), "d.toml:1");
-  EXPECT_EQ(complaint("[element]\nkind = \"a\nb\"\n"), "d.toml:2");
-  EXPECT_EQ(complaint("[element]\n[element]\n"), "d.toml:2");
-  EXPECT_EQ(complaint("a = 1e999\n"), "d.toml:1");
-  EXPECT_EQ(complaint("title = \"\xff\"\n"), "d.toml:1");
+  expect_refusals([](const std::string& given) { return complaint(given); },
+                  {{"[element]\nkind = \n", "d.toml:2"},
+                   {"[\n", "d.toml:1"},
+                   {"[element]\nkind = \"a\nb\"\n", "d.toml:2"},
+                   {"[element]\n[element]\n", "d.toml:2"},
+                   {"a = 1e999\n", "d.toml:1"},
+                   {"title = \"\xff\"\n", "d.toml:1"}});
   EXPECT_NE(complaint(std::string("a = \0 1\n", 8)), "");
 }
 

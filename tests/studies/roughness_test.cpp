@@ -32,11 +32,11 @@ std::string complaint(const std::string& table) {
 }
 
 TEST(FacetTable, SaysWhatIsWrongAndWhere) {
-  EXPECT_EQ(complaint("# only words\n"), "t.csv");
-  EXPECT_EQ(complaint("facet,sa_nm\n"), "t.csv");
-  EXPECT_EQ(complaint("# x\nfacet,sa\nF1,3\n"), "t.csv:2");
-  EXPECT_EQ(complaint("sa_nm,sa_nm\n1,2\n"), "t.csv:1: sa_nm");
-  EXPECT_EQ(complaint("facet,sa_nm\nF1,3\nF2\n"), "t.csv:3");
+  expect_refusals(complaint, {{"# only words\n", "t.csv"},
+                              {"facet,sa_nm\n", "t.csv"},
+                              {"# x\nfacet,sa\nF1,3\n", "t.csv:2"},
+                              {"sa_nm,sa_nm\n1,2\n", "t.csv:1: sa_nm"},
+                              {"facet,sa_nm\nF1,3\nF2\n", "t.csv:3"}});
   for (const std::string value : {"-1", "nan", "inf", "1e6", "3 nm", ""})
     EXPECT_EQ(complaint("facet,sa_nm\nF1," + value + "\n"), "t.csv:2: sa_nm");
   EXPECT_EQ(complaint("process,roughness_sa_nm,waviness_sa_nm\npin,1,x\n"), "t.csv:2: waviness_sa_nm");

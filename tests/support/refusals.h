@@ -67,6 +67,19 @@ void expect_refusals(const Refused& refused, const std::vector<std::pair<std::st
   for (const auto& [given, place] : cases) EXPECT_EQ(refused(given), place) << given;
 }
 
+/// Change of a text: `to` replaces `from`. `place` is `file:line: key` of the message for the changed text.
+struct RefusedChange {
+  std::string from;
+  std::string to;
+  std::string place;
+};
+
+/// Expects that `refused`, called with the two texts of a change, returns the place of the change, for all changes.
+template <class Refused>
+void expect_change_refusals(const Refused& refused, const std::vector<RefusedChange>& cases) {
+  for (const auto& [from, to, place] : cases) EXPECT_EQ(refused(from, to), place) << from << " to " << to;
+}
+
 /// Returns the text with the first occurrence of `from` replaced by `to`. Expects that there is one.
 inline std::string with_replaced(std::string text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);

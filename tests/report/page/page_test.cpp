@@ -233,18 +233,19 @@ TEST(StudyPage, CardsNameTheirDesign) {
   const Page page = study_page(folder, "");
   EXPECT_EQ(page.title, "Study of 2 designs");
   const std::vector<PageFact>& facts = page.sections[0].facts;
-  const auto value_of = [&](const std::string& name) {
+  const std::vector<std::pair<std::string, std::string>> cards = {{"RRE at normal incidence: A", "10.00 %"},
+                                                                  {"RRE at normal incidence: B", "20.00 %"},
+                                                                  {"Maximum RRE, at 10 deg: A", "20.00 %"},
+                                                                  {"Maximum RRE, at 10 deg: B", "30.00 %"},
+                                                                  {"Whole elements: A", "1"},
+                                                                  {"Photometry: B", "pass"},
+                                                                  {"Machining time: cut.toml", "1.00 h"}};
+  for (const auto& [name, value] : cards) {
     const auto found =
         std::find_if(facts.begin(), facts.end(), [&](const PageFact& fact) { return fact.name == name; });
-    return found == facts.end() ? std::string("none") : found->value;
-  };
-  EXPECT_EQ(value_of("RRE at normal incidence: A"), "10.00 %");
-  EXPECT_EQ(value_of("RRE at normal incidence: B"), "20.00 %");
-  EXPECT_EQ(value_of("Maximum RRE, at 10 deg: A"), "20.00 %");
-  EXPECT_EQ(value_of("Maximum RRE, at 10 deg: B"), "30.00 %");
-  EXPECT_EQ(value_of("Whole elements: A"), "1");
-  EXPECT_EQ(value_of("Photometry: B"), "pass");
-  EXPECT_EQ(value_of("Machining time: cut.toml"), "1.00 h");
+    ASSERT_NE(found, facts.end()) << name;
+    EXPECT_EQ(found->value, value) << name;
+  }
 }
 
 TEST(StudyPage, ADesignThatIsAloneIsNotNamedAgain) {

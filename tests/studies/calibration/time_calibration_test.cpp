@@ -283,20 +283,20 @@ TEST(TimeTables, RefuseWhatIsWrongWithItsPlace) {
     return "nothing";
   };
   const std::string head = "program,seconds,uncertainty,from_line,to_line\n";
-  EXPECT_EQ(message(""), "t.csv");
-  EXPECT_EQ(message("program,seconds\n"), "t.csv:1");
-  EXPECT_EQ(message(head), "t.csv");
-  EXPECT_EQ(message(head + "times-ways.ngc,,1,,\n"), "t.csv");
-  EXPECT_EQ(message(head + ",1,1,,\n"), "t.csv:2: program");
-  EXPECT_EQ(message(head + "\x05,1,1,,\n"), "t.csv:2: program");
-  EXPECT_EQ(message(head + "no.ngc,1,1,,\n"), "t.csv:2: program");
-  EXPECT_EQ(message(head + "times-ways.ngc,-1,1,,\n"), "t.csv:2: seconds");
-  EXPECT_EQ(message(head + "times-ways.ngc,nan,1,,\n"), "t.csv:2: seconds");
-  EXPECT_EQ(message(head + "times-ways.ngc,1,0,,\n"), "t.csv:2: uncertainty");
-  EXPECT_EQ(message(head + "times-ways.ngc,1,1,2.5,\n"), "t.csv:2: from_line");
-  EXPECT_EQ(message(head + "times-ways.ngc,1,1,9,8\n"), "t.csv:2: to_line");
-  EXPECT_EQ(message(head + "times-ways.ngc,1,1,900,\n"), "t.csv:2: from_line");
-  EXPECT_EQ(message(head + "times-ways.ngc,1,1,1,2\n"), "t.csv:2");
+  expect_refusals(message, {{"", "t.csv"},
+                            {"program,seconds\n", "t.csv:1"},
+                            {head, "t.csv"},
+                            {head + "times-ways.ngc,,1,,\n", "t.csv"},
+                            {head + ",1,1,,\n", "t.csv:2: program"},
+                            {head + "\x05,1,1,,\n", "t.csv:2: program"},
+                            {head + "no.ngc,1,1,,\n", "t.csv:2: program"},
+                            {head + "times-ways.ngc,-1,1,,\n", "t.csv:2: seconds"},
+                            {head + "times-ways.ngc,nan,1,,\n", "t.csv:2: seconds"},
+                            {head + "times-ways.ngc,1,0,,\n", "t.csv:2: uncertainty"},
+                            {head + "times-ways.ngc,1,1,2.5,\n", "t.csv:2: from_line"},
+                            {head + "times-ways.ngc,1,1,9,8\n", "t.csv:2: to_line"},
+                            {head + "times-ways.ngc,1,1,900,\n", "t.csv:2: from_line"},
+                            {head + "times-ways.ngc,1,1,1,2\n", "t.csv:2"}});
 }
 
 }  // namespace

@@ -185,17 +185,17 @@ TEST(ComposeCommand, SaysNoAndWhy) {
 
 TEST(ComposeCommand, RefusesWhatMeansNothing) {
   const TemporaryFolder folder;
-  const auto refused = [&](const std::string& text, const std::string& place) {
-    folder.write("study.toml", text);
-    const Outcome outcome = retrace(folder, compose());
-    EXPECT_EQ(refused_at(outcome), place);
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"min_area_fraction = 0.7\nmax_area_fraction = 0.6\n", "min_area_fraction"},
+      {"max_zones = 0\n", "max_zones"},
+      {"max_area_fraction = 2\n", "max_area_fraction"},
+      {"worst_fraction = 0.1\n", "worst_fraction"},
+      {"price = {hours = 1}\n", "price.hours"}};
+  for (const auto& [keys, key] : cases) {
+    folder.write("study.toml", study(keys));
+    EXPECT_EQ(refused_at(retrace(folder, compose())), "study.toml:24: compose." + key);
     EXPECT_EQ(folder.names(), std::vector<std::string>{"study.toml"});
-  };
-  refused(study("min_area_fraction = 0.7\nmax_area_fraction = 0.6\n"), "study.toml:24: compose.min_area_fraction");
-  refused(study("max_zones = 0\n"), "study.toml:24: compose.max_zones");
-  refused(study("max_area_fraction = 2\n"), "study.toml:24: compose.max_area_fraction");
-  refused(study("worst_fraction = 0.1\n"), "study.toml:24: compose.worst_fraction");
-  refused(study("price = {hours = 1}\n"), "study.toml:24: compose.price.hours");
+  }
 }
 
 TEST(ComposeCommand, CellsAreOfOneKindOfElement) {

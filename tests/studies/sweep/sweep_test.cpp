@@ -255,14 +255,15 @@ TEST_F(PhotometricStudy, TheWorstMarginIsMaximised) {
 }
 
 TEST_F(PhotometricStudy, WhatIsWrongIsSaidWithItsKey) {
-  EXPECT_EQ(message("name = \"q\"\npoints = 4\n"), "TMP/study.toml:12: quantity[1].points");
-  EXPECT_EQ(message("name = \"q\"\npoints = 1.5\n"), "TMP/study.toml:12: quantity[1].points");
-  EXPECT_EQ(message("name = \"q\"\npoints = \"all\"\n"), "TMP/study.toml:12: quantity[1].points");
-  EXPECT_EQ(message("name = \"q\"\nfigure = \"R\"\n"), "TMP/study.toml:12: quantity[1].figure");
-  EXPECT_EQ(message("name = \"q\"\ncolour = \"green\"\n"), "TMP/study.toml:12: quantity[1].colour");
-  EXPECT_EQ(message("name = \"q\"\ndye = \"no.csv\"\n"), "TMP/study.toml:12: quantity[1].dye");
-  EXPECT_EQ(message("name = \"q\"\nwindow_deg = 0.1\n"), "TMP/study.toml:12: quantity[1].window_deg");
-  EXPECT_EQ(message("name = \"q\"\nwidth = 1\n"), "TMP/study.toml:12: quantity[1].width");
+  expect_refusals([this](const std::string& keys) { return message(keys); },
+                  {{"name = \"q\"\npoints = 4\n", "TMP/study.toml:12: quantity[1].points"},
+                   {"name = \"q\"\npoints = 1.5\n", "TMP/study.toml:12: quantity[1].points"},
+                   {"name = \"q\"\npoints = \"all\"\n", "TMP/study.toml:12: quantity[1].points"},
+                   {"name = \"q\"\nfigure = \"R\"\n", "TMP/study.toml:12: quantity[1].figure"},
+                   {"name = \"q\"\ncolour = \"green\"\n", "TMP/study.toml:12: quantity[1].colour"},
+                   {"name = \"q\"\ndye = \"no.csv\"\n", "TMP/study.toml:12: quantity[1].dye"},
+                   {"name = \"q\"\nwindow_deg = 0.1\n", "TMP/study.toml:12: quantity[1].window_deg"},
+                   {"name = \"q\"\nwidth = 1\n", "TMP/study.toml:12: quantity[1].width"}});
 }
 
 /// The texture and the edge radius that result from machining are inserted into the design. If an override also sets
