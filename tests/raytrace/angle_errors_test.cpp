@@ -27,10 +27,7 @@ PartSpec with(PartSpec spec, const AngleErrors& errors) {
   return spec;
 }
 
-struct Case {
-  std::string name;
-  PartSpec spec;
-};
+using Case = NamedPart;
 
 /// Returns parts with errors so large that the rims of their cells are well above and below z = 0. The last part is an
 /// array that consists of many patches of cells.

@@ -24,10 +24,7 @@ using namespace raytrace;
 
 constexpr double kDeg = std::numbers::pi / 180.0;
 
-struct Case {
-  std::string name;
-  PartSpec spec;
-};
+using Case = NamedPart;
 
 std::vector<Case> cases() {
   const HexagonalCube hexagon{1.0, {12.0, 25.0}};

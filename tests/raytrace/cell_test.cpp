@@ -47,14 +47,7 @@ PartSpec omitting(PartSpec spec) {
   return spec;
 }
 
-struct Case {
-  std::string name;
-  PartSpec spec;
-  double incidence_deg;
-  double azimuth_deg;
-  Optics optics = pmma();
-  Stokes stokes = kUnpolarised;
-};
+using Case = TraceCase;
 
 template <class Change>
 Optics optics_with(const Change& change) {

@@ -14,6 +14,7 @@
 #include "tests/support/designs.h"
 #include "tests/support/return_frames.h"
 #include "tests/support/statistics.h"
+#include "tests/support/traced_far_fields.h"
 
 namespace retrace::testing::equal_places_test {
 namespace {
@@ -111,21 +112,12 @@ TEST(TranslationalSymmetry, LedgersAreThoseOfEachByItself) {
   }
 }
 
-struct Seen {
-  FarField field;
-  BeamResult result;
-};
+using Seen = TracedFarField;
 
 Seen seen(const Part& part, const Illumination& light, BeamPolicy beams, Elements elements) {
   FarFieldPolicy policy;
   if (beams.population_control) policy.replicates = beams.population_control->replicates;
-  FarFieldCollector collector(part, light, policy);
-  Seen result;
-  result.result = BeamTracer(part, elements).trace(pmma(), light, {0.5}, beams, nullptr, [&](const ReturnedBeam& beam) {
-    collector.add(beam);
-  });
-  result.field = collector.finish();
-  return result;
+  return traced_far_field(part, pmma(), light, policy, beams, elements);
 }
 
 std::vector<Vec3> receivers(const Illumination& light) {

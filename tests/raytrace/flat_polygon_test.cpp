@@ -15,10 +15,10 @@ using namespace raytrace;
 using geometry::Vec2;
 
 constexpr double kMerge_mm = 1e-11;
-constexpr double kMinArea = 1e-15;
 
 /// Returns the area of the part of the polygon `of` that is outside the polygon `by`.
 double area_left(const FlatPolygon& of, const FlatPolygon& by) {
+  constexpr double kMinArea = 1e-15;
   FlatPolygons left;
   subtract(of, by, kMinArea, kMerge_mm, left);
   double sum = 0.0;

@@ -19,7 +19,6 @@ namespace {
 
 using namespace geometry;
 using namespace raytrace;
-using std::numbers::pi;
 using surface_models::FacetForm;
 
 Optics with_form(Optics optics, const FacetForm& form) {
@@ -156,7 +155,7 @@ TEST(FormedFacets, SinkOfAPrismSpreadsRaysAsItsSlopes) {
   const double radius2 = kBase * kBase / 8.0 + kWidth * kWidth / 4.0;
   const double p = 4.0 * kPmma * std::sqrt(0.5) * kDepth / radius2;
   const double cone_rad = 4.0 * p * 0.1;  // the cone is reached from an ellipse with the half-axes 0.1 mm and 0.2 mm
-  const double share = pi * 0.1 * 0.2 / (0.5 * kBase * kWidth);
+  const double share = std::numbers::pi * 0.1 * 0.2 / (0.5 * kBase * kWidth);
   const Part part = build_part(infinite(RtpElement{kBase, kWidth, 90.0}, Arrangement::aligned, 0.5));
   for (const auto engine : {MonteCarlo::Engine::embree, MonteCarlo::Engine::cell})
     for (const double sign : {1.0, -1.0}) {

@@ -40,13 +40,7 @@ BeamPolicy leaving(double truncated) {
   return policy;
 }
 
-struct Case {
-  std::string name;
-  PartSpec spec;
-  double incidence_deg;
-  double azimuth_deg;
-  Optics optics = pmma();
-};
+using Case = TraceCase;
 
 /// Returns optics with transparent layers that change the phases of total reflection, and with a metal film on the
 /// entrance face.

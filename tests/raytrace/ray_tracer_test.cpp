@@ -83,12 +83,7 @@ void expect_same(const TracedRays& found, const ReferenceRay& known, const std::
   EXPECT_NEAR(strong + known.ledger[Account::absorbed], known.meets ? 1.0 : 0.0, 0.06) << what;
 }
 
-struct Named {
-  std::string name;
-  PartSpec spec;
-};
-
-std::vector<Named> parts() {
+std::vector<NamedPart> parts() {
   const RtpElement prism{0.5, 0.5, 90.0};
   PartSpec margins = finite(prism, Arrangement::offset, 2.5, 2.5, 0.4);
   margins.array.x_gap_mm = 0.05;
@@ -112,7 +107,7 @@ class RayByRay : public ::testing::TestWithParam<std::size_t> {
                 reference_ray(part, optics, origin, direction, light, inside, kCone), named.name + ", " + what);
   }
 
-  Named named = parts()[GetParam()];
+  NamedPart named = parts()[GetParam()];
   Part part = build_part(named.spec);
   Rectangle box = bounding_box(part.outline);
   Random random{GetParam() + 1};

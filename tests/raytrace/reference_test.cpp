@@ -17,18 +17,27 @@ namespace {
 using namespace geometry;
 using namespace raytrace;
 
-struct Case {
-  std::string name;
-  PartSpec spec;
-  double incidence_deg;
-  double azimuth_deg;
-  double index;
-  double absorption_per_mm;
-  double back_index = 1.0;
-  bool absorbing_walls = false;
-  materials::LayerStack facet_layers = {};
-  materials::LayerStack entrance_layers = {};
-};
+using Case = TraceCase;
+
+Optics body(double index, double absorption_per_mm = 0.0, double back_index = 1.0) {
+  Optics optics;
+  optics.index = index;
+  optics.absorption_per_mm = absorption_per_mm;
+  optics.back_index = back_index;
+  return optics;
+}
+
+Optics with_black_walls(Optics optics) {
+  optics.absorbing_walls = true;
+  return optics;
+}
+
+Optics with_layers(Optics optics, const materials::LayerStack& facet_layers,
+                   const materials::LayerStack& entrance_layers = {}) {
+  optics.facet_layers = facet_layers;
+  optics.entrance_layers = entrance_layers;
+  return optics;
+}
 
 std::vector<Case> cases() {
   const RtpElement prism{0.5, 0.4, 90.0};
@@ -39,35 +48,28 @@ std::vector<Case> cases() {
   PartSpec omitted = finite(HexagonalCube{1.0}, Arrangement::honeycomb, 1.9, 1.7, 0.3);
   omitted.array.partial_elements = PartialElements::omit;
   return {
-      {"single prism across", single(prism, 0.3), 3.0, 0.0, 1.4917, 0.0},
-      {"single prism askew", single(prism, 0.3), 33.0, 25.0, 1.4917, 0.1},
-      {"single hexagon", single(HexagonalCube{1.0}, 0.4), 24.0, 70.0, 1.4917, 0.0},
-      {"single triangle", single(TriangularCube{1.0}, 0.4), 18.0, 200.0, 1.585, 0.0},
-      {"bricks along the roof", bricks, 36.0, 270.0, 1.4917, 0.0},
-      {"bricks askew, low index", bricks, 50.0, 110.0, 1.3, 0.0},
-      {"spaced checker", spaced, 12.0, 40.0, 1.4917, 0.05},
-      {"honeycomb, partial omitted", omitted, 28.0, 15.0, 1.4917, 0.0},
-      {"triangular, cut", finite(TriangularCube{1.0}, Arrangement::triangular, 2.0, 1.6, 0.2), 40.0, 300.0, 1.8, 0.0},
-      {"hexagon in water", single(HexagonalCube{1.0}, 0.4), 14.0, 70.0, 1.4917, 0.0, 1.333},
-      {"bricks in a denser glue", bricks, 20.0, 35.0, 1.4917, 0.0, 1.6},
-      {"spaced checker, black walls", spaced, 12.0, 40.0, 1.4917, 0.05, 1.0, true},
-      {"honeycomb, black walls", omitted, 28.0, 15.0, 1.4917, 0.0, 1.0, true},
-      {"bricks askew, black walls", bricks, 50.0, 110.0, 1.3, 0.0, 1.0, true},
-      {"aluminised hexagon in glue", single(HexagonalCube{1.0}, 0.4), 35.0, 70.0, 1.4917, 0.0, 1.5, false,
-       opaque({1.1, 6.9})},
-      {"poor metal on bricks", bricks, 30.0, 35.0, 1.4917, 0.1, 1.0, false, opaque({2.5, 1.2})},
-      {"thin aluminium on bricks", bricks, 30.0, 35.0, 1.4917, 0.1, 1.0, false, thin_aluminium()},
-      {"coated bricks in water", bricks, 20.0, 70.0, 1.4917, 0.0, 1.333, false, anti_reflection(), anti_reflection()},
-      {"silver between layers on a hexagon",
-       single(HexagonalCube{1.0}, 0.4),
-       25.0,
-       15.0,
-       1.585,
-       0.0,
-       1.0,
-       false,
-       {{{1.9, 0.2}, {{0.14, 3.5}, kInfinity}, {1.5, 2.0}}},
-       thin_aluminium()}};
+      {"single prism across", single(prism, 0.3), 3.0, 0.0, body(1.4917)},
+      {"single prism askew", single(prism, 0.3), 33.0, 25.0, body(1.4917, 0.1)},
+      {"single hexagon", single(HexagonalCube{1.0}, 0.4), 24.0, 70.0, body(1.4917)},
+      {"single triangle", single(TriangularCube{1.0}, 0.4), 18.0, 200.0, body(1.585)},
+      {"bricks along the roof", bricks, 36.0, 270.0, body(1.4917)},
+      {"bricks askew, low index", bricks, 50.0, 110.0, body(1.3)},
+      {"spaced checker", spaced, 12.0, 40.0, body(1.4917, 0.05)},
+      {"honeycomb, partial omitted", omitted, 28.0, 15.0, body(1.4917)},
+      {"triangular, cut", finite(TriangularCube{1.0}, Arrangement::triangular, 2.0, 1.6, 0.2), 40.0, 300.0, body(1.8)},
+      {"hexagon in water", single(HexagonalCube{1.0}, 0.4), 14.0, 70.0, body(1.4917, 0.0, 1.333)},
+      {"bricks in a denser glue", bricks, 20.0, 35.0, body(1.4917, 0.0, 1.6)},
+      {"spaced checker, black walls", spaced, 12.0, 40.0, with_black_walls(body(1.4917, 0.05))},
+      {"honeycomb, black walls", omitted, 28.0, 15.0, with_black_walls(body(1.4917))},
+      {"bricks askew, black walls", bricks, 50.0, 110.0, with_black_walls(body(1.3))},
+      {"aluminised hexagon in glue", single(HexagonalCube{1.0}, 0.4), 35.0, 70.0,
+       with_layers(body(1.4917, 0.0, 1.5), opaque({1.1, 6.9}))},
+      {"poor metal on bricks", bricks, 30.0, 35.0, with_layers(body(1.4917, 0.1), opaque({2.5, 1.2}))},
+      {"thin aluminium on bricks", bricks, 30.0, 35.0, with_layers(body(1.4917, 0.1), thin_aluminium())},
+      {"coated bricks in water", bricks, 20.0, 70.0,
+       with_layers(body(1.4917, 0.0, 1.333), anti_reflection(), anti_reflection())},
+      {"silver between layers on a hexagon", single(HexagonalCube{1.0}, 0.4), 25.0, 15.0,
+       with_layers(body(1.585), {{{1.9, 0.2}, {{0.14, 3.5}, kInfinity}, {1.5, 2.0}}}, thin_aluminium())}};
 }
 
 class AgainstReference : public ::testing::TestWithParam<std::size_t> {};
@@ -75,19 +77,12 @@ class AgainstReference : public ::testing::TestWithParam<std::size_t> {};
 TEST_P(AgainstReference, EveryAccountAgrees) {
   const Case c = cases()[GetParam()];
   const Part part = build_part(c.spec);
-  Optics optics;
-  optics.index = c.index;
-  optics.absorption_per_mm = c.absorption_per_mm;
-  optics.back_index = c.back_index;
-  optics.absorbing_walls = c.absorbing_walls;
-  optics.facet_layers = c.facet_layers;
-  optics.entrance_layers = c.entrance_layers;
   // The cone is wide, so that there is light inside and outside of it.
   const double cone_deg = 8.0;
-  const ReferenceResult reference = reference_trace(part, optics, from(c.incidence_deg, c.azimuth_deg), cone_deg,
+  const ReferenceResult reference = reference_trace(part, c.optics, from(c.incidence_deg, c.azimuth_deg), cone_deg,
                                                     test::sample_size<std::uint64_t>(10000, 40000), 7);
   const MonteCarloResult traced =
-      MonteCarlo(part).trace(optics, from(c.incidence_deg, c.azimuth_deg), {cone_deg}, rays(1U << 17), {});
+      MonteCarlo(part).trace(c.optics, from(c.incidence_deg, c.azimuth_deg), {cone_deg}, rays(1U << 17), {});
   const Ledger& ledger = traced.cones[0].ledger;
   // The error of the tracer is much smaller than the error of the reference.
   ASSERT_LT(traced.cones[0].std_error, 5e-4);

@@ -15,6 +15,7 @@
 #include "raytrace/faces/back_surface.h"
 #include "tests/support/designs.h"
 #include "tests/support/engines.h"
+#include "tests/support/light_traps.h"
 #include "tests/support/sample_size.h"
 #include "tests/support/statistics.h"
 
@@ -42,20 +43,10 @@ MonteCarloResult traced(const BeamTracer& tracer, const Optics& optics, const Il
   return beams.result();
 }
 
-struct Question {
-  std::string name;
-  Part part;
-  Illumination light;
-};
+using Question = PartInLight;
 
-/// Returns arrays that trap light, so that weak beams are important.
 std::vector<Question> questions() {
-  PartSpec finite_cubes = finite(HexagonalCube{kCubeAperture}, Arrangement::honeycomb, 8.0, 8.0, 1.0);
-  return {
-      {"honeycomb", build_part(infinite(HexagonalCube{kCubeAperture}, Arrangement::honeycomb, 1.0)), from(20, 10)},
-      {"triangular", build_part(infinite(TriangularCube{kCubeAperture}, Arrangement::triangular, 1.0)), from(10, 10)},
-      {"prisms", build_part(infinite(RtpElement{0.5, 0.5, 90.0}, Arrangement::offset, 1.0)), from(20, 25)},
-      {"finite cubes", build_part(finite_cubes), from(15, 40)}};
+  return light_traps();
 }
 
 /// Equal elements may be traced only one time, which must not change the result.

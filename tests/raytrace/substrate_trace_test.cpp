@@ -33,10 +33,7 @@ PartSpec on(const Substrate& substrate, PartSpec spec) {
 
 const RtpElement kPrism{0.5, 0.5, 90.0};
 
-struct Case {
-  std::string name;
-  PartSpec spec;
-};
+using Case = NamedPart;
 
 std::vector<Case> cases() {
   PartSpec prisms = finite(kPrism, Arrangement::offset, 2.5, 2.5, 1.5);

@@ -13,9 +13,11 @@
 #include "raytrace/sampling/replicates.h"
 #include "tests/support/closed_forms.h"
 #include "tests/support/designs.h"
+#include "tests/support/light_traps.h"
 #include "tests/support/return_frames.h"
 #include "tests/support/sample_size.h"
 #include "tests/support/statistics.h"
+#include "tests/support/traced_far_fields.h"
 
 namespace retrace::testing::weak_beams_test {
 namespace {
@@ -23,21 +25,10 @@ namespace {
 using namespace geometry;
 using namespace raytrace;
 
-struct Question {
-  std::string name;
-  Part part;
-  Illumination light;
-};
+using Question = PartInLight;
 
-/// Returns arrays that trap light, so that weak beams are important.
 std::vector<Question> questions() {
-  PartSpec finite_cubes = finite(HexagonalCube{kCubeAperture}, Arrangement::honeycomb, 8.0, 8.0, 1.0);
-  finite_cubes.angle_errors.dihedral_error_arcmin.fill(3.0);
-  return {
-      {"honeycomb", build_part(infinite(HexagonalCube{kCubeAperture}, Arrangement::honeycomb, 1.0)), from(20, 10)},
-      {"triangular", build_part(infinite(TriangularCube{kCubeAperture}, Arrangement::triangular, 1.0)), from(10, 10)},
-      {"prisms", build_part(infinite(RtpElement{0.5, 0.5, 90.0}, Arrangement::offset, 1.0)), from(20, 25)},
-      {"finite cubes", build_part(finite_cubes), from(15, 40)}};
+  return light_traps(3.0);
 }
 
 BeamPolicy resampled(double cutoff, double thinning, std::uint32_t seed = 1) {
@@ -163,23 +154,13 @@ TEST(PopulationControl, StopWhenCancelled) {
   EXPECT_FALSE(BeamTracer(question.part).trace(pmma(), question.light, {0.5}, resampled(1e-4, 32.0), &cancel).complete);
 }
 
-struct Seen {
-  BeamResult result;
-  FarField field;
-};
+using Seen = TracedFarField;
 
 Seen seen(const Question& question, const BeamPolicy& beams, FarFieldPolicy policy) {
   policy.replicates = beams.population_control ? beams.population_control->replicates : 0;
-  FarFieldCollector collector(question.part, question.light, policy);
   BeamPolicy by_cell = beams;
   by_cell.separate_cells = true;
-  Seen seen;
-  seen.result =
-      BeamTracer(question.part).trace(pmma(), question.light, {0.5}, by_cell, nullptr, [&](const ReturnedBeam& beam) {
-        collector.add(beam);
-      });
-  seen.field = collector.finish();
-  return seen;
+  return traced_far_field(question.part, pmma(), question.light, policy, by_cell);
 }
 
 /// Returns directions of receivers around the direction to the light.

@@ -44,6 +44,16 @@ inline materials::LayerStack thin_aluminium() {
   return {{{std::complex<double>(1.13, 6.85), 0.008}, {1.4585, 0.3}}};
 }
 
+/// Part, direction of the light and optics of a test case, and its name in messages.
+struct TraceCase {
+  std::string name;
+  geometry::PartSpec spec;
+  double incidence_deg;
+  double azimuth_deg;
+  raytrace::Optics optics = pmma();
+  raytrace::Stokes stokes = raytrace::kUnpolarised;
+};
+
 inline raytrace::Illumination from(double incidence_deg, double azimuth_deg = 0.0) {
   return {Angle::from_deg(incidence_deg), Angle::from_deg(azimuth_deg)};
 }

@@ -43,6 +43,18 @@ inline void expect_engines_agree(const geometry::PartSpec& spec, double most_tru
   EXPECT_LT(sampled.ledger[Account::lost], 1e-9);
 }
 
+/// Expects that beams return the fraction `expected` of the light at normal incidence, and that the part absorbs the
+/// remainder.
+inline void expect_returned_or_absorbed(const geometry::Part& part, const raytrace::Optics& optics, double expected) {
+  using raytrace::Account;
+  raytrace::BeamPolicy policy;
+  policy.cutoff = 1e-13;
+  const raytrace::Ledger exact = raytrace::BeamTracer(part).trace(optics, {}, {0.5}, policy).ledgers[0];
+  EXPECT_NEAR(exact[Account::retroreflected], expected, 1e-9);
+  EXPECT_NEAR(exact[Account::absorbed], 1.0 - expected, 1e-9);
+  EXPECT_NEAR(exact.total(), 1.0, 1e-12);
+}
+
 /// Expects that the boundary of a part is closed, manifold and free of self-intersections.
 /// \pre the part is finite
 inline void expect_closed_part(const geometry::PartSpec& spec) {

@@ -1,10 +1,18 @@
 #pragma once
 
+#include <string>
+
 #include "geometry/elements/part_spec.h"
 
 // Specifications of finite and infinite parts for tests.
 
 namespace retrace::testing {
+
+/// Part of a test case, and its name in messages.
+struct NamedPart {
+  std::string name;
+  geometry::PartSpec spec;
+};
 
 inline geometry::PartSpec finite(geometry::Element element, geometry::Arrangement arrangement, double x_mm, double y_mm,
                                  double thickness_mm) {

@@ -16,9 +16,7 @@
 namespace retrace::fabrication::turning::border_test {
 namespace {
 
-using fabrication::test::border_places;
-using fabrication::test::deviations;
-using fabrication::test::PlainCut;
+using fabrication::test::border_places, fabrication::test::deviations, fabrication::test::PlainCut;
 
 /// First lines of a part file. The surface is a bowl with a cubic term. Because the surface is inclined, the point of
 /// contact is farther from the axis than the lowest point of the nose.

@@ -14,6 +14,7 @@
 #include "tests/support/designs.h"
 #include "tests/support/pixel_cube.h"
 #include "tests/support/return_frames.h"
+#include "tests/support/traced_far_fields.h"
 
 namespace retrace::testing::error_free_exit_test {
 namespace {
@@ -29,12 +30,7 @@ FarField field_of(const PartSpec& spec, const Optics& optics, const Illumination
   FarFieldPolicy policy;
   policy.wavelength_nm = kWaveNm;
   policy.window_rad = 1.5 * kWindow_rad;
-  FarFieldCollector collector(part, light, policy);
-  BeamPolicy beams;
-  beams.cutoff = 1e-6;
-  beams.separate_cells = true;
-  BeamTracer(part).trace(optics, light, {0.5}, beams, nullptr, [&](const ReturnedBeam& b) { collector.add(b); });
-  return collector.finish();
+  return far_field_of_cells(part, optics, light, policy);
 }
 
 PartSpec with(PartSpec spec, const AngleErrors& errors) {

@@ -15,13 +15,13 @@
 #include "tests/support/designs.h"
 #include "tests/support/pixel_cube.h"
 #include "tests/support/return_frames.h"
+#include "tests/support/traced_far_fields.h"
 
 namespace retrace::testing::formed_aperture_test {
 namespace {
 
 using namespace geometry;
 using namespace raytrace;
-using std::numbers::pi;
 using surface_models::FacetForm;
 using Complex = std::complex<double>;
 
@@ -38,12 +38,7 @@ FarField field_of(const PartSpec& spec, Optics optics, const FacetForm& form, co
   optics.facet_form = form;
   policy.wavelength_nm = kWaveNm;
   if (!form.is_plane()) policy.form = &form;
-  FarFieldCollector collector(part, light, policy);
-  BeamPolicy beams;
-  beams.cutoff = 1e-6;
-  beams.separate_cells = true;
-  BeamTracer(part).trace(optics, light, {0.5}, beams, nullptr, [&](const ReturnedBeam& b) { collector.add(b); });
-  return collector.finish();
+  return far_field_of_cells(part, optics, light, policy);
 }
 
 FacetForm paraboloid(double depth_mm, double radius_mm) {
@@ -107,7 +102,7 @@ TEST(FormedAperture, SunkPrismHasTheProductOfTwoFresnelIntegrals) {
   const double radius2 = kBase * kBase / 8.0 + kWidth * kWidth / 4.0;
   const PartSpec spec = single(RtpElement{kBase, kWidth, 90.0}, 0.3);
   for (const double depth_mm : {2e-5, -5e-5, 1e-4, 3e-4}) {
-    const double c = 2.0 * pi / kWave * 4.0 * kPmma * std::sqrt(0.5) * depth_mm / radius2;
+    const double c = 2.0 * std::numbers::pi / kWave * 4.0 * kPmma * std::sqrt(0.5) * depth_mm / radius2;
     const double strehl = std::norm(fresnel_mean(2.0 * c, 0.25 * kBase) * fresnel_mean(c, 0.5 * kWidth));
     const FarField field = field_of(spec, ideal(), paraboloid(depth_mm, std::sqrt(radius2)));
     const double found = field.diffracted_per_sr(Vec3::UnitZ()) * kWave * kWave / (kBase * kWidth);

@@ -14,6 +14,7 @@
 #include "tests/support/designs.h"
 #include "tests/support/return_frames.h"
 #include "tests/support/statistics.h"
+#include "tests/support/traced_far_fields.h"
 
 namespace retrace::testing::geometric_far_field_test {
 namespace {
@@ -22,22 +23,14 @@ using namespace geometry;
 using namespace raytrace;
 using std::numbers::pi;
 
-struct Traced {
-  BeamResult result;
-  FarField field;
-};
+using Traced = TracedFarField;
 
-Traced trace(const Part& part, const Optics& optics, const Illumination& light, FarFieldPolicy policy,
+Traced trace(const Part& part, const Optics& optics, const Illumination& light, const FarFieldPolicy& policy,
              double truncated = 1e-6) {
-  FarFieldCollector collector(part, light, policy);
   BeamPolicy beams;
   beams.truncated_goal = truncated;
   beams.separate_cells = true;
-  Traced traced;
-  traced.result = BeamTracer(part).trace(optics, light, {0.5}, beams, nullptr,
-                                         [&](const ReturnedBeam& beam) { collector.add(beam); });
-  traced.field = collector.finish();
-  return traced;
+  return traced_far_field(part, optics, light, policy, beams);
 }
 
 FarFieldPolicy geometric() {

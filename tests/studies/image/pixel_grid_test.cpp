@@ -12,8 +12,7 @@
 namespace retrace::testing::pixel_grid_test {
 namespace {
 
-using geometry::Polygon;
-using geometry::Vec2;
+using geometry::Polygon, geometry::Vec2;
 using raytrace::PixelGrid;
 
 std::vector<double> covered(const PixelGrid& grid, const Polygon& polygon) {
