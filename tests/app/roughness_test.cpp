@@ -13,9 +13,15 @@ const std::string kDesign =
     "title = \"Brick\"\n[element]\nkind = \"rtp\"\nbase_mm = 0.45\nwidth_mm = 0.45\n[array]\narrangement = \"offset\"\n"
     "extent = \"infinite\"\n[body]\nthickness_mm = 2\n";
 
-TEST(Roughness, PutsTheShippedFacetsBesideTheCurves) {
+/// Fixture with a folder that contains the design d.toml.
+class Roughness : public ::testing::Test {
+ protected:
+  Roughness() { folder.write("d.toml", kDesign); }
+
   const TemporaryFolder folder;
-  folder.write("d.toml", kDesign);
+};
+
+TEST_F(Roughness, PutsTheShippedFacetsBesideTheCurves) {
   const Outcome outcome = retrace(folder, {"roughness", "d.toml", "--sa", "0,10,20", "--correlation-length-um", "5,50",
                                            "--samples", "16384", "--json", "-"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -37,9 +43,7 @@ TEST(Roughness, PutsTheShippedFacetsBesideTheCurves) {
       << "as rough as the die, but with twice its waviness";
 }
 
-TEST(Roughness, WritesItsFilesTheSameInEveryRun) {
-  const TemporaryFolder folder;
-  folder.write("d.toml", kDesign);
+TEST_F(Roughness, WritesItsFilesTheSameInEveryRun) {
   folder.write("facets.csv", "process,roughness_sa_nm,waviness_sa_nm\nmine,8,30\nmine,10,50\n");
   for (const std::string out : {"a", "b"})
     ASSERT_EQ(
@@ -57,9 +61,7 @@ TEST(Roughness, WritesItsFilesTheSameInEveryRun) {
   EXPECT_TRUE(lines[3].starts_with("mine,2,5,9,40,")) << lines[3];
 }
 
-TEST(Roughness, RefusesBadInputInOneLine) {
-  const TemporaryFolder folder;
-  folder.write("d.toml", kDesign);
+TEST_F(Roughness, RefusesBadInputInOneLine) {
   folder.write("bad.csv", "facet,sa_nm\nF1,smooth\n");
   const std::vector<Refused> cases = {
       {{"d.toml", "--facets", "bad.csv"}, "bad.csv:2: sa_nm"},
@@ -79,9 +81,7 @@ TEST(Roughness, RefusesBadInputInOneLine) {
   expect_refused(folder, cases, {"roughness"});
 }
 
-TEST(Roughness, DoesNotReplaceWhatItReads) {
-  const TemporaryFolder folder;
-  folder.write("d.toml", kDesign);
+TEST_F(Roughness, DoesNotReplaceWhatItReads) {
   folder.write("f.csv", "sa_nm\n3\n");
   EXPECT_EQ(retrace(folder, {"roughness", "d.toml", "--facets", "f.csv", "--json", "f.csv"}).code, 2);
   EXPECT_EQ(folder.read("f.csv"), "sa_nm\n3\n");

@@ -2,6 +2,9 @@
 
 // Small jobs of cube corners for tests.
 
+#include <string>
+#include <vector>
+
 #include "tests/fabrication/jobs.h"
 
 namespace retrace::fabrication::test {
@@ -33,6 +36,31 @@ inline Job cube_job(bool is_hexagonal, double aperture_mm = 0.3) {
   job.process.roughing_depth_um = 10.0;
   job.process.finishing_cuts = 1;
   return job;
+}
+
+/// Job and machine of a test case, and its name in messages.
+struct StrategyCase {
+  std::string name;
+  Job job;
+  std::string machine;
+};
+
+/// Returns a job of 2 x 2 prisms for each strategy for prisms, and a job of hexagonal cube corners.
+/// \param change function that changes each job of prisms
+template <class Change>
+std::vector<StrategyCase> strategy_cases(const Change& change) {
+  std::vector<StrategyCase> cases;
+  for (const auto strategy : {Strategy::unidirectional, Strategy::bidirectional, Strategy::two_step}) {
+    Job job = square_job(2, geometry::Arrangement::checker);
+    job.strategy = strategy;
+    job.process.roughing_depth_um = 40;
+    change(job);
+    cases.push_back({std::string(kStrategyWords[static_cast<std::size_t>(strategy)]), job, "paper"});
+  }
+  Job cubes = cube_job(true, 0.15);
+  cubes.process.roughing_depth_um = 20;
+  cases.push_back({"dmc", cubes, "ideal-dmc"});
+  return cases;
 }
 
 }  // namespace retrace::fabrication::test

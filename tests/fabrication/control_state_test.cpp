@@ -35,14 +35,6 @@ Machine full_machine(NcDialect dialect) {
   return for_dialect(machine, kNcDialectWords[static_cast<std::size_t>(dialect)]);
 }
 
-Job small_job() {
-  Job job = square_job(1, Arrangement::single);
-  job.strategy = Strategy::two_step;
-  job.process.roughing_depth_um = 100;
-  job.process.finishing_cuts = 1;
-  return job;
-}
-
 class ControlState : public ::testing::TestWithParam<NcDialect> {
  protected:
   ControlState() : machine_(full_machine(GetParam())) {
@@ -106,7 +98,7 @@ class ControlState : public ::testing::TestWithParam<NcDialect> {
   }
   bool is_feed(const std::string& line) const { return line.starts_with(is_pmac() ? "linear " : "G1 "); }
 
-  Job job_ = small_job();
+  Job job_ = small_prism_job();
   Machine machine_;
   Lines lines_;
 };

@@ -27,6 +27,15 @@ inline Job square_job(int n, geometry::Arrangement arrangement = geometry::Arran
   return job;
 }
 
+/// Returns a job of one prism that is cut in two steps with few passes.
+inline Job small_prism_job() {
+  Job job = square_job(1, geometry::Arrangement::single);
+  job.strategy = Strategy::two_step;
+  job.process.roughing_depth_um = 100;
+  job.process.finishing_cuts = 1;
+  return job;
+}
+
 /// Returns a valid wedge angle for a job of prisms. It is `above_deg` larger than the minimum, but at most the maximum.
 inline double wedge_deg(const Job& job, int above_deg) {
   const double apex_deg = prism_of(job).apex_angle_deg;

@@ -23,26 +23,10 @@
 namespace retrace::fabrication::test::partial_programs_test {
 namespace {
 
-using geometry::Arrangement;
-
-struct Case {
-  std::string name;
-  Job job;
-  std::string machine;
-};
+using Case = StrategyCase;
 
 std::vector<Case> cases() {
-  std::vector<Case> all;
-  for (const auto strategy : {Strategy::unidirectional, Strategy::bidirectional, Strategy::two_step}) {
-    Job job = square_job(2, Arrangement::checker);
-    job.strategy = strategy;
-    job.process.roughing_depth_um = 40;
-    all.push_back({std::string(kStrategyWords[static_cast<std::size_t>(strategy)]), job, "paper"});
-  }
-  Job cubes = cube_job(true, 0.15);
-  cubes.process.roughing_depth_um = 20;
-  all.push_back({"dmc", cubes, "ideal-dmc"});
-  return all;
+  return strategy_cases([](Job&) {});
 }
 
 class PartialPrograms : public ::testing::TestWithParam<NcDialect> {

@@ -497,19 +497,16 @@ std::string refusal(const Job& job, const Machine& m, const PlanOptions& options
 TEST(Refused, JobsBeyondTheLimitsOfAnAxis) {
   Job job = square_job(4);
   job.source = "j.toml";
+  const auto refused = [&](const auto& set_limits) {
+    Machine m = machine("ideal");
+    set_limits(m);
+    return refusal(job, m);
+  };
+  EXPECT_EQ(refused([](Machine& m) { m.x.limits_mm.value = {-0.3, 120.0}; }), "j.toml: machine");
+  EXPECT_EQ(refused([](Machine& m) { m.c.limits_deg.value = {-90.0, 90.0}; }), "j.toml: machine");
+  EXPECT_EQ(refused([](Machine& m) { m.a.limits_deg.value = {-10.0, 40.0}; }), "j.toml: machine");
+  EXPECT_EQ(refused([](Machine& m) { m.z.limits_mm.value = {-120.0, 3.0}; }), "j.toml: machine");
   Machine m = machine("ideal");
-  m.x.limits_mm.value = {-0.3, 120.0};
-  EXPECT_EQ(refusal(job, m), "j.toml: machine");
-  m = machine("ideal");
-  m.c.limits_deg.value = {-90.0, 90.0};
-  EXPECT_EQ(refusal(job, m), "j.toml: machine");
-  m = machine("ideal");
-  m.a.limits_deg.value = {-10.0, 40.0};
-  EXPECT_EQ(refusal(job, m), "j.toml: machine");
-  m = machine("ideal");
-  m.z.limits_mm.value = {-120.0, 3.0};
-  EXPECT_EQ(refusal(job, m), "j.toml: machine");
-  m = machine("ideal");
   m.c.limits_deg.value = {-190.0, 190.0};
   EXPECT_EQ(refusal(square_job(4, Arrangement::checker), m), "not refused");
 }

@@ -43,14 +43,6 @@ std::string dialect_word(NcDialect dialect) {
   return std::string(kNcDialectWords[static_cast<std::size_t>(dialect)]);
 }
 
-Job small_job() {
-  Job job = square_job(1, Arrangement::single);
-  job.strategy = Strategy::two_step;
-  job.process.roughing_depth_um = 100;
-  job.process.finishing_cuts = 1;
-  return job;
-}
-
 std::string text_of(const Job& job, const Machine& machine, NcDialect dialect) {
   return nc_text(make_plan(job, for_dialect(machine, dialect_word(dialect))).programs.front(), dialect_word(dialect));
 }
@@ -101,14 +93,14 @@ std::string by_inverse_times(const std::string& text, double factor = 1.0) {
 TEST(Rates, InverseTimesAreFeedsOverLengths) {
   const Machine machine = shipped("ideal");
   for (const NcDialect dialect : {NcDialect::rs274ngc, NcDialect::sinumerik}) {
-    const std::string text = text_of(small_job(), machine, dialect);
+    const std::string text = text_of(small_prism_job(), machine, dialect);
     Machine prompt = machine;
     for (LinearAxis* axis : {&prompt.x, &prompt.y, &prompt.z}) axis->acceleration_mm_per_s2.value = 1e9;
-    const Verification by_feed = verified(small_job(), prompt, text, dialect);
-    const Verification v = verified(small_job(), machine, by_inverse_times(text), dialect);
+    const Verification by_feed = verified(small_prism_job(), prompt, text, dialect);
+    const Verification v = verified(small_prism_job(), machine, by_inverse_times(text), dialect);
     EXPECT_TRUE(v.passes()) << dialect_word(dialect) << "\n" << listed(v);
     EXPECT_NEAR(v.time.feed_s / by_feed.time.feed_s, 1.0, 1e-5) << "without ramps";
-    const Verification fast = verified(small_job(), machine, by_inverse_times(text, 1.002), dialect);
+    const Verification fast = verified(small_prism_job(), machine, by_inverse_times(text, 1.002), dialect);
     EXPECT_NE(listed(fast).find("feed_too_high"), std::string::npos) << listed(fast);
   }
 }
@@ -125,17 +117,17 @@ TEST(Rates, ProgramsInInchesPass) {
     });
     return inches.replace(inches.find("G21"), 3, "G20");
   };
-  const std::string text = text_of(small_job(), machine, NcDialect::rs274ngc);
+  const std::string text = text_of(small_prism_job(), machine, NcDialect::rs274ngc);
   for (const int decimals : {7, 8})
     for (const int decimals_of_feeds : {3, 4, 5, 6, 8}) {
       const Verification v =
-          verified(small_job(), machine, in_inches(text, decimals, decimals_of_feeds, 1.0), NcDialect::rs274ngc);
+          verified(small_prism_job(), machine, in_inches(text, decimals, decimals_of_feeds, 1.0), NcDialect::rs274ngc);
       EXPECT_TRUE(v.passes()) << decimals << " " << decimals_of_feeds << "\n" << listed(v);
     }
-  const Verification fast = verified(small_job(), machine, in_inches(text, 8, 6, 1.002), NcDialect::rs274ngc);
+  const Verification fast = verified(small_prism_job(), machine, in_inches(text, 8, 6, 1.002), NcDialect::rs274ngc);
   EXPECT_NE(listed(fast).find("feed_too_high"), std::string::npos) << listed(fast);
   // The verifier treats a feed without decimals as exact. It must therefore report a feed that is 0.4 mm/min too high.
-  Job slower = small_job();
+  Job slower = small_prism_job();
   slower.process.roughing_feed_mm_per_min -= 0.4;
   const std::string whole = with_words(
       text, [](char letter, double value) { return fmt::format("{}{:.{}f}", letter, value, letter == 'F' ? 0 : 6); });

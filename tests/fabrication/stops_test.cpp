@@ -32,28 +32,15 @@ using geometry::Arrangement;
 
 using Lines = std::vector<std::string>;
 
-struct Case {
-  std::string name;
-  Job job;
-  std::string machine;
-};
+using Case = StrategyCase;
 
 std::vector<Case> cases() {
-  std::vector<Case> all;
-  for (const auto strategy : {Strategy::unidirectional, Strategy::bidirectional, Strategy::two_step}) {
-    Job job = square_job(2, Arrangement::checker);
-    job.strategy = strategy;
-    job.tool.width_mm = strategy == Strategy::two_step ? 0.3 : 0.451;
+  return strategy_cases([](Job& job) {
+    job.tool.width_mm = job.strategy == Strategy::two_step ? 0.3 : 0.451;
     job.tool.edge_radius_um = 1.0;
-    job.process.roughing_depth_um = 40;
-    job.process.slow_retract_um = strategy == Strategy::bidirectional ? 5.0 : 0.0;
-    job.process.plough_lift_um = strategy == Strategy::unidirectional ? 2.0 : 0.0;
-    all.push_back({std::string(kStrategyWords[static_cast<std::size_t>(strategy)]), job, "paper"});
-  }
-  Job cubes = cube_job(true, 0.15);
-  cubes.process.roughing_depth_um = 20;
-  all.push_back({"dmc", cubes, "ideal-dmc"});
-  return all;
+    job.process.slow_retract_um = job.strategy == Strategy::bidirectional ? 5.0 : 0.0;
+    job.process.plough_lift_um = job.strategy == Strategy::unidirectional ? 2.0 : 0.0;
+  });
 }
 
 Case two_step() {

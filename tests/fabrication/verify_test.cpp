@@ -148,6 +148,15 @@ class Faults : public ::testing::Test {
     EXPECT_TRUE(has(v, kind, index_of_line)) << listed(v);
   }
 
+  /// Replaces `from` by `to` in the first line of the subroutine that contains `what`, and expects a finding for this
+  /// line.
+  void expect_fault_in_subroutine(const std::string& what, const std::string& from, const std::string& to,
+                                  const std::string& kind) {
+    const std::size_t line = find(what, find("o101 sub"));
+    replace(line, from, to);
+    expect_found(kind, line);
+  }
+
   static bool has(const Verification& v, const std::string& kind, std::size_t index_of_line) {
     for (const Finding& f : v.findings)
       if (f.kind == kind && f.line == static_cast<std::int32_t>(index_of_line + 1)) return true;
@@ -189,9 +198,7 @@ TEST_F(Faults, DwellLost) {
 }
 
 TEST_F(Faults, FeedOfZero) {
-  const std::size_t line = find("F50", find("o101 sub"));
-  replace(line, "F50", "F0");
-  expect_found("zero_feed", line);
+  expect_fault_in_subroutine("F50", "F50", "F0", "zero_feed");
 }
 
 TEST_F(Faults, ElementDropped) {
@@ -240,9 +247,7 @@ TEST_F(Faults, TruncatedFile) {
 }
 
 TEST_F(Faults, SignFlippedInOneLineOfASubroutine) {
-  const std::size_t line = find("G1 Y-0.1", find("o101 sub"));
-  replace(line, "Y-", "Y");
-  expect_found("clearance_face_leads", line);
+  expect_fault_in_subroutine("G1 Y-0.1", "Y-", "Y", "clearance_face_leads");
 }
 
 TEST_F(Faults, TheTableAndTheHolder) {

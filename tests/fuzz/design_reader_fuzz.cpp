@@ -1,17 +1,16 @@
 // For any text of a design file and any override, the reader either returns a design or throws an InputError of one
 // line.
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <span>
 #include <string>
 #include <string_view>
 
 #include "core/error.h"
 #include "design/io/design_reader.h"
+#include "tests/fuzz/one_line.h"
 
 namespace {
 
@@ -32,9 +31,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     retrace::studies::parse_design(text, "fuzz.toml", overrides);
   } catch (const retrace::InputError& error) {
-    const std::string_view message = error.what();
-    const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20; };
-    if (message.empty() || std::any_of(message.begin(), message.end(), is_control)) std::abort();
+    retrace::fuzz::require_one_line(error);
   }
   return 0;
 }

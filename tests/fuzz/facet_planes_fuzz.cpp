@@ -1,22 +1,17 @@
 // For any table of planes, the reader either returns planes close to the planes of the design or throws an InputError
 // of one line. Planes that the reader returns can be written and read back.
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <string>
-#include <string_view>
 
 #include "core/error.h"
 #include "geometry/io/facet_planes_reader.h"
+#include "tests/fuzz/one_line.h"
 
 namespace {
-
-bool is_control(char c) {
-  return static_cast<unsigned char>(c) < 0x20;
-}
 
 retrace::geometry::PartSpec checker() {
   retrace::geometry::PartSpec spec;
@@ -44,8 +39,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::string text = facet_planes_text(planes);
     if (facet_planes_text(parse_facet_planes(text, "again.csv", checker())) != text) std::abort();
   } catch (const retrace::InputError& error) {
-    const std::string message = error.what();
-    if (message.empty() || std::any_of(message.begin(), message.end(), is_control)) std::abort();
+    retrace::fuzz::require_one_line(error);
   }
   return 0;
 }

@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "studies/roughness/io/facet_table_reader.h"
+#include "tests/fuzz/one_line.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string text(data, data + size);
@@ -22,8 +23,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
           std::any_of(group.name.begin(), group.name.end(), is_control))
         std::abort();
   } catch (const retrace::InputError& error) {
-    const std::string message = error.what();
-    if (message.empty() || std::any_of(message.begin(), message.end(), is_control)) std::abort();
+    retrace::fuzz::require_one_line(error);
   }
   return 0;
 }

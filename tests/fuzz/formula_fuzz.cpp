@@ -1,17 +1,16 @@
 // For any text, the reader either returns a formula or throws an InputError of one line. A formula has the same value
 // for every number type.
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <string>
-#include <string_view>
 
 #include "core/error.h"
 #include "core/math/formula_evaluation.h"
+#include "tests/fuzz/one_line.h"
 
 namespace {
 
@@ -35,9 +34,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     evaluate(retrace::parse_formula(std::string(reinterpret_cast<const char*>(data), size), {"x", "y"}, {}));
   } catch (const retrace::InputError& error) {
-    const std::string_view message = error.what();
-    const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20; };
-    if (message.empty() || std::any_of(message.begin(), message.end(), is_control)) std::abort();
+    retrace::fuzz::require_one_line(error);
   }
   return 0;
 }

@@ -1,25 +1,18 @@
 // Reads any bytes as a glass catalogue. Each glass is either read or refused with a message of one line. Each
 // refractive index is a finite number.
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
-#include <string_view>
 
 #include "core/error.h"
 #include "materials/io/glass_catalogue.h"
+#include "tests/fuzz/one_line.h"
 
 namespace {
 
 namespace materials = retrace::materials;
-
-void require_one_line(const retrace::InputError& error) {
-  const std::string_view message = error.what();
-  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20; };
-  if (message.empty() || std::any_of(message.begin(), message.end(), is_control)) std::abort();
-}
 
 void use(const materials::Material& glass) {
   for (const double wavelength_nm : {glass.valid_from_nm, 587.56, glass.valid_to_nm}) {
@@ -27,7 +20,7 @@ void use(const materials::Material& glass) {
     try {
       if (!std::isfinite(materials::refractive_index(glass.dispersion, wavelength_nm))) std::abort();
     } catch (const retrace::InputError& error) {
-      require_one_line(error);
+      retrace::fuzz::require_one_line(error);
     }
   }
 }
@@ -41,11 +34,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         catalogue.require(name, {});
         use(catalogue.glass(name));
       } catch (const retrace::InputError& error) {
-        require_one_line(error);
+        retrace::fuzz::require_one_line(error);
       }
     catalogue.require("N-BK7", {"d.toml", 1, "body.material"});
   } catch (const retrace::InputError& error) {
-    require_one_line(error);
+    retrace::fuzz::require_one_line(error);
   }
   return 0;
 }

@@ -12,6 +12,7 @@
 
 #include "core/error.h"
 #include "surface_models/io/height_map_reader.h"
+#include "tests/fuzz/one_line.h"
 
 namespace retrace::fuzz {
 
@@ -29,9 +30,7 @@ inline void read_height_map(const std::string& begin, const std::uint8_t* data, 
         std::none_of(map.heights_nm.begin(), map.heights_nm.end(), [](double z) { return std::isinf(z); });
     if (!is_sound) std::abort();
   } catch (const InputError& error) {
-    const std::string message = error.what();
-    const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20; };
-    if (message.empty() || std::any_of(message.begin(), message.end(), is_control)) std::abort();
+    require_one_line(error);
   }
 }
 

@@ -1,7 +1,6 @@
 // Reads any bytes as a photometric file. The first byte selects the format, LM-63 or EULUMDAT. The file is either read
 // or refused with a message of one line. A lamp that is read has a flux, and an intensity in every direction.
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -10,6 +9,7 @@
 
 #include "core/error.h"
 #include "studies/image/io/lamp_reader.h"
+#include "tests/fuzz/one_line.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace retrace;
@@ -21,9 +21,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (int k = 0; k < 64; ++k)
       if (!(lamp.intensity.cd({std::cos(k), std::sin(0.7 * k), std::cos(1.3 * k)}) >= 0.0)) std::abort();
   } catch (const InputError& error) {
-    const std::string_view message = error.what();
-    const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20; };
-    if (message.empty() || std::any_of(message.begin(), message.end(), is_control)) std::abort();
+    retrace::fuzz::require_one_line(error);
   }
   return 0;
 }

@@ -10,17 +10,9 @@
 
 #include "core/error.h"
 #include "studies/photometry/io/limits_reader.h"
+#include "tests/fuzz/one_line.h"
 
 namespace {
-
-bool is_control(char c) {
-  return static_cast<unsigned char>(c) < 0x20;
-}
-
-void check_message(const retrace::InputError& error) {
-  const std::string message = error.what();
-  if (message.empty() || std::any_of(message.begin(), message.end(), is_control)) std::abort();
-}
 
 void check_programme(const retrace::studies::LimitTable& table, const retrace::studies::LimitRow& row) {
   using namespace retrace::studies;
@@ -33,7 +25,7 @@ void check_programme(const retrace::studies::LimitTable& table, const retrace::s
           !(std::abs(point.h_deg) <= 85.0) || !(point.observation_deg >= 0.0 && point.observation_deg <= 20.0))
         std::abort();
   } catch (const retrace::InputError& error) {
-    check_message(error);
+    retrace::fuzz::require_one_line(error);
   }
 }
 
@@ -46,7 +38,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (std::size_t k = 0; k < std::min<std::size_t>(table.rows.size(), 20); ++k)
       check_programme(table, table.rows[k]);
   } catch (const retrace::InputError& error) {
-    check_message(error);
+    retrace::fuzz::require_one_line(error);
   }
   return 0;
 }

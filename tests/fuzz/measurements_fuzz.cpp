@@ -1,24 +1,15 @@
 // For any table of measurements, the reader either returns measurements that satisfy its postconditions or throws an
 // InputError of one line. If measurements are returned, a calibration with them succeeds or throws such an error.
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
-#include <string>
 
 #include "core/error.h"
 #include "studies/calibration/io/measurement_reader.h"
+#include "tests/fuzz/one_line.h"
 #include "tests/support/prism_jobs.h"
-
-namespace {
-
-bool is_control(char c) {
-  return static_cast<unsigned char>(c) < 0x20;
-}
-
-}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace retrace::studies;
@@ -31,8 +22,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (const CalibratedQuantity& q : found.quantities)
       if (!std::isfinite(q.value) || !std::isfinite(q.uncertainty)) std::abort();
   } catch (const retrace::InputError& error) {
-    const std::string message = error.what();
-    if (message.empty() || std::any_of(message.begin(), message.end(), is_control)) std::abort();
+    retrace::fuzz::require_one_line(error);
   }
   return 0;
 }

@@ -1,6 +1,5 @@
 // Reads any bytes as an NC program of each dialect. The result is a list of motions or an error of one line, in bounded
 // time.
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -10,6 +9,7 @@
 #include "core/error.h"
 #include "fabrication/read/nc_motion.h"
 #include "fabrication/read/nc_program.h"
+#include "tests/fuzz/one_line.h"
 
 namespace {
 
@@ -26,12 +26,6 @@ struct CheckingSink : NcSink {
   int motions = 0;
 };
 
-void check_message(const retrace::InputError& error) {
-  const std::string_view message = error.what();
-  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20; };
-  if (message.empty() || std::any_of(message.begin(), message.end(), is_control)) std::abort();
-}
-
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -42,13 +36,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       CheckingSink sink;
       run_nc(parse_nc(text, "fuzz", dialect), sink);
     } catch (const retrace::InputError& error) {
-      check_message(error);
+      retrace::fuzz::require_one_line(error);
     }
   }
   try {
     recognise_dialect(text, "fuzz");
   } catch (const retrace::InputError& error) {
-    check_message(error);
+    retrace::fuzz::require_one_line(error);
   }
   return 0;
 }

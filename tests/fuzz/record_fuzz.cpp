@@ -1,25 +1,18 @@
 // Reads any bytes as a record of refractiveindex.info. The record is either read or refused with a message of one line.
 // Each refractive index is a finite number.
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
-#include <string_view>
 
 #include "core/error.h"
 #include "materials/io/index_record.h"
+#include "tests/fuzz/one_line.h"
 
 namespace {
 
 namespace materials = retrace::materials;
-
-void require_one_line(const retrace::InputError& error) {
-  const std::string_view message = error.what();
-  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20; };
-  if (message.empty() || std::any_of(message.begin(), message.end(), is_control)) std::abort();
-}
 
 }  // namespace
 
@@ -32,7 +25,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       if (!std::isfinite(materials::refractive_index(material.dispersion, wavelength_nm))) std::abort();
     }
   } catch (const retrace::InputError& error) {
-    require_one_line(error);
+    retrace::fuzz::require_one_line(error);
   }
   return 0;
 }

@@ -2,7 +2,6 @@
 // command line. The text either gives a value or causes an InputError of one line. If a value is converted to text,
 // this text must give the same value.
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -13,19 +12,11 @@
 
 #include "core/error.h"
 #include "requests/descriptions.h"
+#include "tests/fuzz/one_line.h"
 
 namespace {
 
 using namespace retrace;
-
-bool is_control(char c) {
-  return static_cast<unsigned char>(c) < 0x20;
-}
-
-void check_message(const InputError& error) {
-  const std::string message = error.what();
-  if (message.empty() || std::any_of(message.begin(), message.end(), is_control)) std::abort();
-}
 
 template <class Type>
 void try_text(std::uint8_t row_number, std::string_view text) {
@@ -40,7 +31,7 @@ void try_text(std::uint8_t row_number, std::string_view text) {
     if (requests::text_of(row, &request) != own) std::abort();
     requests::check(request);
   } catch (const InputError& error) {
-    check_message(error);
+    retrace::fuzz::require_one_line(error);
   }
 }
 

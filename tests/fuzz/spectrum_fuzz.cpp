@@ -1,15 +1,14 @@
 // Any spectrum file of a lamp is either read as wavelengths and weights with the sum 1, or refused with a message of
 // one line.
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
-#include <string_view>
 
 #include "core/error.h"
 #include "materials/io/spectrum_reader.h"
+#include "tests/fuzz/one_line.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   namespace materials = retrace::materials;
@@ -21,9 +20,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (!(std::abs(total - 1.0) < 1e-9) || !std::is_sorted(rule.wavelengths_nm.begin(), rule.wavelengths_nm.end()))
       std::abort();
   } catch (const retrace::InputError& error) {
-    const std::string_view message = error.what();
-    const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20; };
-    if (message.empty() || std::any_of(message.begin(), message.end(), is_control)) std::abort();
+    retrace::fuzz::require_one_line(error);
   }
   return 0;
 }

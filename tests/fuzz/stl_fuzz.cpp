@@ -1,15 +1,14 @@
 // For any STL file, the reader either returns a mesh or throws an InputError of one line. A mesh either becomes a part
 // or causes an InputError of one line.
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <string_view>
 
 #include "core/error.h"
 #include "geometry/io/stl_file.h"
 #include "geometry/part/mesh_part.h"
+#include "tests/fuzz/one_line.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace retrace;
@@ -19,9 +18,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const geometry::ClosedMesh closed = geometry::with_openings_closed(mesh);
     geometry::part_of_mesh(closed.mesh);
   } catch (const InputError& error) {
-    const std::string_view message = error.what();
-    const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20; };
-    if (message.empty() || std::any_of(message.begin(), message.end(), is_control)) std::abort();
+    retrace::fuzz::require_one_line(error);
   }
   return 0;
 }

@@ -3,7 +3,6 @@
 
 #include <unistd.h>
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -16,6 +15,7 @@
 #include "studies/quantity/io/study_reader.h"
 #include "studies/sweep/io/sweep_reader.h"
 #include "studies/tolerance/io/tolerance_reader.h"
+#include "tests/fuzz/one_line.h"
 
 namespace {
 
@@ -26,9 +26,7 @@ void refused_in_one_line(Work work) {
   try {
     work();
   } catch (const InputError& error) {
-    const std::string_view message = error.what();
-    const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20; };
-    if (message.empty() || std::any_of(message.begin(), message.end(), is_control)) std::abort();
+    retrace::fuzz::require_one_line(error);
   }
 }
 

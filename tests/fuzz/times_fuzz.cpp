@@ -1,26 +1,21 @@
 // For any table of times, the reader either returns rows that can be used for calibration or throws an InputError of
 // one line.
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
-#include <string>
 
 #include "core/error.h"
 #include "fabrication/machine/io/machine_files.h"
 #include "fabrication/post/post.h"
 #include "studies/calibration/io/time_files.h"
 #include "studies/calibration/time_programs.h"
+#include "tests/fuzz/one_line.h"
 
 namespace {
 
 using namespace retrace;
-
-bool is_control(char c) {
-  return static_cast<unsigned char>(c) < 0x20;
-}
 
 /// Returns the text of one program with the file name "a".
 FileTexts programs(const fabrication::Machine& machine) {
@@ -39,8 +34,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (const studies::CalibratedTime& time : found.quantities)
       if (!std::isfinite(time.value) || !std::isfinite(time.uncertainty) || time.value < 0.0) std::abort();
   } catch (const InputError& error) {
-    const std::string message = error.what();
-    if (message.empty() || std::any_of(message.begin(), message.end(), is_control)) std::abort();
+    retrace::fuzz::require_one_line(error);
   }
   return 0;
 }

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/math/jets.h"
+#include "tests/support/polynomials.h"
 
 // Tests of sags: values are compared with closed forms, and derivatives with difference quotients.
 
@@ -57,11 +58,7 @@ TEST(Sag, AsphereAndParaboloid) {
 
 TEST(Sag, PolynomialInXAndY) {
   Sag sag;
-  XyPolynomial p{2.0, 3, std::vector<double>(XyPolynomial::count(3), 0.0)};
-  p.coefficients[p.index(2, 1)] = 0.5;
-  p.coefficients[p.index(0, 3)] = -0.25;
-  p.coefficients[p.index(0, 0)] = 1.0;
-  sag.polynomial = p;
+  sag.polynomial = testing::polynomial_of(2.0, 3, {{2, 1, 0.5}, {0, 3, -0.25}, {0, 0, 1.0}});
   EXPECT_NEAR(sag.evaluate(1.0, 3.0), 1.0 + 0.5 * 0.25 * 1.5 - 0.25 * 3.375, 1e-15);
   expect_derivatives(sag, 0.4, -1.2);
 }

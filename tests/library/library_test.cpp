@@ -131,6 +131,16 @@ TEST(Library, DesignsAreReadVariedAndQuoted) {
   EXPECT_EQ(Design::parse(read_text(file), file.string(), {"body.thickness_mm=3"}).json(), design.json());
 }
 
+/// Returns a request for a red part of 30 cm2 and class IA of R150.
+PhotometryRequest red_r150() {
+  PhotometryRequest request;
+  request.standard = "r150";
+  request.part_class = "IA";
+  request.colour = "red";
+  request.area_cm2 = 30;
+  return request;
+}
+
 TEST(Library, WrongInputIsAnErrorWithItsPlace) {
   try {
     Design::parse("schema = \"retrace.design/1\"\n[element]\nkind = \"prism\"\n", "my.toml");
@@ -157,11 +167,7 @@ TEST(Library, WrongInputIsAnErrorWithItsPlace) {
     if (bad != 0.0) {
       EXPECT_THROW(rre(design, {.engine = "exact", .cutoff = bad}), InputError) << bad;
     }
-    PhotometryRequest table;
-    table.standard = "r150";
-    table.part_class = "IA";
-    table.colour = "red";
-    table.area_cm2 = 30;
+    PhotometryRequest table = red_r150();
     table.cutoff = bad;
     EXPECT_THROW(photometry(design, table), InputError) << bad;
   }
@@ -173,11 +179,7 @@ TEST(Library, WrongInputIsAnErrorWithItsPlace) {
   constexpr std::uint64_t most = std::numeric_limits<std::uint64_t>::max();
   EXPECT_THROW(rre(design, {.engine = "montecarlo", .samples = most}), InputError);
   EXPECT_THROW(rays(design, {.emitter = "collimated", .rays = most}), InputError);
-  PhotometryRequest table;
-  table.standard = "r150";
-  table.part_class = "IA";
-  table.colour = "red";
-  table.area_cm2 = 30;
+  PhotometryRequest table = red_r150();
   table.samples = most;
   EXPECT_THROW(photometry(design, table), InputError);
   EXPECT_THROW(rre(design, {.azimuth_deg = {1e300}}), InputError);
@@ -229,11 +231,7 @@ TEST(Library, WorkIsWatchedAndStopped) {
 TEST(Library, PhotometryIsThatOfTheProgram) {
   const TemporaryFolder folder;
   const std::string file = example("rtp_brick_2mm.toml");
-  PhotometryRequest request;
-  request.standard = "r150";
-  request.part_class = "IA";
-  request.colour = "red";
-  request.area_cm2 = 30;
+  PhotometryRequest request = red_r150();
   request.engine = "montecarlo";
   request.samples = 512;
   request.advice = false;

@@ -113,13 +113,13 @@ TEST(IndexRecord, WhatIsWrongIsToldWithItsLine) {
   const auto table = [&](const std::string& data) {
     return complaint("DATA:\n  - type: tabulated n\n    data: |\n      " + data + "\n");
   };
-  EXPECT_EQ(table("0.4 1.5 0.5"), "glass.yml:4: data");
-  EXPECT_EQ(table("0.4 1.5\n      0.5\n      1.5 0.6\n      1.5"), "glass.yml:5: data");
-  EXPECT_EQ(table("0.4 1.5 0.4 1.6"), "glass.yml:4: data");
-  EXPECT_EQ(table("-0.4 1.5"), "glass.yml:4: data");
-  EXPECT_EQ(table("0.5 1.5\n      0.4 nan"), "glass.yml:5: data");
-  EXPECT_EQ(table("0.4 -1.5"), "glass.yml:4: data");
-  EXPECT_EQ(table(""), "glass.yml:3: data");
+  expect_refusals(table, {{"0.4 1.5 0.5", "glass.yml:4: data"},
+                          {"0.4 1.5\n      0.5\n      1.5 0.6\n      1.5", "glass.yml:5: data"},
+                          {"0.4 1.5 0.4 1.6", "glass.yml:4: data"},
+                          {"-0.4 1.5", "glass.yml:4: data"},
+                          {"0.5 1.5\n      0.4 nan", "glass.yml:5: data"},
+                          {"0.4 -1.5", "glass.yml:4: data"},
+                          {"", "glass.yml:3: data"}});
   EXPECT_EQ(table("0.4 1.5\n      0.4 1.5\n      0.6 1.4"), "") << "equal rows count one time";
 }
 

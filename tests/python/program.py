@@ -12,6 +12,17 @@ PROGRAM = os.environ["RETRACE_PROGRAM"]
 SOURCE = pathlib.Path(os.environ["RETRACE_SOURCE_DIR"])
 EXAMPLES = SOURCE / "examples"
 
+# Keywords of a short photometry of a red part by R150.
+RED_R150 = {
+    "standard": "r150",
+    "class_": "IA",
+    "colour": "red",
+    "area_cm2": 30,
+    "engine": "montecarlo",
+    "samples": 64,
+    "advice": False,
+}
+
 
 def example(name):
     return str(EXAMPLES / name)

@@ -126,13 +126,7 @@ class Equality(unittest.TestCase):
             lambda file: program.answer(
                 rt.photometry,
                 file,
-                standard="r150",
-                class_="IA",
-                colour="red",
-                area_cm2=30,
-                engine="montecarlo",
-                samples=64,
-                advice=False,
+                **program.RED_R150,
             ),
             least=4,
         )

@@ -57,13 +57,7 @@ class Results(unittest.TestCase):
         self.assertIn("footprint", dir(self.result))
         verdicts = rt.photometry(
             program.example("rtp_brick_2mm.toml"),
-            standard="r150",
-            class_="IA",
-            colour="red",
-            area_cm2=30,
-            engine="montecarlo",
-            samples=64,
-            advice=False,
+            **program.RED_R150,
         )
         self.assertIn("background:#", verdicts._repr_html_())
         self.assertIn(verdicts.verdict, repr(verdicts))

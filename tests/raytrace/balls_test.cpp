@@ -17,10 +17,8 @@ namespace {
 using std::numbers::pi;
 
 Optics ideal(double index) {
-  Optics optics;
+  Optics optics = testing::ideal();
   optics.index = index;
-  optics.mirror_facets = true;
-  optics.lossless_entrance = true;
   return optics;
 }
 

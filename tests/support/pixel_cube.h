@@ -17,6 +17,9 @@
 
 namespace retrace::testing {
 
+/// Wavelength in tests that compare far fields with the pixel model, in nm.
+inline constexpr double kPixelCubeWaveNm = 550.0;
+
 /// Parameters of the pixel model.
 struct PixelCubeSpec {
   double aperture_mm = 0.5;  ///< diameter of the circle around the hexagonal aperture

@@ -15,6 +15,7 @@
 #include "fabrication/planing/plan/plan.h"
 #include "fabrication/post/post.h"
 #include "tests/fabrication/mutants.h"
+#include "tests/fabrication/planing/turned_lens.h"
 
 namespace retrace::fabrication::planing_mutation_test {
 namespace {
@@ -35,18 +36,7 @@ PlanedPart mill_part() {
 }
 
 PlanedPart lathe_part(double nose_mm) {
-  PlanedPart part;
-  part.source = "part.toml";
-  part.lens = {60.0, 10.0, 1.6, 45.0};
-  part.tolerance_mm = 0.2;
-  part.lathe = PlaningLathe{};
-  part.lathe->feed_mm_per_min = 200.0;
-  part.lathe->depth_of_cut_mm = 6.0;
-  part.lathe->nose_radius_mm = nose_mm;
-  part.lathe->spindle_rpm = 800;
-  part.lathe->spindle_start = "M103";
-  part.lathe->spindle_stop = "M105";
-  return part;
+  return test::turned_lens({60.0, 10.0, 1.6, 45.0}, 0.2, 6.0, nose_mm);
 }
 
 std::vector<PlaningText> texts_of(const PlanedPart& part, const std::string& dialect) {

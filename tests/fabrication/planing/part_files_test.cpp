@@ -12,14 +12,13 @@
 namespace retrace::fabrication::part_files_test {
 namespace {
 
-const std::string kMilled = R"(schema = "retrace.planed_part/1"
-[element]
-kind = "zone_lens"
-focal_length_mm = 500
-wavelength_mm = 5
-refractive_index = 1.5
-width_mm = 400
-length_mm = 300
+/// Returns the first lines of a part file, up to the width of the lens.
+std::string lens(const std::string& kind) {
+  return "schema = \"retrace.planed_part/1\"\n[element]\nkind = \"" + kind +
+         "\"\nfocal_length_mm = 500\nwavelength_mm = 5\nrefractive_index = 1.5\nwidth_mm = 400\n";
+}
+
+const std::string kMilled = lens("zone_lens") + R"(length_mm = 300
 [tolerance]
 form_mm = 0.2
 [mill]
@@ -42,14 +41,7 @@ TEST(PlanedPart, DefaultsAreThoseOfTheMachineOfThePaper) {
   EXPECT_EQ(part.mill->max_hours, 8.0);
 }
 
-const std::string kTurned = R"(schema = "retrace.planed_part/1"
-[element]
-kind = "round_zone_lens"
-focal_length_mm = 500
-wavelength_mm = 5
-refractive_index = 1.5
-width_mm = 400
-[tolerance]
+const std::string kTurned = lens("round_zone_lens") + R"([tolerance]
 form_mm = 0.05
 [lathe]
 feed_mm_per_min = 200

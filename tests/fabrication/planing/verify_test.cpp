@@ -20,6 +20,7 @@
 #include "fabrication/planing/plan/plan.h"
 #include "fabrication/post/post.h"
 #include "tests/fabrication/planing/findings.h"
+#include "tests/fabrication/planing/turned_lens.h"
 #include "tests/support/refusals.h"
 
 namespace retrace::fabrication::verify_test {
@@ -30,18 +31,7 @@ using test::finds;
 const ZoneLens kLenses[] = {{500.0, 5.0, 1.52, 250.0}, {200.0, 5.0, 1.52, 90.0}, {80.0, 2.0, 2.1, 70.0}};
 
 PlanedPart turned_part(double nose_mm = 0.0) {
-  PlanedPart part;
-  part.source = "part.toml";
-  part.lens = kLenses[1];
-  part.tolerance_mm = 0.05;
-  part.lathe = PlaningLathe{};
-  part.lathe->feed_mm_per_min = 200.0;
-  part.lathe->depth_of_cut_mm = 2.5;
-  part.lathe->nose_radius_mm = nose_mm;
-  part.lathe->spindle_rpm = 800;
-  part.lathe->spindle_start = "M103";
-  part.lathe->spindle_stop = "M105";
-  return part;
+  return test::turned_lens(kLenses[1], 0.05, 2.5, nose_mm);
 }
 
 /// Checks the plan for one part against another part.

@@ -177,12 +177,18 @@ TEST(TurningEnvelope, MapsShowCuspsAndNoWavesOfThePixels) {
   }
 }
 
-TEST(TurningEnvelope, FormOfALensletThatReachesTheExtrapolatedBase) {
-  TurningTool tool;
-  tool.nose_radius_mm = 0.1;
+/// Returns a spiral over lenslets whose blocks have equal arcs.
+PathOptions fine_spiral() {
   PathOptions o = spiral_of(0.32, 0.01);
   o.sampling = Sampling::arc;
+  // The sagitta of the chord of a block is arc^2 k / 8: 0.3 nm at k = 2 per mm.
   o.arc_mm = 0.001;
+  return o;
+}
+
+TEST(TurningEnvelope, FormOfALensletThatReachesTheExtrapolatedBase) {
+  const TurningTool tool{.nose_radius_mm = 0.1};
+  const PathOptions o = fine_spiral();
   Sag base;
   base.asphere.curvature_per_mm = -0.2;
   const Extrapolation extrapolation{circle_boundary({0.0, 0.0}, 0.2, 5), 4};
@@ -220,12 +226,8 @@ FreeformSurface lenslet_array() {
 }
 
 TEST(TurningEnvelope, CuspsAndFormOfALensletArray) {
-  TurningTool tool;
-  tool.nose_radius_mm = 0.1;
-  PathOptions o = spiral_of(0.32, 0.01);
-  o.sampling = Sampling::arc;
-  // The sagitta of the chord of a block is arc^2 k / 8: 0.3 nm at k = 2 per mm.
-  o.arc_mm = 0.001;
+  const TurningTool tool{.nose_radius_mm = 0.1};
+  const PathOptions o = fine_spiral();
   const FreeformSurface design = lenslet_array();
   const Inspection i = inspect(cut(design, tool, o), design, tool, disc(o), 31);
   expect_cusps(i, 60);

@@ -10,6 +10,7 @@
 #include "fabrication/turning/plan/polynomial_spiral.h"
 #include "fabrication/turning/plan/turning_program.h"
 #include "tests/fabrication/turning/paths.h"
+#include "tests/support/polynomials.h"
 #include "tests/support/refusals.h"
 
 // Tests of paths. Tool compensation on spheres and planes and the kinematics are compared with closed forms. Programs
@@ -106,13 +107,8 @@ TEST(TurningPath, EdgeNeverLiesBelowTheSurface) {
 
 TEST(TurningPath, PolynomialsTakeTheQuickWayToTheSamePath) {
   Sag quick;
-  XyPolynomial p{1.0, 6, std::vector<double>(XyPolynomial::count(6), 0.0)};
-  p.coefficients[p.index(2, 0)] = 0.1;
-  p.coefficients[p.index(1, 1)] = -0.05;
-  p.coefficients[p.index(3, 3)] = 0.03;
-  p.coefficients[p.index(0, 5)] = -0.02;
-  p.coefficients[p.index(1, 0)] = 0.07;
-  quick.polynomial = p;
+  quick.polynomial =
+      testing::polynomial_of(1.0, 6, {{2, 0, 0.1}, {1, 1, -0.05}, {3, 3, 0.03}, {0, 5, -0.02}, {1, 0, 0.07}});
   const FreeformSurface slow = plain(formula_sag("0.1*x^2-0.05*x*y+0.03*x^3*y^3-0.02*y^5+0.07*x"));
   ASSERT_TRUE(polynomial_spiral(plain(quick), nose(0.2), small_spiral()).has_value());
   ASSERT_FALSE(polynomial_spiral(slow, nose(0.2), small_spiral()).has_value());

@@ -326,14 +326,7 @@ class PageWorks(LiveCase):
         self.assertNotEqual(self.one(".scene-view").get_attribute("data-camera"), camera)
 
     def test_light_and_dark(self):
-        shown = lambda: self.script("return getComputedStyle(document.body).backgroundColor")
-        colours = set()
-        for name in ("light", "dark"):
-            self.paper(name)
-            colours.add(shown())
-        self.assertEqual(len(colours), 2)
-        self.one("#theme").click()
-        self.assertEqual(self.one("html").get_attribute("data-theme"), "light")
+        self.check_themes()
         self.paper(None)
 
     def test_looks_as_it_did(self):

@@ -22,13 +22,12 @@ namespace {
 using namespace geometry;
 using namespace raytrace;
 
-constexpr double kWaveNm = 550.0;
 constexpr double kWindow_rad = 0.035;
 
 FarField field_of(const PartSpec& spec, const Optics& optics, const Illumination& light = {}) {
   const Part part = build_part(spec);
   FarFieldPolicy policy;
-  policy.wavelength_nm = kWaveNm;
+  policy.wavelength_nm = kPixelCubeWaveNm;
   policy.window_rad = 1.5 * kWindow_rad;
   return far_field_of_cells(part, optics, light, policy);
 }
@@ -137,8 +136,8 @@ TEST(ErrorFreeExit, CubeCornersWithErrorsAgreeWithAPixelModel) {
       optics.mirror_facets = mirrors;
       optics.lossless_entrance = true;
       const FarField field = field_of(spec, optics);
-      const PixelCube cube({.wavelength_mm = 1e-6 * kWaveNm, .mirrors = mirrors, .normals = normals_of(spec)});
-      const double peak = cube.area_mm2() / std::pow(1e-6 * kWaveNm, 2.0);
+      const PixelCube cube({.wavelength_mm = 1e-6 * kPixelCubeWaveNm, .mirrors = mirrors, .normals = normals_of(spec)});
+      const double peak = cube.area_mm2() / std::pow(1e-6 * kPixelCubeWaveNm, 2.0);
       double most = 0.0;
       for (const double angle_deg : {0.0, 0.07, 0.2, 0.33, 0.6})
         for (const double turn_deg : {0.0, 50.0, 90.0, 170.0, 233.0, 300.0}) {

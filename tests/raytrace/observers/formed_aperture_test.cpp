@@ -25,8 +25,7 @@ using namespace raytrace;
 using surface_models::FacetForm;
 using Complex = std::complex<double>;
 
-constexpr double kWaveNm = 550.0;
-constexpr double kWave = 1e-6 * kWaveNm;
+constexpr double kWave = 1e-6 * kPixelCubeWaveNm;
 
 Vec3 tilted(const Vec2& q) {
   return {q.x(), q.y(), std::sqrt(1.0 - q.squaredNorm())};
@@ -36,7 +35,7 @@ FarField field_of(const PartSpec& spec, Optics optics, const FacetForm& form, co
                   FarFieldPolicy policy = {}) {
   const Part part = build_part(spec);
   optics.facet_form = form;
-  policy.wavelength_nm = kWaveNm;
+  policy.wavelength_nm = kPixelCubeWaveNm;
   if (!form.is_plane()) policy.form = &form;
   return far_field_of_cells(part, optics, light, policy);
 }

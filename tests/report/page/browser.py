@@ -71,6 +71,21 @@ class BrowserCase(unittest.TestCase):
         features = [{"name": "prefers-color-scheme", "value": name}] if name else []
         self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": features})
 
+    def background(self):
+        return self.driver.execute_script("return getComputedStyle(document.body).backgroundColor")
+
+    def check_themes(self):
+        """Checks that the light and the dark theme differ, and that the button changes from dark to light. Returns the
+        background colours of both themes."""
+        colours = set()
+        for name in ("light", "dark"):
+            self.paper(name)
+            colours.add(self.background())
+        self.assertEqual(len(colours), 2)
+        self.one("#theme").click()
+        self.assertEqual(self.one("html").get_attribute("data-theme"), "light")
+        return colours
+
     def wait(self, condition):
         return WebDriverWait(self.driver, 60, poll_frequency=0.1).until(condition)
 

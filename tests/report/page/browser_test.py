@@ -143,17 +143,8 @@ class PageWorks(PageCase):
         self.assertEqual(len(lines[1].split(",")), len(lines[0].split(",")))
 
     def test_light_and_dark(self):
-        def shown():
-            return self.driver.execute_script("return getComputedStyle(document.body).backgroundColor")
-
-        colours = set()
-        for name in ("light", "dark"):
-            self.paper(name)
-            colours.add(shown())
-        self.assertEqual(len(colours), 2)
-        self.one("#theme").click()
-        self.assertEqual(self.one("html").get_attribute("data-theme"), "light")
-        self.assertIn(shown(), colours)
+        colours = self.check_themes()
+        self.assertIn(self.background(), colours)
         self.paper(None)
 
     def test_prints(self):

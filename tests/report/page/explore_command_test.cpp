@@ -10,6 +10,10 @@ namespace {
 
 constexpr std::size_t kMaxBytes = 3'000'000;
 
+const std::string kDesign =
+    "# </script><script>\xc3\xa9\r\n[element]\nkind = \"rtp\"\nbase_mm = 1\nwidth_mm = 1\n[array]\nextent = "
+    "\"infinite\"\n[body]\nthickness_mm = 1 # end";
+
 /// Returns the initial state of a page as JSON.
 Json start_of(const std::string& html) {
   const std::string head = "id=\"start\">";
@@ -39,19 +43,16 @@ TEST(Explore, WritesOnePageThatStandsAlone) {
 
 TEST(Explore, BeginsWithTheDesignByteForByte) {
   const TemporaryFolder folder;
-  const std::string text =
-      "# </script><script>\xc3\xa9\r\n[element]\nkind = \"rtp\"\nbase_mm = 1\nwidth_mm = 1\n[array]\nextent = "
-      "\"infinite\"\n[body]\nthickness_mm = 1 # end";
-  folder.write("my design.toml", text);
+  folder.write("my design.toml", kDesign);
   const Outcome outcome = retrace(folder, {"explore", "my design.toml", "-o", "page.html"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   const std::string html = folder.read("page.html");
   expect_to_stand_alone(html);
-  EXPECT_EQ(start_of(html)["toml"], text);
+  EXPECT_EQ(start_of(html)["toml"], kDesign);
   EXPECT_EQ(start_of(html)["source"], "my design.toml");
   EXPECT_FALSE(start_of(html)["embedded"]);
   // The design comes from standard input, and one key is changed.
-  const Outcome changed = retrace(folder, {"explore", "-", "--set", "element.base_mm=2"}, text);
+  const Outcome changed = retrace(folder, {"explore", "-", "--set", "element.base_mm=2"}, kDesign);
   EXPECT_EQ(changed.code, 0) << changed.err;
   EXPECT_NE(start_of(changed.out)["toml"].get<std::string>().find("base_mm = 2"), std::string::npos);
 }

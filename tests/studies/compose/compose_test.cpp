@@ -10,7 +10,6 @@
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <random>
 
 #include "core/error.h"
 #include "studies/compose/io/compose_reader.h"
@@ -18,6 +17,7 @@
 #include "studies/optimise/io/optimise_reader.h"
 #include "studies/quantity/io/study_reader.h"
 #include "tests/support/analytic_study.h"
+#include "tests/support/killed_runs.h"
 #include "tests/support/refusals.h"
 
 namespace retrace::testing::compose_test {
@@ -206,17 +206,9 @@ TEST(Compose, IsTheSameWhateverAKilledRunLeft) {
   const std::string expected = composition_json(study, request, compose(study, request, whole, nullptr, nullptr), 0.0);
   const std::vector<compute::StoredPoint> points = whole.points();
   ASSERT_GT(points.size(), 40U);
-  std::mt19937 random(30);
-  for (int kill = 0; kill < 20; ++kill) {
-    // Up to eight points are computed in parallel. If a run is killed, the store may lack some of the last eight points
-    // that the run started.
-    const std::size_t begun = random() % points.size();
-    compute::ResultStore left("", compose_layout(study), compute::IfExists::refuse);
-    for (std::size_t k = 0; k < begun; ++k)
-      if (k + 8 < begun || random() % 2 == 0) left.record(points[k]);
-    EXPECT_EQ(composition_json(study, request, compose(study, request, left, nullptr, nullptr), 0.0), expected)
-        << "killed after " << begun << " points";
-  }
+  for_each_killed_run(points, compose_layout(study), [&](compute::ResultStore& left) {
+    EXPECT_EQ(composition_json(study, request, compose(study, request, left, nullptr, nullptr), 0.0), expected);
+  });
 }
 
 TEST(Compose, IsTheSameWhateverOtherRunsLeft) {
@@ -302,19 +294,20 @@ TEST(Compose, ReadsFormerNamesOfItsKeys) {
 }
 
 TEST(Compose, RefusesWhatMeansNothing) {
-  EXPECT_EQ(refusal(""), "examples/studies/study.toml: compose");
-  EXPECT_EQ(refusal("[compose]\nmaximize = \"h\"\n"), "examples/studies/study.toml:22: compose.maximize");
-  EXPECT_EQ(refusal("[compose]\nmaximize = [\"g\", \"g.1\"]\n"), "examples/studies/study.toml:22: compose.maximize");
-  EXPECT_EQ(refusal("[compose]\nmaximize = \"g\"\nmin_area_fraction = 0.6\nmax_area_fraction = 0.5\n"),
-            "examples/studies/study.toml:23: compose.min_area_fraction");
-  EXPECT_EQ(refusal("[compose]\nmaximize = \"g\"\nmax_zones = 2\nmax_area_fraction = 0.4\n"),
-            "examples/studies/study.toml:24: compose.max_area_fraction");
-  EXPECT_EQ(refusal("[compose]\nmaximize = \"g\"\nprice = {h = 1}\n"),
-            "examples/studies/study.toml:23: compose.price.h");
-  EXPECT_EQ(refusal("[compose]\nmaximize = \"g\"\nfront = {g = \"max\", h = \"min\"}\n"),
-            "examples/studies/study.toml:23: compose.front");
-  EXPECT_EQ(refusal("[compose]\nmaximize = \"g\"\nmin_area_fraction = 2\n"),
-            "examples/studies/study.toml:23: compose.min_area_fraction");
+  expect_refusals(
+      [](const std::string& keys) { return refusal(keys); },
+      {{"", "examples/studies/study.toml: compose"},
+       {"[compose]\nmaximize = \"h\"\n", "examples/studies/study.toml:22: compose.maximize"},
+       {"[compose]\nmaximize = [\"g\", \"g.1\"]\n", "examples/studies/study.toml:22: compose.maximize"},
+       {"[compose]\nmaximize = \"g\"\nmin_area_fraction = 0.6\nmax_area_fraction = 0.5\n",
+        "examples/studies/study.toml:23: compose.min_area_fraction"},
+       {"[compose]\nmaximize = \"g\"\nmax_zones = 2\nmax_area_fraction = 0.4\n",
+        "examples/studies/study.toml:24: compose.max_area_fraction"},
+       {"[compose]\nmaximize = \"g\"\nprice = {h = 1}\n", "examples/studies/study.toml:23: compose.price.h"},
+       {"[compose]\nmaximize = \"g\"\nfront = {g = \"max\", h = \"min\"}\n",
+        "examples/studies/study.toml:23: compose.front"},
+       {"[compose]\nmaximize = \"g\"\nmin_area_fraction = 2\n",
+        "examples/studies/study.toml:23: compose.min_area_fraction"}});
   EXPECT_EQ(refusal(kMaximize,
                     "[[parameter]]\nkey = \"body.thickness_mm\"\ndistribution = \"normal\"\nmean = 1\nsigma = 0.1\n"),
             "examples/studies/study.toml:2: parameter[1]");

@@ -77,20 +77,14 @@ TEST(Emitter, LambertianLightFollowsTheCosine) {
 }
 
 TEST(Emitter, GaussianLightFallsToItsSquareAtTheHalfAngle) {
-  Emitter emitter;
-  emitter.kind = EmitterKind::gaussian;
-  emitter.disc_mm = 2.0;
-  emitter.half_angle_deg = 4.0;
+  const Emitter emitter{.kind = EmitterKind::gaussian, .disc_mm = 2.0, .half_angle_deg = 4.0};
   expect_law(
       emitter, [](double deg) { return -std::expm1(-2.0 * deg * deg / 16.0); },
       [](double r) { return -std::expm1(-2.0 * r * r); });
 }
 
 TEST(Emitter, CollimatedLightIsEvenInSolidAngle) {
-  Emitter emitter;
-  emitter.kind = EmitterKind::collimated;
-  emitter.disc_mm = 2.0;
-  emitter.half_angle_deg = 0.5;
+  Emitter emitter{.kind = EmitterKind::collimated, .disc_mm = 2.0, .half_angle_deg = 0.5};
   expect_law(
       emitter, [](double deg) { return sin2(0.5 * deg) / sin2(0.25); }, [](double r) { return r * r; });
   emitter.half_angle_deg = 0.0;

@@ -267,6 +267,28 @@ TEST(RayStudy, BothFluxesAndTristimulusValuesShrinkAlike) {
   }
 }
 
+/// Ledgers of collimated light from an emitter and of the beam of `retrace rre` from the same direction.
+struct EmitterAndBeam {
+  RayResult rays;
+  RrePoint beam;
+};
+
+EmitterAndBeam emitter_and_beam(const design::Design& design, double incidence_deg, double azimuth_deg,
+                                std::uint64_t rays) {
+  RayRequest request;
+  request.placement.incidence_deg = incidence_deg;
+  request.placement.azimuth_deg = azimuth_deg;
+  const RayStudy study(design, request);
+  EmitterRequest emitter;
+  emitter.kind = EmitterKind::collimated;
+  emitter.rays = rays;
+  EmitterSource source(study.emitter_of(emitter));
+  studies::RreSettings beam;
+  beam.incidence_deg = {incidence_deg};
+  beam.azimuth_deg = {azimuth_deg};
+  return {study.run(source, nullptr, nullptr, nullptr), RreStudy({design}, beam).run(nullptr, nullptr).points.at(0)};
+}
+
 // The power of collimated light from an emitter is divided among the accounts (categories) of the ledger in the same
 // proportions as the power of the beam of `retrace rre`. Rays that do not hit the part count as missed and are excluded
 // from the comparison.
@@ -275,19 +297,7 @@ TEST(RayStudy, AnEmitterThatCoversThePartIsTheBeamOfRre) {
       "[element]\nkind = \"rtp\"\nbase_mm = 1\nwidth_mm = 1\n[array]\narrangement = \"offset\"\nx_length_mm = "
       "6\ny_length_mm = 4\n[body]\nthickness_mm = 0.02\nrefractive_index = 1.4917\n",
       "bricks.toml");
-  RayRequest request;
-  request.placement.incidence_deg = 20.0;
-  request.placement.azimuth_deg = 30.0;
-  const RayStudy study(design, request);
-  EmitterRequest emitter;
-  emitter.kind = EmitterKind::collimated;
-  emitter.rays = 60000;
-  EmitterSource source(study.emitter_of(emitter));
-  const RayResult result = study.run(source, nullptr, nullptr, nullptr);
-  studies::RreSettings beam;
-  beam.incidence_deg = {20.0};
-  beam.azimuth_deg = {30.0};
-  const RrePoint known = RreStudy({design}, beam).run(nullptr, nullptr).points.at(0);
+  const auto [result, known] = emitter_and_beam(design, 20.0, 30.0, 60000);
   const double met = result.ledger.incident - result.ledger.missed;
   // The emitter illuminates a disc around the part. The illuminated area is the projection of the entrance face, plus
   // the illuminated sides of the plate and of the prisms. Shifted rows end with half a prism.
@@ -344,19 +354,7 @@ TEST(RayStudy, AnEmitterBeforeAnInfinitePartCoversAPeriodEvenly) {
 }
 
 TEST(RayStudy, AnEmitterBeforeAnInfinitePartIsTheBeamOfRre) {
-  RayRequest request;
-  request.placement.incidence_deg = 15.0;
-  request.placement.azimuth_deg = 10.0;
-  const RayStudy study(endless_triangles(), request);
-  EmitterRequest asked;
-  asked.kind = EmitterKind::collimated;
-  asked.rays = 100000;
-  EmitterSource source(study.emitter_of(asked));
-  const RayResult result = study.run(source, nullptr, nullptr, nullptr);
-  studies::RreSettings beam;
-  beam.incidence_deg = {15.0};
-  beam.azimuth_deg = {10.0};
-  const RrePoint known = RreStudy({endless_triangles()}, beam).run(nullptr, nullptr).points.at(0);
+  const auto [result, known] = emitter_and_beam(endless_triangles(), 15.0, 10.0, 100000);
   EXPECT_EQ(result.ledger.rays_missed, 0U);
   for (std::size_t k = 0; k < raytrace::kAccountCount; ++k) {
     // An account of the ledger is a sum over rays. Each ray adds between 0 and its own power. The variance of the

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <functional>
 #include <memory>
-#include <random>
 #include <utility>
 
 #include "core/error.h"
@@ -15,6 +14,7 @@
 #include "studies/optimise/io/optimum_files.h"
 #include "studies/quantity/io/study_reader.h"
 #include "tests/support/analytic_study.h"
+#include "tests/support/killed_runs.h"
 #include "tests/support/refusals.h"
 
 namespace retrace::studies::optimise_test {
@@ -247,16 +247,11 @@ TEST(Optimise, IsTheSameWhateverAKilledRunLeft) {
   compute::ResultStore whole("", optimise_layout(study), compute::IfExists::refuse);
   const std::string expected = optimum_json(study, request, optimise(study, request, whole, nullptr, nullptr), 0.0);
   const std::vector<compute::StoredPoint> points = whole.points();
-  std::mt19937 random(30);
-  for (int kill = 0; kill < 20; ++kill) {
-    const std::size_t begun = random() % points.size();
-    compute::ResultStore left("", optimise_layout(study), compute::IfExists::refuse);
-    for (std::size_t k = 0; k < begun; ++k)
-      if (k + 8 < begun || random() % 2 == 0) left.record(points[k]);
+  testing::for_each_killed_run(points, optimise_layout(study), [&](compute::ResultStore& left) {
     const Optimum optimum = optimise(study, request, left, nullptr, nullptr);
-    EXPECT_EQ(optimum_json(study, request, optimum, 0.0), expected) << "killed after " << begun << " points";
+    EXPECT_EQ(optimum_json(study, request, optimum, 0.0), expected);
     EXPECT_EQ(left.finished(), whole.finished());
-  }
+  });
 }
 
 /// This is the example study with fewer sizes below the smallest size that the tool can cut.
@@ -307,14 +302,15 @@ TEST(Optimise, WhatIsWrongIsSaidWithItsLine) {
     }
     return "";
   };
-  EXPECT_EQ(message(""), "examples/studies/study.toml: optimize");
-  EXPECT_EQ(message("[optimize]\nmaximize = \"ff\"\n"), "examples/studies/study.toml:16: optimize.maximize");
-  EXPECT_EQ(message("[optimize]\nscan = 5\n"), "examples/studies/study.toml:15: optimize");
-  EXPECT_EQ(message("[optimize]\nmaximize = \"f\"\nscan = 2\n"), "examples/studies/study.toml:17: optimize.scan");
-  EXPECT_EQ(message("[optimize]\nmaximize = \"f\"\n[[constraint]]\nquantity = \"f\"\n"),
-            "examples/studies/study.toml:17: constraint[1].max");
-  EXPECT_EQ(message("[optimize]\nmaximize = \"f\"\n[[constraint]]\nquantity = \"f\"\nmin = 2\nmax = 1\n"),
-            "examples/studies/study.toml:20: constraint[1].max");
+  expect_refusals(message,
+                  {{"", "examples/studies/study.toml: optimize"},
+                   {"[optimize]\nmaximize = \"ff\"\n", "examples/studies/study.toml:16: optimize.maximize"},
+                   {"[optimize]\nscan = 5\n", "examples/studies/study.toml:15: optimize"},
+                   {"[optimize]\nmaximize = \"f\"\nscan = 2\n", "examples/studies/study.toml:17: optimize.scan"},
+                   {"[optimize]\nmaximize = \"f\"\n[[constraint]]\nquantity = \"f\"\n",
+                    "examples/studies/study.toml:17: constraint[1].max"},
+                   {"[optimize]\nmaximize = \"f\"\n[[constraint]]\nquantity = \"f\"\nmin = 2\nmax = 1\n",
+                    "examples/studies/study.toml:20: constraint[1].max"}});
 }
 
 }  // namespace

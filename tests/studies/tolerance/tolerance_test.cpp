@@ -268,16 +268,17 @@ TEST(Tolerance, WhatIsWrongIsSaidWithItsLine) {
   EXPECT_EQ(message("values = [1, 2]", ""), "examples/study.toml:2: parameter[1]");
   EXPECT_EQ(message("from = 1\nto = 2", ""), "examples/study.toml:2: parameter[1]");
   const auto keys = [&](const std::string& text) { return message(kNormals[0], text); };
-  EXPECT_EQ(keys("[tolerance]\nsamples = 1\n"), "examples/study.toml:21: tolerance.samples");
-  EXPECT_EQ(keys("[tolerance]\nsamples = 2.5\n"), "examples/study.toml:21: tolerance.samples");
-  EXPECT_EQ(keys("[tolerance]\nsampling = \"random\"\n"), "examples/study.toml:21: tolerance.sampling");
-  EXPECT_EQ(keys("[tolerance]\nindices = \"yes\"\n"), "examples/study.toml:21: tolerance.indices");
-  EXPECT_EQ(keys("[tolerance]\nconfidence_percent = 100\n"), "examples/study.toml:21: tolerance.confidence_percent");
-  EXPECT_EQ(keys("[tolerance]\nmin_yield_percent = 90\n"), "examples/study.toml:21: tolerance.min_yield_percent");
-  EXPECT_EQ(keys("[tolerance]\nsample = 3\n"), "examples/study.toml:21: tolerance.sample");
-  EXPECT_EQ(keys("[tolerance]\nsamples = 1000000\nindices = \"none\"\n"), "");
-  EXPECT_EQ(keys("[tolerance]\nsamples = 1000000\nindices = \"sobol\"\n"), "");
-  EXPECT_EQ(keys("[[constraint]]\nquantity = \"g\"\nmax = 1\n"), "examples/study.toml:21: constraint[1].quantity");
+  expect_refusals(keys,
+                  {{"[tolerance]\nsamples = 1\n", "examples/study.toml:21: tolerance.samples"},
+                   {"[tolerance]\nsamples = 2.5\n", "examples/study.toml:21: tolerance.samples"},
+                   {"[tolerance]\nsampling = \"random\"\n", "examples/study.toml:21: tolerance.sampling"},
+                   {"[tolerance]\nindices = \"yes\"\n", "examples/study.toml:21: tolerance.indices"},
+                   {"[tolerance]\nconfidence_percent = 100\n", "examples/study.toml:21: tolerance.confidence_percent"},
+                   {"[tolerance]\nmin_yield_percent = 90\n", "examples/study.toml:21: tolerance.min_yield_percent"},
+                   {"[tolerance]\nsample = 3\n", "examples/study.toml:21: tolerance.sample"},
+                   {"[tolerance]\nsamples = 1000000\nindices = \"none\"\n", ""},
+                   {"[tolerance]\nsamples = 1000000\nindices = \"sobol\"\n", ""},
+                   {"[[constraint]]\nquantity = \"g\"\nmax = 1\n", "examples/study.toml:21: constraint[1].quantity"}});
 }
 
 }  // namespace
