@@ -167,7 +167,7 @@ void check_needs(const GivenOptions& options, const std::vector<Argument>& argum
       if (need.size() == 1 && first.kind == Condition::Kind::absent)
         throw InputError({"", 0, option_names(argument).back()}, "not allowed together with " + first.option);
       throw InputError({"", 0, option_names(argument).back()},
-                       fmt::format("needs {}{}", text_of(need),
+                       fmt::format("requires {}{}", text_of(need),
                                    is_of_value ? ", got " + printable(options.value(first.option)) : ""));
     }
   }
@@ -205,7 +205,7 @@ std::string message_of(const CLI::ParseError& error) {
   const std::string line = one_line(error.what());
   if (dynamic_cast<const CLI::ExcludesError*>(&error) != nullptr)
     return std::regex_replace(line, std::regex(" excludes "), ": not allowed together with ");
-  return std::regex_replace(line, std::regex(": [0-9]+ required (\\S+) missing$"), ": needs a value $1");
+  return std::regex_replace(line, std::regex(": [0-9]+ required (\\S+) missing$"), ": requires a value $1");
 }
 
 /// Sets the memory budget of the process if --memory-gib is given.

@@ -32,7 +32,8 @@ Warnings lengths_without_heights(const schema::Document& document) {
     if (document.number_if(length).value_or(0.0) > 0.0 && document.has(length) && !document.has(height))
       warnings.push_back(
           {"key_without_effect",
-           InputError(document.where(length), fmt::format("has no effect: give {} as well, or remove it", height))
+           InputError(document.where(length),
+                      fmt::format("has no effect without {}: give both keys, or remove this key", height))
                .what()});
   return warnings;
 }

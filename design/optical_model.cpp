@@ -189,7 +189,7 @@ materials::LayerStack stack_of(const Design& design, const materials::MaterialLi
     if (!layer.thickness_nm && !(index.imag() > 0.0))
       throw InputError(
           design.where(entry + ".thickness_nm"),
-          fmt::format("missing: only metals may have no thickness, but {} is not a metal", layer.material));
+          fmt::format("is missing: it may be left out only for metals, but {} is not a metal", layer.material));
     stack.layers.push_back({index, layer.thickness_nm ? *layer.thickness_nm * air / wavelength_nm : kInfinity});
   }
   return stack;

@@ -165,7 +165,7 @@ class Conditions {
   /// Returns the error message for a field whose need is not met.
   std::string complaint(Need need) const {
     if (need.size() > 1 || need.front().is != schema::Condition::Is::absent)
-      return fmt::format("needs {}{}", text_of(need), given(need));
+      return fmt::format("requires {}{}", text_of(need), given(need));
     const Row* const other = row_of(request_, need.front().key);
     return "not allowed together with " + reference(other != nullptr ? other->field() : Field{need.front().key});
   }

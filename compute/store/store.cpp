@@ -256,13 +256,15 @@ void ResultStore::Database::check_study() const {
   const std::string kind = stored("kind");
   if (kind.empty()) refuse_damaged("its kind of study is missing");
   if (kind != layout.kind)
-    throw InputError({name(), 0, ""}, fmt::format("is a store of {}, not of {}", kind, layout.kind));
+    throw InputError({name(), 0, ""},
+                     fmt::format("the store contains results of another kind of study: its format must be {1}, got {0}",
+                                 kind, layout.kind));
   for (const auto& [key, value] : layout.parts)
     if (stored("part." + key) != value)
       throw InputError(
           {layout.source, 0, ""},
           fmt::format(
-              "{} differs from the one used for {}; use {} to replace the store, or another output folder to keep both",
+              "{} has changed since {} was begun; use {} to replace the store, or another output folder to keep both",
               key, name(), reference({"overwrite"})));
 }
 
@@ -282,9 +284,11 @@ ResultStore::ResultStore(const fs::path& file, const StoreLayout& layout, IfExis
   database_->file = file;
   database_->layout = layout;
   if (!is_new(file) && if_exists == IfExists::refuse)
-    throw InputError({file.string(), 0, ""},
-                     fmt::format("exists; use {} to continue it, {} to replace it, or another output folder to keep it",
-                                 reference({"resume"}), reference({"overwrite"})));
+    throw InputError(
+        {file.string(), 0, ""},
+        fmt::format(
+            "the store exists already; use {} to continue it, {} to replace it, or another output folder to keep it",
+            reference({"resume"}), reference({"overwrite"})));
   try {
     // An existing store is checked before other files are created. If the store is refused, no new files remain next to
     // it.

@@ -60,7 +60,7 @@ toml::table parse_file(std::string_view text, const std::string& file) {
     return toml::parse(text, std::string_view(file));
   } catch (const toml::parse_error& error) {
     throw InputError({file, static_cast<int>(error.source().begin.line), ""},
-                     "not valid TOML: " + printable(error.description(), 300));
+                     "the file is not valid TOML: " + printable(error.description(), 300));
   }
 }
 
@@ -87,7 +87,7 @@ toml::table parse_override(const std::string& text, const std::string& label) {
   try {
     return toml::parse(fmt::format("{} = {}", key, toml_text(value)), std::string_view(label));
   } catch (const toml::parse_error& error) {
-    throw refuse("not valid TOML: " + printable(error.description(), 300));
+    throw refuse("the override is not valid TOML: " + printable(error.description(), 300));
   }
 }
 
@@ -187,8 +187,8 @@ void replace(const TomlRename& name, toml::table& table, const std::string& show
   if (node == nullptr) return;
   const InputLocation where = source.location(*node, path_in(shown, name.former));
   if (table.contains(name.current))
-    throw InputError(
-        where, fmt::format("is the former name of {}, which is also given; remove the former name", name.current));
+    throw InputError(where, fmt::format("is the former name of the key {}, which is also given; remove the former name",
+                                        name.current));
   source.renamed.push_back({where, name.former, name.current});
   node->visit([&](auto& value) { table.insert_or_assign(name.current, std::move(value)); });
   table.erase(name.former);
@@ -290,7 +290,7 @@ std::optional<double> TomlTable::number(std::string_view key, const NumberRange&
 
 double TomlTable::required_number(std::string_view key, const NumberRange& range) {
   const std::optional<double> value = number(key, range);
-  if (!value) fail(key, "missing, must be " + range.text());
+  if (!value) fail(key, "is missing; it must be " + range.text());
   return *value;
 }
 
@@ -410,7 +410,7 @@ std::optional<std::size_t> TomlTable::choice(std::string_view key, std::span<con
 
 std::size_t TomlTable::required_choice(std::string_view key, std::span<const std::string_view> words) {
   const auto index = choice(key, words);
-  if (!index) fail(key, "missing, must be " + alternatives(words));
+  if (!index) fail(key, "is missing; it must be " + alternatives(words));
   return *index;
 }
 

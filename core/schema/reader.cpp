@@ -246,11 +246,11 @@ void check_rule(const OneOf& rule, const Document& document, const std::string& 
 std::string refusal(const Condition& condition) {
   using Is = Condition::Is;
   if (!condition.refusal.empty()) return std::string(condition.refusal);
-  const std::string_view key = condition.key.substr(condition.key.rfind('.') + 1);
+  const std::string_view key = condition.key;
   switch (condition.is) {
     case Is::one_of: return fmt::format("only allowed for {} = {}", key, alternatives(condition.words));
     case Is::none_of: return fmt::format("not allowed for {} = {}", key, alternatives(condition.words));
-    case Is::given: return fmt::format("only allowed with {}", key);
+    case Is::given: return fmt::format("only allowed together with {}", key);
     case Is::absent: break;
   }
   return fmt::format("not allowed together with {}", key);
@@ -285,7 +285,7 @@ class Values {
     const Condition* const refused = document_.refused_by(table.when, around_path);
     if (!document_.has(path)) {
       if (table.presence == Presence::always && refused == nullptr)
-        around.fail(table.name, fmt::format("missing, must be {}", shape_of(table)));
+        around.fail(table.name, fmt::format("is missing; it must be {}", shape_of(table)));
       if (table.presence == Presence::implied && refused == nullptr) read(table, around.table(table.name), path);
       return;
     }
@@ -313,7 +313,7 @@ class Values {
       check_word(table, *served, path, source);
       document_.set(path, given(served->kind, key, source), document_.where(path), source.position(key).source);
     } else if (std::holds_alternative<Required>(served->default_spec)) {
-      document_.fail(path, "missing, must be " + allowed(served->kind));
+      document_.fail(path, "is missing; it must be " + allowed(served->kind));
     }
   }
 
@@ -335,9 +335,8 @@ class Values {
       const Word* const others = other.key == served.key ? std::get_if<Word>(&other.kind) : nullptr;
       if (others == nullptr || std::ranges::count(others->words, std::string_view(given)) == 0) continue;
       const std::string_view key = served.when.front().key;
-      document_.fail(
-          path, fmt::format("must be {} for {} = {}, got {}", alternatives(word->words), key.substr(key.rfind('.') + 1),
-                            in_quotes(document_.text(document_.path_of(key, path))), in_quotes(given)));
+      document_.fail(path, fmt::format("must be {} for {} = {}, got {}", alternatives(word->words), key,
+                                       in_quotes(document_.text(document_.path_of(key, path))), in_quotes(given)));
     }
   }
 
@@ -503,8 +502,8 @@ std::string superseded_text(const Precedence& rule, const Document& document, co
   const InputLocation where = document.where(winner);
   const std::string place = where.line > 0 ? fmt::format(" (line {})", where.line) : std::string();
   std::string text =
-      fmt::format("has no effect {}: {}{} takes precedence; remove one of the two", rule.effect, where.key, place);
-  if (winner.find('[') == std::string::npos) text += fmt::format(", or unset one with --set {}=", winner);
+      fmt::format("has no effect {}: {}{} takes precedence; remove one of the two keys", rule.effect, where.key, place);
+  if (winner.find('[') == std::string::npos) text += fmt::format(", or disable {0} with --set {0}=", winner);
   return InputError(document.where(key), text).what();
 }
 
@@ -537,9 +536,10 @@ Warnings renamed_keys(const Document& document) {
   Warnings warnings;
   for (const RenamedInput& each : document.renamed())
     warnings.push_back(
-        {"renamed_key", InputError(each.where, fmt::format("{} is a former name: write {}", in_quotes(each.former),
-                                                           in_quotes(each.current)))
-                            .what()});
+        {"renamed_key",
+         InputError(each.where, fmt::format("{} is a former name of the format and is still accepted: write {} instead",
+                                            in_quotes(each.former), in_quotes(each.current)))
+             .what()});
   return warnings;
 }
 

@@ -20,7 +20,7 @@ constexpr Condition kWithPlanes[] = {kNoMesh, kNoPlate, kTableOfNoBall};
 constexpr Condition kPartTable[] = {kTableOfNoBall};
 constexpr Condition kEntranceTable[] = {kTableOfNoBall};
 constexpr Condition kSurfaceTable[] = {
-    is_not(kKind, kBall, "not allowed for kind = \"ball\", whose surfaces are smooth")};
+    is_not(kKind, kBall, "not allowed for element.kind = \"ball\", whose surfaces are smooth")};
 constexpr Condition kScratchesOnly[] = {is_absent("part.mesh", kNotWithMesh), is_absent("part.plate_mm", kNotWithMesh),
                                         is(kKind, kRtp)};
 

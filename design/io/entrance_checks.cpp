@@ -20,7 +20,7 @@ std::string key_of(std::string_view name) {
 /// Checks that an amount above 0 is given together with the key that describes its properties.
 void require_beside(const Document& document, std::string_view amount, std::string_view needed) {
   if (document.number(key_of(amount)) > 0.0 && !(document.number_if(key_of(needed)).value_or(-1.0) >= 0.0))
-    document.fail(key_of(needed), fmt::format("missing: required if {} is given", amount));
+    document.fail(key_of(needed), fmt::format("is required, because {} is given", amount));
 }
 
 void check_haze(const Document& document) {

@@ -105,10 +105,10 @@ void check_wet_back(const Document& document) {
   constexpr std::string_view key = "wet_back.index";
   if (document.text("array.extent") == "infinite")
     document.fail(key,
-                  "[wet_back] is not allowed for extent = \"infinite\", because all elements of an infinite array are "
-                  "equal: give x_length_mm and y_length_mm instead");
+                  "[wet_back] is not allowed for array.extent = \"infinite\", because all elements of an infinite "
+                  "array are equal: give x_length_mm and y_length_mm instead");
   if (document.text("array.arrangement") == "single")
-    document.fail(key, "[wet_back] is not allowed for arrangement = \"single\": give body.back_index");
+    document.fail(key, "[wet_back] is not allowed for array.arrangement = \"single\": give body.back_index");
   if (document.has("substrate")) document.fail(key, "[wet_back] is not allowed together with [substrate]");
   const auto given = [&](std::string_view list) { return fmt::format("{}", fmt::join(document.numbers(list), ", ")); };
   if (document.has("wet_back.rectangle_mm")) {
@@ -131,10 +131,12 @@ void check_layers(const Document& document) {
       if (document.has(key)) continue;
       if (list == kEntranceLayers)
         document.fail(key,
-                      "missing: a layer without thickness is opaque, but light must pass through the entrance face");
+                      "is missing: a layer without thickness_nm is opaque, but light must pass through the layers on "
+                      "the entrance face");
       const auto extinction = document.number_if(schema::path_of_entry(list, i) + ".extinction_coefficient");
       if (extinction && !(*extinction > 0.0))
-        document.fail(key, "missing: only a metal or a layer with an extinction_coefficient > 0 may have no thickness");
+        document.fail(key,
+                      "is missing: it may be left out only for a metal or for a layer with extinction_coefficient > 0");
     }
   }
   if (const std::size_t opaque = count_opaque(document, kFacetLayers); opaque > 1)
@@ -152,8 +154,8 @@ void check_coating(const Document& document) {
       document.fail(kFacetLayers, "not allowed together with idealisation.facets = \"mirror\"");
     if (document.text_if("element.kind") == "ball" && count_opaque(document, kFacetLayers) == 0)
       document.fail(kFacetLayers,
-                    "needs one opaque layer, without thickness_nm, for kind = \"ball\": the layers behind balls must "
-                    "form a mirror");
+                    "needs one opaque layer, without thickness_nm, for element.kind = \"ball\": the layers behind "
+                    "balls must form a mirror");
   }
   if (document.count(kEntranceLayers) > 0 && document.text("idealisation.entrance") == "lossless")
     document.fail(kEntranceLayers, "not allowed together with idealisation.entrance = \"lossless\"");

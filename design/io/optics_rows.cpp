@@ -29,8 +29,8 @@ constexpr Words kWalls = {"smooth", "absorbing"};
 constexpr Words kFacets = {"-x", "+x"};
 
 constexpr Condition kThicknessOfMesh[] = {is_not(kKind, kBall), is_given("part.mesh")};
-constexpr Condition kThicknessOfOthers[] = {is_not(kKind, kBall, "not allowed for kind = \"ball\", which has no plate"),
-                                            is_absent("part.mesh")};
+constexpr Condition kThicknessOfOthers[] = {
+    is_not(kKind, kBall, "not allowed for element.kind = \"ball\", which has no plate"), is_absent("part.mesh")};
 
 constexpr Condition kWithLayerIndex[] = {is_given("refractive_index")};
 constexpr Condition kIndexOfMaterial[] = {

@@ -19,15 +19,17 @@ constexpr Words kInfinite = {"infinite"};
 constexpr Words kPartialElements = {"cut", "omit"};
 constexpr Words kSides = {"top", "bottom"};
 
-constexpr Condition kElementOfNoBall = is_not(kKind, kBall, "not allowed for kind = \"ball\", which has diameter_mm");
-constexpr Condition kArrayOfNoBall = is_not(
-    kKind, kBall, "not allowed for kind = \"ball\", because a layer of balls is infinite and its spacing is gap_mm");
+constexpr Condition kElementOfNoBall =
+    is_not(kKind, kBall, "not allowed for element.kind = \"ball\", which has diameter_mm");
+constexpr Condition kArrayOfNoBall =
+    is_not(kKind, kBall,
+           "not allowed for element.kind = \"ball\", because a layer of balls is infinite and its spacing is gap_mm");
 
-constexpr Condition kPrismOnly[] = {kElementOfNoBall,
-                                    is(kKind, kRtp, "only allowed for kind = \"rtp\"; other kinds have aperture_mm")};
+constexpr Condition kPrismOnly[] = {
+    kElementOfNoBall, is(kKind, kRtp, "only allowed for element.kind = \"rtp\"; other kinds have aperture_mm")};
 constexpr Condition kCubeOnly[] = {
     kElementOfNoBall,
-    is(kKind, geometry::kCubeKinds, "not allowed for kind = \"rtp\", which has base_mm and width_mm")};
+    is(kKind, geometry::kCubeKinds, "not allowed for element.kind = \"rtp\", which has base_mm and width_mm")};
 constexpr Condition kCantOnly[] = {kElementOfNoBall, is(kKind, geometry::kCubeKinds, "only allowed for cube corners")};
 constexpr Condition kBallOnly[] = {is(kKind, kBall)};
 
@@ -64,8 +66,9 @@ constexpr Condition kOfPacked[] = {is(kArrangement, kPacked)};
 constexpr Condition kOfOthers[] = {is_not(kArrangement, kBallArrangements)};
 constexpr Condition kFiniteOnly[] = {
     kArrayOfNoBall,
-    is_not(kArrangement, kSingle, "not allowed for arrangement = \"single\", whose extent is the element's aperture"),
-    is_not(kExtent, kInfinite, "not allowed for extent = \"infinite\", which is one periodic cell")};
+    is_not(kArrangement, kSingle,
+           "not allowed for array.arrangement = \"single\", whose extent is the element's aperture"),
+    is_not(kExtent, kInfinite, "not allowed for array.extent = \"infinite\", which is one periodic cell")};
 constexpr Condition kGapOnly[] = {kArrayOfNoBall, is(kKind, kRtp), is_not(kArrangement, kSingle)};
 constexpr Condition kOffsetOnly[] = {kArrayOfNoBall, is(kArrangement, kOffset)};
 constexpr Condition kNoBallArray[] = {kArrayOfNoBall};

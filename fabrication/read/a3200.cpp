@@ -49,12 +49,12 @@ class A3200Reader {
   NcProgram run() {
     std::string_view line;
     while (lines_.next(line))
-      if (!take_text(trimmed(line), texts_, is_over_ ? "a line must not follow the end of the program" : "", lines_,
+      if (!take_text(trimmed(line), texts_, is_over_ ? "no line may follow the end of the program" : "", lines_,
                      program_))
         read_line_that_may_be_cut(lines_, program_, [&] { read(with_single_blanks(without_a3200_comment(line))); });
     program_.lines = lines_.number();
     if (!is_over_) program_.main_last = program_.blocks.size();
-    if (!is_over_ && !program_.truncated) program_.truncated = "END PROGRAM is missing";
+    if (!is_over_ && !program_.truncated) program_.truncated = "the line END PROGRAM is missing";
     if (table_.is_open() && !program_.truncated) program_.truncated = "a subroutine has no ENDDFS";
     return std::move(program_);
   }
@@ -67,7 +67,7 @@ class A3200Reader {
     if (text == "END PROGRAM") return end_program();
     if (text == "ENDDFS") return end_subroutine();
     if (starts_with_word(text, "DFS")) return begin_subroutine(trimmed(text.substr(3)));
-    if (is_over_ && !table_.is_open()) lines_.fail("a line must not follow the end of the program");
+    if (is_over_ && !table_.is_open()) lines_.fail("no line may follow the end of the program");
     NcBlock block;
     block.line = lines_.number();
     if (starts_with_word(text, "CALL"))
@@ -88,7 +88,7 @@ class A3200Reader {
   void read_statement(std::string_view text, NcBlock& block) {
     for (const A3200Statement& statement : kA3200Statements)
       if (text == statement.words) return statement.effect(block);
-    if (starts_with_word(text, "WAIT")) lines_.fail("must be WAIT MODE INPOS");
+    if (starts_with_word(text, "WAIT")) lines_.fail("the wait mode must be set by WAIT MODE INPOS");
     IsoBlock iso(lines_, block);
     if (starts_with_word(text, "PVT")) return read_cubic(text, iso, block);
     if (starts_with_word(text, "DWELL")) {
@@ -114,18 +114,18 @@ class A3200Reader {
       block.begins_cubics = true;
       return;
     }
-    if (text.starts_with("PVT INIT")) lines_.fail("must be PVT INIT TIME ABS");
+    if (text.starts_with("PVT INIT")) lines_.fail("the time of PVT moves must be set by PVT INIT TIME ABS");
     NcCubic cubic;
     const std::string packed = without_blanks(text.substr(3));
     std::string_view rest = packed;
     while (!rest.empty() && !rest.starts_with("TIME")) {
       const NcWord word = take_word(rest, lines_);
       const std::size_t axis = axis_index(word.letter);
-      if (axis == kNcAxes || !rest.starts_with(',')) lines_.fail("PVT must give position,velocity for each axis");
+      if (axis == kNcAxes || !rest.starts_with(',')) lines_.fail("PVT must contain position,velocity for each axis");
       rest.remove_prefix(1);
       iso.set_cubic(axis, word.number, take_number(rest, lines_).value, cubic);
     }
-    if (rest.empty() || block.axes == 0) lines_.fail("PVT must have axes and a TIME");
+    if (rest.empty() || block.axes == 0) lines_.fail("PVT must contain at least one axis and a TIME");
     rest.remove_prefix(4);
     cubic.time_s = take_number(rest, lines_).value;
     if (!rest.empty()) lines_.fail("PVT must end with its TIME");
@@ -133,19 +133,20 @@ class A3200Reader {
   }
 
   std::string name_in(std::string_view text) const {
-    if (!is_aerotech_name(text)) lines_.fail("needs the name of a subroutine, got " + in_quotes(text));
+    if (!is_aerotech_name(text))
+      lines_.fail("DFS must be followed by the name of a subroutine, got " + in_quotes(text));
     return std::string(text);
   }
 
   void begin_subroutine(std::string_view text) {
-    if (table_.is_open()) lines_.fail("a subroutine must end before another begins");
-    if (!is_over_) lines_.fail("a subroutine must follow END PROGRAM");
+    if (table_.is_open()) lines_.fail("a subroutine must end before the next subroutine begins");
+    if (!is_over_) lines_.fail("subroutines must be located after END PROGRAM");
     const std::string name = name_in(text);
     if (!table_.begin(name)) lines_.fail("a subroutine with this name already exists: " + name);
   }
 
   void end_subroutine() {
-    if (!table_.is_open()) lines_.fail("ENDDFS needs a preceding DFS");
+    if (!table_.is_open()) lines_.fail("ENDDFS must follow a DFS");
     NcBlock& block = program_.blocks.emplace_back();
     block.line = lines_.number();
     block.returns = true;

@@ -42,18 +42,20 @@ class Automation1Reader {
         read_line_that_may_be_cut(lines_, program_, [&] { read(trimmed(line.substr(0, line.find("//")))); });
     program_.lines = lines_.number();
     if (is_in_main_) program_.main_last = program_.blocks.size();
-    if ((is_in_main_ || table_.is_open() || !has_main_) && !program_.truncated) program_.truncated = "end is missing";
+    if ((is_in_main_ || table_.is_open() || !has_main_) && !program_.truncated)
+      program_.truncated = "the line end is missing";
     return std::move(program_);
   }
 
  private:
   void read(std::string_view text) {
     if (text.empty()) return;
-    if (text.find("/*") != std::string_view::npos) lines_.fail("a comment /* ... */ is not understood");
+    if (text.find("/*") != std::string_view::npos) lines_.fail("comments of the form /* ... */ are not supported");
     if (text == "program") return begin_main();
     if (starts_with_word(text, "function")) return begin_function(trimmed(text.substr(8)));
     if (text == "end") return end();
-    if (!is_in_main_ && !table_.is_open()) lines_.fail("a line must be inside of program ... end or function ... end");
+    if (!is_in_main_ && !table_.is_open())
+      lines_.fail("each line must be located between program and end, or between function and end");
     NcBlock block;
     block.line = lines_.number();
     const std::size_t bracket = text.find('(');
@@ -75,12 +77,13 @@ class Automation1Reader {
     if (is_in_main_ || table_.is_open()) lines_.fail("function is not allowed within a block that has not ended");
     const std::string whole = without_gaps(text);
     const std::string name = whole.substr(0, whole.find('('));
-    if (!is_aerotech_name(name) || whole != name + "()") lines_.fail("must be function NAME(), without arguments");
+    if (!is_aerotech_name(name) || whole != name + "()")
+      lines_.fail("a function must be defined as function NAME(), without arguments");
     if (!table_.begin(name)) lines_.fail("a function with this name already exists: " + name);
   }
 
   void end() {
-    if (!is_in_main_ && !table_.is_open()) lines_.fail("end needs a preceding program or function");
+    if (!is_in_main_ && !table_.is_open()) lines_.fail("end must follow a program or function");
     NcBlock& block = program_.blocks.emplace_back();
     block.line = lines_.number();
     block.ends = is_in_main_;
@@ -97,7 +100,7 @@ class Automation1Reader {
     const std::string name(text.substr(0, bracket));
     const std::string_view whole = text;
     text.remove_prefix(bracket + 1);
-    if (!text.ends_with(')')) lines_.fail("must end with )");
+    if (!text.ends_with(')')) lines_.fail("a call must end with a closing parenthesis");
     text.remove_suffix(1);
     IsoBlock iso(lines_, block);
     if (name == "Dwell") {
@@ -112,33 +115,34 @@ class Automation1Reader {
     } else if (text.empty()) {
       block.call = table_.index_of(name);
     }
-    if (!text.empty()) lines_.fail(in_quotes(whole) + " is not understood");
+    if (!text.empty()) lines_.fail(in_quotes(whole) + " is not supported or not valid here");
   }
 
   /// Reads axes and their positions: X,1.5 or [X,Y],[1.5,2]. Speeds of single moves are not supported.
   void read_axes(std::string_view& text, IsoBlock& iso) {
     const bool is_list = text.starts_with('[');
     const std::size_t end = is_list ? text.find("],[") : text.find(',');
-    if (end == std::string_view::npos) lines_.fail("needs a list of axes and a list with the same number of positions");
+    if (end == std::string_view::npos)
+      lines_.fail("a move requires a list of axes and a list with the same number of positions");
     std::string_view axes = text.substr(is_list ? 1 : 0, end - (is_list ? 1 : 0));
     text.remove_prefix(end + (is_list ? 3 : 1));
     for (; !axes.empty(); axes.remove_prefix(axes.size() > 1 ? 2 : 1)) {
       const std::size_t axis = axis_index(axes.front());
       const bool is_one = axes.size() == 1 || axes[1] == ',';
-      if (axis == kNcAxes || !is_one) lines_.fail("has an unknown axis, " + in_quotes(axes));
+      if (axis == kNcAxes || !is_one) lines_.fail("the axis is unknown: got " + in_quotes(axes));
       iso.set_axis(axis, take_number(text, lines_));
       if (axes.size() > 1 && !text.starts_with(','))
-        lines_.fail("needs a list of axes and a list with the same number of positions");
+        lines_.fail("a move requires a list of axes and a list with the same number of positions");
       if (axes.size() > 1) text.remove_prefix(1);
     }
     if (is_list && !text.starts_with(']'))
-      lines_.fail("needs a list of axes and a list with the same number of positions");
+      lines_.fail("a move requires a list of axes and a list with the same number of positions");
     if (is_list) text.remove_prefix(1);
   }
 
   /// Reads a cubic move such as [X,C],[1,2],[3,4],0.5: axes, positions, velocities, and the time of the move.
   void read_cubic(std::string_view& text, IsoBlock& iso, NcBlock& block) {
-    constexpr std::string_view needs = "MovePvt needs [axes], [positions], [velocities], time";
+    constexpr std::string_view needs = "MovePvt must have the arguments [axes], [positions], [velocities], time";
     const auto numbers = [&] {
       std::vector<NcNumber> result;
       if (!text.starts_with('[')) lines_.fail(needs);
@@ -160,11 +164,12 @@ class Automation1Reader {
     const std::vector<NcNumber> velocities = numbers();
     const std::size_t count = places.size();
     if (axes.size() != 2 * count - 1 || velocities.size() != count)
-      lines_.fail("MovePvt needs as many axes as positions and velocities");
+      lines_.fail("MovePvt must have equal numbers of axes, positions and velocities");
     NcCubic cubic;
     for (std::size_t k = 0; k < count; ++k) {
       const std::size_t axis = axis_index(axes[2 * k]);
-      if (axis == kNcAxes || (k > 0 && axes[2 * k - 1] != ',')) lines_.fail("has an unknown axis, " + in_quotes(axes));
+      if (axis == kNcAxes || (k > 0 && axes[2 * k - 1] != ','))
+        lines_.fail("the axis is unknown: got " + in_quotes(axes));
       iso.set_cubic(axis, places[k], velocities[k].value, cubic);
     }
     cubic.time_s = take_number(text, lines_).value;
@@ -184,7 +189,7 @@ class Automation1Reader {
         continue;
       }
       if (axis_index(word.letter) < kNcAxes && letter != word.letter)
-        lines_.fail(fmt::format("names of axes must be capital letters, got {}", letter));
+        lines_.fail(fmt::format("the names of axes must be capital letters, got {}", letter));
       const bool is_unit = word.letter == 'G' && (word.number.value == 70 || word.number.value == 71);
       if (is_unit) lines_.fail("units must be set by SetupTaskDistanceUnits(), not by G70 or G71");
       take_aerotech_word(word, iso, lines_);

@@ -44,7 +44,7 @@ std::string with_marked_comments(std::string_view line, const NcLines& lines) {
     if (open == std::string_view::npos) break;
     result += kNcCommentMark;
     const std::size_t close = line.find(')', open);
-    if (close == std::string_view::npos) lines.fail("has a comment that is not closed");
+    if (close == std::string_view::npos) lines.fail("a comment is not closed");
     line.remove_prefix(close + 1);
   }
   return without_blanks(result);
@@ -85,9 +85,9 @@ class FanucReader {
       ++percent_signs_;
       return;
     }
-    if (text.front() == '/') lines_.fail("a line with block delete (/) is not understood");
+    if (text.front() == '/') lines_.fail("lines with block delete (/) are not supported");
     if (text.front() == 'O') return begin_program(text.substr(1));
-    if (!has_main_) lines_.fail("must not precede the program number, such as O1");
+    if (!has_main_) lines_.fail("no line may precede the program number, such as O1");
     Line line;
     line.block.line = lines_.number();
     IsoBlock iso(lines_, line.block);
@@ -114,12 +114,13 @@ class FanucReader {
 
   void read_word(const NcWord& word, IsoBlock& iso, Line& line) {
     if (axis_index(word.letter) < kNcAxes && !word.number.has_point)
-      lines_.fail(fmt::format("{} needs a decimal point: without one, the control reads the number in least increments",
-                              word.letter));
+      lines_.fail(fmt::format(
+          "the number of {} must have a decimal point: without it, the control reads the number in least increments",
+          word.letter));
     if (axis_index(word.letter) < kNcAxes) line.block.decimals = std::max(line.block.decimals, word.number.decimals);
     if (word.letter == 'N') return check_line_number(word.number, lines_);
     if (word.letter == 'P') {
-      if (line.p) lines_.fail("has the word P twice");
+      if (line.p) lines_.fail("the word P occurs twice in one line");
       line.p = word.number.value;
       line.p_has_point = word.number.has_point;
     } else if (word.letter == 'M' && word.number.value == 98) {
@@ -140,7 +141,7 @@ class FanucReader {
     if ((line.block.settings_made & nc_setting::kMirrorOff) != 0) line.block.axes = 0;
     iso.finish();
     if ((line.has_call || line.has_return) && line.block.axes != 0) lines_.fail("a call or return must not move axes");
-    if (line.p && !iso.expects_dwell_time() && !line.has_call) lines_.fail("P is not understood here");
+    if (line.p && !iso.expects_dwell_time() && !line.has_call) lines_.fail("P is allowed only with G4 or M98");
     if (line.has_call) set_call(line);
     if (line.has_return) set_return(line.block);
     program_.blocks.push_back(line.block);

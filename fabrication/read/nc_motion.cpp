@@ -128,8 +128,8 @@ class Runner {
     if (!subroutine.is_complete) return false;
     const std::size_t most = max_nested_calls(program_.dialect);
     if (calls_.size() >= most)
-      fail(block,
-           fmt::format("calls are nested more than {} deep; subroutine {} may call itself", most, subroutine.name));
+      fail(block, fmt::format("subroutine calls are nested more than {} deep; check whether subroutine {} calls itself",
+                              most, subroutine.name));
     calls_.push_back({next_, subroutine.last, block.line});
     next_ = subroutine.first;
     return true;
@@ -181,7 +181,7 @@ class Runner {
     if (block.feed || block.move_time_s) rate_rounding_ = block.rate_rounding;
     const bool is_empty_g1 = block.move == NcMove::linear && block.axes == 0 && program_.dialect == NcDialect::rs274ngc;
     if (is_empty_g1 && !(inverse_time_.value_or(false) ? block.feed.value_or(0.0) > 0.0 : feed_ > 0.0))
-      fail(block, "G1 needs a feed, even if no axis moves");
+      fail(block, "G1 requires a feed F, even if no axis moves");
   }
 
   void stop(const NcBlock& block) {
@@ -211,7 +211,7 @@ class Runner {
   }
 
   void move(const NcBlock& block) {
-    if (!move_) fail(block, "axes move before G0 or G1 is given");
+    if (!move_) fail(block, "axes must not move before the first G0 or G1");
     NcMotion motion = motion_of(block, *move_);
     if (motion.move == NcMove::linear) motion.duration_s = duration_of(block, motion);
     if (motion.move == NcMove::linear && motion.duration_s == 0.0) motion.feed_mm_per_min = feed_mm_per_min();
@@ -224,8 +224,8 @@ class Runner {
   void expect_standstill(const NcBlock& block) const {
     for (std::size_t axis = 0; axis < kNcAxes; ++axis)
       if (velocities_[axis] != 0.0)
-        fail(block, fmt::format("{} still has a velocity at the end of the preceding move, but must be at rest there",
-                                kNcAxisLetters[axis]));
+        fail(block,
+             fmt::format("axis {} must have the velocity 0 at the end of the preceding move", kNcAxisLetters[axis]));
   }
 
   /// Converts velocities from the units of the program to mm/s and degrees/s.
@@ -237,7 +237,10 @@ class Runner {
         velocities[axis] =
             cubic.velocities[axis] * per_s * (axis < kFirstRotaryAxis ? settings_.unit_mm.value_or(1.0) : 1.0);
       else if (velocities_[axis] != 0.0)
-        fail(block, fmt::format("{} is still moving and must be given in this move", kNcAxisLetters[axis]));
+        fail(block,
+             fmt::format(
+                 "axis {} does not stop at the end of the preceding move, and must therefore be given in this move",
+                 kNcAxisLetters[axis]));
     return velocities;
   }
 
@@ -316,7 +319,7 @@ class Runner {
     if (has_feeds_of_all_axes(program_.dialect)) return duration_by_way(block, motion);
     if (!inverse_time_.value_or(false)) return move_time_s_;
     if (!block.feed || !(*block.feed > 0.0))
-      fail(block, "in inverse time mode (G93), every linear move needs its own F > 0");
+      fail(block, "in inverse time mode (G93), every linear move requires a word F > 0");
     return 60.0 / *block.feed;
   }
 
@@ -352,7 +355,8 @@ class Runner {
     const bool is_absolute = settings_.absolute.value_or(true) && !is_increment;
     const double unit = axis < kFirstRotaryAxis ? settings_.unit_mm.value_or(1.0) : 1.0;
     if (!is_absolute && (known_ & bit) == 0)
-      fail(block, fmt::format("{} has an incremental move before its position is known", kNcAxisLetters[axis]));
+      fail(block,
+           fmt::format("axis {} must not have an incremental move before its position is known", kNcAxisLetters[axis]));
     if (is_absolute && (block.shortest & bit) == 0) motion.absolute = static_cast<std::uint8_t>(motion.absolute | bit);
     double to = block.words[axis] * unit + (is_absolute ? 0.0 : position_[axis]);
     if ((block.shortest & bit) != 0) to += kTurnDeg * std::round((position_[axis] - to) / kTurnDeg);

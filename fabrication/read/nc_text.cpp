@@ -114,14 +114,15 @@ bool NcLines::next(std::string_view& line) {
 }
 
 void NcLines::fail(std::string_view text) const {
-  const std::string block = line_.empty() ? "" : ", in " + in_quotes(trimmed(line_));
+  const std::string block = line_.empty() ? "" : "; the NC line is " + in_quotes(trimmed(line_));
   throw InputError({file_, number_, ""}, std::string(text) + block);
 }
 
 void NcLines::fail_word(std::string_view remainder) const {
   for (std::size_t i = 0; i < line_.size(); ++i)
-    if (is_same_text(line_.substr(i), remainder)) fail(in_quotes(whole_word(line_.substr(i))) + " is not understood");
-  fail(in_quotes(whole_word(remainder)) + " is not understood");
+    if (is_same_text(line_.substr(i), remainder))
+      fail(in_quotes(whole_word(line_.substr(i))) + " is not supported or not valid here");
+  fail(in_quotes(whole_word(remainder)) + " is not supported or not valid here");
 }
 
 bool NcNumber::is_integer() const {
@@ -239,8 +240,8 @@ bool IsoBlock::set(const NcWord& word, std::span<const NcCode> g_codes) {
 void IsoBlock::take_group(const NcCode& code, const NcWord& word) {
   const unsigned bit = 1U << static_cast<unsigned>(code.group);
   if (code.group != 0 && (groups_ & bit) != 0)
-    lines_.fail(
-        fmt::format("has two {0} codes of the same group ({0}{1} is the second)", word.letter, word.number.value));
+    lines_.fail(fmt::format("the line contains two {0} codes that exclude each other ({0}{1} is the second of them)",
+                            word.letter, word.number.value));
   groups_ |= bit;
 }
 
@@ -262,21 +263,21 @@ void IsoBlock::set_m(const NcWord& word) {
 }
 
 void IsoBlock::set_feed(const NcWord& word) {
-  if (block_.feed) lines_.fail("has two feeds");
+  if (block_.feed) lines_.fail("the line contains two feeds");
   if (word.number.value < 0.0) lines_.fail(fmt::format("F must be >= 0, got {}", word.number.value));
   block_.feed = word.number.value;
   block_.rate_rounding = word.number.relative_rounding();
 }
 
 void IsoBlock::set_spindle_speed(const NcWord& word) {
-  if (block_.spindle_rpm) lines_.fail("has the word S twice");
+  if (block_.spindle_rpm) lines_.fail("the word S occurs twice in one line");
   if (word.number.value < 0.0) lines_.fail(fmt::format("S must be >= 0, got {}", word.number.value));
   block_.spindle_rpm = word.number.value;
 }
 
 void IsoBlock::set_axis(std::size_t axis, const NcNumber& place) {
   const auto bit = static_cast<std::uint8_t>(1U << axis);
-  if ((block_.axes & bit) != 0) lines_.fail(fmt::format("has the axis {} twice", kNcAxisLetters[axis]));
+  if ((block_.axes & bit) != 0) lines_.fail(fmt::format("the axis {} occurs twice in one line", kNcAxisLetters[axis]));
   block_.axes = static_cast<std::uint8_t>(block_.axes | bit);
   block_.words[axis] = place.value;
   block_.axis_decimals[axis] = place.decimals;
@@ -288,14 +289,14 @@ void IsoBlock::set_cubic(std::size_t axis, const NcNumber& place, double velocit
 }
 
 void IsoBlock::set_dwell(double seconds) {
-  if (block_.dwell_s) lines_.fail("has two times of dwell");
+  if (block_.dwell_s) lines_.fail("the line contains two dwell times");
   if (seconds < 0.0) lines_.fail(fmt::format("a dwell must be >= 0, got {}", seconds));
   block_.dwell_s = seconds;
 }
 
 void IsoBlock::finish() {
   if (expects_dwell_time_ != block_.dwell_s.has_value())
-    lines_.fail(expects_dwell_time_ ? "G4 needs a time" : "has a dwell time without G4");
+    lines_.fail(expects_dwell_time_ ? "G4 requires a dwell time" : "a dwell time is allowed only with G4");
   if (expects_dwell_time_ && (block_.axes != 0 || block_.move)) lines_.fail("G4 must be alone in its line");
 }
 

@@ -33,7 +33,8 @@ class PmacReader {
         read_line_that_may_be_cut(lines_, program_, [&] { read(line.substr(0, line.find("//"))); });
     program_.lines = lines_.number();
     if (is_in_main_) end_main();
-    if ((is_in_main_ || table_.is_open() || !has_main_) && !program_.truncated) program_.truncated = "close is missing";
+    if ((is_in_main_ || table_.is_open() || !has_main_) && !program_.truncated)
+      program_.truncated = "the line close is missing";
     return std::move(program_);
   }
 
@@ -44,7 +45,7 @@ class PmacReader {
     if (text.empty()) return;
     if (starts_with_word(text, "OPEN")) return open(trimmed(text.substr(4)));
     if (text == "CLOSE") return close();
-    if (!is_in_main_ && !table_.is_open()) lines_.fail("a line must be inside of open ... close");
+    if (!is_in_main_ && !table_.is_open()) lines_.fail("each line must be located between open and close");
     NcBlock block;
     block.line = lines_.number();
     IsoBlock iso(lines_, block);
@@ -78,7 +79,7 @@ class PmacReader {
   }
 
   void close() {
-    if (!is_in_main_ && !table_.is_open()) lines_.fail("close needs a preceding open");
+    if (!is_in_main_ && !table_.is_open()) lines_.fail("close must follow an open");
     NcBlock& block = program_.blocks.emplace_back();
     block.line = lines_.number();
     block.ends = is_in_main_;
@@ -95,7 +96,8 @@ class PmacReader {
 
   std::string whole_number(std::string_view& text) {
     const NcNumber number = take_number(text, lines_);
-    if (!number.is_integer() || number.has_point || number.value < 0) lines_.fail("needs a whole number");
+    if (!number.is_integer() || number.has_point || number.value < 0)
+      lines_.fail("the number of a program must be a whole number >= 0");
     return fmt::format("{}", number.value);
   }
 
@@ -146,13 +148,13 @@ class PmacReader {
   }
 
   void set_distance(bool absolute, NcBlock& block) {
-    if (block.absolute) lines_.fail("has abs or inc twice");
+    if (block.absolute) lines_.fail("abs or inc occurs twice in one line");
     block.absolute = absolute;
   }
 
   /// Reads TM, the time of a move in ms.
   void read_move_time(std::string_view& text, NcBlock& block) {
-    if (block.move_time_s) lines_.fail("has two times of the move");
+    if (block.move_time_s) lines_.fail("the line contains two times for one move");
     text = trimmed(text);
     const NcNumber ms = take_number(text, lines_);
     if (!(ms.value > 0.0)) lines_.fail(fmt::format("TM must be > 0, got {}", ms.value));
@@ -162,7 +164,7 @@ class PmacReader {
 
   /// Reads TA or TS, the acceleration times. They must be 0, because other values would round the path.
   void read_ramp(std::string_view& text) {
-    if (number_behind(text) != 0.0) lines_.fail("TA and TS must be 0: ramps between moves are not understood");
+    if (number_behind(text) != 0.0) lines_.fail("TA and TS must be 0, because ramps between moves are not supported");
   }
 
   double number_behind(std::string_view& text) {
@@ -172,14 +174,14 @@ class PmacReader {
 
   void read_call(std::string_view& text, NcBlock& block) {
     text = trimmed(text);
-    if (block.call >= 0) lines_.fail("has two calls");
+    if (block.call >= 0) lines_.fail("the line contains two calls");
     block.call = table_.index_of(whole_number(text));
   }
 
   /// Reads frax, the axes to which feeds apply. They must be the three linear axes.
   void read_feed_axes(std::string_view& text, NcBlock& block) {
     constexpr std::string_view all = "(X,Y,Z)";
-    if (!text.starts_with(all)) lines_.fail("frax must name X, Y and Z");
+    if (!text.starts_with(all)) lines_.fail("frax must contain the axes X, Y and Z");
     text.remove_prefix(all.size());
     block.mark_setting(nc_setting::kFeedAxes);
   }
@@ -193,7 +195,7 @@ class PmacReader {
     if (!text.starts_with("].")) lines_.fail("Coord must be followed by [number] and a point");
     text.remove_prefix(2);
     const std::string_view name = take_name(text);
-    if (!text.starts_with('=')) lines_.fail("needs = and a number");
+    if (!text.starts_with('=')) lines_.fail("a setting must be followed by = and a number");
     text.remove_prefix(1);
     const double value = take_number(text, lines_).value;
     if (name == "NOBLEND" && (value == 0 || value == 1))
@@ -204,7 +206,7 @@ class PmacReader {
       block.mark_setting(
           nc_setting::kTransformationOff);  // without segmentation, the control applies no kinematic transformation
     else
-      lines_.fail("Coord[" + number + "]." + printable(name) + " with that value is not understood");
+      lines_.fail("Coord[" + number + "]." + printable(name) + " is not supported with this value");
   }
 
   void read_word(const NcWord& word, IsoBlock& iso) {

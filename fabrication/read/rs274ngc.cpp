@@ -46,7 +46,7 @@ constexpr NcCode kRs274ngcCodes[] = {
 std::string with_marked_rs274ngc_comments(std::string_view line, const NcLines& lines) {
   std::string result;
   while (!line.empty() && line.front() != ';') {
-    if (line.front() == ')') lines.fail("has a ) without a (");
+    if (line.front() == ')') lines.fail("a closing parenthesis has no opening parenthesis");
     if (line.front() != '(') {
       result += line.front();
       line.remove_prefix(1);
@@ -54,7 +54,7 @@ std::string with_marked_rs274ngc_comments(std::string_view line, const NcLines& 
     }
     const std::size_t end = line.find_first_of("()", 1);
     if (end == std::string_view::npos || line[end] == '(')
-      lines.fail("has a comment that is not closed, or a nested comment");
+      lines.fail("a comment is not closed, or contains another comment");
     result += kNcCommentMark;
     line.remove_prefix(end + 1);
   }
@@ -96,8 +96,8 @@ class Rs274Reader {
     skip_comment_marks(text);
     if (text.empty()) return;
     if (has_comment_first && (text.front() == 'N' || text.front() == 'O'))
-      lines_.fail("a comment must not precede an N or O word");
-    if (text.front() == '/') lines_.fail("a line with block delete (/) is not understood");
+      lines_.fail("an N or O word must precede all comments of its line");
+    if (text.front() == '/') lines_.fail("lines with block delete (/) are not supported");
     skip_line_number(text);
     if (text.empty()) return;
     if (text.front() == 'O')
@@ -108,7 +108,7 @@ class Rs274Reader {
 
   /// Reads a line that contains only %. A program either has no such line, or begins and ends with one.
   void read_percent() {
-    if (percent_signs_ == 0 && has_text_) lines_.fail("the first % must precede all other text");
+    if (percent_signs_ == 0 && has_text_) lines_.fail("the first % must be located before all other text");
     is_over_ = ++percent_signs_ == 2;
   }
 
@@ -129,17 +129,17 @@ class Rs274Reader {
     else if (text == "CALL")
       call(name);
     else
-      lines_.fail(fmt::format("o{} must be followed by sub, endsub or call", name));
+      lines_.fail(fmt::format("o{} must be followed by sub, endsub or call, without other words", name));
   }
 
   void begin(const std::string& name) {
-    if (table_.is_open()) lines_.fail("a subroutine must end before another begins");
-    if (!is_before_main()) lines_.fail("a subroutine must precede the main program");
+    if (table_.is_open()) lines_.fail("a subroutine must end before the next subroutine begins");
+    if (!is_before_main()) lines_.fail("a subroutine must be located before the main program");
     if (!table_.begin(name)) lines_.fail("a subroutine with this number already exists: " + name);
   }
 
   void end(const std::string& name) {
-    if (!table_.is_open(name)) lines_.fail("endsub needs a preceding sub with this number: " + name);
+    if (!table_.is_open(name)) lines_.fail("endsub must follow a sub with the same number: " + name);
     NcBlock& block = program_.blocks.emplace_back();
     block.line = lines_.number();
     block.returns = true;
@@ -168,7 +168,7 @@ class Rs274Reader {
   void read_word(const NcWord& word, IsoBlock& iso) {
     if (word.letter == 'P' || word.letter == 'Q') {
       Setting<double>& given = word.letter == 'P' ? words_.p : words_.q;
-      if (given) lines_.fail(fmt::format("has the word {} twice", word.letter));
+      if (given) lines_.fail(fmt::format("the word {} occurs twice in one line", word.letter));
       given = word.number.value;
     } else if (!iso.set(word, kRs274ngcCodes)) {
       lines_.fail_word(word.remainder);
@@ -180,10 +180,11 @@ class Rs274Reader {
   void finish(IsoBlock& iso, NcBlock& block) {
     const bool blends = block.exact_stop == false;
     if (words_.p && !blends) iso.set_dwell(*words_.p);
-    if (words_.q && !(blends && words_.p)) lines_.fail("Q is not understood here");
-    if (block.axes != 0 && (block.settings_made & nc_setting::kShiftOff) != 0) lines_.fail("G92.1 takes no axis words");
+    if (words_.q && !(blends && words_.p)) lines_.fail("Q is allowed only with G64 P");
+    if (block.axes != 0 && (block.settings_made & nc_setting::kShiftOff) != 0)
+      lines_.fail("G92.1 must not have axis words");
     const bool is_negative = words_.p.value_or(0.0) < 0.0 || words_.q.value_or(0.0) < 0.0;
-    if (blends && is_negative) lines_.fail("P and Q of G64 must be >= 0");
+    if (blends && is_negative) lines_.fail("the values P and Q of G64 must be >= 0");
     // P limits the deviation due to rounded corners, and Q the deviation due to merged blocks. Both may add up. Q
     // defaults to P.
     if (words_.p && blends) block.blend_mm = *words_.p + words_.q.value_or(*words_.p);

@@ -81,7 +81,7 @@ class SinumerikReader {
     skip_block_number(text);
     read_label(text);
     if (text.empty()) return;
-    if (text.front() == '/') lines_.fail("a line with block delete (/) is not understood");
+    if (text.front() == '/') lines_.fail("lines with block delete (/) are not supported");
     if (text.starts_with("MSG(")) return check_message(text);
     if (starts_with_word(text, "REPEAT")) return read_repeat(trimmed(text.substr(6)));
     if (starts_with_word(text, "CALL")) return read_call(trimmed(text.substr(4)));
@@ -162,7 +162,7 @@ class SinumerikReader {
       }
       const NcWord word = take_assignment(text, block);
       if (word.letter == 'F') {
-        if (feed) lines_.fail("has the word F twice");
+        if (feed) lines_.fail("the word F occurs twice in one line");
         feed = word;
       } else {
         read_word(word, iso, block);
@@ -187,7 +187,7 @@ class SinumerikReader {
       NcWord word{text[0], {}, text};
       text.remove_prefix(5);
       word.number = take_number(text, lines_);
-      if (!text.starts_with(')')) lines_.fail("has a ( without a )");
+      if (!text.starts_with(')')) lines_.fail("an opening parenthesis is not closed");
       text = trimmed(text.substr(1));
       constexpr double turn_deg = 360.0;
       if (is_shortest && !(word.number.value >= 0.0 && word.number.value < turn_deg))

@@ -14,7 +14,7 @@ void check_spindle(const fabrication::PlanedPart& part, const std::string& diale
   if (!part.lathe || !fabrication::has_own_texts(fabrication::dialect_of(dialect, {}, {}))) return;
   if (part.lathe->spindle_start.empty())
     throw InputError(part.lathe->spindle_start_at,
-                     "missing, must be the line that starts the spindle, because dialect " + dialect +
+                     "is missing; it must be the line that starts the spindle, because dialect " + dialect +
                          " has no standard code for it");
 }
 

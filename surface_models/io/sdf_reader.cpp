@@ -59,7 +59,7 @@ class SdfReader {
 
   double number(const std::string& key) const {
     const auto found = header_.find(key);
-    if (found == header_.end()) source_.fail(0, fmt::format("{}: missing from the header", key));
+    if (found == header_.end()) source_.fail(0, fmt::format("{}: is missing in the header of the file", key));
     const std::optional<double> value = number_in(found->second.text);
     if (!value)
       source_.fail(found->second.line, fmt::format("{}: must be a number, got {}", key, in_quotes(found->second.text)));

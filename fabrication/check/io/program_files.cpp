@@ -44,8 +44,9 @@ std::vector<NcProgram> read_programs(const std::vector<std::string>& names, cons
     const std::string text = text_of_file(file, given_texts, kMaxDataBytes);
     NcProgram& program = programs.emplace_back(parse_nc(text, file, dialect_of(dialect, text, file), texts));
     if (stop_line > program.lines)
-      throw InputError({file, 0, ""}, fmt::format("cannot be stopped after line {}, because it has only {} lines",
-                                                  stop_line, program.lines));
+      throw InputError({file, 0, ""},
+                       fmt::format("the program cannot be stopped after line {}, because it has only {} lines",
+                                   stop_line, program.lines));
     program.stop_line = stop_line;
   }
   return programs;

@@ -441,7 +441,7 @@ void check_array_on_substrate(const Job& job, const Refuse& refuse) {
   const ArrayLayout& array = job.array;
   if (job.workpiece.kind == WorkpieceKind::direct)
     refuse(key, "workpiece.kind must be \"mould\" for elements on a substrate, got \"direct\"");
-  if (array.arrangement == Arrangement::single) refuse(key, "not allowed for arrangement = \"single\"");
+  if (array.arrangement == Arrangement::single) refuse(key, "not allowed for array.arrangement = \"single\"");
   if (array.x_offset_mm != 0.0 || array.y_offset_mm != 0.0)
     refuse(key, "not allowed together with array.x_offset_mm and y_offset_mm");
   if (!array.pattern.empty()) refuse(key, "not allowed together with array.pattern");

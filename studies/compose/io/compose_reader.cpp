@@ -111,7 +111,7 @@ std::optional<ErrorSpread> read_errors(const Document& document, const Study& st
 
 ComposeRequest read_compose(const Study& study) {
   const Document& document = *study.document;
-  if (!document.has("compose")) document.fail("compose", "missing, must be a table with the key maximize");
+  if (!document.has("compose")) document.fail("compose", "is missing; it must be a table with the key maximize");
   check_parameters(study);
   check_cells(study);
   ComposeRequest request;

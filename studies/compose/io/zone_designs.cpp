@@ -153,7 +153,7 @@ void check_zoned_design(const Study& study, const ZonedDesignRequest& request) {
   const design::Design design = whole_design(study, example_values(study), request);
   if (design.is_infinite())
     throw InputError(Field{"x_length_mm"},
-                     "missing: a part with zones is finite, but the design of the study is infinite");
+                     "is required, because a part with zones is finite, but the design of the study is infinite");
   if (design.part().array.arrangement == geometry::Arrangement::single)
     throw InputError(Field{"design"},
                      "the design of the study is a single element, which cannot be divided into zones");

@@ -71,7 +71,7 @@ void check_parameters(const Study& study) {
 OptimiseRequest read_optimise(const Study& study) {
   const Document& document = *study.document;
   if (!document.has("optimize"))
-    document.fail("optimize", "missing, must be a table with the key maximize or minimize");
+    document.fail("optimize", "is missing; it must be a table with the key maximize or minimize");
   check_parameters(study);
   OptimiseRequest request;
   request.objective = read_objective(document, study);

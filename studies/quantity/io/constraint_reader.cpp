@@ -39,7 +39,8 @@ Constraint read_constraint(const Study& study, const std::string& at) {
   constraint.quantity = checked_quantity(study, document.text(at + ".quantity"), document.where(at + ".quantity"));
   constraint.min = document.number_if(at + ".min");
   constraint.max = document.number_if(at + ".max");
-  if (!constraint.min && !constraint.max) document.fail(at + ".max", "missing: a constraint needs min, max or both");
+  if (!constraint.min && !constraint.max)
+    document.fail(at + ".max", "is missing: a constraint requires min, max or both");
   if (constraint.min && constraint.max && *constraint.min > *constraint.max)
     document.fail(at + ".max",
                   fmt::format("must be >= min ({}), got {}", shortest(*constraint.min), shortest(*constraint.max)));

@@ -103,7 +103,7 @@ Interval read_interval(const Document& document, const std::string& at) {
   Interval interval;
   interval.logarithmic = document.row(at + ".scale") != nullptr && document.text(at + ".scale") == "log";
   for (const auto& [key, end] : {std::pair(at + ".from", &interval.from), std::pair(at + ".to", &interval.to)}) {
-    if (!document.has(key)) document.fail(key, "missing, must be a number");
+    if (!document.has(key)) document.fail(key, "is missing; it must be a number");
     *end = document.number(key);
     if (interval.logarithmic && !(*end > 0.0)) document.fail(key, "must be > 0, got " + shortest(*end));
   }
@@ -184,7 +184,7 @@ Parameter read_parameter(const Document& document, const std::string& at) {
     else
       parameter.interval = interval;
   } else {
-    document.fail(at + ".values", "missing: a parameter needs values, or from and to, or a distribution");
+    document.fail(at + ".values", "is missing: a parameter requires values, or from and to, or a distribution");
   }
   const bool is_design = parameter.keys.front() == "design";
   if (is_design && (parameter.keys.size() > 1 || parameter.values.empty()))
@@ -198,7 +198,7 @@ Parameter read_parameter(const Document& document, const std::string& at) {
 std::vector<std::string> entries_of(const Document& document, const std::string& list) {
   std::vector<std::string> paths;
   for (std::size_t k = 0; k < document.count(list); ++k) paths.push_back(schema::path_of_entry(list, k));
-  if (paths.empty()) document.fail(list, fmt::format("missing, must be one or more tables [[{}]]", list));
+  if (paths.empty()) document.fail(list, fmt::format("is missing; it must be one or more tables [[{}]]", list));
   return paths;
 }
 
@@ -299,7 +299,7 @@ void read_designs(const Document& document, const FileTexts& given, Study& study
     for (const ParameterValue& value : varied->values) study.design_texts.emplace(value.toml, text_of(value.toml, key));
     return;
   }
-  if (!document.has("design")) document.fail("design", "missing, must be the name of a design file");
+  if (!document.has("design")) document.fail("design", "is missing; it must be the name of a design file");
   study.design_file = document.file("design").string();
   study.design_texts.emplace(study.design_file, text_of(study.design_file, "design"));
 }
