@@ -48,8 +48,9 @@ class PointsBar : public studies::SweepObserver {
 ExitCode exit_code_of(const std::vector<compute::StoredPoint>& points, ExitCode code) {
   const auto failed = [](const compute::StoredPoint& point) { return point.failed; };
   if (points.empty() || !std::all_of(points.begin(), points.end(), failed)) return code;
-  print_to_stderr(fmt::format("retrace: every point failed (number of points: {}); the first message is: {}",
-                              points.size(), points.front().reason));
+  print_to_stderr(
+      fmt::format("retrace: all points of the study failed (number of points: {}). The first message is: {}",
+                  points.size(), points.front().reason));
   return ExitCode::answer_is_no;
 }
 

@@ -36,8 +36,8 @@ std::optional<std::size_t> CsvReader::find(std::string_view column) const {
 bool CsvReader::next() {
   if (!next_line()) return false;
   if (values_.size() != columns_.size())
-    fail(
-        fmt::format("must have {} values, one for each column of the header, got {}", columns_.size(), values_.size()));
+    fail(fmt::format("a line must have {} values, one for each column of the header, got {}", columns_.size(),
+                     values_.size()));
   ++rows_;
   return true;
 }

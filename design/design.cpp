@@ -114,13 +114,15 @@ void require_supported(const Design& design, const Capabilities& capabilities) {
     if (!capabilities.solids)
       throw InputError(
           design.where(key),
-          fmt::format("{} does not support a {}, only a part that is described by one [element] and one [array]", what,
-                      solid));
+          fmt::format(
+              "{} is not available for a {}, only for a part that is described by one [element] and one [array]", what,
+              solid));
   };
   std::visit(Overloaded{[&](const ElementArray& array) {
                           if (array.part.substrate && !capabilities.substrates)
-                            throw InputError(design.where(geometry::substrate_shape_key(*array.part.substrate)),
-                                             what + " does not support a [substrate], only elements on a plane");
+                            throw InputError(
+                                design.where(geometry::substrate_shape_key(*array.part.substrate)),
+                                what + " is not available for elements on a [substrate], only for elements on a plane");
                         },
                         [&](const PartMesh&) { refuse_solid("part.mesh", "mesh"); },
                         [&](const Plate&) { refuse_solid("part.plate_mm", "plate"); },
@@ -129,16 +131,18 @@ void require_supported(const Design& design, const Capabilities& capabilities) {
                         },
                         [&](const raytrace::BallLayer&) {
                           if (!capabilities.balls)
-                            throw InputError(design.where("element.kind"),
-                                             "balls are supported only by retrace rre, photometry and inspect");
+                            throw InputError(
+                                design.where("element.kind"),
+                                "balls are available only for the commands retrace rre, photometry and inspect");
                         }},
              design.shape);
   if (design.entrance && !capabilities.entrances)
     throw InputError(design.where(design.entrance_key()),
-                     what + " does not support an [entrance_surface], only a plane entrance face");
+                     what + " is not available for a part with an [entrance_surface], only for a plane entrance face");
   if (design.wet_back && !capabilities.wet_backs)
-    throw InputError(design.where("wet_back.index"),
-                     what + " does not support a [wet_back], only the same medium behind all elements");
+    throw InputError(
+        design.where("wet_back.index"),
+        what + " is not available for a part with a [wet_back], only for the same medium behind all elements");
 }
 
 }  // namespace retrace::design

@@ -135,8 +135,9 @@ HeightMap facet_aligned_map(const std::filesystem::path& file, HeightMapAxis lev
   const std::size_t missing = points - measured_points(read.map);
   if (static_cast<double>(missing) > kMaxMissingFraction * static_cast<double>(points))
     read.warnings.push_back(
-        {"missing_points", fmt::format("{:.1f} % of the points are missing; they count as the mean height",
-                                       100.0 * static_cast<double>(missing) / static_cast<double>(points))});
+        {"missing_points",
+         fmt::format("{:.1f} % of the points have no measured height; the mean height is used for these points",
+                     100.0 * static_cast<double>(missing) / static_cast<double>(points))});
   for (const Warning& warning : read.warnings)
     warnings.push_back({warning.id, fmt::format("{}: {}: {}", source, file.string(), warning.text)});
   return level_axis == HeightMapAxis::x ? std::move(read.map) : rotated_by_90_degrees(read.map);

@@ -61,7 +61,7 @@ void require_temperature(const Design& design, const materials::Material& materi
   const std::optional<double>& temperature_c = design.substance.temperature_c;
   if (temperature_c && *temperature_c != material.temperature_c && !material.thermo_optic)
     throw InputError(design.where("body.temperature_c"),
-                     fmt::format("must be {}, as {} has no thermo-optic coefficients, got {}",
+                     fmt::format("must be {}, because {} has no thermo-optic coefficients, got {}",
                                  shortest(material.temperature_c), material.name, shortest(*temperature_c)));
 }
 
@@ -149,8 +149,9 @@ double absorption_at(const Design& design, const materials::Material& material, 
   if (wavelength_nm < curve.wavelengths_nm.front() || wavelength_nm > curve.wavelengths_nm.back())
     throw InputError(
         design.where("body.absorption_per_mm"),
-        fmt::format("must cover all wavelengths of the light, such as {} nm, got {} to {} nm", shortest(wavelength_nm),
-                    shortest(curve.wavelengths_nm.front()), shortest(curve.wavelengths_nm.back())));
+        fmt::format("must cover all wavelengths of the light, for example {} nm, but covers only {} to {} nm",
+                    shortest(wavelength_nm), shortest(curve.wavelengths_nm.front()),
+                    shortest(curve.wavelengths_nm.back())));
   return curve.at(wavelength_nm);
 }
 
@@ -275,7 +276,7 @@ void warn_of_extrapolation(const Design& design, const Substance& substance, Opt
     share += at.weight;
   }
   if (outside_nm.empty()) return;
-  const std::string data = fmt::format("{}: the data of {} reach from {} to {} nm; its index ", design.source_name(),
+  const std::string data = fmt::format("{}: the data of {} cover {} to {} nm; its index ", design.source_name(),
                                        substance.name, substance.valid_from_nm, substance.valid_to_nm);
   model.warnings.push_back(
       {"index_extrapolated",
@@ -305,9 +306,10 @@ void add_coating_warnings(const Design& design, const materials::MaterialLibrary
     if (fringes > kMaxFringesPerStep)
       model.warnings.push_back(
           {"unresolved_fringes",
-           fmt::format("{}: these layers have up to {:.1f} interference fringes between neighbouring traced "
-                       "wavelengths; means over the spectrum do not resolve the fringes",
-                       design.source_name(), fringes)});
+           fmt::format(
+               "{}: the layers have up to {:.1f} interference fringes between neighbouring wavelengths of the "
+               "computation; the fringes are therefore not resolved, and averages over the spectrum may be inaccurate",
+               design.source_name(), fringes)});
   }
 }
 
@@ -319,7 +321,7 @@ void warn_of_temperature(const Design& design, const materials::Material& materi
   if (temperature_c >= data.valid_from_c && temperature_c <= data.valid_to_c) return;
   model.warnings.push_back(
       {"thermo_optic_extrapolated",
-       fmt::format("{}: the thermo-optic data of {} reach from {} to {} C; its index at {} C is extrapolated",
+       fmt::format("{}: the thermo-optic data of {} cover {} to {} C; its refractive index at {} C is extrapolated",
                    design.source_name(), material.name, shortest(data.valid_from_c), shortest(data.valid_to_c),
                    shortest(temperature_c))});
 }

@@ -155,7 +155,7 @@ Points measured(const std::vector<double>& heights_nm, double pixel_um) {
     points.z_um.push_back(heights_nm[i] / kNmPerMicrometre);
   }
   if (points.x_um.size() < kMinEdgePoints)
-    throw std::invalid_argument("an edge needs at least 16 measured points across it");
+    throw std::invalid_argument("an edge requires at least 16 measured points across it");
   return points;
 }
 

@@ -84,7 +84,7 @@ studies::ZonedDesignRequest zoned_design_of(const ComposeOptions& options) {
   request.layout = studies::read_zone_layout(options.layout);
   if (options.x_length_mm.has_value() != options.y_length_mm.has_value())
     throw InputError({"", 0, options.x_length_mm ? "--y-length-mm" : "--x-length-mm"},
-                     "is required together with the other length");
+                     "is required, because --x-length-mm and --y-length-mm must be given together");
   if (options.x_length_mm) request.size_mm = {*options.x_length_mm, *options.y_length_mm};
   return request;
 }
@@ -126,7 +126,7 @@ ExitCode compose_part(const ComposeOptions& options, const CommonOptions& common
   const studies::ComposeRequest request = studies::read_compose(study);
   const OrderlyInterrupt interrupt;
   if (options.for_worst && !(request.errors && request.errors->worst_fraction))
-    throw InputError({"", 0, "--for-worst"}, "needs worst_fraction in [compose] of the study");
+    throw InputError({"", 0, "--for-worst"}, "requires the key compose.worst_fraction in the study");
   studies::Composition composition;
   const auto written_zones = [&] {
     if (options.for_worst) return studies::robust_zones(composition);

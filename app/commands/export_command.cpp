@@ -45,8 +45,10 @@ void check_options(const ExportOptions& options, bool is_material) {
   for (const requests::Row& row : unused.rows) {
     const std::optional<std::string>& given = options.fields.values.at(requests::option_of(row));
     if (given && *given != requests::text_of(row, unused.initial()))
-      throw InputError(row.field(), is_material ? "only allowed for solids, but the output is a material"
-                                                : "only allowed for materials (.json, .xml or .glsl)");
+      throw InputError(row.field(),
+                       is_material
+                           ? "only allowed if --out is a solid (.stl, .obj, .glb, .step or .stp), but it is a material"
+                           : "only allowed if --out is a material (.json, .xml or .glsl)");
   }
 }
 

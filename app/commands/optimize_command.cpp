@@ -38,7 +38,8 @@ studies::GeneratedJob job_of(JobRequest request, const studies::Study& study, co
   if (request.tool_width_mm == 0.0) {
     const std::optional<double> width_mm = candidate.machining().tool_width_mm;
     if (!width_mm)
-      throw InputError(Field{"tool_width_mm"}, "is required with --job where the study has no machining.tool_width_mm");
+      throw InputError(Field{"tool_width_mm"},
+                       "is required for --job, because the study does not contain machining.tool_width_mm");
     request.tool_width_mm = *width_mm;
   }
   return studies::make_job(candidate.design(), request);

@@ -91,8 +91,8 @@ Kind kind_of(const std::string& file) {
 /// Refuses options that do not apply to files of kind `kind`.
 void refuse_others(const VerifyOptions& options, const VerificationRequest& request, Kind kind) {
   const auto refuse = [&](const std::string& option, const char* whom) {
-    throw InputError({"", 0, option},
-                     fmt::format("only allowed for {}, but {} is another kind of file", whom, options.job));
+    throw InputError({"", 0, option}, fmt::format("only allowed for the files of {}, but {} is a file of another kind",
+                                                  whom, options.job));
   };
   if (kind != Kind::turned_part && !options.servo.empty()) refuse("--servo", "turned parts");
   if (kind == Kind::job) return;

@@ -9,7 +9,7 @@ std::unique_ptr<MpiMailbox> open_mpi_mailbox(std::chrono::milliseconds sign_of_l
   // without being linked to these libraries.
   static constexpr Module module{.name = "retrace_mpi",
                                  .function = "retrace_mpi_mailbox",
-                                 .missing_message = "ranks of mpirun or srun cannot communicate",
+                                 .missing_message = "the ranks started by mpirun or srun cannot communicate",
                                  .library = "OpenMPI",
                                  .package = "openmpi-bin",
                                  .is_global = true};

@@ -11,9 +11,9 @@ using namespace schema;
 
 constexpr Condition kTableOfNoBall = is_not(kKind, kBall);
 constexpr Condition kNoMesh =
-    is_absent("part.mesh", "not allowed together with part.mesh, which describes the whole part");
-constexpr Condition kNoPlate =
-    is_absent("part.plate_mm", "not allowed together with part.plate_mm, which describes the whole part");
+    is_absent("part.mesh", "not allowed together with part.mesh, because part.mesh describes the whole part");
+constexpr Condition kNoPlate = is_absent(
+    "part.plate_mm", "not allowed together with part.plate_mm, because part.plate_mm describes the whole part");
 
 constexpr Condition kWithElements[] = {kNoMesh, kNoPlate};
 constexpr Condition kWithPlanes[] = {kNoMesh, kNoPlate, kTableOfNoBall};

@@ -190,7 +190,7 @@ void check_land(const Document& document, const PartSpec& part) {
   const auto check = [&](std::string_view gap, double gap_mm) {
     if (gap_mm <= 0.0 || gap_mm >= needed_mm) return;
     document.fail(part.edges.rim_radius_mm > 0.0 ? "surface.rim_radius_um" : "surface.rim_chamfer_um",
-                  fmt::format("rims of this shape need an array.{} that is 0 or >= {} mm, got {}", gap,
+                  fmt::format("this radius or chamfer of the rims requires array.{} = 0 or >= {} mm, got {}", gap,
                               shortest(needed_mm), shortest(gap_mm)));
   };
   check("x_gap_mm", part.array.x_gap_mm);
@@ -244,9 +244,9 @@ void check_angles(const Document& document, const PartSpec& part) {
     const auto& [dihedral, tilt] = part.angle_errors;
     const double apex_deg = rtp->apex_angle_deg + (dihedral[0] + tilt[0] + tilt[1]) / 60.0;
     if (!kApexAngle.contains(apex_deg))
-      document.fail(
-          blamed_error(document, kFacetTilt),
-          fmt::format("the apex angle including its errors must be {}, got {}", kApexAngle.text(), shortest(apex_deg)));
+      document.fail(blamed_error(document, kFacetTilt),
+                    fmt::format("the apex angle including the angle errors must be {}, got {}", kApexAngle.text(),
+                                shortest(apex_deg)));
     return;
   }
   constexpr double steepest_deg = 88.0;
@@ -281,7 +281,9 @@ void check_substrate_of_part(const Document& document, const PartSpec& part) {
   const bool has_gaps = part.array.x_gap_mm > 0.0 || part.array.y_gap_mm > 0.0;
   const bool is_plane = std::holds_alternative<PlaneSubstrate>(part.substrate->shape);
   if (part.edges.rounds_rims() && part.substrate->element_axes == ElementAxes::normal && (has_gaps || !is_plane))
-    document.fail(key, "rounded or chamfered rims need element_axes = \"parallel\", or a plane substrate and no gaps");
+    document.fail(
+        key,
+        "rounded or chamfered rims require substrate.element_axes = \"parallel\", or a plane substrate and no gaps");
   try {
     geometry::check_substrate(part);
   } catch (const InputError& error) {
@@ -294,9 +296,9 @@ void check_thickness(const Document& document, const PartSpec& part) {
   const double top_mm = geometry::element_top_mm(part.element, part.angle_errors);
   const double least_mm = top_mm > 0.0 ? top_mm + 1e-6 : 0.0;
   if (part.thickness_mm < least_mm)
-    document.fail("body.thickness_mm",
-                  fmt::format("must be >= {} to cover the rims, which angle errors or a cant raise to {} mm, got {}",
-                              shortest(least_mm), shortest(top_mm), shortest(part.thickness_mm)));
+    document.fail("body.thickness_mm", fmt::format("must be >= {} so that the plate is thicker than the height of the "
+                                                   "rims, {} mm (angle errors and a cant raise the rims), got {}",
+                                                   shortest(least_mm), shortest(top_mm), shortest(part.thickness_mm)));
 }
 
 void check_bowl(const Document& document) {

@@ -97,7 +97,9 @@ void check_ball_mirror(const Document& document) {
   constexpr std::string_view key = "element.mirror_offset_mm";
   if (!document.has(key) || document.number(key) == 0.0 || document.count(kFacetLayers) > 0) return;
   if (document.text("body.facet_coating") == "aluminium" || document.text("idealisation.facets") == "mirror") return;
-  document.fail(key, "needs a mirror: give body.facet_coating = \"aluminium\", or idealisation.facets = \"mirror\"");
+  document.fail(key,
+                "a value above 0 requires a mirror: give body.facet_coating = \"aluminium\", or idealisation.facets = "
+                "\"mirror\"");
 }
 
 void check_wet_back(const Document& document) {
@@ -154,8 +156,8 @@ void check_coating(const Document& document) {
       document.fail(kFacetLayers, "not allowed together with idealisation.facets = \"mirror\"");
     if (document.text_if("element.kind") == "ball" && count_opaque(document, kFacetLayers) == 0)
       document.fail(kFacetLayers,
-                    "needs one opaque layer, without thickness_nm, for element.kind = \"ball\": the layers behind "
-                    "balls must form a mirror");
+                    "one opaque layer (a layer without thickness_nm) is required for element.kind = \"ball\": the "
+                    "layers behind balls must form a mirror");
   }
   if (document.count(kEntranceLayers) > 0 && document.text("idealisation.entrance") == "lossless")
     document.fail(kEntranceLayers, "not allowed together with idealisation.entrance = \"lossless\"");

@@ -104,7 +104,7 @@ void ControlCheck::stop(const NcSettings& settings, const AxisPositions& at, con
                   shortest(rule_.safe_z_mm)));
   const auto is_at_zero = [](double deg) { return std::abs(std::remainder(deg, 360.0)) < kSlack; };
   ask(is_at_zero(at.a_deg) && is_at_zero(at.b_deg) && is_at_zero(at.c_deg),
-      "the program stops while the rotary axes are not at 0; the operator needs them at 0");
+      "the program stops while the rotary axes are not at 0; for the operator, they must be at 0");
   ask(!settings.mist_on.value_or(false), "the program stops with the mist on");
   const NcSpindle spindle = settings.spindle.value_or(NcSpindle::stopped);
   ask(spindle == NcSpindle::stopped || spindle == NcSpindle::stopped_by_text,

@@ -140,10 +140,10 @@ double stock_mm(const Job& job, const std::vector<CutElement>& elements, double 
       const double more = highest - stock;
       stock = highest;
       if (stock > kMaxStockDepths * opening.depth_mm || round + 1 == kMaxRounds)
-        throw InputError(fmt::format(
-            "is too steep: the tool cannot leave its cuts, because next to the element at x = {}, y = {} mm "
-            "of the blank, the substrate is more than {} element depths above the rims",
-            fixed(cut.origin_mm.x(), 4), fixed(cut.origin_mm.y(), 4), shortest(kMaxStockDepths)));
+        throw InputError(
+            fmt::format("the substrate is too steep: next to the element at x = {}, y = {} mm of the blank, it is more "
+                        "than {} element depths above the rims, so that the tool cannot move out of its cuts",
+                        fixed(cut.origin_mm.x(), 4), fixed(cut.origin_mm.y(), 4), shortest(kMaxStockDepths)));
       if (more <= kSettledMm) break;
     }
   }

@@ -144,7 +144,8 @@ std::optional<ZoneError> first_zone_error(const Job& job) {
     for (const Vec2& apex : job.zones[z].apexes_mm) {
       const Polygon outline = placed.back().outline_at(apex);
       if (!geometry::contains(part, outline, kSameShare * radius_mm))
-        return ZoneError{z, place_text(apex) + " extends beyond the array's lengths"};
+        return ZoneError{
+            z, place_text(apex) + " extends beyond the array, whose size is given by x_length_mm and y_length_mm"};
       for (std::size_t other = 0; other <= z; ++other) {
         const double near_mm = kSameShare * std::min(radius_mm, placed[other].radius_mm());
         if (const Vec2* const met = placed[other].overlapped_by(outline, apex, radius_mm, near_mm))

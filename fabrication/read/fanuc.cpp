@@ -151,7 +151,7 @@ class FanucReader {
   void set_call(Line& line) {
     constexpr double most = 9999;
     if (!line.p || line.p_has_point || *line.p < 1 || *line.p > most)
-      lines_.fail("M98 needs P with a number from 1 to 9999");
+      lines_.fail("M98 requires P with a number from 1 to 9999");
     line.block.call = table_.index_of(fmt::format("{}", *line.p));
   }
 

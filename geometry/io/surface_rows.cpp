@@ -128,7 +128,7 @@ constexpr auto kLensletRows =
 (std::make_index_sequence<std::size(kSagRows)>{}, std::make_index_sequence<std::size(kPlacedRows)>{});
 
 constexpr Condition kBeyondBoundary[] = {
-    is_given("boundary", "needs a [boundary], outside of which the surface is extrapolated")};
+    is_given("boundary", "requires a table [boundary], outside of which the surface is extrapolated")};
 constexpr Table kTables[] = {{.name = "base", .meaning = "Sag of the surface.", .rows = kSagRows},
                              {.name = "boundary",
                               .meaning = "Closed curve inside of which the surface is the sag of `[base]`.",

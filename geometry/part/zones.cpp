@@ -293,8 +293,8 @@ std::optional<ZoneFault> misfit(std::size_t zone, const ArraySheet& own, const A
                      ZoneFault::Subject::elements};
   if (!may_turn(own, rotation_deg, near_mm))
     return ZoneFault{zone,
-                     fmt::format("must be a multiple of {:.6g}, which maps the outline of each element to itself, "
-                                 "got {:.17g}",
+                     fmt::format("must be a multiple of {:.6g} degrees, so that the rotation maps the outline of each "
+                                 "element to itself, got {:.17g}",
                                  min_rotation_deg(own, near_mm), rotation_deg),
                      ZoneFault::Subject::rotation};
   return std::nullopt;

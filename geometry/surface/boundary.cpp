@@ -72,13 +72,14 @@ void check_single_valued(const std::vector<double>& angles, const InputLocation&
   for (std::size_t i = 0; i < angles.size(); ++i) {
     const double next = i + 1 < angles.size() ? angles[i + 1] : closing;
     if (!(next - angles[i] > 1e-12))
-      throw InputError(where, fmt::format("must not cross itself and must have one radius at each angle about its "
-                                          "centre, but the angle reverses at point {} ({} degrees)",
+      throw InputError(where, fmt::format("the boundary must not cross itself and must have only one radius at each "
+                                          "angle about its centre, but the angle reverses at point {} ({} degrees)",
                                           i + 1, degrees(angles[i])));
   }
   if (std::abs(closing - angles.front() - kTwoPi) > 1e-9)
-    throw InputError(where, fmt::format("must go around its centre one time, but goes around it {} times",
-                                        std::lround((closing - angles.front()) / kTwoPi)));
+    throw InputError(where,
+                     fmt::format("the boundary must enclose its centre exactly one time, but encloses it {} times",
+                                 std::lround((closing - angles.front()) / kTwoPi)));
 }
 
 }  // namespace
@@ -90,8 +91,9 @@ Boundary boundary_from_radii(const Vec2& centre_mm, const std::vector<double>& a
   try {
     boundary.radius_mm = PeriodicSpline(angles_rad, radii_mm, degree);
   } catch (const std::invalid_argument& error) {
-    throw InputError(where, fmt::format("needs at least {} points at different angles for a spline of degree {} ({})",
-                                        degree + 2, degree, error.what()));
+    throw InputError(where,
+                     fmt::format("must have at least {} points at different angles for a spline of degree {} ({})",
+                                 degree + 2, degree, error.what()));
   }
   measure(boundary, where);
   return boundary;

@@ -237,7 +237,8 @@ void check_surface(const FreeformSurface& surface, double radius_mm, const Input
       const double x = r * std::cos(angle);
       const double y = r * std::sin(angle);
       if (!std::isfinite(surface.height_mm(x, y)))
-        throw InputError(where, "must be finite over the whole part, but is not at " + place_elements(x, y));
+        throw InputError(where, "the height of this surface must be finite over the whole part, but is not finite at " +
+                                    place_elements(x, y));
       // At the centre, a formula of the radius r may have no slope. An example is a cone.
       if (i == 0) continue;
       const Gradient z = surface.gradient(x, y);

@@ -63,7 +63,7 @@ std::vector<double> knots_of(const std::vector<double>& sites, int degree) {
 void check_sites(const std::vector<double>& sites, std::size_t values, int degree) {
   if (degree < 2 || degree > kMaxSplineDegree) throw std::invalid_argument("degree of a periodic spline");
   if (sites.size() != values || sites.size() < static_cast<std::size_t>(degree) + 2)
-    throw std::invalid_argument("a periodic spline needs more sites than its degree + 1");
+    throw std::invalid_argument("a periodic spline requires more sites than its degree + 1");
   for (std::size_t i = 0; i + 1 < sites.size(); ++i)
     if (!(sites[i] < sites[i + 1])) throw std::invalid_argument("sites of a periodic spline must rise");
   if (!(sites.back() - sites.front() < kPeriod))

@@ -64,7 +64,9 @@ class Record {
     material.name = printable(std::filesystem::path(file_).stem().string());
     material.source = file_;
     for (const YAML::Node& entry : root["DATA"]) add(entry, material);
-    if (!has_index_) throw InputError({file_, line(root["DATA"]), "DATA"}, "has neither a formula nor a table of n");
+    if (!has_index_)
+      throw InputError({file_, line(root["DATA"]), "DATA"},
+                       "must contain a dispersion formula or a table of the refractive index n, but contains neither");
     add_conditions(root, material);
     add_thermo_optic(root["PROPERTIES"], material);
     check_nd(root, material);

@@ -79,10 +79,10 @@ std::shared_ptr<const InstanceOffsets> BeamQueue::shared(InstanceOffsets offsets
 
 void BeamQueue::require_memory() const {
   if (memory_->is_exceeded())
-    throw TraceBudgetError(fmt::format(
-        "beams exceed {} with {:.3g} of the power not accounted for: use a larger {} to follow fewer beams, a "
-        "larger memory budget, or {} montecarlo",
-        memory_budget_text(), open_power(), reference({"cutoff"}), reference({"engine"})));
+    throw TraceBudgetError(
+        fmt::format("the beams exceed {} before all power is traced; the remaining fraction of the power is {:.3g}: "
+                    "use a larger {} to follow fewer beams, a larger memory budget, or {} montecarlo",
+                    memory_budget_text(), open_power(), reference({"cutoff"}), reference({"engine"})));
   memory_->require_shared();
 }
 

@@ -200,10 +200,10 @@ void BeamWalk::advance(const Beam& beam, const Cancellation* cancel) {
 
 /// Throws the error for a trace that exceeds BeamPolicy::max_beams.
 void BeamWalk::fail_on_budget() const {
-  throw TraceBudgetError(fmt::format(
-      "the budget of {} beams ran out with {:.3g} of the power not accounted for; use a larger {} to follow "
-      "fewer beams",
-      scene_.policy.max_beams, queue_.open_power(), reference({"cutoff"})));
+  throw TraceBudgetError(
+      fmt::format("the limit of {} beams is reached before all power is traced; the remaining fraction of the power is "
+                  "{:.3g}; use a larger {} to follow fewer beams",
+                  scene_.policy.max_beams, queue_.open_power(), reference({"cutoff"})));
 }
 
 }  // namespace retrace::raytrace

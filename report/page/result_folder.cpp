@@ -109,8 +109,8 @@ ResultFolder read_result_folder(const fs::path& folder, const std::vector<std::s
     if (ending != ".json" && type.empty()) continue;
     if (!may_read(result, file)) {
       result.warnings.push_back(
-          {"result_outside_folder",
-           name + ": left out because it links to a file outside the folder; allow it with --read"});
+          {"result_outside_folder", name + ": this link was left out, because its file is outside the folder of "
+                                           "results; allow the file with --read"});
       continue;
     }
     if (ending == ".json") add_document(result, file, name, read_file(file, kMaxDocumentBytes));

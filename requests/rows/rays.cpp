@@ -130,7 +130,7 @@ void check_rays(const void* object) {
   const auto& request = *static_cast<const RaysRequest*>(object);
   if (request.source.empty() && request.emitter.empty())
     throw InputError(Field{"source"},
-                     fmt::format("one of {} and {} must be given", reference({"source"}), reference({"emitter"})));
+                     fmt::format("either {} or {} must be given", reference({"source"}), reference({"emitter"})));
 }
 
 constexpr Row kTraceRows[] = {

@@ -55,7 +55,7 @@ void check_rre(const void* object) {
       throw InputError(Field{"incidence_spans_deg"},
                        fmt::format("a range must have start < stop, got {} and {}", shortest(from), shortest(to)));
   if (request.incidence_deg.empty() && request.incidence_spans_deg.empty())
-    throw InputError(Field{"incidence_deg"}, "must be at least one number, got none");
+    throw InputError(Field{"incidence_deg"}, "must contain at least one number, got none");
 }
 
 constexpr Row kRreRows[] = {

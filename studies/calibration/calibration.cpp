@@ -114,7 +114,8 @@ compute::LeastSquaresEstimate fit(const std::vector<CutPart>& parts, const Measu
     }
   }
   throw InputError({measured.file, 0, ""},
-                   "no machine similar to that of the jobs would produce these measurements: check units and facets");
+                   "the measurements cannot be explained by a machine similar to the machine of the jobs: check the "
+                   "units and the numbers of the facets");
 }
 
 /// Returns the index of the measurement with the largest deviation from the fit, and this deviation in standard
@@ -143,10 +144,10 @@ double max_by_chance(std::size_t measurements) {
     places += m.line > 0 ? std::to_string(m.line) : fmt::format("facet {} of element {}", m.at.facet + 1, m.at.element);
   }
   const int line = outliers.front().measurement.line;
-  throw InputError(
-      {line > 0 ? measured.file : measured.jobs[outliers.front().measurement.part], line, ""},
-      fmt::format("measurements contradict each other by more than their uncertainties: {}{} (worst first)",
-                  line > 0 ? "lines " : "", places));
+  throw InputError({line > 0 ? measured.file : measured.jobs[outliers.front().measurement.part], line, ""},
+                   fmt::format("some measurements contradict the others by more than their uncertainties: {}{} (in "
+                               "order of decreasing contradiction)",
+                               line > 0 ? "lines " : "", places));
 }
 
 /// Returns true if two measurements have the same sign convention. This is the case if they are of the same quantity
@@ -178,14 +179,13 @@ void check_signs(const MeasuredParts& measured, const std::vector<CutPart>& part
     if (is_in_part || (is_in_others && lines.size() < 2)) continue;
     std::sort(lines.begin(), lines.end());
     const FabricationResult& plan = measured.plan_of(worst.part);
-    throw InputError(
-        {measured.file, lines.front(), "value"},
-        fmt::format("all values of {} for facet {}{} of {} (line{} {}) contradict the other rows: check their sign. A "
-                    "positive value means \"{}\" at {}0 C0",
-                    kFacetQuantityWords[static_cast<std::size_t>(worst.what)], worst.at.facet + 1,
-                    plan.plan.elements[worst.at.element].rotated ? " of rotated elements" : "",
-                    measured.jobs[worst.part], lines.size() > 1 ? "s" : "", fmt::join(lines, ", "),
-                    parts[worst.part].positive_sense(worst), plan.machine.tilt_letter()));
+    throw InputError({measured.file, lines.front(), "value"},
+                     fmt::format("all values of {} for facet {}{} of {} (line{} {}) contradict the other rows: check "
+                                 "the sign of these values. A positive value means \"{}\" at {}0 C0",
+                                 kFacetQuantityWords[static_cast<std::size_t>(worst.what)], worst.at.facet + 1,
+                                 plan.plan.elements[worst.at.element].rotated ? " of rotated elements" : "",
+                                 measured.jobs[worst.part], lines.size() > 1 ? "s" : "", fmt::join(lines, ", "),
+                                 parts[worst.part].positive_sense(worst), plan.machine.tilt_letter()));
   }
 }
 

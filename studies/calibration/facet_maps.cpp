@@ -186,11 +186,11 @@ class Registration {
     if (!(least < most))
       throw InputError(
           {map.file, 0, ""},
-          fmt::format(
-              "does not match the part at any position within half an element of x = {}, y = {} mm: at the best "
-              "position, the median deviation from the design is {} nm, but at most {} nm are allowed. The rows of "
-              "the map must be parallel to X of the workpiece",
-              shortest(map.centre_mm.x()), shortest(map.centre_mm.y()), fixed(1e6 * least, 0), fixed(1e6 * most, 0)));
+          fmt::format("the height map does not match the design at any position within half an element of x = {}, y = "
+                      "{} mm: at the best position, the median deviation is {} nm, but at most {} nm are allowed. "
+                      "Check the position, and that the rows of the map are parallel to X of the workpiece",
+                      shortest(map.centre_mm.x()), shortest(map.centre_mm.y()), fixed(1e6 * least, 0),
+                      fixed(1e6 * most, 0)));
     return best;
   }
 

@@ -60,10 +60,12 @@ std::string CutPart::obstacle_for(const Measurement& m) const {
   for (const std::optional<FacetId>& place : {std::optional(m.at), m.from}) {
     if (!place) continue;
     if (place->element >= cavities_.size())
-      return fmt::format("the job cuts elements 0 to {}, got {}", cavities_.size() - 1, place->element);
+      return fmt::format("the elements of the job have the numbers 0 to {}, got {}", cavities_.size() - 1,
+                         place->element);
     const std::size_t facets = common(cavities_[place->element]).facets.size();
     if (place->facet >= facets)
-      return fmt::format("element {} has facets 1 to {}, got {}", place->element, facets, place->facet + 1);
+      return fmt::format("the facets of element {} have the numbers 1 to {}, got {}", place->element, facets,
+                         place->facet + 1);
     if (!cuts_.contains({place->element, place->facet})) return fmt::format("element {} is not cut", place->element);
   }
   if (m.what == FacetQuantity::angle) {

@@ -242,7 +242,8 @@ double TimedMoves::predicted_s(const Machine& machine) const {
 }
 
 TimeCalibration calibrate_times(TimedPrograms programs, const Machine& machine) {
-  if (programs.rows.empty()) throw InputError({programs.file, 0, ""}, "must contain at least one row with a time");
+  if (programs.rows.empty())
+    throw InputError({programs.file, 0, ""}, "the table must contain at least one row with a time");
   TimeCalibration result;
   result.programs = std::move(programs);
   result.nominal = machine;

@@ -101,7 +101,8 @@ void check_zone(const fabrication::Job& job, std::size_t zone, const DesignEleme
     if (cut.index() != designed.index() || std::abs(turn_deg) > kSame || std::abs(size - 1.0) > kSame)
       throw InputError(
           where,
-          which + " has another kind, size or rotation in the job's design, so no as-machined part can be written");
+          which +
+              " has another kind, size or rotation in the job's design, so that no as-machined part can be written");
   }
 }
 

@@ -302,9 +302,9 @@ class Composer {
     for (const std::size_t k : composition.infeasible_bounds)
       text += fmt::format("{}{}", text.empty() ? "" : " and ", request_.part_constraints[k].text());
     if (text.empty())
-      return fmt::format("{} cells cannot fill the part if each covers at most the fraction {} of its area",
+      return fmt::format("{} cells cannot fill the part if each cell covers at most the fraction {} of the part's area",
                          composition.catalogue.size(), shortest(request_.max_area_fraction));
-    return fmt::format("{} as a mean over the part excludes every mixture of the {} cells", text,
+    return fmt::format("the constraint {} on the mean over the part excludes every mixture of the {} cells", text,
                        composition.catalogue.size());
   }
 

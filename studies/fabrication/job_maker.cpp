@@ -86,12 +86,12 @@ geometry::Element element_of(const design::Design& design, const JobRequest& req
     return prism;
   }
   if (!is_dmc(request))
-    throw InputError(
-        Field{"strategy"},
-        fmt::format("a chisel with a straight edge reaches only {} % of the facets of this cube corner, and not its "
-                    "apex: use dmc, or give {} FILE to write the design of the part that a chisel can cut, got {}",
-                    fixed(100.0 * reachable_fraction(design.part().element, request.tool_width_mm), 2),
-                    reference({"reachable"}), request.strategy));
+    throw InputError(Field{"strategy"},
+                     fmt::format("a chisel with a straight edge reaches only {} % of the facets of this cube corner, "
+                                 "and does not reach its apex: use the strategy dmc, or give {} FILE to write the "
+                                 "design of the part that a chisel can cut; the given strategy is {}",
+                                 fixed(100.0 * reachable_fraction(design.part().element, request.tool_width_mm), 2),
+                                 reference({"reachable"}), request.strategy));
   check_upright(design.part().element, {design.source_name(), 0, "element.cant_deg"});
   return design.part().element;
 }

@@ -34,7 +34,7 @@ std::array<double, 2> film_of(const CameraRequest& r) {
 /// most half of the circumference. Both values are allowed only for infinite parts.
 void check_film(const CameraRequest& r, bool is_infinite) {
   if (!is_infinite) {
-    constexpr std::string_view need = "needs a design with extent = \"infinite\": ";
+    constexpr std::string_view need = "requires a design with array.extent = \"infinite\": ";
     if (r.cylinder_mm)
       throw InputError(Field{"cylinder_mm"}, fmt::format("{}finite parts are always plane in this version", need));
     if (r.film_mm) throw InputError(Field{"film_mm"}, fmt::format("{}a finite part is shown in its own size", need));

@@ -384,7 +384,7 @@ UndeterminedReason reason_of(const std::vector<PhotometricPoint>& points, const 
   if (std::none_of(points.begin(), points.end(), is_open)) return {};
   if (std::none_of(points.begin(), points.end(), [](const PhotometricPoint& p) { return p.lacks_diffraction; }))
     return {UndeterminedReason::Cause::noise, std::nullopt,
-            "a value is within two standard errors of its limit: " + photometer.remedy_for_noise()};
+            "a photometric value is within two standard errors of its limit: " + photometer.remedy_for_noise()};
   const NoDiffraction why = photometer.why_undiffracted();
   return {UndeterminedReason::Cause::diffraction, why,
           fmt::format("diffraction is not included, because {}, but it is significant for cells narrower than {} mm",

@@ -89,7 +89,7 @@ class PhotometricQuantity final : public Quantity {
   /// \throw BudgetError if diffraction was requested but is not included, because the margin would not be a verdict
   Measured margin_of(const PhotometricPoint& point, const std::string& reason) const {
     if (point.lacks_diffraction && table_->request.diffraction)
-      throw BudgetError(fmt::format("the margin of the photometry is undetermined: {}", reason));
+      throw BudgetError(fmt::format("the photometric margin cannot be determined: {}", reason));
     return {point.margin(), point.std_error_mcd_per_lx / point.limit_mcd_per_lx};
   }
 

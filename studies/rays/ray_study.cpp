@@ -317,11 +317,10 @@ class RayStudy::Run {
       const auto [least, most] = std::minmax_element(extrapolated_nm_.begin(), extrapolated_nm_.end());
       const materials::Material& material = hidden_.optics.material();
       result_.warnings.push_back(
-          {"index_extrapolated",
-           fmt::format("{}: the data of {} reach from {} to {} nm; its index is extrapolated for wavelengths of rays "
-                       "from {} to {} nm",
-                       hidden_.design.source_name(), material.name, material.valid_from_nm, material.valid_to_nm,
-                       shortest(*least), shortest(*most))});
+          {"index_extrapolated", fmt::format("{}: the data of {} cover {} to {} nm; its index is extrapolated for "
+                                             "wavelengths of rays from {} to {} nm",
+                                             hidden_.design.source_name(), material.name, material.valid_from_nm,
+                                             material.valid_to_nm, shortest(*least), shortest(*most))});
     }
     for (Warning& warning : source_.warnings()) result_.warnings.push_back(std::move(warning));
     if (result_.ledger.rays > 0 && result_.ledger.rays_missed == result_.ledger.rays)

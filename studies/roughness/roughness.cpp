@@ -23,7 +23,7 @@ void check(const design::Design& design) {
     throw InputError(design.where_texture(), "must be left out, because retrace roughness varies the roughness");
   if (design.detector.acceptance_half_angle_deg.size() != 1)
     throw InputError({design.source_name(), 0, "detector.acceptance_half_angle_deg"},
-                     fmt::format("must be a single angle for retrace roughness, got {}",
+                     fmt::format("must be a single angle for retrace roughness; number of given angles: {}",
                                  design.detector.acceptance_half_angle_deg.size()));
 }
 

@@ -233,11 +233,13 @@ std::vector<RreDerivative> derivatives_by(RreParameter parameter, const TracedDi
 
 std::string_view text_of(NoDerivative reason) {
   switch (reason) {
-    case NoDerivative::count_changes: return "the number of elements changes here";
-    case NoDerivative::too_many_beams: return "slightly different values need far more beams";
+    case NoDerivative::count_changes:
+      return "the number of elements of the array changes for slightly different values";
+    case NoDerivative::too_many_beams: return "slightly different values require far more beams";
     case NoDerivative::no_part: return "no part can be built for slightly different values";
-    case NoDerivative::truncated_power: return "the truncated power is too large for a derivative here";
-    case NoDerivative::not_smooth: return "RRE has a kink or a jump here";
+    case NoDerivative::truncated_power: return "the truncated power makes this derivative too inaccurate";
+    case NoDerivative::not_smooth:
+      return "RRE has a kink or a jump at this value, so that the derivative does not exist";
   }
   return "";
 }

@@ -30,11 +30,11 @@ void check(const RreSettings& request) {
   raytrace::EngineFacts facts;
   facts.needs_plain_sampling = request.needs_plain_sampling();
   if (raytrace::obstacle_for(request.engine, facts))
-    throw InputError(Field{"sampling"}, fmt::format("plain sampling needs {} montecarlo or embree, got {}", engine,
+    throw InputError(Field{"sampling"}, fmt::format("plain sampling requires {} montecarlo or embree, got {}", engine,
                                                     engine_name(request.engine)));
   for (const Field result : exact_results(request))
     if (!raytrace::may_be_exact(request.engine) || !may_use_beams(request))
-      throw InputError(result, fmt::format("needs {} exact", engine));
+      throw InputError(result, fmt::format("requires {} exact", engine));
 }
 
 /// Refuses derivatives for parts with individual facet planes or a mask. Derivatives rebuild the part with changed
@@ -52,7 +52,7 @@ void check_light(const design::Design& design, const design::OpticalModel& model
   if (model.spectral.size() < 2) return;
   for (const Field result : exact_results(request))
     throw InputError(design.where("light.spectrum"),
-                     fmt::format("{} needs a single wavelength, but this light has {}: give light.wavelength_nm "
+                     fmt::format("{} requires a single wavelength, but this spectrum has {}: give light.wavelength_nm "
                                  "instead, or --set light.spectrum=[[{:.0f},1]]",
                                  reference(result), model.spectral.size(), model.wavelength_nm));
 }
@@ -90,21 +90,23 @@ void check_engine(const design::Design& design, const raytrace::EngineFacts& fac
   };
   switch (*obstacle) {
     case Obstacle::balls:
-      throw InputError(Field{"engine"}, fmt::format("must be auto or montecarlo for balls, got {}", name));
+      throw InputError(Field{"engine"},
+                       fmt::format("must be auto or montecarlo for element.kind = \"ball\", got {}", name));
     case Obstacle::plain_sampling: throw InputError(Field{"sampling"}, "must be stratified for balls, got plain");
     case Obstacle::curved_entrance:
       throw InputError(
           Field{"engine"},
-          fmt::format("{} supports only plane entrance faces, but {} has an [entrance_surface]: use {} embree", name,
-                      source, option));
+          fmt::format(
+              "the engine {} supports only plane entrance faces, but {} has an [entrance_surface]: use {} embree", name,
+              source, option));
     case Obstacle::unequal_backs:
-      throw InputError(Field{"engine"}, fmt::format("{} supports only the same medium behind all elements, but {} has "
-                                                    "a [wet_back] behind some elements: use {} embree",
+      throw InputError(Field{"engine"}, fmt::format("the engine {} requires the same medium behind all elements, but "
+                                                    "{} has a [wet_back] behind some elements: use {} embree",
                                                     name, source, option));
     case Obstacle::unequal_cells:
       throw InputError(Field{"engine"},
-                       fmt::format("cell supports only infinite arrays, and arrays of equal elements that extend more "
-                                   "than two elements from every border, but {} is neither: use {} embree",
+                       fmt::format("the engine cell supports infinite arrays and large arrays of equal elements (more "
+                                   "than two elements from every border), but {} has another array: use {} embree",
                                    source, option));
     case Obstacle::texture: throw refused_beams("rough facets scatter");
     case Obstacle::form: throw refused_beams("facets with a form deflect");
@@ -176,10 +178,11 @@ void warn_of_truncation(const RreSettings& request, RreResult& result) {
                        [&](const RrePoint& a, const RrePoint& b) { return truncated(a) < truncated(b); });
   if (worst == result.points.end() || truncated(*worst) <= allowed) return;
   result.warnings.push_back(
-      {"power_truncated", fmt::format("{}: {:.2g} % of the power is cut off at incidence {}, azimuth {}, so that RRE "
-                                      "may be too low by up to this amount; a smaller cut-off reduces the error",
-                                      result.designs[worst->design].source_name(), 100.0 * truncated(*worst),
-                                      shortest(worst->incidence_deg), shortest(worst->azimuth_deg))});
+      {"power_truncated",
+       fmt::format("{}: beams with {:.2g} % of the power are cut off at an incidence of {} degrees and an azimuth of "
+                   "{} degrees; RRE may be too low by up to this amount. Reduce the cut-off to reduce this error",
+                   result.designs[worst->design].source_name(), 100.0 * truncated(*worst),
+                   shortest(worst->incidence_deg), shortest(worst->azimuth_deg))});
 }
 
 /// Returns the engine of all points. If points have different engines, returns `montecarlo` if all engines trace rays,

@@ -50,10 +50,9 @@ std::uint64_t zipped_size(const Study& study) {
   const std::size_t size = study.parameters.front().values.size();
   for (const Parameter& parameter : study.parameters)
     if (parameter.values.size() != size)
-      throw InputError(
-          parameter.location,
-          fmt::format("zipped parameters must have the same number of values as the first parameter, {}, got {}", size,
-                      parameter.values.size()));
+      throw InputError(parameter.location, fmt::format("for sweep.combine = \"zipped\", all parameters must have the "
+                                                       "same number of values as the first parameter ({}), got {}",
+                                                       size, parameter.values.size()));
   return size;
 }
 
@@ -68,8 +67,9 @@ Sweep::Sweep(Study study, Combine combine, std::uint64_t samples) : study_(std::
   for (const Parameter& parameter : study_.parameters)
     if (parameter.values.empty())
       throw InputError(parameter.location,
-                       "a grid needs values, or a range with step or count; an interval or a distribution is only "
-                       "allowed for sweep.combine = \"sobol\", \"latin_hypercube\" and \"monte_carlo\"");
+                       "for sweep.combine = \"grid\" or \"zipped\", a parameter requires values, or a range with step "
+                       "or count; an interval or a distribution is only allowed for sweep.combine = \"sobol\", "
+                       "\"latin_hypercube\" and \"monte_carlo\"");
   size_ = combine == Combine::grid ? grid_size(study_) : zipped_size(study_);
 }
 
@@ -315,9 +315,10 @@ SweepResult collect(const Sweep& sweep, const compute::ResultStore& store, bool 
   const auto first = std::find_if(result.points.begin(), result.points.end(), failed);
   if (first != result.points.end())
     result.warnings.push_back(
-        {"points_failed", fmt::format("{} of {} points failed; the first failed point is {}: {}",
-                                      std::count_if(result.points.begin(), result.points.end(), failed),
-                                      result.points.size(), first->point, first->reason)});
+        {"points_failed",
+         fmt::format("{} of {} points of the study failed. The first of them is point {}, with the message: {}",
+                     std::count_if(result.points.begin(), result.points.end(), failed), result.points.size(),
+                     first->point, first->reason)});
   for (const compute::StoredPoint& point : result.points)
     if (point.version != kVersion) {
       result.warnings.push_back(

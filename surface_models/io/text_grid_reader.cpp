@@ -101,10 +101,11 @@ class TextReader {
     const std::string key = lower_case(trimmed(text.substr(0, end)));
     const std::string_view value = end == std::string_view::npos ? std::string_view{} : trimmed(text.substr(end + 1));
     if (!set(key, value) && !is_comment)
-      source_.fail(lines_.number(),
-                   fmt::format("must be heights or a header key (pixel_um, x_pixel_um, y_pixel_um, height_unit, "
-                               "lateral_unit, columns, ncols, nrows, cellsize, nodata_value), got {}",
-                               in_quotes(text)));
+      source_.fail(
+          lines_.number(),
+          fmt::format("a line must contain heights, or one of the header keys (pixel_um, x_pixel_um, y_pixel_um, "
+                      "height_unit, lateral_unit, columns, ncols, nrows, cellsize, nodata_value), got {}",
+                      in_quotes(text)));
   }
 
   bool set(const std::string& key, std::string_view value) {

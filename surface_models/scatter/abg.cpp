@@ -32,10 +32,10 @@ Abg::Abg(double a, double b, double g) : a_(a), b_(b), g_(g) {
     total_ += quadrature.integrate([&](double log_r) { return std::exp(log_r) * ring(std::exp(log_r)); },
                                    std::log(shoulder_), std::log(kLargestShift));
   if (total_ > 1.0)
-    throw InputError({"", 0, "a"},
-                     "must be <= " + shortest(a / total_) +
-                         " with these b and g, because the scattered light would exceed the incident light; got " +
-                         shortest(a));
+    throw InputError({"", 0, "a"}, "must be <= " + shortest(a / total_) +
+                                       " for the given values of b and g, because otherwise the scattered light would "
+                                       "exceed the incident light; got " +
+                                       shortest(a));
 }
 
 /// Returns the integral of r^(1 - g).

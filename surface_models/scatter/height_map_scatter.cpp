@@ -219,7 +219,7 @@ struct HeightMapScatter::Band {
 
 HeightMapScatter::HeightMapScatter(const HeightMap& map, double wavelength_nm) {
   if (map.rows < kMinPoints || map.columns < kMinPoints)
-    throw InputError("a height map that scatters light needs at least 8 x 8 points, got " +
+    throw InputError("a height map that scatters light must have at least 8 x 8 points, got " +
                      std::to_string(map.columns) + " x " + std::to_string(map.rows));
   if (map.rows * map.columns > kMaxScatterPoints)
     throw InputError("a height map that scatters light may have at most " + std::to_string(kMaxScatterPoints) +

@@ -138,7 +138,7 @@ TEST(OptionNeeds, AreCheckedForEveryOptionOfEveryCommand) {
         const bool is_refused = std::ranges::any_of(command["arguments"], [&](const Json& other) {
           const bool has_need = other.contains("needs") && std::ranges::count(other["needs"], violated) > 0;
           const std::string begin = "retrace: " + name_of(other) + ": ";
-          return has_need && (outcome.err.starts_with(begin + "needs ") ||
+          return has_need && (outcome.err.starts_with(begin + "requires ") ||
                               outcome.err.starts_with(begin + "not allowed together with "));
         });
         EXPECT_EQ(is_refused, !violated.empty()) << outcome.err;

@@ -203,8 +203,8 @@ TEST(Requests, FieldsAreSpelledByTheReceiver) {
     check(detector);
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_NE(error.message(option_of_field).find("needs --engine auto or exact"), std::string::npos);
-    EXPECT_EQ(error.text(), "needs engine auto or exact, got montecarlo");
+    EXPECT_NE(error.message(option_of_field).find("requires --engine auto or exact"), std::string::npos);
+    EXPECT_EQ(error.text(), "requires engine auto or exact, got montecarlo");
   }
 }
 

@@ -128,10 +128,10 @@ void check_v_in_poses(const Job& job, const Machine& machine, const std::array<C
     const double turned_deg = std::abs(poses[k].root_tilt.deg());
     if (turned_deg > room_deg)
       throw InputError(
-          where, fmt::format(
-                     "{0}in facet {2}, the tool would be rotated by {1} degrees, which B and C cannot correct, and "
-                     "would cut into a neighbouring facet. At most {3} degrees are allowed for the angles of this tool",
-                     stance.who(), fixed(turned_deg, 3), k + 1, fixed(room_deg, 3)));
+          where,
+          fmt::format("{0}in facet {2}, the tool would be rotated by {1} degrees, which B and C cannot correct, so "
+                      "that it would cut into a neighbouring facet. The angles of this tool allow at most {3} degrees",
+                      stance.who(), fixed(turned_deg, 3), k + 1, fixed(room_deg, 3)));
     spines[k] = turn * edges.spine;
   }
   for (std::size_t k = 0; k < 3; ++k) {

@@ -35,8 +35,9 @@ bool is_named(const Stage& stage, std::string_view name) {
   }
   const bool is_phase = field.name == "phase";
   throw InputError(
-      field, fmt::format("must be {}roughing, finishing or one of {}{}, got {}", is_phase ? "all, " : "",
-                         fmt::join(names, ", "), is_phase ? " (add + to include all later stages)" : "", plain(name)));
+      field, fmt::format("must be {}roughing, finishing or the name of a stage ({}){}, got {}", is_phase ? "all, " : "",
+                         fmt::join(names, ", "),
+                         is_phase ? ", optionally followed by + to include all later stages" : "", plain(name)));
 }
 
 /// Removes all stages from `plan` except the requested ones.
@@ -48,7 +49,7 @@ std::vector<Stage> choose_stages(Plan& plan, const PlanOptions& options) {
                                     [&](const Stage& stage) { return is_named(stage, options.before); });
     if (first == plan.stages.end()) refuse_phase(plan, Field{"next_stage"}, options.before);
     if (first == plan.stages.begin())
-      throw InputError(Field{"next_stage"}, "must not be the first stage, because nothing has been cut before it");
+      throw InputError(Field{"next_stage"}, "must not be the first stage of the job, because no stage precedes it");
     plan.stages.erase(first, plan.stages.end());
   }
   if (options.phase == "all") return {};

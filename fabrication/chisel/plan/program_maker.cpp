@@ -49,10 +49,10 @@ void check_axis(const Job& job, const Machine& machine, char axis, Nanometres lo
   const double high_mm = millimetres(high_nm);
   if (limits.contains(low_mm) && limits.contains(high_mm)) return;
   const std::string who = element < 0 ? "the safe height" : fmt::format("element {}", element);
-  throw InputError(
-      job.where("machine"),
-      fmt::format("{}: axis {} of machine {} would go to {} mm, beyond its limits of {} to {}", who, axis, machine.name,
-                  fixed(limits.contains(low_mm) ? high_mm : low_mm, 3), shortest(limits.low), shortest(limits.high)));
+  throw InputError(job.where("machine"),
+                   fmt::format("{}: axis {} of machine {} would have to move to {} mm, but its limits are {} to {} mm",
+                               who, axis, machine.name, fixed(limits.contains(low_mm) ? high_mm : low_mm, 3),
+                               shortest(limits.low), shortest(limits.high)));
 }
 
 /// Warms up the machine: X and Y move back and forth, one after the other, over most of their travel. Then moves to the

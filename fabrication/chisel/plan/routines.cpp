@@ -124,7 +124,7 @@ double roughing_remainder_mm(const Job& job, double across_mm, int cut, int cuts
   if (thickness_ratio * shared_mm - dip_mm < least_mm)
     throw InputError(
         job.where("process.min_chip_um"),
-        fmt::format("must be at most {}, the chip thickness of the first roughing cut, got {}",
+        fmt::format("must be at most {} um, the chip thickness of the first roughing cut, got {}",
                     fixed(1e3 * (thickness_ratio * shared_mm - dip_mm), 3), shortest(*job.process.min_chip_um)));
   return across_mm - shared_mm;
 }

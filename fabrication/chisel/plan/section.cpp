@@ -129,9 +129,10 @@ double nearest_c_deg(const Machine& machine, double c_deg, double previous_c_deg
     if (!best || std::abs(candidate - previous_c_deg) < std::abs(*best - previous_c_deg) - kAsFarDeg) best = candidate;
   }
   if (!best)
-    throw InputError(where,
-                     fmt::format("{}machine {}: axis C would go to {} degrees, beyond its limits of {} to {}", who,
-                                 machine.name, fixed(c_deg, 4), shortest(limits.low), shortest(limits.high)));
+    throw InputError(
+        where,
+        fmt::format("{}axis C of machine {} would have to move to {} degrees, but its limits are {} to {} degrees", who,
+                    machine.name, fixed(c_deg, 4), shortest(limits.low), shortest(limits.high)));
   return *best;
 }
 
@@ -141,9 +142,11 @@ double nearest_c_deg(const Machine& machine, double c_deg, double previous_c_deg
 void check_tilt(const Machine& machine, double tilt_deg, const InputLocation& where, const std::string& who) {
   const Interval& limits = machine.a.limits_deg.value;
   if (limits.contains(tilt_deg)) return;
-  throw InputError(where, fmt::format("{}machine {}: axis {} would go to {} degrees, beyond its limits of {} to {}",
-                                      who, machine.name, machine.tilt_letter(), fixed(tilt_deg, 4),
-                                      shortest(limits.low), shortest(limits.high)));
+  throw InputError(
+      where,
+      fmt::format("{0}axis {2} of machine {1} would have to move to {3} degrees, but its limits are {4} to {5} degrees",
+                  who, machine.name, machine.tilt_letter(), fixed(tilt_deg, 4), shortest(limits.low),
+                  shortest(limits.high)));
 }
 
 }  // namespace

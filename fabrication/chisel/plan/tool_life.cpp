@@ -89,17 +89,18 @@ bool ToolLife::needs_program(const ToolWear& visit) const {
 void ToolLife::check(const ToolWear& visit, std::int32_t element) const {
   const auto& life_mm = job_.tool.edge_life_mm;
   if (life_mm && visit.cut_mm > *life_mm)
-    throw LimitError(job_.where("tool.edge_life_mm"),
-                     fmt::format("must be at least {}, the length of cut of one visit to element {}, got {}",
-                                 fixed(visit.cut_mm, 3), element, shortest(*life_mm)),
-                     visit.cut_mm);
+    throw LimitError(
+        job_.where("tool.edge_life_mm"),
+        fmt::format("must be at least {} mm, the length of all cuts of one visit of the tool to element {}, got {}",
+                    fixed(visit.cut_mm, 3), element, shortest(*life_mm)),
+        visit.cut_mm);
   const auto& most_min = job_.process.stop_every_min;
   const double minutes = (wear_.seconds + visit.seconds) / kSecondsPerMinute;
   if (most_min && minutes > *most_min)
-    throw InputError(
-        job_.where("process.stop_every_min"),
-        fmt::format("must be at least {}, the time for the warm-up, the move to element {} and one visit, got {}",
-                    fixed(std::ceil(minutes * 1e3) * 1e-3, 3), element, shortest(*most_min)));
+    throw InputError(job_.where("process.stop_every_min"),
+                     fmt::format("must be at least {} min, the time for the warm-up, the move to element {} and the "
+                                 "cuts of one visit of the tool to this element, got {}",
+                                 fixed(std::ceil(minutes * 1e3) * 1e-3, 3), element, shortest(*most_min)));
 }
 
 std::string stop_text(const Job& job, StopReason reason, int number) {

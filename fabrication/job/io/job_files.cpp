@@ -389,7 +389,8 @@ void check_zones(const Job& job, const Refuse& refuse) {
 
 void check_row(const std::string& row, std::size_t k, std::int64_t columns, const Refuse& refuse) {
   if (static_cast<std::int64_t>(row.size()) != columns)
-    refuse("array.pattern", fmt::format("must have {} cells in every row, as many as the array, got {} in row {}",
+    refuse("array.pattern", fmt::format("must have {} characters in every row, because the array has this number of "
+                                        "cells in a row, got {} in row {}",
                                         columns, row.size(), k));
   const std::size_t wrong = row.find_first_not_of("#-");
   if (wrong != std::string::npos)
@@ -402,8 +403,8 @@ void check_pattern(const Job& job, const Refuse& refuse) {
   if (pattern.empty()) return;
   const std::vector<std::int64_t> lengths = geometry::row_lengths(job.array, job.element);
   if (pattern.size() != lengths.size())
-    refuse("array.pattern",
-           fmt::format("must have {} rows, as many as the array, got {}", lengths.size(), pattern.size()));
+    refuse("array.pattern", fmt::format("must have {} rows, because the array has this number of rows, got {}",
+                                        lengths.size(), pattern.size()));
   for (std::size_t k = 0; k < pattern.size(); ++k) check_row(pattern[k], k, lengths[lengths.size() - 1 - k], refuse);
   if (cut_elements(job).empty()) refuse("array.pattern", "must mark at least one element with #");
 }
@@ -418,11 +419,12 @@ void check_room(const Job& job, const Refuse& refuse) {
     const geometry::CellCounts counts = geometry::prism_block(array, prism_of(job)).counts;
     for (const auto& [count, key, length_mm] : {std::tuple(counts.columns, "array.x_length_mm", array.x_length_mm),
                                                 {counts.rows, "array.y_length_mm", array.y_length_mm}})
-      if (count < 1) refuse(key, "must have room for one element between the margins, got " + shortest(length_mm));
+      if (count < 1)
+        refuse(key, "must be large enough for one element between the margins, got " + shortest(length_mm));
   } else if (geometry::row_lengths(array, job.element).empty()) {
-    refuse("array.x_length_mm",
-           fmt::format("x_length_mm and y_length_mm must have room for one whole element at the centre, got {} and {}",
-                       shortest(array.x_length_mm), shortest(array.y_length_mm)));
+    refuse("array.x_length_mm", fmt::format("x_length_mm and y_length_mm must be large enough for one whole element at "
+                                            "the centre of the array, got {} and {}",
+                                            shortest(array.x_length_mm), shortest(array.y_length_mm)));
   }
 }
 
@@ -453,7 +455,7 @@ void check_substrate(const Job& job, const Refuse& refuse) {
   try {
     geometry::check_substrate(part_on_substrate(job));
     const std::vector<CutElement> elements = cut_elements(job);
-    if (elements.empty()) throw InputError("must have room for at least one whole element within the part");
+    if (elements.empty()) throw InputError("must be large enough for at least one whole element within the part");
     stock_mm(job, elements, job.process.clearance_mm);
   } catch (const InputError& error) {
     refuse(geometry::substrate_shape_key(*job.substrate), error.what());

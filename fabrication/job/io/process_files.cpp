@@ -107,7 +107,7 @@ constexpr schema::Row kRows[] = {
 /// does not separate.
 std::string hanging_chip(const Process& p) {
   if (p.shortest_plough || p.plough_length_mm >= 1e-3 * p.roughing_depth_um) return {};
-  return fmt::format("must be at least roughing_depth_um ({} um) to free the chip, got {}",
+  return fmt::format("must be at least roughing_depth_um ({} um), so that the chip separates, got {}",
                      shortest(p.roughing_depth_um), shortest(p.plough_length_mm));
 }
 
@@ -170,8 +170,8 @@ Process load_process(const std::string& name_or_file, const InputLocation& where
     if (process.name == name_or_file) return process;
     names.push_back(process.name);
   }
-  throw InputError(where,
-                   fmt::format("must be a file or one of {}, got {}", fmt::join(names, ", "), in_quotes(name_or_file)));
+  throw InputError(where, fmt::format("must be the name of a file or one of the names {}, got {}",
+                                      fmt::join(names, ", "), in_quotes(name_or_file)));
 }
 
 }  // namespace retrace::fabrication

@@ -506,8 +506,8 @@ Machine load_machine(const std::string& name_or_file, const InputLocation& where
     if (machine.name == name_or_file) return std::move(machine);
     names.push_back(machine.name);
   }
-  throw InputError(where,
-                   fmt::format("must be a file or one of {}, got {}", fmt::join(names, ", "), in_quotes(name_or_file)));
+  throw InputError(where, fmt::format("must be the name of a file or one of the names {}, got {}",
+                                      fmt::join(names, ", "), in_quotes(name_or_file)));
 }
 
 }  // namespace retrace::fabrication

@@ -180,10 +180,10 @@ void check_sizes(const Document& file) {
               fmt::format("must be {} ({} mm), got {}", limit, fixed_apart(limit_mm, part.tolerance_mm, 6),
                           shortest(part.tolerance_mm)));
   };
-  if (part.tolerance_mm > 0.5 * step_mm) refuse_form("<= half the depth of a zone", 0.5 * step_mm);
-  if (part.mill && part.tolerance_mm < 2.0 * grid) refuse_form(">= two steps of the machine's grid", 2.0 * grid);
+  if (part.tolerance_mm > 0.5 * step_mm) refuse_form("at most half the depth of a zone", 0.5 * step_mm);
+  if (part.mill && part.tolerance_mm < 2.0 * grid) refuse_form("at least two times mill.grid_mm", 2.0 * grid);
   if (part.mill && part.tolerance_mm > kMaxToleranceSteps * grid)
-    refuse_form(fmt::format("<= {} steps of the machine's grid", kMaxToleranceSteps), kMaxToleranceSteps * grid);
+    refuse_form(fmt::format("at most {} times mill.grid_mm", kMaxToleranceSteps), kMaxToleranceSteps * grid);
   const double width_mm = 2.0 * part.lens.half_width_mm;
   if (width_mm > 2.0 * kMaxHalfWidthSteps * grid)
     file.fail(

@@ -26,7 +26,8 @@ void CutRecorder::motion(const NcMotion& motion, const NcSettings&) {
     findings_.push_back(
         {"stops", "", motion.location.line, -1, "the tool stops at every point of the cut (exact stop)", 0.0, 0.0, 1});
   if (findings_.empty() && !(motion.duration_s > 0.0))
-    findings_.push_back({"untimed", "", motion.location.line, -1, "a move of the cut has no duration", 0.0, 0.0, 1});
+    findings_.push_back(
+        {"untimed", "", motion.location.line, -1, "the duration of a cutting move is not defined", 0.0, 0.0, 1});
   const auto add = [&](const AxisPositions& p, double duration_s) {
     pass_.duration_s.push_back(duration_s);
     pass_.line.push_back(motion.location.line);

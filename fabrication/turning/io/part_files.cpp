@@ -50,8 +50,9 @@ PathOptions read_path(const Document& file, const TurningTool& tool) {
     path.spin_deg_per_s2 = file.number_if("machine.c_acceleration_deg_per_s2");
     path.cubic_error_nm = file.number_if("path.cubic_error_nm");
     if (path.cubic_error_nm && !path.spin_deg_per_s2)
-      file.fail("path.cubic_error_nm",
-                "needs machine.c_acceleration_deg_per_s2, because moves with velocities begin and end at rest");
+      file.fail(
+          "path.cubic_error_nm",
+          "requires the key machine.c_acceleration_deg_per_s2, because moves with velocities begin and end at rest");
     if (path.cubic_error_nm && path.servo == Servo::fast)
       file.fail("path.cubic_error_nm",
                 "not allowed with a fast tool servo, because its strokes require straight moves");
@@ -100,9 +101,10 @@ void settle_skew(TurnedPart& part, const InputLocation& where) {
   if (part.skew_is_min) {
     const auto skew = min_skew_deg(part.tool, slopes, kTestedSkewDeg);
     if (!skew)
-      throw InputError(where, fmt::format("the tool does not clear the surface at any skew within +-60 degrees with a "
-                                          "clearance of {} and a window of {} degrees",
-                                          shortest(part.tool.clearance_deg), shortest(part.tool.window_deg)));
+      throw InputError(where,
+                       fmt::format("the tool collides with the surface at every skew within +-60 degrees, because its "
+                                   "clearance angle is {} degrees and its window angle is {} degrees",
+                                   shortest(part.tool.clearance_deg), shortest(part.tool.window_deg)));
     part.tool.skew_deg = *skew;
     return;
   }
@@ -111,11 +113,11 @@ void settle_skew(TurnedPart& part, const InputLocation& where) {
   const auto skew = min_skew_deg(part.tool, slopes, kTestedSkewDeg);
   throw InputError(
       where,
-      fmt::format("the tool does not clear the surface: a clearance of {} and a window of {} degrees are "
-                  "required, got {} and {}; {}",
+      fmt::format("the tool collides with the surface: a clearance angle of {} degrees and a window angle of {} "
+                  "degrees are required, got {} and {}; {}",
                   fixed(std::max(0.0, figures.clearance_needed_deg), 2), fixed(figures.window_needed_deg, 2),
                   shortest(part.tool.clearance_deg), shortest(part.tool.window_deg),
-                  skew ? fmt::format("with a skew of {} degrees, the given angles are sufficient", fixed(*skew, 2))
+                  skew ? fmt::format("the given angles are sufficient with a skew of {} degrees", fixed(*skew, 2))
                        : std::string("the given angles are not sufficient at any skew")));
 }
 

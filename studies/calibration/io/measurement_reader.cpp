@@ -46,8 +46,8 @@ struct Columns {
  private:
   static std::size_t needed(const CsvReader& table, std::string_view column) {
     if (const auto found = table.find(column)) return *found;
-    table.fail(
-        fmt::format("must have the columns job, element, facet, what, value and uncertainty: {} is missing", column));
+    table.fail(fmt::format(
+        "the table must have the columns job, element, facet, what, value and uncertainty: {} is missing", column));
   }
 };
 
@@ -103,7 +103,7 @@ class Reader {
       m.value = table_.number(columns_.value, kValue);
       result_.measurements.push_back(m);
     }
-    if (result_.measurements.empty()) table_.fail("must contain at least one row with a value");
+    if (result_.measurements.empty()) table_.fail("the table must contain at least one row with a value");
     return std::move(result_);
   }
 

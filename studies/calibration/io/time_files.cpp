@@ -118,7 +118,7 @@ struct TimeColumns {
  private:
   static std::size_t needed(const CsvReader& table, std::string_view column) {
     if (const auto found = table.find(column)) return *found;
-    table.fail(fmt::format("must have the columns program, seconds and uncertainty: {} is missing", column));
+    table.fail(fmt::format("the table must have the columns program, seconds and uncertainty: {} is missing", column));
   }
 };
 
@@ -138,7 +138,7 @@ class TimeReader {
       if (table_.rows() > kMaxRows) table_.fail(fmt::format("at most {} rows are allowed", kMaxRows));
       add_row();
     }
-    if (result_.rows.empty()) table_.fail("must contain at least one row with a time");
+    if (result_.rows.empty()) table_.fail("the table must contain at least one row with a time");
     return std::move(result_);
   }
 

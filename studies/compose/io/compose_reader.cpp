@@ -97,7 +97,8 @@ std::optional<ErrorSpread> read_errors(const Document& document, const Study& st
   if (!cells && !zones) {
     if (document.has("compose.worst_fraction"))
       document.fail("compose.worst_fraction",
-                    "needs cell_sigma_arcmin or zone_sigma_arcmin, because all parts are equal without angle errors");
+                    "requires compose.cell_sigma_arcmin or compose.zone_sigma_arcmin, because all parts are equal "
+                    "without angle errors");
     return std::nullopt;
   }
   if (angles_of(study, example_values(study)) == 0)

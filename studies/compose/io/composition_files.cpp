@@ -249,8 +249,8 @@ std::string why_not_reached(const Study& study, const ComposeRequest& request, c
       text += fmt::format("{}{} ({:.3f})", text.empty() ? "" : ", ", goal_of(study, request, k).label(),
                           mixture.prices.goals[k]);
   return fmt::format(
-      "for the best part, the minimum of all goals is {:.6g}, but {} is required. Goals that limit it, with their "
-      "weights: {}. No mixture of the {} cells has a weighted mean of these goals above {:.6g}",
+      "for the best part, the minimum of all goals is {:.6g}, but {} is required. The goals that limit this minimum, "
+      "with their weights, are: {}. No mixture of the {} cells has a weighted mean of these goals above {:.6g}",
       mixture.min_goal, shortest(*request.min_goal), text, composition.catalogue.size(), mixture.min_goal);
 }
 

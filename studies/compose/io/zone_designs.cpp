@@ -146,10 +146,8 @@ void check_zoned_design(const Study& study, const ZonedDesignRequest& request) {
   for (const Parameter& parameter : study.parameters)
     for (const std::string& key : parameter.keys)
       if (key != kTurn && !design::may_vary_between_zones(key))
-        throw InputError(
-            parameter.location,
-            fmt::format("{}: zones of a part cannot differ in {}, which must be the same for the whole part",
-                        reference({"design"}), key));
+        throw InputError(parameter.location,
+                         fmt::format("{}: all zones of a part must have the same {}", reference({"design"}), key));
   const design::Design design = whole_design(study, example_values(study), request);
   if (design.is_infinite())
     throw InputError(Field{"x_length_mm"},

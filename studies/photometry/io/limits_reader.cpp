@@ -161,7 +161,8 @@ void read_boundary(const CsvReader& row, ColourBoundary& boundary) {
   const double of_y = word(0) == "y" ? 1.0 : is_z ? -1.0 : 0.0;
   const double most = *constant - (is_z ? 1.0 : 0.0);
   if (of_x == 0.0 && of_y == 0.0)
-    row.fail(kMinimum, "must be a boundary of the colour, but x cancels out, got " + in_quotes(row[kMinimum]));
+    row.fail(kMinimum, "must be a boundary of the colour in x, y or z, but x cancels out in this expression, got " +
+                           in_quotes(row[kMinimum]));
   const double sign = word(1) == "<=" ? 1.0 : -1.0;
   boundary.x_coefficient = sign * of_x;
   boundary.y_coefficient = sign * of_y;
@@ -176,7 +177,7 @@ ColourBoundary boundary_of(const CsvReader& row) {
   const V v = read_v(row);
   const std::vector<double> h_deg = signed_numbers(row, kH, row[kH]);
   if (v.deg.size() != 1 || h_deg.size() != 1)
-    row.fail(v.deg.size() != 1 ? kV : kH, "must be a single angle for a colour, got +-");
+    row.fail(v.deg.size() != 1 ? kV : kH, "must be a single angle for a colour limit, but +- gives two angles");
   boundary.v_deg = v.deg.front();
   boundary.substitute_v_deg = v.beside_deg;
   boundary.h_deg = h_deg.front();

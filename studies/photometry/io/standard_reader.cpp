@@ -43,7 +43,7 @@ fs::path limits_file_of(const std::string& standard) {
   if (find_standard(standard) != nullptr) return data_directory() / "photometry_limits.csv";
   std::error_code ignored;
   if (!fs::exists(standard, ignored))
-    throw InputError(Field{"standard"}, fmt::format("must be {} or a file that exists, got {}",
+    throw InputError(Field{"standard"}, fmt::format("must be {} or the name of an existing file, got {}",
                                                     fmt::join(names_of_standards(), ", "), in_quotes(standard)));
   return standard;
 }
@@ -55,7 +55,7 @@ fs::path dye_file_of(const std::optional<std::string>& dye, bool design_is_colou
   std::error_code ignored;
   if (!fs::exists(name, ignored))
     throw InputError(Field{"dye"},
-                     fmt::format("must be none, red, amber or a file that exists, got {}", in_quotes(name)));
+                     fmt::format("must be none, red, amber or the name of an existing file, got {}", in_quotes(name)));
   return name;
 }
 

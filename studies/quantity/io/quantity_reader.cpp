@@ -30,7 +30,8 @@ std::vector<double> middles(const Document& document, const std::string& at, con
   };
   const double from = given("from", allowed);
   const double to = given("to", allowed);
-  if (!(to > from)) document.fail(at + ".to", fmt::format("must be > from ({}), got {}", shortest(from), shortest(to)));
+  if (!(to > from))
+    document.fail(at + ".to", fmt::format("must be greater than from ({}), got {}", shortest(from), shortest(to)));
   const double count = given("count", {.low = 1.0, .high = kMaxDirections});
   if (count != std::floor(count))
     document.fail(at + ".count", fmt::format("must be a whole number, got {}", shortest(count)));
@@ -83,7 +84,7 @@ Quantities read_fraction(const std::string& name, const Document& document, cons
     spec.acceptance_half_angle_deg = document.number(at + ".to_deg");
     if (!(*spec.acceptance_half_angle_deg > *spec.beyond_half_angle_deg))
       document.fail(at + ".to_deg",
-                    fmt::format("must be > from_deg ({}), got {}", shortest(*spec.beyond_half_angle_deg),
+                    fmt::format("must be greater than from_deg ({}), got {}", shortest(*spec.beyond_half_angle_deg),
                                 shortest(*spec.acceptance_half_angle_deg)));
   } else {
     spec.acceptance_half_angle_deg = document.number_if(at + ".acceptance_half_angle_deg");

@@ -69,13 +69,13 @@ void refuse_setting(const Document& document, const Study& study, const std::str
 void check_settings_have_effect(const Document& document, const Study& study) {
   if (is_traced(study, "rre")) return;
   refuse_setting(document, study, "analysis.target_error",
-                 "needs a quantity with kind = \"rre\", \"ledger\" or \"far_field\", because other quantities have no "
-                 "target error");
+                 "requires a table [[quantity]] with kind = \"rre\", \"ledger\" or \"far_field\", because other "
+                 "quantities have no target error");
   const bool is_exact = raytrace::may_be_exact(document.choice<raytrace::Engine>("analysis.engine")) ||
                         parameter_of(study, "analysis.engine") != nullptr;
   if (!is_exact && is_traced(study, "photometry"))
     refuse_setting(document, study, "analysis.cutoff",
-                   fmt::format("a cut-off needs analysis.engine = \"auto\" or \"exact\" for photometry, got {}",
+                   fmt::format("a cut-off requires analysis.engine = \"auto\" or \"exact\" for photometry, got {}",
                                in_quotes(document.text("analysis.engine"))));
 }
 
@@ -108,8 +108,8 @@ Interval read_interval(const Document& document, const std::string& at) {
     if (interval.logarithmic && !(*end > 0.0)) document.fail(key, "must be > 0, got " + shortest(*end));
   }
   if (!(interval.to > interval.from))
-    document.fail(at + ".to",
-                  fmt::format("must be > from ({}), got {}", shortest(interval.from), shortest(interval.to)));
+    document.fail(at + ".to", fmt::format("must be greater than from ({}), got {}", shortest(interval.from),
+                                          shortest(interval.to)));
   return interval;
 }
 
@@ -189,7 +189,7 @@ Parameter read_parameter(const Document& document, const std::string& at) {
   const bool is_design = parameter.keys.front() == "design";
   if (is_design && (parameter.keys.size() > 1 || parameter.values.empty()))
     document.fail(at + ".key",
-                  "\"design\" must be the only key of the parameter and needs values, which are names of design files");
+                  "\"design\" must be the only key of the parameter, and its values must be names of design files");
   if (is_design) resolve_designs(document, at, parameter);
   return parameter;
 }

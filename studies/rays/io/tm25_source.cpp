@@ -79,8 +79,8 @@ void Tm25Source::fail(std::uint64_t byte, std::string_view text) const {
 /// \param what name of these bytes, for messages
 std::string_view Tm25Source::take(std::uint64_t bytes, std::string_view what) {
   if (bytes > bytes_ - at_)
-    fail(at_,
-         fmt::format("the file is too short: {} needs {} bytes, but only {} bytes remain", what, bytes, bytes_ - at_));
+    fail(at_, fmt::format("the file is too short: {} requires {} bytes, but only {} bytes remain", what, bytes,
+                          bytes_ - at_));
   buffer_.resize(bytes);
   stream_->read(buffer_.data(), static_cast<std::streamsize>(bytes));
   if (static_cast<std::uint64_t>(stream_->gcount()) != bytes) fail(at_, "cannot be read");
@@ -155,9 +155,10 @@ void Tm25Source::read_flags() {
   has_tables_ = flag("the flag of spectrum indices");
   if (!info_.has_radiant && !info_.has_luminous)
     fail(begin + 8, "rays must have radiant or luminous flux, got neither");
-  if (info_.has_stokes && !info_.has_radiant) fail(begin + 8, "Stokes parameters need the radiant flux, got none");
+  if (info_.has_stokes && !info_.has_radiant)
+    fail(begin + 8, "Stokes parameters require the radiant flux of each ray, got none");
   if (info_.has_tristimulus && !info_.has_luminous)
-    fail(begin + 16, "tristimulus values need the luminous flux, got none");
+    fail(begin + 16, "tristimulus values require the luminous flux of each ray, got none");
   if (info_.spectrum == RaySpectrum::wavelength_of_each && !has_wavelengths_)
     fail(begin + 12, "the spectral data identifier is 2, but rays have no wavelengths");
   if (has_tables_ != (info_.spectrum == RaySpectrum::table_of_each))

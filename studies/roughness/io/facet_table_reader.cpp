@@ -25,7 +25,7 @@ struct Columns {
 Columns columns_of(const CsvReader& table) {
   const auto roughness = table.find("roughness_sa_nm");
   const auto sa = table.find("sa_nm");
-  if (!roughness && !sa) table.fail("must have a column roughness_sa_nm or sa_nm");
+  if (!roughness && !sa) table.fail("the table must have a column roughness_sa_nm or sa_nm");
   return {roughness ? *roughness : *sa, table.find("waviness_sa_nm"), table.find("process"), table.find("facet")};
 }
 

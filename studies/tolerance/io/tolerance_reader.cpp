@@ -12,8 +12,9 @@ constexpr double kOfPercent = 0.01;
 void check_parameters(const Study& study) {
   for (const Parameter& parameter : study.parameters)
     if (!parameter.distribution)
-      throw InputError(parameter.location,
-                       "a tolerance study needs a distribution: \"normal\", \"uniform\" or \"triangular\"");
+      throw InputError(
+          parameter.location,
+          "every parameter of a tolerance study requires a distribution: \"normal\", \"uniform\" or \"triangular\"");
 }
 
 /// Checks that the numbers of samples and points are allowed. Numbers of samples have 32 bits, and numbers of points
@@ -44,7 +45,7 @@ ToleranceRequest read_tolerance(const Study& study) {
   request.constraints = read_constraints(study);
   if (const auto least = document.number_if("tolerance.min_yield_percent")) {
     if (request.constraints.empty())
-      document.fail("tolerance.min_yield_percent", "needs one or more tables [[constraint]]");
+      document.fail("tolerance.min_yield_percent", "requires one or more tables [[constraint]]");
     request.min_yield = kOfPercent * *least;
   }
   check_size(study, request);
