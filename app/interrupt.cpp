@@ -49,7 +49,7 @@ extern "C" void on_interrupt(int) {
 }  // namespace
 
 void install_interrupt_handlers() {
-  constexpr std::string_view line = "\r\033[Kretrace: interrupted before the results were written\n";
+  constexpr std::string_view line = "\r\033[Kretrace: the command was interrupted before the results were written\n";
   last_line = ::isatty(STDERR_FILENO) != 0 ? line : line.substr(4);
   std::signal(SIGALRM, end_now);
   has_deadline = ::timer_create(CLOCK_MONOTONIC, nullptr, &deadline) == 0;

@@ -19,9 +19,10 @@ CsvReader::CsvReader(std::string_view text, std::string file, std::size_t max_by
   require_short_text(text, file_, max_bytes);
   const std::string wanted =
       columns.empty() ? "a line of column names" : fmt::format("the header {}", fmt::join(columns, ","));
-  if (!next_line()) fail("must have " + wanted);
+  if (!next_line()) fail("the file must have " + wanted);
   if (!columns.empty() && !std::equal(values_.begin(), values_.end(), columns.begin(), columns.end()))
-    fail(fmt::format("must be {}, got {}", wanted, in_quotes(fmt::format("{}", fmt::join(values_, ",")))));
+    fail(fmt::format("the first line must contain {}, got {}", wanted,
+                     in_quotes(fmt::format("{}", fmt::join(values_, ",")))));
   columns_ = values_;
 }
 
@@ -29,7 +30,8 @@ std::optional<std::size_t> CsvReader::find(std::string_view column) const {
   const auto found = std::find(columns_.begin(), columns_.end(), column);
   if (found == columns_.end()) return std::nullopt;
   const auto place = static_cast<std::size_t>(found - columns_.begin());
-  if (std::find(found + 1, columns_.end(), column) != columns_.end()) fail(place, "appears twice in the header");
+  if (std::find(found + 1, columns_.end(), column) != columns_.end())
+    fail(place, "the column occurs twice in the header");
   return place;
 }
 

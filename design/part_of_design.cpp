@@ -35,8 +35,9 @@ geometry::TriangleMesh closed(const Design& design, geometry::TriangleMesh mesh,
   if (report.is_closed) return mesh;
   if (const auto p = geometry::mixed_winding(mesh))
     throw InputError(
-        fmt::format("all triangles must be counter-clockwise seen from outside, or all clockwise, but two neighbours "
-                    "near ({}, {}, {}) mm differ: unify the orientation of the faces in the program that made the mesh",
+        fmt::format("all triangles must be counter-clockwise seen from outside, or all clockwise, but two neighbouring "
+                    "triangles near ({}, {}, {}) mm have different orientations: unify the orientation of the faces in "
+                    "the program that made the mesh",
                     fixed(p->x(), 3), fixed(p->y(), 3), fixed(p->z(), 3)));
   if (!design.mesh()->allow_open)
     throw InputError("the mesh is not closed; set allow_open = true in [part] to close its openings with flat patches");

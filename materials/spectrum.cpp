@@ -19,9 +19,9 @@ constexpr double kMinFraction = 1e-15;
 Spectrum normalised(const std::vector<double>& wavelengths_nm, const std::vector<double>& fluxes, bool is_luminous) {
   const double largest = *std::max_element(fluxes.begin(), fluxes.end());
   if (!(largest > 0.0))
-    throw InputError(is_luminous ? "contains no visible light (380 to 780 nm); use weighting = \"radiant\" to count "
-                                   "all wavelengths by their power"
-                                 : "has no power at any wavelength");
+    throw InputError(is_luminous ? "the spectrum contains no visible light (380 to 780 nm); use weighting = "
+                                   "\"radiant\" to count all wavelengths by their power"
+                                 : "the spectrum has no power at any wavelength");
   Spectrum spectrum;
   for (std::size_t k = 0; k < fluxes.size(); ++k) {
     const double weight = fluxes[k] / largest;

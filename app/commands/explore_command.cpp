@@ -48,7 +48,7 @@ ExitCode run(const ExploreOptions& options, const CommonOptions& common) {
     if (!design.title.empty()) title = design.title;
     inputs = files_read({design});
   } else if (!common.overrides.empty()) {
-    throw InputError({"", 0, "--set"}, "needs a design");
+    throw InputError({"", 0, "--set"}, "requires a design");
   }
   TextFiles files(common, inputs);
   const std::string html = report::live_html(start, title, report::shipped_live_assets());

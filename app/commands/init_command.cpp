@@ -54,7 +54,8 @@ ExitCode run(const InitOptions& options, const CommonOptions& common) {
   // An existing file is never overwritten, because it may be a design on which the user has worked.
   if (!common.out.empty() &&
       std::filesystem::symlink_status(common.out).type() != std::filesystem::file_type::not_found)
-    throw OutputError(common.out + ": exists already and is not overwritten; give another name or remove the file");
+    throw OutputError(common.out +
+                      ": the file exists already and is not overwritten; give another name or remove the file");
   return write_text(common, "retrace.template/1", {{"kind", options.kind}}, text);
 }
 

@@ -103,12 +103,12 @@ struct ResultStore::Database {
                                                   reference({"overwrite"})));
   }
   [[noreturn]] void refuse_damaged(const std::string& why) const {
-    refuse("is damaged: " + printable(why, kMaxReasonLength));
+    refuse("the store is damaged: " + printable(why, kMaxReasonLength));
   }
   [[noreturn]] void fail(const SQLite::Exception& error) const {
     const int code = error.getErrorCode() & 0xff;
     if (code == SQLITE_NOMEM) throw std::bad_alloc();
-    if (code == SQLITE_NOTADB) refuse("is not a store of retrace");
+    if (code == SQLITE_NOTADB) refuse("the file does not contain a store of retrace");
     if (!is_of_the_system(code)) refuse_damaged(error.getErrorStr());
     throw OutputError(
         fmt::format("{}: cannot be written: {}; the finished points are kept", name(), error.getErrorStr()));
@@ -212,12 +212,13 @@ void ResultStore::Database::check() {
 void ResultStore::Database::check_kind() const {
   const int application = sqlite->execAndGet("PRAGMA application_id").getInt();
   const int format = sqlite->execAndGet("PRAGMA user_version").getInt();
-  if (application != kApplication) refuse("is not a store of retrace");
+  if (application != kApplication) refuse("the file does not contain a store of retrace");
   if (format > kFormat)
     throw InputError(
         {name(), 0, ""},
-        fmt::format("was written by a newer version of retrace (format {}); this version reads formats up to {}",
-                    format, kFormat));
+        fmt::format(
+            "the store was written by a newer version of retrace (format {}); this version reads formats up to {}",
+            format, kFormat));
 }
 
 void ResultStore::Database::make_tables() {
@@ -296,7 +297,7 @@ ResultStore::ResultStore(const fs::path& file, const StoreLayout& layout, IfExis
     if (!file.empty()) {
       database_->locks = std::make_unique<ProcessLocks>(file.string() + "-lock");
       if (if_exists == IfExists::overwrite && database_->owner() != 0)
-        throw InputError({file.string(), 0, ""}, "is in use by another process and cannot be overwritten");
+        throw InputError({file.string(), 0, ""}, "the store is in use by another process and cannot be overwritten");
     }
     if (if_exists == IfExists::overwrite) remove_store(file);
     database_->open();

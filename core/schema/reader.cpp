@@ -135,7 +135,7 @@ bool is_file_name(const std::string& name) {
 
 Value file_of(std::string_view key, TomlTable& source) {
   std::optional<std::string> name = source.text(key);
-  if (name && !is_file_name(*name)) source.fail(key, "must name a file, got " + in_quotes(*name));
+  if (name && !is_file_name(*name)) source.fail(key, "must be the name of a file, got " + in_quotes(*name));
   return value_of(std::move(name));
 }
 

@@ -47,7 +47,7 @@ std::string allowed(const Kind& kind) {
                  [](const File& file) { return fmt::format("the name of {}", file.what); },
                  [](const WordOrFile& either) { return std::string(either.allowed); },
                  [](const NumberOrNumbers& list) {
-                   return std::string(list.is_integer ? "a whole number or a list of them"
+                   return std::string(list.is_integer ? "a whole number or a list of whole numbers"
                                                       : "a number or a list of numbers");
                  },
                  [](const Numbers& numbers) { return fmt::format("a list of {} {}", numbers.count, numbers.what); },

@@ -46,7 +46,7 @@ const Table kFormTables[] = {
      .shape = "a list of tables with x_power, y_power and height_um"}};
 
 constexpr std::string_view kLayerIndex[] = {"material", "refractive_index"};
-constexpr Rule kLayerRules[] = {OneOf{kLayerIndex, "must have either material or refractive_index"}};
+constexpr Rule kLayerRules[] = {OneOf{kLayerIndex, "must contain either the key material or the key refractive_index"}};
 constexpr std::string_view kLayerShape =
     "a list of tables with material or refractive_index, and thickness_nm, starting with the layer on the body";
 const Table kCoatingTables[] = {{.name = "facets",
@@ -77,13 +77,13 @@ constexpr Condition kWithZones[] = {kNoMesh,
                                     is_absent("part.facets", "not allowed together with facets in [part]")};
 constexpr std::string_view kWhereAreZones[] = {"area_fraction", "rectangles_mm", "polygon_mm", "rows",
                                                "columns",       "mask",          "rest"};
-constexpr Rule kZoneRules[] = {
-    OneOf{kWhereAreZones,
-          "must have one of area_fraction, rectangles_mm, polygon_mm, rows, columns, mask and rest, "
-          "which determine its region or its elements"}};
+constexpr Rule kZoneRules[] = {OneOf{kWhereAreZones,
+                                     "must contain exactly one of the keys area_fraction, rectangles_mm, polygon_mm, "
+                                     "rows, columns, mask and rest, which determine its region or its elements"}};
 constexpr std::string_view kWhichAreWet[] = {"fraction", "rectangle_mm", "disc_mm", "half_plane"};
-constexpr Rule kWetBackRules[] = {OneOf{
-    kWhichAreWet, "must have one of fraction, rectangle_mm, disc_mm and half_plane, which select the wet elements"}};
+constexpr Rule kWetBackRules[] = {OneOf{kWhichAreWet,
+                                        "must contain exactly one of the keys fraction, rectangle_mm, disc_mm and "
+                                        "half_plane, which select the wet elements"}};
 const Table kEntranceFaceTables[] = {
     {.name = "layers",
      .meaning = "Layers that are much thicker than the coherence length of the light, such as hard coats, in order "

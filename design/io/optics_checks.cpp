@@ -48,14 +48,14 @@ void check_heights(const Document& document) {
                    "must be 0 for model = \"height_map\", because the map contains roughness and waviness");
   if (model == "smooth" || model == "abg")
     refuse_heights(document, {kRoughness, kWaviness},
-                   "must be 0 for this model; leave the model out or use \"harvey_shack\"");
+                   "must be 0 for this surface.model; leave surface.model out or use \"harvey_shack\"");
   if (model == "microfacet")
     refuse_heights(document, {kRoughness}, "must be 0 for model = \"microfacet\", which supports only waviness");
 }
 
 void check_material(const Document& document) {
   if (document.text("body.material").empty())
-    document.fail("body.material", "must name a material, such as \"PMMA\", got \"\"");
+    document.fail("body.material", "must be the name of a material, such as \"PMMA\", got \"\"");
 }
 
 void check_absorption(const Document& document) {
@@ -63,8 +63,8 @@ void check_absorption(const Document& document) {
   const std::vector<std::vector<double>> curve = document.rows(kAbsorption);
   for (std::size_t k = 1; k < curve.size(); ++k)
     if (!(curve[k][0] > curve[k - 1][0]))
-      document.fail(kAbsorption, fmt::format("wavelengths must ascend, got {} after {}", shortest(curve[k][0]),
-                                             shortest(curve[k - 1][0])));
+      document.fail(kAbsorption, fmt::format("the wavelengths must be in ascending order, got {} nm after {} nm",
+                                             shortest(curve[k][0]), shortest(curve[k - 1][0])));
   if (curve.size() < 2)
     document.fail(kAbsorption, "must be a number or a list of two or more pairs, got a list of one pair");
 }

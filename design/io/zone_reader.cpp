@@ -223,8 +223,10 @@ void check_lines(const Document& document, const std::string& key, const std::ve
   const double most = every ? *every : static_cast<double>(count);
   for (const double number : numbers)
     if (number > most)
-      document.fail(key, fmt::format("must be at most {}, {}, got {}", shortest(most),
-                                     every ? "the value of every" : "the number that the array has", shortest(number)));
+      document.fail(key,
+                    fmt::format("must be at most {}, {}, got {}", shortest(most),
+                                every ? "the value of the key every" : "the number of rows or columns of the array",
+                                shortest(number)));
 }
 
 /// Assigns the cells of the array to the zones. part_of_design() assigns the cells of masks.

@@ -168,8 +168,8 @@ void ControlCheck::spindle(const NcSettings& settings, const NcLocation& place) 
   else if (stands)
     message = "the tool moves at a feed while the spindle is stopped";
   else if (is != rule.state)
-    message =
-        rule.is_by_text() ? "the spindle is not started by spindle_start" : "the spindle turns in the wrong direction";
+    message = rule.is_by_text() ? "the spindle is not started by spindle_start"
+                                : "the spindle rotates in the wrong direction";
   else if (!rule.is_by_text() && rpm != rule.rpm)
     message = fmt::format("the spindle runs at {} rpm instead of {} rpm", shortest(rpm), shortest(rule.rpm));
   if (becomes_wrong("spindle", message.empty()))

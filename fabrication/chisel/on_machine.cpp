@@ -39,7 +39,7 @@ void check_increments(const Job& job, const Machine& machine) {
     if (depth_um < least_um)
       throw InputError(
           job.where(key),
-          fmt::format("must be at least {}, because the control of machine {} rounds positions to {} um, got {}",
+          fmt::format("must be at least {} um, because the control of machine {} rounds positions to {} um, got {}",
                       fixed(least_um, 2), machine.name, shortest(step_um), shortest(depth_um)));
   };
   check("process.roughing_depth_um", job.process.roughing_depth_um);

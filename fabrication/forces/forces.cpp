@@ -186,9 +186,9 @@ Warnings force_warnings(const ForceModel& model, const CutConditions& cut) {
     warnings.push_back({"peaks_of_another_tool",
                         "root and retract peaks of bidirectional cuts were measured at one depth of cut only, and with "
                         "a different tool from that of the other forces"});
-  warnings.push_back(
-      {"forces_of_one_material",
-       "forces are valid for aluminium 6061, a wedge angle of 50 degrees and a clearance angle of 3 degrees"});
+  warnings.push_back({"forces_of_one_material",
+                      "the computed forces are valid only for aluminium 6061, a wedge angle of 50 degrees and a "
+                      "clearance angle of 3 degrees"});
   return warnings;
 }
 

@@ -72,23 +72,23 @@ void check_v_tool(const geometry::Element& element, const geometry::AngleErrors&
   const VToolEdges edges = v_tool_edges(tool);
   for (const Vec3& edge : {edges.leading, edges.trailing, edges.spine})
     if (edge.z() < 0.0 || edge.head<2>().minCoeff() < std::sin(rad(error_deg)))
-      refuse("tool.wedge_deg", fmt::format("is too large: with this nose_angle_deg and clearance_deg, the tool cuts "
-                                           "into a neighbouring facet at the apex, got {}",
+      refuse("tool.wedge_deg", fmt::format("is too large: with the given tool.nose_angle_deg and tool.clearance_deg, "
+                                           "the tool cuts into a neighbouring facet at the apex, got {}",
                                            shortest(tool.wedge_deg)));
   if (covered_deg(edges) < 90.0 + error_deg)
-    refuse("tool.wedge_deg", fmt::format("is too small: with this nose_angle_deg and clearance_deg, the cuts of two "
-                                         "facets leave a fin along their edge, got {}",
+    refuse("tool.wedge_deg", fmt::format("is too small: with the given tool.nose_angle_deg and tool.clearance_deg, the "
+                                         "cuts of two facets leave a fin along their edge, got {}",
                                          shortest(tool.wedge_deg)));
   if (std::isinf(rounded_peak_mm(edge_covers(corner.normals, spines_of(corner, tool)), 0.0)))
-    refuse("tool.wedge_deg", fmt::format("is too small: with this nose_angle_deg and clearance_deg, the cuts of the "
-                                         "three facets leave a peak between them, got {}",
+    refuse("tool.wedge_deg", fmt::format("is too small: with the given tool.nose_angle_deg and tool.clearance_deg, the "
+                                         "cuts of the three facets leave a peak between them, got {}",
                                          shortest(tool.wedge_deg)));
   constexpr double kMaxRadiusFraction = 0.1;
   const double aperture_mm = geometry::bounding_box(geometry::element_cell(element).outline).upper.x() * 2.0;
   if (1e-3 * tool.edge_radius_um > kMaxRadiusFraction * aperture_mm)
     refuse("tool.edge_radius_um",
-           fmt::format("must be <= {}, a tenth of the element's aperture: the element is smaller than the "
-                       "tool's nose, got {}",
+           fmt::format("must be <= {}, one tenth of the element's aperture, because otherwise the element is too small "
+                       "for the nose of the tool, got {}",
                        fixed_apart(1e3 * kMaxRadiusFraction * aperture_mm, tool.edge_radius_um, 3),
                        shortest(tool.edge_radius_um)));
   // While the tip is in the apex, the ends of the cutting edges must be above the face of the blank.

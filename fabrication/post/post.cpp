@@ -56,7 +56,7 @@ std::string unchecked_text(const OwnLine& line) {
 void check_line(const OwnLine& line, std::string_view dialect, std::string_view table, bool may_be_any) {
   if (may_be_any || !is_unchecked(line, dialect)) return;
   throw InputError(Field{"dialect"},
-                   fmt::format("{} {} for {}; any other line needs {}.has_unchecked_lines = true, got {}", line.key,
+                   fmt::format("{} {} for {}; any other line requires {}.has_unchecked_lines = true, got {}", line.key,
                                line_form_error(line.text, line.use, dialect), dialect, table, in_quotes(line.text)));
 }
 

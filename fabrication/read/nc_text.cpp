@@ -89,7 +89,7 @@ bool set_text(std::string_view line, const NcTexts& texts, NcBlock& block) {
 
 NcLines::NcLines(std::string_view text, const std::string& file) : file_(file), remainder_(text) {
   if (text.find_first_not_of(" \t\r\n") == std::string_view::npos)
-    throw InputError({file, 0, ""}, "must be an NC program, but is empty");
+    throw InputError({file, 0, ""}, "the file must be an NC program, but is empty");
   if (text.size() > kLongestNcBytes)
     throw InputError({file, 0, ""}, fmt::format("too long, at most {} bytes are allowed", kLongestNcBytes));
 }
@@ -108,8 +108,9 @@ bool NcLines::next(std::string_view& line) {
   line_ = line;
   const auto control = std::find_if(line.begin(), line.end(), is_control);
   if (control != line.end())
-    throw InputError({file_, number_, ""}, fmt::format("must be text, got a byte {}",
-                                                       static_cast<unsigned>(static_cast<unsigned char>(*control))));
+    throw InputError({file_, number_, ""},
+                     fmt::format("the file must be a text file, but contains a byte with the value {}",
+                                 static_cast<unsigned>(static_cast<unsigned char>(*control))));
   return true;
 }
 

@@ -139,7 +139,7 @@ class PmacReader {
     for (text = trimmed(text); !text.empty(); text = trimmed(text)) {
       const NcWord word = take_word(text, lines_);
       const std::size_t axis = axis_index(word.letter);
-      if (axis == kNcAxes || !text.starts_with(':')) lines_.fail("PVT must give position:velocity for each axis");
+      if (axis == kNcAxes || !text.starts_with(':')) lines_.fail("PVT must contain position:velocity for each axis");
       text.remove_prefix(1);
       iso.set_cubic(axis, word.number, take_number(text, lines_).value, cubic);
     }

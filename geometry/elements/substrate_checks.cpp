@@ -109,13 +109,13 @@ SubstrateMeasures check_substrate(const PartSpec& spec) {
   const double across = width_across_mm(spec.element);
   if (measures.min_radius_mm < across)
     throw InputError(
-        fmt::format("must have a radius of curvature of at least the width of an element: its smallest radius is {} "
-                    "mm, but an element measures {} mm across",
+        fmt::format("the radius of curvature of the substrate must be at least the width of an element: the smallest "
+                    "radius is {} mm, but an element is {} mm wide",
                     fixed_apart(measures.min_radius_mm, across, 4), shortest(across)));
   if (measures.steepest_deg > kMaxInclineDeg + 1e-9)
-    throw InputError(
-        fmt::format("must have a slope of at most {} degrees over the part, but its maximum slope is {} degrees",
-                    kMaxInclineDeg, fixed_apart(measures.steepest_deg, kMaxInclineDeg, 2)));
+    throw InputError(fmt::format(
+        "the slope of the substrate must be at most {} degrees over the part, but the maximum slope is {} degrees",
+        kMaxInclineDeg, fixed_apart(measures.steepest_deg, kMaxInclineDeg, 2)));
   if (spec.is_pin_bundle) check_contact(spec, surface, half_mm);
   if (!surface.is_upright()) check_steepness(spec, surface, half_mm);
   return measures;

@@ -114,9 +114,9 @@ EntranceRange range_of(const EntranceSurface& surface, const Polygon& outline) {
   for (const Vec2& p : sample_points(outline, cells)) {
     const EntranceSurface::SurfaceSample place = surface.at(p);
     if (!std::isfinite(place.height_mm) || !place.slope.allFinite())
-      throw InputError(
-          fmt::format("must have a finite height and slope over the whole part, but has none at x = {}, y = {} mm",
-                      fixed(p.x(), 4), fixed(p.y(), 4)));
+      throw InputError(fmt::format(
+          "the surface must have a finite height and slope over the whole part, but has none at x = {}, y = {} mm",
+          fixed(p.x(), 4), fixed(p.y(), 4)));
     range.steepest_slope = std::max(range.steepest_slope, place.slope.norm());
     if (place.height_mm < range.lowest_mm) {
       range.lowest_mm = place.height_mm;

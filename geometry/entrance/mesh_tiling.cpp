@@ -143,9 +143,9 @@ class GapFinder {
 
 std::string_view text_of(TilingFault fault) {
   switch (fault) {
-    case TilingFault::hole: return "there is a hole";
+    case TilingFault::hole: return "the mesh has a hole";
     case TilingFault::overlap: return "triangles overlap";
-    case TilingFault::height_jump: return "the height is discontinuous";
+    case TilingFault::height_jump: return "the mesh has a step in height";
     case TilingFault::corner_on_side: return "a vertex is on the edge of another triangle";
     case TilingFault::no_area: return "a triangle has no area";
     case TilingFault::vertical_triangle: return "a triangle is vertical";

@@ -50,8 +50,9 @@ class Reader {
     while (table.next()) take(row_of(table));
     if (!pending_.empty())
       fail(pending_.back().line, "",
-           fmt::format("must be followed by the other {} of its element", is_prism() ? "facet" : "facets"));
-    if (!has_element_) fail(0, "", fmt::format("must have {} lines for each element", is_prism() ? "two" : "three"));
+           fmt::format("the next lines must contain the other {} of this element", is_prism() ? "facet" : "facets"));
+    if (!has_element_)
+      fail(0, "", fmt::format("the file must have {} lines for each element", is_prism() ? "two" : "three"));
     try {
       return {std::move(elements_), spacing_mm_};
     } catch (const InputError& error) {
@@ -145,7 +146,8 @@ class Reader {
     for (const FacetRow& other : pending_)
       if (other.centre_mm != row.centre_mm || other.facet == row.facet || row.facet >= kFlares)
         fail(row.line, "",
-             fmt::format("must be {} facet of the element of the previous line", is_prism() ? "the other" : "another"));
+             fmt::format("this line must contain {} facet of the element in the previous line",
+                         is_prism() ? "the other" : "another"));
     pending_.push_back(row);
     if (pending_.size() < nominal_slopes_.size()) return;
     ElementPlanes element;

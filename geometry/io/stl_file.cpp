@@ -67,7 +67,7 @@ class Welder {
   }
 
   TriangleMesh finish() {
-    if (mesh_.triangles.empty()) throw InputError({name_, 0, ""}, "must have at least one triangle, got none");
+    if (mesh_.triangles.empty()) throw InputError({name_, 0, ""}, "the mesh must have at least one triangle, got none");
     return std::move(mesh_);
   }
 
@@ -123,14 +123,16 @@ bool begins_as_binary(std::string_view text) {
 /// Refuses a binary file whose length does not match its number of triangles.
 /// \throw InputError always
 [[noreturn]] void refuse_length(std::string_view begin, std::uintmax_t file_bytes, const std::string& name) {
-  constexpr std::string_view what = "not an STL file: binary STL must have 84 bytes plus 50 for each triangle";
+  constexpr std::string_view what =
+      "not an STL file: a binary STL file must have 84 bytes plus 50 bytes for each triangle";
   if (file_bytes < binary_length(0)) throw InputError({name, 0, ""}, fmt::format("{}, got {}", what, file_bytes));
   const std::size_t wanted = binary_length(binary_count(begin));
   const std::string remedy = file_bytes > wanted
                                  ? fmt::format("remove the {} bytes after the last triangle", file_bytes - wanted)
                                  : "the end of the file is missing, or it has another format";
-  throw InputError({name, 0, ""}, fmt::format("{}, which is {} for its {} triangles, got {}: {}", what, wanted,
-                                              binary_count(begin), file_bytes, remedy));
+  throw InputError({name, 0, ""},
+                   fmt::format("{}, which is {} bytes for its {} triangles, but the file has {} bytes: {}", what,
+                               wanted, binary_count(begin), file_bytes, remedy));
 }
 
 TriangleMesh parse_binary(std::string_view text, const std::string& name, double scale) {
@@ -208,7 +210,7 @@ class Words {
 TriangleMesh parse_ascii(std::string_view text, const std::string& name, double scale) {
   Words words(text, name);
   if (!Words::is(words.next(), "solid"))
-    throw InputError({name, 0, ""}, "not an STL file: must begin with \"solid\", or be binary STL");
+    throw InputError({name, 0, ""}, "not an STL file: an STL file must begin with \"solid\" or be a binary STL file");
   words.skip_line();  // the rest of the line is the name of the solid
   Welder welder(name, scale);
   for (std::string_view word = words.next();; word = words.next()) {

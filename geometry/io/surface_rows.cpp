@@ -91,7 +91,7 @@ constexpr Condition kGridOnly[] = {is_absent("positions_mm")};
 constexpr Condition kCirclesOnly[] = {is("boundary", only(kBoundaries, "circle"))};
 constexpr Condition kIntersectionsOnly[] = {is("boundary", only(kBoundaries, "intersection"))};
 constexpr Row kPlacedRows[] = {
-    {"positions_mm", NumberRows{2, kPlace, 1, kMaxLenslets, "places"}, kNone,
+    {"positions_mm", NumberRows{2, kPlace, 1, kMaxLenslets, "points"}, kNone,
      "Positions of the lenslets, as rows `[x, y]`."},
     {"hexagonal_pitch_mm", kPositiveMm, kNone, "Pitch of a hexagonal grid of lenslets."},
     {"square_pitch_mm", kPositiveMm, kNone, "Pitch of a square grid of lenslets."},
@@ -119,7 +119,7 @@ constexpr Row kPlacedRows[] = {
      kIntersectionsOnly}};
 constexpr std::string_view kPlaceKeys[] = {"positions_mm", "hexagonal_pitch_mm", "square_pitch_mm"};
 constexpr Rule kPlaceRules[] = {
-    OneOf{kPlaceKeys, "must have one of positions_mm, hexagonal_pitch_mm and square_pitch_mm"}};
+    OneOf{kPlaceKeys, "must contain exactly one of the keys positions_mm, hexagonal_pitch_mm and square_pitch_mm"}};
 
 constexpr auto kLensletRows =
     []<std::size_t... sag, std::size_t... place>(std::index_sequence<sag...>, std::index_sequence<place...>) {

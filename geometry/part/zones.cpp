@@ -321,16 +321,18 @@ std::optional<ZoneFault> fault_of_cells(const ZonedSpec& spec) {
                                                 [](const ArrayCell& c, std::uint32_t n) { return c.number < n; });
       has_elements |= cell.is_element;
       if (const auto [other, is_new] = holder.try_emplace(number, z); !is_new)
-        return ZoneFault{z, fmt::format("contains {}, which is also in zone {}", words_of(cell), other->second + 1)};
+        return ZoneFault{
+            z, fmt::format("the zone contains {}, which is also in zone {}", words_of(cell), other->second + 1)};
     }
-    if (!has_elements) return ZoneFault{z, "contains no element"};
+    if (!has_elements) return ZoneFault{z, "the zone contains no element"};
   }
   const auto is_free = [&](const ArrayCell& cell) { return !holder.contains(cell.number); };
   const auto free = std::ranges::find_if(first.cells, is_free);
   if (free == first.cells.end()) return std::nullopt;
-  return ZoneFault{spec.zones.size() - 1, fmt::format("the zones leave {} of {} cells uncovered, such as {}",
-                                                      std::count_if(first.cells.begin(), first.cells.end(), is_free),
-                                                      first.cells.size(), words_of(*free))};
+  return ZoneFault{
+      spec.zones.size() - 1,
+      fmt::format("each cell must be in a zone, but {} of {} cells are in no zone, for example {}",
+                  std::count_if(first.cells.begin(), first.cells.end(), is_free), first.cells.size(), words_of(*free))};
 }
 
 /// Returns the area in plan of one element and the land that belongs to it.
@@ -364,23 +366,25 @@ std::optional<ZoneFault> fault_of_zones(const ZonedSpec& spec) {
   for (std::size_t z = 0; z < spec.zones.size(); ++z)
     for (const Polygon& region : spec.zones[z].regions) {
       const Rectangle box = bounding_box(region);
-      if (!contains({Vec2::Zero(), spec.size_mm}, region, near_mm)) return ZoneFault{z, "extends beyond the part"};
+      if (!contains({Vec2::Zero(), spec.size_mm}, region, near_mm))
+        return ZoneFault{z, "the zone extends beyond the part"};
       for (const Placed& other : placed) {
         const bool is_apart = (box.lower.array() >= other.box.upper.array()).any() ||
                               (other.box.lower.array() >= box.upper.array()).any();
         if (is_apart) continue;
         const Polygon both = clip(region, *other.region, near_mm);
         if (!both.empty() && area(both) > near_mm2)
-          return ZoneFault{
-              z, fmt::format("overlaps {}", other.zone == z ? "itself" : fmt::format("zone {}", other.zone + 1))};
+          return ZoneFault{z, fmt::format("the zone overlaps {}",
+                                          other.zone == z ? "itself" : fmt::format("zone {}", other.zone + 1))};
       }
       placed.push_back({z, &region, box});
       covered_mm2 += area(region);
     }
   if (spec.area_mm2() - covered_mm2 > near_mm2)
-    return ZoneFault{spec.zones.size() - 1,
-                     fmt::format("the zones leave {:.6g} mm2 of the part uncovered, which has {:.6g} mm2",
-                                 spec.area_mm2() - covered_mm2, spec.area_mm2())};
+    return ZoneFault{
+        spec.zones.size() - 1,
+        fmt::format("the zones must cover the whole part, but {:.6g} mm2 of its {:.6g} mm2 are not covered",
+                    spec.area_mm2() - covered_mm2, spec.area_mm2())};
   return std::nullopt;
 }
 

@@ -334,8 +334,8 @@ SubstrateMeasures measure_substrate(const SubstrateSurface& substrate, const Vec
       const Jet jet = substrate.at(p);
       if (!jet.is_finite())
         throw InputError(
-            fmt::format("must have a finite height, slope and curvature, but has none at x = {:.6g}, y = {:.6g} mm "
-                        "from the centre of the part",
+            fmt::format("the substrate must have a finite height, slope and curvature at every point, but has none at "
+                        "x = {:.6g}, y = {:.6g} mm from the centre of the part",
                         p.x(), p.y()));
       measures.lowest_mm = std::min(measures.lowest_mm, jet.value);
       measures.highest_mm = std::max(measures.highest_mm, jet.value);

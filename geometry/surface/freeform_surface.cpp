@@ -244,8 +244,9 @@ void check_surface(const FreeformSurface& surface, double radius_mm, const Input
       const Gradient z = surface.gradient(x, y);
       const double slope = std::hypot(z.x, z.y);
       if (!(slope < kMaxSlope))
-        throw InputError(where, fmt::format("must not be vertical, but at {} its slope is {}", place_elements(x, y),
-                                            std::isfinite(slope) ? "above 89 degrees" : "not finite"));
+        throw InputError(
+            where, fmt::format("the surface must not be vertical, but at {} its slope is {}", place_elements(x, y),
+                               std::isfinite(slope) ? "above 89 degrees" : "not finite"));
     }
 }
 

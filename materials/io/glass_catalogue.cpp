@@ -80,10 +80,10 @@ GlassCatalogue::GlassCatalogue(std::string_view text, std::string file) : file_(
     if (records->empty()) continue;  // skips text before the first record
     for (const std::string_view word : words) records->back().push_back({std::string(word), number});
   }
-  if (glasses_.empty()) throw InputError({file_, 0, ""}, "contains no glass: no line begins with NM");
+  if (glasses_.empty()) throw InputError({file_, 0, ""}, "the file contains no glass: no line begins with NM");
   for (const std::vector<Record>& glass : glasses_) {
     const Record& name = glass.front();
-    if (name.size() < 2) fail(name.front().line, "NM", "must have a name");
+    if (name.size() < 2) fail(name.front().line, "NM", "must contain the name of the glass");
     names_.push_back(name[1].text);
   }
 }
@@ -295,10 +295,12 @@ Material GlassCatalogue::glass_of(const std::vector<Record>& records) const {
   glass.name = printable(name[1].text);
   glass.source = file_;
   const Record* const coefficients = find(records, "CD");
-  if (coefficients == nullptr) fail(line, glass.name, "has no line CD, which gives the coefficients of the formula");
+  if (coefficients == nullptr)
+    fail(line, glass.name, "the glass has no line CD, which gives the coefficients of the formula");
   if (const Record* const thermo_optic = find(records, "TD")) add_thermo_optic(*thermo_optic, glass);
   const Record* const range = find(records, "LD");
-  if (range == nullptr) fail(line, glass.name, "has no line LD, which gives the wavelength range of the formula");
+  if (range == nullptr)
+    fail(line, glass.name, "the glass has no line LD, which gives the wavelength range of the formula");
   add_range(*range, glass);
   glass.dispersion = dispersion(name, *coefficients);
   check_nd(name, glass);

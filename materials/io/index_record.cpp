@@ -79,7 +79,7 @@ class Record {
       return YAML::Load(std::string(text));
     } catch (const YAML::Exception& error) {
       throw InputError({file_, error.mark.is_null() ? 0 : error.mark.line + 1, ""},
-                       "not valid YAML: " + printable(error.msg));
+                       "the file is not valid YAML: " + printable(error.msg));
     }
   }
 
@@ -212,8 +212,8 @@ class Record {
       const double n = number_in_row(row, 1);
       if (!(n >= 0.0)) fail(row, fmt::format("n must be >= 0, got {}", shortest(n)));
       if (const auto [at, is_new] = n_at_um.emplace(um, n); !is_new && at->second != n)
-        fail(row, fmt::format("must have one n for each wavelength, got {} and {} at {} um", shortest(at->second),
-                              shortest(n), shortest(um)));
+        fail(row, fmt::format("must have one value of n for each wavelength, got {} and {} at {} um",
+                              shortest(at->second), shortest(n), shortest(um)));
     }
     SpectralCurve curve;
     for (const auto& [um, n] : n_at_um) {
@@ -235,7 +235,7 @@ class Record {
     AbsorptionData data(file_, "data");
     try {
       if (std::exchange(has_extinction_, true))
-        fail(entry["type"], "type", "must give k only once, got a second table of k");
+        fail(entry["type"], "type", "the record may contain only one table of k, got a second table");
       for (const Row& row : rows_of(entry, columns)) add_extinction(row, columns, data);
     } catch (const InputError& error) {
       material.warnings.push_back(

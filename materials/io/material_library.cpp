@@ -111,7 +111,7 @@ std::variant<double, SpectralCurve> absorption_of(const Document& file, const st
   SpectralCurve curve;
   for (const std::vector<double>& pair : file.rows(key)) {
     if (!curve.wavelengths_nm.empty() && !(pair[0] > curve.wavelengths_nm.back()))
-      file.fail(key, fmt::format("wavelengths must ascend, got {} after {}", shortest(pair[0]),
+      file.fail(key, fmt::format("the wavelengths must be in ascending order, got {} nm after {} nm", shortest(pair[0]),
                                  shortest(curve.wavelengths_nm.back())));
     curve.wavelengths_nm.push_back(pair[0]);
     curve.values.push_back(pair[1]);

@@ -28,8 +28,8 @@ std::vector<std::vector<double>> read_columns(std::string_view text, const std::
       columns[k].push_back(table.number(k, k == 0 ? kWavelengthNm : kValue));
     const std::size_t count = columns[0].size();
     if (count > 1 && !(columns[0][count - 1] > columns[0][count - 2]))
-      table.fail(0, fmt::format("must ascend, got {} after {}", shortest(columns[0][count - 1]),
-                                shortest(columns[0][count - 2])));
+      table.fail(0, fmt::format("the values must be in ascending order, got {} after {}",
+                                shortest(columns[0][count - 1]), shortest(columns[0][count - 2])));
   }
   if (table.rows() < 2) table.fail(fmt::format("must contain at least two wavelengths, got {}", table.rows()));
   return columns;

@@ -45,7 +45,7 @@ void add_document(ResultFolder& result, const fs::path& file, const std::string&
     document.json = nlohmann::ordered_json::parse(text);
   } catch (const nlohmann::json::exception&) {
     if (text.find("retrace.") == std::string::npos) return;  // a file of another program
-    throw InputError({file.string(), 0, ""}, "not valid JSON; run the command that writes this file again");
+    throw InputError({file.string(), 0, ""}, "the file is not valid JSON; run the command that writes this file again");
   }
   document.kind = schema_of(document.json).kind;
   if (document.kind.empty()) return;
@@ -94,7 +94,7 @@ ResultFolder read_result_folder(const fs::path& folder, const std::vector<std::s
   std::error_code ignored;
   if (!fs::is_directory(folder, ignored))
     throw InputError({folder.string(), 0, ""}, fs::exists(folder, ignored)
-                                                   ? "must be a folder of results, but is not a folder"
+                                                   ? "must be the name of a folder of results, but is not a folder"
                                                    : "there is no such folder");
   ResultFolder result;
   result.path = folder.string();

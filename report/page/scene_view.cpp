@@ -29,7 +29,7 @@ void check_files(const design::Design& design, const ResultFolder& folder) {
     if (const std::filesystem::path file = design.document->file(key); !may_read(folder, file))
       throw InputError(
           {design.source, 0, key},
-          fmt::format("names {}, which is outside the folder of results and was not read; allow it with --read FILE",
+          fmt::format("the file {} is outside the folder of results and was not read; allow it with --read FILE",
                       in_quotes(file.string())));
 }
 

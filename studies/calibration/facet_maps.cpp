@@ -165,8 +165,9 @@ class Registration {
                           kMarginPixels * 1e-3 * std::max(map.heights.x_pixel_um, map.heights.y_pixel_um));
     reach_mm_ = half_size_mm(groove);
     if (points_.size() < 3 * kMinPoints)
-      throw InputError({map.file, 0, ""}, fmt::format("must have at least {} points with a height, got {}",
-                                                      3 * kMinPoints, points_.size()));
+      throw InputError({map.file, 0, ""},
+                       fmt::format("the height map must have at least {} points with a height, got {}", 3 * kMinPoints,
+                                   points_.size()));
   }
 
   /// Returns the best pose of the map on the part.

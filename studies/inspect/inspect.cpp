@@ -101,7 +101,8 @@ std::string where_it_begins(const Inspection& result) {
   const auto from_deg = design::total_reflection_from_deg(part, min_refractive_index(result.light), back_index(result),
                                                           Angle::from_deg(away_deg));
   if (!from_deg) return {};
-  return fmt::format("; total reflection begins at {:.2f} degrees of incidence at azimuth {:.1f}", *from_deg, away_deg);
+  return fmt::format("; total reflection begins at an incidence of {:.2f} degrees and an azimuth of {:.1f} degrees",
+                     *from_deg, away_deg);
 }
 
 std::string of_turned_elements(const geometry::PartSpec& part) {
@@ -117,10 +118,10 @@ void tell_early_end(Inspection& result) {
   if (std::holds_alternative<geometry::RtpElement>(part.element) || circumstances(result).empty()) return;
   result.warnings.push_back(
       {"total_reflection_limit",
-       fmt::format(
-           "{}: total reflection at the facets ends at {} degrees of incidence at azimuth {:.1f} (n = {:.4f}{}){}",
-           result.design.source_name(), fixed_visible(*result.tir_limit_deg, 2), *result.tir_limit_azimuth_deg,
-           min_refractive_index(result.light), circumstances(result), of_turned_elements(part))});
+       fmt::format("{}: total reflection at the facets ends at an incidence of {} degrees and an azimuth of {:.1f} "
+                   "degrees (n = {:.4f}{}){}",
+                   result.design.source_name(), fixed_visible(*result.tir_limit_deg, 2), *result.tir_limit_azimuth_deg,
+                   min_refractive_index(result.light), circumstances(result), of_turned_elements(part))});
 }
 
 /// Adds a warning if light at normal incidence is not totally reflected at some wavelengths.
@@ -129,7 +130,7 @@ void warn_of_lost_reflection(Inspection& result) {
   if (result.coating.facets && result.coating.facets->stack.absorbs()) return;  // the facets reflect by their coating
   if (result.tir_limit_deg) return tell_early_end(result);
   const std::string lost =
-      fmt::format("{}: no total reflection at the facets at normal incidence", result.design.source_name());
+      fmt::format("{}: the facets have no total reflection at normal incidence", result.design.source_name());
   double share = 0.0;
   double from_nm = 0.0;  // range of the wavelengths without total reflection
   double to_nm = 0.0;

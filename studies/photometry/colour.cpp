@@ -105,7 +105,7 @@ UndeterminedReason reason_of(const PhotometricColour& colour, const Photometer& 
     return {Cause::diffraction, why, fmt::format("diffraction is not included, because {}", text_of(why))};
   }
   if (colour.uses_other_illuminant)
-    return {Cause::another_light, std::nullopt, "the boundaries are defined for CIE illuminant A only"};
+    return {Cause::another_light, std::nullopt, "the colour boundaries are defined only for CIE illuminant A"};
   return {Cause::noise, std::nullopt,
           "the colour is within two standard errors of a boundary: " + photometer.remedy_for_noise()};
 }

@@ -50,17 +50,16 @@ std::string choice(const std::vector<std::string>& there_are, const std::optiona
                    std::string_view of_what) {
   if (there_are.empty()) {
     if (asked)
-      throw InputError(
-          field, fmt::format("must be left out for the standard {}, got {}", printable(of_what), in_quotes(*asked)));
+      throw InputError(field, fmt::format("must be left out for {}, got {}", printable(of_what), in_quotes(*asked)));
     return {};
   }
   if (!asked) {
     if (there_are.size() == 1) return there_are.front();
-    throw InputError(field, fmt::format("is required for the standard {}; give one of {}", printable(of_what),
+    throw InputError(field, fmt::format("is required for {}; give one of {}", printable(of_what),
                                         printable(fmt::format("{}", fmt::join(there_are, ", ")), 400)));
   }
   if (holds(there_are, *asked)) return *asked;
-  throw InputError(field, fmt::format("must be one of {} for the standard {}, got {}",
+  throw InputError(field, fmt::format("must be one of {} for {}, got {}",
                                       printable(fmt::format("{}", fmt::join(there_are, ", ")), 400), printable(of_what),
                                       in_quotes(*asked)));
 }

@@ -42,10 +42,11 @@ void check_discs(const raytrace::PhotometricApertures& apertures) {
   const double source = arcmin_of(apertures.source), receiver = arcmin_of(apertures.receiver);
   if (std::max(source, receiver) >= kMinApertureArcmin) return;
   const std::string of_receiver = reference({"receiver_arcmin"});
-  throw InputError(Field{"source_arcmin"},
-                   fmt::format("must be at least {0} unless {1} is at least {0}: with a point source and a point "
-                               "receiver, intensities are infinite or 0; got {2} and {1} {3}",
-                               shortest(kMinApertureArcmin), of_receiver, shortest(source), shortest(receiver)));
+  throw InputError(
+      Field{"source_arcmin"},
+      fmt::format("must be at least {0} arcmin unless {1} is at least {0} arcmin, because the intensities of a point "
+                  "source at a point receiver are infinite or 0; got {2} arcmin, and {1} is {3} arcmin",
+                  shortest(kMinApertureArcmin), of_receiver, shortest(source), shortest(receiver)));
 }
 
 void check(const PhotometrySettings& settings) {

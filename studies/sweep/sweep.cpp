@@ -69,7 +69,7 @@ Sweep::Sweep(Study study, Combine combine, std::uint64_t samples) : study_(std::
       throw InputError(parameter.location,
                        "for sweep.combine = \"grid\" or \"zipped\", a parameter requires values, or a range with step "
                        "or count; an interval or a distribution is only allowed for sweep.combine = \"sobol\", "
-                       "\"latin_hypercube\" and \"monte_carlo\"");
+                       "\"latin_hypercube\" or \"monte_carlo\"");
   size_ = combine == Combine::grid ? grid_size(study_) : zipped_size(study_);
 }
 

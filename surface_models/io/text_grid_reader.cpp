@@ -215,9 +215,10 @@ class TextReader {
     if (all_end_empty_ && columns_ > 1) drop_last_column();
     if ((header_.columns && *header_.columns != static_cast<double>(columns_)) ||
         (header_.rows && *header_.rows != static_cast<double>(rows_)))
-      source_.fail(last_line_, fmt::format("the header specifies {} columns and {} rows, but the file has {} and {}",
-                                           header_.columns.value_or(static_cast<double>(columns_)),
-                                           header_.rows.value_or(static_cast<double>(rows_)), columns_, rows_));
+      source_.fail(last_line_,
+                   fmt::format("the header specifies {} columns and {} rows, but the file has {} columns and {} rows",
+                               header_.columns.value_or(static_cast<double>(columns_)),
+                               header_.rows.value_or(static_cast<double>(rows_)), columns_, rows_));
     check_size(source_, 0, static_cast<double>(columns_), static_cast<double>(rows_));
     RawMap raw;
     raw.format = "text grid";

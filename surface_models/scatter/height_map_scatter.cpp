@@ -233,7 +233,7 @@ HeightMapScatter::HeightMapScatter(const HeightMap& map, double wavelength_nm) {
   texture->kurtosis = heights.sku;
   texture->set_spectrum(levelled);
   texture->set_facets(gradients(levelled, 1e-3 * wavelength_nm));
-  require_slope_in_range(texture->rms_slope, "height map (is the unit of heights right?)");
+  require_slope_in_range(texture->rms_slope, "height map (check the unit of its heights)");
   texture_ = std::move(texture);
 }
 

@@ -50,8 +50,8 @@ Vec3 visible_ggx_normal(const Vec3& towards_light, double width, RandomStream& r
 
 void require_slope_in_range(double rms_slope, const char* what) {
   if (rms_slope > kMaxModelledSlope)
-    throw InputError(std::string("rms slope of the ") + what + " must be at most " + shortest(kMaxModelledSlope) +
-                     " because no scatter model is valid for steeper surfaces, got " +
+    throw InputError(std::string("the rms slope of the ") + what + " must be at most " + shortest(kMaxModelledSlope) +
+                     ", because no scatter model is valid for steeper surfaces, got " +
                      fixed_apart(rms_slope, kMaxModelledSlope, 3));
 }
 

@@ -56,8 +56,8 @@ void refuse_other_machine(const Job& job, const Machine& machine, const std::vec
     if (other.name == machine.name || other.tilt != machine.tilt || other.a.direction.basis != Basis::measured)
       continue;
     if (has_poses_of(verification_model_of(job, other), words))
-      throw InputError({file, 0, ""}, fmt::format("is a program for machine {}, but the job is for machine {}: the "
-                                                  "positions of the rotary axes do not fit the job's machine",
+      throw InputError({file, 0, ""}, fmt::format("the program was made for machine {}, but the job is for machine {}: "
+                                                  "the positions of the rotary axes do not fit the job's machine",
                                                   other.name, machine.name));
   }
 }

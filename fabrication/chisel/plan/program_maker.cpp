@@ -48,7 +48,7 @@ void check_axis(const Job& job, const Machine& machine, char axis, Nanometres lo
   const double low_mm = millimetres(low_nm);
   const double high_mm = millimetres(high_nm);
   if (limits.contains(low_mm) && limits.contains(high_mm)) return;
-  const std::string who = element < 0 ? "the safe height" : fmt::format("element {}", element);
+  const std::string who = element < 0 ? "move to the safe height" : fmt::format("element {}", element);
   throw InputError(job.where("machine"),
                    fmt::format("{}: axis {} of machine {} would have to move to {} mm, but its limits are {} to {} mm",
                                who, axis, machine.name, fixed(limits.contains(low_mm) ? high_mm : low_mm, 3),

@@ -34,7 +34,7 @@ std::vector<MeasuredForce> parse_forces(std::string_view text, const std::string
   std::vector<MeasuredForce> forces;
   CsvReader table(text, source_name, kMaxTextBytes, kColumns);
   while (table.next()) forces.push_back(force_of(table));
-  if (forces.empty()) table.fail("must contain forces, but is empty");
+  if (forces.empty()) table.fail("the file must contain forces, but is empty");
   return forces;
 }
 

@@ -193,7 +193,7 @@ constexpr Row kZoneRows[] = {
     {"rotation_deg", Number{{.low = -360.0, .high = 360.0}}, 0.0,
      "Rotation of each element about its axis, counter-clockwise as seen from the light.",
      access<&CutZone::rotation_deg>},
-    {"apexes_mm", NumberRows{2, {.low = 0.0, .high = 1e4}, 1, kMaxZoneElements, "places"}, kRequired,
+    {"apexes_mm", NumberRows{2, {.low = 0.0, .high = 1e4}, 1, kMaxZoneElements, "points"}, kRequired,
      "`[[x, y], ...]`: positions of the apexes of the zone's elements, in x and y of the part. The origin is the "
      "corner of the part with the smallest x and y.",
      access_by<get_apexes, set_apexes>}};
@@ -465,7 +465,7 @@ void check_substrate(const Job& job, const Refuse& refuse) {
 void check_machine(const Job& job, const Refuse& refuse) {
   // The operating system would truncate the name at a zero byte.
   if (job.machine.empty() || job.machine.find('\0') != std::string::npos)
-    refuse("machine", "must name a machine or a file, got " + in_quotes(job.machine));
+    refuse("machine", "must be the name of a machine or of a file, got " + in_quotes(job.machine));
 }
 
 void check_workpiece(const Job& job, const Refuse& refuse) {

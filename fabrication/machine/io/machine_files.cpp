@@ -340,7 +340,8 @@ std::string unfit_text(const Control& control) {
   const bool is_stop = &text == &control.stop || &text == &control.optional_stop;
   const std::string fault = line_form_error(text, is_stop ? LineUse::stop : LineUse::output);
   if (!control.has_unchecked_lines && !fault.empty())
-    return fmt::format("{}; any other line needs control.has_unchecked_lines = true, got {}", fault, in_quotes(text));
+    return fmt::format("{}; any other line requires control.has_unchecked_lines = true, got {}", fault,
+                       in_quotes(text));
   const std::string* const lines[] = {&control.mist_on, &control.mist_off, &control.optional_stop, &control.stop};
   const bool is_other = std::any_of(std::begin(lines), std::end(lines),
                                     [&](const auto* other) { return other != &text && *other == text; });

@@ -145,7 +145,7 @@ void check_clearance(const Document& file) {
   const double least_mm = file.numbers("mill.min_move_mm")[2];
   const double clear_mm = file.number("mill.clear_mm");
   if (clear_mm < least_mm)
-    file.fail("mill.clear_mm", fmt::format("must be at least the minimum move of Z ({}), got {}", shortest(least_mm),
+    file.fail("mill.clear_mm", fmt::format("must be at least the minimum move of Z ({} mm), got {}", shortest(least_mm),
                                            shortest(clear_mm)));
 }
 
@@ -155,7 +155,7 @@ void check_spindle_texts(const Document& file) {
     if (!fault.empty()) file.fail(key, fault + ", got " + in_quotes(file.text(key)));
     const std::string unknown = file.has(key) ? line_form_error(file.text(key), LineUse::output) : "";
     if (!unknown.empty() && !file.flag("lathe.has_unchecked_lines"))
-      file.fail(key, fmt::format("{}; any other line needs lathe.has_unchecked_lines = true, got {}", unknown,
+      file.fail(key, fmt::format("{}; any other line requires lathe.has_unchecked_lines = true, got {}", unknown,
                                  in_quotes(file.text(key))));
   }
   if (file.has(kStop) && file.text_if(kStart) == file.text(kStop))

@@ -88,7 +88,7 @@ constexpr Row kPathRows[] = {
     {"cutting_mm_per_min", Number{{.low = 0.1, .high = 1e5}}, kRequired, "Cutting speed along the lines.",
      kRasterOnly}};
 constexpr std::string_view kFeedKeys[] = {"feed_um", "scallop_nm"};
-constexpr Rule kPathRules[] = {OneOf{kFeedKeys, "must have either feed_um or scallop_nm"}};
+constexpr Rule kPathRules[] = {OneOf{kFeedKeys, "must contain either the key feed_um or the key scallop_nm"}};
 
 constexpr Row kLimitRows[] = {
     {"travel_mm", Numbers{2, kPlace}, kNone, "Range `[low, high]` of positions; low is less than high."},

@@ -77,7 +77,8 @@ Measurement measurement_of(const CsvReader& row, const Columns& columns) {
   if (columns.at && !row[*columns.at].empty()) {
     m.along_edge = row.number(*columns.at, kAlongEdge);
     if (m.what != FacetQuantity::cut_end)
-      row.fail(*columns.at, "only allowed for end_nm, where it is the position along the edge at which a cut ends");
+      row.fail(*columns.at,
+               "only allowed in rows with what = end_nm, where it is the position along the edge at which a cut ends");
   }
   return m;
 }
@@ -109,7 +110,7 @@ class Reader {
 
  private:
   std::size_t part_of(const std::string& job) {
-    if (job.empty()) table_.fail(columns_.job, "must name a job file");
+    if (job.empty()) table_.fail(columns_.job, "must be the name of a job file");
     const auto known = std::find(result_.jobs.begin(), result_.jobs.end(), job);
     if (known != result_.jobs.end()) return static_cast<std::size_t>(known - result_.jobs.begin());
     if (result_.jobs.size() == kMaxJobs) table_.fail(fmt::format("at most {} jobs are allowed", kMaxJobs));

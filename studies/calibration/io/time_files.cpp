@@ -161,7 +161,7 @@ class TimeReader {
     }
     row.seconds = table_.number(columns_.seconds, kSeconds);
     timeline.add(row, from, to);
-    if (row.moves.empty()) table_.fail("must include a line that moves an axis");
+    if (row.moves.empty()) table_.fail("the range of lines must include a line that moves an axis");
     result_.rows.push_back(std::move(row));
   }
 
@@ -174,7 +174,7 @@ class TimeReader {
   }
 
   const Timeline& timeline_of(const std::string& name) {
-    if (name.empty()) table_.fail(columns_.program, "must name a program");
+    if (name.empty()) table_.fail(columns_.program, "must be the name of a program");
     if (printable(name, name.size()) != name)
       table_.fail(columns_.program, "must be the name of a program, got " + in_quotes(name));
     if (const auto known = timelines_.find(name); known != timelines_.end()) return known->second.timeline;

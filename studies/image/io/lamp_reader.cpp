@@ -30,7 +30,8 @@ class Lines {
   bool at_end() const { return next_ == lines_.size(); }
   std::string_view next(std::string_view what) {
     if (at_end())
-      throw InputError({file_, static_cast<int>(lines_.size()), ""}, fmt::format("the file ends before {}", what));
+      throw InputError({file_, static_cast<int>(lines_.size()), ""},
+                       fmt::format("the file is incomplete: it ends before {}", what));
     return lines_[next_++];
   }
   [[noreturn]] void fail(std::string_view key, std::string_view text) const {
@@ -90,7 +91,8 @@ struct Table {
 void check_ascending(const Lines& lines, const std::vector<double>& angles, std::string_view key) {
   for (std::size_t k = 1; k < angles.size(); ++k)
     if (!(angles[k] > angles[k - 1]))
-      lines.fail(key, fmt::format("must ascend, got {} after {}", shortest(angles[k]), shortest(angles[k - 1])));
+      lines.fail(key, fmt::format("the values must be in ascending order, got {} after {}", shortest(angles[k]),
+                                  shortest(angles[k - 1])));
 }
 
 /// Adds the planes on the other side of a plane of symmetry. Their angles are 2 * mirror_deg minus the present angles.

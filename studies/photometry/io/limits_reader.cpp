@@ -79,7 +79,7 @@ void must_be_empty(const CsvReader& row, std::initializer_list<Column> columns, 
 }
 
 std::string named(const CsvReader& row, Column column) {
-  if (row[column].empty()) row.fail(column, fmt::format("must name a {}, got \"\"", kHeader[column]));
+  if (row[column].empty()) row.fail(column, fmt::format("must be the name of a {}, got \"\"", kHeader[column]));
   return printable(row[column]);
 }
 
@@ -152,8 +152,8 @@ void read_boundary(const CsvReader& row, ColourBoundary& boundary) {
                       (words.size() == 3 || is_sloping);
   if (!is_one || !constant || !slope || !(std::abs(*constant) <= kMaxColourCoefficient) ||
       !(std::abs(*slope) <= kMaxColourCoefficient))
-    row.fail(kMinimum, fmt::format("must be a boundary in x, y or z, such as \"z <= 0.008\" or \"y >= 0.146 + 0.489 "
-                                   "x\", whose numbers are from -{0} to {0}, got {1}",
+    row.fail(kMinimum, fmt::format("must be a boundary in the chromaticity coordinates x, y or z, such as \"z <= "
+                                   "0.008\" or \"y >= 0.146 + 0.489 x\", with numbers from -{0} to {0}, got {1}",
                                    shortest(kMaxColourCoefficient), in_quotes(row[kMinimum])));
   // Moves all terms to the left side and replaces z by 1 - x - y.
   const bool is_z = word(0) == "z";

@@ -240,7 +240,7 @@ constexpr Row kMachiningRows[] = {
 constexpr Words kCombinations = {"grid", "zipped", "sobol", "latin_hypercube", "monte_carlo"};
 constexpr Words kSampled = {"sobol", "latin_hypercube", "monte_carlo"};
 constexpr Condition kOfSampled[] = {
-    is("combine", kSampled, "only allowed for combine = \"sobol\", \"latin_hypercube\" and \"monte_carlo\"")};
+    is("combine", kSampled, "only allowed for sweep.combine = \"sobol\", \"latin_hypercube\" or \"monte_carlo\"")};
 constexpr Row kSweepRows[] = {
     {"combine", Word{kCombinations}, "grid",
      "Method by which the values of the parameters are combined into points. `\"grid\"`: all combinations; the last "

@@ -293,7 +293,8 @@ void read_designs(const Document& document, const FileTexts& given, Study& study
   const auto varied = std::find_if(study.parameters.begin(), study.parameters.end(),
                                    [](const Parameter& p) { return p.keys.front() == "design"; });
   if (varied != study.parameters.end()) {
-    if (document.has("design")) document.fail("design", "not allowed, because a parameter gives the designs");
+    if (document.has("design"))
+      document.fail("design", "not allowed, because a parameter of the study already varies the design");
     const auto number = static_cast<std::size_t>(varied - study.parameters.begin());
     const std::string key = schema::path_of_entry("parameter", number) + ".values";
     for (const ParameterValue& value : varied->values) study.design_texts.emplace(value.toml, text_of(value.toml, key));

@@ -136,7 +136,7 @@ bool RayCsvSource::read(std::size_t max_rays, std::vector<SetRay>& rays) {
   rays.clear();
   while (rays.size() < max_rays && next_line()) {
     if (values_.size() != column_count_)
-      fail("", fmt::format("must have {} values, got {}", column_count_, values_.size()));
+      fail("", fmt::format("a line must have {} values, one for each column, got {}", column_count_, values_.size()));
     rays.push_back(ray());
     const std::size_t larger = rays.back().radiant_w >= rays.back().luminous_lm ? kPower : kLuminous;
     if (!total_.add(rays.back())) fail(kNames[larger], total_power_text(value(larger)));

@@ -117,7 +117,7 @@ std::optional<double> Tm25Source::flux(std::string_view what) {
 
 void Tm25Source::read_header() {
   if (take(std::min<std::uint64_t>(4, bytes_), "a ray file") != "TM25")
-    fail(0, "must be TM25, the first four bytes of a ray file of IES TM-25");
+    fail(0, "the first four bytes must be \"TM25\", as in every ray file of IES TM-25");
   integer_within("the version of the format", kFormatVersion, kFormatVersion);
   integer();  // skips the method by which the rays were made
   info_.luminous_lm = flux("the luminous flux");
@@ -182,7 +182,7 @@ materials::SpectralCurve Tm25Source::read_table(std::int32_t number) {
     const double weight = value_at<float>(data.data() + k + 4);
     if (!is_wavelength(wavelength_nm)) fail(begin + 4 + k, wavelength_text(wavelength_nm));
     if (!table.wavelengths_nm.empty() && wavelength_nm <= table.wavelengths_nm.back())
-      fail(begin + 4 + k, fmt::format("wavelengths of spectral table {} must ascend", number));
+      fail(begin + 4 + k, fmt::format("the wavelengths of spectral table {} must be in ascending order", number));
     if (!(weight >= 0.0) || !std::isfinite(weight))
       fail(begin + 8 + k, fmt::format("a value of spectral table {} must be >= 0, got {}", number, weight));
     table.wavelengths_nm.push_back(wavelength_nm);

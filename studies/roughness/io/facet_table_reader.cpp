@@ -41,7 +41,7 @@ FacetGroup& group_of(const CsvReader& row, const Columns& columns, std::vector<F
     return groups.emplace_back(std::move(group));
   }
   group.name = printable(row[*columns.process]);
-  if (group.name.empty()) row.fail(*columns.process, "must name a process, got \"\"");
+  if (group.name.empty()) row.fail(*columns.process, "must be the name of a process, got \"\"");
   const auto found = std::ranges::find(groups, group.name, &FacetGroup::name);
   return found != groups.end() ? *found : groups.emplace_back(std::move(group));
 }
@@ -61,7 +61,7 @@ std::vector<FacetGroup> parse_facet_table(std::string_view content, const std::s
     mean(group.roughness_sa_nm, table.number(columns.roughness, kSaNm));
     if (columns.waviness) mean(group.waviness_sa_nm, table.number(*columns.waviness, kSaNm));
   }
-  if (groups.empty()) table.fail("must have a line of column names and one line for each facet");
+  if (groups.empty()) table.fail("the table must have a line of column names and one line for each facet");
   return groups;
 }
 
