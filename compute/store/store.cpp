@@ -262,11 +262,10 @@ void ResultStore::Database::check_study() const {
                                  kind, layout.kind));
   for (const auto& [key, value] : layout.parts)
     if (stored("part." + key) != value)
-      throw InputError(
-          {layout.source, 0, ""},
-          fmt::format(
-              "{} has changed since {} was begun; use {} to replace the store, or another output folder to keep both",
-              key, name(), reference({"overwrite"})));
+      throw InputError({layout.source, 0, ""},
+                       fmt::format("this input has changed since {1} was begun: {0}; use {2} to replace the store, or "
+                                   "another output folder to keep both",
+                                   key, name(), reference({"overwrite"})));
 }
 
 void ResultStore::Database::prepare() {

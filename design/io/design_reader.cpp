@@ -221,8 +221,9 @@ std::string read_material(const Document& document) {
   if (!document.has("body.catalogue") || !materials::is_index_record(document.file("body.catalogue"))) return material;
   const std::string recorded = printable(document.file("body.catalogue").stem().string());
   if (document.has("body.material") && material != recorded)
-    document.fail("body.material", fmt::format("must be left out or be {}, the material of the record, got {}",
-                                               in_quotes(recorded), in_quotes(material)));
+    document.fail("body.material",
+                  fmt::format("must be left out or be {}, the material in the file of body.catalogue, got {}",
+                              in_quotes(recorded), in_quotes(material)));
   return recorded;
 }
 

@@ -71,9 +71,10 @@ void check_entrance_face(const Document& document) {
   const double spots = document.number("entrance.drop_coverage") + document.number("entrance.dust_coverage") +
                        document.number("entrance.scratch_coverage");
   if (spots > 1.0)
-    document.fail(scattering_key(document),
-                  fmt::format("drop_coverage, dust_coverage and scratch_coverage must add up to at most 1, got {}",
-                              shortest(spots)));
+    document.fail(
+        scattering_key(document),
+        fmt::format("drop_coverage, dust_coverage and scratch_coverage must add up to at most 1, but their sum is {}",
+                    shortest(spots)));
   check_haze(document);
   check_roughness_of_face(document);
   if (const std::string_view key = scattering_key(document); document.has("entrance_surface") && !key.empty())

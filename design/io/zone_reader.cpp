@@ -121,12 +121,14 @@ void lay_out_stripes(const Document& document, geometry::ZonedSpec& spec) {
     const std::string key = entry_of(k) + ".area_fraction";
     if (!document.has(key))
       document.fail(entry_of(k),
-                    "must have area_fraction, because other zones have it: either all zones have it, or none");
+                    "must contain the key area_fraction, because other zones contain it: either all zones or no zones "
+                    "may have this key");
     sum += document.number(key);
   }
   if (std::abs(sum - 1.0) > kFractionRounding)
-    document.fail(entry_of(spec.zones.size() - 1) + ".area_fraction",
-                  fmt::format("the values of area_fraction of all zones must add up to 1, got {}", shortest(sum)));
+    document.fail(
+        entry_of(spec.zones.size() - 1) + ".area_fraction",
+        fmt::format("the values of area_fraction of all zones must add up to 1, but their sum is {}", shortest(sum)));
   double from_mm = 0.0;
   double share = 0.0;
   for (std::size_t k = 0; k < spec.zones.size(); ++k) {
@@ -159,7 +161,7 @@ Polygon polygon_of(const Document& document, const std::string& key) {
                                      shortest(polygon[k].y())));
   if (geometry::area(polygon) < 0.0) std::reverse(polygon.begin(), polygon.end());
   if (!(geometry::area(polygon) > 0.0) || !geometry::is_convex(polygon, near_mm))
-    document.fail(key, "must be the corners of a convex polygon, in their order along its boundary");
+    document.fail(key, "must be the corners of a convex polygon, in the order of the corners along the boundary");
   return polygon;
 }
 
@@ -254,7 +256,7 @@ void check_room(const Document& document, std::size_t number, const geometry::Pa
     const bool is_turned = zone.rotation_deg != 0.0;
     if (is_narrow || (!is_turned && (room.array() < element.array() * (1.0 - kRounding)).any()))
       document.fail(entry_of(number),
-                    fmt::format("has a region of {} x {} mm, too small for one element of {} x {} mm",
+                    fmt::format("the region of this zone, {} x {} mm, is too small for one element of {} x {} mm",
                                 shortest(room.x()), shortest(room.y()), shortest(element.x()), shortest(element.y())));
   }
 }

@@ -129,12 +129,13 @@ class Reader {
                                spec_.array.arrangement == geometry::Arrangement::triangular;
     if (!resembles(row, false) && !(may_be_turned && resembles(row, true)))
       fail(row.line, "x_slope",
-           fmt::format("the angle to the plane of facet {1} of the design's element must be at most {0} degrees",
-                       shortest(kMaxTiltDeg), row.facet + 1));
+           fmt::format(
+               "the angle between this plane and facet {1} of the element in the design must be at most {0} degrees",
+               shortest(kMaxTiltDeg), row.facet + 1));
     const double nominal_mm = nominal_height_mm(row);
     if (std::abs(row.plane.height_mm - nominal_mm) > kMaxHeightDeviationFraction * depth_mm_)
       fail(row.line, "height_mm",
-           fmt::format("must be {} to {}, near the root of the design's element, got {}",
+           fmt::format("must be from {} to {} mm, near the root of the element in the design, got {}",
                        fixed_apart(nominal_mm - kMaxHeightDeviationFraction * depth_mm_, row.plane.height_mm, 6),
                        fixed_apart(nominal_mm + kMaxHeightDeviationFraction * depth_mm_, row.plane.height_mm, 6),
                        shortest(row.plane.height_mm)));
@@ -179,7 +180,7 @@ class Reader {
       elements_.back().planes.clear();
     }
     auto& flare = elements_.back().flares[row.facet - kFlares];
-    if (flare) fail(row.line, "facet", "must not be given twice for one position");
+    if (flare) fail(row.line, "facet", "the facet must not occur twice at one position");
     flare = row.plane;
   }
 

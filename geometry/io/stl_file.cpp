@@ -125,11 +125,12 @@ bool begins_as_binary(std::string_view text) {
 [[noreturn]] void refuse_length(std::string_view begin, std::uintmax_t file_bytes, const std::string& name) {
   constexpr std::string_view what =
       "not an STL file: a binary STL file must have 84 bytes plus 50 bytes for each triangle";
-  if (file_bytes < binary_length(0)) throw InputError({name, 0, ""}, fmt::format("{}, got {}", what, file_bytes));
+  if (file_bytes < binary_length(0))
+    throw InputError({name, 0, ""}, fmt::format("{}, but the file has {} bytes", what, file_bytes));
   const std::size_t wanted = binary_length(binary_count(begin));
   const std::string remedy = file_bytes > wanted
                                  ? fmt::format("remove the {} bytes after the last triangle", file_bytes - wanted)
-                                 : "the end of the file is missing, or it has another format";
+                                 : "the file is truncated or has another format";
   throw InputError({name, 0, ""},
                    fmt::format("{}, which is {} bytes for its {} triangles, but the file has {} bytes: {}", what,
                                wanted, binary_count(begin), file_bytes, remedy));

@@ -178,9 +178,7 @@ BoundaryRequest read_request(const Document& file) {
   const double outer = number("outer_radius_ratio");
   if (!(inner < outer))
     file.fail("lenslets.outer_radius_ratio",
-              fmt::format("must be greater than inner_radius_ratio, got inner_radius_ratio {} and outer_radius_ratio "
-                          "{}",
-                          shortest(inner), shortest(outer)));
+              fmt::format("must be greater than inner_radius_ratio ({}), got {}", shortest(inner), shortest(outer)));
   const BoundaryOptions options = {static_cast<int>(number("degree")), static_cast<int>(number("samples"))};
   return {file.text("lenslets.boundary") == "intersection",
           options,

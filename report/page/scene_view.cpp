@@ -74,7 +74,7 @@ Warnings add_scene(Page& page, const ResultFolder& folder) {
       section.paragraphs.push_back(text);
     } catch (const Error& error) {
       section.paragraphs.push_back(std::string("The design cannot be shown here: ") + error.what());
-      warnings.push_back({"no_scene", std::string("no 3D view: ") + error.what()});
+      warnings.push_back({"no_scene", std::string("the 3D view is not available: ") + error.what()});
     }
   }
   return warnings;

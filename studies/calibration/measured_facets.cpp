@@ -69,7 +69,8 @@ std::string CutPart::obstacle_for(const Measurement& m) const {
     if (!cuts_.contains({place->element, place->facet})) return fmt::format("element {} is not cut", place->element);
   }
   if (m.what == FacetQuantity::angle) {
-    if (!m.from) return "an angle is measured between two facets: from_element and from_facet must be given";
+    if (!m.from)
+      return "from_element and from_facet must be given for an angle, because it is measured between two facets";
     const Vec3& a = common(cavities_[m.at.element]).facets[m.at.facet].normal;
     const Vec3& b = common(cavities_[m.from->element]).facets[m.from->facet].normal;
     if (a.cross(b).norm() < kParallel) return "the two facets of an angle must not be parallel";

@@ -201,8 +201,8 @@ TurningVerification verify_turning(const TurningRequest& request) {
   TurningVerification run{request, turning::parse_turned_part(read_file(request.part), request.part), {}, {}, {}};
   const bool is_fast = run.part.path.servo == turning::Servo::fast;
   if (is_fast && request.servo.empty())
-    throw InputError(Field{"servo"},
-                     "must name the table of strokes, because " + request.part + " has a fast tool servo");
+    throw InputError(Field{"servo"}, "must be the name of the file with the table of strokes, because " + request.part +
+                                         " has a fast tool servo");
   if (!is_fast && !request.servo.empty())
     throw InputError(Field{"servo"}, request.part + " has no fast tool servo, so a table of strokes is not allowed");
   run.programs = fabrication::read_programs(request.programs, request.dialect);

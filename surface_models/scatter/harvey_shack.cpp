@@ -397,8 +397,8 @@ Warnings HarveyShack::warnings(double index, double wavelength_nm) const {
     const double slope = roughness_rms_slope(r, index, wavelength_nm);
     if (slope > kMaxSlopeWithoutWarning)
       found.push_back(
-          {"steep_roughness", "rms slope of the roughness " + fixed_apart(slope, kMaxSlopeWithoutWarning, 3) +
-                                  " is above " + shortest(kMaxSlopeWithoutWarning) +
+          {"steep_roughness", "the rms slope of the roughness is " + fixed_apart(slope, kMaxSlopeWithoutWarning, 3) +
+                                  ", which is above " + shortest(kMaxSlopeWithoutWarning) +
                                   ": light that is reflected several times on the surface is not modelled"});
     if (reflection_phase_rad(r.sq_nm, index, 1.0, wavelength_nm) > 2.0 * pi)
       found.push_back(
@@ -406,9 +406,9 @@ Warnings HarveyShack::warnings(double index, double wavelength_nm) const {
                                          " nm is above half a wavelength in the material: use the model microfacet"});
   }
   if (slopes_.rms_slope() > kMaxSlopeWithoutWarning)
-    found.push_back({"steep_waviness", "rms slope of the waviness " +
-                                           fixed_apart(slopes_.rms_slope(), kMaxSlopeWithoutWarning, 3) + " is above " +
-                                           shortest(kMaxSlopeWithoutWarning) +
+    found.push_back({"steep_waviness", "the rms slope of the waviness is " +
+                                           fixed_apart(slopes_.rms_slope(), kMaxSlopeWithoutWarning, 3) +
+                                           ", which is above " + shortest(kMaxSlopeWithoutWarning) +
                                            ": light that is reflected several times on the surface is not modelled"});
   if (r.waviness_sq_nm > 0.0 && r.waviness_length_um < 5.0 * wave_um)
     found.push_back(

@@ -321,8 +321,8 @@ Warnings HeightMapScatter::warnings(double index, double wavelength_nm) const {
                          " um apart, more than half a wavelength in the material: finer roughness is missing"});
   if (t.rms_slope > kMaxSlopeWithoutWarning)
     found.push_back({"steep_height_map",
-                     "rms slope of the height map " + fixed_apart(t.rms_slope, kMaxSlopeWithoutWarning, 3) +
-                         " is above " + shortest(kMaxSlopeWithoutWarning) +
+                     "the rms slope of the height map is " + fixed_apart(t.rms_slope, kMaxSlopeWithoutWarning, 3) +
+                         ", which is above " + shortest(kMaxSlopeWithoutWarning) +
                          ": masking, and light that is reflected several times on the surface, are not modelled"});
   if (t.sq_nm > 0.0 && std::abs(t.kurtosis - 3.0) > 1.0)
     found.push_back({"heights_not_gaussian",

@@ -65,15 +65,15 @@ double Microfacet::pdf_per_sr(const ScatterEvent& event, Lobe lobe, const Vec3& 
 Warnings Microfacet::warnings(double index, double wavelength_nm) const {
   Warnings found;
   if (slopes_.rms_slope() > kMaxSlopeWithoutWarning)
-    found.push_back({"steep_facets", "rms slope " + fixed_apart(slopes_.rms_slope(), kMaxSlopeWithoutWarning, 3) +
-                                         " is above " + shortest(kMaxSlopeWithoutWarning) +
+    found.push_back({"steep_facets", "the rms slope is " +
+                                         fixed_apart(slopes_.rms_slope(), kMaxSlopeWithoutWarning, 3) +
+                                         ", which is above " + shortest(kMaxSlopeWithoutWarning) +
                                          ": light that is reflected several times on the surface is not modelled"});
   const double phase = reflection_phase_rad(waviness_sq_nm_, index, 1.0, wavelength_nm);
   if (waviness_sq_nm_ > 0.0 && phase * phase < kSlopePhase2)
-    found.push_back(
-        {"low_waviness",
-         "waviness of " + shortest(waviness_sq_nm_) +
-             " nm is too low for the microfacet model, because it diffracts light: use the model harvey_shack"});
+    found.push_back({"low_waviness", "a waviness of " + shortest(waviness_sq_nm_) +
+                                         " nm is too low for the model microfacet, because this waviness diffracts "
+                                         "light: use the model harvey_shack"});
   return found;
 }
 

@@ -107,7 +107,7 @@ void set_source(Sourced<Type>& item, const Value& value) {
 
 template <class Type>
 std::string nameless_source(const Sourced<Type>& item) {
-  return item.source.empty() ? "must state where the value comes from, got \"\"" : "";
+  return item.source.empty() ? "must contain the source of the value, got \"\"" : "";
 }
 std::string no_direction(const Sourced<Vec3>& item) {
   if (item.value.norm() > kMinLength) return {};
@@ -291,7 +291,7 @@ constexpr Table kBodyTables[] = {value("box_mm", kBox, child_only_read<&MachineB
                                  value("points_mm", kHull, child<&MachineBody::points_mm>,
                                        "Points [[x, y, z], ...]. The body is their convex hull.", "none")};
 constexpr std::string_view kBodyShapes[] = {"box_mm", "points_mm"};
-constexpr Rule kBodyRules[] = {OneOf{kBodyShapes, "must have either box_mm or points_mm"}};
+constexpr Rule kBodyRules[] = {OneOf{kBodyShapes, "must contain either the key box_mm or the key points_mm"}};
 
 /// Access to the tilting axis, which is [a] for a tilting table and [b] for a tilting head.
 template <Tilt tilt>

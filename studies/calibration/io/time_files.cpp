@@ -154,7 +154,7 @@ class TimeReader {
     if (from > to) table_.fail(*columns_.to_line, fmt::format("must be at least from_line ({}), got {}", from, to));
     if (from > timeline.lines())
       table_.fail(*columns_.from_line,
-                  fmt::format("must be a line of {}, which has {} lines", row.program, timeline.lines()));
+                  fmt::format("must be the number of a line of {}, which has {} lines", row.program, timeline.lines()));
     if (table_[columns_.seconds].empty()) {
       ++result_.empty_rows;
       return;

@@ -91,7 +91,7 @@ void RayCsvSource::read_names() {
     column = static_cast<int>(k);
   }
   for (std::size_t k = kX; k <= kDz; ++k)
-    if (!has(k)) fail("", fmt::format("the column {} is missing", kNames[k]));
+    if (!has(k)) fail("", fmt::format("the column {} is missing in the header", kNames[k]));
   const auto all_or_none = [&](std::size_t first, std::size_t last) {
     for (std::size_t k = first; k <= last; ++k)
       if (has(k) != has(first))
@@ -102,7 +102,7 @@ void RayCsvSource::read_names() {
   info_.has_luminous = has(kLuminous);
   info_.has_stokes = has(kS1);
   if (has(kWavelength)) info_.spectrum = RaySpectrum::wavelength_of_each;
-  if (!info_.has_radiant && !info_.has_luminous) fail("", "the column power_w or luminous_lm is missing");
+  if (!info_.has_radiant && !info_.has_luminous) fail("", "the column power_w or luminous_lm is missing in the header");
 }
 
 double RayCsvSource::value(std::size_t quantity, bool not_negative) const {
