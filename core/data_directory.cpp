@@ -14,7 +14,9 @@ fs::path data_directory() {
   std::error_code ignored;
   if (const char* chosen = std::getenv("RETRACE_DATA_DIR"); chosen != nullptr && *chosen != '\0') {
     if (!fs::is_directory(chosen, ignored))
-      throw InputError(std::string("RETRACE_DATA_DIR: no such folder: ") + chosen);
+      throw InputError(
+          std::string("the environment variable RETRACE_DATA_DIR must be the name of an existing folder, got ") +
+          chosen);
     return chosen;
   }
   fs::path folder = installation_folder() / "share" / "retrace";

@@ -40,7 +40,7 @@ geometry::FacetPlanes elements_of_mask(const Design& design) {
   std::vector<geometry::ElementPlanes> elements;
   for (const geometry::WholeElement& at : geometry::whole_elements(array, spec.element))
     if (at.is_there) elements.push_back(element_at(spec, block.corner_mm(at.row, at.column), at.is_rotated));
-  if (elements.empty()) throw InputError(design.where("array.mask"), "leaves no whole element");
+  if (elements.empty()) throw InputError(design.where("array.mask"), "the mask leaves no whole element");
   return {std::move(elements), std::min(element.base_mm, element.width_mm)};
 }
 

@@ -216,8 +216,9 @@ raytrace::Optics optics_at(const Design& design, const materials::Material& mate
                      : index_at_wavelength(design, material, library.air(), wavelength_nm,
                                            design.substance.temperature_c.value_or(material.temperature_c));
   if (!(optics.index >= 1.0))
-    throw InputError(design.where("body.material"), fmt::format("the index of {} at {} nm must be >= 1, got {}",
-                                                                material.name, wavelength_nm, optics.index));
+    throw InputError(design.where("body.material"),
+                     fmt::format("the refractive index of {} at {} nm must be >= 1, got {}", material.name,
+                                 wavelength_nm, optics.index));
   optics.entrance = condition_of(design, optics);
   optics.facet_scatter = scatter_model(design, map, optics);
   return optics;

@@ -168,11 +168,11 @@ Facets first_facets(const Points& points) {
   f.left_rad = std::atan(left_slope);
   f.right_rad = std::atan(right_slope);
   if (std::abs(f.left_rad - f.right_rad) < kMinEdgeAngle)
-    throw std::invalid_argument("there is no edge: both ends of the profile have the same slope");
+    throw std::invalid_argument("the profile contains no edge: both of its ends have the same slope");
   f.x0_um = (right_z - left_z) / (left_slope - right_slope);
   f.z0_um = left_z + left_slope * f.x0_um;
   if (!(f.x0_um > points.x_um.front() && f.x0_um < points.x_um.back()))
-    throw std::invalid_argument("there is no edge: the facets do not meet within the profile");
+    throw std::invalid_argument("the profile contains no edge: the facets do not meet within the profile");
   return f;
 }
 

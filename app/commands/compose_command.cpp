@@ -110,9 +110,9 @@ WholePart whole_part_of(const ComposeOptions& options, const JobRequest& making,
     whole.job = studies::make_job(design::parse_design(whole.design, options.design), making);
     append(warnings, whole.job->warnings);
   } catch (const InputError& error) {
-    warnings.push_back(
-        {"zones_not_written", fmt::format("{} is not written: {}", whole.design.empty() ? options.design : options.job,
-                                          error.message(requests::option_of_field))});
+    warnings.push_back({"zones_not_written", fmt::format("the file {} is not written: {}",
+                                                         whole.design.empty() ? options.design : options.job,
+                                                         error.message(requests::option_of_field))});
     whole.is_complete = false;
   }
   return whole;

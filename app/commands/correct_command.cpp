@@ -42,8 +42,10 @@ std::vector<Argument> arguments(CorrectOptions& options) {
 }
 
 [[noreturn]] void refuse_place(const std::string& text) {
-  throw InputError({"", 0, "MAP"},
-                   "must give the position of its centre in mm, as in facets.txt@0.25,-0.5, got " + in_quotes(text));
+  throw InputError(
+      {"", 0, "MAP"},
+      "the position of the centre of the map in mm must follow the name of the file, as in facets.txt@0.25,-0.5; got " +
+          in_quotes(text));
 }
 
 /// Reads the file name and the position of a height map from a text. The returned map does not contain heights yet.

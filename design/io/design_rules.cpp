@@ -56,7 +56,7 @@ void check_square(const Document& document, const PartSpec& part) {
   if (part.array.arrangement != Arrangement::checker) return;
   const auto& rtp = std::get<RtpElement>(part.element);
   if (std::abs(rtp.base_mm - rtp.width_mm) <= kRelativeTolerance * rtp.base_mm) return;
-  document.fail("element.width_mm", fmt::format("must equal base_mm ({}) for arrangement = \"checker\", got {}",
+  document.fail("element.width_mm", fmt::format("must equal base_mm ({}) for array.arrangement = \"checker\", got {}",
                                                 shortest(rtp.base_mm), shortest(rtp.width_mm)));
 }
 
@@ -146,8 +146,8 @@ void check_facet_tilts(const Document& document, const PartSpec& part) {
 void check_random_tilts(const Document& document, const PartSpec& part) {
   if (part.random_tilts.sigma_arcmin > 0.0 && part.array.extent == Extent::infinite)
     document.fail(kRandomTilt,
-                  "must be 0 for extent = \"infinite\", because all elements of an infinite array are equal; give "
-                  "lengths instead");
+                  "must be 0 for array.extent = \"infinite\", because all elements of an infinite array are equal; "
+                  "give lengths instead");
 }
 
 constexpr std::string_view kEdges[] = {"surface.root_radius_um", "surface.root_chamfer_um", "surface.rim_radius_um",
@@ -269,7 +269,7 @@ void check_mask(const Document& document, const PartSpec& part) {
 void check_facet_planes(const Document& document, const PartSpec& part) {
   constexpr std::string_view key = "part.facets";
   if (!document.has(key)) return;
-  if (part.array.extent == Extent::infinite) document.fail(key, "only allowed for finite arrays");
+  if (part.array.extent == Extent::infinite) document.fail(key, "only allowed for array.extent = \"finite\"");
   if (part.substrate) document.fail(key, "not allowed together with [substrate]");
   if (!(part.angle_errors == AngleErrors{}) || part.random_tilts.sigma_arcmin > 0.0)
     document.fail(key, "not allowed together with angle errors in [surface], because the planes contain these errors");

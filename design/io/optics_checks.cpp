@@ -45,12 +45,13 @@ void check_heights(const Document& document) {
   const std::string model = document.text_if("surface.model");
   if (model == "height_map")
     refuse_heights(document, {kRoughness, kWaviness},
-                   "must be 0 for model = \"height_map\", because the map contains roughness and waviness");
+                   "must be 0 for surface.model = \"height_map\", because the map contains roughness and waviness");
   if (model == "smooth" || model == "abg")
     refuse_heights(document, {kRoughness, kWaviness},
                    "must be 0 for this surface.model; leave surface.model out or use \"harvey_shack\"");
   if (model == "microfacet")
-    refuse_heights(document, {kRoughness}, "must be 0 for model = \"microfacet\", which supports only waviness");
+    refuse_heights(document, {kRoughness},
+                   "must be 0 for surface.model = \"microfacet\", which supports only waviness");
 }
 
 void check_material(const Document& document) {

@@ -74,8 +74,10 @@ constexpr Condition kOffsetOnly[] = {kArrayOfNoBall, is(kArrangement, kOffset)};
 constexpr Condition kNoBallArray[] = {kArrayOfNoBall};
 constexpr Condition kMaskOnly[] = {
     kArrayOfNoBall, is(kKind, kRtp),
-    is_not(kArrangement, kSingle, "only allowed for finite arrays that are not \"single\""),
-    is_not(kExtent, kInfinite, "only allowed for finite arrays that are not \"single\"")};
+    is_not(kArrangement, kSingle,
+           "only allowed for array.extent = \"finite\" and if array.arrangement is not \"single\""),
+    is_not(kExtent, kInfinite,
+           "only allowed for array.extent = \"finite\" and if array.arrangement is not \"single\"")};
 constexpr Condition kThresholdOnly[] = {kArrayOfNoBall, is_given("array.mask")};
 constexpr Condition kBallGapOnly[] = {is(kKind, kBall), is_not(kArrangement, kSingle)};
 

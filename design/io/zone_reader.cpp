@@ -296,7 +296,9 @@ ZonedPart read_zones(const Document& document) {
     const Document changed = document_of_zone(document, k, part.changes[k]);
     const std::string arrangement = changed.text("array.arrangement");
     if (arrangement == "single" || arrangement == "pins" || !has_elements(changed))
-      document.fail(entry_of(k), "must have an array of prisms or cube corners, neither \"single\" nor \"pins\"");
+      document.fail(entry_of(k),
+                    "a part with zones must have an array of prisms or cube corners, and array.arrangement must be "
+                    "neither \"single\" nor \"pins\"");
     part.spec.zones[k].elements = read_part(changed);
     part.spec.zones[k].rotation_deg = document.number(entry_of(k) + ".rotation_deg");
     check_room(document, k, part.spec.zones[k], part.spec.size_mm);

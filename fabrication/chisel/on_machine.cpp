@@ -93,11 +93,10 @@ void check_fins(const Job& job, const Machine& machine, const CubeCorner& corner
                      *wedge_deg);
   const std::string none = fmt::format("no tool.wedge_deg up to {} is large enough", shortest(kMaxWedgeDeg));
   if (machine.increments.linear_nm <= Increments{}.linear_nm)
-    throw InputError(
-        job.where("tool.nose_angle_deg"),
-        fmt::format(
-            "{}the tool with this nose_angle_deg and clearance_deg does not fit the element: {}, and {}, got {}", who,
-            fin, none, shortest(job.tool.nose_angle_deg)));
+    throw InputError(job.where("tool.nose_angle_deg"),
+                     fmt::format("{}with the given tool.nose_angle_deg and tool.clearance_deg, the tool does not fit "
+                                 "the element: {}, and {}, got {}",
+                                 who, fin, none, shortest(job.tool.nose_angle_deg)));
   // The height of a fin is proportional to the increment. Compute the maximum increment that is allowed.
   const double max_step_um = 1e3 * kEdgeStripMm / (fin_mm(job.tool, 1.0) + kEdgeStripMm - max_fin_mm(1.0));
   const double allowed_um = std::floor(1e4 * max_step_um) * 1e-4;
@@ -125,8 +124,9 @@ void check_on_machine(const Job& job, const Machine& machine) {
                                   {"process.finishing_feed_mm_per_min", p.finishing_feed_mm_per_min},
                                   {"process.retract_feed_mm_per_min", p.retract_feed_mm_per_min}})
     if (feed > most)
-      throw InputError(job.where(key), fmt::format("must be at most the max_feed_mm_per_min of machine {} ({}), got {}",
-                                                   machine.name, shortest(most), shortest(feed)));
+      throw InputError(job.where(key),
+                       fmt::format("must be at most {1} mm/min, the value max_feed_mm_per_min of machine {0}, got {2}",
+                                   machine.name, shortest(most), shortest(feed)));
 }
 
 }  // namespace retrace::fabrication

@@ -133,8 +133,8 @@ class FileWriter {
  private:
   void cubics(const Path& path) {
     if (dialect_.cubic_move.empty())
-      throw InputError(Field{"dialect"},
-                       fmt::format("{} has no moves with positions, velocities and times", dialect_.dialect.name));
+      throw InputError(Field{"dialect"}, fmt::format("the dialect {} has no moves with positions, velocities and times",
+                                                     dialect_.dialect.name));
     add_for_control(dialect_.cubic_begin);
     double since_begin_s = 0.0;
     for (std::size_t i = 0; i < path.moves.size(); ++i) {

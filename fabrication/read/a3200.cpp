@@ -94,7 +94,7 @@ class A3200Reader {
     if (starts_with_word(text, "DWELL")) {
       text = trimmed(text.substr(5));
       iso.set_dwell(take_number(text, lines_).value);
-      if (!text.empty()) lines_.fail("DWELL must have one time, in seconds");
+      if (!text.empty()) lines_.fail("DWELL must be followed by one time in seconds");
       return;
     }
     const bool is_rapid = starts_with_word(text, "RAPID");

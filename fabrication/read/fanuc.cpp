@@ -99,7 +99,7 @@ class FanucReader {
     const NcNumber number = take_number(text, lines_);
     if (!number.is_integer() || number.has_point || !text.empty())
       lines_.fail("O must have a whole number and be alone in its line");
-    if (table_.is_open()) lines_.fail("a subprogram must end with M99 before another begins");
+    if (table_.is_open()) lines_.fail("a subprogram must end with M99 before the next subprogram begins");
     close_part();
     if (has_main_ && !table_.begin(fmt::format("{}", number.value)))
       lines_.fail(fmt::format("a program O{} already exists", number.value));

@@ -91,7 +91,8 @@ NcLines::NcLines(std::string_view text, const std::string& file) : file_(file), 
   if (text.find_first_not_of(" \t\r\n") == std::string_view::npos)
     throw InputError({file, 0, ""}, "the file must be an NC program, but is empty");
   if (text.size() > kLongestNcBytes)
-    throw InputError({file, 0, ""}, fmt::format("too long, at most {} bytes are allowed", kLongestNcBytes));
+    throw InputError({file, 0, ""},
+                     fmt::format("the program is too long: at most {} bytes are allowed", kLongestNcBytes));
 }
 
 bool NcLines::next(std::string_view& line) {
@@ -162,7 +163,7 @@ NcNumber take_number(std::string_view& text, const NcLines& lines) {
   }
   constexpr std::size_t most_digits = 20;
   if (digits == 0 || digits > most_digits)
-    lines.fail(fmt::format("must have a number of at most {} digits at {}", most_digits, in_quotes(text)));
+    lines.fail(fmt::format("a number of at most {} digits is required at {}", most_digits, in_quotes(text)));
   number.value = leading_number(text.substr(first, end - first))->value;
   if (text[0] == '-') number.value = -number.value;
   text.remove_prefix(end);

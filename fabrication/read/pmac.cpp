@@ -65,7 +65,7 @@ class PmacReader {
   void open(std::string_view text) {
     if (is_in_main_ || table_.is_open()) lines_.fail("open is not allowed between open and close");
     const bool is_main = starts_with_word(text, "PROG");
-    if (!is_main && !starts_with_word(text, "SUBPROG")) lines_.fail("must be open prog or open subprog");
+    if (!is_main && !starts_with_word(text, "SUBPROG")) lines_.fail("open must be followed by prog or subprog");
     text = trimmed(text.substr(is_main ? 4 : 7));
     const std::string name = whole_number(text);
     if (!text.empty()) lines_.fail_word(text);
@@ -190,7 +190,8 @@ class PmacReader {
     text.remove_prefix(6);
     const std::string number = whole_number(text);
     if (coordinate_system_.empty()) coordinate_system_ = number;
-    if (number != coordinate_system_) lines_.fail("uses a second coordinate system");
+    if (number != coordinate_system_)
+      lines_.fail("the program uses a second coordinate system, but only one is supported");
     std::from_chars(number.data(), number.data() + number.size(), program_.coordinate_system);
     if (!text.starts_with("].")) lines_.fail("Coord must be followed by [number] and a point");
     text.remove_prefix(2);

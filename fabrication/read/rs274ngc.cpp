@@ -120,7 +120,7 @@ class Rs274Reader {
 
   void read_o_word(std::string_view text) {
     const NcNumber number = take_number(text, lines_);
-    if (!number.is_integer() || number.has_point) lines_.fail("a subroutine must have a whole number");
+    if (!number.is_integer() || number.has_point) lines_.fail("the number of a subroutine must be a whole number");
     const std::string name = fmt::format("{}", number.value);
     if (text == "SUB")
       begin(name);

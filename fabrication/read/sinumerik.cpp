@@ -99,7 +99,7 @@ class SinumerikReader {
     const std::size_t colon = text.find(':');
     if (colon == std::string_view::npos || text.find('"') < colon) return;
     const std::string label(text.substr(0, colon));
-    if (!is_name(label)) lines_.fail("must be a label, got " + in_quotes(label));
+    if (!is_name(label)) lines_.fail("a label is required, got " + in_quotes(label));
     if (!labels_.emplace(label, program_.blocks.size()).second)
       lines_.fail("a label with this name already exists: " + label);
     text = trimmed(text.substr(colon + 1));
@@ -116,7 +116,7 @@ class SinumerikReader {
   }
 
   void read_call(std::string_view text) {
-    const auto refuse = [&] { lines_.fail("must be CALL BLOCK label TO label"); };
+    const auto refuse = [&] { lines_.fail("a call must have the form CALL BLOCK label TO label"); };
     if (!starts_with_word(text, "BLOCK")) refuse();
     text = trimmed(text.substr(5));
     const std::size_t to = text.find(" TO ");
@@ -132,7 +132,8 @@ class SinumerikReader {
     const std::string first(text.substr(0, gap));
     const std::string last(gap == std::string_view::npos ? text : trimmed(text.substr(gap)));
     // REPEAT with one label would repeat the program up to this call, without end.
-    if (gap == std::string_view::npos || !is_name(first) || !is_name(last)) lines_.fail("must be REPEAT label label");
+    if (gap == std::string_view::npos || !is_name(first) || !is_name(last))
+      lines_.fail("a repetition must have the form REPEAT label label");
     call(first, last);
   }
 

@@ -96,8 +96,9 @@ Correction correct(const FabricationResult& plan, std::vector<FacetMap> maps) {
     if (!result.registered[k].face)
       result.calibration.warnings.push_back(
           {"blank_face_not_visible",
-           fmt::format("{} shows too little of the blank's face to determine errors that shift all facets equally",
-                       result.maps[k].file)});
+           fmt::format(
+               "the map {} contains too little of the blank's face to determine errors that shift all facets equally",
+               result.maps[k].file)});
   tell_outlooks(result);
   tell_rests(result, plan.job.process.finishing_feed_mm_per_min);
   return result;

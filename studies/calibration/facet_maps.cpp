@@ -456,7 +456,7 @@ RegisteredMap registered(const FacetMap& map, const FabricationResult& plan) {
     result.residuals.push_back(std::move(rest));
   }
   if (result.figures.empty())
-    throw InputError({map.file, 0, ""}, "shows no facet, because all points are too close to edges");
+    throw InputError({map.file, 0, ""}, "the map contains no facet, because all points are too close to edges");
   return result;
 }
 

@@ -48,7 +48,7 @@ std::vector<double> goals_from(const Study& study, const ComposeRequest& request
       if (study.quantities[k]->name() == goal && point.outputs[k].value) goals.push_back(*point.outputs[k].value);
   if (goals.size() != request.goals.size())
     throw InputError("a cell with angle errors cannot be computed: " +
-                     (point.reason.empty() ? "a goal has no value" : point.reason));
+                     (point.reason.empty() ? "the value of a goal cannot be computed" : point.reason));
   return goals;
 }
 

@@ -75,7 +75,8 @@ void check_upright(const geometry::Element& element, const InputLocation& where)
 /// \throw InputError for an element that the strategy does not cut
 geometry::Element element_of(const design::Design& design, const JobRequest& request) {
   if (design.part().array.extent == geometry::Extent::infinite)
-    throw InputError({design.source_name(), 0, "array.extent"}, "must be \"finite\" to be cut, got \"infinite\"");
+    throw InputError({design.source_name(), 0, "array.extent"},
+                     "must be \"finite\", because infinite arrays cannot be cut, got \"infinite\"");
   if (const auto* const rtp = std::get_if<geometry::RtpElement>(&design.part().element)) {
     if (is_dmc(request))
       throw InputError(Field{"strategy"},

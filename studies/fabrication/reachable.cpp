@@ -82,7 +82,8 @@ void check_design(const design::Design& design, const JobRequest& request) {
     throw InputError(Field{"reachable"},
                      "only allowed for strategies with a chisel, because dmc reaches every point of a cube corner");
   if (part.array.extent == geometry::Extent::infinite)
-    throw InputError({design.source_name(), 0, "array.extent"}, "must be \"finite\" to be cut, got \"infinite\"");
+    throw InputError({design.source_name(), 0, "array.extent"},
+                     "must be \"finite\", because infinite arrays cannot be cut, got \"infinite\"");
   if (geometry::cant_of(part.element).deg != 0.0)
     throw InputError({design.source_name(), 0, "element.cant_deg"},
                      "must be 0, because canted cube corners cannot be cut in this version, got " +
@@ -112,7 +113,7 @@ ReachablePart reachable_part(const design::Design& design, const JobRequest& req
     planes.push_back(element_at(part.element, result.reach, middle_of(part) + whole.centre_mm, whole.is_rotated));
   if (planes.empty())
     throw InputError({design.source_name(), 0, "array.x_length_mm"},
-                     "the array must have room for at least one whole element");
+                     "the array must be large enough for at least one whole element");
   result.elements = static_cast<std::int64_t>(planes.size());
   const auto* const hexagonal = std::get_if<geometry::HexagonalCube>(&part.element);
   if (hexagonal != nullptr && part.array.arrangement != geometry::Arrangement::single)

@@ -278,7 +278,7 @@ CameraResult CameraStudy::run(Progress* progress, const Cancellation* cancel,
   if (result.complete && !request_.passes && result.image.relative_noise() > request_.noise)
     result.warnings.push_back(
         {"noise_above_target",
-         fmt::format("{}: the noise of {} is above the target of {} after {} passes. The target needs about {:.2g} "
+         fmt::format("{}: the noise of {} is above the target of {} after {} passes. The target requires about {:.2g} "
                      "passes, but at most {} are made unless you set the number of passes",
                      design_.source_name(), fixed(result.image.relative_noise(), 4), shortest(request_.noise),
                      result.image.passes, passes_needed(result.image, request_), kMaxPasses)});

@@ -105,9 +105,9 @@ void warn(MetrologyResult& result, const HeightMap& map) {
   if (result.edge) return;  // the heights minus the edge do not describe the texture of a facet
   const auto& length = result.texture.correlation_length_um;
   if (!length && result.of_roughness.sq_nm > 0.0)
-    result.warnings.push_back(
-        {"no_correlation_length",
-         "no correlation length: the autocorrelation of the roughness does not fall to 1/e within the cut-off"});
+    result.warnings.push_back({"no_correlation_length",
+                               "the correlation length cannot be determined, because the autocorrelation of the "
+                               "roughness does not fall to 1/e within the cut-off"});
   if (length && *length < kMinPointsPerLength * map.x_pixel_um)
     result.warnings.push_back(
         {"correlation_length_unresolved",

@@ -120,7 +120,7 @@ void refuse_doubles(const LimitTable& table, const std::vector<TestPoint>& point
     for (std::size_t j = 0; j < k; ++j)
       if (same_geometry(points[j], points[k]))
         throw InputError({printable(table.source, std::string::npos), points[k].line, ""},
-                         fmt::format("repeats the test point of line {}", points[j].line));
+                         fmt::format("this line repeats the test point of line {}", points[j].line));
 }
 
 }  // namespace

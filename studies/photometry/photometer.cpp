@@ -57,7 +57,7 @@ design::OpticalModel model_of(const design::Design& design, const materials::Mat
 void check_balls(const design::Design& design) {
   if (!design.balls()->pitch_mm)
     throw InputError(design.where("element.kind"),
-                     "photometry does not support a single ball: give array.arrangement = \"packed\"");
+                     "photometry is not available for a single ball: give array.arrangement = \"packed\"");
 }
 
 /// Refuses an engine that cannot trace a design. Textures and entrance faces that scatter are refused by
@@ -67,7 +67,7 @@ void check_engine(const design::Design& design, const raytrace::EngineFacts& fac
   const std::optional<Obstacle> obstacle = raytrace::obstacle_for(engine, facts);
   if (!obstacle) return;
   switch (*obstacle) {
-    case Obstacle::balls: throw InputError(Field{"engine"}, "must be auto or montecarlo for balls");
+    case Obstacle::balls: throw InputError(Field{"engine"}, "must be auto or montecarlo for element.kind = \"ball\"");
     case Obstacle::curved_entrance:
       throw InputError(Field{"engine"}, "must be auto, montecarlo or embree if the design has an [entrance_surface]");
     case Obstacle::unequal_backs:

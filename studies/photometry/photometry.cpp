@@ -339,8 +339,9 @@ PhotometryStudy::PhotometryStudy(design::Design design, PhotometrySettings setti
   if (settings.engine == raytrace::Engine::exact && !prepared_->photometer->is_exact())
     throw InputError(
         Field{"engine"},
-        fmt::format("exact needs plane and smooth faces, but the faces of {} scatter light: use {} montecarlo",
-                    design.source_name(), reference({"engine"})));
+        fmt::format(
+            "the engine exact requires plane and smooth faces, but the faces of {} scatter light: use {} montecarlo",
+            design.source_name(), reference({"engine"})));
   prepared_->plan = plan_of(settings, mirrors_source(design));
   prepared_->design = std::move(design);
   prepared_->request = std::move(settings);

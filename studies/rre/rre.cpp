@@ -92,7 +92,8 @@ void check_engine(const design::Design& design, const raytrace::EngineFacts& fac
     case Obstacle::balls:
       throw InputError(Field{"engine"},
                        fmt::format("must be auto or montecarlo for element.kind = \"ball\", got {}", name));
-    case Obstacle::plain_sampling: throw InputError(Field{"sampling"}, "must be stratified for balls, got plain");
+    case Obstacle::plain_sampling:
+      throw InputError(Field{"sampling"}, "must be stratified for element.kind = \"ball\", got plain");
     case Obstacle::curved_entrance:
       throw InputError(
           Field{"engine"},
@@ -112,8 +113,9 @@ void check_engine(const design::Design& design, const raytrace::EngineFacts& fac
     case Obstacle::form: throw refused_beams("facets with a form deflect");
     case Obstacle::scattering_entrance: throw refused_beams("contaminated or rough entrance faces scatter");
     default:
-      throw InputError(design::position_of(design, *obstacle),
-                       fmt::format("{} cannot trace {}: use {} embree", name, raytrace::subject_of(*obstacle), option));
+      throw InputError(
+          design::position_of(design, *obstacle),
+          fmt::format("the engine {} cannot trace {}: use {} embree", name, raytrace::subject_of(*obstacle), option));
   }
 }
 
@@ -121,7 +123,8 @@ void check_engine(const design::Design& design, const raytrace::EngineFacts& fac
 void check_results(const design::Design& design, const raytrace::EngineFacts& facts, const RreSettings& request) {
   for (const Field result : exact_results(request)) {
     if (facts.has_balls)
-      throw InputError(design.where("element.kind"), "balls are not supported by " + reference(result));
+      throw InputError(design.where("element.kind"),
+                       "element.kind = \"ball\" is not supported by " + reference(result));
     if (facts.has_curved_entrance || facts.has_unequal_backs)
       design::require_supported(design, {.what = reference(result), .solids = true});
   }

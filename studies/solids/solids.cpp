@@ -86,8 +86,9 @@ geometry::Part part_to_write(const design::Design& design, SolidKind what) {
   if (what == SolidKind::element && !design.facet_planes()) return geometry::build_welded_part(spec);
   if (!design.facet_planes() && !design.mask()) return geometry::build_welded_part(spec);
   if (what == SolidKind::element)
-    throw InputError(design.where("part.facets"),
-                     reference({"what"}) + " element does not support planes of individual facets: export the array");
+    throw InputError(
+        design.where("part.facets"),
+        reference({"what"}) + " element is not available for planes of individual facets: export the array");
   geometry::Part part = design::part_of(design);
   if (part.placements.size() != 1)
     throw InputError(design.where(design.mask() ? "array.mask" : "part.facets"),

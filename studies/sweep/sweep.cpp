@@ -323,7 +323,7 @@ SweepResult collect(const Sweep& sweep, const compute::ResultStore& store, bool 
     if (point.version != kVersion) {
       result.warnings.push_back(
           {"other_version",
-           fmt::format("some points were computed by version {}, but this is version {}", point.version, kVersion)});
+           fmt::format("some points were computed by retrace {}, but this is retrace {}", point.version, kVersion)});
       break;
     }
   return result;

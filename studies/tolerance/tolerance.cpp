@@ -172,7 +172,8 @@ void add_warnings(const ToleranceRequest& request, ToleranceResult& result) {
                                        quantity.quantity, *quantity.noise)});
     if (request.indices && quantity.rows > 1 && quantity.indices.empty())
       result.warnings.push_back(
-          {"no_variation", fmt::format("{}: has no Sobol indices because it does not vary", quantity.quantity)});
+          {"no_variation",
+           fmt::format("{}: the Sobol indices are undefined, because this quantity does not vary", quantity.quantity)});
   }
 }
 

@@ -270,7 +270,8 @@ class TextReader {
   Grid grid_of(std::size_t column, const char* name) const {
     std::vector<double> all;
     for (std::size_t i = column; i < values_.size(); i += columns_) {
-      if (std::isnan(values_[i])) source_.fail(0, fmt::format("each point must have a value of {}, got NaN", name));
+      if (std::isnan(values_[i]))
+        source_.fail(0, fmt::format("each point must have a value of {}, but one value is NaN", name));
       all.push_back(values_[i]);
     }
     std::sort(all.begin(), all.end());

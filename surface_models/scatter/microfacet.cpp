@@ -16,7 +16,7 @@ Microfacet Microfacet::of_waviness(SlopeShape shape, double waviness_sq_nm, doub
     throw InputError({"", 0, "waviness_sq_nm"}, "must be >= 0, got " + shortest(waviness_sq_nm));
   if (waviness_sq_nm > 0.0 && !(waviness_length_um > 0.0))
     throw InputError({"", 0, "waviness_length_um"},
-                     "must be > 0 if waviness_sq_nm is > 0, got " + shortest(waviness_length_um));
+                     "must be > 0 if waviness_sq_nm is greater than 0, got " + shortest(waviness_length_um));
   Microfacet made(shape, waviness_rms_slope(waviness_sq_nm, waviness_length_um));
   made.waviness_sq_nm_ = waviness_sq_nm;
   return made;

@@ -321,8 +321,8 @@ class ProgramMaker {
     program_->raise();
     if (way_.is_clear(program_->at(), call, pose)) return;
     throw InputError(job_.where("machine"),
-                     fmt::format("element {}: at {}{} C{}, the tool cannot approach this element without coming nearer "
-                                 "to the blank than process.clearance_mm ({})",
+                     fmt::format("element {}: at {}{} C{}, the tool cannot approach this element with a distance of at "
+                                 "least process.clearance_mm ({} mm) from the blank",
                                  call.element, machine_.tilt_letter(), fixed(pose.rounded.a_deg, 4),
                                  fixed(pose.rounded.c_deg, 4), shortest(job_.process.clearance_mm)));
   }

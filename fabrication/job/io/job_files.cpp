@@ -432,7 +432,7 @@ void check_square(const Job& job, const Refuse& refuse) {
   if (job.array.arrangement != Arrangement::checker) return;
   const RtpElement& prism = prism_of(job);
   if (std::abs(prism.base_mm - prism.width_mm) > 1e-9 * prism.base_mm)
-    refuse("element.width_mm", fmt::format("must equal base_mm ({}) for arrangement = \"checker\", got {}",
+    refuse("element.width_mm", fmt::format("must equal base_mm ({}) for array.arrangement = \"checker\", got {}",
                                            shortest(prism.base_mm), shortest(prism.width_mm)));
 }
 

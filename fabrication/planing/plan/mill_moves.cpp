@@ -79,9 +79,10 @@ bool MillMoves::ends_in_time() const {
 
 void MillMoves::require_in_time() const {
   if (!ends_in_time())
-    throw InputError(fmt::format(
-        "a single cut, or a single depth of all cuts, takes longer than {} hours, the max_hours of a program",
-        shortest(part_.mill->max_hours)));
+    throw InputError(
+        fmt::format("a single cut, or a single depth of all cuts, takes longer than {} hours, the maximum time of a "
+                    "program (mill.max_hours)",
+                    shortest(part_.mill->max_hours)));
 }
 
 void MillMoves::single(Axis axis, std::int64_t to) {

@@ -120,7 +120,7 @@ class Reader {
     FabricationResult plan = read_named({result_.file, table_.line(), "job"}, [&] { return fabricate(file, request); });
     if (!result_.plans.empty() && plan.machine.name != result_.plans.front().machine.name)
       table_.fail(columns_.job,
-                  fmt::format("is a job for machine {}, but the preceding jobs are for machine {}",
+                  fmt::format("the job is for machine {}, but the preceding jobs are for machine {}",
                               in_quotes(plan.machine.name), in_quotes(result_.plans.front().machine.name)));
     result_.jobs.push_back(job);
     result_.plans.push_back(std::move(plan));

@@ -102,7 +102,7 @@ std::optional<ErrorSpread> read_errors(const Document& document, const Study& st
     return std::nullopt;
   }
   if (angles_of(study, example_values(study)) == 0)
-    document.fail(key, "not allowed: the cells have no angles between facets");
+    document.fail(key, "not allowed, because the cells have no angles between facets");
   ErrorSpread spread{cells.value_or(0.0), zones.value_or(0.0), {}, document.number_if("compose.worst_fraction")};
   spread.parts = static_cast<std::size_t>(document.number("compose.parts"));
   return spread;

@@ -154,7 +154,7 @@ void check_zoned_design(const Study& study, const ZonedDesignRequest& request) {
                      "is required, because a part with zones is finite, but the design of the study is infinite");
   if (design.part().array.arrangement == geometry::Arrangement::single)
     throw InputError(Field{"design"},
-                     "the design of the study is a single element, which cannot be divided into zones");
+                     "the design of the study must be an array, because a single element cannot be divided into zones");
 }
 
 std::string zoned_design_text(const Study& study, const std::vector<Zone>& zones, const ZonedDesignRequest& request) {

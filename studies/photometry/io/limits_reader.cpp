@@ -228,7 +228,7 @@ LimitTable parse_limits(std::string_view content, const std::string& name) {
     else
       table.rows.push_back(with_source(limit_of(row), row, has_source));
   }
-  if (table.rows.empty()) row.fail("must have one line for each limit");
+  if (table.rows.empty()) row.fail("the table must have one line for each limit");
   return table;
 }
 

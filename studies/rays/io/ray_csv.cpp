@@ -95,7 +95,8 @@ void RayCsvSource::read_names() {
   const auto all_or_none = [&](std::size_t first, std::size_t last) {
     for (std::size_t k = first; k <= last; ++k)
       if (has(k) != has(first))
-        fail("", fmt::format("the columns {} to {} must all be given, or none of them", kNames[first], kNames[last]));
+        fail("", fmt::format("the header must contain all columns from {} to {}, or none of them", kNames[first],
+                             kNames[last]));
   };
   all_or_none(kS1, kAxisZ);
   info_.has_radiant = has(kPower);
