@@ -1,8 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
+#include "core/joined_arrays.h"
 #include "fabrication/read/dialects.h"
+#include "fabrication/read/iso_codes.h"
 #include "fabrication/read/subroutine_table.h"
 
 namespace retrace::fabrication {
@@ -11,29 +14,13 @@ namespace {
 using namespace nc_effects;
 
 /// G codes and their groups in the operator's manual: G code system B of lathes, and the G codes of machining centres.
-constexpr NcCode kFanucCodes[] = {
-    {0, 1, kRapid},
-    {1, 1, kLinear},
-    {4, 0, nullptr},
-    {17, 2, kNone},
-    {18, 2, kNone},
-    {19, 2, kNone},
-    {20, 6, kInch},
-    {21, 6, kMillimetre},
-    {40, 7, kMarks<nc_setting::kRadiusOff>},
-    {49, 8, kMarks<nc_setting::kLengthOff>},
-    {54, 14, kMarks<nc_setting::kWorkOffset>},
-    {61, 15, kExactStop},
-    {64, 15, kBlending},
-    {50.1, 18, kMarks<nc_setting::kMirrorOff>},
-    {69, 16, kMarks<nc_setting::kRotationOff>},
-    {80, 9, kNone},
-    {90, 3, kAbsolute},
-    {91, 3, kIncremental},
-    {93, 5, kInverseTime},
-    {94, 5, kFeedPerMinute},
-    {97, 17, kNone},  // S is in rpm
-};
+/// G97 means that S is in rpm.
+constexpr auto kFanucCodes =
+    joined(kCommonIsoCodes, std::array{NcCode{4, 0, nullptr}, NcCode{54, 14, kMarks<nc_setting::kWorkOffset>},
+                                       NcCode{61, 15, kExactStop}, NcCode{64, 15, kBlending},
+                                       NcCode{50.1, 18, kMarks<nc_setting::kMirrorOff>},
+                                       NcCode{69, 16, kMarks<nc_setting::kRotationOff>}, NcCode{80, 9, kNone},
+                                       NcCode{94, 5, kFeedPerMinute}, NcCode{97, 17, kNone}});
 
 /// Returns the line with a mark instead of each comment ( ... ).
 std::string with_marked_comments(std::string_view line, const NcLines& lines) {

@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "core/joined_arrays.h"
+
 namespace retrace::fabrication {
 namespace {
 
@@ -64,26 +66,25 @@ constexpr std::array kPmac = {
 constexpr RequiredSetting kFeedModeNeed = {nc_setting::kFeedMode, "G94",
                                            "to select feeds as speeds instead of G93 or G95"};
 constexpr RequiredSetting kToolOffsetNeed = {nc_setting::kLengthOff, "G149", "to switch off tool offsets"};
-constexpr std::array kA3200 = {
-    RequiredSetting{nc_setting::kUnit, "G71 or METRIC", "to set the unit of lengths"},
-    RequiredSetting{nc_setting::kFeedTime, "G75 or MINUTES", "to set the time unit of feeds"},
-    kDistanceNeed,
-    kFeedModeNeed,
-    kRadiusNeed,
-    kToolOffsetNeed,
-    RequiredSetting{nc_setting::kExactStop, "G109 or VELOCITY OFF", kStopText},
-    RequiredSetting{nc_setting::kFineStop, "WAIT MODE INPOS", kFineStopText}};
-
-constexpr std::array kAutomation1 = {
-    RequiredSetting{nc_setting::kUnit, "SetupTaskDistanceUnits(DistanceUnits.Primary)", "to set the unit of lengths"},
-    RequiredSetting{nc_setting::kFeedTime, "SetupTaskTimeUnits(TimeUnits.Minutes)", "to set the time unit of feeds"},
-    kDistanceNeed,
-    kFeedModeNeed,
-    kRadiusNeed,
-    kToolOffsetNeed,
-    RequiredSetting{nc_setting::kExactStop, "VelocityBlendingOff() or G109", kStopText},
-    RequiredSetting{nc_setting::kRoundingOff, "CornerRoundingOff()", "to switch off the rounding of corners"},
-    RequiredSetting{nc_setting::kFineStop, "SetupTaskWaitMode(WaitMode.InPosition)", kFineStopText}};
+/// Returns the settings that both Aerotech controls require, with the words of one control.
+constexpr std::array<RequiredSetting, 7> aerotech_settings(std::string_view unit, std::string_view feed_time,
+                                                           std::string_view exact_stop) {
+  return {RequiredSetting{nc_setting::kUnit, unit, "to set the unit of lengths"},
+          RequiredSetting{nc_setting::kFeedTime, feed_time, "to set the time unit of feeds"},
+          kDistanceNeed,
+          kFeedModeNeed,
+          kRadiusNeed,
+          kToolOffsetNeed,
+          RequiredSetting{nc_setting::kExactStop, exact_stop, kStopText}};
+}
+constexpr auto kA3200 = joined(aerotech_settings("G71 or METRIC", "G75 or MINUTES", "G109 or VELOCITY OFF"),
+                               std::array{RequiredSetting{nc_setting::kFineStop, "WAIT MODE INPOS", kFineStopText}});
+constexpr auto kAutomation1 = joined(
+    aerotech_settings("SetupTaskDistanceUnits(DistanceUnits.Primary)", "SetupTaskTimeUnits(TimeUnits.Minutes)",
+                      "VelocityBlendingOff() or G109"),
+    std::array{
+        RequiredSetting{nc_setting::kRoundingOff, "CornerRoundingOff()", "to switch off the rounding of corners"},
+        RequiredSetting{nc_setting::kFineStop, "SetupTaskWaitMode(WaitMode.InPosition)", kFineStopText}});
 
 }  // namespace
 

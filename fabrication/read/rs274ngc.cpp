@@ -1,6 +1,10 @@
 #include <fmt/format.h>
 
+#include <array>
+
+#include "core/joined_arrays.h"
 #include "fabrication/read/dialects.h"
+#include "fabrication/read/iso_codes.h"
 #include "fabrication/read/subroutine_table.h"
 
 namespace retrace::fabrication {
@@ -17,30 +21,12 @@ constexpr auto kFeedPerMinuteFromZero = [](NcBlock& b) {
 /// Effect of G80 on LinuxCNC: no motion mode is active afterwards (interp_convert.cc, convert_motion).
 constexpr auto kNoMotion = [](NcBlock& b) { b.cancels_move = true; };
 
-/// Modal groups of NISTIR 6556, table 4.
-constexpr NcCode kRs274ngcCodes[] = {
-    {0, 1, kRapid},
-    {1, 1, kLinear},
-    {4, 9, nullptr},
-    {17, 2, kNone},
-    {18, 2, kNone},
-    {19, 2, kNone},
-    {20, 6, kInch},
-    {21, 6, kMillimetre},
-    {40, 7, kMarks<nc_setting::kRadiusOff>},
-    {49, 8, kMarks<nc_setting::kLengthOff>},
-    {54, 12, kMarks<nc_setting::kWorkOffset>},
-    {61, 13, kExactStop},
-    {61.1, 13, kExactStop},
-    {64, 13, kBlending},
-    {80, 1, kNoMotion},
-    {90, 3, kAbsolute},
-    {91, 3, kIncremental},
-    {92.1, 0, kMarks<nc_setting::kShiftOff>},
-    {93, 5, kInverseTime},
-    {94, 5, kFeedPerMinuteFromZero},
-    {97, 14, kNone},  // S is in rpm
-};
+/// Modal groups of NISTIR 6556, table 4. G97 means that S is in rpm.
+constexpr auto kRs274ngcCodes = joined(
+    kCommonIsoCodes, std::array{NcCode{4, 9, nullptr}, NcCode{54, 12, kMarks<nc_setting::kWorkOffset>},
+                                NcCode{61, 13, kExactStop}, NcCode{61.1, 13, kExactStop}, NcCode{64, 13, kBlending},
+                                NcCode{80, 1, kNoMotion}, NcCode{92.1, 0, kMarks<nc_setting::kShiftOff>},
+                                NcCode{94, 5, kFeedPerMinuteFromZero}, NcCode{97, 14, kNone}});
 
 /// Returns the line up to the first semicolon, with a mark instead of each comment ( ... ). Comments cannot be nested.
 std::string with_marked_rs274ngc_comments(std::string_view line, const NcLines& lines) {
