@@ -12,14 +12,20 @@
 namespace retrace {
 namespace {
 
-/// Runs the study of one kind of picture and copies warnings and completeness to the result.
+/// Runs the study of one kind of picture. Copies warnings and completeness to the result, and adds its JSON document
+/// and its table.
 /// \return result of the study
-template <class Study>
-auto run(const Study& study, const Running& running, ImageResult& result) {
-  const auto found = std::make_shared<decltype(study.run(running.progress, running.cancellation))>();
+template <class Study, class Request, class Found>
+std::shared_ptr<const Found> run(const Design& design, const Request& request, const Running& running,
+                                 ImageResult& result, std::string (*json)(const Found&),
+                                 std::string (*table)(const Found&)) {
+  const Study study(design.content().design, request);
+  const auto found = std::make_shared<Found>();
   run_with_threads(running.threads, [&] { *found = study.run(running.progress, running.cancellation); });
   result.warnings = found->warnings;
   result.complete = found->complete;
+  result.json = json(*found);
+  result.table = table(*found);
   return found;
 }
 
@@ -30,11 +36,9 @@ Picture picture_of(const std::string& name, FloatPicture numbers, Drawing drawin
 }  // namespace
 
 ImageResult detector(const Design& design, const DetectorRequest& request, const Running& running) {
-  const studies::DetectorStudy study(design.content().design, request);
   ImageResult result;
-  const auto found = run(study, running, result);
-  result.json = studies::detector_json(*found);
-  result.table = studies::detector_table(*found);
+  const auto found =
+      run<studies::DetectorStudy>(design, request, running, result, studies::detector_json, studies::detector_table);
   if (!found->complete) return result;
   result.pictures = {picture_of("irradiance", report::irradiance_picture(*found),
                                 drawing_of([found] { return report::irradiance_plot(*found); })),
@@ -44,11 +48,9 @@ ImageResult detector(const Design& design, const DetectorRequest& request, const
 }
 
 ImageResult camera(const Design& design, const CameraRequest& request, const Running& running) {
-  const studies::CameraStudy study(design.content().design, request);
   ImageResult result;
-  const auto found = run(study, running, result);
-  result.json = studies::camera_json(*found);
-  result.table = studies::camera_table(*found);
+  const auto found =
+      run<studies::CameraStudy>(design, request, running, result, studies::camera_json, studies::camera_table);
   if (found->image.passes == 0) return result;
   const auto png = [found] {
     const raytrace::CameraImage& image = found->image;
@@ -59,11 +61,8 @@ ImageResult camera(const Design& design, const CameraRequest& request, const Run
 }
 
 ImageResult road(const Design& design, const RoadRequest& request, const Running& running) {
-  const studies::RoadStudy study(design.content().design, request);
   ImageResult result;
-  const auto found = run(study, running, result);
-  result.json = studies::road_json(*found);
-  result.table = studies::road_table(*found);
+  const auto found = run<studies::RoadStudy>(design, request, running, result, studies::road_json, studies::road_table);
   if (found->views.empty()) return result;
   result.pictures = {picture_of("road", report::road_picture(*found),
                                 drawing_of_text([found] { return report::road_png(*found); }, false))};

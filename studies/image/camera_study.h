@@ -8,14 +8,13 @@
 #include <functional>
 #include <memory>
 #include <optional>
-#include <string>
 
 #include "core/progress.h"
 #include "core/shared_tasks.h"
-#include "core/warning.h"
 #include "design/optical_model.h"
 #include "raytrace/observers/camera.h"
 #include "requests/image.h"
+#include "studies/image/image_result.h"
 #include "studies/image/lamp.h"
 
 namespace retrace::studies {
@@ -23,19 +22,14 @@ namespace retrace::studies {
 /// Default width and height, in mm, of the sheet that the picture shows for an infinite part.
 inline constexpr std::array<double, 2> kDefaultFilmMm = {100.0, 100.0};
 
-struct CameraResult {
-  design::Design design;
+struct CameraResult : ImageResultBase {
   CameraRequest request;
   std::optional<PhotometricLamp> lamp;  ///< lamp that was read from the requested file; empty if no file was requested
   raytrace::CameraScene scene;
   raytrace::CameraImage image;
-  std::string engine;            ///< "cell" (with Embree at borders) or "embree"
   double observation_deg = 0.0;  ///< angle as seen from the centre of the face
   double entrance_deg = 0.0;
   double viewing_deg = 0.0;
-  double elapsed_s = 0.0;
-  Warnings warnings;
-  bool complete = true;  ///< false: fewer passes than requested
 };
 
 /// Study of a checked request, ready to run.

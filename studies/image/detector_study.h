@@ -3,31 +3,25 @@
 // Maps of the returned light over the face and over angles. `retrace image` runs this study if a detector is requested.
 
 #include <cstdint>
-#include <string>
 
 #include "core/progress.h"
-#include "core/warning.h"
 #include "design/engine_facts.h"
 #include "design/optical_model.h"
 #include "raytrace/observers/detector.h"
 #include "requests/image.h"
+#include "studies/image/image_result.h"
 
 namespace retrace::studies {
 
 /// Default number of rays for a detector.
 inline constexpr std::uint64_t kDefaultDetectorRays = std::uint64_t{1} << 22;
 
-struct DetectorResult {
-  design::Design design;
+struct DetectorResult : ImageResultBase {
   DetectorRequest request;
-  std::string engine;
   double acceptance_half_angle_deg = 0.0;
   raytrace::PixelGrid face{{geometry::Vec2::Zero(), geometry::Vec2::Ones()}, 1, 1};
-  bool is_period = false;  ///< true: the face is one period of an infinite part
   raytrace::DetectorMaps maps;
-  double elapsed_s = 0.0;
-  Warnings warnings;
-  bool complete = true;
+  bool is_period = false;  ///< true: the face is one period of an infinite part
 };
 
 /// Study of a detector. The constructor checks the request and prepares the model; run() computes the maps.

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "core/progress.h"
-#include "core/warning.h"
 #include "design/design.h"
 #include "materials/spectrum.h"
 #include "requests/image.h"
+#include "studies/image/image_result.h"
 #include "studies/image/lamp.h"
 
 namespace retrace::studies {
@@ -58,15 +58,10 @@ struct RoadView {
   std::vector<double> coloured;             ///< part of the luminance that comes from the reflectors
 };
 
-struct RoadResult {
-  design::Design design;
+struct RoadResult : ImageResultBase {
   RoadRequest request;
   RoadScene scene;
-  std::string engine;
   std::vector<RoadView> views;
-  double elapsed_s = 0.0;
-  Warnings warnings;
-  bool complete = true;
 };
 
 /// Study of a checked request, ready to run.
