@@ -14,18 +14,18 @@ namespace retrace {
 namespace {
 
 RrePoint from_study(const studies::RrePoint& point) {
-  RrePoint told;
-  told.design = point.design;
-  told.incidence_deg = point.incidence_deg;
-  told.azimuth_deg = point.azimuth_deg;
-  told.wavelength_nm = point.wavelength_nm;
-  told.acceptance_half_angle_deg = point.acceptance_half_angle_deg;
-  told.rre = point.rre;
-  told.std_error = point.std_error;
-  told.engine = point.engine;
+  RrePoint told{.design = point.design,
+                .incidence_deg = point.incidence_deg,
+                .azimuth_deg = point.azimuth_deg,
+                .wavelength_nm = point.wavelength_nm,
+                .acceptance_half_angle_deg = point.acceptance_half_angle_deg,
+                .rre = point.rre,
+                .std_error = point.std_error,
+                .engine = point.engine,
+                .ledger = {},
+                .missed_target = point.missed_target};
   for (std::size_t k = 0; k < raytrace::kAccountCount; ++k)
     told.ledger.emplace(raytrace::kAccountNames[k], point.ledger.power[k]);
-  told.missed_target = point.missed_target;
   return told;
 }
 

@@ -16,13 +16,12 @@ namespace {
 using geometry::Vec3;
 
 fabrication::PlanOptions plan_options(const FabricationRequest& request) {
-  fabrication::PlanOptions options;
-  options.phase = request.phase;
-  options.from_element = request.from_element;
-  options.from_pass = request.from_pass;
-  options.stop_every = request.stop_every;
-  options.split_hours = request.split_hours;
-  return options;
+  return {.phase = request.phase,
+          .from_element = request.from_element,
+          .from_pass = request.from_pass,
+          .stop_every = request.stop_every,
+          .split_hours = request.split_hours,
+          .before = {}};
 }
 
 /// Returns the position of the tool tip in the section of an element, in the coordinates of SectionMove.

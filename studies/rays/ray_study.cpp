@@ -79,6 +79,19 @@ void cover_face(const geometry::Part& part, const RayPlacement& placement, Emitt
   emitter.period_mm = {part.period_mm->x() * source_from_part.col(0), part.period_mm->y() * source_from_part.col(1)};
 }
 
+/// Checks a request, and returns the settings that both kinds of requests contain.
+/// \param stokes true if rays carry Stokes parameters
+template <class Request>
+RayRequest settings_of(const Request& request, bool stokes) {
+  requests::check(request);
+  return {.placement = {},
+          .split = request.split,
+          .cutoff = request.cutoff,
+          .keep_missed = request.keep_missed,
+          .stokes = stokes,
+          .seed = request.seed};
+}
+
 }  // namespace
 
 struct RayStudy::Impl {
@@ -100,31 +113,18 @@ struct RayStudy::Impl {
 };
 
 RayRequest resolve(const RaysRequest& request) {
-  requests::check(request);
-  RayRequest settings;
+  RayRequest settings = settings_of(request, request.stokes);
   settings.placement = {request.at_mm, request.aim_mm, request.incidence_deg, request.azimuth_deg, request.distance_mm};
   if (!request.emitter.empty()) {
     settings.placement.face_part();
     settings.emitter = {emitter_from_name(request.emitter), request.disc_mm, request.half_angle_deg, request.rays,
                         request.power};
   }
-  settings.split = request.split;
-  settings.cutoff = request.cutoff;
-  settings.keep_missed = request.keep_missed;
-  settings.stokes = request.stokes;
-  settings.seed = request.seed;
   return settings;
 }
 
 RayRequest resolve(const TraceRequest& request) {
-  requests::check(request);
-  RayRequest settings;
-  settings.split = request.split;
-  settings.cutoff = request.cutoff;
-  settings.keep_missed = request.keep_missed;
-  settings.stokes = true;
-  settings.seed = request.seed;
-  return settings;
+  return settings_of(request, true);
 }
 
 RayStudy::RayStudy(design::Design design, RayRequest request)

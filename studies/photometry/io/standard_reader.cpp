@@ -72,14 +72,14 @@ PhotometrySettings resolve(const PhotometryRequest& request, bool design_is_colo
   if (request.source_arcmin) settings.apertures.source = Angle::from_deg(*request.source_arcmin / 60.0);
   if (request.receiver_arcmin) settings.apertures.receiver = Angle::from_deg(*request.receiver_arcmin / 60.0);
   settings.window_deg = request.window_deg;
+  settings.window_power = request.window_power;
+  settings.pictures = request.pictures;
   settings.light = light_from_name(request.light);
   settings.diffraction = request.diffraction;
   settings.engine = raytrace::engine_from_name(request.engine);
   settings.cutoff = request.cutoff;
   settings.rays = request.samples;
   settings.seed = request.seed;
-  settings.pictures = request.pictures;
-  settings.window_power = request.window_power;
   settings.advice = request.advice;
   settings.colour = true;
   return settings;
