@@ -15,23 +15,17 @@
 namespace retrace::studies {
 namespace {
 
+/// Indices of the columns in kNames. Position, direction, Stokes parameters and their axis occupy three columns each,
+/// from the given index.
 enum Quantity : std::size_t {
-  kX,
-  kY,
-  kZ,
-  kDx,
-  kDy,
-  kDz,
-  kPower,
+  kPosition = 0,
+  kDirection = 3,
+  kPower = 6,
   kLuminous,
   kWavelength,
-  kS1,
-  kS2,
-  kS3,
-  kAxisX,
-  kAxisY,
-  kAxisZ,
-  kNumber,
+  kStokes,
+  kAxis = 12,
+  kNumber = 15,
   kAccount
 };
 constexpr std::array<std::string_view, 17> kNames = {"x_mm",    "y_mm",        "z_mm",          "dx",  "dy",     "dz",
@@ -90,7 +84,7 @@ void RayCsvSource::read_names() {
     if (column >= 0) fail("", fmt::format("the column {} occurs twice", *found));
     column = static_cast<int>(k);
   }
-  for (std::size_t k = kX; k <= kDz; ++k)
+  for (std::size_t k = kPosition; k < kPower; ++k)
     if (!has(k)) fail("", fmt::format("the column {} is missing in the header", kNames[k]));
   const auto all_or_none = [&](std::size_t first, std::size_t last) {
     for (std::size_t k = first; k <= last; ++k)
@@ -98,10 +92,10 @@ void RayCsvSource::read_names() {
         fail("", fmt::format("the header must contain all columns from {} to {}, or none of them", kNames[first],
                              kNames[last]));
   };
-  all_or_none(kS1, kAxisZ);
+  all_or_none(kStokes, kNumber - 1);
   info_.has_radiant = has(kPower);
   info_.has_luminous = has(kLuminous);
-  info_.has_stokes = has(kS1);
+  info_.has_stokes = has(kStokes);
   if (has(kWavelength)) info_.spectrum = RaySpectrum::wavelength_of_each;
   if (!info_.has_radiant && !info_.has_luminous) fail("", "the column power_w or luminous_lm is missing in the header");
 }
@@ -116,8 +110,11 @@ double RayCsvSource::value(std::size_t quantity, bool not_negative) const {
 
 SetRay RayCsvSource::ray() const {
   SetRay ray;
-  ray.position_mm = {value(kX), value(kY), value(kZ)};
-  const std::optional<Vec3> direction = unit_along({value(kDx), value(kDy), value(kDz)});
+  const auto vector = [&](std::size_t first) -> std::array<double, 3> {
+    return {value(first), value(first + 1), value(first + 2)};
+  };
+  ray.position_mm = Vec3(vector(kPosition).data());
+  const std::optional<Vec3> direction = unit_along(Vec3(vector(kDirection).data()));
   if (!direction) fail("dx", "a direction must have a length above 0");
   ray.direction = *direction;
   if (has(kPower)) ray.radiant_w = value(kPower, true);
@@ -126,9 +123,9 @@ SetRay RayCsvSource::ray() const {
     ray.wavelength_nm = value(kWavelength);
     if (!is_wavelength(ray.wavelength_nm)) fail("wavelength_nm", wavelength_text(ray.wavelength_nm));
   }
-  if (!has(kS1)) return ray;
-  ray.stokes = {value(kS1), value(kS2), value(kS3)};
-  ray.axis = {value(kAxisX), value(kAxisY), value(kAxisZ)};
+  if (!has(kStokes)) return ray;
+  ray.stokes = vector(kStokes);
+  ray.axis = Vec3(vector(kAxis).data());
   if (const char* const wrong = orthogonalize_stokes_axis(ray)) fail("s1", wrong);
   return ray;
 }
@@ -156,11 +153,11 @@ void RayCsvSink::begin(const RaySinkLayout& layout) {
     for (std::size_t k = first; k <= last; ++k) names += (names.empty() ? "" : ",") + std::string(kNames[k]);
   };
   add(kNumber, kAccount);
-  add(kX, kDz);
+  add(kPosition, kPower - 1);
   if (layout.info.has_radiant) add(kPower, kPower);
   if (layout.info.has_luminous) add(kLuminous, kLuminous);
   if (layout.has_wavelengths) add(kWavelength, kWavelength);
-  if (layout.info.has_stokes) add(kS1, kAxisZ);
+  if (layout.info.has_stokes) add(kStokes, kNumber - 1);
   file_.append(names + '\n');
 }
 
