@@ -159,11 +159,7 @@ bool PathWalker::arrive_at_side(State& state, const Vec3& normal) {
   }
   const double ratio = is_border_wall ? optics.ratio_at_back(false) : 1.0 / optics.index;
   const double cos_incidence = -normal.dot(state.direction);
-  const materials::FresnelCoefficients f = materials::fresnel(ratio, cos_incidence);
-  state.light.rotate_basis_to_interface(state.direction, normal);
-  Light reflected = state.light.reflected(f);
-  Light transmitted = state.light.transmitted(f);
-  const Branch branch = choose(reflected, transmitted);
+  const auto [f, reflected, transmitted, branch] = split_at_side(state, normal, ratio, cos_incidence);
   if (branch != Branch::transmitted) {
     tally_.other[Account::side_exit] += reflected.power();
     report_exit(Account::side_exit, state, mirrored(state.direction, normal), reflected);

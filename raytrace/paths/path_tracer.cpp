@@ -388,17 +388,24 @@ const Optics& PathWalker::optics_of_wall(const Vec3& position) const {
                                                                                              : setup_.optics;
 }
 
+/// Splits light that meets a side of the plate or a border wall, and chooses the branches that are followed.
+/// \param ratio n on the side of the light over n on the other side
+PathWalker::SplitLight PathWalker::split_at_side(State& state, const Vec3& normal, double ratio, double cos_incidence) {
+  const materials::FresnelCoefficients f = materials::fresnel(ratio, cos_incidence);
+  state.light.rotate_basis_to_interface(state.direction, normal);
+  Light reflected = state.light.reflected(f);
+  Light transmitted = state.light.transmitted(f);
+  const Branch branch = choose(reflected, transmitted);
+  return {f, reflected, transmitted, branch};
+}
+
 bool PathWalker::meet_side(State& state, const Vec3& normal) {
   const bool is_border_wall = state.position.z() < 0.0;
   const Optics& optics = is_border_wall ? optics_of_wall(state.position) : setup_.optics;
   if (is_border_wall && optics.absorbing_walls) return finish(state, Account::absorbed);
   const double ratio = is_border_wall ? optics.ratio_at_back(true) : optics.index;
   const double cos_incidence = normal.dot(state.direction);
-  const materials::FresnelCoefficients f = materials::fresnel(ratio, cos_incidence);
-  state.light.rotate_basis_to_interface(state.direction, normal);
-  Light reflected = state.light.reflected(f);
-  Light transmitted = state.light.transmitted(f);
-  const Branch branch = choose(reflected, transmitted);
+  const auto [f, reflected, transmitted, branch] = split_at_side(state, normal, ratio, cos_incidence);
   // The outline of the part is convex. Light that leaves through a side therefore never comes back.
   if (branch != Branch::reflected) {
     tally_.other[Account::side_exit] += transmitted.power();

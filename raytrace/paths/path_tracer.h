@@ -122,6 +122,14 @@ class PathWalker {
   const Optics& optics_of(const FacetRef& facet) const;
   const Optics& optics_of_wall(const Vec3& position) const;
   Branch choose(Light& reflected, Light& transmitted);
+  /// Light at a smooth face between transparent media, and the branches that are followed.
+  struct SplitLight {
+    materials::FresnelCoefficients f;
+    Light reflected;
+    Light transmitted;
+    Branch branch;
+  };
+  SplitLight split_at_side(State& state, const Vec3& normal, double ratio, double cos_incidence);
   template <class Pass>
   bool continue_with(State& state, Branch branch, const Light& reflected, const Vec3& facing_normal, const Pass& pass);
   bool finish(const State& state, Account account);
