@@ -232,13 +232,22 @@ Series<T, N> log(const Series<T, N>& a) {
   using std::log;
   return integral(log(a[0]), derivative(a) / a, a.order);
 }
+template <class T, int N>
+struct SinCos {
+  Series<T, N> sine, cosine;
+};
 /// Computes sine and cosine together, because their recurrences depend on each other.
 template <class T, int N>
-void sin_cos(const Series<T, N>& a, Series<T, N>& s, Series<T, N>& c) {
+SinCos<T, N> sin_cos(const Series<T, N>& a) {
   using std::cos;
   using std::sin;
-  s = Series<T, N>(a.order);
-  c = Series<T, N>(a.order);
+  if constexpr (N == 2) {
+    const T value_s = sin(a[0]);
+    const T value_c = cos(a[0]);
+    return {chained<T>(a, value_s, value_c, -value_s), chained<T>(a, value_c, -value_s, -value_c)};
+  }
+  Series<T, N> s(a.order);
+  Series<T, N> c(a.order);
   s[0] = sin(a[0]);
   c[0] = cos(a[0]);
   for (int k = 1; k <= a.order; ++k) {
@@ -251,32 +260,15 @@ void sin_cos(const Series<T, N>& a, Series<T, N>& s, Series<T, N>& c) {
     s[k] = sum_s / static_cast<double>(k);
     c[k] = -sum_c / static_cast<double>(k);
   }
+  return {s, c};
 }
 template <class T, int N>
 Series<T, N> sin(const Series<T, N>& a) {
-  using std::cos;
-  using std::sin;
-  if constexpr (N == 2) {
-    const T value = sin(a[0]);
-    return chained<T>(a, value, cos(a[0]), -value);
-  }
-  Series<T, N> s;
-  Series<T, N> c;
-  sin_cos(a, s, c);
-  return s;
+  return sin_cos(a).sine;
 }
 template <class T, int N>
 Series<T, N> cos(const Series<T, N>& a) {
-  using std::cos;
-  using std::sin;
-  if constexpr (N == 2) {
-    const T value = cos(a[0]);
-    return chained<T>(a, value, -sin(a[0]), -value);
-  }
-  Series<T, N> s;
-  Series<T, N> c;
-  sin_cos(a, s, c);
-  return c;
+  return sin_cos(a).cosine;
 }
 template <class T, int N>
 Series<T, N> atan2(const Series<T, N>& y, const Series<T, N>& x) {

@@ -21,24 +21,23 @@ using V = hn::Vec<D>;
 using M = hn::Mask<D>;
 using DI = hn::RebindToSigned<D>;
 using VI = hn::Vec<DI>;  ///< labels
+/// Vector of values of type T: double or Label.
+template <class T>
+using VectorOf = hn::Vec<hn::Rebind<T, D>>;
 
 HWY_INLINE V splat(double value) {
   return hn::Set(D(), value);
 }
-HWY_INLINE V load(const double* from, std::size_t k) {
-  return hn::LoadU(D(), from + k);
-}
-HWY_INLINE void store(V values, double* to, std::size_t k) {
-  hn::StoreU(values, D(), to + k);
-}
 HWY_INLINE VI splat(Label label) {
   return hn::Set(DI(), label);
 }
-HWY_INLINE VI load(const Label* from, std::size_t k) {
-  return hn::LoadU(DI(), from + k);
+template <class T>
+HWY_INLINE VectorOf<T> load(const T* from, std::size_t k) {
+  return hn::LoadU(hn::Rebind<T, D>(), from + k);
 }
-HWY_INLINE void store(VI labels, Label* to, std::size_t k) {
-  hn::StoreU(labels, DI(), to + k);
+template <class T>
+HWY_INLINE void store(VectorOf<T> values, T* to, std::size_t k) {
+  hn::StoreU(values, hn::Rebind<T, D>(), to + k);
 }
 HWY_INLINE VI chosen(M mask, VI yes, VI no) {
   return hn::IfThenElse(hn::RebindMask(DI(), mask), yes, no);
