@@ -36,37 +36,29 @@ y_length_mm = 10
 # y_gap_mm = 0
 )";
 
-constexpr std::string_view kHexagonalHead =
-    R"(# A retroreflector of full cube corners with hexagonal apertures. Lengths in mm, angles in degrees.
+/// Returns the first lines of a design of cube corners.
+/// \param elements elements in the plural, for the first comment
+/// \param aperture shape of the aperture, which is also the first word of the kind
+/// \param arrangement default arrangement of the elements
+std::string cube_corner_head(std::string_view elements, std::string_view title, std::string_view aperture,
+                             std::string_view arrangement) {
+  return fmt::format(R"(# A retroreflector of {0}. Lengths in mm, angles in degrees.
 # Lines that begin with "#" show defaults and alternatives.
 schema = "retrace.design/1"
-title = "Hexagonal cube corners in a honeycomb"
+title = "{1}"
 
 [element]
-kind = "hexagonal_icc"            # inverted cube corner, hexagonal aperture
+kind = {3:<27}# inverted cube corner, {2} aperture
 aperture_mm = 1.632993161855452   # diameter of the circumscribed circle: 2 a sqrt(2/3), for a cube edge a of 1 mm
 
 [array]
-arrangement = "honeycomb"         # honeycomb (default) | single
+arrangement = {5:<20}# {4} (default) | single
 x_length_mm = 10                  # length of the part along x; not for "single" or extent = "infinite"
 y_length_mm = 10
-)";
-
-constexpr std::string_view kTriangularHead =
-    R"(# A retroreflector of cube corners with triangular apertures. Lengths in mm, angles in degrees.
-# Lines that begin with "#" show defaults and alternatives.
-schema = "retrace.design/1"
-title = "Triangular cube corners"
-
-[element]
-kind = "triangular_icc"           # inverted cube corner, triangular aperture
-aperture_mm = 1.632993161855452   # diameter of the circumscribed circle: 2 a sqrt(2/3), for a cube edge a of 1 mm
-
-[array]
-arrangement = "triangular"        # triangular (default) | single
-x_length_mm = 10                  # length of the part along x; not for "single" or extent = "infinite"
-y_length_mm = 10
-)";
+)",
+                     elements, title, aperture, in_quotes(fmt::format("{}_icc", aperture)), arrangement,
+                     in_quotes(arrangement));
+}
 
 constexpr std::string_view kCommonTail = R"(# x_offset_mm = 0                 # flat margin at both ends in x
 # y_offset_mm = 0
@@ -133,8 +125,14 @@ std::span<const std::string_view> design_kinds() {
 
 std::string design_template(std::string_view kind) {
   if (kind == kTemplateKinds[0]) return std::string(kRtpHead).append(kCommonTail);
-  if (kind == kTemplateKinds[1]) return std::string(kHexagonalHead).append(kCommonTail);
-  if (kind == kTemplateKinds[2]) return std::string(kTriangularHead).append(kCommonTail);
+  if (kind == kTemplateKinds[1])
+    return cube_corner_head("full cube corners with hexagonal apertures", "Hexagonal cube corners in a honeycomb",
+                            "hexagonal", "honeycomb")
+        .append(kCommonTail);
+  if (kind == kTemplateKinds[2])
+    return cube_corner_head("cube corners with triangular apertures", "Triangular cube corners", "triangular",
+                            "triangular")
+        .append(kCommonTail);
   if (kind == kTemplateKinds[3]) return std::string(kRoundZoneLens);
   throw InputError(fmt::format("KIND must be one of {}, got {}", alternatives(kTemplateKinds), in_quotes(kind)));
 }
