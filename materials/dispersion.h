@@ -32,8 +32,7 @@ struct PowerSeries {
 /// um (Sellmeier).
 struct Sellmeier {
   struct Term {
-    double strength = 0.0;
-    double resonance_um2 = 0.0;
+    double strength = 0.0, resonance_um2 = 0.0;
   };
   std::vector<Term> terms;
   PowerSeries power_terms = {};  ///< additional terms, which only some formulas of glass catalogues have
@@ -42,25 +41,20 @@ struct Sellmeier {
 /// n = constant + by_w / w + by_w35 / w^3.5, w in um (Conrady).
 struct Conrady {
   double constant = 0.0;
-  double by_w = 0.0;
-  double by_w35 = 0.0;
+  double by_w = 0.0, by_w35 = 0.0;
 };
 
 /// n = constant + by_l L + by_l2 L^2 + by_w2 w^2 + by_w4 w^4 + by_w6 w^6, L = 1 / (w^2 - 0.028), w in um (Herzberger).
 struct Herzberger {
   double constant = 0.0;
-  double by_l = 0.0;
-  double by_l2 = 0.0;
-  double by_w2 = 0.0;
-  double by_w4 = 0.0;
-  double by_w6 = 0.0;
+  double by_l = 0.0, by_l2 = 0.0;
+  double by_w2 = 0.0, by_w4 = 0.0, by_w6 = 0.0;
 };
 
 /// n = 1 + sum of strength / (resonance - w^-2), w in um (gases: Ciddor 1996).
 struct GasRefractivity {
   struct Term {
-    double strength_per_um2 = 0.0;
-    double resonance_per_um2 = 0.0;
+    double strength_per_um2 = 0.0, resonance_per_um2 = 0.0;
   };
   std::vector<Term> terms;
 };
@@ -103,17 +97,26 @@ double refractive_index(const Dispersion& dispersion, double wavelength_nm);
 /// where t is the temperature minus the temperature of the data, in K, and w is the wavelength in um (P. Hartmann,
 /// Optical Glass, SPIE (2014), eq. 3.18).
 struct ThermoOptic {
-  double d0_per_k = 0.0;
-  double d1_per_k2 = 0.0;
-  double d2_per_k3 = 0.0;
-  double e0_um2_per_k = 0.0;
-  double e1_um2_per_k2 = 0.0;
+  double d0_per_k = 0.0, d1_per_k2 = 0.0, d2_per_k3 = 0.0;
+  double e0_um2_per_k = 0.0, e1_um2_per_k2 = 0.0;
   double resonance_um = 0.0;  ///< w_TK
   /// temperature range of the data, if the source contains it
   double valid_from_c = -std::numeric_limits<double>::infinity();
   double valid_to_c = std::numeric_limits<double>::infinity();
   std::string source;
 };
+
+/// Returns the formula with coefficients in the order in which glass catalogues list them: d0, d1, d2, e0, e1, w_TK.
+/// \pre c has at least 6 elements
+inline ThermoOptic thermo_optic_of(const std::vector<double>& c, std::string source) {
+  return {.d0_per_k = c[0],
+          .d1_per_k2 = c[1],
+          .d2_per_k3 = c[2],
+          .e0_um2_per_k = c[3],
+          .e1_um2_per_k2 = c[4],
+          .resonance_um = c[5],
+          .source = std::move(source)};
+}
 
 /// A transparent material. Its index is relative to air, as usual for polymers, unless `relative_to_vacuum` is true.
 struct Material {

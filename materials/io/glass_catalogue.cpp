@@ -211,13 +211,7 @@ void GlassCatalogue::add_thermo_optic(const Record& record, Material& glass) con
   if (record.size() > 7) glass.temperature_c = t[6];
   // all coefficients are 0: they are unknown
   if (std::ranges::all_of(std::span(t).first(5), [](double value) { return value == 0.0; })) return;
-  glass.thermo_optic = ThermoOptic{.d0_per_k = t[0],
-                                   .d1_per_k2 = t[1],
-                                   .d2_per_k3 = t[2],
-                                   .e0_um2_per_k = t[3],
-                                   .e1_um2_per_k2 = t[4],
-                                   .resonance_um = t[5],
-                                   .source = file_};
+  glass.thermo_optic = thermo_optic_of(t, file_);
 }
 
 void GlassCatalogue::add_range(const Record& record, Material& glass) const {

@@ -175,9 +175,8 @@ void add_warnings(Inspection& result, const geometry::Part& part) {
                                          result.design.source_name(), part.elements_partial)});
 }
 
-Inspection inspect_balls(const design::Design& design, const materials::MaterialLibrary& library) {
-  const raytrace::BallLayer& layer = *design.balls();
-  const design::OpticalModel model = design::make_light_model(design, library);
+/// Returns a result with the design, the properties of the light, the coatings and the warnings.
+Inspection report_light(const design::Design& design, const design::OpticalModel& model) {
   Inspection result;
   result.design = design;
   result.warnings = model.warnings;
@@ -185,6 +184,13 @@ Inspection inspect_balls(const design::Design& design, const materials::Material
   result.light = model.spectral;
   result.refractive_index = mean_index(model.spectral);
   result.wavelength_nm = model.wavelength_nm;
+  return result;
+}
+
+Inspection inspect_balls(const design::Design& design, const materials::MaterialLibrary& library) {
+  const raytrace::BallLayer& layer = *design.balls();
+  const design::OpticalModel model = design::make_light_model(design, library);
+  Inspection result = report_light(design, model);
   result.elements_full = layer.pitch_mm ? 2 : 1;
   result.element_depth_mm = layer.mirror_radius_mm();
   const double ball_mm2 = std::numbers::pi * layer.radius_mm() * layer.radius_mm();
@@ -237,20 +243,14 @@ Inspection inspect(const design::Design& design, const materials::MaterialLibrar
   if (design.balls()) return inspect_balls(design, library);
   const design::OpticalModel model = design::make_model(design, library, design::Entrances::any);
   const geometry::Part& part = model.part;
-  Inspection result;
-  result.design = design;
+  Inspection result = report_light(design, model);
   result.elements_full = part.elements_full;
   result.elements_partial = part.elements_partial;
   result.element_depth_mm = part.element_depth_mm;
+  result.thickness_mm = part.thickness_mm;
+  result.entrance_state = report_entrance_state(design, model);
   result.facet_area_mm2 = part.retro_facet_area_mm2;
   result.entrance_area_mm2 = part.entrance_area_mm2;
-  result.thickness_mm = part.thickness_mm;
-  result.warnings = model.warnings;
-  result.coating = report_coating(design, model);
-  result.entrance_state = report_entrance_state(design, model);
-  result.refractive_index = mean_index(model.spectral);
-  result.light = model.spectral;
-  result.wavelength_nm = model.wavelength_nm;
   if (model.entrance) result.entrance = report_entrance(*model.entrance, part);
   if (design.zoned()) {
     add_zones(result, model);

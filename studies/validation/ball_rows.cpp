@@ -41,11 +41,7 @@ double root_of(double low, double high, const Function& f) {
 
 std::vector<ValidationRow> ball_validation() {
   std::vector<ValidationRow> rows;
-  const auto add = [&](ValidationRow row) {
-    row.topic = "Balls with mirrors";
-    row.source = kBeads;
-    rows.push_back(std::move(row));
-  };
+  const auto add = appender(rows, "Balls with mirrors", kBeads);
   const BallLayer one{1.0, 0.0, 90.0, std::nullopt};
   add({.quantity = "n = 1.5: ratio of the radius of a bowl in the paraxial focus to that of the ball, n / (2 (n - 1))",
        .expected = 1.5 / (2.0 * 0.5),

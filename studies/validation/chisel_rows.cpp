@@ -294,11 +294,8 @@ void add_reach(std::vector<ValidationRow>& rows) {
     tool.width_mm = kWidthMm;
     return fabrication::chisel_reach(geometry::TriangularCube{1.0}, tool);
   };
-  const auto add = [&](ValidationRow row) {
-    row.topic = "Facet area that a chisel of 0.2 mm reaches in a triangular cube corner of 1 mm";
-    row.source = "docs/theory/micro_chiseling.md";
-    rows.push_back(std::move(row));
-  };
+  const auto add = appender(rows, "Facet area that a chisel of 0.2 mm reaches in a triangular cube corner of 1 mm",
+                            "docs/theory/micro_chiseling.md");
   add({.quantity = "fraction of a facet, 1 - w^2 / (4 area), by simulated plunges",
        .unit = "%",
        .expected = 100.0 * (1.0 - kWidthMm * kWidthMm / (4.0 * facet_mm2)),

@@ -106,11 +106,7 @@ void add_clearance(std::vector<ValidationRow>& rows) {
 }
 
 void add_planing(std::vector<ValidationRow>& rows) {
-  const auto add = [&](ValidationRow row) {
-    row.topic = "Flat zone lenses";
-    row.source = "docs/theory/planing.md";
-    rows.push_back(std::move(row));
-  };
+  const auto add = appender(rows, "Flat zone lenses", "docs/theory/planing.md");
   add({.quantity = "chord of a circle of radius 10 mm within 0.01 mm, 2 sqrt(2 R t - t^2)",
        .unit = "mm",
        .expected = 2.0 * std::sqrt(2.0 * 10.0 * 0.01 - 0.01 * 0.01),
