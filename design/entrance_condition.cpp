@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/length_units.h"
 #include "design/haze.h"
 
 namespace retrace::design {
@@ -27,7 +28,6 @@ surface_models::ScatterModel roughness_of(const Design& design, const raytrace::
 }  // namespace
 
 raytrace::EntranceCondition condition_of(const Design& design, const raytrace::Optics& optics) {
-  constexpr double kMmPerUm = 1e-3;
   const EntranceState& face = design.surface.entrance;
   raytrace::EntranceCondition condition;
   for (const ThickCoatingLayer& layer : face.layers)

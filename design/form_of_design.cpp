@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/length_units.h"
 #include "core/number_format.h"
 #include "core/overloaded.h"
 #include "geometry/elements/element_cells.h"
@@ -19,7 +20,6 @@ namespace {
 
 using geometry::Polygon, geometry::Vec2, surface_models::FacetForm, surface_models::HeightMap;
 
-constexpr double kMmPerUm = 1e-3;
 constexpr double kMaxMissingFraction = 0.05;
 /// Maximum slope of a form. The model neglects terms of second order in the slope. Its relative error is therefore at
 /// most this value.

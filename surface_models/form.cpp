@@ -3,6 +3,8 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "core/length_units.h"
+
 namespace retrace::surface_models {
 namespace {
 
@@ -75,7 +77,6 @@ Eigen::MatrixXd legendre_powers(int degree) {
 }  // namespace
 
 FacetForm fitted_form(const HeightMap& map, int degree) {
-  constexpr double kMmPerNm = 1e-6, kMmPerUm = 1e-3;
   const Basis basis(map, degree);
   const Eigen::VectorXd coefficients = kMmPerNm * fitted_coefficients(map, basis);
   const Eigen::MatrixXd powers = legendre_powers(degree);

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/length_units.h"
 #include "surface_models/fft.h"
 #include "surface_models/height_parameters.h"
 
 namespace retrace::surface_models {
 namespace {
 
-constexpr double kMmPerUm = 1e-3;
 constexpr std::size_t kMinPoints = 8;
 /// Criteria for a peak: ratio of its density to the median of its surroundings, and height above it in median
 /// deviations. In the spectrum of a single line of noise, the densities have an exponential distribution. They exceed

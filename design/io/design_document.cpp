@@ -1,5 +1,6 @@
 #include "design/io/design_document.h"
 
+#include "core/length_units.h"
 #include "core/overloaded.h"
 #include "core/schema/writer.h"
 #include "design/file_names.h"
@@ -13,8 +14,6 @@ using geometry::Arrangement, geometry::Cant, geometry::CylinderSubstrate, geomet
     geometry::ElementAxes, geometry::Extent, geometry::FormulaSubstrate, geometry::HexagonalCube, geometry::PartSpec,
     geometry::PlaneSubstrate, geometry::RtpElement, geometry::Scratch, geometry::SphereSubstrate, geometry::Substrate,
     geometry::TriangularCube, schema::Document, schema::Value;
-
-constexpr double kUmPerMm = 1e3;
 
 Value list_of(std::span<const double> values) {
   return std::vector<double>(values.begin(), values.end());

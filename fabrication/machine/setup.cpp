@@ -6,13 +6,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/length_units.h"
+
 namespace retrace::fabrication {
 namespace {
 
 using Eigen::Matrix3d;
 using geometry::Vec3;
 
-constexpr double kMmPerUm = 1e-3;
 constexpr double kRadPerArcsec = std::numbers::pi / (180.0 * 3600.0);
 
 constexpr SetupQuantity kOfC[] = {{"c_x_um", "centre of C along X", SetupPart::c_point, 0},

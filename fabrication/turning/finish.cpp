@@ -1,5 +1,6 @@
 #include "fabrication/turning/finish.h"
 #include "core/angle.h"
+#include "core/length_units.h"
 
 #include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
@@ -8,7 +9,6 @@
 namespace retrace::fabrication::turning {
 namespace {
 
-constexpr double kNmPerMm = 1e6;
 constexpr double kSqrt3 = std::numbers::sqrt3;
 
 }  // namespace

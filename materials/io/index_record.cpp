@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/atomic_file.h"
+#include "core/length_units.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
 #include "core/text.h"
@@ -249,7 +250,6 @@ class Record {
     try {
       const double wavelength_nm = 1e3 * wavelength_um_of(row, columns);
       const double k = number_in_row(row, columns - 1);
-      constexpr double kNmPerMm = 1e6;
       if (k >= 0.0)
         data.add(row.line, wavelength_nm, 4.0 * std::numbers::pi * kNmPerMm * k / wavelength_nm);
       else if (k >= -kNoiseOfExtinction)
@@ -285,14 +285,7 @@ class Record {
     if (!properties || !properties.IsMap() || !properties["thermal_dispersion"]) return;
     for (const YAML::Node& entry : properties["thermal_dispersion"]) {
       if (!entry.IsMap() || text_of(entry, "type") != "formula A") continue;
-      const std::vector<double> t = numbers_in(entry, "coefficients", 6, 6);
-      material.thermo_optic = ThermoOptic{.d0_per_k = t[0],
-                                          .d1_per_k2 = t[1],
-                                          .d2_per_k3 = t[2],
-                                          .e0_um2_per_k = t[3],
-                                          .e1_um2_per_k2 = t[4],
-                                          .resonance_um = t[5],
-                                          .source = file_};
+      material.thermo_optic = thermo_optic_of(numbers_in(entry, "coefficients", 6, 6), file_);
     }
   }
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/length_units.h"
 #include "core/number_format.h"
 #include "report/results/result_plots.h"
 #include "studies/closed_loop/verification.h"
@@ -8,7 +9,6 @@
 namespace retrace::report {
 
 SurfacePlot error_map_plot(const studies::ErrorMap& map) {
-  constexpr double kUmPerMm = 1e3;
   GridPanel panel;
   panel.title = "x_w to the right, y_w up; shown from -" + fixed(map.colour_range_nm, 0) + " to " +
                 fixed(map.colour_range_nm, 0) + " nm";

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/length_units.h"
 #include "core/number_format.h"
 #include "fabrication/chisel/check/cavity.h"
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 
+#include "core/length_units.h"
 #include "fabrication/chisel/plan/edge_cuts.h"
 
 namespace retrace::studies {
@@ -15,7 +16,6 @@ using geometry::Vec2, geometry::Vec3;
 using MapAxis = surface_models::Axis;
 using surface_models::HeightMap, surface_models::Scratch, surface_models::SpectralPeak;
 
-constexpr double kUmPerMm = 1e3;
 /// Maximum distance, in um, between a line of a facet and the neighbouring lines with which it is compared.
 constexpr double kBesideUm = 30.0;
 /// Minimum number of periods of a wave on a facet. Longer waves count as form of the facet.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/length_units.h"
 #include "fabrication/chisel/plan/edge_cuts.h"
 #include "fabrication/machine/setup.h"
 
@@ -16,7 +17,6 @@ namespace {
 using namespace fabrication;
 using geometry::Vec3;
 
-constexpr double kMmPerUm = 1e-3;
 /// Minimum sine of the angle between two facets. Below it, a small tilt of a facet does not change the angle.
 constexpr double kParallel = 1e-6;
 

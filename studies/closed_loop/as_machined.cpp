@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "core/error.h"
+#include "core/length_units.h"
 #include "core/number_format.h"
 #include "design/io/design_document.h"
 #include "studies/closed_loop/machined_zones.h"
@@ -20,7 +21,6 @@ namespace fs = std::filesystem;
 using namespace fabrication;
 
 constexpr double kArcminPerRad = 180.0 * 60.0 / std::numbers::pi;
-constexpr double kUmPerMm = 1e3;
 
 // Ratios of the Sa of roughness and of waviness to the published Sa. Five facets that were finished by plunging have a
 // mean Sa of 48.9 nm. After separation at a cut-off wavelength of 80 um, their roughness has a mean Sa of 19.7 nm, and

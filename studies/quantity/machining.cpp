@@ -4,13 +4,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/length_units.h"
 #include "core/number_format.h"
 #include "studies/closed_loop/as_machined.h"
 
 namespace retrace::studies {
 namespace {
 
-constexpr double kUmPerMm = 1e3;
 constexpr double kSecondsPerMinute = 60.0;
 /// Allowed difference between tool width and element width for a tool that fits the element: one nanometre.
 constexpr double kFitMm = 1e-6;

@@ -11,6 +11,7 @@
 #include <set>
 #include <utility>
 
+#include "core/length_units.h"
 #include "fabrication/chisel/check/cavity.h"
 
 namespace retrace::studies {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/length_units.h"
 #include "fabrication/chisel/plan/chiseling.h"
 #include "fabrication/job/cube_corner.h"
 #include "fabrication/job/substrate_cells.h"
@@ -20,8 +21,6 @@ namespace {
 
 using namespace fabrication;
 using geometry::Vec3;
-
-constexpr double kUmPerMm = 1e3;
 
 /// Returns the maximum or minimum Z of the machine bodies that move with the workpiece or with the tool (`carrier`).
 std::optional<double> end_of_bodies(const Machine& machine, KinematicLink carrier, bool highest) {

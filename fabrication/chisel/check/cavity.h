@@ -16,8 +16,6 @@
 
 namespace retrace::fabrication {
 
-inline constexpr double kNmPerMm = 1e6;
-
 /// A facet as designed, in the workpiece frame. A point p of the facet has normal . p = offset_mm.
 struct DesignFacet {
   geometry::Vec3 normal = geometry::Vec3::UnitZ();  ///< unit normal, outward from the material

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/length_units.h"
 #include "core/number_format.h"
 
 namespace retrace::fabrication {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/length_units.h"
 #include "core/number_format.h"
 #include "fabrication/chisel/check/chiseling_check.h"
 #include "fabrication/chisel/check/plunge_check.h"

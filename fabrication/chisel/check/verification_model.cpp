@@ -3,6 +3,7 @@
 #include <map>
 #include <utility>
 
+#include "core/length_units.h"
 #include "fabrication/job/substrate_cells.h"
 
 namespace retrace::fabrication {

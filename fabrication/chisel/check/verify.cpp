@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/length_units.h"
 #include "core/number_format.h"
 #include "core/overloaded.h"
 #include "core/threads.h"

@@ -8,13 +8,12 @@
 #include <cstdint>
 
 #include "core/angle.h"
+#include "core/length_units.h"
 #include "core/number_format.h"
 #include "fabrication/turning/plan/spiral.h"
 
 namespace retrace::fabrication::turning {
 namespace {
-
-constexpr double kNmPerMm = 1e6;
 
 /// Spiral as a function of time.
 class TimedSpiral {

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/angle.h"
+#include "core/length_units.h"
 #include "fabrication/chisel/check/simulation/facet_figures.h"
 #include "fabrication/chisel/check/simulation/plane_fit.h"
 #include "fabrication/job/fins.h"

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "core/error.h"
+#include "core/length_units.h"
 #include "core/threads.h"
 #include "fabrication/check/findings.h"
 #include "fabrication/chisel/check/cavity.h"

@@ -1,5 +1,7 @@
 #include "fabrication/chisel/check/simulation/plane_fit.h"
 
+#include "core/length_units.h"
+
 namespace retrace::fabrication {
 
 using geometry::Vec3;
