@@ -9,6 +9,13 @@ namespace retrace::surface_models {
 namespace {
 
 constexpr std::size_t kStretches = 16;
+
+/// Grid line of the map: its mean height and the mean heights of its sections. NaN where nothing was measured.
+struct Line {
+  double mean_nm = kMissing;
+  std::array<double, kStretches> stretches_nm{};
+};
+
 constexpr double kSameSide = 0.75;
 constexpr double kDeviations = 5.0;
 /// Ratio of the standard deviation to the median absolute deviation of Gaussian values.
@@ -16,12 +23,6 @@ constexpr double kGaussianMad = 1.4826;
 constexpr std::size_t kMinLines = 16;
 /// Minimum number of lines on each side with which a line is compared.
 constexpr double kMinNeighbourLines = 4.0;
-
-/// Grid line of the map: its mean height and the mean heights of its sections. NaN where nothing was measured.
-struct Line {
-  double mean_nm = kMissing;
-  std::array<double, kStretches> stretches_nm{};
-};
 
 Line line_of(const HeightMap& map, Axis along, std::size_t index) {
   const std::size_t points = along == Axis::x ? map.columns : map.rows;

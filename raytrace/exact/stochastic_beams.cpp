@@ -19,13 +19,8 @@ namespace {
 constexpr std::uint32_t kScatterStream = 8;
 constexpr double kFirstThreshold = 1e-3;
 constexpr double kLastThreshold = 1e-10;
-// Assumed exponents: the standard error is proportional to threshold^kConvergence, and the work of a round to
-// threshold^-kWorkSlope.
-constexpr double kConvergence = 0.9;
-constexpr double kWorkSlope = 0.5;
-// Range of the factor by which the threshold decreases between rounds. kMargin is an additional factor, because the
-// standard error is known only to about 20 %.
-constexpr double kSteepestFall = 0.003;
+// Upper limit of the factor by which the threshold decreases between rounds. kMargin is an additional factor, because
+// the standard error is known only to about 20 %.
 constexpr double kGentlestFall = 0.5;
 constexpr double kMargin = 0.8;
 // Maximum number of beams that are kept for the replicates. They take about 100 MB.
@@ -127,8 +122,12 @@ std::uint64_t StochasticBeams::beams() const {
 double StochasticBeams::next_threshold() const {
   const double target = (scattered_ != nullptr ? kFractionOfTarget : 1.0) * sampling_.target_error;
   if (scattered_ != nullptr && beam_error_ <= target) return threshold_;
-  const double fall = kMargin * std::pow(target / beam_error_, 1.0 / kConvergence);
-  return std::max(kLastThreshold, threshold_ * std::clamp(fall, kSteepestFall, kGentlestFall));
+  // Assumed exponent: the standard error is proportional to threshold^convergence.
+  constexpr double convergence = 0.9;
+  // Lower limit of the factor by which the threshold decreases.
+  constexpr double steepest_fall = 0.003;
+  const double fall = kMargin * std::pow(target / beam_error_, 1.0 / convergence);
+  return std::max(kLastThreshold, threshold_ * std::clamp(fall, steepest_fall, kGentlestFall));
 }
 
 double StochasticBeams::next_ray_power() const {
@@ -146,8 +145,10 @@ double StochasticBeams::expected_work() const {
   double still_weak = 0.0;
   for (const Beam& beam : strong_->deferred())
     if (strong_->power_for_cutoff(beam) < next) still_weak += beam.total_power();
+  // Assumed exponent: the work of a round is proportional to threshold^-work_slope.
+  constexpr double work_slope = 0.5;
   const double more =
-      std::max(std::pow(threshold_ / next, kWorkSlope), still_weak / (kSurvivorPowerRatio * next) / first_survivors_);
+      std::max(std::pow(threshold_ / next, work_slope), still_weak / (kSurvivorPowerRatio * next) / first_survivors_);
   if (more * static_cast<double>(strong_->deferred().size()) > static_cast<double>(kMaxDeferred))
     return std::numeric_limits<double>::infinity();
   return work() + static_cast<double>(beam_work_) * more +

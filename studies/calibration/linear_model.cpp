@@ -2,13 +2,14 @@
 
 #include <array>
 
+#include "core/length_units.h"
 #include "fabrication/machine/setup.h"
 
 namespace retrace::studies {
 namespace {
 
 using Eigen::Index;
-using fabrication::Machine, fabrication::SetupQuantity, fabrication::kNmPerMm;
+using fabrication::Machine, fabrication::SetupQuantity;
 
 /// Step of the difference quotients, in um and arcsec. Measurements are smooth over millions of such steps.
 constexpr double kStep = 1.0;
@@ -17,11 +18,6 @@ constexpr double kStep = 1.0;
 /// face about X and Y, have the indices kPose and kPose + 1.
 constexpr Index kTurns = 3;
 constexpr Index kPose = 6;
-constexpr double kUmInMm = 1e3;
-
-/// Standard deviations of the priors on poses, in um and arcsec.
-constexpr double kShiftByEye = 100.0;
-constexpr double kTurnByEye = 3600.0;
 
 /// Adds an amount to an unknown of a pose.
 /// \param unknown index of an unknown of the part's pose, or kPose or kPose + 1 for a rotation of the face
@@ -35,7 +31,7 @@ void move_one(PartPose& pose, Index unknown, double amount) {
 /// Returns the height and tilts of the face that a map would show if the part had this pose.
 geometry::Vec3 predicted_face(const FaceFigures& face, const PartPose& pose) {
   const geometry::Vec3 normal = pose.face_rotation().col(2);
-  const geometry::Vec3 shift = pose.shift_um / kUmInMm;
+  const geometry::Vec3 shift = pose.shift_um / kUmPerMm;
   const double height_mm = shift.z() - (normal.head<2>().dot(face.centroid_mm - shift.head<2>())) / normal.z();
   return {kNmPerMm * height_mm, -kArcsecPerRad * normal.x() / normal.z(), -kArcsecPerRad * normal.y() / normal.z()};
 }
@@ -108,6 +104,9 @@ LinearModel linear_model(const std::vector<CutPart>& parts, std::span<const Meas
 }
 
 LinearModel with_pose_priors(LinearModel model, const std::vector<PartPose>& poses) {
+  // Standard deviations of the priors, in um and arcsec.
+  constexpr double shift_by_eye = 100.0;
+  constexpr double turn_by_eye = 3600.0;
   const Index rows = model.residual.size();
   const Index unknowns = model.pose_jacobian.cols();
   Eigen::VectorXd value(unknowns);
@@ -115,10 +114,10 @@ LinearModel with_pose_priors(LinearModel model, const std::vector<PartPose>& pos
   for (std::size_t part = 0; part < poses.size(); ++part) {
     const Index first = kPose * static_cast<Index>(part);
     value.segment<kPose>(first) << poses[part].rotation_arcsec, poses[part].shift_um;
-    deviation.segment<kPose>(first) << geometry::Vec3::Constant(kTurnByEye), geometry::Vec3::Constant(kShiftByEye);
+    deviation.segment<kPose>(first) << geometry::Vec3::Constant(turn_by_eye), geometry::Vec3::Constant(shift_by_eye);
   }
   value.tail<2>() = poses.front().face_rotation_arcsec;
-  deviation.tail<2>().setConstant(kTurnByEye);
+  deviation.tail<2>().setConstant(turn_by_eye);
   model.setup_jacobian.conservativeResizeLike(Eigen::MatrixXd::Zero(rows + unknowns, model.setup_jacobian.cols()));
   model.pose_jacobian.conservativeResizeLike(Eigen::MatrixXd::Zero(rows + unknowns, unknowns));
   model.residual.conservativeResize(rows + unknowns);

@@ -3,36 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/length_units.h"
 #include "fabrication/chisel/check/simulation/plane_fit.h"
 
 namespace retrace::fabrication {
 namespace {
 
 using geometry::Vec3;
-
-/// Distance of measuring lines from the corners of the machined surface. A line exactly through a corner would be in a
-/// side plane of the tool.
-constexpr double kOffCornerMm = 2e-7;
-/// Minimum distance from the root, in mm, at which a measuring line can distinguish the two facets.
-constexpr double kMinStripMm = 2e-6;
-/// Distance from the root, in mm, of the line that measures the residual material at the root.
-constexpr double kAtRootMm = 1.5e-6;
-/// Maximum extent, along a facet, of the tolerance layer on the other facet, relative to the facet's length. Residual
-/// material within this extent is attributed to the root. The maximum only has an effect for large tolerances.
-constexpr double kMaxLayerFraction = 0.01;
-/// Maximum tolerance for the position of a pass along the root, relative to half of the width of the element.
-constexpr double kMaxEndFraction = 0.01;
-/// Safety factor on the predicted width of the strip at the root that the edge leaves uncut. It allows for rounded
-/// poses and positions.
-constexpr double kRootMargin = 1.05;
-constexpr int kEvenLines = 12;
-/// Maximum distance, in mm, between the centres of two passes that count as one pass. Their ploughed surfaces differ by
-/// picometres only.
-constexpr double kSamePassMm = 3e-6;
-/// Fraction of the facet's width that is used to fit the plane of the facet. The ends of the facet are excluded.
-constexpr double kPlaneFraction = 0.8;
-/// Maximum distance of a measured point from the root, in facet lengths, at which is_beside() is reliable.
-constexpr double kReachRatio = 4.0;
 
 /// Positions, along the root, of the stations and of the passes of the tool. A station is a cross-section in which the
 /// facets are measured.
@@ -41,6 +18,24 @@ struct Stations {
   std::vector<double> pass_middles_mm;  ///< centre of each pass
 };
 
+/// Distance of measuring lines from the corners of the machined surface. A line exactly through a corner would be in a
+/// side plane of the tool.
+constexpr double kOffCornerMm = 2e-7;
+/// Minimum distance from the root, in mm, at which a measuring line can distinguish the two facets.
+constexpr double kMinStripMm = 2e-6;
+/// Distance from the root, in mm, of the line that measures the residual material at the root.
+constexpr double kAtRootMm = 1.5e-6;
+/// Safety factor on the predicted width of the strip at the root that the edge leaves uncut. It allows for rounded
+/// poses and positions.
+constexpr double kRootMargin = 1.05;
+/// Maximum distance, in mm, between the centres of two passes that count as one pass. Their ploughed surfaces differ by
+/// picometres only.
+constexpr double kSamePassMm = 3e-6;
+/// Fraction of the facet's width that is used to fit the plane of the facet. The ends of the facet are excluded.
+constexpr double kPlaneFraction = 0.8;
+/// Maximum distance of a measured point from the root, in facet lengths, at which is_beside() is reliable.
+constexpr double kReachRatio = 4.0;
+
 class Measurer {
  public:
   Measurer(const PrismGroove& groove, std::span<const SweptVolume> sweeps, std::span<const RigidMotion> poses,
@@ -48,8 +43,14 @@ class Measurer {
       : groove_(groove), sweeps_(sweeps), poses_(poses), wedge_(wedge), prediction_(prediction) {
     for (const SweptVolume& sweep : sweeps) by_pose_.push_back(&sweep);
     std::ranges::stable_sort(by_pose_, {}, &SweptVolume::pose);
-    find_stations(std::min(tolerance_mm, kMaxEndFraction * groove.half_width_mm));
-    const double layer_mm = std::min(tolerance_mm / sine_between(), kMaxLayerFraction * groove.facet_length_mm);
+    // Maximum tolerance for the position of a pass along the root, relative to half of the width of the element.
+    constexpr double max_end_fraction = 0.01;
+    find_stations(std::min(tolerance_mm, max_end_fraction * groove.half_width_mm));
+    // Maximum extent, along a facet, of the tolerance layer on the other facet, relative to the facet's length.
+    // Residual material within this extent is attributed to the root. The maximum only has an effect for large
+    // tolerances.
+    constexpr double max_layer_fraction = 0.01;
+    const double layer_mm = std::min(tolerance_mm / sine_between(), max_layer_fraction * groove.facet_length_mm);
     layer_end_mm_ = kMinStripMm + layer_mm;
     strip_mm_ = kRootMargin * prediction.root_mm + layer_end_mm_;
     find_burr();
@@ -207,7 +208,8 @@ class Measurer {
       add(corners[i] + kOffCornerMm);
       if (i > 0) add(0.5 * (corners[i - 1] + corners[i]) + 1e-9);
     }
-    for (int i = 0; i < kEvenLines; ++i) add((i + 0.5137) / kEvenLines * groove_.facet_length_mm);
+    constexpr int even_lines = 12;
+    for (int i = 0; i < even_lines; ++i) add((i + 0.5137) / even_lines * groove_.facet_length_mm);
     std::sort(slants.begin(), slants.end());
     const auto is_same = [](double a, double b) { return b - a < 0.5 * kOffCornerMm; };
     slants.erase(std::unique(slants.begin(), slants.end(), is_same), slants.end());

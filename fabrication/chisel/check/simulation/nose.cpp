@@ -13,8 +13,6 @@ namespace {
 
 using geometry::Vec3;
 
-/// Number of tangent planes that approximate the arc of the nose, without the flanks at its ends.
-constexpr int kTangents = 32;
 /// Maximum distance from a dihedral edge up to which cuts are searched, in radii of the nose.
 constexpr double kFurthest = 40.0;
 /// Maximum height of the tool's tip above the facets at the lower end of a cut, in radii of the nose. Cuts that stay
@@ -117,8 +115,10 @@ ToolWedge nosed_wedge(const Tool& tool, const Machine& machine) {
   const Vec3 last = -across(leading, trailing);
   const double angle = std::acos(std::clamp(first.dot(last), -1.0, 1.0));
   const Vec3 turned = across(last, first);
-  for (int k = 1; k <= kTangents; ++k) {
-    const double at = angle * k / (kTangents + 1);
+  // Number of tangent planes that approximate the arc of the nose, without the flanks at its ends.
+  constexpr int tangents = 32;
+  for (int k = 1; k <= tangents; ++k) {
+    const double at = angle * k / (tangents + 1);
     const Vec3 outwards = std::cos(at) * first + std::sin(at) * turned;
     const Vec3 along = -std::sin(at) * first + std::cos(at) * turned;
     Vec3 normal = along.cross(spine).normalized();
