@@ -10,11 +10,11 @@ printed, and the exit code is 1 if there are any.
 """
 
 import json
-import pathlib
 import re
 import sys
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+from written_texts import ROOT, write_or_check
+
 FOLDERS = ("geometry", "raytrace", "fabrication")
 DOCUMENTS = ["CONVENTIONS.md", "docs/architecture.md", *(f"{folder}/README.md" for folder in FOLDERS)]
 MARKED = re.compile(r"(<!-- (order|picture) of (\w+) -->\n)(.*?)(<!-- end -->)", re.DOTALL)
@@ -56,21 +56,13 @@ def with_order(page: str, layers: dict) -> str:
 
 def main() -> int:
     layers = json.loads((ROOT / "tests/layering/layers.json").read_text(encoding="utf-8"))
-    is_check = "--check" in sys.argv[1:]
-    stale = []
+    texts = {}
     for name in DOCUMENTS:
-        path = ROOT / name
-        text = path.read_text(encoding="utf-8")
+        text = (ROOT / name).read_text(encoding="utf-8")
         if not MARKED.search(text):
             sys.exit(f"{name}: no mark of a table")
-        new = with_order(text, layers)
-        if new != text:
-            stale.append(name)
-        if not is_check:
-            path.write_text(new, encoding="utf-8")
-    for name in stale:
-        print(f"{name}: {'differs from' if is_check else 'written from'} tests/layering/layers.json")
-    return 1 if is_check and stale else 0
+        texts[ROOT / name] = with_order(text, layers)
+    return write_or_check(texts, "tests/layering/layers.json", "--check" in sys.argv[1:])
 
 
 sys.exit(main())

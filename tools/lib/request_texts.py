@@ -8,13 +8,13 @@ texts would change are printed, and the exit code is 1 if there are any.
 """
 
 import json
-import pathlib
 import re
 import subprocess
 import sys
 import textwrap
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+from written_texts import ROOT, write_or_check
+
 WIDTH = 120
 
 
@@ -128,22 +128,15 @@ def with_tables(page: str, requests: dict[str, list[dict]]) -> str:
 
 def main() -> int:
     requests = descriptions(sys.argv[1])
-    is_check = "--check" in sys.argv[2:]
-    stale = []
+    texts = {}
     for path in [*sorted((ROOT / "requests").glob("*.h")), *sorted((ROOT / "docs/commands").glob("*.md"))]:
         text = path.read_text(encoding="utf-8")
         new = with_tables(text, requests) if path.suffix == ".md" else text
         if path.suffix == ".h":
             for request, fields in requests.items():
                 new = with_comments(new, request, fields)
-        if new == text:
-            continue
-        stale.append(path.relative_to(ROOT))
-        if not is_check:
-            path.write_text(new, encoding="utf-8")
-    for path in stale:
-        print(f"{path}: {'differs from' if is_check else 'written from'} the descriptions of requests")
-    return 1 if is_check and stale else 0
+        texts[path] = new
+    return write_or_check(texts, "the descriptions of requests", "--check" in sys.argv[2:])
 
 
 sys.exit(main())
