@@ -14,10 +14,8 @@ namespace retrace::materials {
 /// component. They are real unless there are layers on the interface (Born and Wolf, Principles of Optics, 7th ed.,
 /// 1.5).
 struct FresnelCoefficients {
-  std::complex<double> r_s;
-  std::complex<double> r_p;
-  std::complex<double> t_s;
-  std::complex<double> t_p;
+  std::complex<double> r_s, r_p;
+  std::complex<double> t_s, t_p;
   /// Degree of coherence between s and p after the interface. It is less than 1 behind thick layers. Reflections in
   /// thick layers have no fixed phase relation, so their powers are added instead of their amplitudes.
   double r_coherence = 1.0;

@@ -15,10 +15,8 @@ namespace retrace::report {
 struct GridPanel {
   std::string title;
   std::string value_label;  ///< name of the values with their unit, such as "height (nm)"
-  std::size_t columns = 0;
-  std::size_t rows = 0;
-  double x_size_um = 0.0;
-  double y_size_um = 0.0;
+  std::size_t columns = 0, rows = 0;
+  double x_size_um = 0.0, y_size_um = 0.0;
   std::vector<double> values;  ///< row by row from the top; values that are not finite are drawn grey
 };
 

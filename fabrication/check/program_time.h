@@ -10,10 +10,7 @@ namespace retrace::fabrication {
 /// Run time in seconds, divided by kind of motion. Moves start and end at rest, except for moves whose duration the
 /// program specifies.
 struct ProgramTime {
-  double feed_s = 0.0;
-  double rapid_s = 0.0;
-  double rotary_s = 0.0;
-  double dwell_s = 0.0;
+  double feed_s = 0.0, rapid_s = 0.0, rotary_s = 0.0, dwell_s = 0.0;
   double total_s() const { return feed_s + rapid_s + rotary_s + dwell_s; }
   ProgramTime operator-(const ProgramTime& other) const {
     return {feed_s - other.feed_s, rapid_s - other.rapid_s, rotary_s - other.rotary_s, dwell_s - other.dwell_s};

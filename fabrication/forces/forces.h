@@ -82,11 +82,9 @@ struct CutConditions {
 
 /// Forces at the events of a cut, in N, with their signs.
 struct ForceEvents {
-  double full_chip_fz_n = 0.0;
-  double full_chip_fy_n = 0.0;
+  double full_chip_fz_n = 0.0, full_chip_fy_n = 0.0;
   double before_root_fz_n = 0.0;
-  double root_fz_n = 0.0;
-  double root_fx_n = 0.0;
+  double root_fz_n = 0.0, root_fx_n = 0.0;
   double peak_fy_n = 0.0;  ///< peak during the plough, or during the retract of a bidirectional cut
 };
 ForceEvents force_events(const ForceModel& model, const CutConditions& cut);

@@ -145,12 +145,8 @@ struct Machine {
 
 /// Positions of all axes. A machine has either A or B.
 struct AxisPositions {
-  double x_mm = 0.0;
-  double y_mm = 0.0;
-  double z_mm = 0.0;
-  double a_deg = 0.0;
-  double c_deg = 0.0;
-  double b_deg = 0.0;
+  double x_mm = 0.0, y_mm = 0.0, z_mm = 0.0;
+  double a_deg = 0.0, c_deg = 0.0, b_deg = 0.0;
 };
 
 /// Positions of the two rotary axes.

@@ -29,12 +29,8 @@ struct PlaningMill {
   double fast_feed_mm_per_min = 0.0;
   double frame_s = 0.0;  ///< frame time: additional time that each move takes
   double grid_mm = 0.01;
-  double min_move_x_mm = 13.0;
-  double min_move_y_mm = 13.0;
-  double min_move_z_mm = 6.0;
-  double travel_x_mm = 350.0;
-  double travel_y_mm = 1500.0;
-  double travel_z_mm = 400.0;
+  double min_move_x_mm = 13.0, min_move_y_mm = 13.0, min_move_z_mm = 6.0;
+  double travel_x_mm = 350.0, travel_y_mm = 1500.0, travel_z_mm = 400.0;
   double max_hours = 8.0;
   double overrun_mm = 20.0;    ///< distance from the part at which strokes begin and end
   double clearance_mm = 14.0;  ///< height of moves above the blank

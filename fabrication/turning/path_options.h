@@ -16,13 +16,13 @@ enum class Servo { slow, fast };
 
 struct PathOptions {
   Strategy strategy = Strategy::spiral;
-  Sampling sampling = Sampling::angle;
+  double radius_mm = 1.0;   ///< spiral: radius of the part
+  double overrun_mm = 0.0;  ///< spiral: distance of the tool from the rim of the part at the start
+  double width_mm = 0.0;    ///< raster: length of the lines
+  double height_mm = 0.0;   ///< raster: size of the part across the lines
+  double feed_mm = 5e-3;    ///< feed per turn, or distance between lines
   Servo servo = Servo::slow;
-  double radius_mm = 1.0;     ///< spiral: radius of the part
-  double overrun_mm = 0.0;    ///< spiral: distance of the tool from the rim of the part at the start
-  double width_mm = 0.0;      ///< raster: length of the lines
-  double height_mm = 0.0;     ///< raster: size of the part across the lines
-  double feed_mm = 5e-3;      ///< feed per turn, or distance between lines
+  Sampling sampling = Sampling::angle;
   int points_per_turn = 360;  ///< number of points per turn, for Sampling::angle
   double arc_mm = 5e-3;       ///< distance of points, for Sampling::arc and for rasters
   double spindle_rpm = 60.0;
@@ -40,8 +40,7 @@ struct PathOptions {
 
 /// Limits of an axis. Empty values mean no limit.
 struct AxisLimits {
-  std::optional<double> low_mm;
-  std::optional<double> high_mm;
+  std::optional<double> low_mm, high_mm;
   std::optional<double> speed_mm_per_s;
   std::optional<double> acceleration_mm_per_s2;
   std::optional<double> jerk_mm_per_s3;

@@ -15,10 +15,8 @@ constexpr double kSliver = 1e-9;
 
 /// Interval along the roof edge in which the height of the surface above the facet's plane is linear.
 struct Stretch {
-  double from_mm = 0.0;
-  double to_mm = 0.0;
-  double from_height_mm = 0.0;
-  double to_height_mm = 0.0;
+  double from_mm = 0.0, to_mm = 0.0;
+  double from_height_mm = 0.0, to_height_mm = 0.0;
 
   bool is_scratch() const { return from_height_mm != 0.0 || to_height_mm != 0.0; }
 };

@@ -15,8 +15,7 @@ namespace retrace::raytrace {
 /// projection).
 struct ReturnFrame {
   geometry::Vec3 to_source = geometry::Vec3::UnitZ();
-  geometry::Vec3 right = geometry::Vec3::UnitX();
-  geometry::Vec3 up = geometry::Vec3::UnitY();
+  geometry::Vec3 right = geometry::Vec3::UnitX(), up = geometry::Vec3::UnitY();
 
   geometry::Vec2 angles_rad(const geometry::Vec3& direction) const {
     const geometry::Vec2 across(direction.dot(right), direction.dot(up));

@@ -41,8 +41,7 @@ class ChipCheck {
  private:
   /// Measuring line in a section, normal to a facet.
   struct FacetLine {
-    std::size_t section = 0;
-    std::size_t facet = 0;
+    std::size_t section = 0, facet = 0;
     geometry::Vec2 origin_mm = geometry::Vec2::Zero();
     geometry::Vec2 direction = geometry::Vec2::UnitY();
     int finishing_cuts = 0;  ///< number of cuts that removed material of the finishing layers on this line

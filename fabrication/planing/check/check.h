@@ -15,8 +15,7 @@ namespace retrace::fabrication {
 /// Sample of the profile: depth of the design and depth of the machined surface, in mm below the face.
 struct ProfileSample {
   double x_mm = 0.0;
-  double design_mm = 0.0;
-  double machined_mm = 0.0;
+  double design_mm = 0.0, machined_mm = 0.0;
 };
 
 /// Result of a check. It is computed from the part, the tool and the NC text, without the planner.

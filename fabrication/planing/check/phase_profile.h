@@ -11,9 +11,7 @@ namespace retrace::fabrication {
 
 /// Vertical wall between two zones. Its deep side is towards the centre of the lens.
 struct Wall {
-  double x_mm = 0.0;
-  double inner_depth_mm = 0.0;
-  double outer_depth_mm = 0.0;
+  double x_mm = 0.0, inner_depth_mm = 0.0, outer_depth_mm = 0.0;
 };
 
 /// Required depth of a zone lens. The depth follows from the condition that light from the focus becomes parallel to

@@ -11,8 +11,7 @@ namespace retrace::fabrication {
 
 /// Zone, from its inner step to the next one.
 struct Zone {
-  double from_mm = 0.0;
-  double to_mm = 0.0;
+  double from_mm = 0.0, to_mm = 0.0;
 };
 
 /// Depth of a zone lens below the face of its blank (docs/theory/planing.md). In zone k, the optical path from the

@@ -16,9 +16,7 @@ namespace retrace::fabrication::turning {
 
 /// Axis positions at a point of the path. X, Y and Z are the position of the lowest point of the tool's edge.
 struct PathPoint {
-  double x_mm = 0.0;
-  double y_mm = 0.0;
-  double z_mm = 0.0;
+  double x_mm = 0.0, y_mm = 0.0, z_mm = 0.0;
   double c_deg = 0.0;
   double seconds = 0.0;   ///< time since the previous point; 0 for the first point
   double servo_mm = 0.0;  ///< part of z that a fast tool servo adds to the slide
@@ -78,8 +76,7 @@ class NoseCompensation {
 /// Range of the positions of an axis over a path, and maxima of its speed, acceleration and jerk. The maxima are
 /// computed from finite differences of the positions.
 struct AxisFigures {
-  double low_mm = 0.0;
-  double high_mm = 0.0;
+  double low_mm = 0.0, high_mm = 0.0;
   double speed_mm_per_s = 0.0;
   double acceleration_mm_per_s2 = 0.0;
   double jerk_mm_per_s3 = 0.0;
@@ -88,8 +85,7 @@ struct AxisFigures {
 
 /// Motion of one axis at one point, for tables and plots.
 struct AxisState {
-  double time_s = 0.0;
-  double position_mm = 0.0;
+  double time_s = 0.0, position_mm = 0.0;
   double speed_mm_per_s = 0.0;
   double acceleration_mm_per_s2 = 0.0;
   double jerk_mm_per_s3 = 0.0;
