@@ -98,12 +98,13 @@ RTCIntersectContext context() {
 
 RTCRayHit query_of(const SurfaceRay& ray) {
   RTCRayHit query;
-  query.ray.org_x = static_cast<float>(ray.origin.x());
-  query.ray.org_y = static_cast<float>(ray.origin.y());
-  query.ray.org_z = static_cast<float>(ray.origin.z());
-  query.ray.dir_x = static_cast<float>(ray.direction.x());
-  query.ray.dir_y = static_cast<float>(ray.direction.y());
-  query.ray.dir_z = static_cast<float>(ray.direction.z());
+  const Eigen::Vector3f origin = ray.origin.cast<float>(), direction = ray.direction.cast<float>();
+  query.ray.org_x = origin.x();
+  query.ray.org_y = origin.y();
+  query.ray.org_z = origin.z();
+  query.ray.dir_x = direction.x();
+  query.ray.dir_y = direction.y();
+  query.ray.dir_z = direction.z();
   query.ray.tnear = kNear;
   query.ray.tfar = 1e30F;
   query.ray.time = 0.0F;
@@ -117,12 +118,13 @@ RTCRayHit query_of(const SurfaceRay& ray) {
 /// Writes a ray to lane k of a packet. P is RTCRayHit8 or RTCRayHit16.
 template <class P>
 void load(P& packet, unsigned k, const SurfaceRay& ray) {
-  packet.ray.org_x[k] = static_cast<float>(ray.origin.x());
-  packet.ray.org_y[k] = static_cast<float>(ray.origin.y());
-  packet.ray.org_z[k] = static_cast<float>(ray.origin.z());
-  packet.ray.dir_x[k] = static_cast<float>(ray.direction.x());
-  packet.ray.dir_y[k] = static_cast<float>(ray.direction.y());
-  packet.ray.dir_z[k] = static_cast<float>(ray.direction.z());
+  const Eigen::Vector3f origin = ray.origin.cast<float>(), direction = ray.direction.cast<float>();
+  packet.ray.org_x[k] = origin.x();
+  packet.ray.org_y[k] = origin.y();
+  packet.ray.org_z[k] = origin.z();
+  packet.ray.dir_x[k] = direction.x();
+  packet.ray.dir_y[k] = direction.y();
+  packet.ray.dir_z[k] = direction.z();
   packet.ray.tnear[k] = kNear;
   packet.ray.tfar[k] = 1e30F;
   packet.ray.time[k] = 0.0F;

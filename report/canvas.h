@@ -12,17 +12,17 @@
 
 namespace retrace::report {
 
+/// Colour in sRGB, with components from 0 to 1.
+struct Colour {
+  double red = 0.0, green = 0.0, blue = 0.0;
+};
+
 struct Point {
   double x = 0.0, y = 0.0;
 };
 
 struct Size {
   double width = 0.0, height = 0.0;
-};
-
-/// Colour in sRGB, with components from 0 to 1.
-struct Colour {
-  double red = 0.0, green = 0.0, blue = 0.0;
 };
 
 struct Font {

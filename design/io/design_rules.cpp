@@ -11,6 +11,7 @@
 #include "core/number_format.h"
 #include "core/schema/access.h"
 #include "core/schema/conditions.h"
+#include "design/io/entrance_checks.h"
 #include "design/io/optics_checks.h"
 #include "design/io/part_reader.h"
 #include "design/io/zone_reader.h"

@@ -4,6 +4,7 @@
 
 #include "core/number_format.h"
 #include "design/haze.h"
+#include "design/io/entrance_checks.h"
 #include "design/io/optics_checks.h"
 
 namespace retrace::design {

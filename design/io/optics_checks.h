@@ -41,8 +41,5 @@ void check_layers(const schema::Document& document);
 /// Checks that no coating is given by two keys, and that no coating is given together with a key that it makes
 /// ineffective.
 void check_coating(const schema::Document& document);
-/// Checks that the state of the entrance face is complete and free of contradictions. Implemented in
-/// entrance_checks.cpp.
-void check_entrance_face(const schema::Document& document);
 
 }  // namespace retrace::design

@@ -16,11 +16,12 @@ class MillCheck : public NcSink {
  public:
   MillCheck(const PlanedPart& part, FindingList& findings, PlaningCheck& result);
 
-  /// Starts the checks of a program.
-  void begin(const NcProgram& program);
   void motion(const NcMotion& motion, const NcSettings& settings) override;
   void dwell(double seconds, const NcLocation&, const AxisPositions&) override { result_.time_s.back() += seconds; }
   void state(const NcSettings& settings, const NcLocation& place) override { control_.state(settings, place, false); }
+
+  /// Starts the checks of a program.
+  void begin(const NcProgram& program);
   void end(const NcEnd& end);
   /// Compares the surface after all strokes with the design.
   void measure();

@@ -15,8 +15,7 @@
 namespace retrace::fabrication::turning {
 namespace {
 
-using geometry::FreeformSurface;
-using geometry::Vec2;
+using geometry::FreeformSurface, geometry::Vec2;
 using jets::Jet2;
 
 /// Returns the angles of the spindle at the points of a spiral, in turns.

@@ -21,16 +21,16 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+Json range_json(const std::array<Angle, 2>& range) {
+  return Json::array({range[0].deg(), range[1].deg()});
+}
+
 Json error_json(const AppearanceError& error) {
   return {{"geometries", error.geometries},
           {"median", error.median},
           {"of_95_percent", error.percentile_95},
           {"max", error.max},
           {"floor", kErrorFloor}};
-}
-
-Json range_json(const std::array<Angle, 2>& range) {
-  return Json::array({range[0].deg(), range[1].deg()});
 }
 
 /// Returns the request and the ranges that the table covers.

@@ -386,14 +386,11 @@ const Table kTables[] = {
      .rows = kToleranceRows,
      .presence = Presence::implied}};
 
-const Format kFormat = {"study",
-                        "retrace.study/1",
-                        "Study of a design",
-                        {.name = "",
-                         .meaning = "Parameters that are varied, and quantities that are computed.",
-                         .rows = kRootRows,
-                         .tables = kTables},
-                        true};
+const Table kRoot = {.name = "",
+                     .meaning = "Parameters that are varied, and quantities that are computed.",
+                     .rows = kRootRows,
+                     .tables = kTables};
+const Format kFormat = {"study", "retrace.study/1", "Study of a design", kRoot, true};
 
 }  // namespace
 

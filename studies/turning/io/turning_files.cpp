@@ -50,16 +50,17 @@ void add_judged(const turning::TurnedPart& part, const turning::TurningCheck& ch
   json["blocks_per_s_max"] = check.motion.blocks_per_s;
   if (!check.envelope) return;
   const turning::Inspection& i = check.inspection;
-  json["blend_nm"] = check.blend_nm;
-  json["form_error_nm"] = i.form_error_nm;
-  json["interference_nm"] = i.interference_nm;
-  json["scallop_nm"] = i.scallop_nm;
-  json["scallop_nm_max"] = i.scallop_nm_max;
-  json["scallop_ratio_low"] = i.scallop_ratio_low;
-  json["scallop_ratio_high"] = i.scallop_ratio_high;
-  json["rms_nm"] = i.rms_nm;
-  json["profiles"] = i.cusps.size();
-  json["profiles_compared"] = i.compared;
+  const Json surface = {{"blend_nm", check.blend_nm},
+                        {"form_error_nm", i.form_error_nm},
+                        {"interference_nm", i.interference_nm},
+                        {"scallop_nm", i.scallop_nm},
+                        {"scallop_nm_max", i.scallop_nm_max},
+                        {"scallop_ratio_low", i.scallop_ratio_low},
+                        {"scallop_ratio_high", i.scallop_ratio_high},
+                        {"rms_nm", i.rms_nm},
+                        {"profiles", i.cusps.size()},
+                        {"profiles_compared", i.compared}};
+  json.update(surface);
 }
 
 Json verification_of(const TurningResult& r) {
