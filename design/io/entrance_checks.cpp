@@ -1,17 +1,19 @@
 #include <fmt/format.h>
 
 #include <string>
+#include <string_view>
 
 #include "core/number_format.h"
 #include "design/haze.h"
 #include "design/io/entrance_checks.h"
-#include "design/io/optics_checks.h"
 
 namespace retrace::design {
 namespace {
 
 using schema::Document;
 
+constexpr std::string_view kEntranceFace = "entrance";
+constexpr std::string_view kThickLayers = "entrance.layers";
 constexpr std::size_t kMaxThickLayers = 20;
 
 std::string key_of(std::string_view name) {

@@ -13,17 +13,15 @@ inline constexpr std::string_view kRoughness = "surface.roughness_sq_nm";
 inline constexpr std::string_view kRoughnessLength = "surface.correlation_length_um";
 inline constexpr std::string_view kWaviness = "surface.waviness_sq_nm";
 inline constexpr std::string_view kWavinessLength = "surface.waviness_length_um";
-inline constexpr std::string_view kAbsorption = "body.absorption_per_mm";
-inline constexpr std::string_view kFacetLayers = "coating.facets";
-inline constexpr std::string_view kEntranceLayers = "coating.entrance";
-inline constexpr std::string_view kEntranceFace = "entrance";
-inline constexpr std::string_view kThickLayers = "entrance.layers";
 
 /// Checks that every roughness comes with its correlation length and every waviness with its period.
 /// \throw InputError that names file, line and key, like all following functions
 void check_lengths(const schema::Document& document);
 /// Checks that the texture's model uses every height that is given.
 void check_heights(const schema::Document& document);
+
+inline constexpr std::string_view kAbsorption = "body.absorption_per_mm";
+
 /// Checks that a material is given.
 void check_material(const schema::Document& document);
 /// Checks that an absorption by wavelength is a valid curve.
@@ -32,6 +30,10 @@ void check_absorption(const schema::Document& document);
 void check_lines(const schema::Document& document);
 /// Checks that the Stokes parameters are physically possible.
 void check_stokes(const schema::Document& document);
+
+inline constexpr std::string_view kFacetLayers = "coating.facets";
+inline constexpr std::string_view kEntranceLayers = "coating.entrance";
+
 /// Checks that balls with a bowl behind them have a mirror.
 void check_ball_mirror(const schema::Document& document);
 /// Checks that wet elements belong to a finite array on a plane, and that the region that selects them is not empty.

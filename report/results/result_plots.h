@@ -113,6 +113,17 @@ std::string road_png(const studies::RoadResult& result, double scale = 1.5);
 /// contains the part of this luminance that comes from the reflectors.
 FloatPicture road_picture(const studies::RoadResult& result);
 
+/// Returns a plot of the tool path through one element, for roughing or finishing.
+PathPlot tool_path_plot(const studies::FabricationResult& result, bool roughing);
+
+/// Returns a plan of the elements that are cut, coloured by the order in which they are cut. In large arrays, adjacent
+/// elements of a row are drawn as one.
+MapPlot arrangement_plot(const studies::FabricationResult& result);
+
+/// Returns a plan of the array, coloured by the height of the material that remains above the facets after the
+/// programs.
+SurfacePlot error_map_plot(const studies::ErrorMap& map);
+
 /// Returns a plot of the forces on the tool against time, with one curve for each axis of the machine.
 LinePlot forces_plot(const studies::ForcesResult& result);
 
@@ -124,17 +135,6 @@ LinePlot turning_profile_plot(const studies::TurningResult& result);
 /// Returns two maps: the height of the designed surface, and the magnitude of the deviation of the machined surface
 /// from it.
 ImagePlot turning_maps(const studies::TurningResult& result);
-
-/// Returns a plan of the elements that are cut, coloured by the order in which they are cut. In large arrays, adjacent
-/// elements of a row are drawn as one.
-MapPlot arrangement_plot(const studies::FabricationResult& result);
-
-/// Returns a plan of the array, coloured by the height of the material that remains above the facets after the
-/// programs.
-SurfacePlot error_map_plot(const studies::ErrorMap& map);
-
-/// Returns a plot of the tool path through one element, for roughing or finishing.
-PathPlot tool_path_plot(const studies::FabricationResult& result, bool roughing);
 
 /// Returns a plot of the depth against the distance from the centre. It shows the design and the machined surface. For
 /// a lathe, the machined surface consists of the straight chords that the programs cut.
