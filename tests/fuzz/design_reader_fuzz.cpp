@@ -29,7 +29,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::array<std::string, 1> given = {override_of(text)};
   const std::span<const std::string> overrides(given.data(), given.front().empty() ? 0 : 1);
   try {
-    retrace::studies::parse_design(text, "fuzz.toml", overrides);
+    retrace::design::parse_design(text, "fuzz.toml", overrides);
   } catch (const retrace::InputError& error) {
     retrace::fuzz::require_one_line(error);
   }

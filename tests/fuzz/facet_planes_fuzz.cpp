@@ -31,7 +31,7 @@ void check(const retrace::geometry::FacetPlanes& planes) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace retrace::studies;
+  using namespace retrace::geometry;
   try {
     const auto planes = parse_facet_planes({reinterpret_cast<const char*>(data), size}, "fuzz.csv", checker());
     if (planes.size() == 0) std::abort();

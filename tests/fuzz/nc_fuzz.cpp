@@ -17,7 +17,7 @@ using namespace retrace::fabrication;
 
 struct CheckingSink : NcSink {
   void motion(const NcMotion& motion, const NcSettings&) override {
-    if (!std::isfinite(motion.to.x_mm) || motion.place.line < 1 || motion.feed_mm_per_min < 0) std::abort();
+    if (!std::isfinite(motion.to.x_mm) || motion.location.line < 1 || motion.feed_mm_per_min < 0) std::abort();
     if (++motions > 100000) throw retrace::InputError("enough");
   }
   void dwell(double seconds, const NcLocation&, const AxisPositions&) override {
