@@ -42,7 +42,8 @@ std::vector<TomlRename> reversed(std::vector<TomlRename> renames);
 
 /// Former name that was found in an input and replaced by the current one.
 struct RenamedInput {
-  InputLocation where;  ///< location with the former path of a key or table, or with the path of the key of a word
+  /// Location of the former name. For a renamed word, it is the location of the key that has this word.
+  InputLocation where;
   std::string former;   ///< former name of the key or table, or former word
   std::string current;  ///< name or word that replaced it
 };

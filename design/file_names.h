@@ -1,6 +1,7 @@
 #pragma once
 
-// Checks that a design names no files, and determines the units of the STL files that it names.
+// Two functions: one checks that a design refers to no files; the other determines the units of the STL files to which a
+// design refers.
 
 #include <string_view>
 

@@ -26,7 +26,7 @@ class MpiMailbox {
   /// Destroys the mailbox. MPI is finalized only if close() was called.
   virtual ~MpiMailbox() = default;
 
-  /// Waits until MPI has started. The start begins when the mailbox is created.
+  /// Waits until MPI has started. It starts in the background as soon as the mailbox is created.
   /// \return true if MPI has started
   virtual bool wait_for_start(std::chrono::milliseconds timeout) = 0;
 

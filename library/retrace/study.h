@@ -38,7 +38,7 @@ struct StudyResult {
   Drawing drawing;
 };
 
-/// Computes designs and directions over ranges of parameters.
+/// Computes the quantities of a study for all its designs and directions.
 /// \throw InputError with the position in the study or in its design
 /// \throw OutputError
 RETRACE_API StudyResult sweep(const Study& study, const StudyRequest& request = {}, const Running& running = {});

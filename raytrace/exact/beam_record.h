@@ -28,7 +28,7 @@ class BeamRecord {
   }
   /// Adds power to `truncated`. The power must include all copies of the beams.
   void add_truncated(double power) { tally_.other[Account::truncated] += power; }
-  /// Adds the power that is lost by rounding to `truncated`. This power is negative if fragments overlap.
+  /// Adds to `truncated` the power that is lost by rounding. This power is negative if fragments overlap.
   /// \param area_fraction part of beam.area_fraction that is lost
   void add_rounding_loss(const Beam& beam, double area_fraction) {
     add_to_ledger(beam, Account::truncated, area_fraction / beam.area_fraction * power_of(beam));

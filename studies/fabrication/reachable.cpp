@@ -80,7 +80,7 @@ void check_design(const design::Design& design, const JobRequest& request) {
                      "only allowed for cube corners, because a chisel reaches every point of a prism");
   if (request.strategy == "dmc")
     throw InputError(Field{"reachable"},
-                     "only allowed for strategies with a chisel, because dmc reaches every point of a cube corner");
+                     "not allowed for the strategy dmc, because dmc reaches every point of a cube corner");
   if (part.array.extent == geometry::Extent::infinite)
     throw InputError({design.source_name(), 0, "array.extent"},
                      "must be \"finite\", because infinite arrays cannot be cut, got \"infinite\"");

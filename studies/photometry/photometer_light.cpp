@@ -24,7 +24,7 @@ constexpr double kIgnoredFluxFraction = 2e-3;
 /// Minimum distance between two knees. Knees that are closer are merged into one.
 constexpr double kMinDistanceNm = 4.0;
 constexpr std::size_t kMaxKnees = 4;
-/// Step to whose multiples knees are rounded, so that settings with almost equal knees are traced together.
+/// Knees are rounded to multiples of this step, so that settings with almost equal knees are traced together.
 constexpr double kRoundingNm = 0.01;
 
 struct IndexAt {
