@@ -8,6 +8,7 @@
 #include "library/drawing_content.h"
 #include "report/results/result_plots.h"
 #include "studies/rre/io/rre_files.h"
+#include "studies/rre/rre_map.h"
 #include "studies/rre/rre_request.h"
 
 namespace retrace {
@@ -29,6 +30,32 @@ RrePoint from_study(const studies::RrePoint& point) {
   return told;
 }
 
+/// Divides a list into rows.
+std::vector<std::vector<double>> rows_of(const std::vector<double>& values, std::size_t columns) {
+  std::vector<std::vector<double>> rows;
+  for (auto row = values.begin(); row != values.end(); row += static_cast<std::ptrdiff_t>(columns))
+    rows.emplace_back(row, row + static_cast<std::ptrdiff_t>(columns));
+  return rows;
+}
+
+RreMap from_study(const studies::RreMap& map) {
+  return {map.design,
+          map.acceptance_half_angle_deg,
+          map.incidence_deg,
+          map.azimuth_deg,
+          rows_of(map.rre, map.incidence_deg.size()),
+          rows_of(map.std_error, map.incidence_deg.size()),
+          map.mean()};
+}
+
+/// Adds the polar maps and their drawings.
+void add_maps(const std::shared_ptr<const studies::RreResult>& found, RreResult& result) {
+  for (const studies::RreMap& map : studies::rre_maps(*found)) result.maps.push_back(from_study(map));
+  result.map = drawing_of([found] { return report::rre_map_plot(*found); });
+  if (report::rre_maps_can_be_compared(*found))
+    result.map_difference = drawing_of([found] { return report::rre_map_difference_plot(*found); });
+}
+
 }  // namespace
 
 RreResult rre(const std::vector<Design>& designs, const RreRequest& request, const Running& running) {
@@ -45,10 +72,15 @@ RreResult rre(const std::vector<Design>& designs, const RreRequest& request, con
   result.complete = found.complete;
   result.json = studies::rre_json(found);
   result.csv = studies::rre_csv(found);
-  result.table = studies::rre_table(found) + studies::derivative_table(found);
+  const bool has_maps = found.has_map && found.complete;
+  result.table =
+      (has_maps ? studies::rre_map_table(found) : studies::rre_table(found)) + studies::derivative_table(found);
   if (request.footprint) result.footprint = studies::footprint_json(found);
   if (request.far_field) result.far_field = studies::far_field_json(found);
-  if (!found.points.empty()) result.curve = drawing_of([held] { return report::rre_plot(*held); });
+  if (has_maps)
+    add_maps(held, result);
+  else if (!found.points.empty())
+    result.curve = drawing_of([held] { return report::rre_plot(*held); });
   if (!found.faces.empty()) result.footprint_map = drawing_of([held] { return report::footprint_plot(*held); });
   return result;
 }

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/number_format.h"
+#include "report/contours.h"
 #include "report/style.h"
 
 namespace retrace::report {
@@ -34,29 +35,87 @@ std::vector<Point> circle(Point centre, double radius) {
   return points;
 }
 
-/// Returns the range of the colour scale as decimal logarithms. It ends at the largest value and covers kPolarDecades.
-Range decades_of(const PolarPlot& plot) {
+/// Colours of values, and the ticks of the colour bar.
+struct PolarColours {
+  Range range;  ///< decimal logarithms of the values if the scale is logarithmic
+  bool is_logarithmic = false;
+  const ColourScale* scale = &kViridis;
+  Ticks ticks;  ///< contour lines are drawn at these values if the scale is linear
+
+  double position(double value) const { return (value - range.low) / range.span(); }
+  Colour colour(double value) const {
+    if (!std::isfinite(value)) return kWhite;
+    if (!is_logarithmic) return colour_at(*scale, position(value));
+    return colour_at(*scale, value > 0.0 ? position(std::log10(value)) : 0.0);
+  }
+};
+
+std::string decade_text(int exponent) {
+  return exponent >= -3 && exponent <= 4 ? shortest(std::pow(10.0, exponent)) : fmt::format("1e{}", exponent);
+}
+
+/// Returns a logarithmic scale that ends at the largest value and covers kPolarDecades.
+PolarColours decades_up_to(double largest) {
+  const double top = largest > 0.0 ? std::log10(largest) : 0.0;
+  PolarColours colours{{top - kPolarDecades, top}, true, &kViridis, {}};
+  for (int e = static_cast<int>(std::ceil(colours.range.low)); e <= static_cast<int>(std::floor(top)); ++e) {
+    colours.ticks.positions.push_back(e);
+    colours.ticks.labels.push_back(decade_text(e));
+  }
+  return colours;
+}
+
+PolarColours colours_of(const PolarPlot& plot) {
   double largest = 0.0;
   for (const PolarPanel& panel : plot.panels)
     for (const double v : panel.values)
-      if (std::isfinite(v)) largest = std::max(largest, v);
-  if (!(largest > 0.0)) return {-kPolarDecades, 0.0};
-  const double top = std::log10(largest);
-  return {top - kPolarDecades, top};
+      if (std::isfinite(v)) largest = std::max(largest, plot.scale == PolarScale::difference ? std::abs(v) : v);
+  if (plot.scale == PolarScale::decades) return decades_up_to(largest);
+  if (!(largest > 0.0)) largest = 1.0;
+  if (plot.scale == PolarScale::difference)
+    return {{-largest, largest}, false, &kBlueWhiteRed, make_ticks({-largest, largest}, 8)};
+  return {{0.0, largest}, false, &kViridis, make_ticks({0.0, largest}, 8)};
 }
 
-void draw_disc(Canvas& canvas, const PolarPanel& panel, Point centre, Range decades) {
-  const double radius = 0.5 * kDisc;
-  std::vector<Colour> colours;
-  for (std::size_t row = panel.columns; row-- > 0;)
-    for (std::size_t column = 0; column < panel.columns; ++column) {
-      const double v = panel.values[row * panel.columns + column];
-      colours.push_back(colour_at(kViridis, v > 0.0 ? (std::log10(v) - decades.low) / decades.span() : 0.0));
+/// Position of a point of a panel's grid in the drawing.
+Point on_disc(const PolarPanel& panel, Point centre, Point on_grid) {
+  const double pixel = kDisc / static_cast<double>(panel.columns);
+  return {centre.x - 0.5 * kDisc + (on_grid.x + 0.5) * pixel, centre.y + 0.5 * kDisc - (on_grid.y + 0.5) * pixel};
+}
+
+/// Draws contour lines at the ticks of the colour scale, dark on light colours and white on dark colours.
+void draw_contours(Canvas& canvas, const PolarPanel& panel, Point centre, const PolarColours& colours) {
+  for (const double level : colours.ticks.positions) {
+    const Colour at = colours.colour(level);
+    const bool is_light = 0.3 * at.red + 0.6 * at.green + 0.1 * at.blue > 0.55;
+    for (const std::vector<Point>& line : contour_lines(panel.values, panel.columns, level)) {
+      std::vector<Point> drawn;
+      for (const Point& p : line) drawn.push_back(on_disc(panel, centre, p));
+      canvas.line(drawn, {is_light ? kText : kWhite, 0.7, {}});
     }
-  if (colours.empty()) return;
+  }
+}
+
+void draw_disc(Canvas& canvas, const PolarPanel& panel, Point centre, const PolarColours& colours) {
+  const double radius = 0.5 * kDisc;
+  std::vector<Colour> pixels;
+  for (std::size_t row = panel.columns; row-- > 0;)
+    for (std::size_t column = 0; column < panel.columns; ++column)
+      pixels.push_back(colours.colour(panel.values[row * panel.columns + column]));
+  if (pixels.empty()) return;
   canvas.clip(circle(centre, radius));
-  canvas.image({centre.x - radius, centre.y - radius}, {kDisc, kDisc}, panel.columns, colours);
+  canvas.image({centre.x - radius, centre.y - radius}, {kDisc, kDisc}, panel.columns, pixels);
+  if (!colours.is_logarithmic) draw_contours(canvas, panel, centre, colours);
   canvas.end_clip();
+}
+
+/// Writes the azimuths around a disc.
+void draw_azimuths(Canvas& canvas, Point centre) {
+  constexpr double kAway = 0.5 * kDisc + 6.0;
+  canvas.text({centre.x + kAway, centre.y + 3.6}, "0°", kPolarTickFont, kFaint, Align::left);
+  canvas.text({centre.x, centre.y - kAway}, "90°", kPolarTickFont, kFaint, Align::centre);
+  canvas.text({centre.x - kAway, centre.y + 3.6}, "180°", kPolarTickFont, kFaint, Align::right);
+  canvas.text({centre.x, centre.y + kAway + 8.0}, "270°", kPolarTickFont, kFaint, Align::centre);
 }
 
 void draw_rings(Canvas& canvas, const PolarPanel& panel, Point centre) {
@@ -100,16 +159,27 @@ void draw_marks(Canvas& canvas, const PolarPanel& panel, Point centre) {
   }
 }
 
-void draw_bar(Canvas& canvas, Point corner, Range decades, std::string_view label) {
-  draw_colour_bar(canvas, kViridis, corner, {kPolarBarWidth, kDisc});
-  const AxisScale scale{decades, corner.y + kDisc, corner.y};
-  for (int e = static_cast<int>(std::ceil(decades.low)); e <= static_cast<int>(std::floor(decades.high)); ++e) {
-    canvas.line({{corner.x + kPolarBarWidth, scale.at(e)}, {corner.x + kPolarBarWidth + 4.0, scale.at(e)}},
-                {kText, 1.0, {}});
-    const std::string text = e >= -3 && e <= 4 ? shortest(std::pow(10.0, e)) : fmt::format("1e{}", e);
-    canvas.text({corner.x + kPolarBarWidth + 7.0, scale.at(e) + 3.6}, text, kPolarTickFont, kText, Align::left);
+void draw_bar(Canvas& canvas, Point corner, const PolarColours& colours, std::string_view label) {
+  draw_colour_bar(canvas, *colours.scale, corner, {kPolarBarWidth, kDisc});
+  const AxisScale scale{colours.range, corner.y + kDisc, corner.y};
+  for (std::size_t k = 0; k < colours.ticks.positions.size(); ++k) {
+    const double y = scale.at(colours.ticks.positions[k]);
+    canvas.line({{corner.x + kPolarBarWidth, y}, {corner.x + kPolarBarWidth + 4.0, y}}, {kText, 1.0, {}});
+    canvas.text({corner.x + kPolarBarWidth + 7.0, y + 3.6}, colours.ticks.labels[k], kPolarTickFont, kText,
+                Align::left);
   }
   canvas.text({corner.x + kBarRoom - 24.0, corner.y + 0.5 * kDisc}, label, kPolarLabelFont, kText, Align::centre, true);
+}
+
+/// Distances in the cell of a panel.
+struct PolarLayout {
+  Size cell = kPolarCell;
+  double above_disc = 34.0;  ///< distance from the top of the cell to the disc
+};
+
+PolarLayout layout_of(const PolarPlot& plot) {
+  if (!plot.has_azimuths) return {};
+  return {{kPolarCell.width + 36.0, kPolarCell.height + 52.0}, 66.0};
 }
 
 }  // namespace
@@ -117,24 +187,31 @@ void draw_bar(Canvas& canvas, Point corner, Range decades, std::string_view labe
 std::string render(const PolarPlot& plot, PlotFormat format, double scale) {
   const std::size_t abreast = std::clamp<std::size_t>(plot.panels.size(), 1, kMaxPerRow);
   const std::size_t rows = std::max<std::size_t>(1, (plot.panels.size() + abreast - 1) / abreast);
-  const Size size{2.0 * kMargin + static_cast<double>(abreast) * kPolarCell.width + kBarRoom,
-                  2.0 * kMargin + 24.0 + static_cast<double>(rows) * kPolarCell.height};
+  const PolarLayout layout = layout_of(plot);
+  const Size size{2.0 * kMargin + static_cast<double>(abreast) * layout.cell.width + kBarRoom,
+                  2.0 * kMargin + 24.0 + static_cast<double>(rows) * layout.cell.height};
   Canvas canvas(format, size, scale);
   canvas.fill_rectangle({0.0, 0.0}, size, kWhite);
   draw_title(canvas, size, plot.title);
-  const Range decades = decades_of(plot);
+  const PolarColours colours = colours_of(plot);
   for (std::size_t k = 0; k < plot.panels.size(); ++k) {
     const PolarPanel& panel = plot.panels[k];
-    const Point cell{kMargin + kPolarCell.width * static_cast<double>(k % abreast),
-                     kMargin + 24.0 + kPolarCell.height * static_cast<double>(k / abreast)};
-    const Point centre{cell.x + 0.5 * kPolarCell.width, cell.y + 34.0 + 0.5 * kDisc};
-    canvas.text({centre.x, cell.y + 24.0}, panel.title, kPanelFont, kText, Align::centre);
-    draw_disc(canvas, panel, centre, decades);
+    const Point cell{kMargin + layout.cell.width * static_cast<double>(k % abreast),
+                     kMargin + 24.0 + layout.cell.height * static_cast<double>(k / abreast)};
+    const Point centre{cell.x + 0.5 * layout.cell.width, cell.y + layout.above_disc + 0.5 * kDisc};
+    draw_within(canvas, layout.cell.width - 8.0, Ellipsis::middle, {centre.x, cell.y + 24.0}, panel.title, kPanelFont,
+                kText, Align::centre);
+    if (!panel.remark.empty())
+      draw_within(canvas, layout.cell.width - 8.0, Ellipsis::end, {centre.x, cell.y + 40.0}, panel.remark,
+                  kPolarTickFont, kFaint, Align::centre);
+    draw_disc(canvas, panel, centre, colours);
     draw_rings(canvas, panel, centre);
+    if (plot.has_azimuths) draw_azimuths(canvas, centre);
     draw_marks(canvas, panel, centre);
   }
-  draw_bar(canvas, {kMargin + static_cast<double>(abreast) * kPolarCell.width + 10.0, kMargin + 58.0}, decades,
-           plot.value_label);
+  draw_bar(canvas,
+           {kMargin + static_cast<double>(abreast) * layout.cell.width + 10.0, kMargin + 24.0 + layout.above_disc},
+           colours, plot.value_label);
   return canvas.finish();
 }
 

@@ -27,13 +27,24 @@ struct PolarPanel {
   std::size_t columns = 0;     ///< number of columns and of rows of the square around the disc
   std::vector<double> values;  ///< row by row from the bottom
   std::vector<PolarMark> marks;
+  std::string remark = {};  ///< line under the title; not drawn if empty
 };
 
-/// Discs, two or three in a row, with one logarithmic colour scale.
+/// Colour scale of polar panels.
+enum class PolarScale {
+  decades,    ///< logarithmic: four decades below the largest value
+  linear,     ///< from 0 to the largest value, with contour lines
+  difference  ///< linear, with white for 0 and the same range for both signs, with contour lines
+};
+
+/// Discs, two or three in a row, with one colour scale.
 struct PolarPlot {
   std::string title;
   std::string value_label;
   std::vector<PolarPanel> panels;
+  PolarScale scale = PolarScale::decades;
+  /// True: directions are given by incidence (distance from the centre) and azimuth, which is written around the discs.
+  bool has_azimuths = false;
 };
 
 /// Draws the plot. render_svg() and render_png() call this function.

@@ -43,6 +43,18 @@ inline constexpr ColourScale kViridis = {{{0.267, 0.005, 0.329},
                                           {0.678, 0.864, 0.190},
                                           {0.993, 0.906, 0.144}}};
 
+/// Diverging colour scale RdBu of ColorBrewer (C. A. Brewer, 2003), from blue over white to red. It shows differences,
+/// with white for 0, and is suitable for colour-blind readers.
+inline constexpr ColourScale kBlueWhiteRed = {{{0.129, 0.400, 0.675},
+                                               {0.263, 0.576, 0.765},
+                                               {0.573, 0.773, 0.871},
+                                               {0.820, 0.898, 0.941},
+                                               {0.969, 0.969, 0.969},
+                                               {0.992, 0.859, 0.780},
+                                               {0.957, 0.647, 0.510},
+                                               {0.839, 0.376, 0.302},
+                                               {0.698, 0.094, 0.169}}};
+
 /// Returns a colour of a scale.
 /// \param fraction position on the scale, clamped to 0..1
 Colour colour_at(const ColourScale& scale, double fraction);

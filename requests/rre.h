@@ -39,6 +39,9 @@ struct RreRequest {
   bool footprint = false;
   /// Compute the directions in which light leaves the entrance face.
   bool far_field = false;
+  /// Compute RRE over incidence and azimuth as a polar map; the default directions are then 0 to 80 degrees in steps of
+  /// 5, and all azimuths in steps of 10 degrees.
+  bool map = false;
 };
 
 }  // namespace retrace

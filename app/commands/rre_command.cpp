@@ -59,11 +59,25 @@ void warn_of_panels(studies::RreResult& result) {
                                          report::kMaxFootprintPanels, result.returned.size())});
 }
 
+/// Adds the files of polar maps. The difference of the maps is drawn if there are two designs.
+void add_map_files(ResultFiles& files, std::size_t designs, const studies::RreResult& result) {
+  const auto if_complete = [&](const auto& content) { return result.complete ? content() : std::string(); };
+  files.add("map.csv", [=, &result] { return if_complete([&] { return studies::rre_map_csv(result); }); });
+  files.add_drawing("map", [&] { return report::rre_map_plot(result); });
+  if (designs == 2) files.add_drawing("map_difference", [&] { return report::rre_map_difference_plot(result); });
+}
+
 /// Adds the output files of the command.
 /// \param result result of the computation; it is filled before the files are written
-void add_files(ResultFiles& files, const studies::RreSettings& asked, const studies::RreResult& result) {
+/// \param designs number of designs
+void add_files(ResultFiles& files, const studies::RreSettings& asked, std::size_t designs,
+               const studies::RreResult& result) {
   files.add("rre.csv", [&] { return studies::rre_csv(result); });
-  files.add_drawing("rre", [&] { return report::rre_plot(result); });
+  if (asked.map) {
+    add_map_files(files, designs, result);
+  } else {
+    files.add_drawing("rre", [&] { return report::rre_plot(result); });
+  }
   if (asked.footprint) {
     files.add("footprint.json", [&] { return studies::footprint_json(result); });
     files.add_drawing("footprint", [&] { return report::footprint_plot(result); });
@@ -96,7 +110,7 @@ ExitCode run(const RreOptions& options, const CommonOptions& common) {
   std::vector<design::Design> designs = designs_of(options, common);
   studies::RreResult result;
   ResultFiles files(common, files_read(designs), "rre.json");
-  add_files(files, request, result);
+  add_files(files, request, designs.size(), result);
   const Words to_shorten = what_shortens_rre(request);
   const studies::RreStudy study(std::move(designs), std::move(request));
   const OrderlyInterrupt interrupt;
@@ -104,8 +118,10 @@ ExitCode run(const RreOptions& options, const CommonOptions& common) {
   interrupt.run(common, {"tracing", to_shorten},
                 [&](Progress* bar, const Cancellation* cancel) { result = study.run(bar, cancel); });
   warn_of_panels(result);
+  const bool has_maps = result.has_map && result.complete;
+  const std::string table = has_maps ? studies::rre_map_table(result) : studies::rre_table(result);
   return files.write(
-      studies::rre_json(result), studies::rre_table(result) + studies::derivative_table(result), result.warnings,
+      studies::rre_json(result), table + studies::derivative_table(result), result.warnings,
       {.complete = result.complete, .interrupted = fmt::format("finished points: {}", result.points.size())});
 }
 
@@ -121,6 +137,8 @@ Command rre_command() {
 `exact` follows beams and has no noise. `stochastic` follows strong beams like `exact` and resamples weak beams; its noise is far below that of rays for the same time, except where light enters prisms at oblique azimuths. `cell` is a Monte Carlo engine in SIMD lanes for infinite arrays, and for arrays of equal elements that extend more than two elements from every border (Embree traces the borders). `embree` is a Monte Carlo engine for every design. `montecarlo` uses `cell` if possible, and otherwise `embree`. `auto` selects, for each direction and wavelength, the one of `exact`, `stochastic` and `montecarlo` that is expected to reach the target error first.
 
 A LIST can combine values `a,b,c` and ranges `start:stop:step`, which include the stop, such as `--incidence=-40:40:5`. With `start:stop:auto`, `--incidence` selects the angles automatically: the ends, 0, the angles at which total reflection begins or ends, and as many others as needed for linear interpolation with an error below the target error or 1e-3, whichever is greater.
+
+`--map` computes RRE over incidence and azimuth as a polar map, with contour lines. Without lists, the directions are `--incidence=0:80:5` and `--azimuth=0:350:10`. Directions that symmetries of the part map to each other are traced only one time. The default target error is 1e-3. With two designs, the difference of their maps is drawn as well.
 
 `--derivatives` computes the derivatives of RRE with respect to size, angle of the facets, index, thickness and incidence, with an estimate of their errors. Where RRE has a kink or a jump, a derivative is left out and the reason is given. `--footprint` and `--far-field` write files of these names to the folder of `--out`.)",
       .reads = {"retrace.design/1"},

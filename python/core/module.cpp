@@ -126,6 +126,8 @@ void bind_rre(py::module_& module) {
       .def_readonly("footprint", &RreResult::footprint)
       .def_readonly("far_field", &RreResult::far_field)
       .def_readonly("curve", &RreResult::curve)
+      .def_readonly("map", &RreResult::map)
+      .def_readonly("map_difference", &RreResult::map_difference)
       .def_readonly("footprint_map", &RreResult::footprint_map);
   module.def("rre", [](const std::vector<Design>& designs, const RreRequest& request, const py::object& progress,
                        unsigned threads) {

@@ -14,7 +14,15 @@ from ._core import version as _version
 from ._design import Design
 from ._errors import BudgetError, Error, InputError, OutputError
 from ._fabrication import Fabrication, Job, Verification, fabricate, job, verify
-from ._light import Footprint, PhotometryResult, RreResult, footprint, photometry, rre
+from ._light import (
+    Footprint,
+    PhotometryResult,
+    PolarMap,
+    RreResult,
+    footprint,
+    photometry,
+    rre,
+)
 from ._part import (
     ExportResult,
     FaceKind,
@@ -66,6 +74,7 @@ __all__ = [
     "RayAccount",
     "RaysResult",
     "Result",
+    "PolarMap",
     "RreResult",
     "SweepResult",
     "ToleranceResult",

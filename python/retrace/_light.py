@@ -3,18 +3,27 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from . import _core
 from ._arguments import Numbers, thread_count
 from ._design import AnyDesign, design_of, designs_of
+from ._errors import InputError
 from ._fields import FIELDS
 from ._progress import Progress, teller
 from ._request import described, given
 from ._results import Array, Columns, Result, dataset_of, frozen, html_table
 
-__all__ = ["Footprint", "PhotometryResult", "RreResult", "footprint", "photometry", "rre"]
+__all__ = [
+    "Footprint",
+    "PhotometryResult",
+    "PolarMap",
+    "RreResult",
+    "footprint",
+    "photometry",
+    "rre",
+]
 
 
 class RreResult(Result):
@@ -35,7 +44,15 @@ class RreResult(Result):
     complete: bool
 
     def __init__(self, core: Any) -> None:
-        super().__init__(core, drawings={"rre": core.curve, "footprint": core.footprint_map})
+        super().__init__(
+            core,
+            drawings={
+                "rre": core.curve,
+                "map": core.map,
+                "map_difference": core.map_difference,
+                "footprint": core.footprint_map,
+            },
+        )
         self._footprint: str = core.footprint
         self._far_field: str = core.far_field
 
@@ -61,6 +78,32 @@ class RreResult(Result):
         """Document of the directions in which light leaves, or None if not requested."""
         return json.loads(self._far_field) if self._far_field else None
 
+    def polar(self, design: int = 0, acceptance_half_angle_deg: float | None = None) -> PolarMap:
+        """Returns the polar map of a design, if rre() was called with map=True.
+
+        design: index in the list of designs. acceptance_half_angle_deg: acceptance cone; None: the
+        narrowest one. Raises InputError if there is no such map."""
+        maps = [one for one in self.document.get("maps", ()) if one["design"] == design]
+        if acceptance_half_angle_deg is not None:
+            maps = [
+                one
+                for one in maps
+                if one["acceptance_half_angle_deg"] == acceptance_half_angle_deg
+            ]
+        if not maps:
+            there = [
+                (one["design"], one["acceptance_half_angle_deg"])
+                for one in self.document.get("maps", ())
+            ]
+            raise InputError(
+                "there is no such map; the maps have the designs and acceptance angles "
+                f"{there}"
+                if there
+                else "there are no maps; call rre() with map=True",
+                key="design",
+            )
+        return PolarMap(maps[0])
+
     @property
     def engines(self) -> Any:
         """Engine that computed each point."""
@@ -73,7 +116,35 @@ class RreResult(Result):
         return dataset_of(self.points, dims, {**self._attributes(), "title": self.title})
 
     def _repr_svg_(self) -> str | None:
-        return self._shown_drawing("rre")
+        return self._shown_drawing("map" if "map" in self.drawings else "rre")
+
+
+class PolarMap:
+    """Retroreflective efficiency (RRE) of one design over incidence and azimuth."""
+
+    design: int  #: index in the list of designs
+    acceptance_half_angle_deg: float
+    incidence_deg: Array  #: angles of incidence, ascending
+    azimuth_deg: Array  #: azimuths from 0 to 360 degrees, ascending
+    rre: Array  #: RRE as a fraction, with the shape (azimuths, incidences)
+    std_error: Array  #: standard errors, in the same shape
+    mean_rre: float  #: mean over the directions of the map, by solid angle
+
+    def __init__(self, map: Mapping[str, Any]) -> None:
+        """map: an element of the list `maps` of the document."""
+        self.design = map["design"]
+        self.acceptance_half_angle_deg = map["acceptance_half_angle_deg"]
+        self.incidence_deg = frozen(map["incidence_deg"])
+        self.azimuth_deg = frozen(map["azimuth_deg"])
+        self.rre = frozen(map["rre"])
+        self.std_error = frozen(map["std_error"])
+        self.mean_rre = map["mean_rre"]
+
+    def __repr__(self) -> str:
+        return (
+            f"<PolarMap: {len(self.azimuth_deg)} azimuths, {len(self.incidence_deg)} incidences, "
+            f"mean_rre {self.mean_rre:.6g}>"
+        )
 
 
 class Footprint(Result):

@@ -50,6 +50,22 @@ namespace retrace::report {
 /// Returns a plot of RRE, see rre_plot() in report/plot_contents.h.
 LinePlot rre_plot(const studies::RreResult& result);
 
+/// Maximum number of panels in the drawing of polar maps.
+inline constexpr std::size_t kMaxMapPanels = 12;
+
+/// Returns polar maps of RRE in percent over incidence and azimuth, with contour lines: one panel for each design and
+/// acceptance cone.
+/// \pre the result has maps and is complete
+PolarPlot rre_map_plot(const studies::RreResult& result);
+
+/// Returns polar maps of the difference of RRE between two designs, in percentage points: that of the second design
+/// minus that of the first, with one panel for each acceptance cone.
+/// \pre rre_maps_can_be_compared(result)
+PolarPlot rre_map_difference_plot(const studies::RreResult& result);
+
+/// Returns true if a result has maps of exactly two designs with the same acceptance cones.
+bool rre_maps_can_be_compared(const studies::RreResult& result);
+
 /// Maximum number of directions in the drawing of footprints.
 inline constexpr std::size_t kMaxFootprintPanels = 24;
 

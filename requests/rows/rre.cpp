@@ -35,6 +35,9 @@ constexpr Need kRreNeedRays[] = {kRreByRays};
 constexpr Need kRreNeedCutoff[] = {kRreWithCutoff};
 constexpr Need kRreNeedTarget[] = {kRreNoSamples, kRreWithTarget, kRreNoCutoffOrDerivatives, kRreNoCutoffOrFootprint,
                                    kRreNoCutoffOrFarField};
+constexpr schema::Condition kRreNoFootprint[] = {schema::is_absent("footprint")};
+constexpr schema::Condition kRreNoFarField[] = {schema::is_absent("far_field")};
+constexpr Need kRreNeedGrid[] = {kRreNoFootprint, kRreNoFarField};
 constexpr Need kRreNeedExactAndOut[] = {kIsExact, kRreOut};
 
 schema::Value incidence_spans(const RreRequest& request) {
@@ -121,6 +124,13 @@ constexpr Row kRreRows[] = {
      access<&RreRequest::far_field>,
      {},
      kRreNeedExactAndOut},
+    {"map",
+     Flag{},
+     "compute RRE over incidence and azimuth as a polar map; the default directions are then 0 to 80 degrees in steps "
+     "of 5, and all azimuths in steps of 10 degrees",
+     access<&RreRequest::map>,
+     {},
+     kRreNeedGrid},
     seed_row<RreRequest>()};
 
 }  // namespace

@@ -11,7 +11,7 @@
 #include "design/part_of_design.h"
 #include "materials/io/spectrum_reader.h"
 #include "raytrace/engines/wavelengths.h"
-#include "raytrace/faces/mirror_symmetry.h"
+#include "raytrace/faces/part_symmetry.h"
 #include "raytrace/observers/coefficients.h"
 
 namespace retrace::studies {
@@ -290,7 +290,8 @@ std::vector<EquivalentDirections> Photometer::group_equivalent_settings(
     const std::vector<PhotometerSetting>& settings) const {
   std::vector<Vec3> to_source;
   for (const PhotometerSetting& setting : settings) to_source.push_back(frame_of(setting).to_source);
-  return group_equivalent_directions(to_source, settings.size() > 1 ? mirrors() : std::array<bool, 2>{});
+  return group_equivalent_directions(to_source,
+                                     reflections_of(settings.size() > 1 ? mirrors() : std::array<bool, 2>{}));
 }
 
 std::optional<std::vector<PhotometerReading>> Photometer::measure_in_one_light(

@@ -13,8 +13,8 @@
 #include "design/optical_model.h"
 #include "raytrace/observers/far_field.h"
 #include "raytrace/observers/photometric_geometry.h"
-#include "studies/photometry/equivalent_directions.h"
 #include "studies/photometry/photometry.h"
+#include "studies/rre/equivalent_directions.h"
 
 namespace retrace::raytrace {
 class MonteCarlo;

@@ -87,7 +87,7 @@ class FarFieldMemory {
 /// share the traced light. For some of them, the frame is therefore mirrored.
 ReturnFrame shared_frame(const PhotometerSetting& setting, const SharedDirection& shared) {
   ReturnFrame frame = frame_of(setting);
-  for (geometry::Vec3* axis : {&frame.to_source, &frame.right, &frame.up}) *axis = shared.mirrored(*axis);
+  for (geometry::Vec3* axis : {&frame.to_source, &frame.right, &frame.up}) *axis = shared.mapped(*axis);
   return frame;
 }
 

@@ -6,9 +6,14 @@
 #include <iterator>
 #include <tuple>
 #include <utility>
+#include <variant>
 
+#include "design/engine_facts.h"
 #include "design/total_reflection.h"
+#include "raytrace/faces/part_symmetry.h"
+#include "raytrace/light/light_setup.h"
 #include "studies/rre/adaptive_curve.h"
+#include "studies/rre/equivalent_directions.h"
 #include "studies/rre/spectral_mean.h"
 
 namespace retrace::studies {
@@ -150,8 +155,91 @@ TracedRequest trace_chosen(const std::vector<design::Design>& designs, const std
     }
     std::move(round.begin(), round.end(), std::back_inserter(traced.directions));
   }
+  traced.traced_directions = traced.directions.size();
   put_in_order(traced.directions, request.azimuth_deg);
   traced.warning = told(curve);
+  return traced;
+}
+
+/// Returns the maps of directions that do not change RRE of a design. The first is the identity. The others are only
+/// used if all optical properties are the same in all directions.
+std::vector<Eigen::Matrix2d> symmetries_of(const design::Design& design, const design::OpticalModel& model) {
+  const raytrace::EngineFacts facts = design::engine_facts(design, &model.optics);
+  const raytrace::Stokes& light = design.light.polarisation;
+  const bool is_polarised = light.q != 0.0 || light.u != 0.0 || light.v != 0.0;
+  const bool has_height_map = std::holds_alternative<design::HeightMapTexture>(design.surface.texture);
+  if (facts.has_balls || facts.has_curved_entrance || facts.has_unequal_backs || facts.has_form ||
+      design.surface.entrance.scratch_azimuth_deg || has_height_map || is_polarised)
+    return {Eigen::Matrix2d::Identity()};
+  return raytrace::symmetries_of(model.part);
+}
+
+geometry::Vec3 to_source(const Direction& direction) {
+  return raytrace::direction_to_source(
+      {Angle::from_deg(direction.at.incidence_deg), Angle::from_deg(direction.at.azimuth_deg), {}});
+}
+
+/// Returns Stokes parameters that a symmetry maps from one direction to another. Both are relative to source_axis().
+/// \param to_traced maps the direction `at` to the direction of the given light
+raytrace::Stokes mapped(raytrace::Stokes stokes, const SharedDirection& to_traced, const geometry::Vec3& at) {
+  // A reflection reverses the sense of rotation about the direction.
+  if (to_traced.to_traced.determinant() < 0.0) {
+    stokes.u = -stokes.u;
+    stokes.v = -stokes.v;
+  }
+  const SharedDirection back{0, to_traced.to_traced.transpose()};
+  return raytrace::in_source_axes({stokes, back.mapped(raytrace::source_axis(to_traced.mapped(at)))}, at);
+}
+
+/// Sets the results of a direction from those of an equivalent direction that was traced.
+void share(const Direction& traced, const SharedDirection& shared, Direction& direction) {
+  const RrePoint at = direction.at;
+  direction = traced;
+  direction.at = at;
+  for (RrePoint& point : direction.points) {
+    point.incidence_deg = at.incidence_deg;
+    point.azimuth_deg = at.azimuth_deg;
+    point.stokes = mapped(point.stokes, shared, to_source(direction));
+  }
+}
+
+/// Returns the directions of one design, in groups that share one trace.
+std::vector<EquivalentDirections> group_directions(const std::vector<Direction>& directions,
+                                                   const design::Design& design, const design::OpticalModel& model) {
+  std::vector<geometry::Vec3> all;
+  for (const Direction& direction : directions) all.push_back(to_source(direction));
+  return group_equivalent_directions(all, symmetries_of(design, model));
+}
+
+/// Traces the grid of a polar map. Of equivalent directions, only one is traced.
+TracedRequest trace_grid(const std::vector<design::Design>& designs, const std::vector<design::OpticalModel>& models,
+                         const RreSettings& request, std::vector<Direction> directions, Progress* progress,
+                         const Cancellation* cancel) {
+  struct Share {
+    std::size_t direction, traced;
+    SharedDirection shared;
+  };
+  std::vector<Share> shares;
+  std::vector<Direction> representatives;
+  for (auto first = directions.begin(); first != directions.end();) {
+    const std::size_t d = first->at.design;
+    const auto last = std::find_if(first, directions.end(), [&](const Direction& at) { return at.at.design != d; });
+    const auto offset = static_cast<std::size_t>(first - directions.begin());
+    for (const EquivalentDirections& group : group_directions({first, last}, designs[d], models[d])) {
+      for (const SharedDirection& shared : group)
+        shares.push_back({offset + shared.index, representatives.size(), shared});
+      representatives.push_back(directions[offset + group.front().index]);
+    }
+    first = last;
+  }
+  TracedRequest traced;
+  DirectionTracing tracing(designs, models, request, cancel);
+  trace_points(designs, models, tracing, representatives, progress);
+  traced.complete = all_are_traced(representatives);
+  for (const Share& share_of : shares)
+    share(representatives[share_of.traced], share_of.shared, directions[share_of.direction]);
+  traced.directions = std::move(directions);
+  traced.traced_directions = representatives.size();
   return traced;
 }
 
@@ -162,9 +250,11 @@ TracedRequest trace_request(const std::vector<design::Design>& designs, const st
                             const Cancellation* cancel) {
   if (!request.incidence_spans.empty()) return trace_chosen(designs, models, request, progress, cancel);
   TracedRequest traced;
-  DirectionTracing tracing(designs, models, request, cancel);
   traced.directions = directions_of(models, request, request.incidence_deg);
   if (only) std::erase_if(traced.directions, [&](const Direction& direction) { return direction.at.design != *only; });
+  if (request.map) return trace_grid(designs, models, request, std::move(traced.directions), progress, cancel);
+  DirectionTracing tracing(designs, models, request, cancel);
+  traced.traced_directions = traced.directions.size();
   trace_points(designs, models, tracing, traced.directions, progress);
   traced.complete = all_are_traced(traced.directions);
   return traced;

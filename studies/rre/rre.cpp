@@ -66,7 +66,9 @@ std::string missed_target_text(const design::Design& design, const RrePoint& at,
 }  // namespace
 
 double target_error_of(const RreSettings& request) {
-  return request.target_error.value_or(request.incidence_spans.empty() ? kDefaultTargetError : 0.5 * kCurveTolerance);
+  if (request.target_error) return *request.target_error;
+  if (request.map) return kCurveTolerance;
+  return request.incidence_spans.empty() ? kDefaultTargetError : 0.5 * kCurveTolerance;
 }
 
 namespace {
@@ -207,6 +209,7 @@ RreResult RreStudy::begun() const {
   result.designs = designs;
   result.engine_requested = raytrace::engine_name(request.engine);
   result.seed = request.seed;
+  result.has_map = request.map;
   for (const design::OpticalModel& model : models) result.light.push_back(model.spectral);
   for (const design::OpticalModel& model : models) append(result.warnings, model.warnings);
   return result;
@@ -225,6 +228,7 @@ RreResult RreStudy::run(std::optional<std::size_t> design, Progress* progress, c
   RreResult result = begun();
   TracedRequest traced = trace_request(designs, models, request, design, progress, cancel);
   result.complete = traced.complete;
+  result.traced_directions = traced.traced_directions;
   if (!traced.warning.empty()) result.warnings.push_back({"curve_not_resolved", traced.warning});
   for (Direction& direction : traced.directions) {
     for (const std::uint64_t rays : direction.rays) result.rays += rays;

@@ -44,8 +44,9 @@ struct RreSettings {
   raytrace::Engine engine = raytrace::Engine::automatic;
   std::optional<std::uint64_t> rays;  ///< number of rays per point; none: rays are traced until target_error is reached
   /// Maximum standard error (Monte Carlo) or maximum truncated power (exact engine), as a fraction of the incident
-  /// power. The default is kDefaultTargetError, or half of kCurveTolerance if incidences are chosen automatically. If
-  /// the exact engine is requested by name or needed for other results, the default is 1e-10.
+  /// power. The default is kDefaultTargetError, half of kCurveTolerance if incidences are chosen automatically, or
+  /// kCurveTolerance for maps. If the exact engine is requested by name or needed for other results, the default is
+  /// 1e-10.
   std::optional<double> target_error;
   raytrace::Sampling::Kind sampling = raytrace::Sampling::Kind::stratified;  ///< `plain` uses Embree
   bool needs_plain_sampling() const { return sampling == raytrace::Sampling::Kind::plain; }
@@ -56,6 +57,9 @@ struct RreSettings {
   bool derivatives = false;  ///< exact engine: compute derivatives of RRE with respect to parameters of the design
   bool footprint = false;    ///< exact engine: compute the regions of the entrance face that return light
   bool far_field = false;    ///< exact engine: compute the directions in which light leaves the entrance face
+  /// Trace a grid of directions for a polar map (studies/rre/rre_map.h). Directions that symmetries of a part map to
+  /// each other are traced only one time.
+  bool map = false;
 };
 
 /// Returns the target error of a request, or its default.
@@ -107,7 +111,9 @@ struct RreResult {
   std::vector<RrePoint> points;  ///< sorted by design, wavelength, azimuth, incidence, acceptance cone
   /// Results for each direction, in the order of `points`. Empty unless footprints or far fields were requested.
   std::vector<ReturnedLight> returned;
-  std::vector<EntranceFace> faces;  ///< entrance face of each design, if footprints were requested
+  std::vector<EntranceFace> faces;    ///< entrance face of each design, if footprints were requested
+  std::size_t traced_directions = 0;  ///< number of directions that were traced, for all designs together
+  bool has_map = false;               ///< true: the points are a grid for polar maps, see rre_maps()
   std::uint64_t rays = 0;
   double elapsed_s = 0.0;
   Warnings warnings;

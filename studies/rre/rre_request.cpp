@@ -1,6 +1,7 @@
 #include "studies/rre/rre_request.h"
 
 #include "requests/descriptions.h"
+#include "studies/rre/rre_map.h"
 
 namespace retrace::studies {
 
@@ -19,6 +20,8 @@ RreSettings resolve(const RreRequest& request) {
   settings.derivatives = request.derivatives;
   settings.footprint = request.footprint;
   settings.far_field = request.far_field;
+  settings.map = request.map;
+  if (settings.map) resolve_grid(settings);
   return settings;
 }
 

@@ -53,6 +53,20 @@ TEST(PolarPlot, DrawsWhatHasNoValues) {
   EXPECT_THROW(render_png(plot, 0.0), std::invalid_argument);
 }
 
+/// A linear scale has contour lines at its ticks. They are drawn in addition to the pixels.
+TEST(PolarPlot, DrawsContourLinesOnLinearScales) {
+  const auto paths_of = [](PolarScale scale) {
+    PolarPlot plot = sample();
+    plot.scale = scale;
+    const std::string svg = render_svg(plot);
+    std::size_t count = 0;
+    for (std::size_t at = svg.find("<path"); at != std::string::npos; at = svg.find("<path", at + 1)) ++count;
+    return count;
+  };
+  EXPECT_GT(paths_of(PolarScale::linear), paths_of(PolarScale::decades));
+  EXPECT_GT(paths_of(PolarScale::difference), paths_of(PolarScale::decades));
+}
+
 TEST(PhotometryPlot, MarksTheTestPointsOfEachDirection) {
   studies::PhotometryResult result;
   result.design.title = "Cubes";

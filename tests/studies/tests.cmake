@@ -5,7 +5,7 @@ retrace_test(studies_tests
           ${CMAKE_CURRENT_LIST_DIR}/init_templates_test.cpp support/key_table.cpp support/refusals.cpp
   LIBRARIES retrace::optical_model rapidcheck)
 retrace_test(studies_tests
-  SOURCES ${CMAKE_CURRENT_LIST_DIR}/adaptive_curve_test.cpp ${CMAKE_CURRENT_LIST_DIR}/coating_test.cpp ${CMAKE_CURRENT_LIST_DIR}/derivatives_test.cpp ${CMAKE_CURRENT_LIST_DIR}/engine_choice_test.cpp ${CMAKE_CURRENT_LIST_DIR}/returned_light_test.cpp
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/adaptive_curve_test.cpp ${CMAKE_CURRENT_LIST_DIR}/coating_test.cpp ${CMAKE_CURRENT_LIST_DIR}/derivatives_test.cpp ${CMAKE_CURRENT_LIST_DIR}/engine_choice_test.cpp ${CMAKE_CURRENT_LIST_DIR}/returned_light_test.cpp ${CMAKE_CURRENT_LIST_DIR}/rre_map_test.cpp
           ${CMAKE_CURRENT_LIST_DIR}/rre_files_test.cpp ${CMAKE_CURRENT_LIST_DIR}/roughness_test.cpp
           ${CMAKE_CURRENT_LIST_DIR}/spectrum_of_light_test.cpp ${CMAKE_CURRENT_LIST_DIR}/texture_test.cpp ${CMAKE_CURRENT_LIST_DIR}/wet_back_test.cpp
   LIBRARIES retrace::roughness retrace::rre retrace::inspect)

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <functional>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -12,6 +15,7 @@
 #include "core/message_text.h"
 #include "core/number_format.h"
 #include "design/io/design_json.h"
+#include "studies/rre/rre_map.h"
 
 namespace retrace::studies {
 namespace {
@@ -97,6 +101,65 @@ std::string line_of(const RrePoint& point, const RreDerivative& by) {
   return line + fmt::format("{:>13.6g}  {:.1e}\n", by.derivative.value, by.derivative.error);
 }
 
+Json map_json(const RreMap& map) {
+  const auto rows_of = [&](const std::vector<double>& values) {
+    Json rows = Json::array();
+    const std::size_t columns = map.incidence_deg.size();
+    for (std::size_t k = 0; k < map.azimuth_deg.size(); ++k)
+      rows.push_back(std::vector<double>(values.begin() + static_cast<std::ptrdiff_t>(k * columns),
+                                         values.begin() + static_cast<std::ptrdiff_t>((k + 1) * columns)));
+    return rows;
+  };
+  return {{"design", map.design},
+          {"acceptance_half_angle_deg", map.acceptance_half_angle_deg},
+          {"mean_rre", map.mean()},
+          {"incidence_deg", map.incidence_deg},
+          {"azimuth_deg", map.azimuth_deg},
+          {"rre", rows_of(map.rre)},
+          {"std_error", rows_of(map.std_error)}};
+}
+
+/// Direction of a map with its value.
+struct MapExtreme {
+  double rre = 0.0;
+  double incidence_deg = 0.0;
+  double azimuth_deg = 0.0;
+};
+
+std::string text_of(const MapExtreme& at) {
+  return fmt::format("{:>9} at incidence {}, azimuth {}\n", fixed(100.0 * at.rre, 4), shortest(at.incidence_deg),
+                     shortest(at.azimuth_deg));
+}
+
+/// Returns the direction whose value is before all others in an order.
+template <class Less>
+MapExtreme first_of(const RreMap& map, Less is_less) {
+  const auto found = std::min_element(map.rre.begin(), map.rre.end(), is_less);
+  const auto k = static_cast<std::size_t>(found - map.rre.begin());
+  return {*found, map.incidence_deg[k % map.incidence_deg.size()], map.azimuth_deg[k / map.incidence_deg.size()]};
+}
+
+std::string summary_of(const RreMap& map) {
+  std::string text = fmt::format("mean     {:>9} by solid angle, incidence {} to {}\n", fixed(100.0 * map.mean(), 4),
+                                 shortest(map.incidence_deg.front()), shortest(map.incidence_deg.back()));
+  text += "maximum  " + text_of(first_of(map, std::greater<>()));
+  text += "minimum  " + text_of(first_of(map, std::less<>()));
+  text += "incidence_deg      min_%     mean_%      max_%\n";
+  constexpr std::size_t kMaxLines = 17;
+  const std::size_t step = (map.incidence_deg.size() + kMaxLines - 1) / kMaxLines;
+  for (std::size_t i = 0; i < map.incidence_deg.size(); i += step) {
+    double low = map.rre[map.index(i, 0)];
+    double high = low;
+    for (std::size_t k = 0; k < map.azimuth_deg.size(); ++k) {
+      low = std::min(low, map.rre[map.index(i, k)]);
+      high = std::max(high, map.rre[map.index(i, k)]);
+    }
+    text += fmt::format("{:>13}  {:>9}  {:>9}  {:>9}\n", shortest(map.incidence_deg[i]), fixed(100.0 * low, 4),
+                        fixed(100.0 * map.mean_at(i), 4), fixed(100.0 * high, 4));
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string rre_json(const RreResult& result) {
@@ -106,6 +169,10 @@ std::string rre_json(const RreResult& result) {
   json["seed"] = result.seed;
   json["points"] = Json::array();
   for (const RrePoint& p : result.points) json["points"].push_back(point_json(p));
+  if (result.has_map && result.complete) {
+    json["maps"] = Json::array();
+    for (const RreMap& map : rre_maps(result)) json["maps"].push_back(map_json(map));
+  }
   json["elapsed_s"] = result.elapsed_s;
   json["rays"] = result.rays;
   return result_text("retrace.rre/1", json, result.warnings, result.complete);
@@ -140,6 +207,32 @@ std::string rre_table(const RreResult& result) {
                          fixed(100.0 * p.ledger[raytrace::Account::truncated], 4), p.engine);
   }
   return table;
+}
+
+std::string rre_map_csv(const RreResult& result) {
+  CsvWriter csv;
+  for (const RreMap& map : rre_maps(result)) {
+    if (csv.text().empty()) {
+      std::vector<std::string> incidences;
+      for (const double incidence : map.incidence_deg) incidences.push_back("incidence_deg=" + shortest(incidence));
+      csv.row("design", "acceptance_half_angle_deg", "azimuth_deg", incidences);
+    }
+    for (std::size_t k = 0; k < map.azimuth_deg.size(); ++k)
+      csv.row(map.design, map.acceptance_half_angle_deg, map.azimuth_deg[k],
+              std::span(map.rre).subspan(map.index(0, k), map.incidence_deg.size()));
+  }
+  return csv.text();
+}
+
+std::string rre_map_table(const RreResult& result) {
+  std::string text = fmt::format("RRE of {} directions; {} were traced, the others follow from symmetries\n",
+                                 result.points.size(), result.traced_directions);
+  for (const RreMap& map : rre_maps(result))
+    text += fmt::format("\n{}, acceptance {} degrees, RRE in percent\n",
+                        printable(design::short_name(result.designs[map.design])),
+                        shortest(map.acceptance_half_angle_deg)) +
+            summary_of(map);
+  return text;
 }
 
 std::string derivative_table(const RreResult& result) {

@@ -17,6 +17,15 @@ std::string rre_csv(const RreResult& result);
 /// Returns a table for the terminal with RRE and its standard error in percent.
 std::string rre_table(const RreResult& result);
 
+/// Returns the polar maps as CSV: one line for each map and azimuth, with one column for each incidence.
+/// \pre result.has_map
+std::string rre_map_csv(const RreResult& result);
+
+/// Returns a summary of the polar maps for the terminal, in percent: for each map, the mean, the extreme values and at
+/// most 17 incidences with the smallest, the mean and the largest value over the azimuths.
+/// \pre result.has_map
+std::string rre_map_table(const RreResult& result);
+
 /// Returns a table for the terminal with the derivatives of RRE, as a fraction, per unit of each parameter. Empty if
 /// none were requested.
 std::string derivative_table(const RreResult& result);

@@ -5,12 +5,12 @@
 #include <vector>
 
 #include "raytrace/exact/beam_tracer.h"
-#include "raytrace/faces/mirror_symmetry.h"
+#include "raytrace/faces/part_symmetry.h"
 #include "raytrace/observers/far_field.h"
 #include "tests/support/designs.h"
 #include "tests/support/return_frames.h"
 
-namespace retrace::testing::mirror_symmetry_test {
+namespace retrace::testing::part_symmetry_test {
 namespace {
 
 using namespace geometry;
@@ -21,6 +21,7 @@ struct Question {
   PartSpec spec;
   bool along_x;
   bool along_y;
+  std::size_t maps;  ///< number of symmetries: rotations, and reflections if there are any
 };
 
 PartSpec with_errors(PartSpec spec, const std::array<double, 3>& dihedral_arcmin) {
@@ -48,20 +49,20 @@ std::vector<Question> questions() {
   PartSpec at_random = finite(prism, Arrangement::aligned, 2.0, 2.0, 1.0);
   at_random.random_tilts = {1.0, 1};
   return {
-      {"honeycomb", infinite(hexagon, Arrangement::honeycomb, 1.0), false, true},
-      {"errors alike", with_errors(infinite(hexagon, Arrangement::honeycomb, 1.0), {1.0, 2.0, 2.0}), false, true},
-      {"unlike errors", with_errors(infinite(hexagon, Arrangement::honeycomb, 1.0), {2.0, 1.0, 2.0}), false, false},
-      {"triangles", infinite(triangle, Arrangement::triangular, 1.0), true, true},
-      {"prisms", infinite(prism, Arrangement::aligned, 1.0), true, true},
-      {"one facet tilted", tilted, false, true},
-      {"one facet tilted slightly", slightly_tilted, false, true},
-      {"bricks", bricks(infinite(prism, Arrangement::offset, 1.0), 50.0), true, true},
-      {"bricks by a quarter", bricks(infinite(prism, Arrangement::offset, 1.0), 25.0), false, true},
-      {"one cube", single(hexagon, 1.0), false, true},
-      {"finite honeycomb", finite(hexagon, Arrangement::honeycomb, 4.0, 5.0, 1.0), false, true},
-      {"rows all of whole prisms", finite(prism, Arrangement::aligned, 2.0, 2.0, 1.0), true, true},
-      {"two rows of bricks", finite(prism, Arrangement::offset, 2.0, 0.8, 1.0), true, false},
-      {"tilts at random", at_random, false, false},
+      {"honeycomb", infinite(hexagon, Arrangement::honeycomb, 1.0), false, true, 6},
+      {"errors alike", with_errors(infinite(hexagon, Arrangement::honeycomb, 1.0), {1.0, 2.0, 2.0}), false, true, 2},
+      {"unlike errors", with_errors(infinite(hexagon, Arrangement::honeycomb, 1.0), {2.0, 1.0, 2.0}), false, false, 1},
+      {"triangles", infinite(triangle, Arrangement::triangular, 1.0), true, true, 12},
+      {"prisms", infinite(prism, Arrangement::aligned, 1.0), true, true, 4},
+      {"one facet tilted", tilted, false, true, 2},
+      {"one facet tilted slightly", slightly_tilted, false, true, 2},
+      {"bricks", bricks(infinite(prism, Arrangement::offset, 1.0), 50.0), true, true, 4},
+      {"bricks by a quarter", bricks(infinite(prism, Arrangement::offset, 1.0), 25.0), false, true, 2},
+      {"one cube", single(hexagon, 1.0), false, true, 6},
+      {"finite honeycomb", finite(hexagon, Arrangement::honeycomb, 4.0, 5.0, 1.0), false, true, 2},
+      {"rows all of whole prisms", finite(prism, Arrangement::aligned, 2.0, 2.0, 1.0), true, true, 4},
+      {"two rows of bricks", finite(prism, Arrangement::offset, 2.0, 0.8, 1.0), true, false, 2},
+      {"tilts at random", at_random, false, false, 1},
   };
 }
 
@@ -70,6 +71,7 @@ TEST(MirrorSymmetry, IsThatOfElementsErrorsAndBorders) {
     const Part part = build_part(question.spec);
     EXPECT_EQ(is_mirror_symmetric(part, 0), question.along_x) << question.name;
     EXPECT_EQ(is_mirror_symmetric(part, 1), question.along_y) << question.name;
+    EXPECT_EQ(symmetries_of(part).size(), question.maps) << question.name;
   }
 }
 
@@ -110,4 +112,4 @@ TEST(MirrorSymmetry, MirroredLightHasTheMirroredFarField) {
 }
 
 }  // namespace
-}  // namespace retrace::testing::mirror_symmetry_test
+}  // namespace retrace::testing::part_symmetry_test

@@ -1,0 +1,178 @@
+// Tests of polar maps of RRE: symmetries, means, interpolation, and grids that are refused.
+#include "studies/rre/rre_map.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core/error.h"
+#include "design/io/design_reader.h"
+#include "studies/rre/rre_request.h"
+#include "tests/support/designs.h"
+
+namespace retrace::testing::rre_map_test {
+namespace {
+
+using namespace retrace::studies;
+
+std::string cubes(const std::string& kind, const std::string& more) {
+  return "[element]\nkind = \"" + kind + "\"\naperture_mm = 1\n[array]\nextent = \"infinite\"\n" + more +
+         "[body]\nthickness_mm = 2\nrefractive_index = 1.49\n";
+}
+
+std::string prisms(double base_mm, double width_mm) {
+  return "[element]\nkind = \"rtp\"\nbase_mm = " + std::to_string(base_mm) +
+         "\nwidth_mm = " + std::to_string(width_mm) +
+         "\n[array]\nextent = \"infinite\"\n[body]\nthickness_mm = 2\nrefractive_index = 1.49\n";
+}
+
+RreResult run(const std::string& text, const RreRequest& request, const std::vector<std::string>& overrides = {}) {
+  return RreStudy({design::parse_design(text, "design", overrides)}, resolve(request)).run();
+}
+
+RreRequest map_request(std::vector<double> incidence_deg, std::vector<double> azimuth_deg) {
+  RreRequest request;
+  request.map = true;
+  request.incidence_deg = std::move(incidence_deg);
+  request.azimuth_deg = std::move(azimuth_deg);
+  request.engine = "exact";
+  request.target_error = 1e-6;
+  return request;
+}
+
+std::vector<double> steps(double last, double step) {
+  std::vector<double> values;
+  for (double value = 0.0; value <= last; value += step) values.push_back(value);
+  return values;
+}
+
+struct Shared {
+  std::string name;
+  std::string design;
+  std::size_t traced;  ///< number of directions that are traced
+};
+
+/// Directions that share one trace have the values that they have if each is traced on its own. For 3 incidences, of
+/// which one is 0, and 12 azimuths, the number of traced directions follows from the symmetry group of the array.
+/// Rotation by 120 degrees and one reflection leave 4 of 12 azimuths in steps of 30 degrees: -60, -30, 0, 30 and their
+/// images; a group of 12 elements leaves 2, a group of 4 elements leaves 4, and a group of 2 elements leaves 7.
+TEST(RreMap, SharesSymmetricDirections) {
+  const std::vector<Shared> all = {
+      {"honeycomb", cubes("hexagonal_icc", ""), 1 + 2 * 3},
+      {"triangular cubes", cubes("triangular_icc", ""), 1 + 2 * 2},
+      {"prisms", prisms(0.5, 0.5), 1 + 2 * 4},
+      {"dihedral errors", cubes("hexagonal_icc", "[surface]\ndihedral_error_arcmin = [2, 3, 3]\n"), 1 + 2 * 7},
+      {"polarised light", cubes("hexagonal_icc", "[light]\npolarisation = [0.5, 0, 0]\n"), 36}};
+  for (const Shared& shared : all) {
+    RreRequest request = map_request({0.0, 11.0, 23.0}, steps(350.0, 30.0));
+    const RreResult map = run(shared.design, request);
+    EXPECT_EQ(map.traced_directions, shared.traced) << shared.name;
+    request.map = false;
+    const RreResult each = run(shared.design, request);
+    ASSERT_EQ(map.points.size(), each.points.size());
+    for (std::size_t k = 0; k < each.points.size(); ++k) {
+      const RrePoint& a = map.points[k];
+      const RrePoint& b = each.points[k];
+      EXPECT_EQ(a.incidence_deg, b.incidence_deg);
+      EXPECT_EQ(a.azimuth_deg, b.azimuth_deg);
+      // Beams below the cut-off power are truncated, in different numbers for equivalent directions.
+      EXPECT_NEAR(a.rre, b.rre, 2e-6) << shared.name << " at " << b.incidence_deg << ", " << b.azimuth_deg;
+      for (std::size_t s = 0; s < 4; ++s) EXPECT_NEAR(a.stokes.values()[s], b.stokes.values()[s], 2e-6) << shared.name;
+      for (std::size_t account = 0; account < raytrace::kAccountCount; ++account)
+        EXPECT_NEAR(a.ledger.power[account], b.ledger.power[account], 4e-6) << shared.name;
+    }
+  }
+}
+
+/// Returns a map of the function 0.5 + 0.3 cos(2 azimuth) sin(incidence) + 0.1 cos(incidence).
+double smooth(double incidence_deg, double azimuth_deg) {
+  const double t = std::numbers::pi / 180.0 * incidence_deg;
+  const double a = std::numbers::pi / 180.0 * azimuth_deg;
+  return 0.5 + 0.3 * std::cos(2.0 * a) * std::sin(t) + 0.1 * std::cos(t);
+}
+
+RreMap map_of_function(double step_deg) {
+  RreMap map;
+  map.incidence_deg = steps(80.0, step_deg);
+  map.azimuth_deg = steps(359.9, step_deg);
+  for (const double azimuth : map.azimuth_deg)
+    for (const double incidence : map.incidence_deg) map.rre.push_back(smooth(incidence, azimuth));
+  map.std_error.assign(map.rre.size(), 0.01);
+  return map;
+}
+
+/// The mean over the cap of 80 degrees is 0.5 + 0.1 times the mean of the cosine, (1 + cos 80 deg) / 2.
+TEST(RreMap, HasTheMeanOverSolidAngle) {
+  const double expected = 0.5 + 0.05 * (1.0 + std::cos(std::numbers::pi * 80.0 / 180.0));
+  const double coarse = std::abs(map_of_function(10.0).mean() - expected);
+  const double fine = std::abs(map_of_function(5.0).mean() - expected);
+  EXPECT_LT(coarse, 1e-3);
+  EXPECT_LT(fine, 0.3 * coarse);  // The error of linear interpolation decreases with the square of the step.
+}
+
+TEST(RreMap, InterpolatesBetweenDirections) {
+  const RreMap map = map_of_function(5.0);
+  for (const double incidence : {0.0, 3.0, 41.0, 80.0})
+    for (const double azimuth : {-7.0, 0.0, 2.5, 123.0, 358.0, 361.0})
+      EXPECT_NEAR(map.at(incidence, azimuth), smooth(incidence, azimuth), 2e-3) << incidence << ", " << azimuth;
+  EXPECT_TRUE(std::isnan(map.at(80.1, 0.0)));
+  const RreMap zero = difference(map, map);
+  for (const double value : zero.rre) EXPECT_EQ(value, 0.0);
+  EXPECT_NEAR(zero.std_error.front(), 0.01 * std::numbers::sqrt2, 1e-15);
+}
+
+/// The mean of a map by ray tracing agrees with the mean over random directions, which does not use the map.
+TEST(RreMap, MeanAgreesWithRandomDirections) {
+  RreRequest request;
+  request.map = true;
+  request.incidence_deg = steps(40.0, 2.5);
+  request.target_error = 2e-4;
+  const RreResult result = run(prisms(0.5, 0.5), request);
+  const double mean = rre_maps(result).front().mean();
+  double sum = 0.0;
+  constexpr int kDirections = 400;
+  for (int k = 0; k < kDirections; ++k) {
+    // Points of a two-dimensional lattice, uniform in solid angle.
+    const double cos_40 = std::cos(std::numbers::pi * 40.0 / 180.0);
+    const double cosine = 1.0 - (k + 0.5) / kDirections * (1.0 - cos_40);
+    RreRequest one;
+    one.incidence_deg = {180.0 / std::numbers::pi * std::acos(cosine)};
+    one.azimuth_deg = {360.0 * std::fmod(k * std::numbers::phi, 1.0)};
+    one.target_error = 1e-3;
+    sum += run(prisms(0.5, 0.5), one).points.front().rre;
+  }
+  EXPECT_NEAR(mean, sum / kDirections, 1e-3);
+}
+
+TEST(RreMap, GridsAreCompletedAndChecked) {
+  RreRequest request;
+  request.map = true;
+  EXPECT_EQ(resolve(request).incidence_deg, steps(80.0, 5.0));
+  EXPECT_EQ(resolve(request).azimuth_deg, steps(350.0, 10.0));
+  request.azimuth_deg = {-90.0, 0.0, 90.0, 180.0, 270.0, 360.0};
+  EXPECT_EQ(resolve(request).azimuth_deg, (std::vector<double>{0.0, 90.0, 180.0, 270.0}));
+  const auto refused_field = [](const RreRequest& refused) -> std::string {
+    try {
+      resolve(refused);
+    } catch (const InputError& error) {
+      return std::string(error.field().name);
+    }
+    return "";
+  };
+  request.azimuth_deg = {0.0, 90.0, 180.0};
+  EXPECT_EQ(refused_field(request), "azimuth_deg");
+  request.azimuth_deg = {30.0};
+  EXPECT_EQ(refused_field(request), "azimuth_deg");
+  request.azimuth_deg = {0.0};
+  request.incidence_deg = {20.0};
+  EXPECT_EQ(refused_field(request), "incidence_deg");
+  request.incidence_deg = {-10.0, 0.0, 10.0};
+  EXPECT_EQ(refused_field(request), "incidence_deg");
+  request.incidence_deg = {0.0};
+  request.incidence_spans_deg = {{0.0, 20.0}};
+  EXPECT_EQ(refused_field(request), "incidence_deg");
+}
+
+}  // namespace
+}  // namespace retrace::testing::rre_map_test
