@@ -83,9 +83,11 @@ Point on_disc(const PolarPanel& panel, Point centre, Point on_grid) {
   return {centre.x - 0.5 * kDisc + (on_grid.x + 0.5) * pixel, centre.y + 0.5 * kDisc - (on_grid.y + 0.5) * pixel};
 }
 
-/// Draws contour lines at the ticks of the colour scale, dark on light colours and white on dark colours.
+/// Draws contour lines at the ticks of the colour scale, dark on light colours and white on dark colours. Differences
+/// have no line at 0, because noise would determine its shape.
 void draw_contours(Canvas& canvas, const PolarPanel& panel, Point centre, const PolarColours& colours) {
   for (const double level : colours.ticks.positions) {
+    if (colours.range.low < 0.0 && level == 0.0) continue;
     const Colour at = colours.colour(level);
     const bool is_light = 0.3 * at.red + 0.6 * at.green + 0.1 * at.blue > 0.55;
     for (const std::vector<Point>& line : contour_lines(panel.values, panel.columns, level)) {

@@ -12,7 +12,7 @@
 namespace retrace::raytrace {
 
 /// Returns true if a part is symmetric about a plane normal to an axis (0: x, 1: y). For a finite part, the plane
-/// passes through its centre. For an infinite part, it may have any position.
+/// passes through its centre. For an infinite part, it may have any position, and the part may be shifted along it.
 bool is_mirror_symmetric(const geometry::Part& part, Eigen::Index axis);
 
 /// Returns the orthogonal maps of directions in the plane z = 0 that do not change a part: its rotations about the z

@@ -32,6 +32,26 @@ class Results(unittest.TestCase):
             with self.assertRaises(ValueError):
                 array[0] = 1
 
+    def test_polar_maps_have_the_values_of_the_points(self):
+        result = rt.rre(
+            program.example("honeycomb_infinite.toml"),
+            incidence_deg=[0, 10, 20],
+            azimuth_deg=[0, 90, 180, 270],
+            map=True,
+        )
+        polar = result.polar()
+        self.assertEqual(polar.rre.shape, (4, 3))
+        np.testing.assert_array_equal(polar.rre.ravel(), result.rre)
+        np.testing.assert_array_equal(polar.azimuth_deg, [0, 90, 180, 270])
+        self.assertLess(polar.rre.min(), polar.mean_rre)
+        self.assertGreater(polar.rre.max(), polar.mean_rre)
+        self.assertIn("map", result.drawings)
+        self.assertNotIn("map_difference", result.drawings)
+        with self.assertRaises(rt.InputError):
+            result.polar(1)
+        with self.assertRaises(rt.InputError):
+            self.result.polar()
+
     def test_keys_that_are_left_out_are_nan(self):
         exact = rt.rre(program.example("honeycomb_infinite.toml"), incidence_deg=[0, 10])
         depths = [point.get("depth") for point in json.loads(exact.json)["points"]]

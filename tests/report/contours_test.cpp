@@ -36,7 +36,8 @@ TEST(ContourLines, OfALinearFunctionAreStraight) {
   EXPECT_NEAR(length_of(lines.front()), 40.0 * std::hypot(1.0, 0.5), 1e-9);
 }
 
-/// The contour line of a paraboloid is a circle. The interpolation along edges is exact to second order.
+/// The contour line of a paraboloid is a circle. Linear interpolation along an edge shifts a point by at most 1 / (8
+/// r), which is 0.01 and shortens the line by 8e-4. Chords shorten it by about 1e-4.
 TEST(ContourLines, OfAParaboloidAreClosedCircles) {
   const auto lines = contour_lines(
       grid_of([](double x, double y) { return std::pow(x - 20.0, 2.0) + std::pow(y - 20.0, 2.0); }), kColumns, 150.3);
@@ -44,8 +45,8 @@ TEST(ContourLines, OfAParaboloidAreClosedCircles) {
   EXPECT_EQ(lines.front().front().x, lines.front().back().x);
   EXPECT_EQ(lines.front().front().y, lines.front().back().y);
   const double radius = std::sqrt(150.3);
-  for (const Point& p : lines.front()) EXPECT_NEAR(std::hypot(p.x - 20.0, p.y - 20.0), radius, 0.02);
-  EXPECT_NEAR(length_of(lines.front()), 2.0 * std::numbers::pi * radius, 0.005 * radius);
+  for (const Point& p : lines.front()) EXPECT_NEAR(std::hypot(p.x - 20.0, p.y - 20.0), radius, 0.011);
+  EXPECT_NEAR(length_of(lines.front()), 2.0 * std::numbers::pi * radius, 1e-3 * 2.0 * std::numbers::pi * radius);
 }
 
 /// At a saddle, the value at the centre of the cell decides. The lines do not cross.
