@@ -63,6 +63,28 @@ std::string wrote_line(const fs::path& file) {
   return fmt::format("wrote {}\n", printable(file.string(), std::string::npos));
 }
 
+bool is_short(std::string_view text) {
+  return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')) <= kMaxTableLines;
+}
+
+std::string without_middle(const std::string& text, const CommonOptions& common, std::string_view file) {
+  if (common.out.empty() || is_short(text)) return text;
+  std::vector<std::string_view> lines;
+  for (std::string_view rest = text; !rest.empty();) {
+    const std::size_t end = std::min(rest.size(), rest.find('\n') + (rest.find('\n') != std::string::npos ? 1U : 0U));
+    lines.push_back(rest.substr(0, end));
+    rest.remove_prefix(end);
+  }
+  constexpr std::size_t kHead = kMaxTableLines / 2;
+  constexpr std::size_t kTail = kMaxTableLines - kHead - 1;
+  std::string cut;
+  for (std::size_t k = 0; k < kHead; ++k) cut += lines[k];
+  cut += fmt::format("... {} more lines; all values are in {}\n", lines.size() - kHead - kTail,
+                     printable((fs::path(common.out) / file).string(), std::string::npos));
+  for (std::size_t k = lines.size() - kTail; k < lines.size(); ++k) cut += lines[k];
+  return cut;
+}
+
 void print(std::string_view text) {
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
     throw OutputError("standard output: cannot be written");

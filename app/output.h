@@ -25,6 +25,18 @@ void print(std::string_view text);
 /// Returns the line "wrote FILE", which is printed after a file was written.
 std::string wrote_line(const std::filesystem::path& file);
 
+/// Maximum number of lines on the terminal of a table that is also in the output folder. Together with the names of the
+/// files, these are at most 30 lines.
+inline constexpr std::size_t kMaxTableLines = 22;
+
+/// Returns true if a text has at most kMaxTableLines lines.
+bool is_short(std::string_view text);
+
+/// Returns a text without its middle lines if it has more than kMaxTableLines lines and the command has an output
+/// folder. A line gives the number of lines that are left out.
+/// \param file name of the file in the output folder that contains all values
+std::string without_middle(const std::string& text, const CommonOptions& common, std::string_view file);
+
 /// Returns the files of the designs and all files that the designs refer to.
 std::vector<std::string> files_read(const std::vector<design::Design>& designs);
 

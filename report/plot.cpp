@@ -47,7 +47,22 @@ constexpr int kMaxYTicks = 7;
 /// Minimum half length of an error bar that is drawn. A shorter error bar would be hidden by the marker or the line.
 constexpr double kShortestErrorBar = 1.5;
 
-/// Appearance of a series, which depends on its index in the plot.
+constexpr double kBarWidth = 14.0;  ///< width of the colour bar
+constexpr double kBarGap = 22.0;    ///< distance between the axes and the colour bar
+constexpr int kMaxBarTicks = 9;
+constexpr AxisStyle kBarAxis{
+    .font = kTickFont, .tick = 4.0, .y_label_gap = kTickLength + 3.0, .baseline = 0.36 * kTickFont.size};
+
+/// Viridis without its palest colours, which are hard to see as lines on white.
+ColourScale line_colours() {
+  constexpr double kDarkest = 0.93;
+  ColourScale scale;
+  for (std::size_t k = 0; k < scale.size(); ++k)
+    scale[k] = colour_at(kViridis, kDarkest * static_cast<double>(k) / static_cast<double>(scale.size() - 1));
+  return scale;
+}
+
+/// Appearance of a series.
 struct SeriesStyle {
   Colour colour;
   std::vector<double> dashes;
@@ -57,6 +72,21 @@ struct SeriesStyle {
 SeriesStyle look_of(std::size_t index) {
   return {kPalette[index % kPalette.size()], kDashes[index / kPalette.size() % kDashes.size()],
           kMarkers[(index % kPalette.size() + index / kPalette.size()) % kMarkers.size()]};
+}
+
+std::optional<Range> drawn_scale(const LinePlot& plot) {
+  const std::optional<Range> range = scale_range(plot);
+  return range ? std::optional(drawable(*range)) : std::nullopt;
+}
+
+/// Returns the appearance of a series of the plot.
+SeriesStyle look_of(const LinePlot& plot, std::size_t index, const std::optional<Range>& scale) {
+  const Series& series = plot.series[index];
+  SeriesStyle look = look_of(series.look.value_or(index));
+  if (!scale || !series.scale_value) return look;
+  look.dashes = kDashes[series.look.value_or(0) % kDashes.size()];
+  look.colour = colour_at(line_colours(), (*series.scale_value - scale->low) / scale->span());
+  return look;
 }
 
 bool is_drawn(const Series& series, std::size_t i) {
@@ -120,6 +150,10 @@ struct Layout {
   std::vector<std::string> x_label;
   std::vector<std::string> y_label;
   std::vector<LegendEntry> legend;
+  std::optional<Range> scale;  ///< range of the colour scale
+  Ticks scale_ticks;
+  double scale_tick_width = 0.0;
+  std::vector<std::string> scale_label;
   LegendPlace legend_place = LegendPlace::none;
   double legend_width = 0.0;
   double title_top = 0.0;
@@ -132,17 +166,30 @@ double height_of(const std::vector<std::string>& lines, Font font) {
 std::vector<LegendEntry> legend_entries(const LinePlot& plot, const Canvas& canvas) {
   std::vector<LegendEntry> entries;
   std::size_t left_out = 0;
-  for (std::size_t i = 0; i < plot.series.size(); ++i) {
-    if (plot.series[i].label.empty()) continue;
+  const auto add = [&](const std::string& label, const SeriesStyle& look, bool with_markers) {
+    if (label.empty()) return;
     if (entries.size() == kMaxLegendEntries) {
       ++left_out;
-      continue;
+      return;
     }
-    std::vector<std::string> lines =
-        canvas.fitted(plot.series[i].label, kLegendFont, kLegendTextWidth, 1, Ellipsis::middle);
+    std::vector<std::string> lines = canvas.fitted(label, kLegendFont, kLegendTextWidth, 1, Ellipsis::middle);
     std::string text = lines.empty() ? std::string() : std::move(lines.front());
     const double width = canvas.text_width(text, kLegendFont);
-    entries.push_back({std::move(text), width, look_of(i), true, has_markers(plot.series[i])});
+    entries.push_back({std::move(text), width, look, true, with_markers});
+  };
+  const std::optional<Range> scale = drawn_scale(plot);
+  if (plot.legend) {
+    for (const LegendKey& key : *plot.legend) {
+      const bool with_markers =
+          std::ranges::any_of(plot.series, [&](const Series& s) { return s.look == key.look && has_markers(s); });
+      SeriesStyle look = look_of(key.look);
+      if (scale) look.colour = kFaint;
+      if (scale) look.dashes = kDashes[key.look % kDashes.size()];
+      add(key.label, look, with_markers);
+    }
+  } else {
+    for (std::size_t i = 0; i < plot.series.size(); ++i)
+      add(plot.series[i].label, look_of(plot, i, scale), has_markers(plot.series[i]));
   }
   if (left_out > 0) {
     std::string text = fmt::format("and {} more", left_out);
@@ -177,6 +224,12 @@ Layout lay_out(const LinePlot& plot, const Canvas& canvas) {
   layout.x_label = canvas.fitted(plot.x_label, kLabelFont, kPlotWidth, 2, Ellipsis::end);
   layout.y_label = canvas.fitted(plot.y_label, kLabelFont, kPlotHeight, 2, Ellipsis::end);
   layout.legend = legend_entries(plot, canvas);
+  layout.scale = drawn_scale(plot);
+  if (layout.scale) {
+    layout.scale_ticks = make_ticks(*layout.scale, kMaxBarTicks);
+    layout.scale_tick_width = widest(layout.scale_ticks.labels, canvas);
+    layout.scale_label = canvas.fitted(plot.scale_label, kLabelFont, kPlotHeight, 2, Ellipsis::end);
+  }
 
   double row_width = -2.0 * kLegendGap;
   double column_width = 0.0;
@@ -197,7 +250,10 @@ Layout lay_out(const LinePlot& plot, const Canvas& canvas) {
       kMargin + height_of(layout.y_label, kLabelFont) + (layout.y_label.empty() ? 0.0 : 6.0) + y_tick_width + 12.0;
   const double below = kTickLength + 8.0 + kTickFont.size + 8.0 + height_of(layout.x_label, kLabelFont) + kMargin;
   // The last label of the x axis may extend beyond the right end of the plot.
-  const double right = std::max(kMargin, 0.5 * widest(layout.x_ticks.labels, canvas) + 8.0);
+  const double bar = layout.scale ? kBarGap + kBarWidth + kTickLength + 3.0 + layout.scale_tick_width + 8.0 +
+                                        height_of(layout.scale_label, kLabelFont)
+                                  : 0.0;
+  const double right = std::max(kMargin, 0.5 * widest(layout.x_ticks.labels, canvas) + 8.0) + bar;
   const double column_height = in_column ? kLegendRow * static_cast<double>(layout.legend.size()) : 0.0;
   layout.corner = {left, top};
   layout.figure = {std::ceil(left + kPlotWidth + right + (in_column ? layout.legend_width + kMargin : 0.0)),
@@ -267,6 +323,27 @@ void draw_legend(Canvas& canvas, const Layout& layout) {
   }
 }
 
+/// Draws the colour bar to the right of the plot area, with its ticks and its label.
+void draw_scale(Canvas& canvas, const Layout& layout) {
+  if (!layout.scale) return;
+  const Point corner{layout.corner.x + kPlotWidth + kBarGap, layout.corner.y};
+  draw_colour_bar(canvas, line_colours(), corner, {kBarWidth, kPlotHeight});
+  draw_frame(canvas, corner, {kBarWidth, kPlotHeight});
+  const AxisScale at{*layout.scale, corner.y + kPlotHeight, corner.y};
+  const double left = corner.x + kBarWidth;
+  for (std::size_t k = 0; k < layout.scale_ticks.positions.size(); ++k) {
+    const double y = at.at(layout.scale_ticks.positions[k]);
+    canvas.line({{left, y}, {left + kBarAxis.tick, y}}, {kAxis, kBarAxis.width, {}});
+    canvas.text({left + kBarAxis.y_label_gap, y + kBarAxis.baseline}, layout.scale_ticks.labels[k], kTickFont, kText,
+                Align::left);
+  }
+  double baseline = left + kBarAxis.y_label_gap + layout.scale_tick_width + 8.0 + kLabelFont.size;
+  for (const std::string& text : layout.scale_label) {
+    canvas.text({baseline, corner.y + 0.5 * kPlotHeight}, text, kLabelFont, kText, Align::centre, true);
+    baseline += kLabelFont.size * kLineSpacing;
+  }
+}
+
 /// Returns the radius of markers. The radius is smaller if points are close together, so that markers do not overlap.
 double marker_radius(const Series& series, const Layout& layout) {
   double closest = kPlotWidth;
@@ -283,9 +360,11 @@ void draw_series(Canvas& canvas, const Layout& layout, const Series& series, con
   // The clip area extends beyond the axes by half of the line width, so that curves on the border are drawn with full
   // width.
   canvas.clip({layout.corner.x - 1.5, layout.corner.y - 1.5}, {kPlotWidth + 3.0, kPlotHeight + 3.0});
+  // The lines between markers are thin, because they only guide the eye.
+  const double width = has_markers(series) ? 1.1 : 1.8;
   std::vector<Point> stretch;
   const auto draw_stretch = [&] {
-    if (series.has_line && stretch.size() > 1) canvas.line(stretch, {look.colour, 1.8, look.dashes});
+    if (series.has_line && stretch.size() > 1) canvas.line(stretch, {look.colour, width, look.dashes});
     stretch.clear();
   };
   for (std::size_t i = 0; i < series.x.size(); ++i) {
@@ -334,7 +413,9 @@ std::string render(const LinePlot& plot, PlotFormat format, double scale) {
   draw_axes(canvas, layout);
   draw_texts(canvas, layout);
   draw_legend(canvas, layout);
-  for (std::size_t i = 0; i < plot.series.size(); ++i) draw_series(canvas, layout, plot.series[i], look_of(i));
+  draw_scale(canvas, layout);
+  for (std::size_t i = 0; i < plot.series.size(); ++i)
+    draw_series(canvas, layout, plot.series[i], look_of(plot, i, layout.scale));
   return canvas.finish();
 }
 

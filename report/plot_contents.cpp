@@ -10,6 +10,7 @@
 #include <set>
 #include <string_view>
 #include <tuple>
+#include <utility>
 
 #include "core/number_format.h"
 
@@ -47,12 +48,17 @@ double coordinate(const EfficiencyPoint& p, Axis axis) {
   return axis == Axis::cone ? p.acceptance_half_angle_deg : p.incidence_deg;
 }
 
-std::string label(const EfficiencyPoint& p, const Variation& v, Axis axis) {
+/// Parameter that differs between curves.
+enum class Parameter { none, design, azimuth, cone };
+
+/// Returns a text with the values of the parameters that differ between curves.
+/// \param without parameter that the text does not contain
+std::string label(const EfficiencyPoint& p, const Variation& v, Axis axis, Parameter without = Parameter::none) {
   std::vector<std::string> parts;
-  if (v.designs.size() > 1) parts.push_back(p.design);
-  if (v.azimuths.size() > 1 && axis != Axis::azimuth)
+  if (v.designs.size() > 1 && without != Parameter::design) parts.push_back(p.design);
+  if (v.azimuths.size() > 1 && axis != Axis::azimuth && without != Parameter::azimuth)
     parts.push_back(fmt::format("azimuth {}°", shortest(p.azimuth_deg)));
-  if (v.cones.size() > 1 && axis != Axis::cone)
+  if (v.cones.size() > 1 && axis != Axis::cone && without != Parameter::cone)
     parts.push_back(fmt::format("acceptance {}°", shortest(p.acceptance_half_angle_deg)));
   return fmt::format("{}", fmt::join(parts, ", "));
 }
@@ -67,9 +73,84 @@ CurveKey curve_of(const EfficiencyPoint& p, Axis axis) {
 
 constexpr std::string_view kEfficiencyLabel = "Retroreflective efficiency (%)";
 
+/// Maximum number of groups of curves that dashes distinguish.
+constexpr std::size_t kMaxDashes = 4;
+
+double value_of(const EfficiencyPoint& p, Parameter parameter) {
+  if (parameter == Parameter::azimuth) return p.azimuth_deg;
+  return parameter == Parameter::cone ? p.acceptance_half_angle_deg : p.design_value.value_or(0.0);
+}
+
+/// Returns the parameters with numeric values that differ between curves.
+std::vector<Parameter> numeric_parameters(const std::vector<EfficiencyPoint>& points, const Variation& v, Axis axis) {
+  std::vector<Parameter> parameters;
+  if (v.azimuths.size() > 1 && axis != Axis::azimuth) parameters.push_back(Parameter::azimuth);
+  if (v.cones.size() > 1 && axis != Axis::cone) parameters.push_back(Parameter::cone);
+  const auto has_value = [](const EfficiencyPoint& p) { return p.design_value.has_value(); };
+  if (v.designs.size() > 1 && std::ranges::all_of(points, has_value)) parameters.push_back(Parameter::design);
+  return parameters;
+}
+
+/// Curves that differ only in one parameter, for each of these groups.
+struct Groups {
+  Parameter parameter = Parameter::none;
+  std::vector<std::string> labels;       ///< values of all other parameters
+  std::vector<std::size_t> of_series;    ///< index of the group of each curve
+  std::pair<double, double> range = {};  ///< range of the parameter
+};
+
+/// \param curves one point of each curve
+Groups groups_by(Parameter parameter, const std::vector<const EfficiencyPoint*>& curves, const Variation& v,
+                 Axis axis) {
+  Groups groups;
+  groups.parameter = parameter;
+  groups.range = {value_of(*curves.front(), parameter), value_of(*curves.front(), parameter)};
+  for (const EfficiencyPoint* curve : curves) {
+    const std::string text = label(*curve, v, axis, parameter);
+    const auto found = std::ranges::find(groups.labels, text);
+    groups.of_series.push_back(static_cast<std::size_t>(found - groups.labels.begin()));
+    if (found == groups.labels.end()) groups.labels.push_back(text);
+    const double value = value_of(*curve, parameter);
+    groups.range = {std::min(groups.range.first, value), std::max(groups.range.second, value)};
+  }
+  return groups;
+}
+
+/// Colours the curves by the value of a parameter, and distinguishes groups of curves by dashes. If there are too many
+/// groups, the curves of a group have the same colour instead. Does nothing if no parameter has numeric values.
+void distinguish_many(LinePlot& plot, const std::vector<EfficiencyPoint>& points,
+                      const std::vector<const EfficiencyPoint*>& curves, const Variation& v, Axis axis,
+                      const std::string& design_key) {
+  Groups groups;
+  for (const Parameter parameter : numeric_parameters(points, v, axis)) {
+    Groups others = groups_by(parameter, curves, v, axis);
+    if (groups.parameter == Parameter::none || others.labels.size() < groups.labels.size()) groups = std::move(others);
+  }
+  if (groups.parameter == Parameter::none) return;
+  const bool has_scale = groups.labels.size() <= kMaxDashes;
+  const bool is_azimuth = groups.parameter == Parameter::azimuth;
+  if (has_scale)
+    plot.scale_label = is_azimuth                            ? "Azimuth (°)"
+                       : groups.parameter == Parameter::cone ? "Acceptance half angle (°)"
+                                                             : design_key;
+  plot.legend.emplace();
+  if (groups.labels.size() > 1)
+    for (std::size_t k = 0; k < groups.labels.size(); ++k) {
+      std::string text = groups.labels[k];
+      if (!has_scale && groups.parameter != Parameter::design)
+        text += fmt::format(", {} {}° to {}°", is_azimuth ? "azimuth" : "acceptance", shortest(groups.range.first),
+                            shortest(groups.range.second));
+      plot.legend->push_back({std::move(text), k});
+    }
+  for (std::size_t k = 0; k < plot.series.size(); ++k) {
+    plot.series[k].look = groups.of_series[k];
+    if (has_scale) plot.series[k].scale_value = value_of(*curves[k], groups.parameter);
+  }
+}
+
 }  // namespace
 
-LinePlot rre_plot(const std::vector<EfficiencyPoint>& points) {
+LinePlot rre_plot(const std::vector<EfficiencyPoint>& points, const std::string& design_key) {
   const Variation v(points);
   const Axis axis = choose_axis(v);
   LinePlot plot;
@@ -81,12 +162,16 @@ LinePlot rre_plot(const std::vector<EfficiencyPoint>& points) {
                                        : "Incidence angle (°)";
   // The angles may be in any order. The points of a curve are sorted by angle.
   std::vector<const EfficiencyPoint*> sorted;
+  std::vector<const EfficiencyPoint*> curves;
   std::map<CurveKey, std::size_t> series_of;
   for (const EfficiencyPoint& p : points) {
     sorted.push_back(&p);
     const auto [it, is_new] = series_of.try_emplace(curve_of(p, axis), plot.series.size());
-    if (is_new) plot.series.push_back({label(p, v, axis), {}, {}, {}});
+    if (!is_new) continue;
+    plot.series.push_back({label(p, v, axis), {}, {}, {}});
+    curves.push_back(&p);
   }
+  if (curves.size() > kMaxCurvesInLegend) distinguish_many(plot, points, curves, v, axis, design_key);
   std::ranges::stable_sort(sorted, {}, [&](const EfficiencyPoint* p) { return coordinate(*p, axis); });
   for (const EfficiencyPoint* p : sorted)
     plot.series[series_of.at(curve_of(*p, axis))].add(coordinate(*p, axis), 100.0 * p->rre, 100.0 * p->std_error);

@@ -22,13 +22,21 @@ struct EfficiencyPoint {
   double acceptance_half_angle_deg = 0.0;
   double rre = 0.0;
   double std_error = 0.0;
+  /// Value of the only key in which the designs differ. None if there is no such key, or if its values are no numbers.
+  std::optional<double> design_value = {};
 };
+
+/// Maximum number of curves of a plot that are distinguished by a legend. More curves are coloured by the value of a
+/// parameter.
+inline constexpr std::size_t kMaxCurvesInLegend = 8;
 
 /// Returns a plot of RRE in percent over the angle of incidence, with one curve for each design, azimuth and acceptance
 /// cone. If there is only one angle of incidence, the axis is the azimuth. If there is only one direction, the axis is
-/// the acceptance half angle.
+/// the acceptance half angle. If there are more than kMaxCurvesInLegend curves, a colour scale shows the azimuth, the
+/// acceptance half angle or the differing key of the designs. Other parameters are then shown by dashes.
+/// \param design_key key of EfficiencyPoint::design_value
 /// \pre all angles are finite
-LinePlot rre_plot(const std::vector<EfficiencyPoint>& points);
+LinePlot rre_plot(const std::vector<EfficiencyPoint>& points, const std::string& design_key = {});
 
 /// Measured facets of one process, or a single facet.
 struct MeasuredFacets {

@@ -165,11 +165,12 @@ ExitCode compose_part(const ComposeOptions& options, const CommonOptions& common
   const Warnings without_effect = studies::keys_without_effect(study);
   append(warnings, without_effect);
   if (composition.best) whole = whole_part_of(options, making, study, written_zones(), zoned, warnings);
-  const ExitCode code = files.write(studies::composition_json(study, request, composition, elapsed_s),
-                                    studies::composition_text(study, request, composition), warnings,
-                                    {.complete = composition.complete,
-                                     .interrupted = fmt::format("cells evaluated: {}", composition.evaluations),
-                                     .is_yes = why_not.empty()});
+  const ExitCode code = files.write(
+      studies::composition_json(study, request, composition, elapsed_s),
+      without_middle(studies::composition_text(study, request, composition), common, "composition.json"), warnings,
+      {.complete = composition.complete,
+       .interrupted = fmt::format("cells evaluated: {}", composition.evaluations),
+       .is_yes = why_not.empty()});
   if (code == ExitCode::answer_is_no) print_to_stderr("retrace: no part meets all constraints: " + why_not);
   return code == ExitCode::done && !whole.is_complete ? ExitCode::failed : code;
 }

@@ -103,11 +103,12 @@ ExitCode look(const OptimizeOptions& options, const CommonOptions& common, compu
          fmt::format("{} of {} designs are not evaluated because a budget ran out; the first message is: {}",
                      optimum.budget_failures, optimum.evaluations, optimum.budget_failure_reason)});
   if (made) append(warnings, made->warnings);
-  const ExitCode code = files.write(studies::optimum_json(study, request, optimum, elapsed_s),
-                                    studies::optimum_text(study, request, optimum), warnings,
-                                    {.complete = optimum.complete,
-                                     .interrupted = fmt::format("designs evaluated: {}", optimum.evaluations),
-                                     .is_yes = optimum.best.has_value()});
+  const ExitCode code =
+      files.write(studies::optimum_json(study, request, optimum, elapsed_s),
+                  without_middle(studies::optimum_text(study, request, optimum), common, "optimum.json"), warnings,
+                  {.complete = optimum.complete,
+                   .interrupted = fmt::format("designs evaluated: {}", optimum.evaluations),
+                   .is_yes = optimum.best.has_value()});
   if (code != ExitCode::answer_is_no) return code;
   print_to_stderr("retrace: no feasible design: " + optimum.infeasible_reason);
   return optimum.budget_failures > 0 ? ExitCode::failed : code;

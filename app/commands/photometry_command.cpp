@@ -121,7 +121,10 @@ ExitCode run(const PhotometryOptions& options, const CommonOptions& common) {
       result = study.run(&bar, cancel);
     });
   }
-  return files.write(studies::photometry_json(result), studies::photometry_table(result), result.warnings,
+  constexpr std::size_t kFewRows = 8;
+  std::string text = studies::photometry_table(result);
+  if (!common.out.empty() && !is_short(text)) text = studies::photometry_table(result, kFewRows);
+  return files.write(studies::photometry_json(result), text, result.warnings,
                      {.complete = result.complete, .is_yes = result.passes()});
 }
 

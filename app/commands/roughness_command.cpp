@@ -75,7 +75,8 @@ ExitCode trace(const RoughnessOptions& options, const CommonOptions& common, com
   });
   for (const Warning& remark : remarks_of(session)) result.warnings.push_back(remark);
   return files.write(
-      studies::roughness_json(result), studies::roughness_table(result), result.warnings,
+      studies::roughness_json(result), without_middle(studies::roughness_table(result), common, "roughness.csv"),
+      result.warnings,
       {.complete = result.complete, .interrupted = fmt::format("finished points: {}", result.points.size())});
 }
 

@@ -105,6 +105,14 @@ Words what_shortens_rre(const studies::RreSettings& request) {
   return advice;
 }
 
+/// Returns the text for the terminal: the table, or a summary if the table is long and is in the output folder.
+std::string text_of(const studies::RreResult& result, const CommonOptions& common) {
+  const bool has_maps = result.has_map && result.complete;
+  if (has_maps) return studies::rre_map_table(result) + studies::derivative_table(result);
+  const std::string table = studies::rre_table(result) + studies::derivative_table(result);
+  return common.out.empty() || is_short(table) ? table : studies::rre_summary(result);
+}
+
 ExitCode run(const RreOptions& options, const CommonOptions& common) {
   studies::RreSettings request = settings_of(options, common);
   std::vector<design::Design> designs = designs_of(options, common);
@@ -118,10 +126,8 @@ ExitCode run(const RreOptions& options, const CommonOptions& common) {
   interrupt.run(common, {"tracing", to_shorten},
                 [&](Progress* bar, const Cancellation* cancel) { result = study.run(bar, cancel); });
   warn_of_panels(result);
-  const bool has_maps = result.has_map && result.complete;
-  const std::string table = has_maps ? studies::rre_map_table(result) : studies::rre_table(result);
   return files.write(
-      studies::rre_json(result), table + studies::derivative_table(result), result.warnings,
+      studies::rre_json(result), text_of(result, common), result.warnings,
       {.complete = result.complete, .interrupted = fmt::format("finished points: {}", result.points.size())});
 }
 

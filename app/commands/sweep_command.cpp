@@ -24,8 +24,8 @@ ExitCode run_sweep(const StudyOptions& options, const CommonOptions& common) {
                                    : "give the parameters fewer values";
     return studies::read_sweep(study);
   };
-  command.write = [](const studies::SweepResult& result, const ResultFiles& files) {
-    return files.write(studies::sweep_json(result), studies::sweep_table(result));
+  command.write = [&](const studies::SweepResult& result, const ResultFiles& files) {
+    return files.write(studies::sweep_json(result), without_middle(studies::sweep_table(result), common, "sweep.csv"));
   };
   return run_points(options, common, command);
 }

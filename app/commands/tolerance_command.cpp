@@ -31,8 +31,10 @@ ExitCode run_tolerance(const StudyOptions& options, const CommonOptions& common)
   command.write = [&](studies::SweepResult& result, const ResultFiles& files) {
     found = studies::analyse(result.sweep, request, result.points);
     append(result.warnings, found.warnings);
-    return files.write(studies::tolerance_json(result, request, found),
-                       studies::tolerance_text(result.sweep.study(), request, found), {}, {.is_yes = found.is_enough});
+    return files.write(
+        studies::tolerance_json(result, request, found),
+        without_middle(studies::tolerance_text(result.sweep.study(), request, found), common, "tolerance.json"), {},
+        {.is_yes = found.is_enough});
   };
   return run_points(options, common, command);
 }

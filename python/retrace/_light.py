@@ -111,9 +111,11 @@ class RreResult(Result):
 
     def to_xarray(self) -> Any:
         """Returns an xarray.Dataset over design, azimuth, incidence and acceptance, with units.
-        attrs contains the seed and the version."""
+        Values are NaN where a design has no point, because automatically chosen incidences are
+        different for each design. attrs contains the seed and the version."""
         dims = ["design", "azimuth_deg", "incidence_deg", "acceptance_half_angle_deg"]
-        return dataset_of(self.points, dims, {**self._attributes(), "title": self.title})
+        dataset = dataset_of(self.points, dims, {**self._attributes(), "title": self.title})
+        return dataset.sortby("incidence_deg")
 
     def _repr_svg_(self) -> str | None:
         return self._shown_drawing("map" if "map" in self.drawings else "rre")
@@ -219,8 +221,8 @@ def rre(
     standard error and a ledger of all other light, as `retrace rre`.
 
     designs: one or more designs or names of their files. incidence_spans_deg: ranges (from, to) in
-    which additional angles of incidence are chosen, as many as the curve requires. threads: maximum
-    number of threads [all cores]."""
+    which additional angles of incidence are chosen, as many as the curve requires, for each design
+    on its own. threads: maximum number of threads [all cores]."""
     taken = designs_of(designs)
     request = _core.RreRequest()  # generated: sets the fields of the request rre
     count = thread_count(threads)

@@ -189,7 +189,11 @@ LinePlot sweep_plot(const Json& json) {
   plot.title = fmt::format("{} against {}", column_name(quantities.front()), column_name(*axis));
   plot.x_label = column_name(*axis);
   plot.y_label = column_name(quantities.front());
-  constexpr std::size_t most_series = 20;
+  const auto is_other = [&](const std::string& key) { return key != *axis; };
+  const auto other = std::ranges::find_if(parameters, is_other);
+  // Values of the only other parameter, if they are numbers, may be the colours of the curves.
+  const bool has_scale = std::ranges::count_if(parameters, is_other) == 1 && is_axis(*other);
+  const std::size_t most_series = has_scale ? 200 : 20;
   for (const Json& p : points) {
     std::vector<std::string> others;
     for (const std::string& key : parameters)
@@ -200,8 +204,13 @@ LinePlot sweep_plot(const Json& json) {
     if (series == plot.series.end()) {
       if (plot.series.size() == most_series) continue;
       series = plot.series.insert(series, Series{label, {}, {}, {}});
+      if (has_scale) series->scale_value = number(p, other->c_str());
     }
     series->add(number(p, axis->c_str()), number(p, quantities.front().c_str()));
+  }
+  if (has_scale && plot.series.size() > kMaxCurvesInLegend) {
+    plot.scale_label = column_name(*other);
+    plot.legend.emplace();
   }
   return plot;
 }

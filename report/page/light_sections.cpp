@@ -25,12 +25,16 @@ using geometry::Polygon, geometry::Rectangle;
 std::vector<EfficiencyPoint> efficiency_points(const ResultDocument& document, const DesignNames& names) {
   std::map<double, std::string> known;
   std::vector<EfficiencyPoint> points;
+  const design::DesignLabels* const labels = names.labels_of(document);
   for (const Json& p : list(document.json, "points")) {
     if (!std::isfinite(number(p, "incidence_deg")) || !std::isfinite(number(p, "azimuth_deg"))) continue;
     const auto [design, is_new] = known.try_emplace(number_or_0(p, "design"));
     if (is_new) design->second = names.of(document, design->first);
     points.push_back({design->second, number(p, "incidence_deg"), number(p, "azimuth_deg"),
                       number_or_0(p, "acceptance_half_angle_deg"), number(p, "rre"), number(p, "std_error")});
+    const double at = design->first;
+    if (labels != nullptr && at >= 0.0 && at < static_cast<double>(labels->values.size()))
+      points.back().design_value = labels->values[static_cast<std::size_t>(at)];
   }
   return points;
 }
@@ -53,7 +57,7 @@ PageTable ledger_table(const ResultDocument& document, const DesignNames& names)
       break;
     }
     const double design = number(p, "design");
-    std::vector<PageCell> row = {names.are_several() ? PageCell(names.of(document, design)) : PageCell(design),
+    std::vector<PageCell> row = {names.are_several(document) ? PageCell(names.of(document, design)) : PageCell(design),
                                  number(p, "incidence_deg"),
                                  number(p, "azimuth_deg"),
                                  number(p, "acceptance_half_angle_deg"),
@@ -72,7 +76,8 @@ PageSection rre_section(const ResultDocument& document, const ResultFolder& fold
   PageSection section = titled("Efficiency",
                                "RRE is the power that returns into the acceptance cone, divided by the incident power. "
                                "The standard error covers only random sampling; the exact engine has no such error.");
-  LinePlot plot = rre_plot(efficiency_points(document, names));
+  const design::DesignLabels* const labels = names.labels_of(document);
+  LinePlot plot = rre_plot(efficiency_points(document, names), labels != nullptr ? labels->key : std::string());
   if (std::ranges::any_of(plot.series, [](const Series& s) { return s.x.size() > 1; }))
     section.charts.push_back(std::move(plot));
   section.tables.push_back(ledger_table(document, names));
@@ -103,9 +108,9 @@ bool is_of(const Json& feature, const Json& region) {
   return true;
 }
 
-/// Returns the name of a design if the folder has several designs. Otherwise, returns an empty text.
+/// Returns the name of a design if the folder or the document has several designs. Otherwise, returns an empty text.
 std::string name_if_several(const DesignNames& names, const ResultDocument& document, double design) {
-  return names.are_several() ? names.of(document, design) : std::string();
+  return names.are_several(document) ? names.of(document, design) : std::string();
 }
 
 /// Returns the SVG of a scale bar below a rectangle. The length of the bar is 1, 2 or 5 times a power of ten, in mm,

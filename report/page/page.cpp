@@ -30,12 +30,24 @@ std::string json_list(const Values& values, const Text& text) {
 }
 
 std::string json_of(const LinePlot& plot) {
-  return fmt::format(R"({{"title":{},"x_label":{},"y_label":{},"series":{}}})", json_string(plot.title),
-                     json_string(plot.x_label), json_string(plot.y_label), json_list(plot.series, [&](const Series& s) {
-                       return fmt::format(R"({{"label":{},"line":{},"x":{},"y":{}}})",
-                                          json_string(s.label.empty() ? plot.y_label : s.label), s.has_line,
-                                          json_list(s.x, json_number), json_list(s.y, json_number));
-                     }));
+  const std::string series = json_list(plot.series, [&](const Series& s) {
+    std::string look;
+    if (s.look) look += fmt::format(R"(,"look":{})", *s.look);
+    if (s.scale_value) look += fmt::format(R"(,"value":{})", json_number(*s.scale_value));
+    return fmt::format(R"({{"label":{},"line":{},"x":{},"y":{}{}}})",
+                       json_string(s.label.empty() ? plot.y_label : s.label), s.has_line, json_list(s.x, json_number),
+                       json_list(s.y, json_number), look);
+  });
+  std::string more;
+  if (const std::optional<Range> range = scale_range(plot))
+    more += fmt::format(R"(,"scale":{{"label":{},"low":{},"high":{}}})", json_string(plot.scale_label),
+                        json_number(range->low), json_number(range->high));
+  if (plot.legend)
+    more += fmt::format(R"(,"legend":{})", json_list(*plot.legend, [](const LegendKey& key) {
+                          return fmt::format(R"({{"label":{},"look":{}}})", json_string(key.label), key.look);
+                        }));
+  return fmt::format(R"({{"title":{},"x_label":{},"y_label":{},"series":{}{}}})", json_string(plot.title),
+                     json_string(plot.x_label), json_string(plot.y_label), series, more);
 }
 
 /// Returns the coordinates of points in mm as JSON, rounded to 1 nm.

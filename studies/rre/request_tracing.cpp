@@ -19,12 +19,13 @@
 namespace retrace::studies {
 namespace {
 
+/// \param incidence_deg angles of incidence of each design
 std::vector<Direction> directions_of(const std::vector<design::OpticalModel>& models, const RreSettings& request,
-                                     const std::vector<double>& incidence_deg) {
+                                     const std::vector<std::vector<double>>& incidence_deg) {
   std::vector<Direction> directions;
   for (std::size_t d = 0; d < models.size(); ++d)
     for (const double azimuth : request.azimuth_deg)
-      for (const double incidence : incidence_deg) {
+      for (const double incidence : incidence_deg[d]) {
         RrePoint at;
         at.design = d;
         at.incidence_deg = incidence;
@@ -59,30 +60,27 @@ void finish(Direction& direction, const design::Design& design, const design::Op
   }
 }
 
-/// Returns the known kinks of RRE as a function of incidence. Kinks are angles at which total reflection begins or
-/// ends, at any of the requested azimuths and wavelengths. Another kink is at half of an acceptance angle. There, the
-/// light that the entrance face reflects leaves the acceptance cone, because the reflected light rotates twice as fast
-/// as the part.
-std::vector<double> kinks_of(const std::vector<design::Design>& designs,
-                             const std::vector<design::OpticalModel>& models, const RreSettings& request) {
+/// Returns the known kinks of RRE of a design as a function of incidence. Kinks are angles at which total reflection
+/// begins or ends, at any of the requested azimuths and wavelengths. Another kink is at half of an acceptance angle.
+/// There, the light that the entrance face reflects leaves the acceptance cone, because the reflected light rotates
+/// twice as fast as the part.
+std::vector<double> kinks_of(const design::Design& design, const design::OpticalModel& model,
+                             const RreSettings& request) {
   std::vector<double> kinks;
-  for (std::size_t d = 0; d < designs.size(); ++d) {
-    const design::Design& design = designs[d];
-    if (design.balls() || design.entrance) continue;
-    for (const double cone_deg : design.detector.acceptance_half_angle_deg)
-      kinks.insert(kinks.end(), {-0.5 * cone_deg, 0.5 * cone_deg});
-    if (!design.elements() || design.part().substrate || !design.needs_total_reflection()) continue;
-    for (const double azimuth : request.azimuth_deg)
-      for (const design::SpectralOptics& light : models[d].spectral) {
-        const auto add = [&](const raytrace::Optics& optics) {
-          const std::vector<double> edges = design::total_reflection_edges_deg(
-              design.part(), optics.index, optics.back_index, Angle::from_deg(azimuth));
-          kinks.insert(kinks.end(), edges.begin(), edges.end());
-        };
-        add(light.optics);
-        if (light.optics.wet) add(light.optics.wet->optics);
-      }
-  }
+  if (design.balls() || design.entrance) return kinks;
+  for (const double cone_deg : design.detector.acceptance_half_angle_deg)
+    kinks.insert(kinks.end(), {-0.5 * cone_deg, 0.5 * cone_deg});
+  if (!design.elements() || design.part().substrate || !design.needs_total_reflection()) return kinks;
+  for (const double azimuth : request.azimuth_deg)
+    for (const design::SpectralOptics& light : model.spectral) {
+      const auto add = [&](const raytrace::Optics& optics) {
+        const std::vector<double> edges = design::total_reflection_edges_deg(
+            design.part(), optics.index, optics.back_index, Angle::from_deg(azimuth));
+        kinks.insert(kinks.end(), edges.begin(), edges.end());
+      };
+      add(light.optics);
+      if (light.optics.wet) add(light.optics.wet->optics);
+    }
   return kinks;
 }
 
@@ -111,9 +109,23 @@ bool all_are_traced(const std::vector<Direction>& directions) {
   return std::none_of(directions.begin(), directions.end(), [](const Direction& at) { return at.points.empty(); });
 }
 
-void add_values(const std::vector<Direction>& directions, AdaptiveCurve& curve) {
+/// Adds values to the curves of their designs.
+void add_values(const std::vector<Direction>& directions, std::vector<AdaptiveCurve>& curves) {
   for (const Direction& direction : directions)
-    for (const RrePoint& point : direction.points) curve.add(point.incidence_deg, {point.rre, point.std_error});
+    for (const RrePoint& point : direction.points)
+      curves[point.design].add(point.incidence_deg, {point.rre, point.std_error});
+}
+
+/// Returns the next angles of incidence of each design.
+std::vector<std::vector<double>> next_of(std::vector<AdaptiveCurve>& curves) {
+  std::vector<std::vector<double>> places;
+  places.reserve(curves.size());
+  for (AdaptiveCurve& curve : curves) places.push_back(curve.next());
+  return places;
+}
+
+bool are_empty(const std::vector<std::vector<double>>& lists) {
+  return std::all_of(lists.begin(), lists.end(), [](const std::vector<double>& list) { return list.empty(); });
 }
 
 /// Sorts directions by design, azimuth in the order of the request, and ascending incidence.
@@ -127,37 +139,46 @@ void put_in_order(std::vector<Direction>& directions, const std::vector<double>&
             [&](const Direction& a, const Direction& b) { return place(a) < place(b); });
 }
 
-std::string told(const AdaptiveCurve& curve) {
-  if (curve.residual_error() == 0.0) return {};
-  return fmt::format(
-      "{} angles of incidence in each range do not resolve the curve: linear interpolation between them may deviate "
-      "from RRE by {:.2g}",
-      AdaptiveCurve::kMaxPoints, curve.residual_error());
+/// Returns a text about each design whose curve is not resolved.
+std::vector<std::string> unresolved(const std::vector<design::Design>& designs,
+                                    const std::vector<AdaptiveCurve>& curves) {
+  std::vector<std::string> texts;
+  for (std::size_t d = 0; d < curves.size(); ++d)
+    if (curves[d].residual_error() > 0.0)
+      texts.push_back(
+          fmt::format("{}: {} angles of incidence in each range do not resolve the curve: linear interpolation between "
+                      "them may deviate from RRE by {:.2g}",
+                      designs[d].source_name(), AdaptiveCurve::kMaxPoints, curves[d].residual_error()));
+  return texts;
 }
 
+/// Traces incidences that are chosen automatically, for each design on its own. The azimuths of a design have the same
+/// incidences.
 TracedRequest trace_chosen(const std::vector<design::Design>& designs, const std::vector<design::OpticalModel>& models,
                            const RreSettings& request, Progress* progress, const Cancellation* cancel) {
   TracedRequest traced;
   DirectionTracing tracing(designs, models, request, cancel);
   RoundProgress part(progress);
-  AdaptiveCurve curve(request.incidence_spans, kinks_of(designs, models, request), request.incidence_deg,
-                      std::max(kCurveTolerance, target_error_of(request)));
-  auto places = curve.next();
-  while (traced.complete && !places.empty()) {
+  std::vector<AdaptiveCurve> curves;
+  for (std::size_t d = 0; d < designs.size(); ++d)
+    curves.emplace_back(request.incidence_spans, kinks_of(designs[d], models[d], request), request.incidence_deg,
+                        std::max(kCurveTolerance, target_error_of(request)));
+  auto places = next_of(curves);
+  while (traced.complete && !are_empty(places)) {
     std::vector<Direction> round = directions_of(models, request, places);
     trace_points(designs, models, tracing, round, &part);
     part.finish_round();
     traced.complete = all_are_traced(round);
     if (traced.complete) {
-      add_values(round, curve);
-      places = curve.next();
-      traced.complete = places.empty() || !is_cancelled(cancel);
+      add_values(round, curves);
+      places = next_of(curves);
+      traced.complete = are_empty(places) || !is_cancelled(cancel);
     }
     std::move(round.begin(), round.end(), std::back_inserter(traced.directions));
   }
   traced.traced_directions = traced.directions.size();
   put_in_order(traced.directions, request.azimuth_deg);
-  traced.warning = told(curve);
+  traced.warnings = unresolved(designs, curves);
   return traced;
 }
 
@@ -250,7 +271,7 @@ TracedRequest trace_request(const std::vector<design::Design>& designs, const st
                             const Cancellation* cancel) {
   if (!request.incidence_spans.empty()) return trace_chosen(designs, models, request, progress, cancel);
   TracedRequest traced;
-  traced.directions = directions_of(models, request, request.incidence_deg);
+  traced.directions = directions_of(models, request, std::vector(models.size(), request.incidence_deg));
   if (only) std::erase_if(traced.directions, [&](const Direction& direction) { return direction.at.design != *only; });
   if (request.map) return trace_grid(designs, models, request, std::move(traced.directions), progress, cancel);
   DirectionTracing tracing(designs, models, request, cancel);

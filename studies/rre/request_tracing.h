@@ -15,7 +15,8 @@ struct TracedRequest {
   std::vector<Direction> directions;  ///< in the order of the result
   std::size_t traced_directions = 0;  ///< number of directions that were traced; symmetric directions share one
   bool complete = true;
-  std::string warning;  ///< set if automatically chosen incidences do not reach the requested accuracy
+  /// Texts about designs whose automatically chosen incidences do not reach the requested accuracy.
+  std::vector<std::string> warnings;
 };
 
 /// Traces a request.

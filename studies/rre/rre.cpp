@@ -4,6 +4,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <tuple>
 #include <utility>
 
 #include "core/error.h"
@@ -190,6 +194,52 @@ void warn_of_truncation(const RreSettings& request, RreResult& result) {
                    shortest(worst->incidence_deg), shortest(worst->azimuth_deg))});
 }
 
+/// Points of one curve of RRE over incidence, by incidence.
+using CurvePoints = std::map<double, const RrePoint*>;
+
+/// Returns the point that deviates most from the straight line between its neighbours, and this deviation as a fraction
+/// of the maximum of the curve. Twice the standard errors are subtracted from the deviation.
+std::pair<double, const RrePoint*> largest_bend(const CurvePoints& curve) {
+  double highest = 0.0;
+  for (const auto& [incidence_deg, point] : curve) highest = std::max(highest, point->rre);
+  std::pair<double, const RrePoint*> largest = {0.0, nullptr};
+  if (curve.size() < 3 || highest <= 0.0) return largest;
+  for (auto at = std::next(curve.begin()); std::next(at) != curve.end(); ++at) {
+    const auto& [low_deg, low] = *std::prev(at);
+    const auto& [high_deg, high] = *std::next(at);
+    const double share = (at->first - low_deg) / (high_deg - low_deg);
+    const double line = (1.0 - share) * low->rre + share * high->rre;
+    const double std_error = std::hypot(at->second->std_error, (1.0 - share) * low->std_error, share * high->std_error);
+    const double bend = (std::abs(at->second->rre - line) - 2.0 * std_error) / highest;
+    if (bend > largest.first) largest = {bend, at->second};
+  }
+  return largest;
+}
+
+/// Adds a warning if a list of incidences is too coarse for the curve of RRE. Lists of less than four angles are not
+/// curves.
+void warn_of_coarse_list(const RreSettings& request, RreResult& result) {
+  constexpr std::size_t kShortestCurve = 4;
+  constexpr double kAllowedBend = 0.03;
+  const auto& angles = request.incidence_deg;
+  if (!result.complete || request.map || !request.incidence_spans.empty() || angles.size() < kShortestCurve) return;
+  std::map<std::tuple<std::size_t, double, double>, CurvePoints> curves;
+  for (const RrePoint& p : result.points)
+    curves[{p.design, p.azimuth_deg, p.acceptance_half_angle_deg}].try_emplace(p.incidence_deg, &p);
+  std::pair<double, const RrePoint*> worst = {kAllowedBend, nullptr};
+  for (const auto& [key, curve] : curves)
+    if (const auto bend = largest_bend(curve); bend.first > worst.first) worst = bend;
+  if (worst.second == nullptr) return;
+  const auto [low, high] = std::minmax_element(angles.begin(), angles.end());
+  result.warnings.push_back(
+      {"curve_coarse",
+       fmt::format("{}: the angles of incidence do not resolve the curve: at incidence {}, azimuth {}, RRE deviates by "
+                   "{:.2g} % of the maximum from the straight line between its neighbours; angles that are selected "
+                   "automatically resolve it (--incidence={}:{}:auto)",
+                   result.designs[worst.second->design].source_name(), shortest(worst.second->incidence_deg),
+                   shortest(worst.second->azimuth_deg), 100.0 * worst.first, shortest(*low), shortest(*high))});
+}
+
 /// Returns the engine of all points. If points have different engines, returns `montecarlo` if all engines trace rays,
 /// otherwise `mixed`.
 std::string engine_of(const std::vector<RrePoint>& points) {
@@ -220,6 +270,7 @@ void RreStudy::finish(RreResult& result) const {
     for (const design::OpticalModel& model : prepared_->models) result.faces.push_back(entrance_face_of(model.part));
   result.engine = engine_of(result.points);
   warn_of_truncation(prepared_->request, result);
+  warn_of_coarse_list(prepared_->request, result);
 }
 
 RreResult RreStudy::run(std::optional<std::size_t> design, Progress* progress, const Cancellation* cancel) const {
@@ -229,7 +280,7 @@ RreResult RreStudy::run(std::optional<std::size_t> design, Progress* progress, c
   TracedRequest traced = trace_request(designs, models, request, design, progress, cancel);
   result.complete = traced.complete;
   result.traced_directions = traced.traced_directions;
-  if (!traced.warning.empty()) result.warnings.push_back({"curve_not_resolved", traced.warning});
+  for (const std::string& text : traced.warnings) result.warnings.push_back({"curve_not_resolved", text});
   for (Direction& direction : traced.directions) {
     for (const std::uint64_t rays : direction.rays) result.rays += rays;
     const bool missed_target = std::count(direction.missed_target.begin(), direction.missed_target.end(), 1) > 0;

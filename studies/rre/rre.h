@@ -36,9 +36,10 @@ inline constexpr std::string_view kMixedEngines = "mixed";
 /// (studies/rre/rre_request.h) and checks the ranges.
 struct RreSettings {
   std::vector<double> incidence_deg = {0.0};  ///< each in (-90, 90)
-  /// Intervals in (-90, 90) in which further incidences are chosen automatically. They are the same for all designs and
-  /// azimuths. Incidences are added until the error of linear interpolation between the points is at most target_error
-  /// or kCurveTolerance, whichever is greater. All incidences are then sorted in ascending order.
+  /// Intervals in (-90, 90) in which further incidences are chosen automatically. They are chosen for each design on
+  /// its own, and are the same for all azimuths of a design. Incidences are added until the error of linear
+  /// interpolation between the points is at most target_error or kCurveTolerance, whichever is greater. All incidences
+  /// of a design are then sorted in ascending order.
   std::vector<CurveSpan> incidence_spans;
   std::vector<double> azimuth_deg = {0.0};
   raytrace::Engine engine = raytrace::Engine::automatic;

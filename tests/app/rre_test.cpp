@@ -299,6 +299,22 @@ TEST(Rre, WithoutOutATableIsPrintedAndNothingWritten) {
   EXPECT_TRUE(folder.names().empty());
 }
 
+TEST(Rre, LongTablesAreSummariesIfTheyGoToAFolder) {
+  const TemporaryFolder folder;
+  const auto lines = [](const std::string& text) { return std::count(text.begin(), text.end(), '\n'); };
+  const Arguments many = {"rre", kDesign, "--incidence=0:20:0.5", "--azimuth=0:30:10"};
+  const Outcome printed = retrace(folder, many);
+  EXPECT_EQ(printed.code, 0);
+  EXPECT_GT(lines(printed.out), 4 * 41);
+  Arguments written = many;
+  written.insert(written.end(), {"--out", "out"});
+  const Outcome summary = retrace(folder, written);
+  EXPECT_EQ(summary.code, 0);
+  EXPECT_LE(lines(summary.out), 30);
+  EXPECT_NE(summary.out.find("out/rre.json"), std::string::npos);
+  EXPECT_EQ(lines(folder.read("out/rre.csv")), 1 + 4 * 41);
+}
+
 TEST(Rre, LightOfASpectrumIsTraced) {
   const TemporaryFolder folder;
   folder.write("lamp.csv", "wavelength_nm,power\n400,0.5\n700,1\n");

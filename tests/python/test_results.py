@@ -115,6 +115,22 @@ class Results(unittest.TestCase):
             )
             self.assertEqual(at.item(), rre)
 
+    def test_chosen_incidences_belong_to_their_design(self):
+        thin = rt.Design.load(PRISM)
+        result = rt.rre(
+            [thin, thin.replace({"body.refractive_index": 1.6})],
+            incidence_deg=[],
+            incidence_spans_deg=[(0.0, 8.0)],
+            engine="exact",
+        )
+        dataset = result.to_xarray()
+        angles = dataset.incidence_deg.values
+        self.assertTrue((np.diff(angles) > 0).all())
+        for design in (0, 1):
+            own = result.points.incidence_deg[np.asarray(result.points.design) == design]
+            values = dataset.rre.sel(design=design).squeeze()
+            self.assertEqual(values.notnull().sum().item(), len(own))
+
     def test_pickle(self):
         copy = pickle.loads(pickle.dumps(self.result))
         self.assertEqual(copy, self.result)

@@ -221,6 +221,21 @@ TEST(Render, ManySeriesHaveLegendsThatFit) {
   EXPECT_GT(picture.height, 60 * 15);
 }
 
+TEST(Render, ManyCurvesHaveAColourBarInsteadOfALegend) {
+  LinePlot plot = curves(36, 20);
+  const Picture with_legend = decoded(render_png(plot, 1.0));
+  plot.scale_label = "Azimuth (°)";
+  plot.legend.emplace();
+  for (std::size_t k = 0; k < plot.series.size(); ++k) plot.series[k].scale_value = 10.0 * static_cast<double>(k);
+  EXPECT_EQ(svg_fault(render_svg(plot)), "");
+  const Picture picture = decoded(render_png(plot, 1.0));
+  EXPECT_TRUE(picture.has_white_border(4));
+  EXPECT_LT(picture.height, with_legend.height);
+  EXPECT_GT(picture.count_near(0x440154), 100U) << "the first colour of Viridis";
+  for (Series& series : plot.series) series.scale_value = 5.0;
+  EXPECT_TRUE(decoded(render_png(plot, 1.0)).has_white_border(4)) << "a scale without width";
+}
+
 TEST(Render, SurvivesDegenerateInput) {
   std::vector<LinePlot> plots(8, empty_plot());
   plots[0] = {};

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "report/plot_contents.h"
 #include "studies/rre/rre.h"
 
 namespace retrace::report::rre_plot_test {
@@ -28,9 +29,9 @@ studies::RreResult result_of(const std::vector<std::string>& titles, const std::
 TEST(RrePlot, DesignsOfTheSameTitleAreCurvesOfTheirOwn) {
   const LinePlot plot = rre_plot(result_of({"Prisms", "Cubes", "Prisms"}, {0.0, 10.0}));
   ASSERT_EQ(plot.series.size(), 3U);
-  EXPECT_EQ(plot.series[0].label, "Prisms (design 0)");
+  EXPECT_EQ(plot.series[0].label, "Prisms (1)");
   EXPECT_EQ(plot.series[1].label, "Cubes");
-  EXPECT_EQ(plot.series[2].label, "Prisms (design 2)");
+  EXPECT_EQ(plot.series[2].label, "Prisms (2)");
   for (const Series& series : plot.series) EXPECT_EQ(series.x, (std::vector<double>{0.0, 10.0}));
   EXPECT_DOUBLE_EQ(plot.series[2].y[1], 21.0);
 }
@@ -42,6 +43,69 @@ TEST(RrePlot, CurvesRunFromLeftToRight) {
   EXPECT_EQ(plot.series[0].label, "");
   EXPECT_EQ(plot.series[0].x, (std::vector<double>{-5.0, 0.0, 10.0, 20.0}));
   EXPECT_DOUBLE_EQ(plot.series[0].y[3], 2.0);
+}
+
+/// Returns points of curves over incidence, for each combination of design, azimuth and cone.
+std::vector<EfficiencyPoint> points_of(std::size_t designs, std::size_t azimuths, std::size_t cones, bool has_values) {
+  std::vector<EfficiencyPoint> points;
+  for (std::size_t d = 0; d < designs; ++d)
+    for (std::size_t a = 0; a < azimuths; ++a)
+      for (std::size_t c = 0; c < cones; ++c)
+        for (const double incidence_deg : {0.0, 10.0}) {
+          points.push_back({"n = " + std::to_string(d), incidence_deg, 10.0 * static_cast<double>(a),
+                            0.5 * static_cast<double>(c + 1), 0.5, 0.0});
+          if (has_values) points.back().design_value = static_cast<double>(d);
+        }
+  return points;
+}
+
+TEST(RrePlot, UpToEightCurvesHaveALegend) {
+  const LinePlot plot = rre_plot(points_of(2, 4, 1, false));
+  EXPECT_EQ(plot.series.size(), 8U);
+  EXPECT_EQ(plot.scale_label, "");
+  EXPECT_FALSE(plot.legend.has_value());
+  EXPECT_EQ(plot.series[1].label, "n = 0, azimuth 10°");
+}
+
+TEST(RrePlot, ManyAzimuthsAreColoursOfAScale) {
+  const LinePlot plot = rre_plot(points_of(1, 36, 1, false));
+  ASSERT_EQ(plot.series.size(), 36U);
+  EXPECT_EQ(plot.scale_label, "Azimuth (°)");
+  ASSERT_TRUE(plot.legend.has_value());
+  EXPECT_TRUE(plot.legend->empty());
+  for (std::size_t k = 0; k < 36; ++k) EXPECT_EQ(plot.series[k].scale_value, 10.0 * static_cast<double>(k));
+  const auto range = scale_range(plot);
+  ASSERT_TRUE(range.has_value());
+  EXPECT_EQ(range->low, 0.0);
+  EXPECT_EQ(range->high, 350.0);
+}
+
+TEST(RrePlot, DashesDistinguishFewDesignsAtManyAzimuths) {
+  const LinePlot plot = rre_plot(points_of(2, 12, 1, false));
+  ASSERT_TRUE(plot.legend.has_value());
+  ASSERT_EQ(plot.legend->size(), 2U);
+  EXPECT_EQ(plot.legend->at(0).label, "n = 0");
+  EXPECT_EQ(plot.legend->at(1).label, "n = 1");
+  EXPECT_EQ(plot.series[11].look, 0U);
+  EXPECT_EQ(plot.series[12].look, 1U);
+  EXPECT_EQ(plot.series[12].scale_value, 0.0);
+}
+
+TEST(RrePlot, ManyDesignsAtManyAzimuthsHaveAColourEach) {
+  const LinePlot plot = rre_plot(points_of(6, 12, 1, false));
+  EXPECT_EQ(plot.scale_label, "");
+  ASSERT_TRUE(plot.legend.has_value());
+  ASSERT_EQ(plot.legend->size(), 6U);
+  EXPECT_EQ(plot.legend->at(5).label, "n = 5, azimuth 0° to 110°");
+}
+
+TEST(RrePlot, DesignsThatDifferInANumberAreColoursOfAScale) {
+  const LinePlot plot = rre_plot(points_of(12, 1, 1, true), "element.aperture_mm");
+  EXPECT_EQ(plot.scale_label, "element.aperture_mm");
+  EXPECT_EQ(plot.series[7].scale_value, 7.0);
+  const LinePlot words = rre_plot(points_of(12, 1, 1, false));
+  EXPECT_EQ(words.scale_label, "");
+  EXPECT_FALSE(words.legend.has_value());
 }
 
 }  // namespace

@@ -140,26 +140,58 @@ TEST(AdaptiveCurve, KinksOfPrismsComeInPairsAboutTheNormal) {
   EXPECT_NEAR(edges.front(), -edges.back(), 1e-12);
 }
 
-/// All designs and azimuths share the chosen incidences. The values equal those for a list of the same incidences, with
-/// any number of threads.
+/// All azimuths of a design share the chosen incidences, and each design has its own. The values equal those for a list
+/// of the same incidences, with any number of threads.
 TEST(AdaptiveCurve, ValuesAreThoseOfAList) {
-  RreSettings request = chosen(-3, 3, raytrace::Engine::montecarlo);
+  RreSettings request = chosen(2, 6, raytrace::Engine::montecarlo);
   request.azimuth_deg = {30.0, 0.0};
   request.rays = 4096;
   request.incidence_deg = {15.0, 2.3};
-  const std::vector<design::Design> designs = {single_prism(), prisms()};
+  // Only the first design has its knee in this range.
+  const std::vector<std::string> denser = {"body.refractive_index=1.6"};
+  const std::string endless = text("kind = \"rtp\"\nbase_mm = 0.5\nwidth_mm = 0.5", "extent = \"infinite\"");
+  const std::vector<design::Design> designs = {prisms(), design::parse_design(endless, "e.toml", denser)};
   RreResult curve = RreStudy(designs, request).run();
-  std::vector<double> places;
-  for (const RrePoint& p : curve.points)
-    if (p.design == 0 && p.azimuth_deg == 30.0) places.push_back(p.incidence_deg);
-  EXPECT_EQ(std::count(places.begin(), places.end(), 2.3), 1);
-  EXPECT_EQ(places.back(), 15.0);
-  RreResult list = RreStudy(designs, fixed(request, places)).run();
+  const auto places_of = [&](std::size_t d, double azimuth_deg) {
+    std::vector<double> places;
+    for (const RrePoint& p : curve.points)
+      if (p.design == d && p.azimuth_deg == azimuth_deg) places.push_back(p.incidence_deg);
+    return places;
+  };
+  EXPECT_NE(places_of(0, 30.0), places_of(1, 30.0));
+  for (std::size_t d = 0; d < designs.size(); ++d) {
+    const std::vector<double> places = places_of(d, 30.0);
+    EXPECT_EQ(places_of(d, 0.0), places);
+    EXPECT_TRUE(std::is_sorted(places.begin(), places.end()));
+    EXPECT_EQ(std::count(places.begin(), places.end(), 2.3), 1);
+    EXPECT_EQ(places.back(), 15.0);
+    const RreResult list = RreStudy({designs[d]}, fixed(request, places)).run();
+    std::vector<double> values;
+    for (const RrePoint& p : curve.points)
+      if (p.design == d) values.push_back(p.rre);
+    ASSERT_EQ(list.points.size(), values.size());
+    for (std::size_t k = 0; k < values.size(); ++k) EXPECT_EQ(list.points[k].rre, values[k]);
+    const RreResult own = RreStudy({designs[d]}, request).run();
+    EXPECT_EQ(own.points.size(), values.size()) << "the points do not depend on other designs";
+  }
   RreResult alone;
   run_with_threads(1, [&] { alone = RreStudy(designs, request).run(); });
-  curve.elapsed_s = list.elapsed_s = alone.elapsed_s = 0.0;
-  EXPECT_EQ(rre_json(curve), rre_json(list));
+  curve.elapsed_s = alone.elapsed_s = 0.0;
   EXPECT_EQ(rre_json(curve), rre_json(alone));
+}
+
+bool is_called_coarse(const RreResult& result) {
+  return std::ranges::count(result.warnings, "curve_coarse", &Warning::id) > 0;
+}
+
+/// The curve of prisms has a knee at 4.3 degrees.
+TEST(AdaptiveCurve, CoarseListsAreCalledCoarse) {
+  RreSettings request = chosen(0, 20, raytrace::Engine::exact);
+  const RreResult resolved = RreStudy({prisms()}, request).run();
+  EXPECT_FALSE(is_called_coarse(resolved));
+  EXPECT_TRUE(is_called_coarse(RreStudy({prisms()}, fixed(request, grid(0.0, 20.0, 4.0))).run()));
+  EXPECT_FALSE(is_called_coarse(RreStudy({prisms()}, fixed(request, {0.0, 4.0, 8.0})).run())) << "no curve";
+  EXPECT_FALSE(is_called_coarse(RreStudy({prisms()}, fixed(request, grid(1.0, 2.0, 0.25))).run())) << "a smooth part";
 }
 
 class Watch : public Progress {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -116,7 +117,10 @@ TEST(RreFiles, CsvHeaderIsTheKeysOfTheJson) {
 TEST(RreFiles, TableNamesDesignsAndConesOnlyWhereThereAreSeveral) {
   RreResult result = some_result();
   const std::string both = rre_table(result);
-  EXPECT_NE(both.find("design 1: B, \"the\" \\x1b[1m\\nsecond\n"), std::string::npos) << both;
+  const std::vector<std::string> lines = lines_of(both);
+  ASSERT_EQ(lines.size(), 3U) << both;
+  EXPECT_TRUE(lines[1].starts_with("a ")) << both;
+  EXPECT_TRUE(lines[2].starts_with("b ")) << both;
   EXPECT_NE(both.find("33.3333"), std::string::npos) << both;
   EXPECT_EQ(both.find("acceptance"), std::string::npos) << both;
   result.designs.resize(1);
@@ -124,6 +128,60 @@ TEST(RreFiles, TableNamesDesignsAndConesOnlyWhereThereAreSeveral) {
   EXPECT_EQ(rre_table(result).find("design"), std::string::npos);
   result.designs[0].detector.acceptance_half_angle_deg = {0.5, 1.0};
   EXPECT_NE(rre_table(result).find("acceptance_deg"), std::string::npos);
+}
+
+TEST(RreFiles, TableShowsTitlesAsPrintableText) {
+  RreResult result = some_result();
+  for (design::Design& design : result.designs) design.source.clear();
+  const std::string table = rre_table(result);
+  EXPECT_NE(table.find("B, \"the\" \\x1b[1m\\nsecond"), std::string::npos) << table;
+}
+
+/// Returns a result with the curve 0.8 cos^2(2 t) at every degree from -40 to 40.
+RreResult smooth_result(std::size_t designs, std::size_t azimuths) {
+  constexpr double kRadians = 3.14159265358979323846 / 180.0;
+  RreResult result;
+  result.designs.resize(designs);
+  for (std::size_t d = 0; d < designs; ++d) {
+    result.designs[d].source = "d" + std::to_string(d) + ".toml";
+    for (std::size_t a = 0; a < azimuths; ++a)
+      for (int t = -40; t <= 40; ++t) {
+        RrePoint point;
+        point.design = d;
+        point.incidence_deg = t;
+        point.azimuth_deg = 10.0 * static_cast<double>(a);
+        point.acceptance_half_angle_deg = 0.5;
+        const double c = std::cos(2.0 * kRadians * t);
+        point.rre = 0.8 * c * c;
+        result.points.push_back(point);
+      }
+  }
+  return result;
+}
+
+TEST(RreFiles, SummaryTellsThePointsTheMaximumAndTheHalfAngles) {
+  const std::vector<std::string> lines = lines_of(rre_summary(smooth_result(2, 1)));
+  ASSERT_EQ(lines.size(), 3U);
+  std::istringstream line(lines[1]);
+  std::string name, azimuth, points, start, start_deg, top, top_deg, low, high;
+  line >> name >> azimuth >> points >> start >> start_deg >> top >> top_deg >> low >> high;
+  EXPECT_EQ(name, "d0");
+  EXPECT_EQ(points, "81");
+  EXPECT_EQ(start, "80.0000");
+  EXPECT_EQ(start_deg, "0");
+  EXPECT_EQ(top, "80.0000");
+  EXPECT_EQ(top_deg, "0");
+  // cos^2(2 t) is 1/2 at t = 22.5 degrees. Linear interpolation over a degree is accurate to 0.01 degrees here.
+  EXPECT_NEAR(std::stod(low), -22.5, 0.01);
+  EXPECT_NEAR(std::stod(high), 22.5, 0.01);
+}
+
+TEST(RreFiles, SummaryIsShortForAnyNumberOfCurves) {
+  for (const std::size_t designs : {1U, 3U, 40U})
+    for (const std::size_t azimuths : {1U, 12U, 36U})
+      EXPECT_LE(lines_of(rre_summary(smooth_result(designs, azimuths))).size(), 22U) << designs << ' ' << azimuths;
+  EXPECT_EQ(lines_of(rre_summary(smooth_result(1, 36))).size(), 2U) << "one line for all azimuths";
+  EXPECT_EQ(rre_summary(RreResult{}), "");
 }
 
 }  // namespace

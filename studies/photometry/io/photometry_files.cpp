@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "core/csv.h"
+#include "core/infinity.h"
 #include "core/json_text.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
@@ -122,14 +124,24 @@ std::string point_text(const PhotometricPoint& p) {
 }
 
 /// Returns the readings as the rows of a table for the terminal.
-std::string rows_of(const std::vector<PhotometricPoint>& points) {
+/// \param max_rows maximum number of rows; those with the smallest margins are kept
+std::string rows_of(const std::vector<PhotometricPoint>& points, std::size_t max_rows) {
+  std::vector<double> margins;
+  for (const PhotometricPoint& p : points) margins.push_back(p.margin());
+  std::ranges::sort(margins);
+  const double largest = margins.size() > max_rows ? margins[max_rows - 1] : kInfinity;
   std::string table = fmt::format("{:>7} {:>6} {:>6} {:>9} {:>11} {:>11} {:>9} {:>8}  {}\n", "alpha", "V", "H",
                                   "rotation", "mcd/lx", "limit", "margin_%", "R_A", "verdict");
-  for (const PhotometricPoint& p : points)
+  std::size_t rows = 0;
+  for (const PhotometricPoint& p : points) {
+    if (p.margin() > largest || rows == max_rows) continue;
+    ++rows;
     table += fmt::format("{:>7} {:>6} {:>6} {:>9} {:>11} {:>11} {:>9} {:>8}  {}\n",
                          fixed_visible(p.test_point.observation_deg, 2), shortest(p.test_point.v_deg),
                          shortest(p.test_point.h_deg), shortest(p.rotation_deg), fixed(p.r_i_mcd_per_lx, 2),
                          fixed(p.limit_mcd_per_lx, 2), fixed(100.0 * p.margin(), 1), fixed(p.r_a, 1), point_text(p));
+  }
+  if (rows < points.size()) table += fmt::format("... and {} points with larger margins\n", points.size() - rows);
   return table;
 }
 
@@ -184,12 +196,12 @@ std::string verdict_text(Verdict verdict, const TestPlan& test_plan, const std::
   return {};
 }
 
-std::string change_text(const PhotometricChange& change, const TestPlan& test_plan) {
+std::string change_text(const PhotometricChange& change, const TestPlan& test_plan, std::size_t max_rows) {
   std::string text =
       fmt::format("\n{} {} = {} (now {}):\n",
                   change.passes() ? "change that passes:" : "best change that was tried, not sufficient:", change.key,
                   shortest(change.to), shortest(change.from));
-  return text + rows_of(change.points) + verdict_text(change.verdict, test_plan);
+  return text + rows_of(change.points, max_rows) + verdict_text(change.verdict, test_plan);
 }
 
 }  // namespace
@@ -261,18 +273,18 @@ std::string first_answer_table(const PhotometricFirstAnswer& answer) {
   return table;
 }
 
-std::string photometry_table(const PhotometryResult& result) {
+std::string photometry_table(const PhotometryResult& result, std::size_t max_rows) {
   const TestPlan& test_plan = result.request.test_plan;
   std::string table = printable(test_plan.standard);
   if (!test_plan.part_class.empty()) table += ", class " + printable(test_plan.part_class);
   table += fmt::format(", {}, {} cm2, {}{}\n", printable(test_plan.colour), shortest(result.request.area_cm2),
                        light_text(result.request.light),
                        result.request.dye.empty() ? "" : ", dye " + printable(result.request.dye));
-  table += rows_of(result.points);
+  table += rows_of(result.points, max_rows);
   table += areas_text(result.request);
   if (result.colour) table += colour_text(*result.colour);
   if (!result.points.empty()) table += verdict_text(result.verdict, test_plan, result.reason.text);
-  if (result.change) table += change_text(*result.change, test_plan);
+  if (result.change) table += change_text(*result.change, test_plan, max_rows);
   return table;
 }
 

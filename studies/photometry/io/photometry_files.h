@@ -2,6 +2,8 @@
 
 // Output documents and tables of `retrace photometry`.
 
+#include <cstddef>
+#include <limits>
 #include <string>
 
 #include "studies/photometry/photometry.h"
@@ -22,6 +24,9 @@ std::string far_field_map_csv(const PhotometryResult& result);
 std::string first_answer_table(const PhotometricFirstAnswer& answer);
 
 /// Returns the table, the verdict and the advice for the terminal.
-std::string photometry_table(const PhotometryResult& result);
+/// \param max_rows maximum number of rows for the points of the design, and of the changed design; those with the
+/// smallest margins are kept. > 0
+std::string photometry_table(const PhotometryResult& result,
+                             std::size_t max_rows = std::numeric_limits<std::size_t>::max());
 
 }  // namespace retrace::studies

@@ -1,20 +1,27 @@
 #include "studies/rre/io/rre_files.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <iterator>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 #include <string_view>
+#include <tuple>
 #include <utility>
+#include <vector>
 
 #include "core/csv.h"
 #include "core/json_text.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
 #include "design/io/design_json.h"
+#include "design/io/design_labels.h"
 #include "studies/rre/rre_map.h"
 
 namespace retrace::studies {
@@ -93,10 +100,41 @@ bool has_several_cones(const RreResult& result) {
   return false;
 }
 
-std::string line_of(const RrePoint& point, const RreDerivative& by) {
-  std::string line =
-      fmt::format("{:>6}  {:>13}  {:>11}  {:>14}  {:<18}  ", point.design, shortest(point.incidence_deg),
-                  shortest(point.azimuth_deg), shortest(point.acceptance_half_angle_deg), parameter_name(by.parameter));
+/// Column with the labels of the designs in a table. It has no width if there is only one design.
+class DesignColumn {
+ public:
+  explicit DesignColumn(const RreResult& result) {
+    if (result.designs.size() < 2) return;
+    names_ = design::design_labels(result.designs).names;
+    width_ = 6;
+    for (std::string& name : names_) {
+      name = printable(name);
+      width_ = std::max(width_, length_of(name));
+    }
+  }
+
+  std::string heading() const { return padded("design"); }
+  std::string cell(std::size_t design) const { return width_ > 0 ? padded(names_[design]) : std::string(); }
+
+ private:
+  /// Returns the number of characters of a UTF-8 text.
+  static std::size_t length_of(std::string_view text) {
+    return static_cast<std::size_t>(std::count_if(
+        text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0U) != 0x80U; }));
+  }
+  std::string padded(const std::string& text) const {
+    if (width_ == 0) return {};
+    return text + std::string(width_ - std::min(width_, length_of(text)) + 2, ' ');
+  }
+
+  std::vector<std::string> names_;
+  std::size_t width_ = 0;
+};
+
+std::string line_of(const RrePoint& point, const RreDerivative& by, const DesignColumn& designs) {
+  std::string line = designs.cell(point.design);
+  line += fmt::format("{:>13}  {:>11}  {:>14}  {:<18}  ", shortest(point.incidence_deg), shortest(point.azimuth_deg),
+                      shortest(point.acceptance_half_angle_deg), parameter_name(by.parameter));
   if (by.missing_reason) return line + fmt::format("not computed: {}\n", text_of(*by.missing_reason));
   return line + fmt::format("{:>13.6g}  {:.1e}\n", by.derivative.value, by.derivative.error);
 }
@@ -189,18 +227,13 @@ std::string rre_csv(const RreResult& result) {
 }
 
 std::string rre_table(const RreResult& result) {
-  const bool several_designs = result.designs.size() > 1;
   const bool several_cones = has_several_cones(result);
-  std::string table;
-  if (several_designs)
-    for (std::size_t d = 0; d < result.designs.size(); ++d)
-      table += fmt::format("design {}: {}\n", d, printable(design::short_name(result.designs[d])));
-  if (several_designs) table += "design  ";
-  table += "incidence_deg  azimuth_deg  ";
+  const DesignColumn designs(result);
+  std::string table = designs.heading() + "incidence_deg  azimuth_deg  ";
   if (several_cones) table += "acceptance_deg  ";
   table += "    RRE_%    +-_%   cut_%  engine\n";
   for (const RrePoint& p : result.points) {
-    if (several_designs) table += fmt::format("{:>6}  ", p.design);
+    table += designs.cell(p.design);
     table += fmt::format("{:>13}  {:>11}  ", shortest(p.incidence_deg), shortest(p.azimuth_deg));
     if (several_cones) table += fmt::format("{:>14}  ", shortest(p.acceptance_half_angle_deg));
     table += fmt::format("{:>9}  {}  {}  {}\n", fixed(100.0 * p.rre, 4), fixed(100.0 * p.std_error, 4),
@@ -235,14 +268,107 @@ std::string rre_map_table(const RreResult& result) {
   return text;
 }
 
+namespace {
+
+/// Points of one design and acceptance cone, at one or all azimuths.
+struct CurveSummary {
+  std::vector<const RrePoint*> points;  ///< in the order of the result
+  bool has_all_azimuths = false;
+};
+
+constexpr std::size_t kMaxSummaryLines = 22;
+
+/// Returns the curves of the result. If they are too many, all azimuths of a design and cone belong to one curve.
+std::vector<CurveSummary> curves_of(const RreResult& result) {
+  for (const bool has_all_azimuths : {false, true}) {
+    std::map<std::tuple<std::size_t, double, double>, std::size_t> place;
+    std::vector<CurveSummary> curves;
+    for (const RrePoint& p : result.points) {
+      const auto [it, is_new] = place.try_emplace(
+          {p.design, has_all_azimuths ? 0.0 : p.azimuth_deg, p.acceptance_half_angle_deg}, curves.size());
+      if (is_new) curves.push_back({{}, has_all_azimuths});
+      curves[it->second].points.push_back(&p);
+    }
+    if (has_all_azimuths || curves.size() < kMaxSummaryLines) return curves;
+  }
+  return {};
+}
+
+/// Returns the smallest angles on either side of normal incidence at which RRE falls to half of a value, by linear
+/// interpolation. None if it does not fall so far.
+/// \param by_incidence RRE of one azimuth by incidence
+std::array<std::optional<double>, 2> half_angles(const std::map<double, double>& by_incidence, double start_deg,
+                                                 double half) {
+  std::array<std::optional<double>, 2> found;
+  const auto crossing = [&](const auto& from, const auto& to) -> std::optional<double> {
+    if (from.second < half || to.second >= half) return std::nullopt;
+    return from.first + (to.first - from.first) * (from.second - half) / (from.second - to.second);
+  };
+  const auto start = by_incidence.find(start_deg);
+  if (start == by_incidence.end()) return found;
+  for (auto at = start; !found[1] && std::next(at) != by_incidence.end(); ++at)
+    found[1] = crossing(*at, *std::next(at));
+  for (auto at = start; !found[0] && at != by_incidence.begin(); --at) found[0] = crossing(*at, *std::prev(at));
+  return found;
+}
+
+/// Returns the angles at which RRE falls to half of its value at the point `start`, as a text. Angles that differ
+/// between azimuths are given as a range.
+std::string half_text(const CurveSummary& curve, const RrePoint& start) {
+  std::map<double, std::map<double, double>> by_azimuth;
+  for (const RrePoint* p : curve.points) by_azimuth[p->azimuth_deg].try_emplace(p->incidence_deg, p->rre);
+  std::array<std::vector<double>, 2> found;
+  for (const auto& [azimuth_deg, by_incidence] : by_azimuth) {
+    const auto angles = half_angles(by_incidence, start.incidence_deg, 0.5 * start.rre);
+    for (std::size_t side = 0; side < 2; ++side)
+      if (angles[side]) found[side].push_back(*angles[side]);
+  }
+  std::vector<std::string> parts;
+  for (const std::vector<double>& angles : found) {
+    if (angles.empty()) continue;
+    const auto [low, high] = std::minmax_element(angles.begin(), angles.end());
+    parts.push_back(*high - *low < 0.005 ? fixed(*low, 2) : fixed(*low, 2) + " to " + fixed(*high, 2));
+  }
+  return parts.empty() ? "-" : fmt::format("{}", fmt::join(parts, "; "));
+}
+
+}  // namespace
+
+std::string rre_summary(const RreResult& result) {
+  const std::vector<CurveSummary> curves = curves_of(result);
+  if (curves.empty()) return {};
+  const bool several_cones = has_several_cones(result);
+  const DesignColumn designs(result);
+  std::string table = designs.heading() + "azimuth_deg  ";
+  if (several_cones) table += "acceptance_deg  ";
+  table += "points     RRE_%  at_deg     max_%  at_deg  half_at_deg\n";
+  const std::size_t shown = curves.size() < kMaxSummaryLines ? curves.size() : kMaxSummaryLines - 2;
+  for (std::size_t k = 0; k < shown; ++k) {
+    const CurveSummary& curve = curves[k];
+    const auto is_normal = [](const RrePoint* p) { return p->incidence_deg == 0.0; };
+    const auto normal = std::ranges::find_if(curve.points, is_normal);
+    const RrePoint& start = normal != curve.points.end() ? **normal : *curve.points.front();
+    const RrePoint& top = **std::ranges::max_element(curve.points, {}, &RrePoint::rre);
+    table += designs.cell(start.design);
+    table += fmt::format("{:>11}  ", curve.has_all_azimuths ? "all" : shortest(start.azimuth_deg));
+    if (several_cones) table += fmt::format("{:>14}  ", shortest(start.acceptance_half_angle_deg));
+    table += fmt::format("{:>6}  {:>8}  {:>6}  {:>8}  {:>6}  {}\n", curve.points.size(), fixed(100.0 * start.rre, 4),
+                         shortest(start.incidence_deg), fixed(100.0 * top.rre, 4), shortest(top.incidence_deg),
+                         half_text(curve, start));
+  }
+  if (shown < curves.size()) table += fmt::format("and {} more curves\n", curves.size() - shown);
+  return table;
+}
+
 std::string derivative_table(const RreResult& result) {
+  const DesignColumn designs(result);
   std::string lines;
   for (const RrePoint& point : result.points)
-    for (const RreDerivative& by : point.derivatives) lines += line_of(point, by);
+    for (const RreDerivative& by : point.derivatives) lines += line_of(point, by, designs);
   if (lines.empty()) return {};
   return "\n"
-         "derivatives of RRE (a fraction) per unit of the parameter\n"
-         "design  incidence_deg  azimuth_deg  acceptance_deg  parameter               derivative  +-\n" +
+         "derivatives of RRE (a fraction) per unit of the parameter\n" +
+         designs.heading() + "incidence_deg  azimuth_deg  acceptance_deg  parameter               derivative  +-\n" +
          lines;
 }
 

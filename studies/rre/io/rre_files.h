@@ -26,6 +26,11 @@ std::string rre_map_csv(const RreResult& result);
 /// \pre result.has_map
 std::string rre_map_table(const RreResult& result);
 
+/// Returns a table of at most 22 lines for the terminal: for each curve, the number of points, RRE at normal incidence
+/// (or at the first angle), the maximum and its angle, and the angles at which RRE falls to half of its value at normal
+/// incidence. If there are too many curves, the azimuths of a design have one line.
+std::string rre_summary(const RreResult& result);
+
 /// Returns a table for the terminal with the derivatives of RRE, as a fraction, per unit of each parameter. Empty if
 /// none were requested.
 std::string derivative_table(const RreResult& result);

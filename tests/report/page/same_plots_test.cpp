@@ -69,6 +69,31 @@ TEST(SamePlots, Efficiency) {
     }
 }
 
+TEST(SamePlots, ManyCurvesAndEqualDesigns) {
+  studies::RreResult result;
+  for (std::size_t d = 0; d < 2; ++d) {
+    result.designs.push_back(prism("Equal"));
+    for (int azimuth = 0; azimuth < 12; ++azimuth)
+      for (const double incidence_deg : {0.0, 10.0}) {
+        studies::RrePoint point;
+        point.design = d;
+        point.incidence_deg = incidence_deg;
+        point.azimuth_deg = 30.0 * azimuth;
+        point.acceptance_half_angle_deg = 0.5;
+        result.points.push_back(point);
+      }
+  }
+  const LinePlot drawn = rre_plot(result);
+  const LinePlot on_page = plot_on_page("rre", studies::rre_json(result));
+  EXPECT_EQ(drawn.series.size(), 24U);
+  expect_same(on_page, drawn);
+  EXPECT_EQ(on_page.scale_label, drawn.scale_label);
+  ASSERT_TRUE(on_page.legend.has_value() && drawn.legend.has_value());
+  ASSERT_EQ(on_page.legend->size(), drawn.legend->size());
+  for (std::size_t k = 0; k < drawn.legend->size(); ++k)
+    EXPECT_EQ(on_page.legend->at(k).label, drawn.legend->at(k).label);
+}
+
 TEST(SamePlots, Roughness) {
   studies::RoughnessResult result;
   result.design = prism("Rough");

@@ -1,8 +1,51 @@
 // Interactive charts for pointer and keyboard, drawn with uPlot.
 import uPlot from "uplot";
-import { colour } from "./theme.js";
+import { colour, isDark } from "./theme.js";
 
-const WIDTHS = [2, 2, 2, 2, 2, 2, 2];
+// The following values are those of drawings in files, see report/plot.cpp and report/style.h.
+const VIRIDIS = [
+  [68, 1, 84],
+  [71, 45, 123],
+  [59, 82, 139],
+  [44, 114, 142],
+  [33, 145, 141],
+  [40, 174, 128],
+  [94, 201, 98],
+  [173, 220, 48],
+  [253, 231, 37],
+];
+const DASHES = [undefined, [7, 3.5], [2, 2.5], [8, 3, 2, 3]];
+const MAX_MARKERS = 45;
+
+/** Returns a colour for a position 0..1 on the colour scale. Colours near that of the background are left out. */
+function scaleColour(fraction) {
+  const at = Math.min(1, Math.max(0, isDark() ? 0.15 + 0.85 * fraction : 0.93 * fraction)) * (VIRIDIS.length - 1);
+  const k = Math.min(Math.floor(at), VIRIDIS.length - 2);
+  const mixed = VIRIDIS[k].map((a, c) => Math.round(a + (at - k) * (VIRIDIS[k + 1][c] - a)));
+  return `rgb(${mixed.join(", ")})`;
+}
+
+/** Returns the colour and the dashes of a curve. */
+function lookOf(chart, s, i) {
+  const look = s.look ?? i;
+  if (chart.scale && s.value != null) {
+    const { low, high } = chart.scale;
+    const fraction = high > low ? (s.value - low) / (high - low) : 0.5;
+    return { stroke: () => scaleColour(fraction), dash: DASHES[look % DASHES.length] };
+  }
+  return { stroke: () => colour(`--curve-${look % 7}`), dash: look < 7 ? undefined : [6, 4] };
+}
+
+/** Returns the value of a curve at the x value of another curve, by linear interpolation. */
+function between(plot, series, i) {
+  const [xs, ys] = [plot.data[0], plot.data[series]];
+  let low = i;
+  let high = i;
+  while (low >= 0 && ys[low] == null) --low;
+  while (high < ys.length && ys[high] == null) ++high;
+  if (low < 0 || high >= ys.length) return null;
+  return low === high ? ys[low] : ys[low] + ((ys[high] - ys[low]) * (xs[i] - xs[low])) / (xs[high] - xs[low]);
+}
 
 /** Returns all x values of all series, ascending, and the y values of each series with null for missing values. */
 export function aligned(series) {
@@ -33,25 +76,24 @@ export function axis(label, values) {
   };
 }
 
-function optionsOf(chart, width, figure) {
+function optionsOf(chart, width, figure, read) {
   return {
     width,
     height: 340,
     scales: { x: { time: false }, y: {} },
     axes: [axis(chart.x_label, 46), axis(chart.y_label, 62)],
     cursor: { drag: { x: true, y: false }, focus: { prox: 30 } },
-    legend: { live: true },
+    legend: { live: true, show: !chart.legend },
     series: [
       { label: chart.x_label, value: (_, v) => shown(v) },
       ...chart.series.map((s, i) => ({
         label: s.label,
-        stroke: () => colour(`--curve-${i % 7}`),
-        width: WIDTHS[i % 7],
-        dash: i < 7 ? undefined : [6, 4],
+        ...lookOf(chart, s, i),
+        width: s.line && s.x.length <= MAX_MARKERS ? 1.2 : 2,
         ...(s.line ? {} : { paths: () => null }),
-        points: { show: !s.line || s.x.length < 60, size: 5 },
+        points: { show: !s.line || s.x.length <= MAX_MARKERS, size: 5 },
         spanGaps: true,
-        value: (_, v) => shown(v),
+        value: (plot, v, series, at) => shown(v == null && at != null && s.line ? between(plot, series, at) : v),
       })),
     ],
     hooks: {
@@ -59,6 +101,7 @@ function optionsOf(chart, width, figure) {
         (plot) => {
           const i = plot.cursor.idx;
           figure.dataset.at = i == null ? "" : plot.data.map((values) => shown(values[i])).join(" ");
+          if (read) read.textContent = i == null ? "" : nearest(plot, i);
         },
       ],
       setScale: [
@@ -67,6 +110,56 @@ function optionsOf(chart, width, figure) {
         },
       ],
     },
+  };
+}
+
+/** Returns a text with the values of the curve that is nearest to the pointer. */
+function nearest(plot, i) {
+  const y = plot.posToVal(plot.cursor.top, "y");
+  let best = { distance: Infinity, text: "" };
+  for (let k = 1; k < plot.series.length; ++k) {
+    const value = between(plot, k, i);
+    if (value == null || Math.abs(value - y) >= best.distance) continue;
+    best = { distance: Math.abs(value - y), text: `${plot.series[k].label}: ${shown(value)} at ${shown(plot.data[0][i])}` };
+  }
+  return best.text;
+}
+
+/** Adds a legend for groups of curves, a colour bar and the values at the pointer. Returns a function that updates the colours. */
+function addLegend(figure, chart, read) {
+  const box = document.createElement("div");
+  box.className = "curve-legend";
+  const samples = chart.legend.map((key) => {
+    const item = document.createElement("span");
+    const line = document.createElement("canvas");
+    line.width = 34;
+    line.height = 12;
+    item.append(line, ` ${key.label}`);
+    box.append(item);
+    return { line, look: key.look };
+  });
+  const bar = document.createElement("i");
+  if (chart.scale) {
+    const item = document.createElement("span");
+    item.append(`${chart.scale.label}: ${shown(chart.scale.low)} `, bar, ` ${shown(chart.scale.high)}`);
+    box.append(item);
+  }
+  box.append(read);
+  figure.querySelector(".plot").after(box);
+  return () => {
+    const stops = Array.from({ length: 17 }, (_, k) => scaleColour(k / 16));
+    bar.style.background = `linear-gradient(to right, ${stops.join(", ")})`;
+    for (const { line, look } of samples) {
+      const pen = line.getContext("2d");
+      pen.clearRect(0, 0, line.width, line.height);
+      pen.strokeStyle = chart.scale ? colour("--text") : colour(`--curve-${look % 7}`);
+      pen.lineWidth = 2;
+      pen.setLineDash((chart.scale ? DASHES[look % DASHES.length] : look < 7 ? [] : [6, 4]) ?? []);
+      pen.beginPath();
+      pen.moveTo(0, 6);
+      pen.lineTo(34, 6);
+      pen.stroke();
+    }
   };
 }
 
@@ -79,7 +172,7 @@ export function addKeys(plot, figure, spoken) {
     const x = plot.data[0][at];
     plot.setCursor({ left: plot.valToPos(x, "x"), top: 20 });
     spoken.textContent = plot.series
-      .map((s, i) => `${s.label}: ${shown(plot.data[i][at])}`)
+      .map((s, i) => `${s.label}: ${shown(i === 0 ? plot.data[0][at] : between(plot, i, at))}`)
       .join("; ");
   };
   const zoom = (factor) => {
@@ -114,18 +207,25 @@ function draw(figure, chart) {
   spoken.className = "spoken";
   spoken.setAttribute("aria-live", "polite");
   figure.append(spoken);
-  const plot = new uPlot(optionsOf(chart, Math.max(280, area.clientWidth), figure), aligned(chart.series), area);
+  const read = chart.legend ? document.createElement("output") : null;
+  const options = optionsOf(chart, Math.max(280, area.clientWidth), figure, read);
+  const plot = new uPlot(options, aligned(chart.series), area);
+  const tint = read ? addLegend(figure, chart, read) : () => {};
+  tint();
   addKeys(plot, figure, spoken);
   new ResizeObserver(() => {
     const width = Math.max(280, Math.floor(area.clientWidth));
     if (width !== plot.width) plot.setSize({ width, height: 340 });
   }).observe(area);
-  return plot;
+  return () => {
+    plot.redraw(false, true);
+    tint();
+  };
 }
 
 export function drawCharts(charts) {
-  const plots = [];
+  const redraws = [];
   for (const figure of document.querySelectorAll("figure[data-chart]"))
-    plots.push(draw(figure, charts[Number(figure.dataset.chart)]));
-  return () => plots.forEach((plot) => plot.redraw(false, true));
+    redraws.push(draw(figure, charts[Number(figure.dataset.chart)]));
+  return () => redraws.forEach((redraw) => redraw());
 }
