@@ -40,21 +40,11 @@ PageSection photometry_section(const ResultDocument& document, const ResultFolde
   section.paragraphs.push_back(
       "R_I at the test points of the standard. A verdict that is based on recalled, unconfirmed limits is unconfirmed. "
       "The computation is not an approval test.");
-  PageTable table =
+  section.tables.push_back(
       table_of(list(json, "points"),
-               {"observation_deg", "v_deg", "h_deg", "rotation_deg", "value_mcd_per_lx", "std_error_mcd_per_lx",
-                "limit_mcd_per_lx", "margin", "limit_status", "verdict", "lower_bound", "r_a_cd_per_lx_m2"},
-               "Test points", csv_name(document, "points"));
-  for (std::size_t c = 0; c < table.columns.size(); ++c)
-    if (table.columns[c] == "verdict") {
-      for (auto& row : table.rows) row[c].rating = rating_of(row[c].text);
-      // Failed points come first, then undetermined points, then all other points.
-      const auto rank = [&](const auto& row) {
-        return row[c].rating == Rating::bad ? 0 : row[c].rating == Rating::open ? 1 : 2;
-      };
-      std::ranges::stable_sort(table.rows, {}, rank);
-    }
-  section.tables.push_back(std::move(table));
+               {"verdict", "observation_deg", "v_deg", "h_deg", "rotation_deg", "value_mcd_per_lx", "limit_mcd_per_lx",
+                "margin", "std_error_mcd_per_lx", "limit_status", "lower_bound", "r_a_cd_per_lx_m2"},
+               "Test points", csv_name(document, "points")));
   return section;
 }
 

@@ -93,6 +93,26 @@ std::string column_name(const std::string& key) {
   return name + unit;
 }
 
+namespace {
+
+constexpr const char* kVerdicts[] = {"verdict", "passes", "holds"};  // keys whose values are rated
+
+/// Returns the rows, stably sorted by the worst rating of their values: failed rows first, then undetermined rows.
+std::vector<const Json*> failures_first(const Json& rows, const std::vector<std::string>& keys) {
+  std::vector<const Json*> sorted;
+  for (const Json& row : rows) sorted.push_back(&row);
+  for (const char* key : kVerdicts) {
+    if (std::ranges::find(keys, key) == keys.end()) continue;
+    std::ranges::stable_sort(sorted, {}, [&](const Json* row) {
+      const Rating rating = rating_of(key, member(*row, key));
+      return rating == Rating::bad ? 0 : rating == Rating::open ? 1 : 2;
+    });
+  }
+  return sorted;
+}
+
+}  // namespace
+
 PageTable table_of(const Json& rows, const std::vector<std::string>& keys, const std::string& caption,
                    const std::string& csv_name) {
   PageTable table;
@@ -103,13 +123,17 @@ PageTable table_of(const Json& rows, const std::vector<std::string>& keys, const
     if (std::any_of(rows.begin(), rows.end(), [&](const Json& row) { return row.is_object() && row.contains(key); }))
       present.push_back(key);
   for (const std::string& key : present) table.columns.push_back(column_name(key));
-  for (const Json& row : rows) {
+  for (const Json* row : failures_first(rows, present)) {
     if (table.rows.size() == kMaxRows) {
       table.omitted_rows = rows.size() - kMaxRows;
       break;
     }
     std::vector<PageCell> cells;
-    for (const std::string& key : present) cells.push_back(cell_of(member(row, key.c_str())));
+    for (const std::string& key : present) {
+      const Json& value = member(*row, key.c_str());
+      cells.push_back(cell_of(value));
+      cells.back().rating = rating_of(key, value);
+    }
     table.rows.push_back(std::move(cells));
   }
   return table;
@@ -123,7 +147,9 @@ PageTable figures_of(const Json& json, const std::string& caption, const std::st
   table.columns = {"figure", "value"};
   for (const auto& [key, value] : json.items()) {
     if (told.contains(key) || value.is_structured()) continue;
-    table.rows.push_back({column_name(key), cell_of(value)});
+    PageCell cell = cell_of(value);
+    cell.rating = rating_of(key, value);
+    table.rows.push_back({column_name(key), std::move(cell)});
   }
   return table;
 }
@@ -137,6 +163,12 @@ std::string csv_name(const ResultDocument& document, const char* what) {
 Rating rating_of(const std::string& verdict) {
   if (verdict == "pass") return Rating::good;
   return verdict == "fail" ? Rating::bad : Rating::open;
+}
+
+Rating rating_of(const std::string& key, const Json& value) {
+  if (key == "verdict" && value.is_string()) return rating_of(value.get<std::string>());
+  if ((key == "passes" || key == "holds") && value.is_boolean()) return value.get<bool>() ? Rating::good : Rating::bad;
+  return Rating::none;
 }
 
 std::string name_of_design(const Json& design) {

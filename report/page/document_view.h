@@ -36,7 +36,8 @@ PageCell cell_of(const Json& value);
 /// Converts a key to the title of a column, for example "incidence_deg" to "incidence (deg)".
 std::string column_name(const std::string& key);
 /// Returns a table with one row for each object of a list. It has a column for each key of `keys` that occurs in at
-/// least one object.
+/// least one object. If the objects have a verdict (`verdict`, `passes` or `holds`), its cells are rated and the rows
+/// are sorted: failed rows come first, then undetermined rows, then all others.
 PageTable table_of(const Json& rows, const std::vector<std::string>& keys, const std::string& caption,
                    const std::string& csv_name);
 /// Returns a table with one row for each member of a JSON object. Members that are objects or lists are omitted.
@@ -45,6 +46,8 @@ std::string csv_name(const ResultDocument& document, const char* what);
 
 /// Returns the rating of a verdict: good for "pass", bad for "fail", and open for all others.
 Rating rating_of(const std::string& verdict);
+/// Returns the rating of the value of a key: that of its verdict if the key contains one, otherwise none.
+Rating rating_of(const std::string& key, const Json& value);
 std::string name_of_design(const Json& design);
 /// Returns the keys that occur in the first 20 objects of a list, in the order in which the keys first occur.
 std::vector<std::string> keys_of(const Json& rows);

@@ -8,6 +8,7 @@
 #include <map>
 #include <ranges>
 
+#include "core/number_format.h"
 #include "core/text.h"
 #include "geometry/polygon.h"
 #include "report/page/design_names.h"
@@ -39,17 +40,27 @@ std::vector<EfficiencyPoint> efficiency_points(const ResultDocument& document, c
   return points;
 }
 
+/// Returns a cell that shows a fraction in percent with four digits. The CSV file contains all digits.
+PageCell percent_cell(double fraction) {
+  PageCell cell(100.0 * fraction);
+  if (!std::isfinite(fraction)) return cell;
+  if (cell.full.empty()) cell.full = cell.text;
+  cell.text = fmt::format("{:.4g}", 100.0 * fraction + 0.0);
+  return cell;
+}
+
 /// Returns a table with one row for each point. Its columns are the accounts of the ledger (the terms of the energy
-/// balance), in percent of the incident power.
+/// balance), in percent of the incident power. The account of the retroreflected light is RRE.
 PageTable ledger_table(const ResultDocument& document, const DesignNames& names) {
   const Json& points = list(document.json, "points");
   PageTable table;
-  table.caption = "Ledger: terms of the light, in percent of the incident power";
+  table.caption = "Ledger: terms of the light, in percent of the incident power. RRE is the retroreflected light";
   table.csv_name = csv_name(document, "ledger");
   table.columns = {"design", "incidence (deg)", "azimuth (deg)", "acceptance (deg)", "RRE (%)", "std. error (%)"};
   std::vector<std::string> accounts;
   if (!points.empty())
-    for (const auto& [key, value] : member(points.front(), "ledger").items()) accounts.push_back(key);
+    for (const auto& [key, value] : member(points.front(), "ledger").items())
+      if (key != "retroreflected") accounts.push_back(key);
   for (const std::string& account : accounts) table.columns.push_back(column_name(account) + " (%)");
   for (const Json& p : points) {
     if (table.rows.size() == kMaxRows) {
@@ -61,9 +72,10 @@ PageTable ledger_table(const ResultDocument& document, const DesignNames& names)
                                  number(p, "incidence_deg"),
                                  number(p, "azimuth_deg"),
                                  number(p, "acceptance_half_angle_deg"),
-                                 100.0 * number(p, "rre"),
-                                 100.0 * number(p, "std_error")};
-    for (const std::string& account : accounts) row.emplace_back(100.0 * number(member(p, "ledger"), account.c_str()));
+                                 percent_cell(number(p, "rre")),
+                                 percent_cell(number(p, "std_error"))};
+    for (const std::string& account : accounts)
+      row.push_back(percent_cell(number(member(p, "ledger"), account.c_str())));
     table.rows.push_back(std::move(row));
   }
   return table;

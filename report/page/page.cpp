@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <string_view>
@@ -89,6 +90,12 @@ bool is_numeric(const PageTable& table, std::size_t column) {
   return true;
 }
 
+/// Returns true if a column contains texts of more than one word.
+bool has_phrases(const PageTable& table, std::size_t column) {
+  constexpr std::size_t word = 14;  // number of characters above which a text is wrapped
+  return std::ranges::any_of(table.rows, [&](const auto& row) { return row[column].text.size() > word; });
+}
+
 /// Returns the name of the CSS class for a rating.
 std::string_view class_of(Rating rating) {
   switch (rating) {
@@ -99,6 +106,17 @@ std::string_view class_of(Rating rating) {
   }
   return "";
 }
+
+bool is_bad(const std::vector<PageCell>& row) {
+  return std::ranges::any_of(row, [](const PageCell& cell) { return cell.rating == Rating::bad; });
+}
+
+bool has_bad_row(const PageTable& table) {
+  return std::ranges::any_of(table.rows, is_bad);
+}
+
+/// Number of rows above which a table without failures is shown in a box with a scroll bar.
+constexpr std::size_t kLongTable = 24;
 
 class HtmlWriter {
  public:
@@ -135,15 +153,17 @@ class HtmlWriter {
     add("<a class=\"skip\" href=\"#main\">Skip to the results</a>\n<header>\n<h1>{}</h1>\n"
         "<button type=\"button\" id=\"theme\" hidden></button>\n<p>{}</p>\n</header>\n",
         markup_text(page_.title), markup_text(page_.subtitle));
-    add("<nav aria-label=\"Sections\"><ul>\n");
+    add("<nav aria-label=\"Contents\"><p>Contents</p>\n<ul>\n");
     for (const PageSection& section : page_.sections)
-      add("<li><a href=\"#{}\">{}</a></li>\n", section.id, markup_text(section.title));
+      add("<li><a href=\"#{}\"{}>{}</a></li>\n", section.id, has_failure(section) ? " class=\"bad\"" : "",
+          markup_text(section.title));
     add("</ul></nav>\n");
   }
 
   void write_section(const PageSection& section) {
     add("<section id=\"{0}\" aria-labelledby=\"{0}-title\">\n<h2 id=\"{0}-title\">{1}</h2>\n", section.id,
         markup_text(section.title));
+    if (!section.subject.empty()) add("<p class=\"subject\">{}</p>\n", markup_text(section.subject));
     for (const std::string& text : section.paragraphs) add("<p>{}</p>\n", markup_text(text));
     write_facts(section.facts);
     write_steps(section.steps);
@@ -162,9 +182,12 @@ class HtmlWriter {
     if (facts.empty()) return;
     constexpr std::size_t long_text = 24;
     add("<dl class=\"facts\">\n");
-    for (const PageFact& fact : facts)
-      add("<div><dt>{}</dt><dd class=\"{}{}\">{}</dd></div>\n", markup_text(fact.name), class_of(fact.rating),
+    for (const PageFact& fact : facts) {
+      add("<div><dt>{}</dt><dd class=\"{}{}\">{}</dd>", markup_text(fact.name), class_of(fact.rating),
           fact.value.size() > long_text ? " long" : "", markup_text(fact.value));
+      if (!fact.subject.empty()) add("<dd class=\"subject\">{}</dd>", markup_text(fact.subject));
+      add("</div>\n");
+    }
     add("</dl>\n");
   }
 
@@ -188,16 +211,17 @@ class HtmlWriter {
   void write_chart(const LinePlot& chart) {
     if (chart_count_ > 0) charts_ += ',';
     charts_ += json_of(chart);
-    add("<figure data-chart=\"{}\"><div class=\"plot\"></div><figcaption>{}. Drag to zoom, double click for all; with "
-        "the keyboard: arrows, +, - and 0.</figcaption></figure>\n",
+    add("<figure data-chart=\"{}\"><div class=\"plot\"></div><figcaption>{}. <span class=\"how\">Drag to zoom, "
+        "double click for all; with the keyboard: arrows, +, - and 0.</span></figcaption></figure>\n",
         chart_count_++, markup_text(chart.title));
   }
 
   void write_path(const PathPlot& path) {
     if (path_count_ > 0) paths_ += ',';
     paths_ += json_of(path);
-    add("<figure data-path=\"{}\"><div class=\"path\"></div><figcaption>{}: {}. Wheel with the control key, "
-        "or + and -, to zoom; drag or arrows to move; 0 or double click for all.</figcaption></figure>\n",
+    add("<figure data-path=\"{}\"><div class=\"path\"></div><figcaption>{}: {}. <span class=\"how\">Wheel "
+        "with the control key, or + and -, to zoom; drag or arrows to move; 0 or double click for "
+        "all.</span></figcaption></figure>\n",
         path_count_++, markup_text(path.title), markup_text(fmt::format("{}", fmt::join(path.remarks, "; "))));
   }
 
@@ -216,17 +240,18 @@ class HtmlWriter {
   }
 
   void write_table(const PageTable& table) {
-    add("<div class=\"table-box\" tabindex=\"0\" role=\"region\" aria-label=\"{0}\"><table data-csv=\"{1}\">"
+    const bool is_long = table.rows.size() > kLongTable && !has_bad_row(table);
+    add("<div class=\"table-box{2}\" tabindex=\"0\" role=\"region\" aria-label=\"{0}\"><table data-csv=\"{1}\">"
         "<caption>{0}</caption>\n<thead><tr>",
-        markup_text(table.caption), markup_text(table.csv_name));
+        markup_text(table.caption), markup_text(table.csv_name), is_long ? " long" : "");
     std::vector<const char*> style;
     for (std::size_t c = 0; c < table.columns.size(); ++c) {
-      style.push_back(is_numeric(table, c) ? "n" : "");
+      style.push_back(is_numeric(table, c) ? "n" : has_phrases(table, c) ? "p" : "");
       add("<th scope=\"col\" class=\"{}\">{}</th>", style[c], markup_text(table.columns[c]));
     }
     add("</tr></thead>\n<tbody>\n");
     for (const auto& row : table.rows) {
-      add("<tr>");
+      html_ += is_bad(row) ? "<tr class=\"bad\">" : "<tr>";
       for (std::size_t c = 0; c < row.size(); ++c) {
         add("<td class=\"{} {}\"", style[c], class_of(row[c].rating));
         if (!row[c].full.empty()) add(" data-v=\"{}\"", markup_text(row[c].full));
@@ -253,6 +278,11 @@ PageSection titled(std::string title, const std::string& paragraph) {
   section.title = std::move(title);
   if (!paragraph.empty()) section.paragraphs.push_back(paragraph);
   return section;
+}
+
+bool has_failure(const PageSection& section) {
+  return std::ranges::any_of(section.tables, has_bad_row) ||
+         std::ranges::any_of(section.facts, [](const PageFact& fact) { return fact.rating == Rating::bad; });
 }
 
 std::string six_digits(double value) {

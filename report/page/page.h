@@ -31,7 +31,7 @@ struct PageCell {
   PageCell(double value);
 };
 
-/// A table that can be saved as CSV.
+/// A table that can be saved as CSV. A row with a cell that is rated bad is marked.
 struct PageTable {
   std::string caption;
   std::vector<std::string> columns;  ///< titles with units, such as "incidence (deg)"
@@ -53,11 +53,13 @@ struct PageFact {
   std::string name;
   std::string value;
   Rating rating = Rating::none;
+  std::string subject = {};  ///< name of the design or job that the value describes; empty if the page has only one
 };
 
 struct PageSection {
   std::string id;  ///< unique id of letters and digits
   std::string title;
+  std::string subject;  ///< names of the designs or jobs that the section describes; empty if the page has only one
   std::vector<std::string> paragraphs;
   std::vector<PageFact> facts;
   std::vector<std::string> steps;  ///< steps in order; the reader can tick them off
@@ -71,6 +73,9 @@ struct PageSection {
 };
 
 PageSection titled(std::string title, const std::string& paragraph = {});
+
+/// Returns true if a fact or a cell of the section is rated bad.
+bool has_failure(const PageSection& section);
 
 /// Light path in the view in three dimensions.
 struct ScenePathView {

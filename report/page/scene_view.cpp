@@ -90,7 +90,7 @@ void add_live(Page& page, const ResultFolder& folder) {
     PageSection section = titled("Live",
                                  "The design with the engine in this page: change a value or the direction of the "
                                  "light to see the effect. The results of the other sections do not change.");
-    if (const DesignNames names(folder); names.are_several()) section.paragraphs.push_back(names.of(*json) + ".");
+    if (const DesignNames names(folder); names.are_several()) section.subject = names.of(*json);
     section.id = "live-section";
     section.has_live = true;
     page.live = LiveStart{toml, "design.toml"};

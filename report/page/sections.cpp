@@ -1,6 +1,7 @@
 #include "report/page/sections.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -83,8 +84,8 @@ void add_pictures(PageSection& section, const ResultDocument& document, const Re
 
 /// Appends the efficiency of one design at normal incidence and its greatest efficiency to `facts`.
 /// \param design index of the design
-/// \param whose text that is appended to the names of the facts, see Subjects
-void add_efficiencies(const Json& points, double design, const std::string& whose, std::vector<PageFact>& facts) {
+/// \param subject name of the design on the cards, see Subjects
+void add_efficiencies(const Json& points, double design, const std::string& subject, std::vector<PageFact>& facts) {
   const Json* best = nullptr;
   const Json* normal = nullptr;
   for (const Json& p : points) {
@@ -92,17 +93,18 @@ void add_efficiencies(const Json& points, double design, const std::string& whos
     if (best == nullptr || number(p, "rre") > number(*best, "rre")) best = &p;
     if (normal == nullptr && number(p, "incidence_deg") == 0.0) normal = &p;
   }
-  if (normal != nullptr) facts.push_back({"RRE at normal incidence" + whose, percent(number(*normal, "rre"))});
+  if (normal != nullptr)
+    facts.push_back({"RRE at normal incidence", percent(number(*normal, "rre")), Rating::none, subject});
   if (best != nullptr && best != normal)
-    facts.push_back({fmt::format("Maximum RRE, at {} deg{}", six_digits(number(*best, "incidence_deg")), whose),
-                     percent(number(*best, "rre"))});
+    facts.push_back({fmt::format("Maximum RRE, at {} deg", six_digits(number(*best, "incidence_deg"))),
+                     percent(number(*best, "rre")), Rating::none, subject});
 }
 
-/// Determines the texts that are appended to the names of the facts in the summary. If the folder has several designs
-/// or several jobs, the name of a fact ends with the name of its design or job, such as "Machining time: job.toml".
+/// Names of the designs or jobs that documents describe. They are empty unless the folder has several designs or
+/// several jobs.
 class Subjects {
  public:
-  explicit Subjects(const ResultFolder& folder) : names_(folder) {
+  explicit Subjects(const ResultFolder& folder) : folder_(folder), names_(folder) {
     std::set<std::string> jobs;
     for (const ResultDocument& document : folder.documents) jobs.insert(job_of(document));
     jobs.erase("");
@@ -112,10 +114,28 @@ class Subjects {
   std::string of(const ResultDocument& document, double design = 0.0) const {
     if (!are_several_) return {};
     const std::string job = job_of(document);
-    return ": " + (job.empty() ? names_.of(document, design) : job);
+    return job.empty() ? names_.of(document, design) : job;
+  }
+
+  /// Returns the names of all designs of a document, or the name of its job. Documents on footprints and far fields
+  /// have the designs of the efficiency document in the same folder.
+  std::vector<std::string> all_of(const ResultDocument& document) const {
+    if (!are_several_) return {};
+    if (!job_of(document).empty()) return {job_of(document)};
+    const bool has_designs = document.json.contains("design") || document.json.contains("designs") ||
+                             document.kind == "footprint" || document.kind == "far_field";
+    std::vector<std::string> all;
+    for (std::size_t number = 0; has_designs && number < kMaxNames; ++number) {
+      const Json* const design = design_of(folder_, document, static_cast<double>(number));
+      if (design == nullptr) break;
+      if (const std::string name = names_.of(*design); all.empty() || all.back() != name) all.push_back(name);
+    }
+    return all;
   }
 
  private:
+  static constexpr std::size_t kMaxNames = 100;  ///< maximum number of designs of a document that are named
+
   /// Returns the file name of the job or part to which a document on machining refers. Returns an empty text for other
   /// documents.
   static std::string job_of(const ResultDocument& document) {
@@ -125,9 +145,23 @@ class Subjects {
     return {};
   }
 
+  const ResultFolder& folder_;
   DesignNames names_;
   bool are_several_;
 };
+
+/// Sets the name of the design or job of a section, and of its cards, tables and pictures. If the section has several
+/// designs, its rows, curves and drawings have names already.
+void set_subjects(PageSection& section, const std::vector<std::string>& subjects) {
+  constexpr std::size_t max_names = 3;
+  section.subject = subjects.size() > max_names ? fmt::format("{} designs", subjects.size())
+                                                : fmt::format("{}", fmt::join(subjects, "; "));
+  if (subjects.size() != 1) return;
+  for (PageFact& fact : section.facts) fact.subject = section.subject;
+  for (PageTable& table : section.tables) table.caption += ": " + section.subject;
+  for (PageFigure& figure : section.figures)
+    if (figure.svg.empty()) figure.caption += ": " + section.subject;
+}
 
 void add_summary_facts(const ResultDocument& document, const Subjects& subjects, std::vector<PageFact>& facts) {
   const Json& json = document.json;
@@ -138,19 +172,19 @@ void add_summary_facts(const ResultDocument& document, const Subjects& subjects,
     for (const double design : designs)
       add_efficiencies(list(json, "points"), design, subjects.of(document, design), facts);
   }
-  const std::string whose = subjects.of(document);
+  const std::string subject = subjects.of(document);
+  const auto add = [&](const char* name, const std::string& value, Rating rating = Rating::none) {
+    facts.push_back({name, value, rating, subject});
+  };
   if (document.kind == "inspect") {
     if (const double n = number(json, "elements_full"); std::isfinite(n))
-      facts.push_back({"Whole elements" + whose, fmt::format("{:.0f}", n)});
+      add("Whole elements", fmt::format("{:.0f}", n));
     if (const double limit = number(json, "tir_limit_deg"); std::isfinite(limit))
-      facts.push_back({"Total reflection up to" + whose, fixed_visible(limit, 2) + " deg"});
+      add("Total reflection up to", fixed_visible(limit, 2) + " deg");
   }
-  if (document.kind == "photometry")
-    facts.push_back({"Photometry" + whose, text(json, "verdict"), rating_of(text(json, "verdict"))});
-  if (document.kind == "fabrication")
-    facts.push_back({"Machining time" + whose, measured(number(json, "time_s") / 3600.0, 2, " h")});
-  if (document.kind == "verification")
-    facts.push_back({"Verification" + whose, text(json, "verdict"), rating_of(text(json, "verdict"))});
+  if (document.kind == "photometry") add("Photometry", text(json, "verdict"), rating_of(text(json, "verdict")));
+  if (document.kind == "fabrication") add("Machining time", measured(number(json, "time_s") / 3600.0, 2, " h"));
+  if (document.kind == "verification") add("Verification", text(json, "verdict"), rating_of(text(json, "verdict")));
 }
 
 PageSection summary_section(const ResultFolder& folder) {
@@ -159,6 +193,8 @@ PageSection summary_section(const ResultFolder& folder) {
   for (const auto& [kind, make] : makers())
     for (const ResultDocument& document : folder.documents)
       if (document.kind == kind) add_summary_facts(document, subjects, section.facts);
+  const auto is_not_bad = [](const PageFact& fact) { return fact.rating != Rating::bad; };
+  std::ranges::stable_sort(section.facts, {}, is_not_bad);  // failures come first
   std::size_t warnings = 0;
   bool is_complete = true;
   for (const ResultDocument& document : folder.documents) {
@@ -207,12 +243,19 @@ PageSection provenance_section(const ResultFolder& folder) {
   return section;
 }
 
-/// Makes the titles of sections unique by adding the names of their files, and sets the ids of the sections.
+/// Makes the titles of sections unique and sets the ids of the sections. Sections with the same title get the names of
+/// their designs or jobs if these differ, otherwise the names of their files.
 void name_apart(std::vector<PageSection>& sections, const std::vector<std::string>& files) {
-  std::map<std::string, int> titles;
-  for (const PageSection& section : sections) ++titles[section.title];
-  for (std::size_t k = 0; k < sections.size(); ++k)
-    if (titles[sections[k].title] > 1 && !files[k].empty()) sections[k].title += ": " + files[k];
+  std::map<std::string, std::multiset<std::string>> subjects;  // by title
+  for (const PageSection& section : sections) subjects[section.title].insert(section.subject);
+  for (std::size_t k = 0; k < sections.size(); ++k) {
+    const std::multiset<std::string>& same_title = subjects[sections[k].title];
+    const std::set<std::string> different(same_title.begin(), same_title.end());
+    if (same_title.size() < 2 || files[k].empty()) continue;
+    const bool is_named = different.size() == same_title.size() && !different.contains("");
+    sections[k].title += ": " + (is_named ? sections[k].subject : files[k]);
+    if (is_named) sections[k].subject.clear();  // the title contains it
+  }
   for (std::size_t k = 0; k < sections.size(); ++k) sections[k].id = fmt::format("s{}", k);
 }
 
@@ -251,22 +294,22 @@ Page study_page(const ResultFolder& folder, const std::string& title) {
   if (page.title.empty() && names.are_several()) page.title = fmt::format("Study of {} designs", names.count());
   if (page.title.empty()) page.title = design != nullptr ? name_of_design(*design) : "Study";
   page.subtitle = fmt::format("Study of a retroreflector, by retrace {}", kVersion);
+  const Subjects subjects(folder);
   std::vector<std::string> files = {"", ""};
   page.sections.push_back(summary_section(folder));
   if (design != nullptr) {
     PageSection view;
     view.title = "In three dimensions";
     view.has_scene = true;
-    if (names.are_several()) view.paragraphs.push_back(names.of(*design) + ".");
+    if (names.are_several()) view.subject = names.of(*design);
     page.sections.push_back(std::move(view));
   } else {
     files.pop_back();
   }
   const auto add = [&](const ResultDocument& document, MakeSection make) {
     PageSection section = make(document, folder);
-    if (const Json& own = member(document.json, "design"); names.are_several() && own.is_object())
-      section.paragraphs.insert(section.paragraphs.begin(), "Design: " + names.of(own) + ".");
     add_pictures(section, document, folder);
+    set_subjects(section, subjects.all_of(document));
     page.sections.push_back(std::move(section));
     files.push_back(document.name);
   };

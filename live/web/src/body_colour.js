@@ -17,16 +17,35 @@ function absorptionAt(curve, nm) {
   return a + ((b - a) * (nm - low)) / (high - low);
 }
 
+/** Returns the absorption of a body as a list of [wavelength, absorption], or null if it is the same for all colours. */
+function curveOf(design) {
+  const absorption = design && design.keys.find(({ path }) => path === "body.absorption_per_mm");
+  return absorption && Array.isArray(absorption.value) ? absorption.value : null;
+}
+
+/**
+ * Returns the colour in which drawings show the body, such as "rgb(230, 150, 40)". It is null for clear bodies. The colour
+ * is that of white light after two passes, made so light that edges and light paths remain visible.
+ */
+export function tintOf(design) {
+  const curve = curveOf(design);
+  if (!curve || coloursOf(design)[0] === "white") return null;
+  const path_mm = 2 * (design.thickness_mm || 1);
+  const passed = [NM.red, NM.green, NM.blue].map((nm) => Math.exp(-path_mm * absorptionAt(curve, nm)));
+  const most = Math.max(...passed, 1e-12);
+  return `rgb(${passed.map((t) => Math.round(40 + 195 * (t / most))).join(", ")})`;
+}
+
 /**
  * Returns the possible names of the body's colour, the best match first. A body without spectral absorption is clear
  * ("white").
  */
 export function coloursOf(design) {
-  const absorption = design && design.keys.find(({ path }) => path === "body.absorption_per_mm");
-  if (!absorption || !Array.isArray(absorption.value)) return ["white"];
+  const curve = curveOf(design);
+  if (!curve) return ["white"];
   const path_mm = 2 * (design.thickness_mm || 1); // light passes through the body twice: in and out
-  const least = Math.min(...Object.values(NM).map((nm) => absorptionAt(absorption.value, nm)));
-  const passes = (nm) => Math.exp(path_mm * (least - absorptionAt(absorption.value, nm))) >= PASSES;
+  const least = Math.min(...Object.values(NM).map((nm) => absorptionAt(curve, nm)));
+  const passes = (nm) => Math.exp(path_mm * (least - absorptionAt(curve, nm))) >= PASSES;
   const [blue, green, yellow, red] = Object.values(NM).map(passes);
   if (red && !yellow) return ["red"];
   if (red && !green) return ["amber", "orange", "yellow"];

@@ -25,7 +25,8 @@ function numberField(row, entry, { id, size_mm, change }) {
     });
   const show = (value) => {
     number.value = value ?? "";
-    number.placeholder = value == null ? row.otherwise || "" : "";
+    number.placeholder = value == null && row.otherwise ? "default" : "";
+    number.title = value == null && row.otherwise ? `Default: ${row.otherwise}` : "";
     if (!range) return;
     range.value = value ?? slider.low;
     range.classList.toggle("unset", value == null);

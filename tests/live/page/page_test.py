@@ -2,7 +2,7 @@
 
     python3 page_test.py RETRACE SOURCE [--keep]
 
---keep writes new screenshots into this folder instead of comparing the page with the old ones.
+--keep writes new screenshots into tests/data/pages instead of comparing the page with the old ones.
 """
 
 import json
@@ -23,7 +23,7 @@ sys.path.insert(0, str(HERE.parent.parent / "report" / "page"))
 from browser import BrowserCase  # noqa: E402
 
 PROGRAM = SOURCE = None
-SIZES = ((1280, 900), (768, 1024), (390, 844))
+SIZES = ((1400, 1000), (390, 844))
 KINDS = ("rtp", "hexagonal_icc", "triangular_icc")
 SLIDERS = {"rtp": ("element.base_mm", 0.3, 0.7), "hexagonal_icc": ("element.aperture_mm", 1.0, 2.0),
            "triangular_icc": ("element.aperture_mm", 1.0, 2.0)}
@@ -253,6 +253,9 @@ class PageWorks(LiveCase):
         self.assertEqual(len(self.all(".pins .ghost")), 4)
         self.assertIn("Four", self.text(".done"))
         self.wait(lambda d: all("%" in text for text in self.texts(".pins .ghost output")))
+        self.assertEqual(set(self.texts(".pins .ghost .quiet")), {"same as this design"})
+        self.script("retraceLive.change('element.base_mm', 0.7)")
+        self.wait(lambda d: set(self.texts(".pins .ghost .quiet")) == {"base 0.5 mm"})
         self.template("hexagonal_icc")
         self.all(".pins .ghost button")[0].click()
         self.wait(lambda d: '"rtp"' in self.session("base.toml"))
@@ -265,6 +268,14 @@ class PageWorks(LiveCase):
 
     def colour(self):
         return self.script("return document.querySelector('.programme select[aria-label=Colour]').value")
+
+    def is_tint(self, colour):
+        """Returns true if the view in three dimensions shows the body in a colour of this name."""
+        shown = self.one(".scene-view").get_attribute("data-body")
+        if colour == "white" or shown == "clear":
+            return colour == "white" and shown == "clear"
+        red, green, blue = (int(value) for value in shown.removeprefix("rgb(").removesuffix(")").split(","))
+        return red > green + 40 > blue if colour == "amber" else red > 2 * max(green, blue)
 
     def judged(self):
         self.wait(lambda d: self.all(".test tbody tr") and self.all(".verdict .chip") and not self.all(".test.stale"))
@@ -279,6 +290,9 @@ class PageWorks(LiveCase):
             self.script("arguments[0].value = arguments[1]; arguments[0].dispatchEvent(new Event('change'))", area, area_cm2)
             verdicts = self.judged()
             self.assertEqual(verdicts, sorted(verdicts, key=order.index), "what fails comes first")
+            self.assertEqual(len(self.all(".test tr.bad")), verdicts.count("fail"))
+            self.assertEqual(self.script("const box = document.querySelector('.test .table-box'); "
+                                         "return box.scrollHeight - box.clientHeight"), 0, "no row needs scrolling in a box")
             seen.update(verdicts)
         self.assertGreater(len(seen), 1)
 
@@ -298,6 +312,7 @@ class PageWorks(LiveCase):
                 for text in texts:
                     self.open(ODD + text + "\n")
                     self.wait(lambda d, colour=colour: self.colour() == colour)
+                    self.wait(lambda d, colour=colour: self.is_tint(colour))
         self.choose("Colour", "white")  # the user chooses a colour
         self.open(ODD + body("amber") + "\n")
         self.rest()
@@ -329,6 +344,29 @@ class PageWorks(LiveCase):
         self.check_themes()
         self.paper(None)
 
+    def test_scales_of_values_are_the_same_in_light_and_dark(self):
+        at = lambda selector, x, y: self.script(
+            "const c = document.querySelector(arguments[0]); return [...c.getContext('2d').getImageData(arguments[1] * c.width, "
+            "arguments[2] * c.height, 1, 1).data]", selector, x, y)
+        seen = []
+        for name in ("light", "dark"):
+            self.paper(name)
+            self.load()
+            self.rest()
+            self.wait(lambda d: self.session("map.shown && retraceLive.map.shown.level") == 3)
+            bar = self.script("return document.querySelector('.map-bar i').style.background")
+            seen.append([bar, at(".map-view canvas", 0.5, 0.45), at(".plan-view canvas", 0.37, 0.53)])
+        self.assertEqual(*seen)
+        self.paper(None)
+
+    def test_the_map_has_a_legend(self):
+        self.rest()
+        legend = self.texts(".map .legend .entry")
+        self.assertEqual(len(legend), 2)
+        self.assertIn("12°", legend[0])
+        self.assertIn("30°", legend[0])
+        self.assertIn("%", legend[0])
+
     def test_looks_as_it_did(self):
         for width, height in SIZES:
             for name in ("light", "dark"):
@@ -342,7 +380,7 @@ class PageWorks(LiveCase):
                 self.script("document.querySelectorAll('.accuracy .quiet').forEach((e) => (e.textContent = ''))")
                 time.sleep(0.2)
                 self.assertLessEqual(self.script("return document.documentElement.scrollWidth"), width)
-                self.compare(HERE / f"screenshot_{width}_{name}.png")
+                self.compare(f"explore_{width}_{name}")
         self.paper(None)
         self.resize(*SIZES[0])
 

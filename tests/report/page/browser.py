@@ -12,9 +12,13 @@ from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.by import By
 from selenium.webdriver.support.ui import WebDriverWait
 
-BLUR_PX = 3
+# Screenshots are stored in grey and reduced by this factor, so that they are small and letters of other fonts hardly
+# differ.
+REDUCTION = 4
+BLUR_PX = 1  # of reduced pictures
 DIFFERENT = 24  # minimum difference of pixels that counts, from 0 to 255, after blurring
 MOST_DIFFERENT = 0.02  # maximum fraction of pixels that may differ
+PICTURES = pathlib.Path(__file__).resolve().parents[2] / "data" / "pages"  # stored screenshots
 # Settings of Chromium without a graphics card: WebGL and compositing run on the processor.
 SOFTWARE_WEBGL = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-gpu-compositing")
 
@@ -35,14 +39,15 @@ def browser(profile, *more):
     return driver
 
 
-def save_small(picture, file):
-    picture.quantize(256).save(file, optimize=True)
+def reduced(picture):
+    grey = picture.convert("L")
+    return grey.resize((grey.width // REDUCTION, grey.height // REDUCTION), Image.Resampling.BOX)
 
 
 def share_that_differs(picture, wanted):
     """Returns the fraction of pixels that differ after both pictures are blurred."""
     blurred = [p.filter(ImageFilter.GaussianBlur(BLUR_PX)) for p in (picture, wanted)]
-    difference = ImageChops.difference(*blurred).convert("L").point(lambda v: 255 if v > DIFFERENT else 0)
+    difference = ImageChops.difference(*blurred).point(lambda v: 255 if v > DIFFERENT else 0)
     return difference.histogram()[255] / (picture.size[0] * picture.size[1])
 
 
@@ -111,15 +116,17 @@ class BrowserCase(unittest.TestCase):
         self.driver.execute_cdp_cmd("Browser.setDownloadBehavior", {"behavior": "allow", "downloadPath": str(target)})
         return target
 
-    def compare(self, file):
-        """Compares a screenshot of the page with a stored picture. A missing picture is an error."""
+    def compare(self, name):
+        """Compares a screenshot of the page with the stored picture of this name. A missing picture is an error."""
+        file = PICTURES / f"{name}.png"
         taken = pathlib.Path(self.folder.name) / file.name
         self.driver.save_screenshot(str(taken))
-        picture = Image.open(taken).convert("RGB")
+        picture = reduced(Image.open(taken))
         if self.keep:
-            save_small(picture, file)
+            file.parent.mkdir(exist_ok=True)
+            picture.quantize(64).save(file, optimize=True)
             return
-        wanted = Image.open(file).convert("RGB")
+        wanted = Image.open(file).convert("L")
         self.assertEqual(picture.size, wanted.size)
         share = share_that_differs(picture, wanted)
         self.assertLess(share, MOST_DIFFERENT, f"{file.name}: {share:.1%} of the pixels differ")

@@ -1,4 +1,5 @@
-"""Measures pages in a browser: finds blocks that overlap, and style rules that match too many elements."""
+"""Measures pages in a browser: finds blocks that overlap or are cut off, and style rules that match too many
+elements."""
 
 # JavaScript that finds overlapping items: texts, pictures, controls, and boxes with a background or a border. Other
 # elements cover nothing.
@@ -115,6 +116,31 @@ return { items: items.length, faults };
 """
 
 WIDTHS = (1400, 800, 390)
+
+# JavaScript that finds content that a box cuts off: at the right side, and rows with failures that are visible only after
+# scrolling in a box. Texts that end with an ellipsis, code and fields for texts may be cut.
+CUTS = """
+const MAY_BE_CUT = "pre, input, textarea, select, .spoken, .editor *, .u-wrap, .u-wrap *";
+const faults = [];
+const nameOf = (element) => `${element.tagName.toLowerCase()}.${element.getAttribute("class") || ""} "${element.textContent.trim().slice(0, 40)}"`;
+for (const element of document.body.querySelectorAll("*")) {
+  if (!element.checkVisibility({ visibilityProperty: true }) || element.matches(MAY_BE_CUT)) continue;
+  const style = getComputedStyle(element);
+  if (style.overflowX === "visible" || style.textOverflow === "ellipsis") continue;
+  if (element.scrollWidth > element.clientWidth + 1) faults.push(`${nameOf(element)}: ${element.clientWidth} of ${element.scrollWidth} px`);
+}
+for (const row of document.querySelectorAll("tr.bad")) {
+  const box = row.closest(".table-box");
+  if (!box || !row.checkVisibility()) continue;
+  if (row.getBoundingClientRect().bottom > box.getBoundingClientRect().bottom + 1) faults.push(`${nameOf(row)} is below the edge of its box`);
+}
+return faults.slice(0, 20);
+"""
+
+
+def cuts(driver):
+    """Returns a line for each element of the loaded page whose content is cut off."""
+    return driver.execute_script(CUTS)
 
 
 def overlaps(driver):

@@ -1,4 +1,5 @@
-"""Tests that blocks of the report, the set-up sheet and the live page do not overlap, on wide and narrow screens.
+"""Tests that blocks of the report, the set-up sheet and the live page do not overlap and are not cut off, on wide and
+narrow screens, in light and dark mode.
 
     python3 layout_test.py RETRACE SOURCE
     python3 layout_test.py --site FOLDER    every page of the site that tools/site has built in FOLDER
@@ -9,11 +10,12 @@ import sys
 import unittest
 
 from browser import BrowserCase
-from layout import WIDTHS, leaks, overlaps
+from layout import WIDTHS, cuts, leaks, overlaps
 from page_results import make_sheet_and_study, run
 
 PROGRAM = SOURCE = SITE = None
 HEIGHT = 1000
+VIEWS = [(width, theme) for width in WIDTHS for theme in (("light",) if width == 800 else ("light", "dark"))]
 BLOCKS = """<!DOCTYPE html><meta charset="utf-8">
 <style>p {{ margin: 0; height: 2rem }} img {{ height: 4rem; width: 9rem }} figure {{ margin: 0 }} #box {{ position: relative }} {} </style>
 <div id="box"><p>first</p><p id="second">second</p></div>
@@ -31,15 +33,19 @@ class LayoutCase(BrowserCase):
         """Waits until the page has been drawn for the new size of the window."""
         self.driver.execute_async_script("setTimeout(() => requestAnimationFrame(() => requestAnimationFrame(arguments[0])), 300)")
 
-    def check(self, name, least_items):
+    def check(self, name, least_items, views=VIEWS):
+        """Checks the loaded page with the widths and themes of `views`. With the default views, nothing may be cut off."""
         self.driver.execute_script("for (const e of document.querySelectorAll('details')) e.open = true")
-        for width in WIDTHS:
-            with self.subTest(page=name, width=width):
+        for width, theme in views:
+            with self.subTest(page=name, width=width, theme=theme):
                 self.resize(width, HEIGHT)
+                self.paper(theme)
                 self.settle()
                 items, faults = overlaps(self.driver)
                 self.assertGreaterEqual(items, least_items)
                 self.assertEqual(faults, [])
+                if views is VIEWS:
+                    self.assertEqual(cuts(self.driver), [])
                 self.assertLessEqual(self.driver.execute_script("return document.documentElement.scrollWidth"), width)
 
 
@@ -56,6 +62,19 @@ class Measure(LayoutCase):
                       "#second { transform: translateY(-1rem) }", "#box { height: 2rem }",
                       "#second { position: absolute; top: 60px }"):
             self.assertNotEqual(self.faults(style), [], style)
+
+    def test_contents_that_are_cut_off_are_found(self):
+        page = pathlib.Path(self.folder.name) / "cut.html"
+        for style, is_cut in (("", False), ("#box { overflow: hidden; width: 1rem }", True),
+                              ("#box { overflow-x: auto; width: 1rem }", True),
+                              ("#box { overflow: hidden; width: 1rem; text-overflow: ellipsis }", False)):
+            page.write_text(BLOCKS.format(style))
+            self.load(page)
+            self.assertEqual(bool(cuts(self.driver)), is_cut, style)
+        page.write_text('<div class="table-box" style="height: 1rem; overflow-y: auto"><table><tr><td>pass<tr class="bad">'
+                        '<td>fail</table></div>')
+        self.load(page)
+        self.assertEqual(len(cuts(self.driver)), 1)
 
     def test_what_is_hidden_or_a_layer_of_its_container_is_none(self):
         for style in ("#second { position: absolute; top: 0 }", "#second { margin-top: -1rem; visibility: hidden }",
@@ -81,7 +100,7 @@ class Pages(LayoutCase):
 
     def test_set_up_sheet(self):
         self.load(self.sheet)
-        self.check("set-up sheet", 500)
+        self.check("set-up sheet", 500, views=list(VIEWS))  # for paper: on narrow screens its tables are scrolled
 
     def test_live_page(self):
         for tab in ("form", "text"):
@@ -104,7 +123,7 @@ class Site(LayoutCase):
         self.assertGreater(len(pages), 20)
         for page in pages:
             self.load(page)
-            self.check(str(page.relative_to(SITE)), 5)
+            self.check(str(page.relative_to(SITE)), 5, views=[(width, "light") for width in WIDTHS])
 
 
 if __name__ == "__main__":

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "report/page/sections.h"
 #include "report/page/setup_page.h"
@@ -218,7 +220,7 @@ nlohmann::ordered_json efficiencies(const std::vector<nlohmann::ordered_json>& d
 std::vector<std::string> card_names(const Page& page) {
   std::vector<std::string> names;
   for (const PageFact& fact : page.sections[0].facts)
-    if (fact.name != "Documents") names.push_back(fact.name);
+    if (fact.name != "Documents") names.push_back(fact.subject.empty() ? fact.name : fact.name + ": " + fact.subject);
   return names;
 }
 
@@ -233,19 +235,65 @@ TEST(StudyPage, CardsNameTheirDesign) {
   const Page page = study_page(folder, "");
   EXPECT_EQ(page.title, "Study of 2 designs");
   const std::vector<PageFact>& facts = page.sections[0].facts;
-  const std::vector<std::pair<std::string, std::string>> cards = {{"RRE at normal incidence: A", "10.00 %"},
-                                                                  {"RRE at normal incidence: B", "20.00 %"},
-                                                                  {"Maximum RRE, at 10 deg: A", "20.00 %"},
-                                                                  {"Maximum RRE, at 10 deg: B", "30.00 %"},
-                                                                  {"Whole elements: A", "1"},
-                                                                  {"Photometry: B", "pass"},
-                                                                  {"Machining time: cut.toml", "1.00 h"}};
-  for (const auto& [name, value] : cards) {
+  const auto value_of = [&](const std::string& name, const std::string& subject) {
     const auto found =
-        std::find_if(facts.begin(), facts.end(), [&](const PageFact& fact) { return fact.name == name; });
-    ASSERT_NE(found, facts.end()) << name;
-    EXPECT_EQ(found->value, value) << name;
+        std::ranges::find_if(facts, [&](const PageFact& fact) { return fact.name == name && fact.subject == subject; });
+    return found == facts.end() ? std::string("none") : found->value;
+  };
+  EXPECT_EQ(value_of("RRE at normal incidence", "A"), "10.00 %");
+  EXPECT_EQ(value_of("RRE at normal incidence", "B"), "20.00 %");
+  EXPECT_EQ(value_of("Maximum RRE, at 10 deg", "A"), "20.00 %");
+  EXPECT_EQ(value_of("Maximum RRE, at 10 deg", "B"), "30.00 %");
+  EXPECT_EQ(value_of("Whole elements", "A"), "1");
+  EXPECT_EQ(value_of("Photometry", "B"), "pass");
+  EXPECT_EQ(value_of("Machining time", "cut.toml"), "1.00 h");
+  for (const PageSection& section : page.sections) {
+    const bool has_one = section.title == "Photometry" || section.title == "Tool path" || section.title == "Design";
+    for (const PageFact& fact : section.facts)
+      if (has_one) EXPECT_EQ(fact.subject, section.title == "Tool path" ? "cut.toml" : "B");
+    if (has_one) EXPECT_FALSE(section.subject.empty()) << section.title;
+    if (section.title == "Efficiency") EXPECT_EQ(section.subject, "A; B");
   }
+  const std::string html = page_html(page, kAssets);
+  EXPECT_NE(html.find("<dd class=\"subject\">cut.toml</dd>"), std::string::npos);
+}
+
+TEST(StudyPage, SectionsOfTheSameKindAreNamedByTheirDesigns) {
+  const auto a = design("A", 1);
+  const auto b = design("B", 2);
+  const Page page = study_page({"x",
+                                {document("inspect", {{"design", a}}), document("inspect", {{"design", b}}),
+                                 document("photometry", {{"design", a}, {"verdict", "pass"}}),
+                                 document("photometry", {{"design", a}, {"verdict", "fail"}})},
+                                {}},
+                               "");
+  std::set<std::string> titles;
+  for (const PageSection& section : page.sections) titles.insert(section.title);
+  EXPECT_TRUE(titles.contains("Design: A"));
+  EXPECT_TRUE(titles.contains("Design: B"));
+  EXPECT_FALSE(titles.contains("Photometry: A")) << "two sections would have the same title";
+}
+
+TEST(StudyPage, FailuresComeFirstAndAreMarked) {
+  using Json = nlohmann::ordered_json;
+  Json rows = Json::array();
+  for (int k = 0; k < 900; ++k) rows.push_back({{"number", k}, {"holds", k != 850}});
+  const Page page = study_page({"x",
+                                {document("inspect", {{"elements_full", 1}}), document("validation", {{"rows", rows}}),
+                                 document("photometry", {{"verdict", "fail"}})},
+                                {}},
+                               "");
+  EXPECT_EQ(page.sections[0].facts[0].rating, Rating::bad);
+  const auto validation = std::ranges::find(page.sections, "Validation", &PageSection::title);
+  ASSERT_NE(validation, page.sections.end());
+  const PageTable& table = validation->tables.back();
+  EXPECT_EQ(table.rows[0][0].text, "850") << "the failure is shown, although the table is cut";
+  EXPECT_EQ(table.rows[0][1].rating, Rating::bad);
+  EXPECT_EQ(table.rows[1][1].rating, Rating::good);
+  EXPECT_TRUE(has_failure(*validation));
+  const std::string html = page_html(page, kAssets);
+  EXPECT_EQ(count(html, "<tr class=\"bad\">"), 1U);
+  EXPECT_NE(html.find(validation->id + "\" class=\"bad\">"), std::string::npos) << "the contents mark the section";
 }
 
 TEST(StudyPage, ADesignThatIsAloneIsNotNamedAgain) {

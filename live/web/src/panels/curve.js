@@ -4,6 +4,7 @@ import { h } from "../dom.js";
 import { button, panel } from "../frame.js";
 import { percent, short } from "../units.js";
 import { CURVE_AXES, curveSvg, save, curveCsv } from "../files.js";
+import { differenceText } from "../pins.js";
 import { aligned, axis } from "../../../../report/page/web/src/charts.js";
 import { colour } from "../../../../report/page/web/src/theme.js";
 
@@ -59,6 +60,7 @@ export class CurvePanel {
     this.session.on("direction", () => this.plot.redraw(false, false));
     this.session.on("answer", () => this.plot.redraw(false, false));
     this.session.on("rested", () => this.tellPins());
+    this.session.on("design", () => this.tellPins());
     this.element.addEventListener("keydown", (event) => this.press(event));
   }
 
@@ -173,21 +175,25 @@ export class CurvePanel {
     const line = (name) => h("span", { class: "stroke", style: `border-color: var(${name})` });
     this.azimuth = h("span", {});
     this.values = pins.map(() => h("output", {}));
+    this.differences = pins.map(() => h("span", { class: "quiet" }));
     const entry = (pin, k) => {
       const name = pin.title || `pinned ${k + 1}`;
       const again = h("button", { type: "button", class: "plain", title: "Open this design again", onclick: () => this.session.open(pin.toml, pin.source) }, name);
       const off = h("button", { type: "button", class: "plain", "aria-label": `Unpin ${name}`, onclick: () => this.session.rest.unpin(pin) }, "×");
-      return h("li", { class: "ghost" }, line(GHOSTS[k]), again, this.values[k], off);
+      return h("li", { class: "ghost" }, line(GHOSTS[k]), again, this.differences[k], this.values[k], off);
     };
     this.legend.replaceChildren(h("li", {}, line("--curve-0"), this.azimuth), ...pins.map(entry));
     this.listed = pins;
   }
 
   tellPins() {
-    const { rest, direction } = this.session;
+    const { base, rest, direction } = this.session;
     if (this.listed !== rest.pins) this.listPins();
-    this.azimuth.textContent = `azimuth ${short(direction.azimuth_deg)}°`;
-    rest.pins.forEach((pin, k) => (this.values[k].textContent = percent(valueAt(pin.pass, direction.incidence_deg), 1)));
+    this.azimuth.textContent = `this design, azimuth ${short(direction.azimuth_deg)}°`;
+    rest.pins.forEach((pin, k) => {
+      this.values[k].textContent = percent(valueAt(pin.pass, direction.incidence_deg), 1);
+      this.differences[k].textContent = base ? differenceText(pin.toml, base.toml) : "";
+    });
   }
 
   save(kind) {

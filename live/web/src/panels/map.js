@@ -2,23 +2,20 @@
 import { Canvas, h } from "../dom.js";
 import { panel } from "../frame.js";
 import { percent, short } from "../units.js";
-import { colour, isDark } from "../../../../report/page/web/src/theme.js";
+import { colour } from "../../../../report/page/web/src/theme.js";
 
-// ColorBrewer YlGnBu, as for maps in reports. It is reversed in the dark theme, so that zero has the background colour.
+// ColorBrewer YlGnBu, as for maps in reports. It is the same in both themes.
 const SCALE = ["#ffffd9", "#edf8b1", "#c7e9b4", "#7fcdbb", "#41b6c4", "#1d91c0", "#225ea8", "#253494", "#081d58"].map((text) =>
   [1, 3, 5].map((k) => parseInt(text.slice(k, k + 2), 16)),
 );
 const SIZE = 240; // size in pixels of the picture that is scaled to the disc
 
-/** Returns 256 colours from minimum to maximum. */
-function coloursOf(dark) {
-  const scale = dark ? [...SCALE].reverse() : SCALE;
-  return Array.from({ length: 256 }, (_, k) => {
-    const at = (k / 255) * (scale.length - 1);
-    const low = Math.min(scale.length - 2, Math.floor(at));
-    return scale[low].map((c, i) => Math.round(c + (at - low) * (scale[low + 1][i] - c)));
-  });
-}
+/** 256 colours from minimum to maximum. */
+const COLOURS = Array.from({ length: 256 }, (_, k) => {
+  const at = (k / 255) * (SCALE.length - 1);
+  const low = Math.min(SCALE.length - 2, Math.floor(at));
+  return SCALE[low].map((c, i) => Math.round(c + (at - low) * (SCALE[low + 1][i] - c)));
+});
 
 /** Returns, for each pixel, the distance from the centre relative to the radius, and the azimuth in turns. */
 function polarPixels() {
@@ -53,7 +50,14 @@ export class MapPanel {
     this.caption = h("p", { class: "caption" });
     this.bar = h("div", { class: "map-bar", "aria-hidden": "true" }, h("span", {}, "0"), h("i"), h("span", {}, "100 %"));
     this.spoken = h("p", { class: "spoken", "aria-live": "polite" });
-    this.node = panel("map", "RRE over all directions", {}, this.element, this.bar, this.caption, this.spoken);
+    this.selected = h("span", {});
+    const legend = h(
+      "p",
+      { class: "legend" },
+      h("span", { class: "entry" }, h("span", { class: "ring" }), this.selected),
+      h("span", { class: "entry" }, h("span", { class: "stroke across" }), "directions of the curve"),
+    );
+    this.node = panel("map", "RRE over all directions", {}, this.element, this.bar, legend, this.caption, this.spoken);
     this.picture = document.createElement("canvas");
     this.picture.width = this.picture.height = SIZE;
     this.pixels = polarPixels();
@@ -64,6 +68,7 @@ export class MapPanel {
     this.session.on("map", (pass) => this.show(pass));
     this.session.on("map_progress", (pass) => this.tell(pass));
     this.session.on("direction", () => this.draw());
+    for (const event of ["answer", "rested"]) this.session.on(event, () => this.tellSelected());
     this.paintBar();
     this.draw();
     const at = (event) => {
@@ -95,15 +100,20 @@ export class MapPanel {
   }
 
   paintBar() {
-    const stops = coloursOf(isDark()).filter((_, k) => k % 15 === 0);
+    const stops = COLOURS.filter((_, k) => k % 15 === 0);
     this.bar.querySelector("i").style.background = `linear-gradient(to right, ${stops.map((c) => `rgb(${c})`).join(",")})`;
   }
 
   /** Redraws after a change of the colour theme. */
   recolour() {
-    this.paintBar();
-    if (this.pass) this.paint();
     this.draw();
+  }
+
+  /** Shows the selected direction and its RRE in the legend. */
+  tellSelected() {
+    const { answer, direction } = this.session;
+    const at = `incidence ${short(direction.incidence_deg)}°, azimuth ${short(direction.azimuth_deg)}°`;
+    this.selected.textContent = answer ? `${at}: ${percent(answer.rre, 1)}` : at;
   }
 
   disc() {
@@ -132,7 +142,7 @@ export class MapPanel {
     const context = this.picture.getContext("2d");
     const image = context.createImageData(SIZE, SIZE);
     const pixels = new Uint32Array(image.data.buffer);
-    const colours = Uint32Array.from(coloursOf(isDark()), ([r, g, b]) => (255 << 24) | (b << 16) | (g << 8) | r);
+    const colours = Uint32Array.from(COLOURS, ([r, g, b]) => (255 << 24) | (b << 16) | (g << 8) | r);
     const { away, turn } = this.pixels;
     const { rings } = this.pass;
     const values = rings.map((ring) => ring.values);
@@ -160,6 +170,7 @@ export class MapPanel {
       context.restore();
     }
     this.drawGrid(context, x, y, radius);
+    this.drawCurve(context, x, y, radius);
     this.drawPointer(context, x, y, radius);
   }
 
@@ -183,16 +194,36 @@ export class MapPanel {
     }
   }
 
+  /** Draws the directions of the curve next to the map: a diameter at the selected azimuth. */
+  drawCurve(context, x, y, radius) {
+    const turn = (this.session.direction.azimuth_deg * Math.PI) / 180;
+    const [dx, dy] = [radius * Math.cos(turn), -radius * Math.sin(turn)];
+    context.save();
+    for (const [width, dash, paint] of [
+      [2.5, [], "rgba(255,255,255,0.55)"],
+      [1.25, [5, 4], "#b34700"],
+    ]) {
+      context.setLineDash(dash);
+      context.strokeStyle = paint;
+      context.lineWidth = width;
+      context.beginPath();
+      context.moveTo(x - dx, y - dy);
+      context.lineTo(x + dx, y + dy);
+      context.stroke();
+    }
+    context.restore();
+  }
+
   drawPointer(context, x, y, radius) {
     const { incidence_deg, azimuth_deg } = this.session.direction;
     const away = Math.min(1, Math.abs(incidence_deg) / this.session.map.most_deg) * radius;
     const turn = ((azimuth_deg + (incidence_deg < 0 ? 180 : 0)) * Math.PI) / 180;
     const at = [x + away * Math.cos(turn), y - away * Math.sin(turn)];
     for (const [width, name] of [
-      [4, "--paper"],
-      [2, "--text"],
+      [4, "#ffffff"],
+      [2, "#1c2026"],
     ]) {
-      context.strokeStyle = colour(name);
+      context.strokeStyle = name;
       context.lineWidth = width;
       context.beginPath();
       context.arc(...at, 6, 0, 2 * Math.PI);

@@ -22,7 +22,7 @@ export class PhotometryPanel {
     this.table = h(
       "div",
       { class: "table-box", tabindex: "0", role: "region", "aria-label": "Test points", hidden: true },
-      h("table", {}, h("thead", {}, h("tr", {}, ...["Observation", "V", "H", "R_I (mcd/lx)", "Limit", "Verdict"].map((text, k) => h("th", { scope: "col", class: k < 5 ? "n" : "" }, text)))), this.rows),
+      h("table", {}, h("thead", {}, h("tr", {}, ...["Verdict", "Observation", "V", "H", "R_I (mcd/lx)", "Limit"].map((text, k) => h("th", { scope: "col", class: k > 0 ? "n" : "" }, text)))), this.rows),
     );
     this.remarks = h("p", { class: "caption" });
     const controls = h("div", { class: "programme" }, this.standard, this.part_class, this.colour, h("label", {}, this.area, " cm²"));
@@ -128,9 +128,9 @@ export class PhotometryPanel {
       ...[...answer.points].sort((a, b) => rankOf(a) - rankOf(b)).map((point) =>
         h(
           "tr",
-          {},
-          ...[`${short(60 * point.observation_deg, 3)}′`, `${short(point.v_deg)}°`, `${short(point.h_deg)}°`, short(point.value_mcd_per_lx, 3), short(point.limit_mcd_per_lx, 3)].map((text) => h("td", { class: "n" }, text)),
+          { class: VERDICTS[point.verdict] === "bad" ? "bad" : null },
           h("td", {}, chip(point.verdict)),
+          ...[`${short(60 * point.observation_deg, 3)}′`, `${short(point.v_deg)}°`, `${short(point.h_deg)}°`, short(point.value_mcd_per_lx, 3), short(point.limit_mcd_per_lx, 3)].map((text) => h("td", { class: "n" }, text)),
         ),
       ),
     );

@@ -90,16 +90,9 @@ export class PlanPanel {
     });
     this.all = button("All paths", () => this.leave(), { hidden: true });
     this.caption = h("p", { class: "caption", "aria-live": "polite" });
-    const legend = h(
-      "p",
-      { class: "legend" },
-      h("span", { class: "swatch scale" }),
-      h("span", {}, "returned light: none to all"),
-      h("span", { class: "swatch hatched" }),
-      h("span", {}, "dead zone"),
-      h("span", { class: "stroke" }),
-      h("span", {}, "one period"),
-    );
+    const entry = (mark, text) => h("span", { class: "entry" }, h("span", { class: mark }), text);
+    this.period = entry("stroke", "one period");
+    const legend = h("p", { class: "legend" }, entry("swatch scale", "returned light: none to all"), entry("swatch hatched", "dead zone"), this.period);
     this.node = panel("plan", "Plan and footprint", { tools: [this.all] }, this.element, legend, this.caption);
   }
 
@@ -135,8 +128,6 @@ export class PlanPanel {
   }
 
   recolour() {
-    this.hatching = null;
-    this.paintRegions();
     this.draw();
   }
 
@@ -148,6 +139,7 @@ export class PlanPanel {
     if (!this.session.part) return;
     if (isNewPart || !this.plan) {
       this.plan = new Plan(this.session.part);
+      this.period.hidden = !this.plan.isPeriodic;
       const { spot } = this.session;
       if (spot && !this.plan.home(spot)) this.session.pick(null);
     }
@@ -159,9 +151,9 @@ export class PlanPanel {
     this.tell();
   }
 
-  /** Draws the regions in opaque colours between the background colour and the colour of light. */
+  /** Draws the regions in opaque colours between the colours for no light and for all light. */
   paintRegions() {
-    const [paper, light] = ["--paper", "--active"].map((name) => [1, 3, 5].map((k) => parseInt(colour(name).slice(k, k + 2), 16)));
+    const [paper, light] = ["--scale-low", "--scale-high"].map((name) => [1, 3, 5].map((k) => parseInt(colour(name).slice(k, k + 2), 16)));
     for (const region of this.regions || []) {
       const share = 0.1 + 0.9 * region.efficiency;
       region.paint = `rgb(${paper.map((c, k) => Math.round(c + share * (light[k] - c)))})`;
@@ -216,7 +208,7 @@ export class PlanPanel {
     context.save();
     context.translate(dx, dy);
     this.trace(context, this.plan.outline);
-    context.fillStyle = colour("--panel");
+    context.fillStyle = colour("--scale-low");
     context.fill();
     this.hatch(context, unit);
     for (const { outline, paint } of this.regions) {
@@ -226,8 +218,8 @@ export class PlanPanel {
       context.fill();
       context.stroke();
     }
-    this.lines(context, this.plan.roots, unit, "--edge", 0.5);
-    this.lines(context, this.plan.rims, 1.3 * unit, "--edge", 1);
+    this.lines(context, this.plan.roots, unit, "--scale-line", 0.5);
+    this.lines(context, this.plan.rims, 1.3 * unit, "--scale-line", 1);
     context.restore();
   }
 
@@ -236,7 +228,7 @@ export class PlanPanel {
     context.save();
     this.trace(context, this.plan.outline);
     context.setLineDash([5 * unit, 4 * unit]);
-    context.strokeStyle = colour("--curve-1");
+    context.strokeStyle = "#d55e00";
     context.lineWidth = 1.4 * unit;
     context.stroke();
     context.restore();
@@ -261,7 +253,7 @@ export class PlanPanel {
     const tile = document.createElement("canvas");
     tile.width = tile.height = size;
     const context = tile.getContext("2d");
-    context.strokeStyle = colour("--line");
+    context.strokeStyle = "#b3bac4";
     context.lineWidth = this.canvas.ratio;
     for (const shift of [-size, 0, size]) {
       context.moveTo(shift, 0);
@@ -318,13 +310,16 @@ export class PlanPanel {
     const decade = 10 ** Math.floor(Math.log10(wanted));
     const length = decade * [5, 2, 1].find((f) => f * decade <= wanted);
     const y = this.canvas.height - 12;
+    const text = `${short(length)} mm`;
+    context.font = "11px DejaVu Sans, system-ui, sans-serif";
+    context.fillStyle = colour("--paper");
+    context.fillRect(6, y - 18, 12 + Math.max(length * scale, context.measureText(text).width), 24);
     context.strokeStyle = context.fillStyle = colour("--text");
     context.lineWidth = 1.5;
     context.beginPath();
     context.moveTo(12, y);
     context.lineTo(12 + length * scale, y);
     context.stroke();
-    context.font = "11px DejaVu Sans, system-ui, sans-serif";
-    context.fillText(`${short(length)} mm`, 12, y - 5);
+    context.fillText(text, 12, y - 5);
   }
 }

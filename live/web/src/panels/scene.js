@@ -1,5 +1,6 @@
 // Three-dimensional view of the part with illuminated regions and light paths.
 import { h } from "../dom.js";
+import { tintOf } from "../body_colour.js";
 import { panel } from "../frame.js";
 import { openView } from "../../../../report/page/web/src/view.js";
 
@@ -19,11 +20,13 @@ function solidOf(part) {
   const size = Math.hypot(...low.map((l, k) => high[k] - l));
   const middle = low.map((l, k) => (l + high[k]) / 2);
   middle[2] += 0.05 * size;
+  // Height of the part in the view from obliquely above. It limits the size of high parts.
+  const upright = high[2] - low[2] + 0.33 * Math.hypot(high[0] - low[0], high[1] - low[1]);
   return {
     solid: { vertices, triangles: inThrees(part.triangles), edges: inTwos(part.edges) },
     low,
     high,
-    bounds: { middle, size: 0.9 * size },
+    bounds: { middle, size: Math.max(0.9 * size, 1.25 * upright) },
   };
 }
 
@@ -84,7 +87,9 @@ export class ScenePanel {
       colour: colourOf(path, index),
       width: index === 0 || path.share == null ? 1 : Math.max(0.45, Math.sqrt(path.share / paths[0].share)),
     }));
-    this.view.show({ ...this.solid.solid, paths: drawn, patches: this.patches() }, this.chosen, this.solid.bounds);
+    const glass = tintOf(this.session.base);
+    this.element.dataset.body = glass || "clear";
+    this.view.show({ ...this.solid.solid, glass, paths: drawn, patches: this.patches() }, this.chosen, this.solid.bounds);
   }
 
   choose(index) {

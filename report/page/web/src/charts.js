@@ -46,6 +46,7 @@ function between(plot, series, i) {
   if (low < 0 || high >= ys.length) return null;
   return low === high ? ys[low] : ys[low] + ((ys[high] - ys[low]) * (xs[i] - xs[low])) / (xs[high] - xs[low]);
 }
+const PRINTED = { width: 690, height: 300 }; // size of a chart on paper, about the width of a page of A4
 
 /** Returns all x values of all series, ascending, and the y values of each series with null for missing values. */
 export function aligned(series) {
@@ -213,14 +214,24 @@ function draw(figure, chart) {
   const tint = read ? addLegend(figure, chart, read) : () => {};
   tint();
   addKeys(plot, figure, spoken);
-  new ResizeObserver(() => {
+  const fit = () => {
     const width = Math.max(280, Math.floor(area.clientWidth));
     if (width !== plot.width) plot.setSize({ width, height: 340 });
-  }).observe(area);
+  };
+  new ResizeObserver(fit).observe(area);
+  window.addEventListener("beforeprint", () => plot.setSize(PRINTED));
+  window.addEventListener("afterprint", fit);
   return () => {
-    plot.redraw(false, true);
+    recolour(plot);
     tint();
   };
+}
+
+/** Draws a chart and its legend in the colours of the theme. */
+function recolour(plot) {
+  plot.redraw(false, true);
+  const markers = plot.root.querySelectorAll(".u-marker"); // the first one belongs to the x axis
+  markers.forEach((marker, i) => i > 0 && (marker.style.borderColor = colour(`--curve-${(i - 1) % 7}`)));
 }
 
 export function drawCharts(charts) {

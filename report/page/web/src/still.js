@@ -37,7 +37,7 @@ export function drawStill(view, scene, shown) {
   const corners = (list) => list.map((p) => `${p[0].toFixed(5)},${p[1].toFixed(5)}`).join(" ");
   const far = (t) => t.reduce((sum, v) => sum + points[v][2], 0);
   for (const t of [...scene.triangles].sort((a, b) => far(b) - far(a)))
-    add(svg, "polygon", { points: corners(t.map((v) => points[v])), fill: colour("--glass"), "fill-opacity": 0.12 });
+    add(svg, "polygon", { points: corners(t.map((v) => points[v])), fill: scene.glass || colour("--glass"), "fill-opacity": 0.12 });
   for (const patch of scene.patches || [])
     add(svg, "polygon", { points: corners(patch.points.map(seen)), fill: colour(patch.colour || "--active"), "fill-opacity": patch.opacity });
   for (const [a, b] of scene.edges)

@@ -93,7 +93,7 @@ class Solid {
   }
 
   paint() {
-    this.glass.color = new Color(colour("--glass"));
+    this.glass.color = new Color((this.scene && this.scene.glass) || colour("--glass"));
     this.ink.color = new Color(colour("--edge"));
     if (this.scene) this.light();
   }
