@@ -52,6 +52,16 @@ std::string with_true_minus(std::string text) {
   return text;
 }
 
+/// Returns a power of ten as text: with all digits from 0.001 to 10000, otherwise with a superscript.
+std::string power_of_ten_text(int exponent) {
+  if (exponent >= 0 && exponent <= 4) return "1" + std::string(static_cast<std::size_t>(exponent), '0');
+  if (exponent < 0 && exponent >= -3) return fixed(std::pow(10.0, exponent), -exponent);
+  static constexpr const char* kDigits[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+  std::string text = "10";
+  for (const char c : std::to_string(exponent)) text += c == '-' ? "⁻" : kDigits[c - '0'];
+  return text;
+}
+
 /// Returns the labels of ticks, with the number of digits that the step requires. Labels of very large and very small
 /// values have an exponent, which is the same for all labels.
 std::vector<std::string> tick_labels(const std::vector<double>& positions, NiceStep step) {
@@ -115,6 +125,36 @@ Ticks make_ticks(Range range, int max_intervals) {
   }
   ticks.labels = tick_labels(ticks.positions, step);
   return ticks;
+}
+
+LogTicks make_log_ticks(Range decades, int max_labels) {
+  LogTicks ticks;
+  const int first = static_cast<int>(std::ceil(decades.low - kOnTick));
+  const int last = static_cast<int>(std::floor(decades.high + kOnTick));
+  int every = 1;
+  while ((last - first) / every + 1 > max_labels) ++every;
+  ticks.decades.step = every;
+  for (int e = first; e <= last; ++e) {
+    if ((last - e) % every != 0) continue;
+    ticks.decades.positions.push_back(e);
+    ticks.decades.labels.push_back(power_of_ten_text(e));
+  }
+  if (every > 1) return ticks;
+  for (int e = first - 1; e <= last; ++e)
+    for (int m = 2; m <= 9; ++m) {
+      const double at = e + std::log10(static_cast<double>(m));
+      if (decades.contains(at)) ticks.minor.push_back(at);
+    }
+  return ticks;
+}
+
+std::optional<Range> whole_decades(std::span<const double> logarithms, int max_decades) {
+  const std::optional<Range> extent = extent_of(logarithms);
+  if (!extent) return std::nullopt;
+  Range range{std::floor(extent->low + kOnTick), std::ceil(extent->high - kOnTick)};
+  if (range.span() < 1.0) range.high = range.low + 1.0;
+  range.low = std::max(range.low, range.high - max_decades);
+  return range;
 }
 
 Range rounded_range(Range data, Range with_errors, int max_intervals) {

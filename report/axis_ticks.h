@@ -46,6 +46,22 @@ Range drawable(Range range);
 /// \pre max_intervals >= 1
 Ticks make_ticks(Range range, int max_intervals);
 
+/// Ticks of a logarithmic axis. Positions are decimal logarithms.
+struct LogTicks {
+  Ticks decades;              ///< powers of ten with labels such as "100" and "10⁵"
+  std::vector<double> minor;  ///< 2 to 9 times powers of ten, in ascending order
+};
+
+/// Returns the ticks within a range of decimal logarithms. If the range contains many decades, only every second or
+/// third decade has a label, and there are no minor ticks.
+/// \param max_labels maximum number of labels; >= 2
+LogTicks make_log_ticks(Range decades, int max_labels);
+
+/// Returns the smallest range of whole decades that contains all positive values, or nothing if there are none. The
+/// values are decimal logarithms.
+/// \param max_decades number of decades below the highest one to which the range is limited
+std::optional<Range> whole_decades(std::span<const double> logarithms, int max_decades);
+
 /// Returns an axis range whose ends are ticks. The step of the ticks divides the data into at most about
 /// `max_intervals` intervals. If the values are positive and their spread exceeds half of the maximum, the range starts
 /// at 0, so that heights can be compared. Otherwise the range fits the values closely. Error bars that extend beyond

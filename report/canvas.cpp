@@ -318,6 +318,10 @@ void Canvas::text(Point baseline, std::string_view text, Font font, Colour colou
   cairo_restore(context);
 }
 
+void Canvas::move_origin(Point by) {
+  cairo_translate(impl_->context.get(), by.x, by.y);
+}
+
 void Canvas::clip(Point corner, Size size) {
   cairo_save(impl_->context.get());
   cairo_rectangle(impl_->context.get(), corner.x, corner.y, size.width, size.height);

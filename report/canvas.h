@@ -81,6 +81,8 @@ class Canvas {
   /// \param baseline left end, centre or right end of the baseline, as given by `align`
   /// \param upwards true: the text is rotated by 90 degrees counter-clockwise
   void text(Point baseline, std::string_view text, Font font, Colour colour, Align align, bool upwards = false);
+  /// Moves the origin of all later drawing operations.
+  void move_origin(Point by);
   void clip(Point corner, Size size);
   void clip(const std::vector<Point>& polygon);
   void end_clip();

@@ -135,7 +135,7 @@ MapLayout lay_out(const MapPlot& plot, const Canvas& canvas) {
                                   std::max(label_width + 8.0 + kMapLabelFont.size,
                                            canvas.text_width(plot.hatched_label, kMapTickFont) - kMapTickLength) +
                                   kMargin);
-  layout.title = canvas.fitted(plot.title, kTitleFont, layout.figure.width - 2.0 * kMargin, 2, Ellipsis::end);
+  layout.title = title_lines(plot.title, layout.figure.width);
   layout.top = kMargin + 1.3 * kTitleFont.size * static_cast<double>(layout.title.size()) + 4.0;
   layout.bar_height = std::min(320.0, std::max(150.0, layout.box.height) - 34.0);
   layout.bar_top = layout.top + layout.head;

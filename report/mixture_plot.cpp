@@ -115,10 +115,13 @@ class GoalMatrix {
 }  // namespace
 
 std::string render(const MixturePlot& plot, PlotFormat format, double scale) {
-  const Size figure = mixture_figure(plot);
+  Size figure = mixture_figure(plot);
+  const double added = added_title_height(plot.title, figure.width);
+  figure.height += added;
   Canvas canvas(format, figure, scale);
   canvas.fill_rectangle({0.0, 0.0}, figure, kWhite);
   draw_title(canvas, figure, plot.title);
+  canvas.move_origin({0.0, added});
   draw_zones(canvas, plot);
   GoalMatrix(canvas, plot).draw();
   return canvas.finish();

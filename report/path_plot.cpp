@@ -47,7 +47,11 @@ Box box_of(const PathPlot& plot) {
 
 void draw_heading(Canvas& canvas, const PathPlot& plot, double width) {
   double y = kMargin + kTitleFont.size;
-  draw_within(canvas, width, Ellipsis::end, {kMargin, y}, plot.title, kTitleFont, kText, Align::left);
+  for (const std::string& line : title_lines(plot.title, width + 2.0 * kMargin)) {
+    canvas.text({kMargin, y}, line, kTitleFont, kText, Align::left);
+    y += kTitleLineHeight;
+  }
+  y -= kTitleLineHeight;
   for (const std::string& remark : plot.remarks) {
     y += kPathRemarkFont.size + 5.0;
     draw_within(canvas, width, Ellipsis::end, {kMargin, y}, remark, kPathRemarkFont, kFaint, Align::left);
@@ -74,10 +78,11 @@ std::string render(const PathPlot& plot, PlotFormat format, double scale) {
   const Vec2 size = box.high - box.low;
   const double height = kPathPlanWidth * std::clamp(size.y() / size.x(), 0.15, 1.4);
   const double unit = std::min(kPathPlanWidth / size.x(), height / size.y());
-  const double top =
-      kMargin + kTitleFont.size + 14.0 + (kPathRemarkFont.size + 5.0) * static_cast<double>(plot.remarks.size());
+  const double figure_width = kPathLeft + kPathPlanWidth + kMargin;
+  const double top = kMargin + kTitleFont.size + added_title_height(plot.title, figure_width) + 14.0 +
+                     (kPathRemarkFont.size + 5.0) * static_cast<double>(plot.remarks.size());
   const double legend_top = top + height + kPathBelow + 8.0;
-  const Size figure{kPathLeft + kPathPlanWidth + kMargin,
+  const Size figure{figure_width,
                     legend_top + kLegendLine * static_cast<double>((plot.kinds.size() + 3) / 4) + kMargin};
   Canvas canvas(format, figure, scale);
   canvas.fill_rectangle({0.0, 0.0}, figure, kWhite);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <numbers>
 #include <stdexcept>
 #include <utility>
 
@@ -20,13 +22,14 @@ constexpr std::array kMarkers = {Marker::circle, Marker::square, Marker::triangl
                                  Marker::inverted_triangle};
 
 constexpr Colour kGrid{0.90, 0.90, 0.90};
+constexpr Colour kMinorGrid{0.955, 0.955, 0.955};
 
 constexpr Font kLabelFont{13.5, false};
 constexpr Font kTickFont{12.0, false};
 constexpr Font kLegendFont{12.0, false};
 
-constexpr double kPlotWidth = 620.0;  ///< width of the area inside the axes
-constexpr double kPlotHeight = 370.0;
+constexpr double kPlotWidth = kPlotAreaWidth;
+constexpr double kPlotHeight = kPlotAreaHeight;
 constexpr double kTickLength = 5.0;
 constexpr AxisStyle kPlotAxis{.font = kTickFont,
                               .tick = kTickLength,
@@ -44,6 +47,9 @@ constexpr std::size_t kMaxMarkers = 45;  ///< maximum number of points of a seri
                                          ///< drawn as lines only
 constexpr int kMaxXTicks = 9;
 constexpr int kMaxYTicks = 7;
+constexpr int kMaxAxisDecades =
+    8;  ///< maximum number of decades of a logarithmic axis, from the largest value downwards
+constexpr double kMinorTickLength = 3.0;
 /// Minimum half length of an error bar that is drawn. A shorter error bar would be hidden by the marker or the line.
 constexpr double kShortestErrorBar = 1.5;
 
@@ -120,6 +126,7 @@ std::pair<Range, Range> axis_ranges(const LinePlot& plot) {
   }
   const Range x = plot.x_range.value_or(extent_of(xs).value_or(Range{0.0, 1.0}));
   if (plot.y_range) return {drawable(x), drawable(*plot.y_range)};
+  if (plot.y_is_logarithmic) return {drawable(x), whole_decades(ys, kMaxAxisDecades).value_or(Range{0.0, 1.0})};
   const Range data = extent_of(ys).value_or(Range{0.0, 1.0});
   Range y = rounded_range(data, extent_of(with_errors).value_or(data), kMaxYTicks);
   // Axes in percent are limited to the range from 0 to 100.
@@ -146,6 +153,8 @@ struct Layout {
   AxisScale y;
   Ticks x_ticks;
   Ticks y_ticks;
+  std::vector<double> y_minor_ticks;  ///< ticks without labels of a logarithmic axis
+  bool y_is_logarithmic = false;
   std::vector<std::string> title;
   std::vector<std::string> x_label;
   std::vector<std::string> y_label;
@@ -219,8 +228,15 @@ Layout lay_out(const LinePlot& plot, const Canvas& canvas) {
   Layout layout;
   const auto [x_range, y_range] = axis_ranges(plot);
   layout.x_ticks = x_ticks_that_fit(x_range, canvas);
-  layout.y_ticks = make_ticks(y_range, kMaxYTicks);
-  layout.title = canvas.fitted(plot.title, kTitleFont, kPlotWidth, 2, Ellipsis::end);
+  layout.y_is_logarithmic = plot.y_is_logarithmic;
+  if (plot.y_is_logarithmic) {
+    LogTicks ticks = make_log_ticks(y_range, kMaxYTicks + 2);
+    layout.y_ticks = std::move(ticks.decades);
+    layout.y_minor_ticks = std::move(ticks.minor);
+  } else {
+    layout.y_ticks = make_ticks(y_range, kMaxYTicks);
+  }
+  layout.title = canvas.fitted(plot.title, kTitleFont, kPlotWidth, kMaxTitleLines, Ellipsis::end);
   layout.x_label = canvas.fitted(plot.x_label, kLabelFont, kPlotWidth, 2, Ellipsis::end);
   layout.y_label = canvas.fitted(plot.y_label, kLabelFont, kPlotHeight, 2, Ellipsis::end);
   layout.legend = legend_entries(plot, canvas);
@@ -271,10 +287,14 @@ void draw_axes(Canvas& canvas, const Layout& layout) {
   const auto grid = [&](Point from, Point to, double value) {
     canvas.line({from, to}, {kGrid, value == 0.0 ? 1.6 : 0.9, {}});
   };
+  for (const double value : layout.y_minor_ticks) {
+    canvas.line({{left, layout.y.at(value)}, {right, layout.y.at(value)}}, {kMinorGrid, 0.7, {}});
+    canvas.line({{left - kMinorTickLength, layout.y.at(value)}, {left, layout.y.at(value)}}, {kAxis, 0.7, {}});
+  }
   for (const double value : layout.x_ticks.positions)
     grid({layout.x.at(value), top}, {layout.x.at(value), bottom}, value);
   for (const double value : layout.y_ticks.positions)
-    grid({left, layout.y.at(value)}, {right, layout.y.at(value)}, value);
+    grid({left, layout.y.at(value)}, {right, layout.y.at(value)}, layout.y_is_logarithmic ? 1.0 : value);
 
   canvas.line({{left, top}, {left, bottom}, {right, bottom}}, {kAxis, kPlotAxis.width, {}});
   draw_x_ticks(canvas, kPlotAxis, layout.x, layout.x_ticks, bottom);
@@ -397,15 +417,28 @@ void draw_series(Canvas& canvas, const Layout& layout, const Series& series, con
   }
 }
 
+/// Replaces y by its decimal logarithm, and standard errors by those of the logarithm to first order.
+LinePlot with_logarithms(LinePlot plot) {
+  if (plot.y_range) plot.y_range = Range{std::log10(plot.y_range->low), std::log10(plot.y_range->high)};
+  for (Series& series : plot.series)
+    for (std::size_t i = 0; i < series.y.size(); ++i) {
+      const double value = series.y[i];
+      if (!series.y_error.empty()) series.y_error[i] *= 1.0 / (std::numbers::ln10 * value);
+      series.y[i] = value > 0.0 ? std::log10(value) : std::numeric_limits<double>::quiet_NaN();
+    }
+  return plot;
+}
+
 }  // namespace
 
-std::string render(const LinePlot& plot, PlotFormat format, double scale) {
-  for (const Series& series : plot.series) {
+std::string render(const LinePlot& given, PlotFormat format, double scale) {
+  for (const Series& series : given.series) {
     const bool errors_match = series.y_error.empty() || series.y_error.size() == series.x.size();
     if (series.x.size() != series.y.size() || !errors_match)
       throw std::invalid_argument(fmt::format("series '{}': {} x, {} y and {} y_error values", series.label,
                                               series.x.size(), series.y.size(), series.y_error.size()));
   }
+  const LinePlot plot = given.y_is_logarithmic ? with_logarithms(given) : given;
   // Text sizes do not depend on the canvas, so a small canvas is sufficient to compute the size of the plot.
   const Layout layout = lay_out(plot, Canvas(Canvas::Format::png, {8.0, 8.0}, 1.0));
   Canvas canvas(format, layout.figure, scale);

@@ -13,6 +13,9 @@
 
 namespace retrace::report {
 
+/// Size of the area inside of the axes, in drawing units.
+inline constexpr double kPlotAreaWidth = 620.0, kPlotAreaHeight = 370.0;
+
 /// A curve. A point whose x or y is not finite is omitted and interrupts the line.
 struct Series {
   std::string label;  ///< text in the legend; if empty, the curve is not in the legend
@@ -51,8 +54,9 @@ struct LinePlot {
   std::string scale_label = {};
   /// Entries of the legend. By default, the labels of the curves.
   std::optional<std::vector<LegendKey>> legend = {};
-  std::optional<Range> x_range;  ///< range of the x axis; by default, the range of the points
-  std::optional<Range> y_range;  ///< range of the y axis; by default, rounded_range() of the points
+  std::optional<Range> x_range;   ///< range of the x axis; by default, the range of the points
+  std::optional<Range> y_range;   ///< range of the y axis; by default, rounded_range() of the points, or whole decades
+  bool y_is_logarithmic = false;  ///< true: the y axis has decades; points with y <= 0 are omitted
 };
 
 /// Returns the range of the values of the colour scale. Empty if the plot has no colour scale.

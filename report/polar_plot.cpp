@@ -8,6 +8,7 @@
 
 #include "core/number_format.h"
 #include "report/contours.h"
+#include "report/label_layout.h"
 #include "report/style.h"
 
 namespace retrace::report {
@@ -22,6 +23,9 @@ constexpr Size kPolarCell{290.0, 304.0};
 constexpr double kBarRoom = 96.0;
 constexpr double kPolarBarWidth = 14.0;
 constexpr std::size_t kMaxPerRow = 3;
+constexpr double kMarkLabelHeight = 13.5, kMarkLabelPadding = 3.0;
+/// Opacity of the dark area behind the label of a mark, which makes white letters legible on every colour.
+constexpr double kMarkLabelShade = 0.55;
 /// Number of decades that the colour scale covers, downwards from the largest value.
 constexpr double kPolarDecades = 4.0;
 
@@ -150,14 +154,51 @@ PolarMarkStyle style_of(PolarMark::Kind kind) {
   return {};
 }
 
+/// Returns the boxes of the labels at the rings, relative to the centre of the disc.
+std::vector<LabelBox> ring_label_boxes(const Canvas& canvas, const PolarPanel& panel) {
+  std::vector<LabelBox> boxes;
+  const double scale = 0.5 * kDisc / panel.radius_deg;
+  const Ticks ticks = make_ticks({0.0, panel.radius_deg}, 4);
+  for (std::size_t k = 0; k < ticks.positions.size(); ++k) {
+    const double width = canvas.text_width(ticks.labels[k] + "°", kPolarTickFont);
+    const double at = 0.7071 * scale * ticks.positions[k];
+    if (ticks.positions[k] > 0.0) boxes.push_back({{at - 2.0 - width, at - 8.0}, {width, 10.0}});
+  }
+  return boxes;
+}
+
+/// Returns the labels of the marks, relative to the centre of the disc.
+std::vector<PlacedLabel> labels_of(const Canvas& canvas, const PolarPanel& panel) {
+  const double scale = 0.5 * kDisc / panel.radius_deg;
+  std::vector<MarkedPoint> points;
+  for (const PolarMark& mark : panel.marks)
+    points.push_back({{scale * mark.right_deg, -scale * mark.up_deg},
+                      style_of(mark.kind).outline,
+                      {canvas.text_width(mark.label, kPolarTickFont) + 2.0 * kMarkLabelPadding, kMarkLabelHeight}});
+  const double half_width = 0.5 * kPolarCell.width - 2.0;
+  return place_labels(points, ring_label_boxes(canvas, panel),
+                      {{-half_width, -0.5 * kDisc}, {2.0 * half_width, kDisc}});
+}
+
 void draw_marks(Canvas& canvas, const PolarPanel& panel, Point centre) {
   const double scale = 0.5 * kDisc / panel.radius_deg;
-  for (const PolarMark& mark : panel.marks) {
+  const std::vector<PlacedLabel> labels = labels_of(canvas, panel);
+  const auto moved = [&](Point p) { return Point{centre.x + p.x, centre.y + p.y}; };
+  for (const PlacedLabel& label : labels)
+    if (label.has_leader)
+      for (const auto& [colour, width] : {std::pair{kBlack, 2.2}, std::pair{kWhite, 0.9}})
+        canvas.line({moved(label.leader_from), moved(label.leader_to)}, {colour, width, {}});
+  for (std::size_t k = 0; k < labels.size(); ++k) {
+    const PolarMark& mark = panel.marks[k];
     const Point at{centre.x + scale * mark.right_deg, centre.y - scale * mark.up_deg};
     const PolarMarkStyle style = style_of(mark.kind);
     canvas.marker(at, style.shape, style.outline, kBlack);
     canvas.marker(at, style.shape, style.size, style.colour);
-    canvas.text({at.x + 8.0, at.y + 3.6}, mark.label, kPolarTickFont, kWhite, Align::left);
+    const LabelBox& box = labels[k].box;
+    const Point corner = moved(box.corner);
+    const Point end{corner.x + box.size.width, corner.y + box.size.height};
+    canvas.fill({{corner, {end.x, corner.y}, end, {corner.x, end.y}}}, kBlack, 0.0, kMarkLabelShade);
+    canvas.text({corner.x + kMarkLabelPadding, end.y - 3.6}, mark.label, kPolarTickFont, kWhite, Align::left);
   }
 }
 
@@ -186,12 +227,20 @@ PolarLayout layout_of(const PolarPlot& plot) {
 
 }  // namespace
 
+std::vector<LabelBox> mark_label_boxes(const PolarPanel& panel) {
+  std::vector<LabelBox> boxes;
+  for (const PlacedLabel& label : labels_of(Canvas(Canvas::Format::png, {8.0, 8.0}, 1.0), panel))
+    boxes.push_back(label.box);
+  return boxes;
+}
+
 std::string render(const PolarPlot& plot, PlotFormat format, double scale) {
   const std::size_t abreast = std::clamp<std::size_t>(plot.panels.size(), 1, kMaxPerRow);
   const std::size_t rows = std::max<std::size_t>(1, (plot.panels.size() + abreast - 1) / abreast);
   const PolarLayout layout = layout_of(plot);
-  const Size size{2.0 * kMargin + static_cast<double>(abreast) * layout.cell.width + kBarRoom,
-                  2.0 * kMargin + 24.0 + static_cast<double>(rows) * layout.cell.height};
+  const double width = 2.0 * kMargin + static_cast<double>(abreast) * layout.cell.width + kBarRoom;
+  const double head = 24.0 + added_title_height(plot.title, width);
+  const Size size{width, 2.0 * kMargin + head + static_cast<double>(rows) * layout.cell.height};
   Canvas canvas(format, size, scale);
   canvas.fill_rectangle({0.0, 0.0}, size, kWhite);
   draw_title(canvas, size, plot.title);
@@ -199,7 +248,7 @@ std::string render(const PolarPlot& plot, PlotFormat format, double scale) {
   for (std::size_t k = 0; k < plot.panels.size(); ++k) {
     const PolarPanel& panel = plot.panels[k];
     const Point cell{kMargin + layout.cell.width * static_cast<double>(k % abreast),
-                     kMargin + 24.0 + layout.cell.height * static_cast<double>(k / abreast)};
+                     kMargin + head + layout.cell.height * static_cast<double>(k / abreast)};
     const Point centre{cell.x + 0.5 * layout.cell.width, cell.y + layout.above_disc + 0.5 * kDisc};
     draw_within(canvas, layout.cell.width - 8.0, Ellipsis::middle, {centre.x, cell.y + 24.0}, panel.title, kPanelFont,
                 kText, Align::centre);
@@ -212,7 +261,7 @@ std::string render(const PolarPlot& plot, PlotFormat format, double scale) {
     draw_marks(canvas, panel, centre);
   }
   draw_bar(canvas,
-           {kMargin + static_cast<double>(abreast) * layout.cell.width + 10.0, kMargin + 24.0 + layout.above_disc},
+           {kMargin + static_cast<double>(abreast) * layout.cell.width + 10.0, kMargin + head + layout.above_disc},
            colours, plot.value_label);
   return canvas.finish();
 }

@@ -47,6 +47,12 @@ struct PolarPlot {
   bool has_azimuths = false;
 };
 
+struct LabelBox;
+
+/// Returns the boxes that the labels of the marks occupy in a panel, relative to the centre of the disc, y down. Boxes
+/// do not overlap.
+std::vector<LabelBox> mark_label_boxes(const PolarPanel& panel);
+
 /// Draws the plot. render_svg() and render_png() call this function.
 std::string render(const PolarPlot& plot, PlotFormat format, double scale);
 

@@ -32,9 +32,23 @@ void draw_within(Canvas& canvas, double width, Ellipsis ellipsis, Point baseline
     canvas.text(baseline, line, font, colour, align);
 }
 
+std::vector<std::string> title_lines(std::string_view title, double figure_width) {
+  // Text sizes do not depend on the canvas.
+  const Canvas measure(Canvas::Format::png, {8.0, 8.0}, 1.0);
+  return measure.fitted(title, kTitleFont, figure_width - 2.0 * kMargin, kMaxTitleLines, Ellipsis::middle);
+}
+
+double added_title_height(std::string_view title, double figure_width) {
+  const std::size_t lines = title_lines(title, figure_width).size();
+  return lines > 1 ? kTitleLineHeight * static_cast<double>(lines - 1) : 0.0;
+}
+
 void draw_title(Canvas& canvas, Size figure, std::string_view title) {
-  draw_within(canvas, figure.width - 2.0 * kMargin, Ellipsis::middle, {0.5 * figure.width, kMargin + kTitleFont.size},
-              title, kTitleFont, kText, Align::centre);
+  double baseline = kMargin + kTitleFont.size;
+  for (const std::string& line : title_lines(title, figure.width)) {
+    canvas.text({0.5 * figure.width, baseline}, line, kTitleFont, kText, Align::centre);
+    baseline += kTitleLineHeight;
+  }
 }
 
 void draw_x_tick(Canvas& canvas, const AxisStyle& look, Point at, std::string_view label) {

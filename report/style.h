@@ -3,7 +3,9 @@
 // Colours and elements that all plots have in common. This header is private to report/.
 
 #include <array>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "report/axis_ticks.h"
 #include "report/canvas.h"
@@ -17,6 +19,9 @@ inline constexpr Colour kFaint{0.42, 0.42, 0.42};
 inline constexpr Font kTitleFont{16.0, true};
 inline constexpr Font kPanelFont{12.5, true};
 inline constexpr double kMargin = 22.0;
+/// Maximum number of lines of a title. The last line of a longer title ends in an ellipsis.
+inline constexpr int kMaxTitleLines = 3;
+inline constexpr double kTitleLineHeight = 1.3 * kTitleFont.size;
 
 /// Colours of Okabe and Ito (2008), which colour-blind readers can distinguish. Their yellow is too pale for a line on
 /// white and is not used.
@@ -68,7 +73,13 @@ void draw_frame(Canvas& canvas, Point corner, Size size, double width = 1.0);
 void draw_within(Canvas& canvas, double width, Ellipsis ellipsis, Point baseline, std::string_view text, Font font,
                  Colour colour, Align align);
 
-/// Draws the title, centred at the top of a figure.
+/// Returns the lines of a title that fit in a figure of the given width.
+std::vector<std::string> title_lines(std::string_view title, double figure_width);
+
+/// Returns the height that a title needs in addition to its first line. It is 0 if the title has one line.
+double added_title_height(std::string_view title, double figure_width);
+
+/// Draws the title, centred at the top of a figure, in as many lines as title_lines() returns.
 void draw_title(Canvas& canvas, Size figure, std::string_view title);
 
 /// Dimensions of the ticks of an axis and of their labels.

@@ -23,8 +23,25 @@ constexpr AxisStyle kSurfaceAxis{.font = kSurfaceTickFont,
                                  .y_label_gap = 7.0,
                                  .baseline = 0.36 * kSurfaceTickFont.size};
 
-constexpr Size kSurfaceCell{430.0, 390.0};  ///< size of a panel with its texts
 constexpr Size kPlotArea{290.0, 290.0};
+constexpr Size kSinglePlotArea{460.0, 460.0};  ///< area of the only panel of a plot
+constexpr Size kAroundPlotArea{140.0, 100.0};  ///< space for the texts of a panel
+constexpr Font kSurfaceRemarkFont{11.5, false};
+constexpr double kSurfaceRemarkLine = 16.0;
+/// Length in um from which axes are labelled in mm.
+constexpr double kMillimetresFrom_um = 2000.0;
+
+// Colours of deviations: blue below 0, white at 0 and red above 0. These are the colours of RdBu of ColorBrewer
+// (Harrower and Brewer 2003), which colour-blind readers can distinguish.
+constexpr ColourScale kDeviationScale = {{{0.129, 0.400, 0.675},
+                                          {0.263, 0.576, 0.765},
+                                          {0.573, 0.773, 0.871},
+                                          {0.820, 0.898, 0.941},
+                                          {0.969, 0.969, 0.969},
+                                          {0.992, 0.859, 0.780},
+                                          {0.957, 0.647, 0.510},
+                                          {0.839, 0.376, 0.302},
+                                          {0.698, 0.094, 0.169}}};
 constexpr double kSurfaceLeft = 62.0;  ///< distance of the plot area from the left end of its cell
 constexpr double kTop = 34.0;
 constexpr double kSurfaceBarGap = 12.0;
@@ -95,12 +112,13 @@ void draw_texts(Canvas& canvas, const Area& area, Point cell, std::string_view t
               true);
 }
 
-void draw_bar(Canvas& canvas, const Area& area, Range range, std::string_view label) {
+void draw_bar(Canvas& canvas, const Area& area, const ColourScale& colours, Range range, int intervals,
+              std::string_view label) {
   const double left = area.right() + kSurfaceBarGap;
-  draw_colour_bar(canvas, kViridis, {left, area.corner.y}, {kSurfaceBarWidth, area.size.height});
+  draw_colour_bar(canvas, colours, {left, area.corner.y}, {kSurfaceBarWidth, area.size.height});
   draw_frame(canvas, {left, area.corner.y}, {kSurfaceBarWidth, area.size.height});
   const AxisScale scale{range, area.bottom(), area.corner.y};
-  const Ticks ticks = make_ticks(range, 5);
+  const Ticks ticks = make_ticks(range, intervals);
   double widest = 0.0;
   for (std::size_t i = 0; i < ticks.positions.size(); ++i) {
     const double y = scale.at(ticks.positions[i]);
@@ -121,8 +139,8 @@ void draw_linear_axes(Canvas& canvas, const Area& area, Range x_range, Range y_r
 }
 
 /// Draws a profile: heights over x.
-void draw_profile(Canvas& canvas, const GridPanel& panel, Point cell) {
-  const Area area{{cell.x + kSurfaceLeft, cell.y + kTop}, kPlotArea};
+void draw_profile(Canvas& canvas, const GridPanel& panel, Point cell, Size room) {
+  const Area area{{cell.x + kSurfaceLeft, cell.y + kTop}, room};
   const Range heights = drawable(extent_of(panel.values).value_or(Range{0.0, 1.0}));
   const AxisScale x{{0.0, panel.x_size_um}, area.corner.x, area.right()};
   const AxisScale y{heights, area.bottom(), area.corner.y};
@@ -144,25 +162,37 @@ void draw_profile(Canvas& canvas, const GridPanel& panel, Point cell) {
   draw_texts(canvas, area, cell, panel.title, "x (µm)", panel.value_label);
 }
 
-void draw(Canvas& canvas, const GridPanel& panel, Point cell) {
+/// Returns the size of a grid that is drawn to scale within an area. Narrow grids are drawn with a minimum width.
+Size grid_size(const GridPanel& panel, Size room) {
+  const double scale = std::min(room.width / panel.x_size_um, room.height / panel.y_size_um);
+  return {std::max(20.0, scale * panel.x_size_um), std::max(20.0, scale * panel.y_size_um)};
+}
+
+void draw(Canvas& canvas, const GridPanel& panel, Point cell, Size room) {
   if (panel.rows == 1) {
-    draw_profile(canvas, panel, cell);
+    draw_profile(canvas, panel, cell, room);
     return;
   }
-  // The grid is drawn to scale within the plot area. Narrow grids are drawn with a minimum width.
-  const double scale = std::min(kPlotArea.width / panel.x_size_um, kPlotArea.height / panel.y_size_um);
-  const Size size{std::max(20.0, scale * panel.x_size_um), std::max(20.0, scale * panel.y_size_um)};
-  const Area area{{cell.x + kSurfaceLeft, cell.y + kTop}, size};
+  const Area area{{cell.x + kSurfaceLeft, cell.y + kTop}, grid_size(panel, room)};
   const GridPanel small = reduced(panel);
-  const Range range = colour_range(small.values);
+  const bool is_deviation = panel.deviation_limit > 0.0;
+  const ColourScale& scale = is_deviation ? kDeviationScale : kViridis;
+  const Range range = is_deviation ? Range{-panel.deviation_limit, panel.deviation_limit} : colour_range(small.values);
   std::vector<Colour> colours;
   for (const double v : small.values)
-    colours.push_back(std::isfinite(v) ? colour_at(kViridis, (v - range.low) / range.span()) : kMissingColour);
+    colours.push_back(std::isfinite(v) ? colour_at(scale, (v - range.low) / range.span()) : kMissingColour);
   canvas.image(area.corner, area.size, small.columns, colours);
   draw_frame(canvas, area.corner, area.size);
-  draw_linear_axes(canvas, area, {0.0, panel.x_size_um}, {0.0, panel.y_size_um}, true);
-  draw_bar(canvas, area, range, panel.value_label);
-  draw_texts(canvas, area, cell, panel.title, "x (µm)", "y (µm)");
+  const bool in_mm = std::max(panel.x_size_um, panel.y_size_um) >= kMillimetresFrom_um;
+  const double per_um = in_mm ? 1e-3 : 1.0;
+  const char* const unit = in_mm ? "mm" : "µm";
+  const auto [x_um, y_um] = panel.lower_left_um.value_or(std::array{0.0, 0.0});
+  draw_linear_axes(canvas, area, {per_um * x_um, per_um * (x_um + panel.x_size_um)},
+                   {per_um * y_um, per_um * (y_um + panel.y_size_um)}, !panel.lower_left_um.has_value());
+  // The ends of the bar of deviations have labels.
+  draw_bar(canvas, area, scale, range, is_deviation ? 4 : 5, panel.value_label);
+  draw_texts(canvas, area, cell, panel.title, fmt::format("{} ({})", panel.x_name, unit),
+             fmt::format("{} ({})", panel.y_name, unit));
 }
 
 /// Returns the range of decades that contains all positive values, limited to `most` decades below the highest.
@@ -186,9 +216,9 @@ std::string power_of_ten(int exponent) {
   return fmt::format("1e{}", exponent);
 }
 
-void draw(Canvas& canvas, const LogPanel& panel, Point cell) {
+void draw(Canvas& canvas, const LogPanel& panel, Point cell, Size room) {
   constexpr double kMaxDecades = 12.0;
-  const Area area{{cell.x + kSurfaceLeft, cell.y + kTop}, {kPlotArea.width + 60.0, kPlotArea.height}};
+  const Area area{{cell.x + kSurfaceLeft, cell.y + kTop}, {room.width + 60.0, room.height}};
   const AxisScale x{decades(panel, true, kMaxDecades), area.corner.x, area.right()};
   const AxisScale y{decades(panel, false, kMaxDecades), area.bottom(), area.corner.y};
   for (int e = static_cast<int>(std::ceil(x.values.low)); e <= static_cast<int>(std::floor(x.values.high)); ++e) {
@@ -223,19 +253,42 @@ void draw(Canvas& canvas, const LogPanel& panel, Point cell) {
   draw_texts(canvas, area, cell, panel.title, panel.x_label, panel.y_label);
 }
 
+/// Returns the height of a panel within an area.
+double height_of(const std::variant<GridPanel, LogPanel>& panel, Size room) {
+  const auto* const grid = std::get_if<GridPanel>(&panel);
+  return grid != nullptr && grid->rows > 1 ? grid_size(*grid, room).height : room.height;
+}
+
 }  // namespace
 
 std::string render(const SurfacePlot& plot, PlotFormat format, double scale) {
-  const std::size_t rows = (plot.panels.size() + 1) / 2;
-  const Size size{2.0 * kSurfaceCell.width + 2.0 * kMargin,
-                  static_cast<double>(rows) * kSurfaceCell.height + 2.0 * kMargin + 24.0};
+  const bool is_single = plot.panels.size() == 1;
+  const Size room = is_single ? kSinglePlotArea : kPlotArea;
+  const Size cell_size{room.width + kAroundPlotArea.width,
+                       (is_single ? height_of(plot.panels.front(), room) : room.height) + kAroundPlotArea.height};
+  const std::size_t columns = is_single ? 1 : 2;
+  const std::size_t rows = (plot.panels.size() + columns - 1) / columns;
+  const double width = static_cast<double>(columns) * cell_size.width + 2.0 * kMargin;
+  double remark_line = kMargin + kTitleFont.size + added_title_height(plot.title, width) + kSurfaceRemarkLine + 2.0;
+  std::vector<std::string> remarks;
+  const Canvas measure(Canvas::Format::png, {8.0, 8.0}, 1.0);
+  for (const std::string& remark : plot.remarks)
+    for (std::string& line : measure.fitted(remark, kSurfaceRemarkFont, width - 2.0 * kMargin, 3, Ellipsis::end))
+      remarks.push_back(std::move(line));
+  const double head =
+      24.0 + added_title_height(plot.title, width) + kSurfaceRemarkLine * static_cast<double>(remarks.size());
+  const Size size{width, std::ceil(static_cast<double>(rows) * cell_size.height + 2.0 * kMargin + head)};
   Canvas canvas(format, size, scale);
   canvas.fill_rectangle({0.0, 0.0}, size, kWhite);
   draw_title(canvas, size, plot.title);
+  for (const std::string& remark : remarks) {
+    canvas.text({0.5 * width, remark_line}, remark, kSurfaceRemarkFont, kFaint, Align::centre);
+    remark_line += kSurfaceRemarkLine;
+  }
   for (std::size_t i = 0; i < plot.panels.size(); ++i) {
-    const Point cell{kMargin + kSurfaceCell.width * static_cast<double>(i % 2),
-                     kMargin + 24.0 + kSurfaceCell.height * static_cast<double>(i / 2)};
-    std::visit([&](const auto& panel) { draw(canvas, panel, cell); }, plot.panels[i]);
+    const Point cell{kMargin + cell_size.width * static_cast<double>(i % columns),
+                     kMargin + head + cell_size.height * static_cast<double>(i / columns)};
+    std::visit([&](const auto& panel) { draw(canvas, panel, cell, room); }, plot.panels[i]);
   }
   return canvas.finish();
 }

@@ -2,7 +2,9 @@
 
 // Plots of measured surfaces: height maps with colour bars, and spectra on logarithmic axes.
 
+#include <array>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -18,6 +20,13 @@ struct GridPanel {
   std::size_t columns = 0, rows = 0;
   double x_size_um = 0.0, y_size_um = 0.0;
   std::vector<double> values;  ///< row by row from the top; values that are not finite are drawn grey
+  /// If not 0, the values are deviations, and the colours cover -limit to limit: blue below 0, white at 0, red above 0.
+  double deviation_limit = 0.0;
+  /// Coordinates of the lower left corner, for axes with y upwards. If empty, the axes begin at 0 in the upper left
+  /// corner.
+  std::optional<std::array<double, 2>> lower_left_um = {};
+  std::string x_name = "x";
+  std::string y_name = "y";
 };
 
 /// A curve of positive values.
@@ -35,10 +44,11 @@ struct LogPanel {
   std::vector<LogCurve> curves;
 };
 
-/// Panels under one title, arranged in rows of two.
+/// Panels under one title, arranged in rows of two. A single panel is larger.
 struct SurfacePlot {
   std::string title;
   std::vector<std::variant<GridPanel, LogPanel>> panels;
+  std::vector<std::string> remarks = {};  ///< lines under the title, which are wrapped
 };
 
 /// Draws the plot. render_svg() and render_png() call this function.

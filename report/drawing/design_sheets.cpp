@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
+#include <map>
 
 #include "report/drawing/dimension_layout.h"
 #include "report/drawing/svg_sheet.h"
@@ -25,6 +25,8 @@ constexpr double kFineLines = 14.0;
 /// Ratio of plate thickness to element depth above which the central part of the plate is omitted from the section.
 constexpr double kThickPlate = 3.2;
 constexpr double kBreakGap = 12.0;
+constexpr double kZoneDisc = 10.0;  ///< radius of the disc behind the number of a zone
+constexpr double kZoneLegendLine = 19.0;
 
 using ToPaper = std::function<Point(const Vec2&)>;
 
@@ -73,19 +75,24 @@ void draw_dimensions(SvgGroup& group, const std::vector<studies::Dimension>& dim
   }
 }
 
+constexpr std::size_t kZoneColours = 7;  ///< number of different colours of zones in the style sheet
+
+std::string zone_style(std::size_t zone) {
+  return fmt::format("z{}", zone % kZoneColours);
+}
+
 std::string face_style(const studies::PlanFace& face) {
-  if (face.role != geometry::FacetRole::retro_facet) return "land";
-  return fmt::format("f{}", static_cast<int>(std::floor(face.azimuth_deg / 60.0 + 0.25)) % 6);
+  const bool is_land = face.role != geometry::FacetRole::retro_facet;
+  std::string style =
+      is_land ? "land" : fmt::format("f{}", static_cast<int>(std::floor(face.azimuth_deg / 60.0 + 0.25)) % 6);
+  if (face.zone) style += " zone " + zone_style(*face.zone);
+  return style;
 }
 
 void draw_faces(SvgGroup& group, const studies::PlanView& view, const ToPaper& at) {
-  static constexpr std::array<const char*, 7> kStyles = {"f0", "f1", "f2", "f3", "f4", "f5", "land"};
-  for (const char* style : kStyles) {
-    std::vector<std::vector<Point>> polygons;
-    for (const studies::PlanFace& face : view.faces)
-      if (face_style(face) == style) polygons.push_back(on_paper(face.outline_mm, at));
-    group.faces(style, polygons);
-  }
+  std::map<std::string, std::vector<std::vector<Point>>> by_style;
+  for (const studies::PlanFace& face : view.faces) by_style[face_style(face)].push_back(on_paper(face.outline_mm, at));
+  for (const auto& [style, polygons] : by_style) group.faces(style, polygons);
   group.lines("root", on_paper(view.roots_mm, at));
   group.lines("rim", on_paper(view.rims_mm, at));
 }
@@ -97,6 +104,34 @@ bool has_fine_lines(const studies::PlanView& view, double units_per_mm) {
   double sum = 0.0;
   for (const auto& [a, b] : view.rims_mm) sum += (b - a).norm();
   return units_per_mm * sum / static_cast<double>(view.rims_mm.size()) < kFineLines;
+}
+
+/// Draws the borders and the numbers of zones.
+void draw_zones(SvgGroup& group, const PlanPanel& panel, const ToPaper& at) {
+  for (std::size_t k = 0; k < panel.zones.size(); ++k) {
+    if (panel.omits_faces)
+      for (const Polygon& region : panel.zones[k].regions_mm)
+        group.faces("zone " + zone_style(k), {on_paper(region, at)});
+    for (const Polygon& region : panel.zones[k].regions_mm) group.outline("zone-border", on_paper(region, at));
+  }
+  for (std::size_t k = 0; k < panel.zones.size(); ++k)
+    for (const Vec2& label : panel.zones[k].labels_mm) {
+      const Point centre = at(label);
+      group.circle("zone-disc", centre, kZoneDisc);
+      group.text("zone-number", {centre.x, centre.y + 0.36 * kSheetTextSize}, fmt::format("{}", k + 1), Align::centre);
+    }
+}
+
+/// Draws one line per zone below the figure: its colour, number and description.
+void draw_zone_legend(SvgGroup& group, const PlanPanel& panel) {
+  double top = group.box().upper.y + 14.0;
+  for (std::size_t k = 0; k < panel.zones.size(); ++k, top += kZoneLegendLine) {
+    const double side = 12.0;
+    group.outline("zone swatch " + zone_style(k), {{0.0, top}, {side, top}, {side, top + side}, {0.0, top + side}});
+    const std::string text = fmt::format("Zone {}: {}", k + 1, panel.zones[k].description);
+    group.text("zone-text", {side + 8.0, top + side - 1.5}, text, Align::left);
+    group.reserve({0.0, top}, {side + 8.0 + sheet_text_width(text, kSheetTextSize), side + 4.0});
+  }
 }
 
 struct Panel {
@@ -130,6 +165,7 @@ Panel plan_panel(const PlanPanel& panel) {
   const bool fine = has_fine_lines(panel.view, scale);
   if (fine) result.attributes += " class=\"fine\"";
   draw_faces(group, panel.view, at);
+  draw_zones(group, panel, at);
   Polygon outline = panel.outline_mm;
   if (!outline.empty()) outline = geometry::clip(outline, window, 1e-9 * size.maxCoeff());
   const bool is_whole = !outline.empty() && outline.size() == panel.outline_mm.size() &&
@@ -149,6 +185,7 @@ Panel plan_panel(const PlanPanel& panel) {
   // The marks of the section line are placed between the figure and the first dimension lines.
   const double marks = panel.section_y_mm ? 12.0 : 0.0;
   draw_dimensions(group, panel.dimensions, at, {lower.x - marks, lower.y}, {upper.x + marks, upper.y});
+  draw_zone_legend(group, panel);
   return result;
 }
 
@@ -305,6 +342,8 @@ std::string plan_svg(const DesignDrawing& drawing) {
     panels.push_back(plan_panel(panel));
     titles.push_back(panel.omits_faces ? panel.title + " (elements too small to be drawn)" : panel.title);
     words += "; " + words_of(panel.dimensions);
+    for (std::size_t k = 0; k < panel.zones.size(); ++k)
+      words += fmt::format("; zone {}: {}", k + 1, panel.zones[k].description);
   }
   return sheet_of(drawing, panels, titles, "plan", words);
 }

@@ -25,13 +25,19 @@ path,circle{fill:none;stroke-linejoin:round;stroke-linecap:round}
 .cut{stroke:#8a3ffc;stroke-width:1.1;stroke-dasharray:12 3 2 3}.frame{stroke:#8a3ffc;stroke-width:1.2}
 .mark{fill:#8a3ffc;font-weight:bold}.dim{stroke:#0b6e99;stroke-width:.9}.ext{stroke:#0b6e99;stroke-width:.55}
 .arrow{fill:#0b6e99}.value{fill:#074e6e}.break{stroke:#1d2530;stroke-width:1.1}.gap{fill:#ffffff}
+.zone.z0{fill:#0072b2}.zone.z1{fill:#d55e00}.zone.z2{fill:#009e73}.zone.z3{fill:#cc79a7}.zone.z4{fill:#e69f00}
+.zone.z5{fill:#56b4e9}.zone.z6{fill:#7a7a7a}.zone{fill-opacity:.5}
+.f0.zone{fill-opacity:.62}.f1.zone{fill-opacity:.5}.f2.zone{fill-opacity:.26}.f3.zone{fill-opacity:.18}
+.f4.zone{fill-opacity:.32}.f5.zone{fill-opacity:.55}.land.zone{fill-opacity:.1}
+.swatch{stroke:#1d2530;stroke-width:.8}.zone-border{stroke:#1d2530;stroke-width:1.3}
+.zone-disc{fill:#ffffff;stroke:#1d2530;stroke-width:1.2}.zone-number{font-weight:bold}
 @media (prefers-color-scheme:dark){
 text{fill:#e7edf4}.remark{fill:#a8b4c2}.paper,.gap{fill:#12171e}
 .f0{fill:#24405c}.f1{fill:#2c4b69}.f2{fill:#3a5f82}.f3{fill:#436a8f}.f4{fill:#345777}.f5{fill:#284662}
 .land{fill:#2a2f36}.body{fill:#2c4b69;stroke:#e7edf4}.bare{stroke:none}.plain{fill:#345777}
 .root{stroke:#86a5c2}.rim{stroke:#b9cbdc}.outline{stroke:#e7edf4}.period,.round{stroke:#f0a05a}
 .cut,.frame{stroke:#c4a1ff}.mark{fill:#c4a1ff}.dim,.ext{stroke:#5cc4ee}.arrow{fill:#5cc4ee}.value{fill:#a5e0fb}
-.break{stroke:#e7edf4}}
+.break,.swatch,.zone-border{stroke:#e7edf4}.zone-disc{fill:#12171e;stroke:#e7edf4}}
 )css";
 
 /// Returns a number with up to three decimals, without trailing zeros.

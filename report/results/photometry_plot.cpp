@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "core/number_format.h"
 #include "design/io/design_json.h"
 #include "report/results/result_plots.h"
@@ -46,11 +44,11 @@ LinePlot observation_plot(const studies::PhotometryResult& result) {
   LinePlot plot;
   plot.title = fmt::format("{}: coefficient of retroreflection", design::short_name(result.design));
   plot.x_label = "Observation angle α (°)";
-  plot.y_label = "log₁₀ of R_A (cd/lx/m²)";
+  plot.y_label = "R_A (cd/lx/m²)";
+  plot.y_is_logarithmic = true;
   for (const studies::ObservationCurve& curve : result.curves) {
-    Series series{fmt::format("entrance angle β = {}°", shortest(curve.entrance_deg)), curve.observation_deg, {}, {}};
-    for (const double r_a : curve.r_a) series.y.push_back(std::log10(r_a));  // 0 interrupts the line
-    plot.series.push_back(std::move(series));
+    plot.series.push_back(
+        {fmt::format("entrance angle β = {}°", shortest(curve.entrance_deg)), curve.observation_deg, curve.r_a, {}});
   }
   return plot;
 }

@@ -136,7 +136,6 @@ void add_plan(DesignDrawing& drawing, const Part& part, const ArrayFigures& a) {
     drawing.plan.push_back(panel_of(part, window, "One period and its surroundings"));
     add_element(drawing.plan.back(), spec, a);
     add_extent(drawing.plan.back(), spec, a);
-    drawing.plan.back().section_y_mm = a.section_y_mm;
     return;
   }
   const bool has_detail = spec.array.arrangement != Arrangement::single && a.count.maxCoeff() > kFewElements;
@@ -147,7 +146,6 @@ void add_plan(DesignDrawing& drawing, const Part& part, const ArrayFigures& a) {
     drawing.plan.front().detail_mm = window;
   }
   add_element(drawing.plan.back(), spec, a);
-  drawing.plan.back().section_y_mm = a.section_y_mm;
   add_extent(drawing.plan.front(), spec, a);
 }
 
@@ -226,17 +224,81 @@ std::string zones_text(const Part& part) {
                      part.elements_partial);
 }
 
+/// Returns the outlines of the cells of a zone, of which the part has one patch.
+std::vector<Vec2> centres_of_cells(const Part& part, std::size_t zone) {
+  std::size_t first = 0;
+  for (std::size_t k = 0; k < zone; ++k) first += part.zones[k].cells;
+  std::vector<Vec2> centres;
+  const auto& cells = part.patches.front().cells;
+  for (std::size_t k = first; k < first + part.zones[zone].cells; ++k)
+    centres.push_back(0.5 * (cells[k].lower + cells[k].upper).head<2>());
+  return centres;
+}
+
+/// Returns the position of a zone's number if the zone consists of elements: the centre of the element that is farthest
+/// from the elements of all other zones, or of the first such element.
+Vec2 label_of_cells(const Part& part, std::size_t zone) {
+  constexpr std::size_t kMaxCandidates = 400;
+  const std::vector<Vec2> own = centres_of_cells(part, zone);
+  std::vector<Vec2> others;
+  for (std::size_t k = 0; k < part.zones.size(); ++k) {
+    if (k == zone) continue;
+    const std::vector<Vec2> more = centres_of_cells(part, k);
+    others.insert(others.end(), more.begin(), more.end());
+  }
+  const std::size_t step = own.size() / kMaxCandidates + 1;
+  Vec2 best = own.front();
+  double farthest = -1.0;
+  for (std::size_t k = 0; k < own.size(); k += step) {
+    double nearest = INFINITY;
+    for (const Vec2& other : others) nearest = std::min(nearest, (other - own[k]).norm());
+    if (nearest > farthest * (1.0 + 1e-9)) {
+      farthest = nearest;
+      best = own[k];
+    }
+  }
+  return best;
+}
+
+std::string zone_text(const design::ZonedPart& zoned, const Part& part, std::size_t zone) {
+  const geometry::ZoneElements& elements = part.zones[zone];
+  double all_mm2 = 0.0;
+  for (const geometry::ZoneElements& other : part.zones) all_mm2 += other.area_mm2;
+  std::string text;
+  if (const double deg = zoned.spec.zones[zone].rotation_deg; deg != 0.0)
+    text += fmt::format("rotated by {:.6g}°, ", deg);
+  for (const design::ZoneChange& change : zoned.changes[zone]) text += change.text + ", ";
+  text += fmt::format("{} full elements", elements.full);
+  if (elements.partial > 0) text += fmt::format(" and {} cut", elements.partial);
+  return text + fmt::format(", {:.1f} % of the area", 100.0 * elements.area_mm2 / all_mm2);
+}
+
+std::vector<PlanZone> zones_of(const design::ZonedPart& zoned, const Part& part) {
+  std::vector<PlanZone> zones;
+  for (std::size_t k = 0; k < part.zones.size(); ++k) {
+    PlanZone zone;
+    if (!zoned.spec.is_by_cell) zone.regions_mm = zoned.spec.zones[k].regions;
+    for (const geometry::Polygon& region : zone.regions_mm) zone.labels_mm.push_back(geometry::centroid(region));
+    if (zone.labels_mm.empty() && part.zones[k].cells > 0) zone.labels_mm.push_back(label_of_cells(part, k));
+    zone.description = zone_text(zoned, part, k);
+    zones.push_back(std::move(zone));
+  }
+  return zones;
+}
+
 }  // namespace
 
-DesignDrawing draw_design(const design::Design& design, const Part& part) {
+DesignDrawing draw_plan(const design::Design& design, const Part& part) {
   DesignDrawing drawing;
   drawing.title = design::short_name(design);
   const ArrayFigures a = array_figures(design, part);
   if (!design.elements()) {
-    drawing.remarks.push_back(design.zoned() ? zones_text(part) : "part read from a mesh");
+    drawing.remarks.push_back(design.zoned()                                        ? zones_text(part)
+                              : std::holds_alternative<design::Plate>(design.shape) ? "plate with a plane back"
+                                                                                    : "part read from a mesh");
     drawing.plan.push_back(panel_of(part, a.extent_mm, "Seen from the light"));
     PlanPanel& panel = drawing.plan.back();
-    panel.section_y_mm = a.section_y_mm;
+    if (design.zoned()) panel.zones = zones_of(*design.zoned(), part);
     add(panel.dimensions, Side::below, a.extent_mm.lower, a.extent_mm.upper, "x length");
     add(panel.dimensions, Side::left, a.extent_mm.lower, a.extent_mm.upper, "y length");
   } else {
@@ -244,6 +306,13 @@ DesignDrawing draw_design(const design::Design& design, const Part& part) {
     add_plan(drawing, part, a);
   }
   drawing.remarks.emplace_back("lengths in mm");
+  return drawing;
+}
+
+DesignDrawing draw_design(const design::Design& design, const Part& part) {
+  DesignDrawing drawing = draw_plan(design, part);
+  const ArrayFigures a = array_figures(design, part);
+  drawing.plan.back().section_y_mm = a.section_y_mm;
   add_section(drawing, design, part, a);
   return drawing;
 }

@@ -30,6 +30,13 @@ struct AngleDimension {
   double deg = 0.0;
 };
 
+/// Zone of a part in the plan.
+struct PlanZone {
+  std::vector<geometry::Polygon> regions_mm;  ///< regions of the zone; empty if the zone consists of elements
+  std::vector<geometry::Vec2> labels_mm;      ///< positions of the number of the zone, within the zone
+  std::string description;                    ///< such as "1307 elements, 148 cut; 50 % of the area"
+};
+
 struct PlanPanel {
   std::string title;
   PlanView view;
@@ -41,6 +48,7 @@ struct PlanPanel {
   geometry::Vec2 circle_mm = geometry::Vec2::Zero();
   std::optional<double> section_y_mm;  ///< y at which the section is cut
   std::vector<Dimension> dimensions;   ///< inner dimensions first
+  std::vector<PlanZone> zones = {};    ///< zones of the part, in their order
 };
 
 struct SectionPanel {
@@ -67,5 +75,9 @@ inline constexpr std::size_t kMaxPlanFaces = 16'000;
 /// Returns the drawing of a design.
 /// \param part part of the design
 DesignDrawing draw_design(const design::Design& design, const geometry::Part& part);
+
+/// Returns the drawing of a design without the section.
+/// \param part part of the design
+DesignDrawing draw_plan(const design::Design& design, const geometry::Part& part);
 
 }  // namespace retrace::studies

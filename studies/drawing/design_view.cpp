@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "design/io/design_json.h"
@@ -96,6 +97,67 @@ design::Design piece_of(const design::Design& design, std::vector<std::string>& 
   return piece;
 }
 
+/// Number of cells of the grid along the longer side of a part with which its curved entrance face is drawn.
+constexpr int kEntranceCells = 220;
+
+/// Appends the sides of a part and its curved entrance face, which is sampled on a grid.
+void add_curved_entrance(DesignView& view, const Part& part, const HeightFunction& height) {
+  const geometry::Rectangle box = geometry::bounding_box(part.outline);
+  const double cell_mm = box.size().maxCoeff() / kEntranceCells;
+  const Vec2 centre = box.centre();
+  const auto above = [&](const Vec2& p) {
+    // Points are moved inwards a little, because the face may end at the outline.
+    const double z = height(centre + (1.0 - 1e-7) * (p - centre));
+    return Vec3(p.x(), p.y(), std::isfinite(z) ? z : part.thickness_mm);
+  };
+  for (double y = box.lower.y(); y < box.upper.y() - 1e-9 * cell_mm; y += cell_mm)
+    for (double x = box.lower.x(); x < box.upper.x() - 1e-9 * cell_mm; x += cell_mm) {
+      const geometry::Polygon cell =
+          geometry::clip(part.outline, geometry::Rectangle{{x, y}, {x + cell_mm, y + cell_mm}}, 1e-9 * cell_mm);
+      if (cell.size() < 3) continue;
+      const auto first = static_cast<std::uint32_t>(view.mesh.vertices.size());
+      for (const Vec2& p : cell) view.mesh.vertices.push_back(above(p));
+      for (std::uint32_t k = 0; k + 2 < cell.size(); ++k) {
+        view.mesh.triangles.push_back({first, first + k + 1, first + k + 2});
+        view.mesh.roles.push_back(FacetRole::entrance);
+      }
+    }
+  for (std::size_t k = 0; k < part.outline.size(); ++k) {
+    const Vec2 from = part.outline[k];
+    const Vec2 along = part.outline[(k + 1) % part.outline.size()] - from;
+    const int steps = std::max(1, static_cast<int>(std::ceil(along.norm() / cell_mm)));
+    const auto first = static_cast<std::uint32_t>(view.mesh.vertices.size());
+    for (int s = 0; s <= steps; ++s) {
+      const Vec2 p = from + static_cast<double>(s) / steps * along;
+      view.mesh.vertices.emplace_back(p.x(), p.y(), 0.0);
+      view.mesh.vertices.push_back(above(p));
+    }
+    for (int s = 0; s < steps; ++s) {
+      const std::uint32_t low = first + 2 * static_cast<std::uint32_t>(s);
+      for (const Triangle& t : {Triangle{low, low + 2, low + 3}, Triangle{low, low + 3, low + 1}}) {
+        view.mesh.triangles.push_back(t);
+        view.mesh.roles.push_back(FacetRole::side);
+      }
+      view.edges.push_back({low, low + 2});
+      view.edges.push_back({low + 1, low + 3});
+    }
+    view.edges.push_back({first, first + 1});
+  }
+  view.has_curved_entrance = true;
+}
+
+/// Returns true if the elements are so many that the view of a whole part does not show them.
+bool has_very_small_elements(const Part& part) {
+  return part.size_mm * kMaxElementsAcross < geometry::bounding_box(part.outline).size().maxCoeff();
+}
+
+/// Returns a part with a plane back.
+Part with_plane_back(const Part& part) {
+  Part plane = part;
+  plane.placements.clear();
+  return plane;
+}
+
 DesignView view_of_mesh(const design::Design& design) {
   DesignView view;
   view.mesh = geometry::boundary_of(design::mesh_of_design(design, nullptr));
@@ -105,12 +167,16 @@ DesignView view_of_mesh(const design::Design& design) {
 
 }  // namespace
 
-DesignView view_of(const Part& part) {
+DesignView view_of(const Part& part, const HeightFunction& entrance_height) {
   DesignView view;
   std::vector<std::vector<Edge>> edges;
   for (const SurfacePatch& patch : part.patches) edges.push_back(edges_of(patch.vertices, patch.triangles));
   for (const geometry::Placement& placement : part.placements)
     add_patch(view, part.patches[placement.patch], edges[placement.patch], placement.offset_mm);
+  if (entrance_height) {
+    add_curved_entrance(view, part, entrance_height);
+    return view;
+  }
   const auto at = [&](std::size_t k, double z) {
     const Vec2& p = part.outline[k % part.outline.size()];
     return Vec3(p.x(), p.y(), z);
@@ -136,6 +202,20 @@ DesignView view_of(const design::Design& design) {
   }
   view.title = design::short_name(design);
   view.remarks = std::move(remarks);
+  return view;
+}
+
+DesignView view_of(const design::Design& design, const Part& part, const HeightFunction& entrance_height) {
+  if (!entrance_height) return view_of(design);
+  const bool omits_elements = has_very_small_elements(part);
+  DesignView view = view_of(omits_elements ? with_plane_back(part) : part, entrance_height);
+  if (omits_elements) {
+    std::vector<Vec3> back;
+    for (auto p = part.outline.rbegin(); p != part.outline.rend(); ++p) back.emplace_back(p->x(), p->y(), 0.0);
+    add_face(view, back, FacetRole::flat_back);
+    view.remarks.emplace_back("the elements are too small to be shown");
+  }
+  view.title = design::short_name(design);
   return view;
 }
 

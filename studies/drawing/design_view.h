@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -19,15 +20,23 @@ struct DesignView {
   geometry::BoundaryMesh mesh;
   std::vector<std::array<std::uint32_t, 2>> edges;  ///< edges between faces of different directions
   std::vector<std::string> remarks;                 ///< differences from the design
+  bool has_curved_entrance = false;                 ///< true: the entrance face is not a plane
 };
 
+/// Height of an entrance face at a point of the part frame, in mm.
+using HeightFunction = std::function<double(const geometry::Vec2& point_mm)>;
+
 /// Returns the surface of a finite part with its edges.
-DesignView view_of(const geometry::Part& part);
+/// \param entrance_height heights of a curved entrance face; empty for a plane face
+DesignView view_of(const geometry::Part& part, const HeightFunction& entrance_height = {});
 
 /// Returns the view of a design. Of infinite arrays, and of arrays with very small elements, it shows only a few
-/// elements.
+/// elements. If the entrance face is curved, the view shows the whole part, without elements that are very small.
+/// \param part part of the design; only used if the entrance face is curved
+/// \param entrance_height heights of a curved entrance face; empty for a plane face
 /// \throw InputError under the same conditions as part_of_design()
 DesignView view_of(const design::Design& design);
+DesignView view_of(const design::Design& design, const geometry::Part& part, const HeightFunction& entrance_height);
 
 /// Number of elements that are shown along a side of an array that is too large to be shown as a whole.
 inline constexpr double kExcerptElements = 8.0;

@@ -89,8 +89,9 @@ class LineSet {
 /// Adds the faces and lines of one cell of a SurfacePatch.
 class CellDrawer {
  public:
-  CellDrawer(const SurfacePatch& patch, const geometry::PatchCell& cell, const Vec2& offset)
-      : patch_(patch), cell_(cell), offset_(offset) {}
+  CellDrawer(const SurfacePatch& patch, const geometry::PatchCell& cell, const Vec2& offset,
+             std::optional<std::size_t> zone)
+      : patch_(patch), cell_(cell), offset_(offset), zone_(zone) {}
 
   void draw(PlanView& view, LineSet& lines, double tolerance_mm) const {
     std::map<std::pair<std::uint32_t, std::uint32_t>, Vec3> normals;
@@ -98,7 +99,7 @@ class CellDrawer {
       for (std::uint32_t k = 0; k < facet.corner_count; ++k) normals[edge(facet, k)] = facet.normal;
     });
     for_each_level_facet([&](const PatchFacet& facet) {
-      PlanFace face{{}, facet.role, azimuth_deg(facet.normal)};
+      PlanFace face{{}, facet.role, azimuth_deg(facet.normal), zone_};
       for (std::uint32_t k = facet.corner_count; k-- > 0;) face.outline_mm.push_back(at(edge(facet, k).first));
       face.outline_mm = geometry::clip(face.outline_mm, view.window_mm, tolerance_mm);
       if (!face.outline_mm.empty()) view.faces.push_back(std::move(face));
@@ -131,7 +132,16 @@ class CellDrawer {
   const SurfacePatch& patch_;
   const geometry::PatchCell& cell_;
   Vec2 offset_;
+  std::optional<std::size_t> zone_;
 };
+
+/// Returns the zone of each cell of a part with zones, whose cells are stored zone by zone in one patch.
+std::vector<std::optional<std::size_t>> zones_of_cells(const Part& part, std::size_t cells) {
+  std::vector<std::optional<std::size_t>> zones;
+  for (std::size_t zone = 0; zone < part.zones.size(); ++zone) zones.insert(zones.end(), part.zones[zone].cells, zone);
+  zones.resize(cells);
+  return zones;
+}
 
 /// Segment of the section's lower border, from left to right.
 struct DesignExcerpt {
@@ -198,9 +208,11 @@ PlanView plan_view(const Part& part, const Rectangle& window_mm) {
   for (const Placement& placement : part.placements) {
     if (!overlap(moved(boxes[placement.patch], placement.offset_mm), window_mm)) continue;
     const SurfacePatch& patch = part.patches[placement.patch];
-    for (const geometry::PatchCell& cell : patch.cells) {
+    const std::vector<std::optional<std::size_t>> zones = zones_of_cells(part, patch.cells.size());
+    for (std::size_t k = 0; k < patch.cells.size(); ++k) {
+      const geometry::PatchCell& cell = patch.cells[k];
       const Rectangle box = moved(Rectangle{cell.lower.head<2>(), cell.upper.head<2>()}, placement.offset_mm);
-      if (overlap(box, window_mm)) CellDrawer(patch, cell, placement.offset_mm).draw(view, lines, same_mm);
+      if (overlap(box, window_mm)) CellDrawer(patch, cell, placement.offset_mm, zones[k]).draw(view, lines, same_mm);
     }
   }
   return view;

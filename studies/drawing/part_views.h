@@ -17,7 +17,8 @@ using PlanLine = std::pair<geometry::Vec2, geometry::Vec2>;
 struct PlanFace {
   geometry::Polygon outline_mm;
   geometry::FacetRole role = geometry::FacetRole::retro_facet;
-  double azimuth_deg = 0.0;  ///< azimuth of the outward normal of the face; 0 to below 360
+  double azimuth_deg = 0.0;              ///< azimuth of the outward normal of the face; 0 to below 360
+  std::optional<std::size_t> zone = {};  ///< zone of the part that the face belongs to, from 0
 };
 
 /// Back surface of a part within a window, as seen from the light.

@@ -206,7 +206,8 @@ TEST_F(Entrance, InspectTellsAndDrawsIt) {
   EXPECT_EQ(json["design"]["part"]["plate_mm"], Json::array({1.0, 0.8}));
   EXPECT_NE(folder_.read("out/entrance_surface.svg").find("<svg"), std::string::npos);
   EXPECT_EQ(folder_.names(), (std::vector<std::string>{"design.toml", "lens.toml", "out", "out/entrance_surface.svg",
-                                                       "out/inspect.json"}));
+                                                       "out/inspect.json", "out/plan.svg", "out/view.png"}));
+  EXPECT_NE(folder_.read("out/plan.svg").find(">x length 1</text>"), std::string::npos);
 }
 
 // A report does not show the curved entrance surface that was traced. It must warn about this instead of drawing a

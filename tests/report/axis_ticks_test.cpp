@@ -38,6 +38,35 @@ TEST(MakeTicks, WritesVeryLargeAndVerySmallWithAnExponent) {
   EXPECT_EQ(make_ticks({0.0, 4e-8}, 4).labels, (Texts{"0", "1e-8", "2e-8", "3e-8", "4e-8"}));
 }
 
+TEST(MakeLogTicks, MarksDecadesAndTheirMultiples) {
+  const LogTicks ticks = make_log_ticks({-1.0, 5.0}, 9);
+  EXPECT_EQ(ticks.decades.positions, (std::vector<double>{-1, 0, 1, 2, 3, 4, 5}));
+  EXPECT_EQ(ticks.decades.labels, (Texts{"0.1", "1", "10", "100", "1000", "10000", "10⁵"}));
+  ASSERT_EQ(ticks.minor.size(), 6U * 8U);
+  for (std::size_t k = 0; k < ticks.minor.size(); ++k)
+    EXPECT_NEAR(std::pow(10.0, ticks.minor[k]),
+                (2.0 + static_cast<double>(k % 8)) * std::pow(10.0, std::floor(static_cast<double>(k) / 8.0) - 1.0),
+                1e-9 * std::pow(10.0, ticks.minor[k]));
+}
+
+TEST(MakeLogTicks, LabelsAFractionOfManyDecades) {
+  const LogTicks ticks = make_log_ticks({-12.0, 8.0}, 8);
+  EXPECT_LE(ticks.decades.labels.size(), 8U);
+  EXPECT_EQ(ticks.decades.labels.back(), "10⁸");
+  EXPECT_TRUE(ticks.minor.empty());
+}
+
+TEST(WholeDecades, ContainTheValuesUpToALimit) {
+  const std::vector<double> logarithms = {0.3, 2.7, kNan, -kInfinity};
+  const auto range = whole_decades(logarithms, 8);
+  ASSERT_TRUE(range);
+  EXPECT_EQ(range->low, 0.0);
+  EXPECT_EQ(range->high, 3.0);
+  EXPECT_EQ(whole_decades(logarithms, 2)->low, 1.0);
+  EXPECT_EQ(whole_decades(std::vector<double>{2.0}, 8)->span(), 1.0);
+  EXPECT_FALSE(whole_decades(std::vector<double>{kNan}, 8));
+}
+
 TEST(MakeTicks, WidensARangeOfOnePoint) {
   const Ticks ticks = make_ticks({3.0, 3.0}, 6);
   ASSERT_GE(ticks.positions.size(), 2U);

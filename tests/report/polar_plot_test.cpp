@@ -4,9 +4,11 @@
 
 #include <cmath>
 #include <limits>
+#include <random>
 #include <set>
 #include <stdexcept>
 
+#include "report/label_layout.h"
 #include "report/results/result_plots.h"
 #include "studies/photometry/photometry.h"
 
@@ -67,6 +69,43 @@ TEST(PolarPlot, DrawsContourLinesOnLinearScales) {
   EXPECT_GT(paths_of(PolarScale::difference), paths_of(PolarScale::decades));
 }
 
+TEST(PolarPlot, LabelsOfMarksDoNotOverlap) {
+  std::mt19937 random(5);
+  for (int run = 0; run < 40; ++run) {
+    PolarPanel panel = sample().panels[0];
+    panel.marks.clear();
+    // Directions within a small cone, so that labels next to their marks would overlap.
+    std::uniform_real_distribution<double> direction(-0.15, 0.15);
+    for (int k = 0; k < 3 + run % 12; ++k)
+      panel.marks.push_back({direction(random), direction(random), "12345 mcd/lx", PolarMark::Kind::fails});
+    const std::vector<LabelBox> boxes = mark_label_boxes(panel);
+    ASSERT_EQ(boxes.size(), panel.marks.size());
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      EXPECT_GT(boxes[i].size.width, 20.0);
+      EXPECT_LT(std::abs(boxes[i].corner.x + 0.5 * boxes[i].size.width), 150.0) << "inside of the cell";
+      for (std::size_t j = i + 1; j < boxes.size(); ++j) EXPECT_FALSE(boxes[i].overlaps(boxes[j])) << run;
+      for (const PolarMark& mark : panel.marks) {
+        const double per_deg = 125.0 / panel.radius_deg;
+        const LabelBox centre{{per_deg * mark.right_deg - 1.0, -per_deg * mark.up_deg - 1.0}, {2.0, 2.0}};
+        EXPECT_FALSE(boxes[i].overlaps(centre)) << "a label covers a mark";
+      }
+    }
+  }
+}
+
+TEST(PolarPlot, ALabelWithRoomIsNextToItsMark) {
+  const std::vector<PlacedLabel> labels =
+      place_labels({{{0.0, 0.0}, 3.0, {40.0, 12.0}}, {{0.0, 50.0}, 3.0, {40.0, 12.0}}}, {}, {{-100, -100}, {200, 200}});
+  for (const PlacedLabel& label : labels) {
+    EXPECT_FALSE(label.has_leader);
+    EXPECT_GT(label.box.corner.x, 3.0);
+  }
+  // Without room inside the bounds, labels are outside of them and have lines to their marks.
+  const std::vector<PlacedLabel> outside =
+      place_labels({{{0.0, 0.0}, 3.0, {40.0, 12.0}}, {{0.0, 0.0}, 3.0, {40.0, 12.0}}}, {}, {{-5, -5}, {10, 10}});
+  EXPECT_FALSE(outside[0].box.overlaps(outside[1].box));
+}
+
 TEST(PhotometryPlot, MarksTheTestPointsOfEachDirection) {
   studies::PhotometryResult result;
   result.design.title = "Cubes";
@@ -93,8 +132,9 @@ TEST(PhotometryPlot, MarksTheTestPointsOfEachDirection) {
   const LinePlot curves = observation_plot(result);
   ASSERT_EQ(curves.series.size(), 1U);
   EXPECT_EQ(curves.series[0].label, "entrance angle β = 20°");
-  EXPECT_DOUBLE_EQ(curves.series[0].y[0], 3.0);
-  EXPECT_FALSE(std::isfinite(curves.series[0].y[1]));
+  EXPECT_TRUE(curves.y_is_logarithmic);
+  EXPECT_EQ(curves.series[0].y, (std::vector<double>{1000.0, 0.0}));
+  EXPECT_FALSE(render_svg(curves).empty());
 }
 
 }  // namespace

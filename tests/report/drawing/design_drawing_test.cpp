@@ -2,12 +2,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <set>
 
+#include "core/error.h"
 #include "design/design_part.h"
 #include "design/io/design_reader.h"
+#include "design/part_of_design.h"
 #include "geometry/elements/facet_planes.h"
 #include "report/drawing/design_sheets.h"
 #include "report/drawing/svg_sheet.h"
@@ -320,6 +323,48 @@ TEST(DesignSheets, AreLegible) {
       }
     }
     EXPECT_EQ(report::plan_svg(d.drawing), report::plan_svg(drawn(text).drawing));
+  }
+}
+
+/// Zones have numbers, colours and a legend, and the faces of each zone have its area.
+TEST(DesignSheets, ZonesAreNumberedAndColoured) {
+  const std::string base = cubes("hexagonal_icc", "x_length_mm = 24\ny_length_mm = 12\n");
+  for (const std::string& zones :
+       {"[[zone]]\narea_fraction = 0.25\n[[zone]]\narea_fraction = 0.75\nrotation_deg = 180\n",
+        "[[zone]]\nrows = [1]\nevery = 2\n[[zone]]\nrest = true\nrotation_deg = 180\n"}) {
+    design::Design design;
+    try {
+      design = design::parse_design(base + zones, "d.toml");
+    } catch (const InputError&) {
+      ADD_FAILURE() << zones;
+      continue;
+    }
+    const Part part = design::part_of_design(design, nullptr);
+    const DesignDrawing drawing = draw_design(design, part);
+    const PlanPanel& panel = drawing.plan.front();
+    ASSERT_EQ(panel.zones.size(), 2U);
+    std::array<double, 2> areas{};
+    for (const PlanFace& face : panel.view.faces) {
+      ASSERT_TRUE(face.zone);
+      areas[*face.zone] += area(face.outline_mm);
+    }
+    for (std::size_t k = 0; k < 2; ++k) {
+      EXPECT_NEAR(areas[k], part.zones[k].area_mm2, 1e-6 * areas[k]);
+      EXPECT_EQ(panel.zones[k].labels_mm.size(), 1U);
+    }
+    const std::string svg = report::plan_svg(drawing);
+    const std::multiset<std::string> texts = texts_of(svg);
+    for (const char* number : {"1", "2"}) EXPECT_EQ(texts.count(number), 1U);
+    std::size_t swatches = 0;
+    std::set<std::string> colours;
+    for (const SvgElement& e : svg_elements(svg)) {
+      if (e.name != "path") continue;
+      const std::string& style = e.attributes.at("class");
+      if (style.starts_with("zone swatch")) ++swatches;
+      if (const auto at = style.find("zone z"); at != std::string::npos) colours.insert(style.substr(at));
+    }
+    EXPECT_EQ(swatches, 2U);
+    EXPECT_EQ(colours, (std::set<std::string>{"zone z0", "zone z1"}));
   }
 }
 

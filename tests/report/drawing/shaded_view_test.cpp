@@ -117,6 +117,19 @@ TEST(ShadedView, PartsOfManyPiecesHaveNoHoles) {
   EXPECT_NEAR(covered_mm2(seen), 12.1 * 10.3, 2e-3 * 12.1 * 10.3);
 }
 
+/// A curved entrance face closes the part: from above and from the side, no background is visible.
+TEST(ShadedView, CurvedEntrancesHaveNoHoles) {
+  const Part part = build_part(finite(RtpElement{1.0, 1.0}, Arrangement::aligned, 6.0, 4.0, 1.0));
+  const auto height = [](const Vec2& p) { return 1.0 + 0.2 * std::sin(p.x()) * std::cos(2.0 * p.y()); };
+  const studies::DesignView view = studies::view_of(part, height);
+  EXPECT_TRUE(view.has_curved_entrance);
+  const ShadedView above = shaded_view(view.mesh, {}, {Vec3::UnitZ(), Vec3::UnitY()}, 300, 300);
+  EXPECT_NEAR(covered_mm2(above), 24.0, 2e-3 * 24.0);
+  double highest = 0.0;
+  for (const Vec3& v : view.mesh.vertices) highest = std::max(highest, v.z());
+  EXPECT_NEAR(highest, 1.2, 1e-3);
+}
+
 struct PngSource {
   const std::string* bytes;
   std::size_t at = 0;
