@@ -28,7 +28,7 @@ class Equality(unittest.TestCase):
 
     def test_rre_by_rays(self):
         self.walk(
-            program.designs(),
+            program.some_designs(0),
             lambda file: program.document(
                 "rre",
                 file,
@@ -41,7 +41,7 @@ class Equality(unittest.TestCase):
             lambda file: program.answer(
                 rt.rre, file, incidence_deg=[-20, 0, 35.5], azimuth_deg=[0, 30], **RAYS, seed=3
             ),
-            least=20,
+            least=program.least(20),
         )
 
     def test_rre_as_it_chooses(self):
@@ -95,7 +95,7 @@ class Equality(unittest.TestCase):
         self.assertEqual(program.answer(rt.rre, rt.Design.load(file).replace(changes)), of_program)
 
     def test_footprint(self):
-        file = program.example("honeycomb_infinite.toml")
+        file = program.example("rtp_single_0p45mm.toml")
         with tempfile.TemporaryDirectory() as folder:
             code, _, err = program.run(
                 "rre", file, "--incidence=0,10", "--footprint", "--out", folder
@@ -163,9 +163,10 @@ class Equality(unittest.TestCase):
                     rt.export_material,
                     file,
                     file_of_program,
-                    entrance_deg=2,
-                    window_deg=0.2,
+                    entrance_deg=1,
+                    window_deg=0.1,
                     max_directions=64,
+                    error=0.2,
                 )
                 return (*found, self.content(file_of_program))
 
@@ -174,9 +175,10 @@ class Equality(unittest.TestCase):
                     "export",
                     file,
                     file_of_program,
-                    "--entrance-deg=2",
-                    "--window-deg=0.2",
+                    "--entrance-deg=1",
+                    "--window-deg=0.1",
                     "--max-directions=64",
+                    "--error=0.2",
                 )
                 return (*found, self.content(file_of_program))
 

@@ -2,6 +2,7 @@
 
 import json
 import os
+import pathlib
 import subprocess
 import sys
 import tempfile
@@ -23,46 +24,47 @@ class Notebooks(unittest.TestCase):
                 )
 
     def test_they_run(self):
-        for notebook in NOTEBOOKS:
-            with self.subTest(notebook=notebook.name), tempfile.TemporaryDirectory() as folder:
-                # The files of the kernel are also written to this folder.
-                environment = {
-                    **os.environ,
-                    "HOME": folder,
-                    "JUPYTER_RUNTIME_DIR": folder,
-                    "IPYTHONDIR": folder,
-                    "PYDEVD_DISABLE_FILE_VALIDATION": "1",
-                }
-                ended = subprocess.run(
-                    [
-                        sys.executable,
-                        "-m",
-                        "nbconvert",
-                        "--to",
-                        "notebook",
-                        "--execute",
-                        "--output-dir",
-                        folder,
-                        "--ExecutePreprocessor.timeout=300",
-                        str(notebook),
-                    ],
-                    capture_output=True,
-                    text=True,
-                    env=environment,
-                    cwd=notebook.parent,
-                    timeout=600,
-                )
-                self.assertEqual(ended.returncode, 0, ended.stderr[-3000:])
-                with open(os.path.join(folder, notebook.name), encoding="utf-8") as stream:
-                    cells = json.load(stream)["cells"]
-                drawn = [
-                    output
-                    for cell in cells
-                    for output in cell.get("outputs", ())
-                    if "image/svg+xml" in output.get("data", ())
-                    or "text/html" in output.get("data", ())
-                ]
-                self.assertGreaterEqual(len(drawn), 2)
+        # One process executes all notebooks, because it takes a second to start.
+        with tempfile.TemporaryDirectory() as folder:
+            # The files of the kernel are also written to this folder.
+            environment = {
+                **os.environ,
+                "HOME": folder,
+                "JUPYTER_RUNTIME_DIR": folder,
+                "IPYTHONDIR": folder,
+                "PYDEVD_DISABLE_FILE_VALIDATION": "1",
+            }
+            ended = subprocess.run(
+                [
+                    sys.executable,
+                    "-m",
+                    "nbconvert",
+                    "--to",
+                    "notebook",
+                    "--execute",
+                    "--output-dir",
+                    folder,
+                    "--ExecutePreprocessor.timeout=300",
+                    *map(str, NOTEBOOKS),
+                ],
+                capture_output=True,
+                text=True,
+                env=environment,
+                cwd=NOTEBOOKS[0].parent,
+                timeout=1000,
+            )
+            self.assertEqual(ended.returncode, 0, ended.stderr[-3000:])
+            for notebook in NOTEBOOKS:
+                with self.subTest(notebook=notebook.name):
+                    text = pathlib.Path(folder, notebook.name).read_text(encoding="utf-8")
+                    drawn = [
+                        output
+                        for cell in json.loads(text)["cells"]
+                        for output in cell.get("outputs", ())
+                        if "image/svg+xml" in output.get("data", ())
+                        or "text/html" in output.get("data", ())
+                    ]
+                    self.assertGreaterEqual(len(drawn), 2)
 
 
 if __name__ == "__main__":

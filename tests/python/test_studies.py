@@ -76,12 +76,12 @@ class Equality(unittest.TestCase):
             "--angle-pixels=11",
         ]
         answers = 0
-        for file in program.designs():
+        for file in program.some_designs(1):
             with self.subTest(file=os.path.relpath(file, program.EXAMPLES)):
                 expected = program.document("image", file, *options)
                 self.assertEqual(program.answer(rt.image.detector, file, **small), expected)
                 answers += expected[0] is not None
-        self.assertGreaterEqual(answers, 15)
+        self.assertGreaterEqual(answers, program.least(15))
         self.assertEqual(
             program.answer(
                 rt.image.camera,

@@ -50,7 +50,7 @@ WRONG = {
 
 
 def mypy(*arguments, folder):
-    """Runs mypy in a separate folder, so that it writes no cache next to the sources."""
+    """Runs mypy in `folder`, to which it also writes its cache."""
     return subprocess.run(
         [sys.executable, "-m", *arguments],
         capture_output=True,
@@ -62,33 +62,38 @@ def mypy(*arguments, folder):
 
 
 class Types(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        # All runs with the same options share one cache, because reading the stubs of numpy takes
+        # several seconds.
+        temporary = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(temporary.cleanup)
+        cls.folder = temporary.name
+
     def test_package(self):
-        with tempfile.TemporaryDirectory() as folder:
-            ended = mypy("mypy", "--strict", "-p", "retrace", folder=folder)
+        ended = mypy("mypy", "--strict", "-p", "retrace", folder=self.folder)
         self.assertEqual(ended.returncode, 0, ended.stdout)
 
     def test_stubs_are_of_what_is_there(self):
-        with tempfile.TemporaryDirectory() as folder:
-            ended = mypy(
-                "mypy.stubtest",
-                "--concise",
-                "--ignore-unused-allowlist",
-                "--allowlist",
-                ALLOWED,
-                "retrace",
-                folder=folder,
-            )
+        ended = mypy(
+            "mypy.stubtest",
+            "--concise",
+            "--ignore-unused-allowlist",
+            "--allowlist",
+            ALLOWED,
+            "retrace",
+            folder=self.folder,
+        )
         self.assertEqual(ended.returncode, 0, ended.stdout)
 
     def test_a_program(self):
-        with tempfile.TemporaryDirectory() as folder:
-            file = pathlib.Path(folder, "program.py")
-            file.write_text(PROGRAM, encoding="utf-8")
-            ended = mypy("mypy", "--strict", str(file), folder=folder)
-            self.assertEqual(ended.returncode, 0, ended.stdout)
-            wrong = pathlib.Path(folder, "wrong.py")
-            wrong.write_text("import retrace as rt\n" + "\n".join(WRONG) + "\n", encoding="utf-8")
-            said = mypy("mypy", str(wrong), folder=folder).stdout.splitlines()
+        file = pathlib.Path(self.folder, "program.py")
+        file.write_text(PROGRAM, encoding="utf-8")
+        ended = mypy("mypy", "--strict", str(file), folder=self.folder)
+        self.assertEqual(ended.returncode, 0, ended.stdout)
+        wrong = pathlib.Path(self.folder, "wrong.py")
+        wrong.write_text("import retrace as rt\n" + "\n".join(WRONG) + "\n", encoding="utf-8")
+        said = mypy("mypy", "--strict", str(wrong), folder=self.folder).stdout.splitlines()
         for number, word in enumerate(WRONG.values(), 2):
             with self.subTest(line=number):
                 self.assertTrue(
