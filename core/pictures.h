@@ -43,6 +43,8 @@ class PictureFiles {
   virtual ~PictureFiles() = default;
   virtual Size size(const std::filesystem::path& file) const = 0;
   virtual BytePicture read(const std::filesystem::path& file) const = 0;
+  /// Returns the values of all channels without conversion between colour spaces. `texts` and `numbers` are empty.
+  virtual FloatPicture read_floats(const std::filesystem::path& file) const = 0;
   /// Returns the content of an OpenEXR file with 32-bit floats and ZIP compression. The channels are in alphabetical
   /// order. Equal pictures give equal bytes.
   virtual std::string exr(const FloatPicture& picture) const = 0;

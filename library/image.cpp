@@ -52,11 +52,8 @@ ImageResult camera(const Design& design, const CameraRequest& request, const Run
   const auto found =
       run<studies::CameraStudy>(design, request, running, result, studies::camera_json, studies::camera_table);
   if (found->image.passes == 0) return result;
-  const auto png = [found] {
-    const raytrace::CameraImage& image = found->image;
-    return report::png_file(image.columns, image.rows, report::tone_mapped_pixels(image.luminance));
-  };
-  result.pictures = {picture_of("camera", report::luminance_picture(*found), drawing_of_text(png, false))};
+  result.pictures = {picture_of("camera", report::luminance_picture(*found),
+                                drawing_of_text([found] { return report::camera_png(*found); }, false))};
   return result;
 }
 

@@ -11,6 +11,8 @@ constexpr double kWhiteFraction = 0.999;
 // Luminance, as a fraction of the maximum, below which a pixel counts as dark. Dark pixels are not included in the
 // mean.
 constexpr double kDark = 1e-5;
+// Luminance in cd/m^2 that saturates a sensor at an exposure value of 0: 78 / (100 x 0.65) (ISO 12232).
+constexpr double kSaturation = 1.2;
 
 /// Returns the value below which the given fraction of all values is located.
 double percentile(std::vector<double> values, double share) {
@@ -33,11 +35,40 @@ std::array<double, 3> cubehelix(double fraction) {
   return {channel(-0.14861, 1.78277), channel(-0.29227, -0.90649), channel(1.97294, 0.0)};
 }
 
-std::vector<double> tone_mapped(const std::vector<double>& luminance, double key) {
-  std::vector<double> shown(luminance.size(), 0.0);
-  if (luminance.empty()) return shown;
+Tone tone_of(std::string_view name) {
+  if (name == "linear") return Tone::linear;
+  return name == "log" ? Tone::log : Tone::reinhard;
+}
+
+double ToneCurve::shown(double luminance) const {
+  if (!(luminance > 0.0)) return 0.0;
+  switch (tone) {
+    case Tone::linear: return std::min(1.0, luminance / white);
+    case Tone::log: {
+      const double encoded = std::clamp(1.0 + std::log10(luminance / white) / kToneDecades, 0.0, 1.0);
+      return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+    }
+    case Tone::reinhard: break;
+  }
+  const double scale = key / grey;
+  const double x = scale * luminance;
+  const double x_white = scale * white;
+  return std::min(1.0, x * (1.0 + x / (x_white * x_white)) / (1.0 + x));
+}
+
+double ToneCurve::ev100() const {
+  return std::log2(white / kSaturation);
+}
+
+ToneCurve tone_of_exposure(double ev100, Tone tone) {
+  return {tone, kSaturation * std::exp2(ev100), 0.125 * std::exp2(ev100)};
+}
+
+ToneCurve tone_of_picture(const std::vector<double>& luminance, Tone tone, double key) {
+  ToneCurve curve{tone, 1.0, 1.0, key};
+  if (luminance.empty()) return curve;
   const double brightest = *std::max_element(luminance.begin(), luminance.end());
-  if (!(brightest > 0.0)) return shown;
+  if (!(brightest > 0.0)) return curve;
   std::vector<double> lit;
   double logs = 0.0;
   for (const double value : luminance)
@@ -45,12 +76,16 @@ std::vector<double> tone_mapped(const std::vector<double>& luminance, double key
       lit.push_back(value);
       logs += std::log(value);
     }
-  const double scale = key / std::exp(logs / static_cast<double>(lit.size()));
-  const double white = scale * percentile(lit, kWhiteFraction);
-  for (std::size_t k = 0; k < luminance.size(); ++k) {
-    const double x = scale * luminance[k];
-    shown[k] = std::min(1.0, x * (1.0 + x / (white * white)) / (1.0 + x));
-  }
+  curve.grey = std::exp(logs / static_cast<double>(lit.size()));
+  curve.white = percentile(lit, kWhiteFraction);
+  return curve;
+}
+
+std::vector<double> tone_mapped(const std::vector<double>& luminance, double key) {
+  const ToneCurve curve = tone_of_picture(luminance, Tone::reinhard, key);
+  std::vector<double> shown;
+  shown.reserve(luminance.size());
+  for (const double value : luminance) shown.push_back(curve.shown(value));
   return shown;
 }
 

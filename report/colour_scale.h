@@ -3,6 +3,7 @@
 // Colours for values and luminances: the cubehelix scale, tone mapping for displays, and sRGB bytes.
 
 #include <array>
+#include <string_view>
 #include <vector>
 
 namespace retrace::report {
@@ -13,6 +14,36 @@ namespace retrace::report {
 /// \param fraction position on the scale, clamped to 0..1
 /// \return sRGB, each 0..1
 std::array<double, 3> cubehelix(double fraction);
+
+/// Curves by which luminances are displayed. `log` covers the four decades below white.
+enum class Tone { reinhard, linear, log };
+/// \pre `name` is "reinhard", "linear" or "log"
+Tone tone_of(std::string_view name);
+
+/// Number of decades that Tone::log shows.
+inline constexpr double kToneDecades = 4.0;
+
+/// Converts luminances to display intensities.
+struct ToneCurve {
+  Tone tone = Tone::reinhard;
+  double white = 1.0;  ///< luminance that is displayed as white; > 0
+  double grey = 0.1;   ///< luminance that Tone::reinhard maps to about the intensity `key`; > 0
+  double key = 0.18;
+
+  /// Returns a display intensity 0..1, linear. Tone::reinhard is the global operator of E. Reinhard et al., ACM Trans.
+  /// Graph. 21, 267 (2002), eq. 4.
+  double shown(double luminance) const;
+  /// Returns the exposure value at ISO 100, for which 1.2 x 2^EV cd/m^2 saturate a sensor (ISO 12232, saturation-based
+  /// speed with the lens factor 0.65).
+  double ev100() const;
+};
+
+/// Returns the curve for an exposure value at ISO 100. The luminance that an exposure meter with the constant 12.5
+/// regards as the mean of the scene, 2^EV / 8 cd/m^2 (ISO 2720), is the grey of Tone::reinhard.
+ToneCurve tone_of_exposure(double ev100, Tone tone);
+/// Returns the curve for which the 99.9th percentile of the pixels that are not dark is white. Their logarithmic mean
+/// is the grey of Tone::reinhard.
+ToneCurve tone_of_picture(const std::vector<double>& luminance, Tone tone, double key = 0.18);
 
 /// Converts luminances to display intensities with the global operator of E. Reinhard et al., ACM Trans. Graph. 21, 267
 /// (2002), eq. 4. The logarithmic mean of the pixels that are not dark is mapped to the intensity `key`. The 99.9th

@@ -83,6 +83,21 @@ struct CameraRequest {
   std::filesystem::path lamp = {};
   /// Downward tilt of the axis of a lamp from a file, in degrees; >= -45 and <= 45.
   double lamp_aim_deg = 0.0;
+  /// Light of the lamp and the surroundings: CIE illuminant a or d65, weighted by the luminous efficiency of the eye,
+  /// or design for the light in the design file.
+  std::string light = "a";
+  /// Dye of the part: none, red, amber (illustrative) or a file; none keeps the absorption in the design.
+  std::string dye = "none";
+  /// Add diffraction to the light of geometrical optics.
+  bool diffraction = true;
+  /// Exposure of the PNG file as an exposure value at ISO 100 (EV100); luminances of 1.2 x 2^EV cd/m2 are white; >= -30
+  /// and <= 40. Default: such that the brightest thousandth of the pixels is white.
+  std::optional<double> exposure_ev = {};
+  /// Tone curve of the PNG file: reinhard (adaptation of the eye), linear, or log (four decades).
+  std::string tone = "reinhard";
+  /// Picture behind the part in the PNG file: a photograph (PNG, JPEG; white is the white of the exposure), or OpenEXR
+  /// in cd/m2. Default: black.
+  std::filesystem::path background = {};
   /// Seed of the random numbers; a whole number >= 0 and <= 4294967295.
   std::uint32_t seed = 1;
 };

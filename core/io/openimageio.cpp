@@ -60,6 +60,21 @@ class OpenImageIo final : public PictureFiles {
     return picture;
   }
 
+  FloatPicture read_floats(const std::filesystem::path& file) const override {
+    const auto input = opened(file);
+    const OIIO::ImageSpec& spec = input->spec();
+    FloatPicture picture{static_cast<std::size_t>(spec.width), static_cast<std::size_t>(spec.height), {}, {}, {}};
+    const std::size_t pixels = picture.columns * picture.rows;
+    const auto channels = static_cast<std::size_t>(spec.nchannels);
+    std::vector<float> values(pixels * channels);
+    if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, values.data())) fail(input->geterror());
+    for (std::size_t c = 0; c < channels; ++c) {
+      auto& [name, channel] = picture.channels.emplace_back(spec.channel_name(static_cast<int>(c)), pixels);
+      for (std::size_t k = 0; k < pixels; ++k) channel[k] = static_cast<double>(values[k * channels + c]);
+    }
+    return picture;
+  }
+
   std::string exr(const FloatPicture& picture) const override {
     auto channels = picture.channels;
     std::sort(channels.begin(), channels.end(), [](const auto& a, const auto& b) { return a.first < b.first; });

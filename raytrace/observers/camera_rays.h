@@ -3,6 +3,7 @@
 // Internal parts of CameraTracer: the lens from which rays start, the intersection of rays with a film, and the lamp.
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -79,22 +80,27 @@ class Luminaire {
   /// discs of lamp and pupil.
   double luminance(const Vec3& from, const Vec3& direction) const {
     if (!(intensity_ > 0.0)) return 0.0;
-    return discs_ == DiscAverage::kernel ? averaged(from, direction) : luminance_of_disc(from, direction);
+    return discs_ == DiscAverage::kernel ? averaged(from, direction, {}) : luminance_of_disc(from, direction);
+  }
+
+  /// Returns the luminance as luminance() does, with the light spread by diffraction.
+  double blurred_luminance(const Vec3& from, const Vec3& direction, const DiffractionBlur& blur) const {
+    return intensity_ > 0.0 ? averaged(from, direction, blur) : 0.0;
   }
 
  private:
-  double averaged(const Vec3& from, const Vec3& direction) const {
+  double averaged(const Vec3& from, const Vec3& direction, const DiffractionBlur& blur) const {
     const Vec3 way = position_ - from;
     const double distance = way.norm();
     const double lamp_rad = radius_mm_ / distance;
     const double pupil_rad = pupil_radius_mm_ / (eye_ - from).norm();
     const double chord = (direction - way / distance).norm();
-    if (chord > 1.01 * (lamp_rad + pupil_rad)) return 0.0;
+    if (!(blur.tail_fraction > 0.0) && chord > 1.01 * (lamp_rad + pupil_rad)) return 0.0;
     const ApertureKernel kernel({Angle::from_rad(2.0 * lamp_rad), Angle::from_rad(2.0 * pupil_rad)});
     // The result is the illuminance at this point, times the probability density of this direction per steradian. The
     // density is that of the difference between the directions to a random point of the lamp's disc and to a random
     // point of the pupil's disc.
-    return intensity_ / (distance * distance) * kernel.per_sr(2.0 * std::asin(0.5 * chord));
+    return intensity_ / (distance * distance) * blur.per_sr(kernel, 2.0 * std::asin(std::min(1.0, 0.5 * chord)));
   }
 
   double luminance_of_disc(const Vec3& from, const Vec3& direction) const {

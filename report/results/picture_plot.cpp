@@ -3,15 +3,13 @@
 #include "core/number_format.h"
 #include "core/version.h"
 #include "design/io/design_json.h"
-#include "report/colour_scale.h"
 #include "report/results/result_plots.h"
-#include "studies/image/camera_study.h"
 #include "studies/image/detector_study.h"
 
 namespace retrace::report {
 namespace {
 
-using studies::CameraResult, studies::DetectorResult;
+using studies::DetectorResult;
 
 /// Reverses the order of the rows. Grids of directions begin with the lowest row, pictures with the top row.
 std::vector<double> turned_over(const std::vector<double>& values, std::size_t columns) {
@@ -117,56 +115,6 @@ FloatPicture angular_picture(const DetectorResult& result) {
                      {"retrace:azimuth_deg", result.request.azimuth_deg},
                      {"retrace:outside", result.maps.outside}};
   return picture;
-}
-
-FloatPicture luminance_picture(const CameraResult& result) {
-  const raytrace::CameraImage& image = result.image;
-  FloatPicture picture;
-  picture.columns = image.columns;
-  picture.rows = image.rows;
-  add_channel(picture, "Y", image.luminance);
-  std::vector<double> errors;
-  for (std::size_t k = 0; k < image.luminance.size() && image.passes > 1; ++k) errors.push_back(image.std_error(k));
-  add_channel(picture, "std_error", errors);
-  add_channel(picture, "coverage", image.coverage);
-  picture.texts = picture_texts("camera", result.design);
-  picture.texts.emplace_back("retrace:unit", "cd/m2");
-  picture.numbers = {{"retrace:width_mm", result.scene.view.width_mm},
-                     {"retrace:observation_deg", result.observation_deg},
-                     {"retrace:entrance_deg", result.entrance_deg},
-                     {"retrace:viewing_deg", result.viewing_deg},
-                     {"retrace:illuminance_lx", result.request.illuminance_lx},
-                     {"retrace:ambient_lx", result.request.ambient_lx},
-                     {"retrace:lamp_arcmin", result.request.lamp_arcmin},
-                     {"retrace:pupil_arcmin", result.request.pupil_arcmin},
-                     {"retrace:passes", result.image.passes}};
-  return picture;
-}
-
-std::vector<unsigned char> tone_mapped_pixels(const std::vector<double>& luminance) {
-  std::vector<unsigned char> rgb;
-  for (const double shown : tone_mapped(luminance)) rgb.insert(rgb.end(), 3, srgb_byte(shown));
-  return rgb;
-}
-
-ImagePlot false_colour_plot(const CameraResult& result) {
-  ImagePlot plot;
-  plot.title = design::short_name(result.design);
-  plot.remarks.push_back(fmt::format("{} lx, observation angle {}°, entrance angle {}°",
-                                     shortest(result.request.illuminance_lx), fixed_visible(result.observation_deg, 2),
-                                     fixed_visible(result.entrance_deg, 2)));
-  if (result.image.part_means.size() > 1)
-    plot.remarks.push_back(fmt::format("mean luminance of the part {} cd/m²", fixed(result.image.part_mean(), 3)));
-  ImagePanel panel{"Luminance",
-                   "luminance (cd/m²)",
-                   result.image.columns,
-                   result.image.rows,
-                   result.image.luminance,
-                   result.scene.view.width_mm,
-                   "mm"};
-  panel.is_logarithmic = true;
-  plot.panels.push_back(std::move(panel));
-  return plot;
 }
 
 }  // namespace retrace::report

@@ -3,11 +3,13 @@
 // Converts results to the content of plots. Other headers of report/, such as report/plot.h, draw this content.
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/pictures.h"
+#include "report/colour_scale.h"
 #include "report/image_plot.h"
 #include "report/map_plot.h"
 #include "report/mixture_plot.h"
@@ -114,9 +116,17 @@ FloatPicture irradiance_picture(const studies::DetectorResult& result);
 FloatPicture angular_picture(const studies::DetectorResult& result);
 /// Returns a picture with the channels Y (cd/m^2), `std_error` and `coverage`.
 FloatPicture luminance_picture(const studies::CameraResult& result);
-/// Returns the luminance, tone-mapped to approximate its visual appearance, with three bytes per pixel (red, green,
-/// blue).
-std::vector<unsigned char> tone_mapped_pixels(const std::vector<double>& luminance);
+/// Returns the curve by which pictures of the same series are displayed. It follows from the request of the first
+/// result and, without an exposure, from the luminances of all results.
+/// \pre there is at least one result
+ToneCurve camera_tone(std::span<const studies::CameraResult> results);
+/// Returns a PNG file with the picture as it is displayed, and a caption with the geometry and the exposure. With
+/// Tone::linear and Tone::log, a bar below the picture shows the displayed luminances.
+/// \throw OutputError if the picture cannot be drawn
+std::string camera_png(const studies::CameraResult& result, const ToneCurve& tone);
+std::string camera_png(const studies::CameraResult& result);
+/// Returns a PNG file with several pictures, displayed with the same curve. Throws like camera_png().
+std::string camera_sheet_png(std::span<const studies::CameraResult> results, const ToneCurve& tone);
 /// Returns a plot of the luminance with a logarithmic colour scale.
 ImagePlot false_colour_plot(const studies::CameraResult& result);
 

@@ -34,6 +34,9 @@ inline constexpr schema::Condition kIsByRays[] = {schema::is("engine", kRayEngin
 inline constexpr Need kNeedExact[] = {kIsExact};
 inline constexpr Need kNeedRays[] = {kIsByRays};
 
+/// Names of the light of photometric computations.
+inline constexpr std::string_view kPhotometricLights[] = {"a", "d65", "design"};
+
 /// Names of the dyes that are shipped with the program. The name "none" means no dye.
 inline constexpr std::string_view kDyes[] = {"none", "red", "amber"};
 inline constexpr WordOrFile kDye{kDyes, ".csv", "none, red, amber or a file"};

@@ -11,6 +11,7 @@ namespace {
 
 using schema::access, schema::access_by;
 
+constexpr std::string_view kTones[] = {"reinhard", "linear", "log"};
 constexpr NumberRange kLampAim{.low = -45.0, .high = 45.0};
 constexpr double kMaxPictureSide = 16384.0;
 constexpr std::size_t kMaxPixels = std::size_t{1} << 26U;
@@ -187,6 +188,39 @@ constexpr Row kCameraRows[] = {
      access<&CameraRequest::lamp_aim_deg>,
      {.value = "D"},
      kNeedLampFile},
+    {"light",
+     Word{kPhotometricLights},
+     "light of the lamp and the surroundings: CIE illuminant a or d65, weighted by the luminous efficiency of the eye, "
+     "or design for the light in the design file",
+     access<&CameraRequest::light>,
+     {.value = "LIGHT"}},
+    {"dye",
+     kDye,
+     "dye of the part: none, red, amber (illustrative) or a file; none keeps the absorption in the design",
+     access<&CameraRequest::dye>,
+     {.value = "NAME|FILE"}},
+    {"diffraction",
+     Flag{},
+     "add diffraction to the light of geometrical optics",
+     access<&CameraRequest::diffraction>,
+     {.notation = Notation::absent}},
+    {"exposure_ev",
+     Number{{.low = -30.0, .high = 40.0}},
+     "exposure of the PNG file as an exposure value at ISO 100 (EV100); luminances of 1.2 x 2^EV cd/m2 are white",
+     access<&CameraRequest::exposure_ev>,
+     {.value = "EV", .otherwise = "such that the brightest thousandth of the pixels is white"}},
+    {"tone",
+     Word{kTones},
+     "tone curve of the PNG file: reinhard (adaptation of the eye), linear, or log (four decades)",
+     access<&CameraRequest::tone>,
+     {.value = "CURVE"}},
+    {"background",
+     File{"a picture"},
+     "picture behind the part in the PNG file: a photograph (PNG, JPEG; white is the white of the exposure), or "
+     "OpenEXR "
+     "in cd/m2",
+     access<&CameraRequest::background>,
+     {.value = "FILE", .otherwise = "black"}},
     seed_row<CameraRequest>()};
 
 void check_road(const void* object) {

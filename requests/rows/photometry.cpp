@@ -11,7 +11,6 @@ namespace {
 using schema::access;
 
 constexpr std::string_view kStandards[] = {"r150", "j594", "bicycle", "d4956", "iso20471", "stvzvo"};
-constexpr std::string_view kPhotometricLights[] = {"a", "d65", "design"};
 constexpr NumberRange kApertureArcmin{.low = 0.0, .high = 300.0};
 
 void check_photometry(const void* object) {

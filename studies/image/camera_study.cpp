@@ -12,11 +12,16 @@
 #include <string_view>
 
 #include "core/error.h"
+#include "core/named_file.h"
 #include "core/number_format.h"
+#include "core/task_progress.h"
 #include "design/engine_facts.h"
+#include "materials/io/spectrum_reader.h"
 #include "raytrace/observers/photometric_geometry.h"
 #include "requests/descriptions.h"
+#include "studies/image/io/background_reader.h"
 #include "studies/image/io/lamp_reader.h"
+#include "studies/photometry/io/standard_reader.h"
 
 namespace retrace::studies {
 namespace {
@@ -25,6 +30,18 @@ using geometry::Vec2, geometry::Vec3;
 
 // Ratio of the width that the picture shows to the width of the part.
 constexpr double kMargin = 1.15;
+// Number of spans of the spectrum for the light of the lamp, with two wavelengths each.
+constexpr std::size_t kSpans = 2;
+// Number of spans for the light of the surroundings in coloured parts. The paths of this light have different lengths,
+// so that no small number of wavelengths represents all of them.
+constexpr std::size_t kSpansOfSurroundings = 12;
+// Range of the half angle around the lamp in which the returned light is diffracted, in degrees.
+constexpr double kMinWindow_deg = 2.0, kMaxWindow_deg = 10.0;
+// Minimum R_L in cd/(lx m^2) at which the eye is regarded as reached by retroreflected light. A white matt surface has
+// 0.32.
+constexpr double kMinRetroreflected = 1e-3;
+// Part of the progress that the computation of the returned light takes.
+constexpr double kProgressOfLight = 0.3;
 
 std::array<double, 2> film_of(const CameraRequest& r) {
   return r.film_mm.value_or(kDefaultFilmMm);
@@ -130,6 +147,37 @@ double angle_deg(const Vec3& a, const Vec3& b) {
   return Angle::from_rad(std::atan2(a.cross(b).norm(), a.dot(b))).deg();
 }
 
+/// Returns the design with the requested dye.
+design::Design with_dye(design::Design design, const CameraRequest& r) {
+  const std::filesystem::path file = dye_file_of(r.dye, false, {});
+  if (file.empty()) return design;
+  const materials::SpectralCurve curve =
+      read_named(Field{"dye"}, [&] { return materials::read_spectral_absorption(file); });
+  std::vector<design::SpectralAbsorption> absorption;
+  for (std::size_t k = 0; k < curve.values.size(); ++k)
+    absorption.push_back({curve.wavelengths_nm[k], curve.values[k]});
+  design.substance.absorption_per_mm = std::move(absorption);
+  return design;
+}
+
+PhotometrySettings photometry_of(const CameraRequest& r, const raytrace::CameraScene& scene) {
+  PhotometrySettings settings;
+  settings.area_cm2 = 1.0;
+  settings.apertures = {scene.lamp.diameter, scene.view.pupil};
+  const double observation_deg =
+      Angle::from_rad(std::acos(std::clamp((scene.view.eye_mm - scene.view.target_mm)
+                                               .normalized()
+                                               .dot((scene.lamp.position_mm - scene.view.target_mm).normalized()),
+                                           -1.0, 1.0)))
+          .deg();
+  settings.window_deg = std::clamp(observation_deg + 1.0, kMinWindow_deg, kMaxWindow_deg);
+  settings.light = light_from_name(r.light);
+  settings.dye = r.dye;
+  settings.diffraction = r.diffraction;
+  settings.seed = r.seed;
+  return settings;
+}
+
 bool is_unpolarised(const raytrace::Stokes& s) {
   return s.q == 0.0 && s.u == 0.0 && s.v == 0.0;
 }
@@ -148,13 +196,22 @@ CameraStudy::CameraStudy(design::Design design, CameraRequest request, raytrace:
                      "camera images do not support entrance faces that scatter light: use retrace rre, photometry or "
                      "image --detector");
   check_film(request_, design_.is_infinite());
-  model_ = design::make_model(design_, materials::MaterialLibrary::shipped());
+  dyed_ = with_dye(design_, request_);
+  model_ = design::make_model(dyed_, materials::MaterialLibrary::shipped());
   scene_ = scene_of(request_, lamp_, model_.part);
   scene_.discs = discs;
   check_place(model_.part, scene_, scene_.view.eye_mm, {request_.eye_mm ? "eye_mm" : "observation_deg"}, "camera");
   check_place(model_.part, scene_, scene_.lamp.position_mm, {request_.lamp_mm ? "lamp_mm" : "v_deg"}, "lamp");
   const Vec3 view = (scene_.view.target_mm - scene_.view.eye_mm).normalized();
   if (view.cross(scene_.view.up).norm() < 1e-6) scene_.view.up = view.unitOrthogonal();
+  if (!request_.background.empty())
+    background_ = std::make_shared<const Background>(read_background(request_.background, Field{"background"}));
+  using enum PhotometricResponse;
+  const PhotometrySettings photometry = photometry_of(request_, scene_);
+  const bool has_colours = dyed_.substance.is_coloured() && photometry.light != PhotometricLight::of_design;
+  for (const PhotometricResponse response : {y_bar, x_bar, z_bar})
+    if (response == y_bar || has_colours)
+      lights_.push_back(std::make_shared<const CameraLight>(dyed_, photometry, kSpans, response));
 }
 
 namespace {
@@ -168,14 +225,17 @@ double passes_needed(const raytrace::CameraImage& image, const CameraRequest& re
 /// Adds the passes of a picture in ascending order of their numbers, even if they are finished in another order.
 class PassLedger : public TaskLedger {
  public:
-  PassLedger(const CameraRequest& request, raytrace::CameraImage& image, Progress* progress,
-             const std::function<void(const raytrace::CameraImage&)>& after_pass)
+  /// \param images receive the passes; the noise of the first one is compared with the request
+  PassLedger(const CameraRequest& request, std::vector<raytrace::CameraImage>& images, Progress* progress,
+             const std::function<void()>& after_pass)
       : request_(request),
-        image_(image),
+        images_(images),
+        image_(images.front()),
         progress_(progress),
         after_pass_(after_pass),
         goal_(request.passes.value_or(CameraStudy::kMaxPasses)),
-        max_ahead_(std::max(kFewestAhead, kBytesAhead / (image.luminance.size() * 2 * sizeof(double)))) {}
+        max_ahead_(
+            std::max(kFewestAhead, kBytesAhead / (images.size() * image_.luminance.size() * 2 * sizeof(double)))) {}
 
   std::optional<std::uint64_t> take() override {
     if (is_finished_) return std::nullopt;
@@ -195,8 +255,13 @@ class PassLedger : public TaskLedger {
   bool is_finished() override { return is_finished_; }
 
   void add(const std::vector<double>& pass) {
-    image_.add(pass);
-    if (after_pass_) after_pass_(image_);
+    const auto length = static_cast<std::ptrdiff_t>(pass.size() / images_.size());
+    auto begin = pass.begin();
+    for (raytrace::CameraImage& image : images_) {
+      image.add({begin, begin + length});
+      begin += length;
+    }
+    if (after_pass_) after_pass_();
     double share = static_cast<double>(image_.passes) / goal_;
     is_finished_ = image_.passes == goal_;
     if (!request_.passes) {
@@ -215,9 +280,10 @@ class PassLedger : public TaskLedger {
   static constexpr std::size_t kBytesAhead = std::size_t{1} << 30U;
 
   const CameraRequest& request_;
+  std::vector<raytrace::CameraImage>& images_;
   raytrace::CameraImage& image_;
   Progress* progress_;
-  const std::function<void(const raytrace::CameraImage&)>& after_pass_;
+  const std::function<void()>& after_pass_;
   std::uint32_t goal_;
   std::size_t max_ahead_;  ///< maximum number of passes that are traced before an earlier one is finished
   std::uint64_t next_ = 0;
@@ -227,53 +293,184 @@ class PassLedger : public TaskLedger {
   bool is_finished_ = false;
 };
 
-ComputeTask passes_by(const std::shared_ptr<const raytrace::CameraTracer>& tracer) {
-  return [tracer](std::uint64_t number, const Cancellation* cancel) -> std::optional<std::string> {
-    const auto pass = tracer->pass(static_cast<std::uint32_t>(number), cancel);
-    return pass ? std::optional(bytes_of(*pass)) : std::nullopt;
-  };
+}  // namespace
+
+std::array<double, 3> CameraColours::rgb(double y, std::size_t pixel) const {
+  // Bradford's matrix from XYZ to cone responses, and the matrix from XYZ to linear sRGB.
+  const Eigen::Matrix3d cones{{0.8951, 0.2664, -0.1614}, {-0.7502, 1.7135, 0.0367}, {0.0389, -0.0685, 1.0296}};
+  const Eigen::Matrix3d rgb_of_xyz{
+      {3.2404542, -1.5371385, -0.4985314}, {-0.9692660, 1.8760108, 0.0415560}, {0.0556434, -0.2040259, 1.0572252}};
+  const Vec3 d65(0.95047, 1.0, 1.08883);
+  const Vec3 white(lamp[0], lamp[1], lamp[2]);
+  const Vec3 xyz(x[pixel] * lamp[0], y * lamp[1], z[pixel] * lamp[2]);
+  const Vec3 scale = (cones * d65).cwiseQuotient(cones * white);
+  const Vec3 rgb = rgb_of_xyz * cones.inverse() * scale.asDiagonal() * cones * xyz;
+  return {rgb[0], rgb[1], rgb[2]};
+}
+
+/// Tracers of all layers of a picture. The picture of a response is the sum of one or two layers: the light of the
+/// lamp, and that of the surroundings if the part is coloured.
+struct CameraStudy::Tracers {
+  /// Tracers of the responses y, x and z, and then those of the surroundings for the same responses.
+  std::vector<std::unique_ptr<const raytrace::CameraTracer>> layers;
+  std::size_t responses = 1;  ///< number of responses: 1 or 3
+  std::optional<NoDiffraction> no_diffraction;
+  std::optional<double> r_a;
+
+  /// Traces a pass of each response. Returns the passes one after the other, or nothing if tracing was cancelled.
+  std::optional<std::vector<double>> pass(std::uint32_t number, const Cancellation* cancel) const {
+    std::vector<double> all;
+    for (std::size_t k = 0; k < responses; ++k) {
+      std::optional<raytrace::CameraPass> sum = layers[k]->pass(number, cancel);
+      if (!sum) return std::nullopt;
+      if (layers.size() > responses) {
+        const std::optional<raytrace::CameraPass> more = layers[responses + k]->pass(number, cancel);
+        if (!more) return std::nullopt;
+        const std::size_t pixels = sum->size() / 2;
+        for (std::size_t pixel = 0; pixel < pixels; ++pixel) (*sum)[pixel] += (*more)[pixel];
+        sum->back() += more->back();
+      }
+      all.insert(all.end(), sum->begin(), sum->end());
+    }
+    return all;
+  }
+};
+
+namespace {
+
+/// Returns the optics at wavelengths that represent the light of the surroundings for one response.
+std::vector<raytrace::WeightedOptics> optics_of_surroundings(const design::Design& design, PhotometricLight light,
+                                                             PhotometricResponse response,
+                                                             const design::OpticalModel& model) {
+  const materials::SpectralCurve seen = materials::shipped_colour_matching()[static_cast<std::size_t>(response)];
+  const materials::Spectrum spectrum =
+      materials::traced_spectrum(materials::resolved_spectrum(lamp_power(light), &seen), kSpansOfSurroundings);
+  Warnings ignored;
+  const materials::MaterialLibrary library = materials::MaterialLibrary::shipped();
+  const design::OpticsOfDesign optics(design, library, ignored);
+  std::vector<raytrace::WeightedOptics> all;
+  for (std::size_t k = 0; k < spectrum.size(); ++k)
+    all.push_back({optics.at(spectrum.wavelengths_nm[k], model.wet_elements), spectrum.weights[k]});
+  return all;
 }
 
 }  // namespace
 
-std::shared_ptr<const raytrace::CameraTracer> CameraStudy::tracer() const {
-  std::vector<raytrace::WeightedOptics> light;
-  for (const design::SpectralOptics& at : model_.spectral) light.push_back({at.optics, at.weight});
-  const bool by_cells = !raytrace::obstacle_for(raytrace::Engine::cell, design::engine_facts(design_, &model_.optics));
-  return std::make_shared<const raytrace::CameraTracer>(
-      model_.part, light, scene_, raytrace::kCameraPolicy, request_.seed,
-      by_cells ? raytrace::CameraEngine::fastest : raytrace::CameraEngine::embree);
+std::shared_ptr<const CameraStudy::Tracers> CameraStudy::tracers(Progress* progress, const Cancellation* cancel) const {
+  const auto tracers = std::make_shared<Tracers>();
+  const bool by_cells = !raytrace::obstacle_for(raytrace::Engine::cell, design::engine_facts(dyed_, &model_.optics));
+  const auto add = [&](const std::vector<raytrace::WeightedOptics>& optics, const raytrace::CameraScene& scene,
+                       std::uint32_t seed) {
+    tracers->layers.push_back(std::make_unique<const raytrace::CameraTracer>(
+        model_.part, optics, scene, raytrace::kCameraPolicy, seed,
+        by_cells ? raytrace::CameraEngine::fastest : raytrace::CameraEngine::embree));
+  };
+  tracers->responses = lights_.size();
+  const bool has_surroundings = scene_.surroundings.entrance_side > 0.0 || scene_.surroundings.back_side > 0.0;
+  const bool is_separate = lights_.size() > 1 && has_surroundings;
+  const bool is_by_kernel = scene_.discs == raytrace::DiscAverage::kernel;
+  for (std::size_t k = 0; k < lights_.size(); ++k) {
+    const CameraLight& light = *lights_[k];
+    const auto count = static_cast<double>(lights_.size());
+    PartProgress part(progress, static_cast<double>(k) / count, static_cast<double>(k + 1) / count);
+    CameraLight::Returned returned;
+    returned.light = light.geometric();
+    if (!light.has_diffraction()) {
+      tracers->no_diffraction = light.photometer().why_undiffracted();
+    } else if (is_by_kernel && !tracers->no_diffraction) {
+      try {
+        returned = light.returned(model_.part, scene_, &part, cancel);
+      } catch (const BudgetError&) {
+        tracers->no_diffraction = Undiffracted::too_many_beams;
+      }
+    }
+    if (returned.cancelled) return nullptr;
+    if (returned.is_incomplete) tracers->no_diffraction = Undiffracted::unequal_cells;
+    if (k == 0) tracers->r_a = returned.r_a;
+    raytrace::CameraScene scene = scene_;
+    scene.returned = returned.light;
+    if (is_separate) scene.surroundings = {};
+    add(light.optics(), scene, request_.seed);
+  }
+  if (!is_separate) return tracers;
+  raytrace::CameraScene scene = scene_;
+  scene.lamp.illuminance_lx = 0.0;
+  using enum PhotometricResponse;
+  for (const PhotometricResponse response : {y_bar, x_bar, z_bar})
+    add(optics_of_surroundings(dyed_, light_from_name(request_.light), response, model_), scene, ~request_.seed);
+  return tracers;
 }
 
 ComputeTask CameraStudy::passes() const {
-  return passes_by(tracer());
+  const std::shared_ptr<const Tracers> tracers = this->tracers(nullptr, nullptr);
+  return [tracers](std::uint64_t number, const Cancellation* cancel) -> std::optional<std::string> {
+    const auto pass = tracers->pass(static_cast<std::uint32_t>(number), cancel);
+    return pass ? std::optional(bytes_of(*pass)) : std::nullopt;
+  };
 }
 
 CameraResult CameraStudy::run(Progress* progress, const Cancellation* cancel,
-                              const std::function<void(const raytrace::CameraImage&)>& after_pass,
+                              const std::function<void(const CameraResult&)>& after_pass,
                               const DistributeTasks& distribute) const {
   const auto start = std::chrono::steady_clock::now();
-  const std::shared_ptr<const raytrace::CameraTracer> tracing = tracer();
   CameraResult result;
   result.design = design_;
   result.request = request_;
   result.lamp = lamp_;
   result.scene = scene_;
+  result.background = background_;
   result.warnings = model_.warnings;
   const Vec3 to_eye = scene_.view.eye_mm - scene_.view.target_mm;
   const Vec3 to_lamp = scene_.lamp.position_mm - scene_.view.target_mm;
   result.observation_deg = angle_deg(to_eye, to_lamp);
   result.entrance_deg = angle_deg(to_lamp, Vec3::UnitZ());
   result.viewing_deg = angle_deg(to_eye, Vec3::UnitZ());
-  result.engine = tracing->is_by_cells() ? "cell" : "embree";
-  result.image = tracing->empty_image();
-  PassLedger ledger(request_, result.image, progress, after_pass);
-  if (distribute) distribute(passes_by(tracing), ledger);
+  PartProgress of_light(progress, 0.0, kProgressOfLight);
+  const std::shared_ptr<const Tracers> tracers = this->tracers(&of_light, cancel);
+  const auto finish = [&] {
+    result.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return result;
+  };
+  if (!tracers) {
+    result.complete = false;
+    return finish();
+  }
+  result.no_diffraction = tracers->no_diffraction;
+  result.r_a = tracers->r_a;
+  result.engine = tracers->layers.front()->is_by_cells() ? "cell" : "embree";
+  std::vector<raytrace::CameraImage> images(tracers->responses, tracers->layers.front()->empty_image());
+  result.image = images.front();
+  const auto take_images = [&] {
+    result.image = images.front();
+    if (images.size() < 3) return;
+    if (!result.colours) {
+      const materials::Tristimulus lamp =
+          materials::tristimulus(lamp_power(light_from_name(request_.light)), materials::shipped_colour_matching());
+      result.colours.emplace().lamp = {lamp[0] / lamp[1], 1.0, lamp[2] / lamp[1]};
+    }
+    result.colours->x = images[1].luminance;
+    result.colours->z = images[2].luminance;
+  };
+  const std::function<void()> preview = [&] {
+    if (!after_pass) return;
+    take_images();
+    after_pass(result);
+  };
+  PartProgress of_passes(progress, kProgressOfLight, 1.0);
+  PassLedger ledger(request_, images, &of_passes, preview);
+  if (distribute)
+    distribute(
+        [tracers](std::uint64_t number, const Cancellation* stop) -> std::optional<std::string> {
+          const auto pass = tracers->pass(static_cast<std::uint32_t>(number), stop);
+          return pass ? std::optional(bytes_of(*pass)) : std::nullopt;
+        },
+        ledger);
   while (!distribute && !ledger.is_finished()) {
-    const auto pass = tracing->pass(result.image.passes, cancel);
+    const auto pass = tracers->pass(images.front().passes, cancel);
     if (!pass) break;
     ledger.add(*pass);
   }
+  take_images();
   result.complete = ledger.is_finished();
   if (result.complete && !request_.passes && result.image.relative_noise() > request_.noise)
     result.warnings.push_back(
@@ -282,14 +479,23 @@ CameraResult CameraStudy::run(Progress* progress, const Cancellation* cancel,
                      "passes, but at most {} are made unless you set the number of passes",
                      design_.source_name(), fixed(result.image.relative_noise(), 4), shortest(request_.noise),
                      result.image.passes, passes_needed(result.image, request_), kMaxPasses)});
-  if (result.complete && result.image.part_mean() == 0.0)
+  const bool has_surroundings = scene_.surroundings.entrance_side > 0.0 || scene_.surroundings.back_side > 0.0;
+  const double returned = result.r_a ? *result.r_a / std::max(1e-9, to_eye.normalized().z())
+                                     : result.image.part_mean() / std::max(1e-300, scene_.lamp.illuminance_lx);
+  const bool is_dark = result.r_a ? returned < kMinRetroreflected : !has_surroundings && returned < kMinRetroreflected;
+  if (result.complete && result.no_diffraction && request_.diffraction)
+    result.warnings.push_back({"no_diffraction", fmt::format("{}: the light of the lamp is that of geometrical optics, "
+                                                             "without diffraction: {}",
+                                                             design_.source_name(), text_of(*result.no_diffraction))});
+  if (result.complete && scene_.lamp.illuminance_lx > 0.0 && is_dark)
     result.warnings.push_back(
-        {"no_light_found",
-         fmt::format("{}: no light from the part reaches the camera in {} passes: the part is dark, or bright paths "
-                     "are so rare that more passes are needed (set the number of passes)",
-                     design_.source_name(), result.image.passes)});
-  result.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return result;
+        {"no_retroreflected_light",
+         fmt::format(
+             "{}: no retroreflected light reaches this eye: the luminance of the returned light is {} cd/m2 per "
+             "lux at the centre, and that of a white wall is 0.32. Choose a smaller observation angle, or "
+             "another direction of the lamp",
+             design_.source_name(), fixed_visible(returned, 3))});
+  return finish();
 }
 
 }  // namespace retrace::studies

@@ -12,8 +12,11 @@
 #include "core/progress.h"
 #include "core/shared_tasks.h"
 #include "design/optical_model.h"
+#include "materials/chromaticity.h"
 #include "raytrace/observers/camera.h"
 #include "requests/image.h"
+#include "studies/image/background.h"
+#include "studies/image/camera_light.h"
 #include "studies/image/image_result.h"
 #include "studies/image/lamp.h"
 
@@ -22,11 +25,29 @@ namespace retrace::studies {
 /// Default width and height, in mm, of the sheet that the picture shows for an infinite part.
 inline constexpr std::array<double, 2> kDefaultFilmMm = {100.0, 100.0};
 
+/// Colours of a picture of a coloured part. The three values of a pixel are those of the functions x, y and z of the
+/// CIE 1931 observer, each relative to the lamp: they are equal if the pixel has the chromaticity of the lamp.
+struct CameraColours {
+  std::vector<double> x;  ///< cd/m^2; CameraResult::image contains y
+  std::vector<double> z;
+  materials::Tristimulus lamp{};  ///< tristimulus values of the lamp, with Y = 1
+
+  /// Returns the linear sRGB values of a pixel (IEC 61966-2-1), in cd/m^2. The lamp is white: its chromaticity is
+  /// adapted to D65 (K. M. Lam 1985, "Bradford").
+  std::array<double, 3> rgb(double y, std::size_t pixel) const;
+};
+
 struct CameraResult : ImageResultBase {
   CameraRequest request;
   std::optional<PhotometricLamp> lamp;  ///< lamp that was read from the requested file; empty if no file was requested
   raytrace::CameraScene scene;
-  raytrace::CameraImage image;
+  raytrace::CameraImage image;                   ///< luminance
+  std::optional<CameraColours> colours;          ///< set if the part is coloured and the light is a CIE illuminant
+  std::shared_ptr<const Background> background;  ///< picture behind the part; null if there is none
+  /// Reason why the light of the lamp does not include diffraction, or not all of it. Empty if it does.
+  std::optional<NoDiffraction> no_diffraction;
+  /// R_A in cd/(lx m^2) with diffraction for the centre of the visible face; empty if it was not computed.
+  std::optional<double> r_a;
   double observation_deg = 0.0;  ///< angle as seen from the centre of the face
   double entrance_deg = 0.0;
   double viewing_deg = 0.0;
@@ -47,11 +68,11 @@ class CameraStudy {
               raytrace::DiscAverage discs = raytrace::DiscAverage::kernel);
 
   /// Computes the picture.
-  /// \param after_pass function that receives the picture after every pass; one call at a time
+  /// \param after_pass function that receives the unfinished result after every pass; one call at a time
   /// \param distribute function that distributes the passes among several processes with equal studies. Without it,
   ///        this process traces all passes.
   CameraResult run(Progress* progress = nullptr, const Cancellation* cancel = nullptr,
-                   const std::function<void(const raytrace::CameraImage&)>& after_pass = {},
+                   const std::function<void(const CameraResult&)>& after_pass = {},
                    const DistributeTasks& distribute = {}) const;
   /// Returns a task that traces the pass with a given number, using all threads.
   /// \pre the study exists as long as the task
@@ -60,13 +81,20 @@ class CameraStudy {
   const raytrace::CameraScene& scene() const { return scene_; }
 
  private:
-  std::shared_ptr<const raytrace::CameraTracer> tracer() const;
+  struct Tracers;
+
+  /// Computes the returned light and makes the tracers. Returns null if the computation was cancelled.
+  std::shared_ptr<const Tracers> tracers(Progress* progress, const Cancellation* cancel) const;
 
   design::Design design_;
+  design::Design dyed_;  ///< `design_` with the requested dye
   CameraRequest request_;
   std::optional<PhotometricLamp> lamp_;
   design::OpticalModel model_;
   raytrace::CameraScene scene_;
+  std::shared_ptr<const Background> background_;
+  /// Light as seen by the responses y, x and z, in this order; only y if the picture has no colours.
+  std::vector<std::shared_ptr<const CameraLight>> lights_;
 };
 
 }  // namespace retrace::studies

@@ -86,7 +86,7 @@ void check_engine(const design::Design& design, const raytrace::EngineFacts& fac
 
 /// Returns the width of the cells whose edges diffract light. Returns 0 if the width is not known, for example for
 /// meshes. Also returns 0 for curved entrance faces, because they divide the light into cells of their own.
-double cell_width_mm(const design::Design& design) {
+double width_of_cells_mm(const design::Design& design) {
   if (design.balls()) return design.balls()->diameter_mm;
   if (!design.elements() || design.entrance) return 0.0;
   if (const auto* prism = std::get_if<geometry::RtpElement>(&design.part().element))
@@ -218,6 +218,17 @@ NoDiffraction Photometer::why_undiffracted() const {
   return request_.engine == raytrace::Engine::automatic ? Undiffracted::too_many_beams : Undiffracted::monte_carlo;
 }
 
+void Photometer::ignore_diffraction() {
+  request_.diffraction = false;
+  facts_.needs_phases = false;
+  if (tracing_ != Tracing::rays)
+    tracing_ = raytrace::is_exact(request_.engine, facts_) ? Tracing::beams : Tracing::rays;
+}
+
+double Photometer::cell_width_mm() const {
+  return width_of_cells_mm(design_);
+}
+
 double Photometer::min_undiffracted_mm() const {
   return kWidthsWithoutDiffraction * 1e-6 * model_.spectral.back().wavelength_nm / kernel_.reach_rad();
 }
@@ -251,7 +262,7 @@ PhotometerReading Photometer::reading_of(const PhotometerSetting& setting,
   }
   at.std_error = std::sqrt(variance);
   reading.lacks_diffraction =
-      has_diffraction() ? beyond_budget > kMaxUndiffractedFraction : cell_width_mm(design_) < min_undiffracted_mm();
+      has_diffraction() ? beyond_budget > kMaxUndiffractedFraction : cell_width_mm() < min_undiffracted_mm();
   const double cos_beta = std::cos(source.incidence.rad());
   for (std::size_t k = 0; k < setting.observation_deg.size(); ++k) {
     double per_sr = 0.0;

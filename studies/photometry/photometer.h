@@ -127,6 +127,18 @@ class Photometer {
   /// reflects, either at its outer side, or at its inner side between two retroreflections by elements.
   /// \pre is_exact()
   void ignore_mirror_image() { has_mirror_image_ = false; }
+  /// Ignores, in later measurements, the light that the entrance face reflects at its outer side.
+  /// \pre is_exact()
+  void ignore_front_reflection() { has_front_reflection_ = false; }
+  /// Makes later measurements use geometrical optics, without diffraction.
+  void ignore_diffraction();
+  /// Returns the optical model at each traced wavelength.
+  const std::vector<design::SpectralOptics>& optics() const { return model_.spectral; }
+  /// Returns the weights of the traced wavelengths in the response of the receiver. They do not include the absorption
+  /// in the body. In a coloured body, their sum may differ from 1.
+  const std::vector<double>& weights() const { return weights_; }
+  /// Returns the width of the cells whose edges diffract light, or 0 if it is not known.
+  double cell_width_mm() const;
 
  private:
   /// Lamp of the measurement, with all data that determine the traced wavelengths.
@@ -230,6 +242,7 @@ class Photometer {
   Tracing tracing_ = Tracing::rays;
   Effort effort_ = Effort::full;
   bool has_mirror_image_ = true;
+  bool has_front_reflection_ = true;
 };
 
 /// Returns the relative spectral power of a CIE illuminant, per nm.

@@ -183,7 +183,9 @@ std::optional<Photometer::Traced> Photometer::traced(const geometry::Vec3& to_so
                               [&](const raytrace::ReturnedBeam& beam) {
                                 const double trace = beam.entry_from_exit.linear().trace();
                                 if (request_.diffraction && !model_.part.period_mm) memory.add(beam);
-                                if (trace < kMinMirrorTrace || has_mirror_image_) collector.add(beam);
+                                const bool is_counted = (trace < kMinMirrorTrace || has_mirror_image_) &&
+                                                        (beam.depth > 0 || has_front_reflection_);
+                                if (is_counted) collector.add(beam);
                                 if (beam.cone < cones.size())
                                   traced.scattered_from_cone += beam.instance_count() * scattered_power(beam) /
                                                                 (beam.replicate ? replicates() : 1.0);

@@ -66,7 +66,10 @@ std::string detector_json(const DetectorResult& result) {
   return image_text(std::move(json), result.elapsed_s, result.warnings, result.complete);
 }
 
-std::string camera_json(const CameraResult& result) {
+namespace {
+
+/// Returns the document of a camera picture without the keys that all documents have.
+Json camera_content(const CameraResult& result) {
   const CameraRequest& asked = result.request;
   Json json = header("camera", result.design, asked.seed);
   json["engine"] = result.engine;
@@ -83,9 +86,15 @@ std::string camera_json(const CameraResult& result) {
   json["lamp_arcmin"] = asked.lamp_arcmin;
   json["pupil_arcmin"] = asked.pupil_arcmin;
   json["illuminance_lx"] = result.scene.lamp.illuminance_lx;
+  json["light"] = asked.light;
+  json["dye"] = asked.dye;
+  json["has_diffraction"] = !result.no_diffraction;
+  if (result.no_diffraction) json["why_no_diffraction"] = text_of(*result.no_diffraction);
+  if (result.r_a) json["r_a_cd_per_lx_m2"] = *result.r_a;
   if (result.lamp) json["lamp"] = lamp_json(*result.lamp, asked.lamp_aim_deg);
   json["ambient_lx"] = asked.ambient_lx;
   json["backlight_lx"] = asked.backlight_lx;
+  if (!asked.background.empty()) json["background"] = asked.background.filename().string();
   if (result.scene.film) {
     json["film_mm"] = asked.film_mm.value_or(kDefaultFilmMm);
     if (asked.cylinder_mm) json["cylinder_mm"] = *asked.cylinder_mm;
@@ -100,7 +109,27 @@ std::string camera_json(const CameraResult& result) {
     json["noise"] = result.image.relative_noise();
   }
   json["luminance_max_cd_per_m2"] = largest(result.image.luminance);
-  return image_text(std::move(json), result.elapsed_s, result.warnings, result.complete);
+  return json;
+}
+
+}  // namespace
+
+std::string camera_json(const CameraResult& result) {
+  return image_text(camera_content(result), result.elapsed_s, result.warnings, result.complete);
+}
+
+std::string camera_series_json(const std::vector<CameraResult>& results) {
+  Json json = {{"kind", "camera_series"}, {"pictures", Json::array()}};
+  double elapsed_s = 0.0;
+  Warnings warnings;
+  bool complete = true;
+  for (const CameraResult& result : results) {
+    json["pictures"].push_back(camera_content(result));
+    elapsed_s += result.elapsed_s;
+    warnings.insert(warnings.end(), result.warnings.begin(), result.warnings.end());
+    complete = complete && result.complete;
+  }
+  return image_text(std::move(json), elapsed_s, warnings, complete);
 }
 
 std::string road_json(const RoadResult& result) {
@@ -156,6 +185,20 @@ std::string detector_table(const DetectorResult& result) {
   return fmt::format("RRE {} % ({}); relative irradiance up to {}; {} % of the light leaves beyond {} degrees\n",
                      fixed(100.0 * result.maps.rre, 3), result.engine, fixed(largest(result.maps.leaving.value), 3),
                      fixed(100.0 * result.maps.outside, 2), shortest(result.request.window_deg));
+}
+
+std::string camera_series_table(const std::vector<CameraResult>& results) {
+  std::string table = fmt::format("{:>10} {:>9} {:>9} {:>9} {:>12} {:>12}  {}\n", "distance_m", "alpha", "entrance",
+                                  "rotation", "L_cd_per_m2", "R_A", "design");
+  for (const CameraResult& result : results) {
+    const double distance_m = 1e-3 * (result.scene.view.eye_mm - result.scene.view.target_mm).norm();
+    table += fmt::format("{:>10} {:>9} {:>9} {:>9} {:>12} {:>12}  {}\n", fixed_visible(distance_m, 2),
+                         fixed_visible(result.observation_deg, 2), fixed_visible(result.entrance_deg, 2),
+                         shortest(result.request.rotation_deg),
+                         result.image.part_means.size() > 1 ? fixed_visible(result.image.part_mean(), 3) : "-",
+                         result.r_a ? fixed_visible(*result.r_a, 3) : "-", design::short_name(result.design));
+  }
+  return table;
 }
 
 std::string camera_table(const CameraResult& result) {

@@ -74,6 +74,8 @@ TEST(RoughCamera, SeesWhatIsSentForwards) {
     camera.film_mm = {500.0, 500.0};
     camera.field_mm = 400.0;
     camera.passes = 16;
+    camera.light = "design";
+    camera.diffraction = false;
     const studies::CameraResult seen = studies::CameraStudy(design, camera).run();
     const double per_r_a = camera.illuminance_lx / std::cos(seen.viewing_deg * pi / 180.0);
     const double expected = point.r_a * per_r_a;

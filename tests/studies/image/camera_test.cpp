@@ -147,6 +147,7 @@ TEST(Camera, MeanLuminanceIsThatOfThePhotometer) {
     camera.film_mm = {500.0, 500.0};
     camera.field_mm = 400.0;
     camera.passes = 64;
+    camera.diffraction = false;
     const studies::CameraResult seen = studies::CameraStudy(design, camera).run();
     const double expected = r_a * camera.illuminance_lx / std::cos(seen.viewing_deg * pi / 180.0);
     ASSERT_GT(expected, 0.0);

@@ -87,7 +87,7 @@ TEST_F(Image, CameraSaysThatANoiseIsOutOfReach) {
 TEST_F(Image, CameraSaysThatThePartIsBlack) {
   const Json json =
       retrace_json(folder_, {"image", "cubes.toml", "--camera", "--pixels=24x18", "--observation-deg=40"});
-  EXPECT_EQ(json["luminance_max_cd_per_m2"], 0);
+  EXPECT_LT(json["luminance_max_cd_per_m2"].get<double>(), 0.01);
   ASSERT_EQ(json["warnings"].size(), 1U);
 }
 

@@ -1,0 +1,343 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+
+#include "core/number_format.h"
+#include "design/io/design_json.h"
+#include "report/axis_ticks.h"
+#include "report/canvas.h"
+#include "report/colour_scale.h"
+#include "report/image_plot.h"
+#include "report/results/result_plots.h"
+#include "studies/image/camera_study.h"
+
+namespace retrace::report {
+namespace {
+
+using studies::CameraResult;
+
+void add_channel(FloatPicture& picture, const std::string& name, const std::vector<double>& values) {
+  if (!values.empty()) picture.channels.emplace_back(name, values);
+}
+
+/// Returns the linear sRGB values of each pixel, in cd/m^2.
+std::array<std::vector<double>, 3> rgb_of(const CameraResult& result) {
+  const std::vector<double>& luminance = result.image.luminance;
+  std::array<std::vector<double>, 3> rgb;
+  if (!result.colours) return {luminance, luminance, luminance};
+  for (std::size_t k = 0; k < luminance.size(); ++k) {
+    const std::array<double, 3> pixel = result.colours->rgb(luminance[k], k);
+    for (std::size_t c = 0; c < 3; ++c) rgb[c].push_back(pixel[c]);
+  }
+  return rgb;
+}
+
+void add_colours(FloatPicture& picture, const CameraResult& result) {
+  std::vector<double> x = result.colours->x;
+  std::vector<double> z = result.colours->z;
+  for (double& value : x) value *= result.colours->lamp[0];
+  for (double& value : z) value *= result.colours->lamp[2];
+  add_channel(picture, "X", x);
+  add_channel(picture, "Z", z);
+  const std::array<std::vector<double>, 3> rgb = rgb_of(result);
+  for (std::size_t c = 0; c < 3; ++c) add_channel(picture, std::array{"R", "G", "B"}[c], rgb[c]);
+}
+
+}  // namespace
+
+FloatPicture luminance_picture(const CameraResult& result) {
+  const raytrace::CameraImage& image = result.image;
+  FloatPicture picture;
+  picture.columns = image.columns;
+  picture.rows = image.rows;
+  add_channel(picture, "Y", image.luminance);
+  if (result.colours) add_colours(picture, result);
+  std::vector<double> errors;
+  for (std::size_t k = 0; k < image.luminance.size() && image.passes > 1; ++k) errors.push_back(image.std_error(k));
+  add_channel(picture, "std_error", errors);
+  add_channel(picture, "coverage", image.coverage);
+  picture.texts = picture_texts("camera", result.design);
+  picture.texts.emplace_back("retrace:unit", "cd/m2");
+  picture.numbers = {{"retrace:width_mm", result.scene.view.width_mm},
+                     {"retrace:observation_deg", result.observation_deg},
+                     {"retrace:entrance_deg", result.entrance_deg},
+                     {"retrace:viewing_deg", result.viewing_deg},
+                     {"retrace:illuminance_lx", result.request.illuminance_lx},
+                     {"retrace:ambient_lx", result.request.ambient_lx},
+                     {"retrace:lamp_arcmin", result.request.lamp_arcmin},
+                     {"retrace:pupil_arcmin", result.request.pupil_arcmin},
+                     {"retrace:passes", result.image.passes}};
+  return picture;
+}
+
+namespace {
+
+constexpr Colour kPaper{0.10, 0.105, 0.12};
+constexpr Colour kBright{0.94, 0.94, 0.94};
+constexpr Colour kDim{0.70, 0.72, 0.76};
+constexpr Font kNameFont{13.0, true};
+constexpr Font kLineFont{11.0, false};
+constexpr double kGap = 12.0;
+constexpr double kLine = 16.0;
+constexpr double kBarHeight = 10.0;
+constexpr double kMinTileWidth = 380.0;
+// Maximum width of a tile in a sheet of several pictures.
+constexpr double kSheetTileWidth = 400.0;
+
+/// Returns the colour that is displayed for linear sRGB values. The hue is kept: colours outside of the display's range
+/// become paler, and colours brighter than white approach white, as on film.
+Colour displayed(std::array<double, 3> rgb, double intensity) {
+  double lowest = 0.0;
+  for (const double value : rgb) lowest = std::min(lowest, value);
+  if (lowest < 0.0)
+    for (double& value : rgb) value = intensity + (value - intensity) * intensity / (intensity - lowest);
+  const double brightest = std::max({rgb[0], rgb[1], rgb[2]});
+  if (brightest > 1.0) {
+    const double paler = 0.4 * (1.0 - 1.0 / brightest);
+    for (double& value : rgb) value = std::lerp(value / brightest, 1.0, paler);
+  }
+  return {srgb_byte(rgb[0]) / 255.0, srgb_byte(rgb[1]) / 255.0, srgb_byte(rgb[2]) / 255.0};
+}
+
+std::vector<Colour> displayed_pixels(const CameraResult& result, const ToneCurve& tone) {
+  const raytrace::CameraImage& image = result.image;
+  const std::array<std::vector<double>, 3> rgb = rgb_of(result);
+  std::vector<Colour> colours;
+  colours.reserve(image.luminance.size());
+  for (std::size_t k = 0; k < image.luminance.size(); ++k) {
+    double luminance = image.luminance[k];
+    std::array<double, 3> pixel{rgb[0][k], rgb[1][k], rgb[2][k]};
+    std::array<double, 3> photograph{};
+    if (result.background) {
+      const std::array<double, 3> behind = result.background->seen(k, image.columns, image.rows);
+      const double free = 1.0 - image.coverage[k];
+      for (std::size_t c = 0; c < 3; ++c) (result.background->is_luminance ? pixel : photograph)[c] += free * behind[c];
+      if (result.background->is_luminance)
+        luminance += free * (0.2126 * behind[0] + 0.7152 * behind[1] + 0.0722 * behind[2]);
+    }
+    const double shown = tone.shown(luminance);
+    double intensity = shown;
+    for (std::size_t c = 0; c < 3; ++c) {
+      pixel[c] = (luminance > 0.0 ? shown * pixel[c] / luminance : 0.0) + photograph[c];
+      intensity += std::array{0.2126, 0.7152, 0.0722}[c] * photograph[c];
+    }
+    colours.push_back(displayed(pixel, intensity));
+  }
+  return colours;
+}
+
+double metres(const geometry::Vec3& from, const geometry::Vec3& to) {
+  return 1e-3 * (from - to).norm();
+}
+
+std::string geometry_text(const CameraResult& result) {
+  const raytrace::CameraScene& scene = result.scene;
+  const double eye_m = metres(scene.view.eye_mm, scene.view.target_mm);
+  const double lamp_m = metres(scene.lamp.position_mm, scene.view.target_mm);
+  std::string text = fmt::format("distance {} m", fixed_visible(eye_m, 2));
+  if (std::abs(lamp_m / eye_m - 1.0) > 1e-3) text += fmt::format(" (lamp {} m)", fixed_visible(lamp_m, 2));
+  text += fmt::format(", observation angle {}\u00b0, entrance angle {}\u00b0", fixed_visible(result.observation_deg, 2),
+                      fixed_visible(result.entrance_deg, 2));
+  if (result.request.rotation_deg != 0.0)
+    text += fmt::format(", rotation {}\u00b0", shortest(result.request.rotation_deg));
+  return text;
+}
+
+std::string light_text(const CameraResult& result) {
+  std::string text = fmt::format("illuminance {} lx", fixed_visible(result.scene.lamp.illuminance_lx, 2));
+  if (result.image.part_means.size() > 1)
+    text += fmt::format(", mean luminance {} cd/m\u00b2", fixed_visible(result.image.part_mean(), 2));
+  if (result.r_a) text += fmt::format(", R_A {} cd/(lx m\u00b2)", fixed_visible(*result.r_a, 2));
+  if (result.no_diffraction) text += ", without diffraction";
+  return text;
+}
+
+std::string exposure_text(const CameraResult& result, const ToneCurve& tone) {
+  return fmt::format("{} exposure: white is {} cd/m\u00b2 (EV100 {}), tone curve {}",
+                     result.request.exposure_ev ? "given" : "automatic", fixed_visible(tone.white, 2),
+                     fixed(tone.ev100(), 1), result.request.tone);
+}
+
+std::string name_of(const CameraResult& result) {
+  std::string name = design::short_name(result.design);
+  if (result.request.dye == "red" || result.request.dye == "amber")
+    name += ", " + result.request.dye;
+  else if (result.request.dye != "none")
+    name += ", dyed";
+  return name;
+}
+
+/// Returns the lines of a text that fit the width.
+std::vector<std::string> lines_of(const Canvas& canvas, const std::string& text, double width) {
+  return canvas.fitted(text, kLineFont, width, 3, Ellipsis::end);
+}
+
+/// Returns the size of a picture on the canvas. Small pictures are enlarged by a whole factor.
+Size shown_size(const CameraResult& result, double width) {
+  const auto columns = static_cast<double>(result.image.columns);
+  const auto rows = static_cast<double>(result.image.rows);
+  const double factor = columns >= width ? width / columns : std::max(1.0, std::floor(width / columns));
+  return {factor * columns, factor * rows};
+}
+
+/// Draws a bar with the displayed intensities of luminances and their values.
+void draw_luminance_bar(Canvas& canvas, const ToneCurve& tone, Point corner, double width) {
+  constexpr int kSteps = 256;
+  const bool is_log = tone.tone == Tone::log;
+  const auto luminance_at = [&](double fraction) {
+    return is_log ? tone.white * std::pow(10.0, kToneDecades * (fraction - 1.0)) : fraction * tone.white;
+  };
+  std::vector<Colour> colours;
+  for (int k = 0; k < kSteps; ++k) {
+    const double grey = srgb_byte(tone.shown(luminance_at((k + 0.5) / kSteps))) / 255.0;
+    colours.push_back({grey, grey, grey});
+  }
+  canvas.image(corner, {width, kBarHeight}, kSteps, colours);
+  const auto tick = [&](double fraction, const std::string& label, Align align) {
+    const double x = corner.x + fraction * width;
+    canvas.line({{x, corner.y + kBarHeight}, {x, corner.y + kBarHeight + 3.0}}, {kDim, 1.0, {}});
+    canvas.text({x, corner.y + kBarHeight + 14.0}, label, kLineFont, kDim, align);
+  };
+  if (!is_log) {
+    const Ticks ticks = make_ticks({0.0, tone.white}, 4);
+    for (std::size_t k = 0; k < ticks.positions.size(); ++k)
+      if (ticks.positions[k] < 0.85 * tone.white)
+        tick(ticks.positions[k] / tone.white, ticks.labels[k], k == 0 ? Align::left : Align::centre);
+  } else {
+    for (int e = static_cast<int>(std::ceil(std::log10(tone.white) - kToneDecades));
+         e <= std::floor(std::log10(tone.white)); ++e) {
+      const double fraction = 1.0 + (e - std::log10(tone.white)) / kToneDecades;
+      if (fraction < 0.8)
+        tick(fraction, std::abs(e) < 4 ? shortest(std::pow(10.0, e)) : fmt::format("1e{}", e),
+             fraction < 0.03 ? Align::left : Align::centre);
+    }
+  }
+  tick(1.0, "cd/m\u00b2", Align::right);
+}
+
+bool has_bar(const ToneCurve& tone) {
+  return tone.tone != Tone::reinhard;
+}
+
+/// Draws a scale bar for lengths whose right end is at `end`.
+void draw_length_bar(Canvas& canvas, const CameraResult& result, Point end, double picture_width) {
+  const double width_mm = result.scene.view.width_mm;
+  const double length_mm = scale_bar_length(width_mm);
+  const double drawn = picture_width * length_mm / width_mm;
+  canvas.line({{end.x - drawn, end.y}, end}, {kBright, 2.0, {}});
+  canvas.text({end.x - drawn - 6.0, end.y + 4.0}, shortest(length_mm) + " mm", kLineFont, kBright, Align::right);
+}
+
+/// Draws a picture with its name and lines. Returns the height.
+/// \param canvas_or_none null: only the height is determined, with the font metrics of `metrics`
+double draw_tile(Canvas* canvas, const Canvas& metrics, const CameraResult& result, const ToneCurve& tone, Point corner,
+                 double width, const std::vector<std::string>& texts) {
+  const Size size = shown_size(result, width);
+  const double x = corner.x + 0.5 * (width - size.width);
+  if (canvas != nullptr) canvas->image({x, corner.y}, size, result.image.columns, displayed_pixels(result, tone));
+  double y = corner.y + size.height + 18.0;
+  if (canvas != nullptr) {
+    const double bar = 0.45 * width;
+    for (const std::string& line : canvas->fitted(name_of(result), kNameFont, width - bar, 1, Ellipsis::middle))
+      canvas->text({corner.x, y}, line, kNameFont, kBright, Align::left);
+    draw_length_bar(*canvas, result, {corner.x + width, y - 4.0}, size.width);
+  }
+  for (const std::string& text : texts)
+    for (const std::string& line : lines_of(metrics, text, width)) {
+      y += kLine;
+      if (canvas != nullptr) canvas->text({corner.x, y}, line, kLineFont, kDim, Align::left);
+    }
+  return y - corner.y;
+}
+
+}  // namespace
+
+ToneCurve camera_tone(std::span<const CameraResult> results) {
+  const CameraRequest& request = results.front().request;
+  const Tone tone = tone_of(request.tone);
+  if (request.exposure_ev) return tone_of_exposure(*request.exposure_ev, tone);
+  std::vector<double> all;
+  for (const CameraResult& result : results)
+    all.insert(all.end(), result.image.luminance.begin(), result.image.luminance.end());
+  return tone_of_picture(all, tone);
+}
+
+std::string camera_png(const CameraResult& result, const ToneCurve& tone) {
+  const double width = std::max(kMinTileWidth, static_cast<double>(result.image.columns));
+  const std::vector<std::string> texts = {geometry_text(result), light_text(result), exposure_text(result, tone)};
+  const Canvas metrics(Canvas::Format::png, {1.0, 1.0}, 1.0);
+  const double height = draw_tile(nullptr, metrics, result, tone, {0.0, 0.0}, width, texts);
+  const double bar = has_bar(tone) ? kGap + kBarHeight + 18.0 : 0.0;
+  const Size size{width + 2.0 * kGap, std::ceil(kGap + height + bar + kGap)};
+  Canvas canvas(Canvas::Format::png, size, 1.0);
+  canvas.fill_rectangle({0.0, 0.0}, size, kPaper);
+  draw_tile(&canvas, metrics, result, tone, {kGap, kGap}, width, texts);
+  if (has_bar(tone)) draw_luminance_bar(canvas, tone, {kGap, 2.0 * kGap + height}, width);
+  return canvas.finish();
+}
+
+std::string camera_png(const CameraResult& result) {
+  return camera_png(result, camera_tone({&result, 1}));
+}
+
+std::string camera_sheet_png(std::span<const CameraResult> results, const ToneCurve& tone) {
+  constexpr std::size_t kMaxColumns = 4;
+  const std::size_t count = results.size();
+  const std::size_t columns = count <= kMaxColumns ? count : (count + (count + 3) / 4 - 1) / ((count + 3) / 4);
+  const Canvas metrics(Canvas::Format::png, {1.0, 1.0}, 1.0);
+  const auto texts_of = [](const CameraResult& result) {
+    return std::vector<std::string>{geometry_text(result), light_text(result)};
+  };
+  std::vector<double> heights;
+  for (std::size_t k = 0; k < count; ++k) {
+    const double height =
+        draw_tile(nullptr, metrics, results[k], tone, {0.0, 0.0}, kSheetTileWidth, texts_of(results[k]));
+    if (k % columns == 0) heights.push_back(0.0);
+    heights.back() = std::max(heights.back(), height);
+  }
+  double height = kGap;
+  for (const double row : heights) height += row + 1.5 * kGap;
+  const double bar = has_bar(tone) ? kBarHeight + 24.0 : 0.0;
+  const Size size{kGap + static_cast<double>(columns) * (kSheetTileWidth + kGap),
+                  std::ceil(height + bar + kLine + kGap)};
+  Canvas canvas(Canvas::Format::png, size, 1.0);
+  canvas.fill_rectangle({0.0, 0.0}, size, kPaper);
+  double y = kGap;
+  for (std::size_t k = 0; k < count; ++k) {
+    const double x = kGap + static_cast<double>(k % columns) * (kSheetTileWidth + kGap);
+    draw_tile(&canvas, metrics, results[k], tone, {x, y}, kSheetTileWidth, texts_of(results[k]));
+    if (k % columns + 1 == columns) y += heights[k / columns] + 1.5 * kGap;
+  }
+  y = height;
+  if (has_bar(tone))
+    draw_luminance_bar(canvas, tone, {kGap, y}, std::min(2.0 * kSheetTileWidth, size.width - 2.0 * kGap));
+  const std::vector<std::string> last =
+      canvas.fitted(exposure_text(results.front(), tone), kLineFont, size.width - 2.0 * kGap, 1, Ellipsis::end);
+  for (const std::string& line : last) canvas.text({kGap, y + bar + kLine - 4.0}, line, kLineFont, kDim, Align::left);
+  return canvas.finish();
+}
+
+ImagePlot false_colour_plot(const CameraResult& result) {
+  ImagePlot plot;
+  plot.title = design::short_name(result.design);
+  plot.remarks.push_back(fmt::format("{} lx, observation angle {}°, entrance angle {}°",
+                                     shortest(result.request.illuminance_lx), fixed_visible(result.observation_deg, 2),
+                                     fixed_visible(result.entrance_deg, 2)));
+  if (result.image.part_means.size() > 1)
+    plot.remarks.push_back(fmt::format("mean luminance of the part {} cd/m²", fixed(result.image.part_mean(), 3)));
+  ImagePanel panel{"Luminance",
+                   "luminance (cd/m²)",
+                   result.image.columns,
+                   result.image.rows,
+                   result.image.luminance,
+                   result.scene.view.width_mm,
+                   "mm"};
+  panel.is_logarithmic = true;
+  plot.panels.push_back(std::move(panel));
+  return plot;
+}
+
+}  // namespace retrace::report

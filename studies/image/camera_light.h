@@ -1,0 +1,52 @@
+#pragma once
+
+// Light of the lamp in camera pictures: the traced wavelengths, and the luminance of the returned light with
+// diffraction.
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/progress.h"
+#include "raytrace/observers/camera.h"
+#include "studies/photometry/photometer.h"
+
+namespace retrace::studies {
+
+/// Light of the lamp as a receiver with one spectral response sees it.
+class CameraLight {
+ public:
+  /// \param photometry light, dye, apertures and diffraction; the apertures are those of the lamp and the pupil
+  /// \throw InputError in the same cases as Photometer
+  CameraLight(const design::Design& design, const PhotometrySettings& photometry, std::size_t parts,
+              PhotometricResponse response);
+
+  /// Returns the optics at the traced wavelengths. The weights add up to 1.
+  std::vector<raytrace::WeightedOptics> optics() const;
+  bool has_diffraction() const { return photometer_.has_diffraction(); }
+  const Photometer& photometer() const { return photometer_; }
+
+  struct Returned {
+    /// Empty if the light of geometrical optics is the result, without a correction.
+    std::optional<raytrace::ReturnedLight> light;
+    /// R_A in cd/(lx m^2) for the directions of lamp and eye as seen from the centre of the visible face. Empty if it
+    /// was not computed.
+    std::optional<double> r_a;
+    bool is_incomplete = false;  ///< true: significant light has not been diffracted, because the cells differ too much
+    bool cancelled = false;
+  };
+  /// Computes the light that returns to the eye, with diffraction if possible.
+  /// \throw BudgetError if the exact engine needs too many beams
+  Returned returned(const geometry::Part& part, const raytrace::CameraScene& scene, Progress* progress,
+                    const Cancellation* cancel) const;
+  /// Returns the light of geometrical optics.
+  std::optional<raytrace::ReturnedLight> geometric() const;
+
+ private:
+  class Grid;
+
+  Photometer photometer_;
+  double flux_ = 1.0;  ///< sum of the photometer's weights
+};
+
+}  // namespace retrace::studies
