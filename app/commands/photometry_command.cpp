@@ -122,9 +122,9 @@ ExitCode run(const PhotometryOptions& options, const CommonOptions& common) {
     });
   }
   constexpr std::size_t kFewRows = 8;
-  std::string text = studies::photometry_table(result);
-  if (!common.out.empty() && !is_short(text)) text = studies::photometry_table(result, kFewRows);
-  return files.write(studies::photometry_json(result), text, result.warnings,
+  std::string table = studies::photometry_table(result);
+  if (!common.out.empty() && !is_short(table)) table = studies::photometry_table(result, kFewRows);
+  return files.write(studies::photometry_json(result), table, result.warnings,
                      {.complete = result.complete, .is_yes = result.passes()});
 }
 
