@@ -100,10 +100,11 @@ def camera(
     progress: Progress = None,
 ) -> ImageResult:
     """Computes a camera picture of the part in the light of a lamp ("camera": luminance Y in
-    cd/m2), as `retrace image --camera`.
+    cd/m2), as `retrace image --camera`. A coloured part also has the tristimulus values X and Z,
+    and the linear sRGB values R, G and B with the lamp as white, all in cd/m2.
 
     eye_mm, lamp_mm: positions, three numbers each. film_mm: two numbers. lamp: a photometric
-    file."""
+    file. exposure_ev, tone, background: only for the drawing."""
     request = _core.CameraRequest()  # generated: sets the fields of the request camera
     taken, count = design_of(design), thread_count(threads)
     with teller(progress, "rendering") as tell:

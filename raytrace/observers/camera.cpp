@@ -163,16 +163,15 @@ geometry::Rectangle visible_face(const geometry::Part& part, const CameraScene& 
   // Number of points of the picture along each side at which the visible area is searched. The result is enlarged by
   // one step between these points, and then limited to the face.
   constexpr int kPoints = 33;
-  geometry::Rectangle face = geometry::bounding_box(part.outline);
-  const Vec2 centre = EntranceSampler(part).centre_mm();
-  face = {face.lower - centre, face.upper - centre};
-  if (scene.film)
-    face = {-0.5 * Vec2(scene.film->width_mm, scene.film->height_mm),
-            0.5 * Vec2(scene.film->width_mm, scene.film->height_mm)};
-  const Film film = scene.film ? *scene.film
-                               : Film{2.0 * face.upper.cwiseAbs().cwiseMax(face.lower.cwiseAbs()).x(),
-                                      2.0 * face.upper.cwiseAbs().cwiseMax(face.lower.cwiseAbs()).y(),
-                                      {}};
+  geometry::Rectangle face;
+  if (scene.film) {
+    const Vec2 half = 0.5 * Vec2(scene.film->width_mm, scene.film->height_mm);
+    face = {-half, half};
+  } else {
+    face = geometry::moved(geometry::bounding_box(part.outline), -EntranceSampler(part).centre_mm());
+  }
+  const Vec2 size = 2.0 * face.upper.cwiseAbs().cwiseMax(face.lower.cwiseAbs());
+  const Film film = scene.film.value_or(Film{size.x(), size.y(), {}});
   const Lens lens(scene.view);
   std::optional<geometry::Rectangle> seen;
   const double columns = static_cast<double>(scene.view.columns);

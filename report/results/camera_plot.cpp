@@ -133,12 +133,18 @@ double metres(const geometry::Vec3& from, const geometry::Vec3& to) {
   return 1e-3 * (from - to).norm();
 }
 
+/// Returns a number with about four digits.
+std::string figure(double value) {
+  if (value >= 100.0) return fixed(value, 0);
+  return value >= 10.0 ? fixed(value, 1) : fixed_visible(value, 2);
+}
+
 std::string geometry_text(const CameraResult& result) {
   const raytrace::CameraScene& scene = result.scene;
   const double eye_m = metres(scene.view.eye_mm, scene.view.target_mm);
   const double lamp_m = metres(scene.lamp.position_mm, scene.view.target_mm);
-  std::string text = fmt::format("distance {} m", fixed_visible(eye_m, 2));
-  if (std::abs(lamp_m / eye_m - 1.0) > 1e-3) text += fmt::format(" (lamp {} m)", fixed_visible(lamp_m, 2));
+  std::string text = fmt::format("distance {} m", figure(eye_m));
+  if (std::abs(lamp_m / eye_m - 1.0) > 1e-3) text += fmt::format(" (lamp {} m)", figure(lamp_m));
   text += fmt::format(", observation angle {}\u00b0, entrance angle {}\u00b0", fixed_visible(result.observation_deg, 2),
                       fixed_visible(result.entrance_deg, 2));
   if (result.request.rotation_deg != 0.0)
@@ -147,18 +153,19 @@ std::string geometry_text(const CameraResult& result) {
 }
 
 std::string light_text(const CameraResult& result) {
-  std::string text = fmt::format("illuminance {} lx", fixed_visible(result.scene.lamp.illuminance_lx, 2));
+  std::string text = fmt::format("{} lx", figure(result.scene.lamp.illuminance_lx));
   if (result.image.part_means.size() > 1)
-    text += fmt::format(", mean luminance {} cd/m\u00b2", fixed_visible(result.image.part_mean(), 2));
-  if (result.r_a) text += fmt::format(", R_A {} cd/(lx m\u00b2)", fixed_visible(*result.r_a, 2));
+    text += fmt::format(", mean luminance {} cd/m\u00b2", figure(result.image.part_mean()));
+  if (result.r_a) text += fmt::format(", R_A {} cd/(lx m\u00b2)", figure(*result.r_a));
   if (result.no_diffraction) text += ", without diffraction";
   return text;
 }
 
 std::string exposure_text(const CameraResult& result, const ToneCurve& tone) {
-  return fmt::format("{} exposure: white is {} cd/m\u00b2 (EV100 {}), tone curve {}",
-                     result.request.exposure_ev ? "given" : "automatic", fixed_visible(tone.white, 2),
-                     fixed(tone.ev100(), 1), result.request.tone);
+  return fmt::format(
+      "white is {} cd/m\u00b2 (EV100 {}, {}), {} tone curve", figure(tone.white), fixed(tone.ev100(), 1),
+      result.request.exposure_ev ? "given" : "automatic",
+      result.request.tone == "reinhard" ? "Reinhard's" : (result.request.tone == "log" ? "logarithmic" : "linear"));
 }
 
 std::string name_of(const CameraResult& result) {
@@ -222,17 +229,19 @@ bool has_bar(const ToneCurve& tone) {
   return tone.tone != Tone::reinhard;
 }
 
-/// Draws a scale bar for lengths whose right end is at `end`.
-void draw_length_bar(Canvas& canvas, const CameraResult& result, Point end, double picture_width) {
+/// Draws a scale bar for lengths whose right end is at `end`. Returns the width of the bar and its label.
+double draw_length_bar(Canvas& canvas, const CameraResult& result, Point end, double picture_width) {
   const double width_mm = result.scene.view.width_mm;
-  const double length_mm = scale_bar_length(width_mm);
+  const double length_mm = scale_bar_length(0.6 * width_mm);
   const double drawn = picture_width * length_mm / width_mm;
+  const std::string label = shortest(length_mm) + " mm";
   canvas.line({{end.x - drawn, end.y}, end}, {kBright, 2.0, {}});
-  canvas.text({end.x - drawn - 6.0, end.y + 4.0}, shortest(length_mm) + " mm", kLineFont, kBright, Align::right);
+  canvas.text({end.x - drawn - 6.0, end.y + 4.0}, label, kLineFont, kBright, Align::right);
+  return drawn + 6.0 + canvas.text_width(label, kLineFont);
 }
 
 /// Draws a picture with its name and lines. Returns the height.
-/// \param canvas_or_none null: only the height is determined, with the font metrics of `metrics`
+/// \param canvas if null, only the height is determined, with the font metrics of `metrics`
 double draw_tile(Canvas* canvas, const Canvas& metrics, const CameraResult& result, const ToneCurve& tone, Point corner,
                  double width, const std::vector<std::string>& texts) {
   const Size size = shown_size(result, width);
@@ -240,10 +249,9 @@ double draw_tile(Canvas* canvas, const Canvas& metrics, const CameraResult& resu
   if (canvas != nullptr) canvas->image({x, corner.y}, size, result.image.columns, displayed_pixels(result, tone));
   double y = corner.y + size.height + 18.0;
   if (canvas != nullptr) {
-    const double bar = 0.45 * width;
+    const double bar = draw_length_bar(*canvas, result, {corner.x + width, y - 4.0}, size.width) + kGap;
     for (const std::string& line : canvas->fitted(name_of(result), kNameFont, width - bar, 1, Ellipsis::middle))
       canvas->text({corner.x, y}, line, kNameFont, kBright, Align::left);
-    draw_length_bar(*canvas, result, {corner.x + width, y - 4.0}, size.width);
   }
   for (const std::string& text : texts)
     for (const std::string& line : lines_of(metrics, text, width)) {

@@ -105,6 +105,9 @@ class Equality(unittest.TestCase):
                 "--lamp-aim-deg=1",
             ),
         )
+        red = rt.image.camera(BRICK, pixels=(24, 18), passes=2, v_deg=5, dye="red")["camera"]
+        self.assertLessEqual({"X", "Y", "Z", "R", "G", "B"}, set(red))
+        self.assertGreater(red["R"].mean(), 4 * abs(red["G"].mean()))
         reflector = program.example("reflex_reflector.toml")
         self.assertEqual(
             program.answer(rt.image.road, reflector, distance_m=[30], dye="red"),

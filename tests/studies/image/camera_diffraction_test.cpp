@@ -122,9 +122,9 @@ TEST(CameraDiffraction, LargeCellsLookAsInGeometricalOptics) {
   EXPECT_EQ(with.image.luminance, without.image.luminance);
 }
 
-/// For cells of 3 mm and large discs, diffraction is computed but changes the luminance little.
+/// For cells of 2 mm and large discs, diffraction is computed but changes the luminance little.
 TEST(CameraDiffraction, LargeDiscsHideDiffraction) {
-  const design::Design design = design_of(infinite(HexagonalCube{3.0}, Arrangement::honeycomb, 1.0), 0.5);
+  const design::Design design = design_of(infinite(HexagonalCube{2.0}, Arrangement::honeycomb, 1.0), 0.5);
   CameraRequest camera = camera_of({0.1, 0.0, 5.0, 0.0, 60.0, 60.0});
   camera.film_mm = {200.0, 200.0};
   camera.field_mm = 60.0;
