@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace retrace::report {
 namespace {
@@ -23,16 +22,23 @@ double percentile(std::vector<double> values, double share) {
 
 }  // namespace
 
-std::array<double, 3> cubehelix(double fraction) {
-  const double at = std::clamp(fraction, 0.0, 1.0);
-  const double turn = 2.0 * std::numbers::pi * (0.5 / 3.0 + 1.0 - 1.5 * at);
-  const double amplitude = 0.5 * at * (1.0 - at);
-  const double c = std::cos(turn);
-  const double s = std::sin(turn);
-  const auto channel = [&](double along, double across) {
-    return std::clamp(at + amplitude * (along * c + across * s), 0.0, 1.0);
-  };
-  return {channel(-0.14861, 1.78277), channel(-0.29227, -0.90649), channel(1.97294, 0.0)};
+std::array<double, 3> light_colour(double fraction) {
+  // CIELAB with the hue angle 264 degrees, lightness 5 to 98 in equal steps, and the chroma of sRGB or less.
+  static constexpr std::array<std::array<double, 3>, 9> kScale = {{{0.000, 0.073, 0.138},
+                                                                   {0.000, 0.171, 0.280},
+                                                                   {0.000, 0.276, 0.432},
+                                                                   {0.009, 0.388, 0.596},
+                                                                   {0.000, 0.506, 0.770},
+                                                                   {0.305, 0.622, 0.882},
+                                                                   {0.534, 0.740, 0.950},
+                                                                   {0.748, 0.859, 0.991},
+                                                                   {0.965, 0.979, 0.998}}};
+  const double at = std::clamp(fraction, 0.0, 1.0) * static_cast<double>(kScale.size() - 1);
+  const auto k = std::min(static_cast<std::size_t>(at), kScale.size() - 2);
+  std::array<double, 3> colour{};
+  for (std::size_t c = 0; c < 3; ++c)
+    colour[c] = std::lerp(kScale[k][c], kScale[k + 1][c], at - static_cast<double>(k));
+  return colour;
 }
 
 Tone tone_of(std::string_view name) {

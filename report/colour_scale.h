@@ -1,6 +1,6 @@
 #pragma once
 
-// Colours for values and luminances: the cubehelix scale, tone mapping for displays, and sRGB bytes.
+// Colours for values and luminances: a scale of one hue, tone mapping for displays, and sRGB bytes.
 
 #include <array>
 #include <string_view>
@@ -8,12 +8,11 @@
 
 namespace retrace::report {
 
-/// Returns a colour of a scale from black to white with uniformly increasing brightness: the cubehelix of D. A. Green,
-/// Bull. Astr. Soc. India 39, 289 (2011), with start 0.5, -1.5 turns, hue 1 and gamma 1. The order of the colours is
-/// preserved if a picture is converted to grey.
+/// Returns a colour of a scale from nearly black to nearly white with one hue, blue. Its lightness (CIE L*) increases
+/// uniformly from 5 to 98, so that the order of the colours is preserved if a picture is converted to grey.
 /// \param fraction position on the scale, clamped to 0..1
 /// \return sRGB, each 0..1
-std::array<double, 3> cubehelix(double fraction);
+std::array<double, 3> light_colour(double fraction);
 
 /// Curves by which luminances are displayed. `log` covers the four decades below white.
 enum class Tone { reinhard, linear, log };

@@ -43,7 +43,7 @@ ValueScale scale_of(const ImagePanel& panel) {
 }
 
 Colour colour_of(double share) {
-  const auto [r, g, b] = cubehelix(share);
+  const auto [r, g, b] = light_colour(share);
   return {r, g, b};
 }
 
@@ -129,16 +129,24 @@ std::string render(const ImagePlot& plot, PlotFormat format, double scale) {
     height = std::max(height, kPanelTop + picture_size(panel).height + kImageBelow);
   }
   width = std::max(width, 420.0);
-  const double head = kMargin + 26.0 + kRemarkHeight * static_cast<double>(plot.remarks.size());
+  std::vector<std::string> remarks;
+  const Canvas measure(Canvas::Format::png, {8.0, 8.0}, 1.0);
+  for (const std::string& remark : plot.remarks)
+    for (std::string& line : measure.fitted(remark, kImageLabelFont, width - 2.0 * kMargin, 3, Ellipsis::end))
+      remarks.push_back(std::move(line));
+  const double added = added_title_height(plot.title, width);
+  const double head = kMargin + 26.0 + added + kRemarkHeight * static_cast<double>(remarks.size());
   const Size size{std::ceil(width), std::ceil(head + height + 8.0)};
   Canvas canvas(format, size, scale);
   canvas.fill_rectangle({0.0, 0.0}, size, kWhite);
-  const auto line = [&](const std::string& text, Font font, double y) {
-    draw_within(canvas, size.width - 2.0 * kMargin, Ellipsis::end, {kMargin, y}, text, font, kText, Align::left);
-  };
-  line(plot.title, kTitleFont, kMargin + 12.0);
-  for (std::size_t k = 0; k < plot.remarks.size(); ++k)
-    line(plot.remarks[k], kImageLabelFont, kMargin + 32.0 + kRemarkHeight * static_cast<double>(k));
+  double baseline = kMargin + 12.0;
+  for (const std::string& line : title_lines(plot.title, width)) {
+    canvas.text({kMargin, baseline}, line, kTitleFont, kText, Align::left);
+    baseline += kTitleLineHeight;
+  }
+  for (std::size_t k = 0; k < remarks.size(); ++k)
+    canvas.text({kMargin, kMargin + 32.0 + added + kRemarkHeight * static_cast<double>(k)}, remarks[k], kImageLabelFont,
+                kText, Align::left);
   double x = kMargin;
   for (const ImagePanel& panel : plot.panels) {
     draw(canvas, panel, {x, head});

@@ -18,17 +18,17 @@ constexpr Colour kRest{0.945, 0.945, 0.945};
 constexpr Colour kHatch{0.80, 0.80, 0.80};
 constexpr Colour kLine{0.55, 0.55, 0.55};  ///< grey that is visible on the palest and on the darkest region
 
-// Colour scale YlGnBu of ColorBrewer (Harrower and Brewer 2003). Its lightness changes monotonically, and it is
-// suitable for colour-blind readers.
-constexpr ColourScale kMapScale = {{{1.000, 1.000, 0.851},
-                                    {0.929, 0.973, 0.694},
-                                    {0.780, 0.914, 0.706},
-                                    {0.498, 0.804, 0.733},
-                                    {0.255, 0.714, 0.769},
-                                    {0.114, 0.569, 0.753},
-                                    {0.133, 0.369, 0.659},
+// Colour scale YlGnBu of ColorBrewer (Harrower and Brewer 2003), from dark to light: as in all maps, lighter means
+// more. Its lightness changes monotonically, and it is suitable for colour-blind readers.
+constexpr ColourScale kMapScale = {{{0.031, 0.114, 0.345},
                                     {0.145, 0.204, 0.580},
-                                    {0.031, 0.114, 0.345}}};
+                                    {0.133, 0.369, 0.659},
+                                    {0.114, 0.569, 0.753},
+                                    {0.255, 0.714, 0.769},
+                                    {0.498, 0.804, 0.733},
+                                    {0.780, 0.914, 0.706},
+                                    {0.929, 0.973, 0.694},
+                                    {1.000, 1.000, 0.851}}};
 constexpr int kColourSteps = 200;
 
 constexpr Font kMapRemarkFont{11.0, false};

@@ -29,7 +29,7 @@ constexpr Size kAroundPlotArea{140.0, 100.0};  ///< space for the texts of a pan
 constexpr Font kSurfaceRemarkFont{11.5, false};
 constexpr double kSurfaceRemarkLine = 16.0;
 /// Length in um from which axes are labelled in mm.
-constexpr double kMillimetresFrom_um = 2000.0;
+constexpr double kMillimetresFromUm = 2000.0;
 
 // Colours of deviations: blue below 0, white at 0 and red above 0. These are the colours of RdBu of ColorBrewer
 // (Harrower and Brewer 2003), which colour-blind readers can distinguish.
@@ -183,7 +183,7 @@ void draw(Canvas& canvas, const GridPanel& panel, Point cell, Size room) {
     colours.push_back(std::isfinite(v) ? colour_at(scale, (v - range.low) / range.span()) : kMissingColour);
   canvas.image(area.corner, area.size, small.columns, colours);
   draw_frame(canvas, area.corner, area.size);
-  const bool in_mm = std::max(panel.x_size_um, panel.y_size_um) >= kMillimetresFrom_um;
+  const bool in_mm = std::max(panel.x_size_um, panel.y_size_um) >= kMillimetresFromUm;
   const double per_um = in_mm ? 1e-3 : 1.0;
   const char* const unit = in_mm ? "mm" : "µm";
   const auto [x_um, y_um] = panel.lower_left_um.value_or(std::array{0.0, 0.0});

@@ -22,8 +22,9 @@ struct DetectorRequest {
   std::size_t pixels = 400;
   /// Pixels along each side of the angular map; a whole number >= 1 and <= 2049.
   std::size_t angle_pixels = 201;
-  /// Half width of the angular map, in degrees; > 0 and <= 90.
-  double window_deg = 1.0;
+  /// Half width of the angular map, in degrees; > 0 and <= 90. Default: such that it contains 99.9 % of the light that
+  /// returns near the source.
+  std::optional<double> window_deg = {};
   /// Method of tracing: beams (exact), rays (montecarlo or embree, which are the same here), or auto: exact if
   /// possible.
   std::string engine = "auto";
@@ -32,6 +33,9 @@ struct DetectorRequest {
   std::optional<double> cutoff = {};
   /// Number of Monte Carlo rays; a whole number >= 1 and <= 68719476736. Default: 4194304.
   std::optional<std::uint64_t> samples = {};
+  /// Largest relative standard error of a bin where there is light. Pixels are merged until it is reached; 0: pixels
+  /// are not merged; >= 0 and < 1.
+  double bin_error = 0.01;
   /// Seed of the random numbers; a whole number >= 0 and <= 4294967295.
   std::uint32_t seed = 1;
 };

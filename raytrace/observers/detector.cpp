@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/angle.h"
 #include "core/error.h"
 #include "core/random.h"
 #include "core/task_progress.h"
@@ -13,7 +14,6 @@
 #include "raytrace/paths/path_tracer.h"
 #include "raytrace/sampling/entrance_sampler.h"
 #include "raytrace/sampling/flush_denormals.h"
-#include "raytrace/sampling/replicate_means.h"
 #include "raytrace/sampling/replicates.h"
 #include "raytrace/sampling/sobol.h"
 
@@ -55,6 +55,8 @@ void add_direction(const DetectorSetting& setting, const Vec3& direction, double
     maps.per_sr.value[*bin] += power / setting.angles.solid_angle_sr(*bin);
   else
     maps.outside += power;
+  if (const auto ring = AngularRings::ring_at(setting.frame.angles_rad(direction).norm()))
+    maps.rings.power[*ring] += power;
 }
 
 DetectorMaps empty_maps(const DetectorSetting& setting) {
@@ -74,6 +76,7 @@ struct Deposit {
 struct Deposits {
   std::vector<Deposit> leaving;
   std::vector<Deposit> entering;
+  std::vector<Deposit> rings;   ///< indices of AngularRings
   std::vector<Deposit> angles;  ///< bins of directions; the index after the last bin means outside of the grid
   double in_cone = 0.0;
   double truncated = 0.0;
@@ -108,7 +111,10 @@ class Recorder : public ExitObserver {
   }
 
   void add(const Vec2& position_mm, const Vec3& direction, double power) {
-    const auto bin = setting_.angles.bin_of(setting_.frame.angles_rad(direction));
+    const Vec2 angles_rad = setting_.frame.angles_rad(direction);
+    const auto bin = setting_.angles.bin_of(angles_rad);
+    if (const auto ring = AngularRings::ring_at(angles_rad.norm()))
+      deposits_.rings.push_back({static_cast<std::uint32_t>(*ring), power});
     deposits_.angles.push_back({static_cast<std::uint32_t>(bin.value_or(setting_.angles.size())), power});
     if (light_.cone_of(direction) >= light_.cone_chord2.size()) return;
     deposits_.in_cone += power;
@@ -125,46 +131,48 @@ class Recorder : public ExitObserver {
   std::optional<std::size_t> entry_;
 };
 
-/// Mean and standard error over replicates, updated after each replicate (Welford 1962).
-class RunningMean {
- public:
-  explicit RunningMean(std::size_t size) : sum_(size, 0.0), mean_(size, 0.0), squares_(size, 0.0) {}
-
-  std::vector<double>& replicate() { return sum_; }
-  /// Adds the sums of the present replicate, multiplied by `scale`, and starts the next replicate.
-  void close(double scale) {
-    count_ += 1.0;
-    for (std::size_t k = 0; k < sum_.size(); ++k) {
-      const double value = scale * sum_[k];
-      const double off = value - mean_[k];
-      mean_[k] += off / count_;
-      squares_[k] += off * (value - mean_[k]);
-      sum_[k] = 0.0;
-    }
-  }
-  /// Returns the mean over the replicates and the standard error of the mean, for each pixel.
-  /// \param rays total number of rays in all replicates
-  /// \param largest maximum value that a single ray can add to a pixel, in units of the mean
-  PixelValues values(std::uint64_t rays, double largest) const {
-    PixelValues values{mean_, squares_};
-    for (double& s : values.std_error)
-      s = with_unsampled_paths(student_factor(kDetectorReplicates) * std::sqrt(s / (count_ - 1.0) / count_),
-                               static_cast<double>(rays), largest);
-    return values;
-  }
-
- private:
-  std::vector<double> sum_;
-  std::vector<double> mean_;
-  std::vector<double> squares_;
-  double count_ = 0.0;
-};
-
 void add_to(std::vector<double>& sums, const std::vector<Deposit>& deposits) {
   for (const Deposit& d : deposits) sums[d.pixel] += d.power;
 }
 
 }  // namespace
+
+std::optional<std::size_t> AngularRings::ring_at(double angle_rad) {
+  const double ring = Angle::from_rad(angle_rad).deg() / kMaxDeg * static_cast<double>(kCount);
+  if (!(ring < static_cast<double>(kCount))) return std::nullopt;
+  return static_cast<std::size_t>(ring);
+}
+
+std::optional<double> AngularRings::half_angle_deg(double fraction) const {
+  double total = 0.0;
+  for (const double p : power) total += p;
+  if (!(total > 0.0)) return std::nullopt;
+  double sum = 0.0;
+  for (std::size_t k = 0; k < power.size(); ++k) {
+    sum += power[k];
+    if (sum >= fraction * total) return kMaxDeg * static_cast<double>(k + 1) / static_cast<double>(kCount);
+  }
+  return kMaxDeg;
+}
+
+std::optional<FarField> detector_far_field(const geometry::Part& part, const Optics& optics,
+                                           const Illumination& illumination, const DetectorSetting& setting,
+                                           const BeamPolicy& beams, const FarFieldPolicy& policy,
+                                           std::vector<FarFieldRay>& specular, const Cancellation* cancel) {
+  FarFieldCollector collector(part, illumination, policy);
+  BeamPolicy of_cells = beams;
+  of_cells.separate_cells = true;
+  const BeamResult traced =
+      BeamTracer(part, BeamTracer::Elements::instanced)
+          .trace(optics, illumination, {setting.acceptance_deg}, of_cells, cancel, [&](const ReturnedBeam& beam) {
+            if (beam.depth > 0)
+              collector.add(beam);
+            else
+              specular.push_back({beam.direction, beam.stokes.i});
+          });
+  if (!traced.complete) return std::nullopt;
+  return collector.finish();
+}
 
 DetectorMaps exact_detector_maps(const geometry::Part& part, const Optics& optics, const Illumination& illumination,
                                  const DetectorSetting& setting, const BeamPolicy& policy, const Cancellation* cancel) {
@@ -195,11 +203,13 @@ DetectorMaps sampled_detector_maps(const geometry::Part& part, const Optics& opt
   const auto per_replicate = static_cast<std::uint32_t>(
       std::clamp<std::uint64_t>((rays + kDetectorReplicates - 1) / kDetectorReplicates, 1, UINT32_MAX / 2));
   const std::size_t tasks = (per_replicate + kRaysPerDetectorTask - 1) / kRaysPerDetectorTask;
-  RunningMean leaving(setting.face.size());
-  RunningMean entering(setting.face.size());
-  RunningMean angles(setting.angles.size() + 1);
-  RunningMean rre(1);
+  const std::size_t bins = setting.angles.size();
+  PixelPyramid leaving(setting.face.columns(), setting.face.rows(), setting.face_bins);
+  PixelPyramid entering(setting.face.columns(), setting.face.rows(), setting.face_bins);
+  PixelPyramid angles(setting.angles.columns(), setting.angles.rows(), setting.angle_bins);
+  PixelPyramid rre(1, 1, {});
   DetectorMaps maps = empty_maps(setting);
+  double outside = 0.0;
   TaskProgress all(progress, kDetectorReplicates * tasks);
   for (std::uint32_t replicate = 0; replicate < kDetectorReplicates; ++replicate) {
     const auto words = philox({seed, kScrambleStream}, replicate, 0);
@@ -229,7 +239,9 @@ DetectorMaps sampled_detector_maps(const geometry::Part& part, const Optics& opt
     for (const Deposits& deposits : done) {
       add_to(leaving.replicate(), deposits.leaving);
       add_to(entering.replicate(), deposits.entering);
-      add_to(angles.replicate(), deposits.angles);
+      for (const Deposit& d : deposits.angles) (d.pixel < bins ? angles.replicate()[d.pixel] : outside) += d.power;
+      for (const Deposit& d : deposits.rings)
+        maps.rings.power[d.pixel] += d.power / per_replicate / kDetectorReplicates;
       rre.replicate()[0] += deposits.in_cone;
       maps.truncated += deposits.truncated / per_replicate / kDetectorReplicates;
       if (deposits.lost > kLostLimit * per_replicate)
@@ -249,9 +261,7 @@ DetectorMaps sampled_detector_maps(const geometry::Part& part, const Optics& opt
   maps.leaving = leaving.values(maps.rays, irradiance_of_ray);
   maps.entering = entering.values(maps.rays, irradiance_of_ray);
   maps.per_sr = angles.values(maps.rays, 1.0);
-  maps.outside = maps.per_sr.value.back();
-  maps.per_sr.value.pop_back();
-  maps.per_sr.std_error.pop_back();
+  maps.outside = outside / per_replicate / kDetectorReplicates;
   for (std::size_t bin = 0; bin < setting.angles.size(); ++bin) {
     maps.per_sr.value[bin] /= setting.angles.solid_angle_sr(bin);
     maps.per_sr.std_error[bin] /= setting.angles.solid_angle_sr(bin);

@@ -4,6 +4,7 @@
 // the directions of the light.
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/progress.h"
@@ -12,22 +13,34 @@
 #include "raytrace/light/direction_score.h"
 #include "raytrace/light/optics.h"
 #include "raytrace/light/path_policy.h"
+#include "raytrace/observers/far_field.h"
 #include "raytrace/observers/pixel_grid.h"
+#include "raytrace/observers/pixel_pyramid.h"
 
 namespace retrace::raytrace {
 
 /// Settings of a detector that records the returned light for one direction of incidence.
 struct DetectorSetting {
-  PixelGrid face;         ///< pixels on the entrance face, or on one period of it
-  DirectionGrid angles;   ///< bins of directions around the direction to the source
-  ReturnFrame frame;      ///< axes around the direction to the source
-  double acceptance_deg;  ///< half angle of the acceptance cone; the maps of the face contain only light in this cone
+  PixelGrid face;           ///< pixels on the entrance face, or on one period of it
+  DirectionGrid angles;     ///< bins of directions around the direction to the source
+  ReturnFrame frame;        ///< axes around the direction to the source
+  double acceptance_deg;    ///< half angle of the acceptance cone; the maps of the face contain only light in this cone
+  BinRule face_bins = {};   ///< rule by which pixels of the face are merged if they are sampled by rays
+  BinRule angle_bins = {};  ///< rule by which bins of directions are merged if they are sampled by rays
 };
 
-/// Pixel values and their standard errors. `std_error` is empty if the values are not sampled.
-struct PixelValues {
-  std::vector<double> value;
-  std::vector<double> std_error;
+/// Distribution of the light over the angle from the direction to the source.
+struct AngularRings {
+  static constexpr double kMaxDeg = 10.0;
+  static constexpr std::size_t kCount = 2000;
+
+  std::vector<double> power = std::vector<double>(kCount, 0.0);  ///< power in rings of equal width up to kMaxDeg
+
+  /// Returns the ring that contains an angle, or nothing beyond kMaxDeg.
+  static std::optional<std::size_t> ring_at(double angle_rad);
+  /// Returns the smallest angle within which the given fraction of the power of all rings leaves, in degrees. Nothing
+  /// if there is no power.
+  std::optional<double> half_angle_deg(double fraction) const;
 };
 
 /// Maps of the returned light. Irradiances are relative to the irradiance of the incident beam on the entrance face.
@@ -42,7 +55,19 @@ struct DetectorMaps {
   double truncated = 0.0;
   std::uint64_t rays = 0;  ///< number of rays or beams
   bool complete = true;
+  AngularRings rings;  ///< without diffraction
 };
+
+/// Returns the far field of the returned light with diffraction at the cells, for a point source and a point receiver.
+/// Light that the entrance face reflects without entering is not included; it is added to `specular`.
+/// \param policy settings of the diffraction
+/// \param specular receives the directions and powers of this light
+/// \return nothing if the computation was cancelled
+/// \throw BudgetError in the same cases as BeamTracer::trace(), or if the form of facets needs too many polygons
+std::optional<FarField> detector_far_field(const geometry::Part& part, const Optics& optics,
+                                           const Illumination& illumination, const DetectorSetting& setting,
+                                           const BeamPolicy& beams, const FarFieldPolicy& policy,
+                                           std::vector<FarFieldRay>& specular, const Cancellation* cancel = nullptr);
 
 /// Computes the maps from beams of polygonal cross-section. The area of a pixel that a polygon covers is computed
 /// exactly.

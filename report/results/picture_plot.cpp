@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <functional>
+
 #include "core/number_format.h"
 #include "core/version.h"
 #include "design/io/design_json.h"
@@ -10,6 +13,9 @@ namespace retrace::report {
 namespace {
 
 using studies::DetectorResult;
+
+/// Ratio of the brightest bin to the next one from which the brightest bin does not determine the colours.
+constexpr double kMuchBrighter = 3.0;
 
 /// Reverses the order of the rows. Grids of directions begin with the lowest row, pictures with the top row.
 std::vector<double> turned_over(const std::vector<double>& values, std::size_t columns) {
@@ -46,6 +52,9 @@ ImagePlot irradiance_plot(const DetectorResult& result) {
   plot.remarks.push_back(fmt::format("{}; returned within {}°: RRE {} %{}", direction_text(result),
                                      shortest(result.acceptance_half_angle_deg), fixed(100.0 * result.maps.rre, 2),
                                      result.is_period ? "; one period of an infinite array" : ""));
+  if (result.face_error > 0.0)
+    plot.remarks.push_back(fmt::format("bins with light have a standard error of at most {} %",
+                                       fixed_visible(100.0 * result.face_error, 1)));
   const auto panel = [&](const char* title, const std::vector<double>& values) {
     return ImagePanel{title,
                       "irradiance divided by that of the beam",
@@ -64,16 +73,32 @@ ImagePlot angular_plot(const DetectorResult& result) {
   ImagePlot plot;
   plot.title = design::short_name(result.design);
   plot.remarks.push_back(direction_text(result) + "; around the direction back to the source");
-  plot.remarks.push_back(fmt::format("{} % of the light leaves beyond {}°", fixed(100.0 * result.maps.outside, 2),
-                                     shortest(result.request.window_deg)));
+  plot.remarks.push_back(fmt::format("{}; {} % of the light leaves outside of this map",
+                                     result.has_diffraction
+                                         ? std::string("with diffraction, for a point source")
+                                         : fmt::format("without diffraction ({})", result.without_diffraction),
+                                     fixed(100.0 * result.maps.outside, 2)));
+  if (result.angle_error > 0.0)
+    plot.remarks.push_back(fmt::format("bins with light have a standard error of at most {} %",
+                                       fixed_visible(100.0 * result.angle_error, 1)));
   ImagePanel panel{"Fraction of the light by direction",
                    "per steradian",
                    result.request.angle_pixels,
                    result.request.angle_pixels,
                    turned_over(result.maps.per_sr.value, result.request.angle_pixels),
-                   2.0 * result.request.window_deg,
+                   2.0 * result.window_deg,
                    "°"};
   panel.is_logarithmic = true;
+  // The reflection of the entrance face is not diffracted. It is in one bin, which is often much brighter than all
+  // others, and the colours then end at the second brightest bin.
+  if (result.has_diffraction && panel.values.size() > 1) {
+    std::vector<double> values = panel.values;
+    std::nth_element(values.begin(), values.begin() + 1, values.end(), std::greater<>());
+    if (values[0] > kMuchBrighter * values[1] && values[1] > 0.0) {
+      panel.full_value = values[1];
+      plot.remarks.emplace_back("one bin, with the reflection of the entrance face, is brighter than the scale");
+    }
+  }
   plot.panels.push_back(std::move(panel));
   return plot;
 }
@@ -98,6 +123,7 @@ FloatPicture irradiance_picture(const DetectorResult& result) {
                      {"retrace:azimuth_deg", result.request.azimuth_deg},
                      {"retrace:acceptance_half_angle_deg", result.acceptance_half_angle_deg},
                      {"retrace:rre", result.maps.rre}};
+  if (result.face_error > 0.0) picture.numbers.emplace_back("retrace:bin_error", result.face_error);
   return picture;
 }
 
@@ -110,10 +136,12 @@ FloatPicture angular_picture(const DetectorResult& result) {
   picture.texts = picture_texts("detector", result.design);
   picture.texts.emplace_back("retrace:engine", result.engine);
   picture.texts.emplace_back("retrace:unit", "share of the incident power per steradian");
-  picture.numbers = {{"retrace:half_width_deg", result.request.window_deg},
+  picture.texts.emplace_back("retrace:diffraction", result.has_diffraction ? "included" : "not included");
+  picture.numbers = {{"retrace:half_width_deg", result.window_deg},
                      {"retrace:incidence_deg", result.request.incidence_deg},
                      {"retrace:azimuth_deg", result.request.azimuth_deg},
                      {"retrace:outside", result.maps.outside}};
+  if (result.angle_error > 0.0) picture.numbers.emplace_back("retrace:bin_error", result.angle_error);
   return picture;
 }
 

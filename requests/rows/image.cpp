@@ -40,7 +40,9 @@ constexpr Row kDetectorRows[] = {{"incidence_deg",
                                   Number{{.low = 0.0, .low_included = false, .high = 90.0}},
                                   "half width of the angular map",
                                   access<&DetectorRequest::window_deg>,
-                                  {.value = "W"}},
+                                  {.value = "W",
+                                   .otherwise = "such that it contains 99.9 % of the light that returns near the "
+                                                "source"}},
                                  {"engine",
                                   Word{kEnginesOfParts},
                                   "method of tracing: beams (exact), rays (montecarlo or embree, which are the same "
@@ -58,6 +60,13 @@ constexpr Row kDetectorRows[] = {{"incidence_deg",
                                   "number of Monte Carlo rays",
                                   access<&DetectorRequest::samples>,
                                   {.value = "N", .usual = "4194304"},
+                                  kNeedRays},
+                                 {"bin_error",
+                                  Number{{.low = 0.0, .high = 1.0, .high_included = false}},
+                                  "largest relative standard error of a bin where there is light. Pixels are merged "
+                                  "until it is reached; 0: pixels are not merged",
+                                  access<&DetectorRequest::bin_error>,
+                                  {.value = "E"},
                                   kNeedRays},
                                  seed_row<DetectorRequest>()};
 

@@ -21,6 +21,20 @@ using geometry::Rectangle, geometry::Vec2;
 constexpr double kTruncatedGoal = 1e-5;
 // Maximum number of beams up to which the engine `auto` uses exact tracing. Tracing this number takes some seconds.
 constexpr std::uint64_t kBeamsOfAutomatic = 1'000'000;
+// Maximum number of beams for diffraction, which are kept in memory.
+constexpr std::uint64_t kBeamsOfDiffraction = 4'000'000;
+// Maximum product of diffracted polygons and bins of directions. It takes some seconds.
+constexpr double kPolygonsTimesBins = 4e7;
+// Ratio of the angle within which beams are diffracted to the half width of the angular map.
+constexpr double kDiffractedAround = 1.5;
+// Number of rays that determine the half width of the angular map.
+constexpr std::uint64_t kPilotRays = std::uint64_t{1} << 16;
+// Fraction of the light near the source that the angular map contains, without diffraction.
+constexpr double kFractionInWindow = 0.999;
+constexpr double kAroundLight = 1.1;      // ratio of the half width of the map to the half angle of the light
+constexpr double kFringesInWindow = 6.0;  // width that diffraction adds to the map, in wavelengths per cell
+constexpr double kMinWindowDeg = 0.05;
+constexpr double kWindowWithoutLightDeg = 1.0;
 
 raytrace::Illumination illumination_of(const design::Design& design, const DetectorRequest& request) {
   return {Angle::from_deg(request.incidence_deg), Angle::from_deg(request.azimuth_deg), design.light.polarisation};
@@ -45,6 +59,18 @@ raytrace::PixelGrid face_grid(const geometry::Part& part, std::size_t longer) {
   return {bounds, count(bounds.size().x()), count(bounds.size().y())};
 }
 
+/// Returns the smallest number of two digits, in steps that suit an axis, that is not less than the value.
+double rounded_up(double value) {
+  const double exponent = std::floor(std::log10(value));
+  // Division by a whole number gives the double that is nearest to the decimal number.
+  const auto scaled = [&](double step) {
+    return exponent < 0.0 ? step / std::pow(10.0, -exponent) : step * std::pow(10.0, exponent);
+  };
+  for (const double step : {1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0})
+    if (scaled(step) >= value * (1.0 - 1e-9)) return scaled(step);
+  return scaled(10.0);
+}
+
 void add(std::vector<double>& sum, const std::vector<double>& more, double weight) {
   if (sum.empty()) sum.assign(more.size(), 0.0);
   for (std::size_t k = 0; k < more.size(); ++k) sum[k] += weight * more[k];
@@ -62,6 +88,7 @@ void add(raytrace::DetectorMaps& sum, const raytrace::DetectorMaps& more, double
   add(sum.leaving, more.leaving, weight);
   add(sum.entering, more.entering, weight);
   add(sum.per_sr, more.per_sr, weight);
+  add(sum.rings.power, more.rings.power, weight);
   sum.outside += weight * more.outside;
   sum.rre += weight * more.rre;
   sum.truncated += weight * more.truncated;
@@ -85,20 +112,114 @@ DetectorStudy::DetectorStudy(design::Design design, DetectorRequest request)
                                  reference({"engine"})));
 }
 
-raytrace::DetectorMaps DetectorStudy::trace(const design::SpectralOptics& light,
-                                            const raytrace::DetectorSetting& setting, std::size_t number, bool exact,
-                                            Progress* progress, const Cancellation* cancel) const {
-  const raytrace::Illumination illumination = illumination_of(design_, request_);
-  if (!exact)
-    return raytrace::sampled_detector_maps(
-        model_.part, light.optics, illumination, setting,
-        std::max<std::uint64_t>(1, request_.samples.value_or(kDefaultDetectorRays) / model_.spectral.size()),
-        raytrace::seed_at(request_.seed, number), {}, progress, cancel);
+raytrace::BeamPolicy DetectorStudy::beam_policy() const {
   raytrace::BeamPolicy policy;
   policy.cutoff = request_.cutoff;
   policy.truncated_goal = kTruncatedGoal;
   if (engine_ == raytrace::Engine::automatic) policy.max_beams = kBeamsOfAutomatic;
-  return raytrace::exact_detector_maps(model_.part, light.optics, illumination, setting, policy, cancel);
+  return policy;
+}
+
+raytrace::DetectorSetting DetectorStudy::setting_of(const raytrace::PixelGrid& face, double window_deg) const {
+  return {face,
+          {raytrace::DirectionGrid::Layout::square, Angle::from_deg(window_deg).rad(), request_.angle_pixels,
+           request_.angle_pixels},
+          frame_of(illumination_of(design_, request_)),
+          design_.detector.acceptance_half_angle_deg.back(),
+          {request_.bin_error, kDarkFace},
+          {request_.bin_error, kDarkAngles}};
+}
+
+raytrace::DetectorMaps DetectorStudy::trace(const design::SpectralOptics& light,
+                                            const raytrace::DetectorSetting& setting, std::size_t number, bool exact,
+                                            std::uint64_t rays, Progress* progress, const Cancellation* cancel) const {
+  const raytrace::Illumination illumination = illumination_of(design_, request_);
+  if (exact)
+    return raytrace::exact_detector_maps(model_.part, light.optics, illumination, setting, beam_policy(), cancel);
+  return raytrace::sampled_detector_maps(model_.part, light.optics, illumination, setting,
+                                         std::max<std::uint64_t>(1, rays / model_.spectral.size()),
+                                         raytrace::seed_at(request_.seed, number), {}, progress, cancel);
+}
+
+raytrace::DetectorMaps DetectorStudy::trace_all(const raytrace::DetectorSetting& setting, bool exact,
+                                                std::uint64_t rays, Progress* progress,
+                                                const Cancellation* cancel) const {
+  raytrace::DetectorMaps maps;
+  const std::size_t wavelengths = model_.spectral.size();
+  TaskProgress all(progress, wavelengths);
+  raytrace::trace_wavelengths(1, wavelengths, false, all, [&](std::size_t, std::size_t k, Progress& task) {
+    add(maps, trace(model_.spectral[k], setting, k, exact, rays, &task, cancel), model_.spectral[k].weight);
+    return maps.complete;
+  });
+  return maps;
+}
+
+/// Returns the half width of the angular map. It is the given one, or such that the map contains 99.9 % of the light
+/// near the source as it is without diffraction. Diffraction adds the widths of some fringes.
+double DetectorStudy::window_deg(const raytrace::AngularRings& rings, bool with_diffraction) const {
+  if (request_.window_deg) return *request_.window_deg;
+  const std::optional<double> half_angle_deg = rings.half_angle_deg(kFractionInWindow);
+  if (!half_angle_deg) return kWindowWithoutLightDeg;
+  double wanted_deg = std::max(kMinWindowDeg, kAroundLight * *half_angle_deg);
+  if (with_diffraction) {
+    double wavelength_nm = 0.0;
+    for (const design::SpectralOptics& light : model_.spectral)
+      wavelength_nm = std::max(wavelength_nm, light.wavelength_nm);
+    const double fringe_deg = Angle::from_rad(1e-6 * wavelength_nm / model_.part.size_mm).deg();
+    wanted_deg = std::max(kAroundLight * *half_angle_deg, *half_angle_deg + kFringesInWindow * fringe_deg);
+  }
+  return std::min(rounded_up(wanted_deg), 90.0);
+}
+
+/// Replaces the angular map by the far field with diffraction. Returns false if this is not possible; the map is then
+/// unchanged, and the result contains the reason.
+bool DetectorStudy::add_diffraction(DetectorResult& result, const raytrace::DetectorSetting& setting,
+                                    const Cancellation* cancel) const {
+  if (facts_.has_texture) {
+    result.without_diffraction = "rough facets";
+    return false;
+  }
+  const double bins = static_cast<double>(setting.angles.size());
+  raytrace::BeamPolicy beams = beam_policy();
+  beams.max_beams = std::min(beams.max_beams, kBeamsOfDiffraction);
+  raytrace::DetectorMaps maps;
+  try {
+    for (const design::SpectralOptics& light : model_.spectral) {
+      raytrace::FarFieldPolicy policy;
+      policy.wavelength_nm = light.wavelength_nm;
+      policy.window_rad = kDiffractedAround * setting.angles.half_width_rad();
+      // Patterns that are narrower than the bins are not visible.
+      policy.finest_detail_rad = 2.0 * setting.angles.half_width_rad() / static_cast<double>(setting.angles.columns());
+      policy.max_polygons = static_cast<std::size_t>(std::clamp(kPolygonsTimesBins / bins, 100.0, 20'000.0));
+      policy.cancel = cancel;
+      std::vector<raytrace::FarFieldRay> specular;
+      const auto field = raytrace::detector_far_field(model_.part, light.optics, illumination_of(design_, request_),
+                                                      setting, beams, policy, specular, cancel);
+      if (!field) {
+        result.maps.complete = false;
+        return true;
+      }
+      std::vector<double> power = field->binned(setting.frame, setting.angles);
+      for (const raytrace::FarFieldRay& ray : specular)
+        power[setting.angles.bin_of(setting.frame.angles_rad(ray.direction)).value_or(setting.angles.size())] +=
+            ray.power;
+      if (cancel != nullptr && cancel->requested()) {
+        result.maps.complete = false;
+        return true;
+      }
+      maps.outside += light.weight * power.back();
+      power.pop_back();
+      for (std::size_t bin = 0; bin < power.size(); ++bin) power[bin] /= setting.angles.solid_angle_sr(bin);
+      add(maps.per_sr.value, power, light.weight);
+    }
+  } catch (const BudgetError&) {
+    result.without_diffraction = "too many beams";
+    return false;
+  }
+  result.maps.per_sr = std::move(maps.per_sr);
+  result.maps.outside = maps.outside;
+  result.has_diffraction = true;
+  return true;
 }
 
 DetectorResult DetectorStudy::run(Progress* progress, const Cancellation* cancel) const {
@@ -110,31 +231,41 @@ DetectorResult DetectorStudy::run(Progress* progress, const Cancellation* cancel
   result.acceptance_half_angle_deg = design_.detector.acceptance_half_angle_deg.back();
   result.face = face_grid(model_.part, request_.pixels);
   result.is_period = model_.part.period_mm.has_value();
-  const raytrace::DetectorSetting setting{
-      result.face,
-      {raytrace::DirectionGrid::Layout::square, Angle::from_deg(request_.window_deg).rad(), request_.angle_pixels,
-       request_.angle_pixels},
-      frame_of(illumination_of(design_, request_)),
-      result.acceptance_half_angle_deg};
+  const std::uint64_t rays = request_.samples.value_or(kDefaultDetectorRays);
   bool exact = raytrace::is_exact(engine_, facts_);
   AttemptProgress attempt(progress);
-  const auto trace_all = [&] {
-    result.maps = {};
-    const std::size_t wavelengths = model_.spectral.size();
-    TaskProgress all(&attempt, wavelengths);
-    raytrace::trace_wavelengths(1, wavelengths, false, all, [&](std::size_t, std::size_t k, Progress& task) {
-      add(result.maps, trace(model_.spectral[k], setting, k, exact, &task, cancel), model_.spectral[k].weight);
-      return result.maps.complete;
-    });
-  };
-  try {
-    trace_all();
-  } catch (const BudgetError&) {
-    if (!exact || engine_ == raytrace::Engine::exact) throw;
-    exact = false;  // the exact engine needs too many beams
-    attempt.begin_again();
-    trace_all();
+  if (exact) {
+    try {
+      result.maps = trace_all(setting_of(result.face, request_.window_deg.value_or(kWindowWithoutLightDeg)), true, 0,
+                              &attempt, cancel);
+    } catch (const BudgetError&) {
+      if (engine_ == raytrace::Engine::exact) throw;
+      exact = false;  // the exact engine needs too many beams
+      attempt.begin_again();
+    }
   }
+  if (exact && result.maps.complete) {
+    result.window_deg = window_deg(result.maps.rings, true);
+    if (!add_diffraction(result, setting_of(result.face, result.window_deg), cancel)) {
+      result.window_deg = window_deg(result.maps.rings, false);
+      attempt.begin_again();
+      result.maps = trace_all(setting_of(result.face, result.window_deg), true, 0, &attempt, cancel);
+    }
+  } else if (!exact) {
+    result.without_diffraction = "rays";
+    if (request_.window_deg) {
+      result.window_deg = *request_.window_deg;
+    } else {
+      const raytrace::DetectorMaps pilot =
+          trace_all(setting_of({result.face.bounds_mm(), 1, 1}, kWindowWithoutLightDeg), false,
+                    std::min(rays, kPilotRays), nullptr, cancel);
+      result.window_deg = window_deg(pilot.rings, false);
+    }
+    result.maps = trace_all(setting_of(result.face, result.window_deg), false, rays, &attempt, cancel);
+  }
+  result.face_error = std::max(raytrace::largest_relative_error(result.maps.leaving, kDarkFace),
+                               raytrace::largest_relative_error(result.maps.entering, kDarkFace));
+  result.angle_error = raytrace::largest_relative_error(result.maps.per_sr, kDarkAngles);
   result.engine = exact ? "exact" : "embree";
   result.complete = result.maps.complete;
   result.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

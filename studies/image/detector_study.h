@@ -16,12 +16,22 @@ namespace retrace::studies {
 /// Default number of rays for a detector.
 inline constexpr std::uint64_t kDefaultDetectorRays = std::uint64_t{1} << 22;
 
+/// Fractions of the largest value of a map below which bins count as dark.
+inline constexpr double kDarkFace = 0.01;
+inline constexpr double kDarkAngles = 1e-3;
+
 struct DetectorResult : ImageResultBase {
   DetectorRequest request;
   double acceptance_half_angle_deg = 0.0;
   raytrace::PixelGrid face{{geometry::Vec2::Zero(), geometry::Vec2::Ones()}, 1, 1};
   raytrace::DetectorMaps maps;
   bool is_period = false;  ///< true: the face is one period of an infinite part
+  double window_deg = 0.0;          ///< half width of the angular map
+  bool has_diffraction = false;     ///< true: the angular map contains diffraction at the cells
+  std::string without_diffraction;  ///< reason why the angular map has no diffraction, such as "rays"
+  /// Largest standard error of a bin with light, relative to its value; 0 if light was traced as beams.
+  double face_error = 0.0;
+  double angle_error = 0.0;
 };
 
 /// Study of a detector. The constructor checks the request and prepares the model; run() computes the maps.
@@ -37,7 +47,15 @@ class DetectorStudy {
 
  private:
   raytrace::DetectorMaps trace(const design::SpectralOptics& light, const raytrace::DetectorSetting& setting,
-                               std::size_t number, bool exact, Progress* progress, const Cancellation* cancel) const;
+                               std::size_t number, bool exact, std::uint64_t rays, Progress* progress,
+                               const Cancellation* cancel) const;
+  raytrace::DetectorMaps trace_all(const raytrace::DetectorSetting& setting, bool exact, std::uint64_t rays,
+                                   Progress* progress, const Cancellation* cancel) const;
+  raytrace::DetectorSetting setting_of(const raytrace::PixelGrid& face, double window_deg) const;
+  raytrace::BeamPolicy beam_policy() const;
+  double window_deg(const raytrace::AngularRings& rings, bool with_diffraction) const;
+  bool add_diffraction(DetectorResult& result, const raytrace::DetectorSetting& setting,
+                       const Cancellation* cancel) const;
 
   design::Design design_;
   DetectorRequest request_;

@@ -53,13 +53,18 @@ std::string detector_json(const DetectorResult& result) {
   json["face"] = {{"x_from_mm", bounds.lower.x()}, {"y_from_mm", bounds.lower.y()},    {"x_to_mm", bounds.upper.x()},
                   {"y_to_mm", bounds.upper.y()},   {"columns", result.face.columns()}, {"rows", result.face.rows()},
                   {"is_period", result.is_period}};
-  json["angles"] = {{"half_width_deg", result.request.window_deg},
+  json["angles"] = {{"half_width_deg", result.window_deg},
+                    {"has_diffraction", result.has_diffraction},
                     {"columns", result.request.angle_pixels},
                     {"rows", result.request.angle_pixels},
                     {"outside", result.maps.outside}};
   json["rre"] = result.maps.rre;
   json["std_error"] = result.maps.std_error;
   json["truncated"] = result.maps.truncated;
+  if (result.engine != "exact")
+    json["bins"] = {{"error_requested", result.request.bin_error},
+                    {"face_error", result.face_error},
+                    {"angle_error", result.angle_error}};
   json["relative_irradiance_max"] = largest(result.maps.leaving.value);
   json["per_sr_max"] = largest(result.maps.per_sr.value);
   json[result.engine == "exact" ? "beams" : "rays"] = result.maps.rays;
@@ -182,9 +187,14 @@ std::string road_table(const RoadResult& result) {
 }
 
 std::string detector_table(const DetectorResult& result) {
-  return fmt::format("RRE {} % ({}); relative irradiance up to {}; {} % of the light leaves beyond {} degrees\n",
-                     fixed(100.0 * result.maps.rre, 3), result.engine, fixed(largest(result.maps.leaving.value), 3),
-                     fixed(100.0 * result.maps.outside, 2), shortest(result.request.window_deg));
+  std::string table =
+      fmt::format("RRE {} % ({}); relative irradiance up to {}; {} % of the light leaves beyond {} degrees\n",
+                  fixed(100.0 * result.maps.rre, 3), result.engine, fixed(largest(result.maps.leaving.value), 3),
+                  fixed(100.0 * result.maps.outside, 2), shortest(result.window_deg));
+  if (result.engine != "exact")
+    table += fmt::format("bins with light: standard error up to {} % on the face, {} % by direction\n",
+                         fixed(100.0 * result.face_error, 2), fixed(100.0 * result.angle_error, 2));
+  return table;
 }
 
 std::string camera_series_table(const std::vector<CameraResult>& results) {

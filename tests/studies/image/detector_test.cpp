@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "core/threads.h"
 #include "raytrace/paths/monte_carlo.h"
@@ -166,6 +168,140 @@ TEST(DetectorStudy, MapOfTheBrickArrayHoldsItsRre) {
   const double r = std::pow((kPmma - 1.0) / (kPmma + 1.0), 2.0);
   EXPECT_NEAR(result.maps.entering.value[45 * 50 + 1], 2.0 * r / (1.0 + r), 1e-4);
   EXPECT_GT(result.maps.entering.value[25 * 50 + 25], 0.9);
+}
+
+/// Merged bins reach the requested error where there is light. Their deviations from the exact maps agree with their
+/// standard errors over many seeds, and the sums do not change.
+TEST(DetectorMaps, BinsReachTheRequestedError) {
+  const Part part = build_part(finite(RtpElement{2.0, 2.0}, Arrangement::offset, 6.0, 6.0, 1.0));
+  const Illumination light = from(4.0, 20.0);
+  DetectorSetting setting = setting_of(part, 48, 48, light);
+  const DetectorMaps beams = exact(part, pmma(), light, setting);
+  const double goal = 0.02;
+  setting.face_bins = {goal, 0.01};
+  setting.angle_bins = {goal, 0.01};
+  double squares = 0.0;
+  double count = 0.0;
+  for (std::uint32_t seed = 1; seed <= 6; ++seed) {
+    const DetectorMaps merged = sampled_detector_maps(part, pmma(), light, setting, 1U << 19, seed, {});
+    EXPECT_LE(largest_relative_error(merged.leaving, 0.02), goal);
+    EXPECT_LE(largest_relative_error(merged.entering, 0.02), goal);
+    EXPECT_NEAR(mean_over_face(part, setting, merged.leaving.value), merged.rre, 1e-9);
+    EXPECT_NEAR(mean_over_face(part, setting, merged.entering.value), merged.rre, 1e-9);
+    // Pixels of one bin have the same value, and bins are blocks of 2^k pixels. The exact value of a bin is the mean of
+    // its pixels.
+    std::map<std::pair<double, double>, std::pair<double, double>> bins;
+    for (std::size_t k = 0; k < merged.leaving.value.size(); ++k) {
+      auto& [sum, pixels] = bins[{merged.leaving.value[k], merged.leaving.std_error[k]}];
+      sum += beams.leaving.value[k];
+      pixels += 1.0;
+    }
+    EXPECT_LT(bins.size(), merged.leaving.value.size());
+    EXPECT_GT(bins.size(), 30U);
+    for (const auto& [bin, exact_value] : bins) {
+      if (bin.first < 0.02) continue;
+      squares += std::pow((bin.first - exact_value.first / exact_value.second) / bin.second, 2.0);
+      count += 1.0;
+    }
+  }
+  EXPECT_LT(squares / count, 1.3) << "errors are not larger than stated";
+  EXPECT_GT(squares / count, 0.3) << "stated errors are not much too large";
+}
+
+TEST(PixelPyramid, WithoutARuleEveryPixelIsABin) {
+  PixelPyramid pyramid(3, 2, {});
+  for (int replicate = 0; replicate < 4; ++replicate) {
+    for (std::size_t k = 0; k < 6; ++k)
+      pyramid.replicate()[k] = static_cast<double>(k) + (replicate % 2 == 0 ? 0.1 : -0.1);
+    pyramid.close(2.0);
+  }
+  const PixelValues values = pyramid.values(1000, 0.0);
+  for (std::size_t k = 0; k < 6; ++k) {
+    EXPECT_NEAR(values.value[k], 2.0 * static_cast<double>(k), 1e-12);
+    EXPECT_GT(values.std_error[k], 0.0);
+  }
+}
+
+TEST(PixelPyramid, DividesOnlyWhereTheErrorAllowsIt) {
+  // The left half has no noise, and the right half has pixels with noise.
+  PixelPyramid pyramid(8, 4, {0.05, 0.01});
+  for (int replicate = 0; replicate < 16; ++replicate) {
+    for (std::size_t k = 0; k < 32; ++k) {
+      const bool is_noisy = k % 8 >= 4;
+      // The signs are opposite in neighbouring pixels, so that blocks have no noise.
+      const double sign = (k + k / 8 + static_cast<std::size_t>(replicate)) % 2 == 0 ? 1.0 : -1.0;
+      pyramid.replicate()[k] = 1.0 + (is_noisy ? 0.9 * sign : 0.1 * static_cast<double>(k % 8));
+    }
+    pyramid.close(1.0);
+  }
+  const PixelValues values = pyramid.values(1'000'000, 0.0);
+  for (std::size_t k = 0; k < 32; ++k)
+    EXPECT_NEAR(values.value[k], k % 8 >= 4 ? 1.0 : 1.0 + 0.1 * static_cast<double>(k % 8), 1e-9) << k;
+  EXPECT_LE(largest_relative_error(values, 0.01), 0.05);
+}
+
+/// The far field of the exact engine has the sum of RRE and is wider than without diffraction.
+TEST(DetectorStudy, AngularMapHasDiffraction) {
+  design::Design design;
+  design.part() = infinite(HexagonalCube{0.2}, Arrangement::honeycomb, 0.5);
+  design.substance.refractive_index = kPmma;
+  DetectorRequest request;
+  request.pixels = 20;
+  request.angle_pixels = 61;
+  const studies::DetectorResult result = studies::DetectorStudy(design, request).run();
+  ASSERT_TRUE(result.has_diffraction);
+  EXPECT_EQ(result.engine, "exact");
+  // The pattern of a cell of 0.2 mm has a width of 0.17 degrees.
+  EXPECT_GT(result.window_deg, 0.5);
+  EXPECT_LT(result.window_deg, 3.0);
+  const DirectionGrid grid{DirectionGrid::Layout::square, Angle::from_deg(result.window_deg).rad(), 61, 61};
+  double inside = 0.0;
+  std::size_t lit = 0;
+  const double brightest = *std::max_element(result.maps.per_sr.value.begin(), result.maps.per_sr.value.end());
+  for (std::size_t k = 0; k < grid.size(); ++k) {
+    inside += result.maps.per_sr.value[k] * grid.solid_angle_sr(k);
+    if (result.maps.per_sr.value[k] > 0.02 * brightest) ++lit;
+  }
+  EXPECT_GT(lit, 20U);
+  const Part part = build_part(design.part());
+  const DetectorSetting plain = setting_of(part, 4, 4);
+  const DetectorMaps without = exact(part, pmma(), {}, plain);
+  double total = without.outside;
+  for (std::size_t k = 0; k < plain.angles.size(); ++k)
+    total += without.per_sr.value[k] * plain.angles.solid_angle_sr(k);
+  EXPECT_NEAR(inside + result.maps.outside, total, 1e-3);
+  EXPECT_NEAR(without.rre, result.maps.rre, 1e-3);
+  EXPECT_GT(inside, 0.9 * result.maps.rre);
+  EXPECT_LT(inside, result.maps.rre + 1e-3);
+  request.engine = "montecarlo";
+  request.samples = 1U << 14;
+  const studies::DetectorResult by_rays = studies::DetectorStudy(design, request).run();
+  EXPECT_FALSE(by_rays.has_diffraction);
+  EXPECT_FALSE(by_rays.without_diffraction.empty());
+  EXPECT_LT(by_rays.window_deg, 0.2) << "without diffraction, the light returns in one direction";
+}
+
+/// The window contains 99.9 % of the light, or is the given one.
+TEST(DetectorStudy, WindowFitsTheLight) {
+  design::Design design;
+  design.part() = infinite(RtpElement{0.5, 0.5}, Arrangement::offset, 0.5);
+  design.substance.refractive_index = kPmma;
+  DetectorRequest request;
+  request.engine = "montecarlo";
+  request.samples = 1U << 16;
+  request.pixels = 10;
+  const studies::DetectorResult fitted = studies::DetectorStudy(design, request).run();
+  EXPECT_LT(fitted.maps.outside, 1e-9) << "all light returns to the source";
+  EXPECT_LT(fitted.window_deg, 0.2);
+  request.window_deg = 2.5;
+  EXPECT_EQ(studies::DetectorStudy(design, request).run().window_deg, 2.5);
+  const AngularRings rings = [] {
+    AngularRings some;
+    for (std::size_t k = 0; k < 1000; ++k) some.power[k] = 1.0;
+    return some;
+  }();
+  EXPECT_NEAR(rings.half_angle_deg(0.5).value(), 2.5, 1e-9);
+  EXPECT_FALSE(AngularRings{}.half_angle_deg(0.999));
 }
 
 // If the entrance face scatters, the maps also contain the light that the face reflects or scatters without entering.

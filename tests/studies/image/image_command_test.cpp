@@ -40,6 +40,22 @@ TEST_F(Image, DetectorWritesItsMaps) {
     EXPECT_TRUE(folder_.read(std::string("out/") + name).starts_with("\x89PNG")) << name;
 }
 
+TEST_F(Image, DetectorStatesTheErrorOfItsBins) {
+  const auto run = [&](const std::string& error, const std::string& out) {
+    return retrace_json(folder_, {"image", "brick.toml", "--detector", "--engine=montecarlo", "--pixels=60",
+                                  "--samples=262144", "--bin-error=" + error, "-o", out});
+  };
+  const Json merged = run("0.03", "merged");
+  EXPECT_EQ(merged["bins"]["error_requested"], 0.03);
+  EXPECT_LE(merged["bins"]["face_error"].get<double>(), 0.0301);
+  EXPECT_GT(merged["bins"]["face_error"].get<double>(), 0.001);
+  EXPECT_LE(merged["bins"]["angle_error"].get<double>(), 0.0301);
+  EXPECT_FALSE(merged["angles"]["has_diffraction"].get<bool>());
+  const Json pixels = run("0", "pixels");
+  EXPECT_GT(pixels["bins"]["face_error"].get<double>(), 0.03) << "pixels without merging are noisy";
+  EXPECT_EQ(pixels["rre"], merged["rre"]);
+}
+
 TEST_F(Image, CameraWritesTheSameBytesWithAnyNumberOfThreads) {
   const auto run = [&](const std::string& out, const std::string& threads) {
     const Outcome outcome = retrace(folder_, {"image", "brick.toml", "--camera", "--pixels=24x18", "--passes=3",
@@ -108,6 +124,9 @@ TEST_F(Image, WrongOptionsAreRefused) {
       {{"--detector", "--angle-pixels=0"}, "--angle-pixels"},
       {{"--detector", "--angle-pixels=9999"}, "--angle-pixels"},
       {{"--detector", "--window-deg=0"}, "--window-deg"},
+      {{"--detector", "--bin-error=1"}, "--bin-error"},
+      {{"--detector", "--bin-error=-0.1"}, "--bin-error"},
+      {{"--detector", "--engine=exact", "--bin-error=0.1"}, "--bin-error"},
       {{"--detector", "--incidence=90"}, "--incidence"},
       {{"--detector", "--incidence=nan"}, "--incidence"},
       {{"--detector", "--engine=cell"}, "--engine"},
@@ -161,7 +180,8 @@ TEST_F(Image, OptionsOfAnotherKindOfPictureAreRefused) {
   const Arguments all = {"--detector", "--camera", "--road"};
   const std::vector<std::pair<Arguments, Arguments>> options = {
       {{"--detector"},
-       {"--incidence", "--azimuth", "--engine", "--cutoff", "--samples", "--window-deg", "--angle-pixels"}},
+       {"--incidence", "--azimuth", "--engine", "--cutoff", "--samples", "--window-deg", "--angle-pixels",
+        "--bin-error"}},
       {{"--camera"},
        {"--distance-m", "--observation-deg", "--v-deg", "--h-deg", "--rotation-deg", "--eye-mm", "--lamp-mm",
         "--lamp-arcmin", "--pupil-arcmin", "--illuminance-lx", "--ambient-lx", "--backlight-lx", "--field-mm",

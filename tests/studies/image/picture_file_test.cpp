@@ -51,16 +51,21 @@ TEST(PictureFile, GivesTheSameBytesAgain) {
   EXPECT_EQ(png_file(2, 2, rgb), png_file(2, 2, rgb));
 }
 
-TEST(ColourScale, BrightnessRisesEvenlyFromBlackToWhite) {
-  for (const double end : cubehelix(0.0)) EXPECT_EQ(end, 0.0);
-  for (const double end : cubehelix(1.0)) EXPECT_EQ(end, 1.0);
-  // Green (2011) defines the perceived intensity as 0.30 R + 0.59 G + 0.11 B. It must equal the argument of the colour
-  // scale.
+TEST(ColourScale, LightnessRisesEvenlyWithOneHue) {
+  const auto linear = [](double c) { return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4); };
+  const auto f = [](double t) { return t > 0.008856 ? std::cbrt(t) : 7.787 * t + 16.0 / 116.0; };
+  // CIELAB of sRGB (IEC 61966-2-1) with the white point D65.
   for (int k = 0; k <= 100; ++k) {
-    const auto [r, g, b] = cubehelix(0.01 * k);
-    EXPECT_NEAR(0.30 * r + 0.59 * g + 0.11 * b, 0.01 * k, 0.012) << k;
+    const auto [r, g, b] = light_colour(0.01 * k);
+    const double x = f((0.4124 * linear(r) + 0.3576 * linear(g) + 0.1805 * linear(b)) / 0.9505);
+    const double y = f(0.2126 * linear(r) + 0.7152 * linear(g) + 0.0722 * linear(b));
+    const double z = f((0.0193 * linear(r) + 0.1192 * linear(g) + 0.9505 * linear(b)) / 1.089);
+    EXPECT_NEAR(116.0 * y - 16.0, 5.0 + 0.93 * k, 1.5) << k;
+    const double hue_deg = std::atan2(200.0 * (y - z), 500.0 * (x - y)) * 180.0 / std::numbers::pi;
+    if (k < 98) EXPECT_NEAR(hue_deg + 360.0, 264.0, 14.0) << k;
   }
-  EXPECT_EQ(cubehelix(-1.0), cubehelix(0.0));
+  EXPECT_EQ(light_colour(-1.0), light_colour(0.0));
+  EXPECT_EQ(light_colour(2.0), light_colour(1.0));
 }
 
 TEST(ToneMapped, KeepsTheOrderAndTheMiddleAtItsKey) {

@@ -4,8 +4,8 @@ import { panel } from "../frame.js";
 import { percent, short } from "../units.js";
 import { colour } from "../../../../report/page/web/src/theme.js";
 
-// ColorBrewer YlGnBu, as for maps in reports. It is the same in both themes.
-const SCALE = ["#ffffd9", "#edf8b1", "#c7e9b4", "#7fcdbb", "#41b6c4", "#1d91c0", "#225ea8", "#253494", "#081d58"].map((text) =>
+// ColorBrewer YlGnBu from dark to light, as for maps in reports: lighter means more, in the light and the dark theme.
+const SCALE = ["#081d58", "#253494", "#225ea8", "#1d91c0", "#41b6c4", "#7fcdbb", "#c7e9b4", "#edf8b1", "#ffffd9"].map((text) =>
   [1, 3, 5].map((k) => parseInt(text.slice(k, k + 2), 16)),
 );
 const SIZE = 240; // size in pixels of the picture that is scaled to the disc
