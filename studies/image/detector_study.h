@@ -25,7 +25,7 @@ struct DetectorResult : ImageResultBase {
   double acceptance_half_angle_deg = 0.0;
   raytrace::PixelGrid face{{geometry::Vec2::Zero(), geometry::Vec2::Ones()}, 1, 1};
   raytrace::DetectorMaps maps;
-  bool is_period = false;  ///< true: the face is one period of an infinite part
+  bool is_period = false;           ///< true: the face is one period of an infinite part
   double window_deg = 0.0;          ///< half width of the angular map
   bool has_diffraction = false;     ///< true: the angular map contains diffraction at the cells
   std::string without_diffraction;  ///< reason why the angular map has no diffraction, such as "rays"

@@ -13,6 +13,7 @@
 #include "tests/support/designs.h"
 #include "tests/support/engines.h"
 #include "tests/support/reference_tracer.h"
+#include "tests/support/sample_size.h"
 
 namespace retrace::testing::angle_errors_test {
 namespace {
@@ -82,7 +83,7 @@ TEST(AngleErrors, AgreeWithTheReference) {
   const std::vector<Case> all = cases();
   for (const std::size_t k : {std::size_t{4}, std::size_t{8}}) {
     const Part part = build_part(all[k].spec);
-    expect_agrees_with_reference(part, from(20.0, 70.0), 8000, 1U << 17, all[k].name);
+    expect_agrees_with_reference(part, from(20.0, 70.0), test::sample_size(4000U, 8000U), 1U << 16, all[k].name);
   }
 }
 

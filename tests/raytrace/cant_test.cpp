@@ -15,6 +15,7 @@
 #include "tests/support/designs.h"
 #include "tests/support/engines.h"
 #include "tests/support/reference_tracer.h"
+#include "tests/support/sample_size.h"
 
 namespace retrace::testing::cant_test {
 namespace {
@@ -60,7 +61,12 @@ TEST_P(Canted, NothingIsLost) {
 TEST_P(Canted, EnginesAgree) {
   const Case c = cases()[GetParam()];
   const Part part = build_part(c.spec);
-  for (const double azimuth_deg : {0.0, 130.0}) expect_same_accounts(part, from(15.0, azimuth_deg), 1e-5, 3e-3, c.name);
+  // Rays in the thick plate of the steep cubes have hundreds of reflections, and beams truncate several percent of the
+  // power. The error of fewer rays is much smaller.
+  const bool is_steep = c.name == "infinite steep honeycomb";
+  const std::uint64_t count = is_steep ? test::sample_size(1U << 13, 1U << 16) : 1U << 16;
+  for (const double azimuth_deg : {0.0, 130.0})
+    expect_same_accounts(part, from(15.0, azimuth_deg), 1e-5, 3e-3, c.name, count);
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, Canted, ::testing::Range(std::size_t{0}, cases().size()));
@@ -69,7 +75,7 @@ TEST(Cant, AgreesWithTheReference) {
   const std::vector<Case> all = cases();
   for (const std::size_t k : {std::size_t{3}, std::size_t{5}}) {
     const Part part = build_part(all[k].spec);
-    expect_agrees_with_reference(part, from(20.0, 70.0), 8000, 1U << 17, all[k].name);
+    expect_agrees_with_reference(part, from(20.0, 70.0), test::sample_size(4000U, 8000U), 1U << 16, all[k].name);
   }
 }
 
@@ -98,7 +104,9 @@ bool in_polygon(const Polygon& outline, const Vec2& p) {
 /// reverses one component of the direction.
 double share_by_points(const Polygon& outline, const Cant& cant, double depth_mm, double thickness_mm,
                        const Vec3& to_source) {
-  constexpr int kSteps = 500;
+  // A side of a region that is parallel to the grid changes its area by at most half a step, which is 0.25 % of the
+  // box.
+  constexpr int kSteps = 200;
   const Eigen::Matrix3d edges = edges_of(cant);
   const Vec3 d = edges.transpose() * to_source;
   if (d.minCoeff() <= 0.0) return 0.0;

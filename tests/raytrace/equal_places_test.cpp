@@ -14,7 +14,6 @@
 #include "tests/support/designs.h"
 #include "tests/support/return_frames.h"
 #include "tests/support/statistics.h"
-#include "tests/support/traced_far_fields.h"
 
 namespace retrace::testing::equal_places_test {
 namespace {
@@ -90,34 +89,69 @@ BeamPolicy policy_at(double cutoff) {
   return policy;
 }
 
-TEST(TranslationalSymmetry, LedgersAreThoseOfEachByItself) {
-  Optics optics = pmma();
-  optics.absorption_per_mm = 0.02;
-  for (const Question& question : questions()) {
-    const Part& part = question.part;
+struct Seen {
+  FarField field;
+  BeamResult result;
+};
+
+Seen seen(const Part& part, const Optics& optics, const Illumination& light, const std::vector<double>& cones_deg,
+          BeamPolicy beams, Elements elements) {
+  FarFieldPolicy policy;
+  if (beams.population_control) policy.replicates = beams.population_control->replicates;
+  FarFieldCollector collector(part, light, policy);
+  Seen result;
+  result.result =
+      BeamTracer(part, elements).trace(optics, light, cones_deg, beams, nullptr, [&](const ReturnedBeam& beam) {
+        collector.add(beam);
+      });
+  result.field = collector.finish();
+  return result;
+}
+
+Seen seen(const Part& part, const Illumination& light, const BeamPolicy& beams, Elements elements) {
+  return seen(part, pmma(), light, {0.5}, beams, elements);
+}
+
+/// Results of a question if each element is traced separately, and if equal elements are traced only one time.
+struct Pair {
+  Question question;
+  Seen alone;
+  Seen shared;
+};
+
+/// Returns the results of all questions. They are computed only one time, because the computation takes long.
+const std::vector<Pair>& pairs() {
+  static const std::vector<Pair> all = [] {
+    Optics optics = pmma();
+    optics.absorption_per_mm = 0.2;  // weakens beams with long paths, so that fewer beams are above the cut-off
     const std::vector<double> cones = {0.5, 60.0};
-    const BeamPolicy policy = policy_at(1e-8);
-    const BeamResult alone = BeamTracer(part).trace(optics, question.light, cones, policy);
-    const BeamResult shared = BeamTracer(part, Elements::instanced).trace(optics, question.light, cones, policy);
-    EXPECT_LT(shared.beams, alone.beams) << question.name;
-    for (std::size_t cone = 0; cone < cones.size(); ++cone) {
-      EXPECT_NEAR(shared.ledgers[cone].total(), 1.0, 1e-12) << question.name;
-      const double left = alone.ledgers[cone][Account::truncated] + shared.ledgers[cone][Account::truncated];
+    std::vector<Pair> result;
+    for (const Question& question : questions()) {
+      const auto traced = [&](Elements elements) {
+        return seen(question.part, optics, question.light, cones, policy_at(1e-8), elements);
+      };
+      result.push_back({question, traced(Elements::individual), traced(Elements::instanced)});
+    }
+    return result;
+  }();
+  return all;
+}
+
+TEST(TranslationalSymmetry, LedgersAreThoseOfEachByItself) {
+  for (const auto& [question, alone, shared] : pairs()) {
+    EXPECT_LT(shared.result.beams, alone.result.beams) << question.name;
+    for (std::size_t cone = 0; cone < shared.result.ledgers.size(); ++cone) {
+      const Ledger& own = shared.result.ledgers[cone];
+      const Ledger& expected = alone.result.ledgers[cone];
+      EXPECT_NEAR(own.total(), 1.0, 1e-12) << question.name;
+      const double left = expected[Account::truncated] + own[Account::truncated];
       EXPECT_LT(left, 2e-2) << question.name;
       for (const Account account : {Account::retroreflected, Account::transmitted, Account::side_exit,
                                     Account::returned_elsewhere, Account::absorbed})
-        EXPECT_NEAR(shared.ledgers[cone][account], alone.ledgers[cone][account], 0.2 * left + 1e-9)
+        EXPECT_NEAR(own[account], expected[account], 0.2 * left + 1e-9)
             << question.name << ", " << static_cast<int>(account);
     }
   }
-}
-
-using Seen = TracedFarField;
-
-Seen seen(const Part& part, const Illumination& light, BeamPolicy beams, Elements elements) {
-  FarFieldPolicy policy;
-  if (beams.population_control) policy.replicates = beams.population_control->replicates;
-  return traced_far_field(part, pmma(), light, policy, beams, elements);
 }
 
 std::vector<Vec3> receivers(const Illumination& light) {
@@ -135,10 +169,7 @@ const ApertureKernel& discs() {
 
 /// The far field must be the same if each element is traced separately and if equal elements are traced only one time.
 TEST(TranslationalSymmetry, FarFieldsAreThoseOfEachByItself) {
-  for (const Question& question : questions()) {
-    const Part& part = question.part;
-    const Seen alone = seen(part, question.light, policy_at(1e-8), Elements::individual);
-    const Seen shared = seen(part, question.light, policy_at(1e-8), Elements::instanced);
+  for (const auto& [question, alone, shared] : pairs()) {
     EXPECT_NEAR(shared.field.total_power(), alone.field.total_power(), 1e-3) << question.name;
     for (const Vec3& direction : receivers(question.light)) {
       const double expected = alone.field.intensity(direction, discs()).per_sr;
@@ -147,8 +178,7 @@ TEST(TranslationalSymmetry, FarFieldsAreThoseOfEachByItself) {
   }
 }
 
-/// In some arrays, light that enters the first half of a period is equivalent to light that enters the second half.
-/// Only one half is then traced, and the results must be those of tracing both halves.
+/// Light that enters the first half of a period is equivalent to light that enters the second half.
 TEST(TranslationalSymmetry, HalvesOfAPeriodAreAlike) {
   PartSpec quarter = infinite(RtpElement{0.5, 0.4, 90.0}, Arrangement::offset, 1.0);
   quarter.array.overlap_percent = 25.0;
@@ -222,7 +252,7 @@ TEST(TranslationalSymmetry, PartsOfZonesComeToTheSumOfTheirZones) {
     PartZone left{{to_polygon({{0.0, 0.0}, {0.5 * size_mm, size_mm}})}, 25.0, upright};
     PartZone right{{to_polygon({{0.5 * size_mm, 0.0}, {size_mm, size_mm}})}, 0.0, opened};
     for (PartZone* zone : {&left, &right}) zone->elements.array.extent = Extent::finite;
-    missing.push_back(sum - rre(build_part(ZonedSpec{{size_mm, size_mm}, 1.0, {left, right}}), 1e-9));
+    missing.push_back(sum - rre(build_part(ZonedSpec{{size_mm, size_mm}, 1.0, {left, right}}), 1e-7));
   }
   EXPECT_GT(missing[0], 0.0);
   EXPECT_LT(missing[2], 0.04 * sum);

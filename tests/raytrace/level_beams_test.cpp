@@ -20,9 +20,14 @@ namespace {
 using namespace geometry;
 using namespace raytrace;
 
-constexpr double kAzimuths_deg[] = {0.0, 30.0, 45.0, 60.0, 90.0, 180.0, 270.0};
+/// Azimuths along the axes of arrays and between them. The usual azimuths leave out those that a mirror plane of most
+/// arrays makes equivalent.
+const std::vector<double> kAzimuths_deg = test::is_long_run()
+                                              ? std::vector<double>{0.0, 30.0, 45.0, 60.0, 90.0, 180.0, 270.0}
+                                              : std::vector<double>{0.0, 30.0, 45.0, 90.0, 270.0};
 /// Small differences from an azimuth. A difference of 3e-13 is the rounding error of a unit conversion.
-constexpr double kNear_deg[] = {-1e-9, -1e-11, 0.0, 3e-13, 1e-9};
+const std::vector<double> kNear_deg =
+    test::is_long_run() ? std::vector<double>{-1e-9, -1e-11, 0.0, 3e-13, 1e-9} : std::vector<double>{-1e-9, 0.0, 3e-13};
 constexpr double kContinuous = 1e-6;
 
 struct Case {
@@ -75,7 +80,7 @@ TEST_P(LevelBeams, BoundsOfBeamsMeetNextToAxes) {
     // Cube corners and infinite parts split light into many more beams, especially at azimuths that are not along an
     // axis. The limit of the truncated power is therefore higher for these parts.
     policy.truncated_goal = is_prism && !part.period_mm                ? 0.5 * kContinuous
-                            : std::remainder(azimuth_deg, 90.0) == 0.0 ? test::sample_size(3e-4, 1e-4)
+                            : std::remainder(azimuth_deg, 90.0) == 0.0 ? test::sample_size(5e-4, 1e-4)
                                                                        : 1e-3;
     for (const double by_deg : kNear_deg) {
       const Illumination light = from(c.incidence_deg, azimuth_deg + by_deg);

@@ -80,9 +80,9 @@ TEST_P(AgainstReference, EveryAccountAgrees) {
   // The cone is wide, so that there is light inside and outside of it.
   const double cone_deg = 8.0;
   const ReferenceResult reference = reference_trace(part, c.optics, from(c.incidence_deg, c.azimuth_deg), cone_deg,
-                                                    test::sample_size<std::uint64_t>(10000, 40000), 7);
+                                                    test::sample_size<std::uint64_t>(5000, 40000), 7);
   const MonteCarloResult traced =
-      MonteCarlo(part).trace(c.optics, from(c.incidence_deg, c.azimuth_deg), {cone_deg}, rays(1U << 17), {});
+      MonteCarlo(part).trace(c.optics, from(c.incidence_deg, c.azimuth_deg), {cone_deg}, rays(1U << 16), {});
   const Ledger& ledger = traced.cones[0].ledger;
   // The error of the tracer is much smaller than the error of the reference.
   ASSERT_LT(traced.cones[0].std_error, 5e-4);

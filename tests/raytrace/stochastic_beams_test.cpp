@@ -54,10 +54,11 @@ TEST(StochasticBeams, AgreeWithBeamsAndBookAllPower) {
   Optics optics = pmma();
   optics.absorption_per_mm = 0.01;
   const std::vector<double> cones = {0.5, 60.0};
-  const double error = test::sample_size(8e-5, 2e-5);
+  const double error = test::sample_size(1.6e-4, 2e-5);
+  const double truncated = test::sample_size(4e-5, 1e-5);
   for (const Question& question : questions()) {
     BeamPolicy policy;
-    policy.truncated_goal = 1e-5;
+    policy.truncated_goal = truncated;
     const BeamResult exact = BeamTracer(question.part).trace(optics, question.light, cones, policy);
     for (const Elements elements : {Elements::individual, Elements::instanced}) {
       const MonteCarloResult result =
@@ -67,7 +68,7 @@ TEST(StochasticBeams, AgreeWithBeamsAndBookAllPower) {
         const ConeResult& own = result.cones[cone];
         EXPECT_LE(own.std_error, error) << question.name;
         EXPECT_NEAR(own.rre, exact.ledgers[cone][Account::retroreflected],
-                    student_bound(8, StochasticBeams::kReplicates) * own.std_error + 1e-5)
+                    student_bound(8, StochasticBeams::kReplicates) * own.std_error + truncated)
             << question.name;
         EXPECT_NEAR(own.ledger.total(), 1.0, 1e-13) << question.name;
         EXPECT_NEAR(own.ledger[Account::truncated], 0.0, 1e-12) << question.name;
@@ -118,7 +119,9 @@ Truth truth_of(const Question& question, const Optics& optics) {
     return {cone.rre, cone.std_error};
   }
   BeamPolicy policy;
-  policy.truncated_goal = 1e-5;
+  // Half of the truncated power is at most a twentieth of the standard error of a complete run. Expected hits decrease
+  // by less than 0.1 %. The mean of single rounds allows for it.
+  policy.truncated_goal = test::sample_size(1e-4, 1e-5);
   const Ledger exact = BeamTracer(question.part).trace(optics, question.light, {0.5}, policy).ledgers[0];
   return {exact[Account::retroreflected] + 0.5 * exact[Account::truncated], 0.5 * exact[Account::truncated]};
 }
@@ -196,7 +199,7 @@ TEST(StochasticBeams, SameAtAnyNumberOfThreads) {
 TEST(StochasticBeams, RoughFacetsAgreeWithRays) {
   const std::vector<double> cones = {0.5, 3.0, 60.0};
   const std::vector<Optics> textures = {rough(60.0, 1.0), rough(10.0, 5.0), rough(20.0, 1.0), rough(10.0, 0.5)};
-  const double error = test::sample_size(1e-3, 5e-4);
+  const double error = test::sample_size(1.5e-3, 5e-4);
   std::size_t number = 0;
   for (const Question& question : questions()) {
     Optics optics = textures[number++];
@@ -248,7 +251,8 @@ TEST(StochasticBeams, PrismsScatterIntoNarrowConesAsFirstOrderSays) {
   const BeamTracer tracer(part);
   const BackSurface scattering(part, tracer.centre_mm());
   const std::vector<double> cones = {0.5, 1.5};
-  const MonteCarloResult result = traced(tracer, optics, from(0.0), cones, until(3e-7), &scattering);
+  const MonteCarloResult result =
+      traced(tracer, optics, from(0.0), cones, until(test::sample_size(6e-7, 3e-7)), &scattering);
   const auto solid_angle = [](double deg) { return 2.0 * pi * (1.0 - std::cos(deg * pi / 180.0)); };
   const double expected = per_steradian * (solid_angle(cones[1]) - solid_angle(cones[0]));
   EXPECT_TRUE(result.reached_target);

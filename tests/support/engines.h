@@ -82,14 +82,14 @@ inline void expect_nothing_lost(const geometry::Part& part, const std::vector<do
 }
 
 /// Expects that beams and rays give the same power in each account (energy term) of the ledger. The tolerance is the
-/// power that beams truncate at `cutoff`, plus `slack`.
+/// power that beams truncate at `cutoff`, plus `slack`, which covers the error of the rays.
 inline void expect_same_accounts(const geometry::Part& part, const raytrace::Illumination& light, double cutoff,
-                                 double slack, const std::string& name) {
+                                 double slack, const std::string& name, std::uint64_t ray_count = 1U << 16) {
   raytrace::BeamPolicy policy;
   policy.cutoff = cutoff;
   const raytrace::Ledger exact = raytrace::BeamTracer(part).trace(pmma(), light, {8.0}, policy).ledgers[0];
   const raytrace::Ledger traced =
-      raytrace::MonteCarlo(part).trace(pmma(), light, {8.0}, rays(1U << 16), {}).cones[0].ledger;
+      raytrace::MonteCarlo(part).trace(pmma(), light, {8.0}, rays(ray_count), {}).cones[0].ledger;
   EXPECT_NEAR(exact.total(), 1.0, 1e-9) << name;
   for (std::size_t a = 0; a < raytrace::kAccountCount; ++a)
     EXPECT_NEAR(exact.power[a], traced.power[a], exact[raytrace::Account::truncated] + slack)
@@ -111,7 +111,8 @@ inline void expect_accounts_of(const ReferenceResult& reference, const raytrace:
 }
 
 /// Expects that rays agree with the reference tracer, for PMMA and a cone of 8 degrees. The statistical bound is for a
-/// test with two such comparisons.
+/// test with two such comparisons. It is proportional to the standard error of the reference, and thus valid for any
+/// number of rays.
 inline void expect_agrees_with_reference(const geometry::Part& part, const raytrace::Illumination& light,
                                          std::uint64_t reference_rays, std::uint64_t ray_count,
                                          const std::string& name) {

@@ -43,6 +43,26 @@ struct Triangle {
   FacetRole role;
 };
 
+/// Sphere around a triangle. A ray that misses the sphere misses the triangle. This test is several times faster than
+/// that of the triangle.
+struct Sphere {
+  double x, y, z, radius2;
+
+  Sphere(const Vec3& a, const Vec3& b, const Vec3& c) {
+    const Vec3 centre = (a + b + c) / 3.0;
+    x = centre.x();
+    y = centre.y();
+    z = centre.z();
+    const double exact = std::max({(a - centre).squaredNorm(), (b - centre).squaredNorm(), (c - centre).squaredNorm()});
+    radius2 = 1.001 * exact + 1e-9;  // more than rounding errors
+  }
+  bool is_missed(const Vec3& origin, const Vec3& direction) const {
+    const double dx = x - origin.x(), dy = y - origin.y(), dz = z - origin.z();
+    const double along = dx * direction.x() + dy * direction.y() + dz * direction.z();
+    return dx * dx + dy * dy + dz * dz - along * along > radius2;
+  }
+};
+
 class Reference {
  public:
   Reference(const geometry::Part& part, const raytrace::Optics& optics, const Vec3& to_source,
@@ -55,6 +75,7 @@ class Reference {
       const Vec3 ab = mesh.vertices[t[1]] - a;
       const Vec3 ac = mesh.vertices[t[2]] - a;
       triangles_.push_back({a, ab, ac, ab.cross(ac).normalized(), mesh.roles[k]});
+      spheres_.emplace_back(a, a + ab, a + ac);
     }
   }
 
@@ -116,7 +137,9 @@ class Reference {
   const Triangle* nearest(const Ray& ray, double& t_hit) const {
     const Triangle* hit = nullptr;
     t_hit = INFINITY;
-    for (const Triangle& tri : triangles_) {
+    for (std::size_t k = 0; k < triangles_.size(); ++k) {
+      if (spheres_[k].is_missed(ray.origin, ray.direction)) continue;
+      const Triangle& tri = triangles_[k];
       const Vec3 p = ray.direction.cross(tri.ac);
       const double det = tri.ab.dot(p);
       if (det == 0.0) continue;
@@ -322,6 +345,7 @@ class Reference {
   Polarisation polarisation_;
   std::array<double, 4> stokes_{};
   std::vector<Triangle> triangles_;
+  std::vector<Sphere> spheres_;  ///< one for each triangle
   Ledger ledger_;
   std::vector<ReferenceExit> exits_;
 };

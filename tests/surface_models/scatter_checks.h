@@ -7,12 +7,14 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <numeric>
 #include <string>
 #include <vector>
 
 #include "surface_models/fft.h"
 #include "surface_models/scatter/scatter_model.h"
 #include "surface_models/scatter/slope_distribution.h"
+#include "tests/support/sample_size.h"
 #include "tests/support/statistics.h"
 
 // Events, height maps and statistical checks for tests of scatter models.
@@ -119,15 +121,17 @@ class Rings {
 
 /// Returns the p-value of a chi-square test: the probability of at least the observed chi-square if the draws follow
 /// the density. Bins with fewer than ten expected draws are merged with the bin of all other directions.
+/// \param full_draws number of draws in a long run. Otherwise, it is a quarter of this number, unless fewer than 2000
+/// draws would then be expected in the rings, which would leave few bins.
 inline double chi_square_p(const Rings& rings, const Density& density, const Draw& draw, std::uint32_t seed,
-                           std::uint32_t draws = 100000) {
+                           std::uint32_t full_draws = 100000) {
   std::vector<double> expected(rings.size() + 1, 0.0), seen(rings.size() + 1, 0.0);
-  double inside_rings = 0.0;
-  for (std::size_t bin = 0; bin < rings.size(); ++bin) {
-    expected[bin] = draws * rings.integral(bin, density);
-    inside_rings += expected[bin];
-  }
-  expected.back() = draws - inside_rings;
+  for (std::size_t bin = 0; bin < rings.size(); ++bin) expected[bin] = rings.integral(bin, density);
+  const double inside_rings = std::accumulate(expected.begin(), expected.end(), 0.0);
+  expected.back() = 1.0 - inside_rings;
+  const bool are_few = 0.25 * full_draws * inside_rings < 2000.0;
+  const std::uint32_t draws = are_few ? full_draws : test::sample_size(full_draws / 4, full_draws);
+  for (double& count : expected) count *= draws;
   for (std::uint32_t k = 0; k < draws; ++k) {
     RandomStream random = stream(seed, k);
     const auto beta = draw(random);
