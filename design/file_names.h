@@ -1,7 +1,7 @@
 #pragma once
 
-// Two functions: one checks that a design refers to no files; the other determines the units of the STL files to which a
-// design refers.
+// Two functions: one checks that a design refers to no files; the other determines the units of the STL files to which
+// a design refers.
 
 #include <string_view>
 

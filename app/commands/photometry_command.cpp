@@ -85,8 +85,8 @@ Words what_shortens_photometry(const PhotometryRequest& request, const studies::
 /// \param remaining_s estimated remaining time of the main computation, in seconds; empty if it is unknown
 std::string first_answer_of(const studies::PhotometryStudy& study, std::optional<double> remaining_s,
                             const Cancellation* cancel) {
-  // Intended tracing time of the preliminary readings in seconds. The actual time is about twice as long, because the main computation
-  // runs in parallel.
+  // Intended tracing time of the preliminary readings in seconds. The actual time is about twice as long, because the
+  // main computation runs in parallel.
   constexpr double first_answer_s = 3.0;
   constexpr double unknown_time_s = 600.0;
   const double share = std::min(1.0, first_answer_s / remaining_s.value_or(unknown_time_s));

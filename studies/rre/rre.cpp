@@ -216,6 +216,12 @@ std::pair<double, const RrePoint*> largest_bend(const CurvePoints& curve) {
   return largest;
 }
 
+/// Returns true if the light that the entrance face reflects is within the acceptance cone. It causes a narrow peak
+/// around normal incidence, which no list of angles resolves.
+bool has_entrance_reflection(const RrePoint& point) {
+  return std::abs(point.incidence_deg) <= 0.5 * point.acceptance_half_angle_deg;
+}
+
 /// Adds a warning if a list of incidences is too coarse for the curve of RRE. Lists of less than four angles are not
 /// curves.
 void warn_of_coarse_list(const RreSettings& request, RreResult& result) {
@@ -225,7 +231,8 @@ void warn_of_coarse_list(const RreSettings& request, RreResult& result) {
   if (!result.complete || request.map || !request.incidence_spans.empty() || angles.size() < kShortestCurve) return;
   std::map<std::tuple<std::size_t, double, double>, CurvePoints> curves;
   for (const RrePoint& p : result.points)
-    curves[{p.design, p.azimuth_deg, p.acceptance_half_angle_deg}].try_emplace(p.incidence_deg, &p);
+    if (!has_entrance_reflection(p))
+      curves[{p.design, p.azimuth_deg, p.acceptance_half_angle_deg}].try_emplace(p.incidence_deg, &p);
   std::pair<double, const RrePoint*> worst = {kAllowedBend, nullptr};
   for (const auto& [key, curve] : curves)
     if (const auto bend = largest_bend(curve); bend.first > worst.first) worst = bend;
@@ -237,7 +244,8 @@ void warn_of_coarse_list(const RreSettings& request, RreResult& result) {
                    "{:.2g} % of the maximum from the straight line between its neighbours; angles that are selected "
                    "automatically resolve it (--incidence={}:{}:auto)",
                    result.designs[worst.second->design].source_name(), shortest(worst.second->incidence_deg),
-                   shortest(worst.second->azimuth_deg), 100.0 * worst.first, shortest(*low), shortest(*high))});
+                   shortest(worst.second->azimuth_deg), 100.0 * worst.first, reference({"incidence_spans_deg"}),
+                   shortest(*low), shortest(*high))});
 }
 
 /// Returns the engine of all points. If points have different engines, returns `montecarlo` if all engines trace rays,

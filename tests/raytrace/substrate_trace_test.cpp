@@ -158,8 +158,9 @@ TEST(PinBundle, LosesLightContinuouslyAsTheInclineGrows) {
 
 // Closed form of the effective aperture of triangular cubes (Eckhardt, Appl. Opt. 10, 1559 (1971)). For mirrors behind
 // a lossless entrance face, the RRE is 2 - (4/3) / cos^2 t', where t' is the angle of incidence on the cubes inside the
-// part. On an inclined substrate, light along the normal of the part meets the cubes at the angle of the inclination. The effect of border elements
-// is proportional to the length of the border, so that it is eliminated with two sizes of the part.
+// part. On an inclined substrate, light along the normal of the part meets the cubes at the angle of the inclination.
+// The effect of border elements is proportional to the length of the border, so that it is eliminated with two sizes of
+// the part.
 TEST(InclinedArray, HasTheApertureOfCubesAtThatAngle) {
   const auto rre = [](double size_mm, double incline_deg) {
     const PartSpec spec = on({PlaneSubstrate{incline_deg, 90.0}, ElementAxes::normal},
