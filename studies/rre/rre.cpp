@@ -242,7 +242,7 @@ void warn_of_coarse_list(const RreSettings& request, RreResult& result) {
       {"curve_coarse",
        fmt::format("{}: the angles of incidence do not resolve the curve: at incidence {}, azimuth {}, RRE deviates by "
                    "{:.2g} % of the maximum from the straight line between its neighbours; angles that are selected "
-                   "automatically resolve it (--incidence={}:{}:auto)",
+                   "automatically resolve it ({}={}:{}:auto)",
                    result.designs[worst.second->design].source_name(), shortest(worst.second->incidence_deg),
                    shortest(worst.second->azimuth_deg), 100.0 * worst.first, reference({"incidence_spans_deg"}),
                    shortest(*low), shortest(*high))});
