@@ -40,6 +40,8 @@ constexpr double kMinWindow_deg = 2.0, kMaxWindow_deg = 10.0;
 // Minimum R_L in cd/(lx m^2) at which the eye is regarded as reached by retroreflected light. A white matt surface has
 // 0.32.
 constexpr double kMinRetroreflected = 1e-3;
+// Noise of pixels for which colours are averaged over one pixel to each side. Noisier pictures use more pixels.
+constexpr double kNoiseOfColours = 0.02;
 // Part of the progress that the computation of the returned light takes.
 constexpr double kProgressOfLight = 0.3;
 
@@ -308,6 +310,45 @@ std::array<double, 3> CameraColours::rgb(double y, std::size_t pixel) const {
   return {rgb[0], rgb[1], rgb[2]};
 }
 
+namespace {
+
+/// Returns a picture of another response with the luminance of each pixel and the colour of its neighbourhood: the
+/// ratio of the means of both pictures over a square. The responses are traced separately, and their noise would appear
+/// as colours. The eye resolves colours less than luminances. \param reach half of the side of the square, in pixels
+std::vector<double> with_mean_colour(const raytrace::CameraImage& luminance, const std::vector<double>& other,
+                                     std::size_t reach) {
+  const std::size_t columns = luminance.columns;
+  const std::size_t rows = luminance.rows;
+  /// Sums over all pixels above and to the left, with one more row and column.
+  const auto sums_of = [&](const std::vector<double>& values) {
+    std::vector<double> sums((columns + 1) * (rows + 1), 0.0);
+    for (std::size_t r = 0; r < rows; ++r)
+      for (std::size_t c = 0; c < columns; ++c)
+        sums[(r + 1) * (columns + 1) + c + 1] = values[r * columns + c] + sums[r * (columns + 1) + c + 1] +
+                                                sums[(r + 1) * (columns + 1) + c] - sums[r * (columns + 1) + c];
+    return sums;
+  };
+  const std::vector<double> y = sums_of(luminance.luminance);
+  const std::vector<double> z = sums_of(other);
+  std::vector<double> result(other.size());
+  for (std::size_t r = 0; r < rows; ++r)
+    for (std::size_t c = 0; c < columns; ++c) {
+      const std::size_t top = r - std::min(r, reach);
+      const std::size_t left = c - std::min(c, reach);
+      const std::size_t bottom = std::min(rows, r + reach + 1);
+      const std::size_t right = std::min(columns, c + reach + 1);
+      const auto within = [&](const std::vector<double>& sums) {
+        return sums[bottom * (columns + 1) + right] - sums[top * (columns + 1) + right] -
+               sums[bottom * (columns + 1) + left] + sums[top * (columns + 1) + left];
+      };
+      const double all = within(y);
+      result[r * columns + c] = all > 0.0 ? luminance.luminance[r * columns + c] * within(z) / all : 0.0;
+    }
+  return result;
+}
+
+}  // namespace
+
 /// Tracers of all layers of a picture. The picture of a response is the sum of one or two layers: the light of the
 /// lamp, and that of the surroundings if the part is coloured.
 struct CameraStudy::Tracers {
@@ -448,8 +489,10 @@ CameraResult CameraStudy::run(Progress* progress, const Cancellation* cancel,
           materials::tristimulus(lamp_power(light_from_name(request_.light)), materials::shipped_colour_matching());
       result.colours.emplace().lamp = {lamp[0] / lamp[1], 1.0, lamp[2] / lamp[1]};
     }
-    result.colours->x = images[1].luminance;
-    result.colours->z = images[2].luminance;
+    const double noise = images.front().passes > 1 ? images.front().relative_noise() : 1.0;
+    const auto reach = static_cast<std::size_t>(std::clamp(std::ceil(noise / kNoiseOfColours), 1.0, 12.0));
+    result.colours->x = with_mean_colour(images[0], images[1].luminance, reach);
+    result.colours->z = with_mean_colour(images[0], images[2].luminance, reach);
   };
   const std::function<void()> preview = [&] {
     if (!after_pass) return;

@@ -61,7 +61,7 @@ CameraRequest camera_of(const Geometry& at) {
   camera.lamp_arcmin = at.lamp_arcmin;
   camera.pupil_arcmin = at.pupil_arcmin;
   camera.columns = camera.rows = 32;
-  camera.passes = 32;
+  camera.passes = 16;
   return camera;
 }
 
@@ -103,9 +103,9 @@ TEST(CameraDiffraction, LuminanceOfTriangularCubesIsThatOfThePhotometer) {
                                  design_of(infinite(TriangularCube{0.4}, Arrangement::triangular, 1.0), 1.0));
 }
 
+/// The prisms are infinite, because the mean over a finite part includes its visible sides, which are dark.
 TEST(CameraDiffraction, LuminanceOfPrismsIsThatOfThePhotometer) {
-  expect_luminance_of_photometer("prisms",
-                                 design_of(finite(RtpElement{2.0, 2.0}, Arrangement::offset, 10.0, 10.0, 2.0), 0.0));
+  expect_luminance_of_photometer("prisms", design_of(infinite(RtpElement{2.0, 2.0}, Arrangement::offset, 2.0), 0.0));
 }
 
 /// Cells of 20 mm spread light by less than a hundredth of the discs. The picture is that of geometrical optics.
