@@ -29,6 +29,11 @@ struct FloatPicture {
   std::vector<std::pair<std::string, std::vector<double>>> channels;  ///< name of the channel, and one value per pixel
   std::vector<std::pair<std::string, std::string>> texts;             ///< metadata, such as units
   std::vector<std::pair<std::string, double>> numbers;                ///< metadata that are numbers
+
+  /// Adds a channel. Does nothing if there are no values.
+  void add_channel(const std::string& name, const std::vector<double>& values) {
+    if (!values.empty()) channels.emplace_back(name, values);
+  }
 };
 
 /// Reads and writes picture files. If a file cannot be read or created, all functions throw std::runtime_error with the

@@ -19,10 +19,6 @@ namespace {
 
 using studies::CameraResult;
 
-void add_channel(FloatPicture& picture, const std::string& name, const std::vector<double>& values) {
-  if (!values.empty()) picture.channels.emplace_back(name, values);
-}
-
 /// Returns the linear sRGB values of each pixel, in cd/m^2.
 std::array<std::vector<double>, 3> rgb_of(const CameraResult& result) {
   const std::vector<double>& luminance = result.image.luminance;
@@ -40,10 +36,10 @@ void add_colours(FloatPicture& picture, const CameraResult& result) {
   std::vector<double> z = result.colours->z;
   for (double& value : x) value *= result.colours->lamp[0];
   for (double& value : z) value *= result.colours->lamp[2];
-  add_channel(picture, "X", x);
-  add_channel(picture, "Z", z);
+  picture.add_channel("X", x);
+  picture.add_channel("Z", z);
   const std::array<std::vector<double>, 3> rgb = rgb_of(result);
-  for (std::size_t c = 0; c < 3; ++c) add_channel(picture, std::array{"R", "G", "B"}[c], rgb[c]);
+  for (std::size_t c = 0; c < 3; ++c) picture.add_channel(std::array{"R", "G", "B"}[c], rgb[c]);
 }
 
 }  // namespace
@@ -53,12 +49,12 @@ FloatPicture luminance_picture(const CameraResult& result) {
   FloatPicture picture;
   picture.columns = image.columns;
   picture.rows = image.rows;
-  add_channel(picture, "Y", image.luminance);
+  picture.add_channel("Y", image.luminance);
   if (result.colours) add_colours(picture, result);
   std::vector<double> errors;
   for (std::size_t k = 0; k < image.luminance.size() && image.passes > 1; ++k) errors.push_back(image.std_error(k));
-  add_channel(picture, "std_error", errors);
-  add_channel(picture, "coverage", image.coverage);
+  picture.add_channel("std_error", errors);
+  picture.add_channel("coverage", image.coverage);
   picture.texts = picture_texts("camera", result.design);
   picture.texts.emplace_back("retrace:unit", "cd/m2");
   picture.numbers = {{"retrace:width_mm", result.scene.view.width_mm},

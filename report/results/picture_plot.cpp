@@ -33,10 +33,6 @@ std::string direction_text(const DetectorResult& result) {
   return text;
 }
 
-void add_channel(FloatPicture& picture, const std::string& name, const std::vector<double>& values) {
-  if (!values.empty()) picture.channels.emplace_back(name, values);
-}
-
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> picture_texts(const char* kind, const design::Design& design) {
@@ -107,10 +103,10 @@ FloatPicture irradiance_picture(const DetectorResult& result) {
   FloatPicture picture;
   picture.columns = result.face.columns();
   picture.rows = result.face.rows();
-  add_channel(picture, "leaving", result.maps.leaving.value);
-  add_channel(picture, "leaving.std_error", result.maps.leaving.std_error);
-  add_channel(picture, "entering", result.maps.entering.value);
-  add_channel(picture, "entering.std_error", result.maps.entering.std_error);
+  picture.add_channel("leaving", result.maps.leaving.value);
+  picture.add_channel("leaving.std_error", result.maps.leaving.std_error);
+  picture.add_channel("entering", result.maps.entering.value);
+  picture.add_channel("entering.std_error", result.maps.entering.std_error);
   picture.texts = picture_texts("detector", result.design);
   picture.texts.emplace_back("retrace:engine", result.engine);
   picture.texts.emplace_back("retrace:unit", "irradiance over that of the beam on the face");
@@ -130,9 +126,9 @@ FloatPicture irradiance_picture(const DetectorResult& result) {
 FloatPicture angular_picture(const DetectorResult& result) {
   FloatPicture picture;
   picture.columns = picture.rows = result.request.angle_pixels;
-  add_channel(picture, "per_sr", turned_over(result.maps.per_sr.value, picture.columns));
+  picture.add_channel("per_sr", turned_over(result.maps.per_sr.value, picture.columns));
   if (!result.maps.per_sr.std_error.empty())
-    add_channel(picture, "per_sr.std_error", turned_over(result.maps.per_sr.std_error, picture.columns));
+    picture.add_channel("per_sr.std_error", turned_over(result.maps.per_sr.std_error, picture.columns));
   picture.texts = picture_texts("detector", result.design);
   picture.texts.emplace_back("retrace:engine", result.engine);
   picture.texts.emplace_back("retrace:unit", "share of the incident power per steradian");
