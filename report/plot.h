@@ -54,8 +54,9 @@ struct LinePlot {
   std::string scale_label = {};
   /// Entries of the legend. By default, the labels of the curves.
   std::optional<std::vector<LegendKey>> legend = {};
-  std::optional<Range> x_range;   ///< range of the x axis; by default, the range of the points
-  std::optional<Range> y_range;   ///< range of the y axis; by default, rounded_range() of the points, or whole decades
+  std::optional<Range> x_range = {};  ///< range of the x axis; by default, the range of the points
+  std::optional<Range> y_range =
+      {};                         ///< range of the y axis; by default, rounded_range() of the points, or whole decades
   bool y_is_logarithmic = false;  ///< true: the y axis has decades; points with y <= 0 are omitted
 };
 

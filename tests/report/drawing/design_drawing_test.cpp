@@ -329,7 +329,7 @@ TEST(DesignSheets, AreLegible) {
 /// Zones have numbers, colours and a legend, and the faces of each zone have its area.
 TEST(DesignSheets, ZonesAreNumberedAndColoured) {
   const std::string base = cubes("hexagonal_icc", "x_length_mm = 24\ny_length_mm = 12\n");
-  for (const std::string& zones :
+  for (const std::string zones :
        {"[[zone]]\narea_fraction = 0.25\n[[zone]]\narea_fraction = 0.75\nrotation_deg = 180\n",
         "[[zone]]\nrows = [1]\nevery = 2\n[[zone]]\nrest = true\nrotation_deg = 180\n"}) {
     design::Design design;
