@@ -62,7 +62,9 @@ TEST(ColourScale, LightnessRisesEvenlyWithOneHue) {
     const double z = f((0.0193 * linear(r) + 0.1192 * linear(g) + 0.9505 * linear(b)) / 1.089);
     EXPECT_NEAR(116.0 * y - 16.0, 5.0 + 0.93 * k, 1.5) << k;
     const double hue_deg = std::atan2(200.0 * (y - z), 500.0 * (x - y)) * 180.0 / std::numbers::pi;
-    if (k < 98) EXPECT_NEAR(hue_deg + 360.0, 264.0, 14.0) << k;
+    if (k < 98) {
+      EXPECT_NEAR(hue_deg + 360.0, 264.0, 14.0) << k;
+    }
   }
   EXPECT_EQ(light_colour(-1.0), light_colour(0.0));
   EXPECT_EQ(light_colour(2.0), light_colour(1.0));
