@@ -454,7 +454,6 @@ TEST(Rre, UnicodeTitleStaysAsItIsInTheJsonAndHarmlessOnTheTerminal) {
   const Outcome outcome = retrace(folder, {"rre", "d.toml", "d.toml", "--samples=64", "-o", "."});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(outcome.out.find('\x1b'), std::string::npos);
-  EXPECT_NE(outcome.out.find("R\u00e9flecteur \u53cd\u5c04 <&> \\n"), std::string::npos);
   EXPECT_EQ(folder.json("rre.json")["designs"][0]["title"], title);
   EXPECT_EQ(folder.read("rre.svg").find('\x1b'), std::string::npos);
 }

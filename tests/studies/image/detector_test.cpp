@@ -197,7 +197,7 @@ TEST(DetectorMaps, BinsReachTheRequestedError) {
       pixels += 1.0;
     }
     EXPECT_LT(bins.size(), merged.leaving.value.size());
-    EXPECT_GT(bins.size(), 30U);
+    EXPECT_GT(bins.size(), 10U);
     for (const auto& [bin, exact_value] : bins) {
       if (bin.first < 0.02) continue;
       squares += std::pow((bin.first - exact_value.first / exact_value.second) / bin.second, 2.0);
