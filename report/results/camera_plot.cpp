@@ -260,7 +260,7 @@ double draw_tile(Canvas* canvas, const Canvas& metrics, const CameraResult& resu
 }  // namespace
 
 ToneCurve camera_tone(std::span<const CameraResult> results) {
-  const CameraRequest& request = results.front().request;
+  const auto& request = results.front().request;
   const Tone tone = tone_of(request.tone);
   if (request.exposure_ev) return tone_of_exposure(*request.exposure_ev, tone);
   std::vector<double> all;

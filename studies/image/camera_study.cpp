@@ -450,6 +450,25 @@ ComputeTask CameraStudy::passes() const {
   };
 }
 
+namespace {
+
+/// Ledger of a process that was cancelled before its first pass.
+class NoPasses : public TaskLedger {
+ public:
+  std::optional<std::uint64_t> take() override { return std::nullopt; }
+  void give_back(std::uint64_t) override {}
+  void finish(std::uint64_t, const std::string&) override {}
+  bool is_finished() override { return false; }
+};
+
+/// Leaves a run of several processes without tracing a pass, so that the other processes can continue.
+void leave(const DistributeTasks& distribute) {
+  NoPasses none;
+  distribute([](std::uint64_t, const Cancellation*) { return std::optional<std::string>(); }, none);
+}
+
+}  // namespace
+
 CameraResult CameraStudy::run(Progress* progress, const Cancellation* cancel,
                               const std::function<void(const CameraResult&)>& after_pass,
                               const DistributeTasks& distribute) const {
@@ -473,6 +492,7 @@ CameraResult CameraStudy::run(Progress* progress, const Cancellation* cancel,
     return result;
   };
   if (!tracers) {
+    if (distribute) leave(distribute);
     result.complete = false;
     return finish();
   }

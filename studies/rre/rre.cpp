@@ -241,11 +241,10 @@ void warn_of_coarse_list(const RreSettings& request, RreResult& result) {
   result.warnings.push_back(
       {"curve_coarse",
        fmt::format("{}: the angles of incidence do not resolve the curve: at incidence {}, azimuth {}, RRE deviates by "
-                   "{:.2g} % of the maximum from the straight line between its neighbours; angles that are selected "
-                   "automatically resolve it ({}={}:{}:auto)",
+                   "{:.2g} % of the maximum from the straight line between its neighbours; automatically chosen "
+                   "angles resolve it ({}:{}:auto)",
                    result.designs[worst.second->design].source_name(), shortest(worst.second->incidence_deg),
-                   shortest(worst.second->azimuth_deg), 100.0 * worst.first, reference({"incidence_spans_deg"}),
-                   shortest(*low), shortest(*high))});
+                   shortest(worst.second->azimuth_deg), 100.0 * worst.first, shortest(*low), shortest(*high))});
 }
 
 /// Returns the engine of all points. If points have different engines, returns `montecarlo` if all engines trace rays,
