@@ -251,7 +251,7 @@ ExitCode run_series(const ImageOptions& options, const CommonOptions& common, co
     warnings.insert(warnings.end(), result.warnings.begin(), result.warnings.end());
   const bool is_complete =
       results.size() == count && std::ranges::all_of(results, [](const auto& result) { return result.complete; });
-  return files.write(studies::camera_series_json(results), studies::camera_series_table(results), warnings,
+  return files.write(studies::camera_series_json(results, is_complete), studies::camera_series_table(results), warnings,
                      {.complete = is_complete});
 }
 

@@ -108,7 +108,7 @@ Vec2 in_unit_disc(double u, double v) {
 
 }  // namespace
 
-DiffractionBlur DiffractionBlur::of_cells(double width_mm, double wavelength_nm, double reach_rad) {
+DiffractionBlur DiffractionBlur::for_cells(double width_mm, double wavelength_nm, double reach_rad) {
   // Far from its centre, the diffraction pattern of a circular aperture of diameter D has the mean density
   // lambda / (pi^3 D angle^3) per steradian. The tail has this density at large angles.
   const double spread_rad = 1e-6 * wavelength_nm / width_mm;

@@ -62,7 +62,7 @@ struct DiffractionBlur {
 
   /// Returns the blur for cells of a given width.
   /// \param reach_rad sum of the radii of both discs; > 0
-  static DiffractionBlur of_cells(double width_mm, double wavelength_nm, double reach_rad);
+  static DiffractionBlur for_cells(double width_mm, double wavelength_nm, double reach_rad);
   /// Returns the density per steradian at an angular separation. Its integral is 1.
   double per_sr(const ApertureKernel& kernel, double separation_rad) const;
 };

@@ -160,11 +160,11 @@ std::optional<FarField> detector_far_field(const geometry::Part& part, const Opt
                                            const BeamPolicy& beams, const FarFieldPolicy& policy,
                                            std::vector<FarFieldRay>& specular, const Cancellation* cancel) {
   FarFieldCollector collector(part, illumination, policy);
-  BeamPolicy of_cells = beams;
-  of_cells.separate_cells = true;
+  BeamPolicy for_cells = beams;
+  for_cells.separate_cells = true;
   const BeamResult traced =
       BeamTracer(part, BeamTracer::Elements::instanced)
-          .trace(optics, illumination, {setting.acceptance_deg}, of_cells, cancel, [&](const ReturnedBeam& beam) {
+          .trace(optics, illumination, {setting.acceptance_deg}, for_cells, cancel, [&](const ReturnedBeam& beam) {
             if (beam.depth > 0)
               collector.add(beam);
             else

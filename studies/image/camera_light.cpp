@@ -100,7 +100,8 @@ class CameraLight::Grid {
     geometric_.ignore_diffraction();
     returned_.face_mm = raytrace::visible_face(part, scene);
     const double cells_mm = diffracted_.cell_width_mm() > 0.0 ? diffracted_.cell_width_mm() : part.size_mm;
-    returned_.blur = raytrace::DiffractionBlur::of_cells(cells_mm, kBlurWavelengthNm, diffracted_.kernel().reach_rad());
+    returned_.blur =
+        raytrace::DiffractionBlur::for_cells(cells_mm, kBlurWavelengthNm, diffracted_.kernel().reach_rad());
     if (geometric_.is_exact()) return;
     // Without beams of geometrical optics, the gain is computed at the centre only.
     traced_mean_ = traced_mean(view_at(part_, scene_, returned_.face_mm.centre()));

@@ -152,16 +152,16 @@ TEST(AdaptiveCurve, ValuesAreThoseOfAList) {
   const std::string endless = text("kind = \"rtp\"\nbase_mm = 0.5\nwidth_mm = 0.5", "extent = \"infinite\"");
   const std::vector<design::Design> designs = {prisms(), design::parse_design(endless, "e.toml", denser)};
   RreResult curve = RreStudy(designs, request).run();
-  const auto places_of = [&](std::size_t d, double azimuth_deg) {
+  const auto angles_of = [&](std::size_t d, double azimuth_deg) {
     std::vector<double> places;
     for (const RrePoint& p : curve.points)
       if (p.design == d && p.azimuth_deg == azimuth_deg) places.push_back(p.incidence_deg);
     return places;
   };
-  EXPECT_NE(places_of(0, 30.0), places_of(1, 30.0));
+  EXPECT_NE(angles_of(0, 30.0), angles_of(1, 30.0));
   for (std::size_t d = 0; d < designs.size(); ++d) {
-    const std::vector<double> places = places_of(d, 30.0);
-    EXPECT_EQ(places_of(d, 0.0), places);
+    const std::vector<double> places = angles_of(d, 30.0);
+    EXPECT_EQ(angles_of(d, 0.0), places);
     EXPECT_TRUE(std::is_sorted(places.begin(), places.end()));
     EXPECT_EQ(std::count(places.begin(), places.end(), 2.3), 1);
     EXPECT_EQ(places.back(), 15.0);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <system_error>
 
 #include "core/error.h"
 #include "core/pictures.h"
@@ -54,6 +55,11 @@ Background luminances(const FloatPicture& picture) {
 }  // namespace
 
 Background read_background(const std::filesystem::path& file, Field field) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored))
+    throw InputError(field, fmt::format("must be a picture that can be read (PNG, JPEG, OpenEXR), {}: it is not a "
+                                        "regular file",
+                                        file.string()));
   const PictureFiles& files = picture_files();
   try {
     const PictureFiles::Size size = files.size(file);

@@ -16,7 +16,8 @@ namespace retrace::studies {
 std::string detector_json(const DetectorResult& result);
 std::string camera_json(const CameraResult& result);
 /// Returns the document of several camera pictures.
-std::string camera_series_json(const std::vector<CameraResult>& results);
+/// \param complete true if all requested pictures are complete
+std::string camera_series_json(const std::vector<CameraResult>& results, bool complete);
 std::string road_json(const RoadResult& result);
 
 /// The following functions return tables for the terminal.
