@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <map>
+#include <mutex>
 #include <numbers>
 #include <set>
 #include <string_view>
@@ -443,8 +444,20 @@ std::shared_ptr<const CameraStudy::Tracers> CameraStudy::tracers(Progress* progr
 }
 
 ComputeTask CameraStudy::passes() const {
-  const std::shared_ptr<const Tracers> tracers = this->tracers(nullptr, nullptr);
-  return [tracers](std::uint64_t number, const Cancellation* cancel) -> std::optional<std::string> {
+  /// Tracers that the first pass makes. Thus, they are made where the process can be cancelled.
+  struct Shared {
+    std::mutex mutex;
+    std::shared_ptr<const Tracers> tracers;
+  };
+  return [this, shared = std::make_shared<Shared>()](std::uint64_t number,
+                                                     const Cancellation* cancel) -> std::optional<std::string> {
+    std::shared_ptr<const Tracers> tracers;
+    {
+      const std::lock_guard lock(shared->mutex);
+      if (!shared->tracers) shared->tracers = this->tracers(nullptr, cancel);
+      tracers = shared->tracers;
+    }
+    if (!tracers) return std::nullopt;
     const auto pass = tracers->pass(static_cast<std::uint32_t>(number), cancel);
     return pass ? std::optional(bytes_of(*pass)) : std::nullopt;
   };
