@@ -203,7 +203,7 @@ class Study(PageCase):
             breaks = self.driver.execute_script("return [...new Set([...document.querySelectorAll(arguments[0])].map("
                                                 "(e) => getComputedStyle(e).breakInside))]", selector)
             self.assertEqual(breaks, ["avoid"], selector)
-        self.assertIn("Single RTP", self.text(".u-legend"))  # curves are named
+        self.assertIn("rtp_single", self.text(".u-legend"))  # curves are named
         self.end_preview()
         self.resize(WIDTH, HEIGHT)
 
