@@ -1,11 +1,11 @@
 // Answers requests that trace light: one direction of incidence, or a curve of the RRE (retroreflective efficiency).
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "live/engine/answers.h"
 #include "live/engine/request.h"
 #include "raytrace/engines/beam_race.h"
+#include "raytrace/engines/wavelengths.h"
 #include "studies/rre/beam_tracing.h"
 #include "studies/rre/spectral_mean.h"
 
@@ -46,10 +46,10 @@ class Tracing {
   Tracing(const OpenedDesign& opened, const RrePoint& at, std::size_t wavelength)
       : opened_(opened),
         lit_(opened.require_model().spectral[wavelength]),
+        wavelength_(wavelength),
         at_(at),
         illumination_(studies::illumination_of(at, opened.design())) {
     at_.wavelength_nm = lit_.wavelength_nm;
-    sampling_.seed = static_cast<std::uint32_t>(wavelength + 1);
   }
 
   /// Traces with the exact engine or with resampled beams, whichever is faster. Returns nothing if the time limit is
@@ -57,10 +57,12 @@ class Tracing {
   /// \param limit null if there is no limit
   std::optional<Found> trace(const TraceSettings& way, const TimeLimit* limit) {
     studies::BeamCollector collector(way.question, part(), cones().size(), illumination_);
-    sampling_.target_error = way.target_error / std::sqrt(lit_.weight);
+    raytrace::Sampling of_spectrum;
+    of_spectrum.target_error = way.target_error;
+    const raytrace::Sampling sampling = raytrace::sampling_at(of_spectrum, lit_.weight, wavelength_);
     raytrace::BeamPolicy policy;
     policy.truncated_goal = way.target_error;
-    raytrace::BeamRace race(opened_.require_tracer(), nullptr, lit_.optics, illumination_, cones(), policy, sampling_,
+    raytrace::BeamRace race(opened_.require_tracer(), nullptr, lit_.optics, illumination_, cones(), policy, sampling,
                             {.may_resample = !way.is_exact, .observer = collector.observer()}, nullptr);
     while (!race.advance())
       if (limit != nullptr && limit->is_over()) return std::nullopt;
@@ -93,9 +95,9 @@ class Tracing {
 
   const OpenedDesign& opened_;
   const design::SpectralOptics& lit_;
+  std::size_t wavelength_;  ///< index of the wavelength in the spectrum
   RrePoint at_;
   raytrace::Illumination illumination_;
-  raytrace::Sampling sampling_;
 };
 
 /// Traces one direction of incidence at all wavelengths. The footprint and the far field are computed only at the
