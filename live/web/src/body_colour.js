@@ -18,9 +18,14 @@ function absorptionAt(curve, nm) {
 }
 
 /** Returns the absorption of a body as a list of [wavelength, absorption], or null if it is the same for all colours. */
-function curveOf(design) {
+function absorptionOf(design) {
   const absorption = design && design.keys.find(({ path }) => path === "body.absorption_per_mm");
   return absorption && Array.isArray(absorption.value) ? absorption.value : null;
+}
+
+/** Returns the length of the path of light through the body: in and out. */
+function pathLengthOf(design) {
+  return 2 * (design.thickness_mm || 1);
 }
 
 /**
@@ -28,12 +33,12 @@ function curveOf(design) {
  * is that of white light after two passes, made so light that edges and light paths remain visible.
  */
 export function tintOf(design) {
-  const curve = curveOf(design);
+  const curve = absorptionOf(design);
   if (!curve || coloursOf(design)[0] === "white") return null;
-  const path_mm = 2 * (design.thickness_mm || 1);
+  const path_mm = pathLengthOf(design);
   const passed = [NM.red, NM.green, NM.blue].map((nm) => Math.exp(-path_mm * absorptionAt(curve, nm)));
-  const most = Math.max(...passed, 1e-12);
-  return `rgb(${passed.map((t) => Math.round(40 + 195 * (t / most))).join(", ")})`;
+  const max = Math.max(...passed, 1e-12);
+  return `rgb(${passed.map((t) => Math.round(40 + 195 * (t / max))).join(", ")})`;
 }
 
 /**
@@ -41,9 +46,9 @@ export function tintOf(design) {
  * ("white").
  */
 export function coloursOf(design) {
-  const curve = curveOf(design);
+  const curve = absorptionOf(design);
   if (!curve) return ["white"];
-  const path_mm = 2 * (design.thickness_mm || 1); // light passes through the body twice: in and out
+  const path_mm = pathLengthOf(design);
   const least = Math.min(...Object.values(NM).map((nm) => absorptionAt(curve, nm)));
   const passes = (nm) => Math.exp(path_mm * (least - absorptionAt(curve, nm))) >= PASSES;
   const [blue, green, yellow, red] = Object.values(NM).map(passes);

@@ -10,7 +10,7 @@ function valueOf(text) {
 }
 
 /** Returns the values in a text of a design, by their paths. Keys of the second table of a list are "zone.1.gap_mm". */
-export function valuesOf(toml) {
+function valuesOf(toml) {
   const values = new Map();
   const counts = new Map();
   let table = "";
@@ -33,7 +33,7 @@ function areEqual(a, b) {
 }
 
 /** Returns the keys of a design that differ from those of another design, with their values, except the title. */
-export function differences(toml, other) {
+function differences(toml, other) {
   const [here, there] = [valuesOf(toml), valuesOf(other)];
   return [...new Set([...here.keys(), ...there.keys()])]
     .filter((path) => path !== "title" && path !== "schema" && !areEqual(here.get(path), there.get(path)))

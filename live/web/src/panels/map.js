@@ -2,20 +2,15 @@
 import { Canvas, h } from "../dom.js";
 import { panel } from "../frame.js";
 import { percent, short } from "../units.js";
+import { colourOnScale, rgbOf } from "../../../../report/page/web/src/colour_scale.js";
 import { colour } from "../../../../report/page/web/src/theme.js";
 
 // ColorBrewer YlGnBu from dark to light, as for maps in reports: lighter means more, in the light and the dark theme.
-const SCALE = ["#081d58", "#253494", "#225ea8", "#1d91c0", "#41b6c4", "#7fcdbb", "#c7e9b4", "#edf8b1", "#ffffd9"].map((text) =>
-  [1, 3, 5].map((k) => parseInt(text.slice(k, k + 2), 16)),
-);
+const SCALE = ["#081d58", "#253494", "#225ea8", "#1d91c0", "#41b6c4", "#7fcdbb", "#c7e9b4", "#edf8b1", "#ffffd9"].map(rgbOf);
 const SIZE = 240; // size in pixels of the picture that is scaled to the disc
 
 /** 256 colours from minimum to maximum. */
-const COLOURS = Array.from({ length: 256 }, (_, k) => {
-  const at = (k / 255) * (SCALE.length - 1);
-  const low = Math.min(SCALE.length - 2, Math.floor(at));
-  return SCALE[low].map((c, i) => Math.round(c + (at - low) * (SCALE[low + 1][i] - c)));
-});
+const COLOURS = Array.from({ length: 256 }, (_, k) => colourOnScale(SCALE, k / 255));
 
 /** Returns, for each pixel, the distance from the centre relative to the radius, and the azimuth in turns. */
 function polarPixels() {
@@ -201,7 +196,7 @@ export class MapPanel {
     context.save();
     for (const [width, dash, paint] of [
       [2.5, [], "rgba(255,255,255,0.55)"],
-      [1.25, [5, 4], "#b34700"],
+      [1.25, [5, 4], colour("--scale-curve")],
     ]) {
       context.setLineDash(dash);
       context.strokeStyle = paint;
@@ -220,10 +215,10 @@ export class MapPanel {
     const turn = ((azimuth_deg + (incidence_deg < 0 ? 180 : 0)) * Math.PI) / 180;
     const at = [x + away * Math.cos(turn), y - away * Math.sin(turn)];
     for (const [width, name] of [
-      [4, "#ffffff"],
-      [2, "#1c2026"],
+      [4, "--scale-low"],
+      [2, "--scale-mark"],
     ]) {
-      context.strokeStyle = name;
+      context.strokeStyle = colour(name);
       context.lineWidth = width;
       context.beginPath();
       context.arc(...at, 6, 0, 2 * Math.PI);

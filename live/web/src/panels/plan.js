@@ -2,6 +2,7 @@
 import { Canvas, h } from "../dom.js";
 import { button, panel } from "../frame.js";
 import { percent, short } from "../units.js";
+import { colourOnScale, rgbOf } from "../../../../report/page/web/src/colour_scale.js";
 import { colour } from "../../../../report/page/web/src/theme.js";
 
 function corners(flat) {
@@ -153,10 +154,9 @@ export class PlanPanel {
 
   /** Draws the regions in opaque colours between the colours for no light and for all light. */
   paintRegions() {
-    const [paper, light] = ["--scale-low", "--scale-high"].map((name) => [1, 3, 5].map((k) => parseInt(colour(name).slice(k, k + 2), 16)));
+    const scale = ["--scale-low", "--scale-high"].map((name) => rgbOf(colour(name)));
     for (const region of this.regions || []) {
-      const share = 0.1 + 0.9 * region.efficiency;
-      region.paint = `rgb(${paper.map((c, k) => Math.round(c + share * (light[k] - c)))})`;
+      region.paint = `rgb(${colourOnScale(scale, 0.1 + 0.9 * region.efficiency)})`;
     }
   }
 
@@ -228,7 +228,7 @@ export class PlanPanel {
     context.save();
     this.trace(context, this.plan.outline);
     context.setLineDash([5 * unit, 4 * unit]);
-    context.strokeStyle = "#d55e00";
+    context.strokeStyle = colour("--scale-period");
     context.lineWidth = 1.4 * unit;
     context.stroke();
     context.restore();
@@ -253,7 +253,7 @@ export class PlanPanel {
     const tile = document.createElement("canvas");
     tile.width = tile.height = size;
     const context = tile.getContext("2d");
-    context.strokeStyle = "#b3bac4";
+    context.strokeStyle = colour("--scale-hatch");
     context.lineWidth = this.canvas.ratio;
     for (const shift of [-size, 0, size]) {
       context.moveTo(shift, 0);

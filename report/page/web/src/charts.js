@@ -1,5 +1,6 @@
 // Interactive charts for pointer and keyboard, drawn with uPlot.
 import uPlot from "uplot";
+import { colourOnScale } from "./colour_scale.js";
 import { colour, isDark } from "./theme.js";
 
 // The following values are those of drawings in files, see report/plot.cpp and report/style.h.
@@ -14,30 +15,43 @@ const VIRIDIS = [
   [173, 220, 48],
   [253, 231, 37],
 ];
-const DASHES = [undefined, [7, 3.5], [2, 2.5], [8, 3, 2, 3]];
+const DASHES = [[], [7, 3.5], [2, 2.5], [8, 3, 2, 3]];
 const MAX_MARKERS = 45;
 
-/** Returns a colour for a position 0..1 on the colour scale. Colours near that of the background are left out. */
+/** Size of a chart on paper, about the width of a page of A4. */
+const PRINTED = { width: 690, height: 300 };
+const HEIGHT = 340;
+const CURVE_COLOURS = 7; // number of colours --curve-0, --curve-1, ...
+
+/** Returns a colour for a fraction 0..1 of the range of the colour scale. Colours near that of the background are left out. */
 function scaleColour(fraction) {
-  const at = Math.min(1, Math.max(0, isDark() ? 0.15 + 0.85 * fraction : 0.93 * fraction)) * (VIRIDIS.length - 1);
-  const k = Math.min(Math.floor(at), VIRIDIS.length - 2);
-  const mixed = VIRIDIS[k].map((a, c) => Math.round(a + (at - k) * (VIRIDIS[k + 1][c] - a)));
-  return `rgb(${mixed.join(", ")})`;
+  const position = Math.min(1, Math.max(0, isDark() ? 0.15 + 0.85 * fraction : 0.93 * fraction));
+  return `rgb(${colourOnScale(VIRIDIS, position).join(", ")})`;
+}
+
+/** Returns the colour of a curve whose style has this number, in charts without a colour scale. */
+function curveColour(look) {
+  return colour(`--curve-${look % CURVE_COLOURS}`);
+}
+
+/** Returns the dashes of a curve whose style has this number. */
+function dashesOf(look, hasScale) {
+  if (hasScale) return DASHES[look % DASHES.length];
+  return look < CURVE_COLOURS ? [] : [6, 4];
 }
 
 /** Returns the colour and the dashes of a curve. */
-function lookOf(chart, s, i) {
-  const look = s.look ?? i;
-  if (chart.scale && s.value != null) {
-    const { low, high } = chart.scale;
-    const fraction = high > low ? (s.value - low) / (high - low) : 0.5;
-    return { stroke: () => scaleColour(fraction), dash: DASHES[look % DASHES.length] };
-  }
-  return { stroke: () => colour(`--curve-${look % 7}`), dash: look < 7 ? undefined : [6, 4] };
+function strokeOf(chart, curve, i) {
+  const look = curve.look ?? i;
+  const hasScale = chart.scale && curve.value != null;
+  if (!hasScale) return { stroke: () => curveColour(look), dash: dashesOf(look, false) };
+  const { low, high } = chart.scale;
+  const fraction = high > low ? (curve.value - low) / (high - low) : 0.5;
+  return { stroke: () => scaleColour(fraction), dash: dashesOf(look, true) };
 }
 
 /** Returns the value of a curve at the x value of another curve, by linear interpolation. */
-function between(plot, series, i) {
+function interpolated(plot, series, i) {
   const [xs, ys] = [plot.data[0], plot.data[series]];
   let low = i;
   let high = i;
@@ -46,7 +60,6 @@ function between(plot, series, i) {
   if (low < 0 || high >= ys.length) return null;
   return low === high ? ys[low] : ys[low] + ((ys[high] - ys[low]) * (xs[i] - xs[low])) / (xs[high] - xs[low]);
 }
-const PRINTED = { width: 690, height: 300 }; // size of a chart on paper, about the width of a page of A4
 
 /** Returns all x values of all series, ascending, and the y values of each series with null for missing values. */
 export function aligned(series) {
@@ -77,10 +90,11 @@ export function axis(label, values) {
   };
 }
 
-function optionsOf(chart, width, figure, read) {
+/** \param readout element that shows the values at the pointer, or null */
+function optionsOf(chart, width, figure, readout) {
   return {
     width,
-    height: 340,
+    height: HEIGHT,
     scales: { x: { time: false }, y: {} },
     axes: [axis(chart.x_label, 46), axis(chart.y_label, 62)],
     cursor: { drag: { x: true, y: false }, focus: { prox: 30 } },
@@ -89,12 +103,12 @@ function optionsOf(chart, width, figure, read) {
       { label: chart.x_label, value: (_, v) => shown(v) },
       ...chart.series.map((s, i) => ({
         label: s.label,
-        ...lookOf(chart, s, i),
+        ...strokeOf(chart, s, i),
         width: s.line && s.x.length <= MAX_MARKERS ? 1.2 : 2,
         ...(s.line ? {} : { paths: () => null }),
         points: { show: !s.line || s.x.length <= MAX_MARKERS, size: 5 },
         spanGaps: true,
-        value: (plot, v, series, at) => shown(v == null && at != null && s.line ? between(plot, series, at) : v),
+        value: (plot, v, series, at) => shown(v == null && at != null && s.line ? interpolated(plot, series, at) : v),
       })),
     ],
     hooks: {
@@ -102,7 +116,7 @@ function optionsOf(chart, width, figure, read) {
         (plot) => {
           const i = plot.cursor.idx;
           figure.dataset.at = i == null ? "" : plot.data.map((values) => shown(values[i])).join(" ");
-          if (read) read.textContent = i == null ? "" : nearest(plot, i);
+          if (readout) readout.textContent = i == null ? "" : nearestText(plot, i);
         },
       ],
       setScale: [
@@ -114,20 +128,23 @@ function optionsOf(chart, width, figure, read) {
   };
 }
 
-/** Returns a text with the values of the curve that is nearest to the pointer. */
-function nearest(plot, i) {
+/** Returns a text with the value of the curve that is nearest to the pointer. */
+function nearestText(plot, i) {
   const y = plot.posToVal(plot.cursor.top, "y");
   let best = { distance: Infinity, text: "" };
   for (let k = 1; k < plot.series.length; ++k) {
-    const value = between(plot, k, i);
+    const value = interpolated(plot, k, i);
     if (value == null || Math.abs(value - y) >= best.distance) continue;
     best = { distance: Math.abs(value - y), text: `${plot.series[k].label}: ${shown(value)} at ${shown(plot.data[0][i])}` };
   }
   return best.text;
 }
 
-/** Adds a legend for groups of curves, a colour bar and the values at the pointer. Returns a function that updates the colours. */
-function addLegend(figure, chart, read) {
+/**
+ * Adds a legend for groups of curves, a colour bar and the values at the pointer. Returns a function that draws them in
+ * the colours of the theme.
+ */
+function addLegend(figure, chart, readout) {
   const box = document.createElement("div");
   box.className = "curve-legend";
   const samples = chart.legend.map((key) => {
@@ -145,7 +162,7 @@ function addLegend(figure, chart, read) {
     item.append(`${chart.scale.label}: ${shown(chart.scale.low)} `, bar, ` ${shown(chart.scale.high)}`);
     box.append(item);
   }
-  box.append(read);
+  box.append(readout);
   figure.querySelector(".plot").after(box);
   return () => {
     const stops = Array.from({ length: 17 }, (_, k) => scaleColour(k / 16));
@@ -153,12 +170,12 @@ function addLegend(figure, chart, read) {
     for (const { line, look } of samples) {
       const pen = line.getContext("2d");
       pen.clearRect(0, 0, line.width, line.height);
-      pen.strokeStyle = chart.scale ? colour("--text") : colour(`--curve-${look % 7}`);
+      pen.strokeStyle = chart.scale ? colour("--text") : curveColour(look);
       pen.lineWidth = 2;
-      pen.setLineDash((chart.scale ? DASHES[look % DASHES.length] : look < 7 ? [] : [6, 4]) ?? []);
+      pen.setLineDash(dashesOf(look, Boolean(chart.scale)));
       pen.beginPath();
-      pen.moveTo(0, 6);
-      pen.lineTo(34, 6);
+      pen.moveTo(0, line.height / 2);
+      pen.lineTo(line.width, line.height / 2);
       pen.stroke();
     }
   };
@@ -173,7 +190,7 @@ export function addKeys(plot, figure, spoken) {
     const x = plot.data[0][at];
     plot.setCursor({ left: plot.valToPos(x, "x"), top: 20 });
     spoken.textContent = plot.series
-      .map((s, i) => `${s.label}: ${shown(i === 0 ? plot.data[0][at] : between(plot, i, at))}`)
+      .map((s, i) => `${s.label}: ${shown(i === 0 ? plot.data[0][at] : interpolated(plot, i, at))}`)
       .join("; ");
   };
   const zoom = (factor) => {
@@ -199,6 +216,7 @@ export function addKeys(plot, figure, spoken) {
   });
 }
 
+/** Draws a chart. Returns a function that draws it again in the colours of the theme. */
 function draw(figure, chart) {
   const area = figure.querySelector(".plot");
   area.tabIndex = 0;
@@ -208,30 +226,28 @@ function draw(figure, chart) {
   spoken.className = "spoken";
   spoken.setAttribute("aria-live", "polite");
   figure.append(spoken);
-  const read = chart.legend ? document.createElement("output") : null;
-  const options = optionsOf(chart, Math.max(280, area.clientWidth), figure, read);
-  const plot = new uPlot(options, aligned(chart.series), area);
-  const tint = read ? addLegend(figure, chart, read) : () => {};
-  tint();
+  const readout = chart.legend ? document.createElement("output") : null;
+  const widthOf = () => Math.max(280, Math.floor(area.clientWidth));
+  const plot = new uPlot(optionsOf(chart, widthOf(), figure, readout), aligned(chart.series), area);
+  const drawLegend = chart.legend ? addLegend(figure, chart, readout) : () => recolourLegend(plot);
+  if (chart.legend) drawLegend();
   addKeys(plot, figure, spoken);
   const fit = () => {
-    const width = Math.max(280, Math.floor(area.clientWidth));
-    if (width !== plot.width) plot.setSize({ width, height: 340 });
+    if (widthOf() !== plot.width) plot.setSize({ width: widthOf(), height: HEIGHT });
   };
   new ResizeObserver(fit).observe(area);
   window.addEventListener("beforeprint", () => plot.setSize(PRINTED));
   window.addEventListener("afterprint", fit);
   return () => {
-    recolour(plot);
-    tint();
+    plot.redraw(false, true);
+    drawLegend();
   };
 }
 
-/** Draws a chart and its legend in the colours of the theme. */
-function recolour(plot) {
-  plot.redraw(false, true);
+/** Draws the legend of uPlot in the colours of the theme. */
+function recolourLegend(plot) {
   const markers = plot.root.querySelectorAll(".u-marker"); // the first one belongs to the x axis
-  markers.forEach((marker, i) => i > 0 && (marker.style.borderColor = colour(`--curve-${(i - 1) % 7}`)));
+  markers.forEach((marker, i) => i > 0 && (marker.style.borderColor = curveColour(i - 1)));
 }
 
 export function drawCharts(charts) {
