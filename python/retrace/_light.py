@@ -83,26 +83,17 @@ class RreResult(Result):
 
         design: index in the list of designs. acceptance_half_angle_deg: acceptance cone; None: the
         narrowest one. Raises InputError if there is no such map."""
-        maps = [one for one in self.document.get("maps", ()) if one["design"] == design]
-        if acceptance_half_angle_deg is not None:
-            maps = [
-                one
-                for one in maps
-                if one["acceptance_half_angle_deg"] == acceptance_half_angle_deg
-            ]
+        maps = self.document.get("maps", [])
         if not maps:
-            there = [
-                (one["design"], one["acceptance_half_angle_deg"])
-                for one in self.document.get("maps", ())
-            ]
-            raise InputError(
-                "there is no such map; the maps have the designs and acceptance angles "
-                f"{there}"
-                if there
-                else "there are no maps; call rre() with map=True",
-                key="design",
-            )
-        return PolarMap(maps[0])
+            raise InputError("there are no maps; call rre() with map=True", key="design")
+        keys = [(one["design"], one["acceptance_half_angle_deg"]) for one in maps]
+        for one, (index, angle_deg) in zip(maps, keys):
+            if index == design and acceptance_half_angle_deg in (None, angle_deg):
+                return PolarMap(one)
+        raise InputError(
+            f"there is no such map; the maps have the designs and acceptance angles {keys}",
+            key="design",
+        )
 
     @property
     def engines(self) -> Any:
