@@ -10,13 +10,8 @@
 #include "materials/io/index_record.h"
 #include "tests/fuzz/one_line.h"
 
-namespace {
-
-namespace materials = retrace::materials;
-
-}  // namespace
-
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  namespace materials = retrace::materials;
   try {
     const materials::Material material =
         materials::parse_index_record({reinterpret_cast<const char*>(data), size}, "fuzz.yml");

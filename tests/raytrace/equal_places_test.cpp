@@ -14,6 +14,7 @@
 #include "tests/support/designs.h"
 #include "tests/support/return_frames.h"
 #include "tests/support/statistics.h"
+#include "tests/support/traced_far_fields.h"
 
 namespace retrace::testing::equal_places_test {
 namespace {
@@ -89,27 +90,10 @@ BeamPolicy policy_at(double cutoff) {
   return policy;
 }
 
-struct Seen {
-  FarField field;
-  BeamResult result;
-};
-
-Seen seen(const Part& part, const Optics& optics, const Illumination& light, const std::vector<double>& cones_deg,
-          BeamPolicy beams, Elements elements) {
-  FarFieldPolicy policy;
-  if (beams.population_control) policy.replicates = beams.population_control->replicates;
-  FarFieldCollector collector(part, light, policy);
-  Seen result;
-  result.result =
-      BeamTracer(part, elements).trace(optics, light, cones_deg, beams, nullptr, [&](const ReturnedBeam& beam) {
-        collector.add(beam);
-      });
-  result.field = collector.finish();
-  return result;
-}
+using Seen = TracedFarField;
 
 Seen seen(const Part& part, const Illumination& light, const BeamPolicy& beams, Elements elements) {
-  return seen(part, pmma(), light, {0.5}, beams, elements);
+  return traced_far_field(part, pmma(), light, {}, beams, {0.5}, elements);
 }
 
 /// Results of a question if each element is traced separately, and if equal elements are traced only one time.
@@ -128,7 +112,7 @@ const std::vector<Pair>& pairs() {
     std::vector<Pair> result;
     for (const Question& question : questions()) {
       const auto traced = [&](Elements elements) {
-        return seen(question.part, optics, question.light, cones, policy_at(1e-8), elements);
+        return traced_far_field(question.part, optics, question.light, {}, policy_at(1e-8), cones, elements);
       };
       result.push_back({question, traced(Elements::individual), traced(Elements::instanced)});
     }

@@ -160,8 +160,7 @@ TEST(PopulationControl, StopWhenCancelled) {
 
 using Seen = TracedFarField;
 
-Seen seen(const Question& question, const BeamPolicy& beams, FarFieldPolicy policy) {
-  policy.replicates = beams.population_control ? beams.population_control->replicates : 0;
+Seen seen(const Question& question, const BeamPolicy& beams, const FarFieldPolicy& policy) {
   BeamPolicy by_cell = beams;
   by_cell.separate_cells = true;
   return traced_far_field(question.part, pmma(), question.light, policy, by_cell);

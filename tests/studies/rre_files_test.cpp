@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <sstream>
 
 #include "core/version.h"
@@ -139,7 +140,7 @@ TEST(RreFiles, TableShowsTitlesAsPrintableText) {
 
 /// Returns a result with the curve 0.8 cos^2(2 t) at every degree from -40 to 40.
 RreResult smooth_result(std::size_t designs, std::size_t azimuths) {
-  constexpr double kRadians = 3.14159265358979323846 / 180.0;
+  constexpr double kRadians = std::numbers::pi / 180.0;
   RreResult result;
   result.designs.resize(designs);
   for (std::size_t d = 0; d < designs; ++d) {

@@ -5,30 +5,33 @@
 
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "core/error.h"
 #include "design/io/design_reader.h"
 #include "studies/rre/rre_request.h"
-#include "tests/support/designs.h"
 
 namespace retrace::testing::rre_map_test {
 namespace {
 
 using namespace retrace::studies;
 
-std::string cubes(const std::string& kind, const std::string& more) {
-  return "[element]\nkind = \"" + kind + "\"\naperture_mm = 1\n[array]\nextent = \"infinite\"\n" + more +
+/// Returns a design of an infinite part.
+/// \param sizes lines with the sizes of the element
+/// \param more tables to add
+std::string infinite_design(const std::string& kind, const std::string& sizes, const std::string& more = "") {
+  return "[element]\nkind = \"" + kind + "\"\n" + sizes + "[array]\nextent = \"infinite\"\n" + more +
          "[body]\nthickness_mm = 2\nrefractive_index = 1.49\n";
 }
 
-std::string prisms(double base_mm, double width_mm) {
-  return "[element]\nkind = \"rtp\"\nbase_mm = " + std::to_string(base_mm) +
-         "\nwidth_mm = " + std::to_string(width_mm) +
-         "\n[array]\nextent = \"infinite\"\n[body]\nthickness_mm = 2\nrefractive_index = 1.49\n";
+std::string cubes(const std::string& kind, const std::string& more = "") {
+  return infinite_design(kind, "aperture_mm = 1\n", more);
 }
 
-RreResult run(const std::string& text, const RreRequest& request, const std::vector<std::string>& overrides = {}) {
-  return RreStudy({design::parse_design(text, "design", overrides)}, resolve(request)).run();
+RreResult run(const std::string& text, const RreRequest& request) {
+  return RreStudy({design::parse_design(text, "design")}, resolve(request)).run();
 }
 
 RreRequest map_request(std::vector<double> incidence_deg, std::vector<double> azimuth_deg) {
@@ -59,9 +62,9 @@ struct Shared {
 /// degrees with the reflection of y; 2 for all symmetries of a hexagon; 4 for both reflections; 7 for one reflection.
 TEST(RreMap, SharesSymmetricDirections) {
   const std::vector<Shared> all = {
-      {"honeycomb", cubes("hexagonal_icc", ""), 1 + 3},
-      {"triangular cubes", cubes("triangular_icc", ""), 1 + 2},
-      {"prisms", prisms(0.5, 0.5), 1 + 4},
+      {"honeycomb", cubes("hexagonal_icc"), 1 + 3},
+      {"triangular cubes", cubes("triangular_icc"), 1 + 2},
+      {"prisms", infinite_design("rtp", "base_mm = 0.5\nwidth_mm = 0.5\n"), 1 + 4},
       {"dihedral errors", cubes("hexagonal_icc", "[surface]\ndihedral_error_arcmin = [2, 3, 3]\n"), 1 + 7},
       {"polarised light", cubes("hexagonal_icc", "[light]\npolarisation = [1, 0.5, 0, 0]\n"), 1 + 12}};
   for (const Shared& shared : all) {
@@ -85,7 +88,7 @@ TEST(RreMap, SharesSymmetricDirections) {
   }
 }
 
-/// Returns a map of the function 0.5 + 0.3 cos(2 azimuth) sin(incidence) + 0.1 cos(incidence).
+/// Returns the value of the function 0.5 + 0.3 cos(2 azimuth) sin(incidence) + 0.1 cos(incidence).
 double smooth(double incidence_deg, double azimuth_deg) {
   const double t = std::numbers::pi / 180.0 * incidence_deg;
   const double a = std::numbers::pi / 180.0 * azimuth_deg;
@@ -125,7 +128,7 @@ TEST(RreMap, InterpolatesBetweenDirections) {
 /// The mean of a map of cube corners agrees with the mean over directions of a two-dimensional lattice that is uniform
 /// in solid angle. The errors of both quadratures are below 1e-3.
 TEST(RreMap, MeanAgreesWithOtherDirections) {
-  const std::string design = cubes("hexagonal_icc", "");
+  const std::string design = cubes("hexagonal_icc");
   RreRequest request;
   request.map = true;
   request.incidence_deg = steps(40.0, 2.0);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <utility>
+#include <vector>
 
 #include "raytrace/exact/beam_tracer.h"
 #include "raytrace/observers/far_field.h"
@@ -13,14 +14,16 @@ struct TracedFarField {
   raytrace::FarField field;
 };
 
-/// Traces the beams of a part and collects their far field.
+/// Traces the beams of a part and collects their far field. The far field has the replicates of the population control.
 inline TracedFarField traced_far_field(
     const geometry::Part& part, const raytrace::Optics& optics, const raytrace::Illumination& light,
-    const raytrace::FarFieldPolicy& policy, const raytrace::BeamPolicy& beams,
+    raytrace::FarFieldPolicy policy, const raytrace::BeamPolicy& beams, const std::vector<double>& cones_deg = {0.5},
     raytrace::BeamTracer::Elements elements = raytrace::BeamTracer::Elements::individual) {
+  if (beams.population_control) policy.replicates = beams.population_control->replicates;
   raytrace::FarFieldCollector collector(part, light, policy);
   const auto add = [&](const raytrace::ReturnedBeam& beam) { collector.add(beam); };
-  raytrace::BeamResult result = raytrace::BeamTracer(part, elements).trace(optics, light, {0.5}, beams, nullptr, add);
+  raytrace::BeamResult result =
+      raytrace::BeamTracer(part, elements).trace(optics, light, cones_deg, beams, nullptr, add);
   return {std::move(result), collector.finish()};
 }
 

@@ -29,9 +29,11 @@ class PageCase(BrowserCase):
         cls.page = make_page(PROGRAM, SOURCE, cls.folder.name)
 
     def setUp(self):
+        self.load()
+
+    def load(self):
         self.driver.get(self.page.as_uri())
         self.wait(lambda d: d.execute_script("return document.documentElement.dataset.ready") == "yes")
-
 
     def print_preview(self):
         """Shows the page as it is printed."""
@@ -240,7 +242,7 @@ class Study(PageCase):
                 self.resize(width, height)
                 self.paper(name)
                 self.driver.get("about:blank")
-                self.setUp()
+                self.load()
                 self.driver.execute_script("document.documentElement.style.scrollBehavior = 'auto'")
                 time.sleep(0.5)
                 self.compare(f"report_{width}_{name}")

@@ -33,8 +33,11 @@ class LayoutCase(BrowserCase):
         """Waits until the page has been drawn for the new size of the window."""
         self.driver.execute_async_script("setTimeout(() => requestAnimationFrame(() => requestAnimationFrame(arguments[0])), 300)")
 
-    def check(self, name, least_items, views=VIEWS):
-        """Checks the loaded page with the widths and themes of `views`. With the default views, nothing may be cut off."""
+    def check(self, name, least_items, views=VIEWS, may_be_cut=False):
+        """Checks the loaded page with the widths and themes of `views`.
+
+        \\param may_be_cut true if boxes of the page may be scrolled
+        """
         self.driver.execute_script("for (const e of document.querySelectorAll('details')) e.open = true")
         for width, theme in views:
             with self.subTest(page=name, width=width, theme=theme):
@@ -44,7 +47,7 @@ class LayoutCase(BrowserCase):
                 items, faults = overlaps(self.driver)
                 self.assertGreaterEqual(items, least_items)
                 self.assertEqual(faults, [])
-                if views is VIEWS:
+                if not may_be_cut:
                     self.assertEqual(cuts(self.driver), [])
                 self.assertLessEqual(self.driver.execute_script("return document.documentElement.scrollWidth"), width)
 
@@ -100,7 +103,7 @@ class Pages(LayoutCase):
 
     def test_set_up_sheet(self):
         self.load(self.sheet)
-        self.check("set-up sheet", 500, views=list(VIEWS))  # for paper: on narrow screens its tables are scrolled
+        self.check("set-up sheet", 500, may_be_cut=True)  # for paper: on narrow screens its tables are scrolled
 
     def test_live_page(self):
         for tab in ("form", "text"):
@@ -123,7 +126,7 @@ class Site(LayoutCase):
         self.assertGreater(len(pages), 20)
         for page in pages:
             self.load(page)
-            self.check(str(page.relative_to(SITE)), 5, views=[(width, "light") for width in WIDTHS])
+            self.check(str(page.relative_to(SITE)), 5, views=[(width, "light") for width in WIDTHS], may_be_cut=True)
 
 
 if __name__ == "__main__":

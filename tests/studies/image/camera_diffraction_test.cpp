@@ -2,17 +2,15 @@
 // optics.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <variant>
 #include <vector>
 
-#include "core/error.h"
 #include "studies/image/camera_study.h"
 #include "studies/photometry/photometry.h"
 #include "tests/support/designs.h"
-#include "tests/support/statistics.h"
 
 namespace retrace::testing::camera_diffraction_test {
 namespace {
@@ -37,7 +35,7 @@ const Geometries kGeometries = {{0.2, 0.0, 5.0, 0.0},
 design::Design design_of(const PartSpec& part, double dihedral_error_arcmin) {
   design::Design design;
   design.part() = part;
-  if (dihedral_error_arcmin != 0.0) design.part().angle_errors.dihedral_error_arcmin.fill(dihedral_error_arcmin);
+  design.part().angle_errors.dihedral_error_arcmin.fill(dihedral_error_arcmin);
   design.substance.refractive_index = kPmma;
   return design;
 }
@@ -152,8 +150,7 @@ TEST(CameraDiffraction, LargeDiscsHideDiffraction) {
 /// Dead zones of the elements stay dark: the diffracted light has the distribution of the light that leaves the face.
 TEST(CameraDiffraction, ShowsDeadZones) {
   const design::Design design = design_of(infinite(TriangularCube{2.0}, Arrangement::triangular, 1.0), 0.0);
-  CameraRequest camera = camera_of({0.33, 0.0, 0.0, 0.0});
-  camera.v_deg = -5.0;
+  CameraRequest camera = camera_of({0.33, -5.0, 0.0, 0.0});
   camera.film_mm = {20.0, 20.0};
   camera.field_mm = 4.0;
   camera.columns = camera.rows = 80;
