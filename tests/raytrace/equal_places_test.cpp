@@ -12,6 +12,7 @@
 #include "raytrace/exact/translational_symmetry.h"
 #include "raytrace/observers/far_field.h"
 #include "tests/support/designs.h"
+#include "tests/support/light_traps.h"
 #include "tests/support/return_frames.h"
 #include "tests/support/statistics.h"
 #include "tests/support/traced_far_fields.h"
@@ -23,11 +24,7 @@ using namespace geometry;
 using namespace raytrace;
 using Elements = BeamTracer::Elements;
 
-struct Question {
-  std::string name;
-  Part part;
-  Illumination light;
-};
+using Question = PartInLight;
 
 PartZone zone(const Element& element, Arrangement arrangement, double rotation_deg, const Rectangle& region) {
   return {{to_polygon(region)}, rotation_deg, finite(element, arrangement, 1.0, 1.0, 1.0)};

@@ -11,17 +11,12 @@ namespace {
 using namespace geometry;
 using namespace raytrace;
 
-struct Named {
-  std::string name;
-  PartSpec spec;
-};
-
 /// Returns designs with every kind of element, arrangement and border.
-std::vector<Named> all_designs() {
+std::vector<NamedPart> all_designs() {
   const RtpElement prism{0.5, 0.5, 90.0};
   const HexagonalCube hexagon{1.0};
   const TriangularCube triangle{1.0};
-  std::vector<Named> designs = {
+  std::vector<NamedPart> designs = {
       {"rtp single", single(prism, 0.3)},
       {"hexagonal single", single(hexagon, 0.3)},
       {"triangular single", single(triangle, 0.3)},
@@ -62,7 +57,7 @@ std::vector<Named> all_designs() {
 class LedgerOf : public ::testing::TestWithParam<std::size_t> {};
 
 TEST_P(LedgerOf, AddsUpToOne) {
-  const Named design = all_designs()[GetParam()];
+  const NamedPart design = all_designs()[GetParam()];
   const Part part = build_part(design.spec);
   const MonteCarlo tracer(part);
   Optics absorbing = pmma();
