@@ -114,6 +114,8 @@ TEST(RreMap, HasTheMeanOverSolidAngle) {
   EXPECT_LT(fine, 0.3 * coarse);  // The error of linear interpolation decreases with the square of the step.
 }
 
+/// The error of linear interpolation in both angles is at most h^2 / 8 times the sum of the second derivatives, 1.2 and
+/// 0.4. For steps of h = 5 degrees, it is at most 1.6e-3.
 TEST(RreMap, InterpolatesBetweenDirections) {
   const RreMap map = map_of_function(5.0);
   for (const double incidence : {0.0, 3.0, 41.0, 80.0})

@@ -17,7 +17,7 @@ from selenium.webdriver.support.ui import WebDriverWait
 REDUCTION = 4
 BLUR_PX = 1  # of reduced pictures
 DIFFERENT = 24  # minimum difference of pixels that counts, from 0 to 255, after blurring
-MOST_DIFFERENT = 0.02  # maximum fraction of pixels that may differ
+MAX_DIFFERENT_FRACTION = 0.02  # maximum fraction of pixels that may differ
 PICTURES = pathlib.Path(__file__).resolve().parents[2] / "data" / "pages"  # stored screenshots
 # Settings of Chromium without a graphics card: WebGL and compositing run on the processor.
 SOFTWARE_WEBGL = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-gpu-compositing")
@@ -44,7 +44,7 @@ def reduced(picture):
     return grey.resize((grey.width // REDUCTION, grey.height // REDUCTION), Image.Resampling.BOX)
 
 
-def share_that_differs(picture, wanted):
+def fraction_that_differs(picture, wanted):
     """Returns the fraction of pixels that differ after both pictures are blurred."""
     blurred = [p.filter(ImageFilter.GaussianBlur(BLUR_PX)) for p in (picture, wanted)]
     difference = ImageChops.difference(*blurred).point(lambda v: 255 if v > DIFFERENT else 0)
@@ -128,8 +128,8 @@ class BrowserCase(unittest.TestCase):
             return
         wanted = Image.open(file).convert("L")
         self.assertEqual(picture.size, wanted.size)
-        share = share_that_differs(picture, wanted)
-        self.assertLess(share, MOST_DIFFERENT, f"{file.name}: {share:.1%} of the pixels differ")
+        fraction = fraction_that_differs(picture, wanted)
+        self.assertLess(fraction, MAX_DIFFERENT_FRACTION, f"{file.name}: {fraction:.1%} of the pixels differ")
 
     def tearDown(self):
         faults = [entry for entry in self.driver.get_log("browser") if entry["level"] == "SEVERE"]
