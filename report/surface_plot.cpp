@@ -31,17 +31,6 @@ constexpr double kSurfaceRemarkLine = 16.0;
 /// Length in um from which axes are labelled in mm.
 constexpr double kMillimetresFromUm = 2000.0;
 
-// Colours of deviations: blue below 0, white at 0 and red above 0. These are the colours of RdBu of ColorBrewer
-// (Harrower and Brewer 2003), which colour-blind readers can distinguish.
-constexpr ColourScale kDeviationScale = {{{0.129, 0.400, 0.675},
-                                          {0.263, 0.576, 0.765},
-                                          {0.573, 0.773, 0.871},
-                                          {0.820, 0.898, 0.941},
-                                          {0.969, 0.969, 0.969},
-                                          {0.992, 0.859, 0.780},
-                                          {0.957, 0.647, 0.510},
-                                          {0.839, 0.376, 0.302},
-                                          {0.698, 0.094, 0.169}}};
 constexpr double kSurfaceLeft = 62.0;  ///< distance of the plot area from the left end of its cell
 constexpr double kTop = 34.0;
 constexpr double kSurfaceBarGap = 12.0;
@@ -176,7 +165,7 @@ void draw(Canvas& canvas, const GridPanel& panel, Point cell, Size room) {
   const Area area{{cell.x + kSurfaceLeft, cell.y + kTop}, grid_size(panel, room)};
   const GridPanel small = reduced(panel);
   const bool is_deviation = panel.deviation_limit > 0.0;
-  const ColourScale& scale = is_deviation ? kDeviationScale : kViridis;
+  const ColourScale& scale = is_deviation ? kBlueWhiteRed : kViridis;
   const Range range = is_deviation ? Range{-panel.deviation_limit, panel.deviation_limit} : colour_range(small.values);
   std::vector<Colour> colours;
   for (const double v : small.values)
