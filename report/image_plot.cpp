@@ -129,21 +129,13 @@ std::string render(const ImagePlot& plot, PlotFormat format, double scale) {
     height = std::max(height, kPanelTop + picture_size(panel).height + kImageBelow);
   }
   width = std::max(width, 420.0);
-  std::vector<std::string> remarks;
-  const Canvas measure(Canvas::Format::png, {8.0, 8.0}, 1.0);
-  for (const std::string& remark : plot.remarks)
-    for (std::string& line : measure.fitted(remark, kImageLabelFont, width - 2.0 * kMargin, 3, Ellipsis::end))
-      remarks.push_back(std::move(line));
+  const std::vector<std::string> remarks = wrapped(plot.remarks, kImageLabelFont, width - 2.0 * kMargin);
   const double added = added_title_height(plot.title, width);
   const double head = kMargin + 26.0 + added + kRemarkHeight * static_cast<double>(remarks.size());
   const Size size{std::ceil(width), std::ceil(head + height + 8.0)};
   Canvas canvas(format, size, scale);
   canvas.fill_rectangle({0.0, 0.0}, size, kWhite);
-  double baseline = kMargin + 12.0;
-  for (const std::string& line : title_lines(plot.title, width)) {
-    canvas.text({kMargin, baseline}, line, kTitleFont, kText, Align::left);
-    baseline += kTitleLineHeight;
-  }
+  draw_title(canvas, width, plot.title, {kMargin, kMargin + 12.0}, Align::left);
   for (std::size_t k = 0; k < remarks.size(); ++k)
     canvas.text({kMargin, kMargin + 32.0 + added + kRemarkHeight * static_cast<double>(k)}, remarks[k], kImageLabelFont,
                 kText, Align::left);

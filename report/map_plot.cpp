@@ -71,7 +71,6 @@ struct MapLayout {
   double head = 0.0;  ///< height of the texts above a plan
   double left = 0.0;
   double top = 0.0;
-  std::vector<std::string> title;
   Range values;
   Ticks value_ticks;
   double bar_left = 0.0;
@@ -135,8 +134,8 @@ MapLayout lay_out(const MapPlot& plot, const Canvas& canvas) {
                                   std::max(label_width + 8.0 + kMapLabelFont.size,
                                            canvas.text_width(plot.hatched_label, kMapTickFont) - kMapTickLength) +
                                   kMargin);
-  layout.title = title_lines(plot.title, layout.figure.width);
-  layout.top = kMargin + 1.3 * kTitleFont.size * static_cast<double>(layout.title.size()) + 4.0;
+  const std::size_t title = title_lines(plot.title, layout.figure.width).size();
+  layout.top = kMargin + kTitleLineHeight * static_cast<double>(title) + 4.0;
   layout.bar_height = std::min(320.0, std::max(150.0, layout.box.height) - 34.0);
   layout.bar_top = layout.top + layout.head;
   const double bar_bottom = layout.bar_top + layout.bar_height + 34.0;
@@ -321,14 +320,10 @@ void draw_colour_bar(Canvas& canvas, const MapPlot& plot, const MapLayout& layou
 }  // namespace
 
 std::string render(const MapPlot& plot, PlotFormat format, double scale) {
-  const MapLayout layout = lay_out(plot, Canvas(Canvas::Format::png, {8.0, 8.0}, 1.0));
+  const MapLayout layout = lay_out(plot, measuring_canvas());
   Canvas canvas(format, layout.figure, scale);
   canvas.fill_rectangle({0.0, 0.0}, layout.figure, kWhite);
-  double baseline = kMargin + kTitleFont.size;
-  for (const std::string& line : layout.title) {
-    canvas.text({0.5 * layout.figure.width, baseline}, line, kTitleFont, kText, Align::centre);
-    baseline += 1.3 * kTitleFont.size;
-  }
+  draw_title(canvas, layout.figure, plot.title);
   for (std::size_t k = 0; k < plot.panels.size(); ++k) {
     const Point corner{layout.left + layout.cell.width * static_cast<double>(k % layout.columns),
                        layout.top + layout.cell.height * static_cast<double>(k / layout.columns)};

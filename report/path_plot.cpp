@@ -45,16 +45,13 @@ Box box_of(const PathPlot& plot) {
   return {{across.low - room, up.low - room}, {across.high + room, up.high + room}};
 }
 
-void draw_heading(Canvas& canvas, const PathPlot& plot, double width) {
-  double y = kMargin + kTitleFont.size;
-  for (const std::string& line : title_lines(plot.title, width + 2.0 * kMargin)) {
-    canvas.text({kMargin, y}, line, kTitleFont, kText, Align::left);
-    y += kTitleLineHeight;
-  }
-  y -= kTitleLineHeight;
+void draw_heading(Canvas& canvas, const PathPlot& plot, double figure_width) {
+  draw_title(canvas, figure_width, plot.title, {kMargin, kMargin + kTitleFont.size}, Align::left);
+  double y = kMargin + kTitleFont.size + added_title_height(plot.title, figure_width);
   for (const std::string& remark : plot.remarks) {
     y += kPathRemarkFont.size + 5.0;
-    draw_within(canvas, width, Ellipsis::end, {kMargin, y}, remark, kPathRemarkFont, kFaint, Align::left);
+    draw_within(canvas, figure_width - 2.0 * kMargin, Ellipsis::end, {kMargin, y}, remark, kPathRemarkFont, kFaint,
+                Align::left);
   }
 }
 
@@ -86,7 +83,7 @@ std::string render(const PathPlot& plot, PlotFormat format, double scale) {
                     legend_top + kLegendLine * static_cast<double>((plot.kinds.size() + 3) / 4) + kMargin};
   Canvas canvas(format, figure, scale);
   canvas.fill_rectangle({0.0, 0.0}, figure, kWhite);
-  draw_heading(canvas, plot, figure.width - 2.0 * kMargin);
+  draw_heading(canvas, plot, figure.width);
 
   const auto at = [&](const Vec2& p) {
     return Point{kPathLeft + (p.x() - box.low.x()) * unit, top + height - (p.y() - box.low.y()) * unit};

@@ -439,8 +439,7 @@ std::string render(const LinePlot& given, PlotFormat format, double scale) {
                                               series.x.size(), series.y.size(), series.y_error.size()));
   }
   const LinePlot plot = given.y_is_logarithmic ? with_logarithms(given) : given;
-  // Text sizes do not depend on the canvas, so a small canvas is sufficient to compute the size of the plot.
-  const Layout layout = lay_out(plot, Canvas(Canvas::Format::png, {8.0, 8.0}, 1.0));
+  const Layout layout = lay_out(plot, measuring_canvas());
   Canvas canvas(format, layout.figure, scale);
   canvas.fill_rectangle({0.0, 0.0}, layout.figure, kWhite);
   draw_axes(canvas, layout);

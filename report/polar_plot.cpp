@@ -229,8 +229,7 @@ PolarLayout layout_of(const PolarPlot& plot) {
 
 std::vector<LabelBox> mark_label_boxes(const PolarPanel& panel) {
   std::vector<LabelBox> boxes;
-  for (const PlacedLabel& label : labels_of(Canvas(Canvas::Format::png, {8.0, 8.0}, 1.0), panel))
-    boxes.push_back(label.box);
+  for (const PlacedLabel& label : labels_of(measuring_canvas(), panel)) boxes.push_back(label.box);
   return boxes;
 }
 

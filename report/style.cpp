@@ -1,6 +1,7 @@
 #include "report/style.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace retrace::report {
 
@@ -32,10 +33,12 @@ void draw_within(Canvas& canvas, double width, Ellipsis ellipsis, Point baseline
     canvas.text(baseline, line, font, colour, align);
 }
 
+Canvas measuring_canvas() {
+  return {Canvas::Format::png, {8.0, 8.0}, 1.0};
+}
+
 std::vector<std::string> title_lines(std::string_view title, double figure_width) {
-  // Text sizes do not depend on the canvas.
-  const Canvas measure(Canvas::Format::png, {8.0, 8.0}, 1.0);
-  return measure.fitted(title, kTitleFont, figure_width - 2.0 * kMargin, kMaxTitleLines, Ellipsis::middle);
+  return measuring_canvas().fitted(title, kTitleFont, figure_width - 2.0 * kMargin, kMaxTitleLines, Ellipsis::middle);
 }
 
 double added_title_height(std::string_view title, double figure_width) {
@@ -44,11 +47,24 @@ double added_title_height(std::string_view title, double figure_width) {
 }
 
 void draw_title(Canvas& canvas, Size figure, std::string_view title) {
-  double baseline = kMargin + kTitleFont.size;
-  for (const std::string& line : title_lines(title, figure.width)) {
-    canvas.text({0.5 * figure.width, baseline}, line, kTitleFont, kText, Align::centre);
-    baseline += kTitleLineHeight;
+  draw_title(canvas, figure.width, title, {0.5 * figure.width, kMargin + kTitleFont.size}, Align::centre);
+}
+
+void draw_title(Canvas& canvas, double figure_width, std::string_view title, Point baseline, Align align) {
+  for (const std::string& line : title_lines(title, figure_width)) {
+    canvas.text(baseline, line, kTitleFont, kText, align);
+    baseline.y += kTitleLineHeight;
   }
+}
+
+std::vector<std::string> wrapped(const std::vector<std::string>& texts, Font font, double width) {
+  constexpr int kMaxLines = 3;
+  const Canvas canvas = measuring_canvas();
+  std::vector<std::string> lines;
+  for (const std::string& text : texts)
+    for (std::string& line : canvas.fitted(text, font, width, kMaxLines, Ellipsis::end))
+      lines.push_back(std::move(line));
+  return lines;
 }
 
 void draw_x_tick(Canvas& canvas, const AxisStyle& look, Point at, std::string_view label) {

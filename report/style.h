@@ -73,6 +73,9 @@ void draw_frame(Canvas& canvas, Point corner, Size size, double width = 1.0);
 void draw_within(Canvas& canvas, double width, Ellipsis ellipsis, Point baseline, std::string_view text, Font font,
                  Colour colour, Align align);
 
+/// Returns a small canvas for the computation of sizes of texts, which do not depend on the canvas.
+Canvas measuring_canvas();
+
 /// Returns the lines of a title that fit in a figure of the given width.
 std::vector<std::string> title_lines(std::string_view title, double figure_width);
 
@@ -81,6 +84,13 @@ double added_title_height(std::string_view title, double figure_width);
 
 /// Draws the title, centred at the top of a figure, in as many lines as title_lines() returns.
 void draw_title(Canvas& canvas, Size figure, std::string_view title);
+
+/// Draws the lines of a title at another position.
+/// \param baseline left end or centre of the baseline of the first line, as given by `align`
+void draw_title(Canvas& canvas, double figure_width, std::string_view title, Point baseline, Align align);
+
+/// Wraps texts to at most three lines each, and returns the lines of all texts.
+std::vector<std::string> wrapped(const std::vector<std::string>& texts, Font font, double width);
 
 /// Dimensions of the ticks of an axis and of their labels.
 struct AxisStyle {

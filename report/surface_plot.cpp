@@ -30,7 +30,6 @@ constexpr Font kSurfaceRemarkFont{11.5, false};
 constexpr double kSurfaceRemarkLine = 16.0;
 /// Length in um from which axes are labelled in mm.
 constexpr double kMillimetresFromUm = 2000.0;
-
 constexpr double kSurfaceLeft = 62.0;  ///< distance of the plot area from the left end of its cell
 constexpr double kTop = 34.0;
 constexpr double kSurfaceBarGap = 12.0;
@@ -258,18 +257,14 @@ std::string render(const SurfacePlot& plot, PlotFormat format, double scale) {
   const std::size_t columns = is_single ? 1 : 2;
   const std::size_t rows = (plot.panels.size() + columns - 1) / columns;
   const double width = static_cast<double>(columns) * cell_size.width + 2.0 * kMargin;
-  double remark_line = kMargin + kTitleFont.size + added_title_height(plot.title, width) + kSurfaceRemarkLine + 2.0;
-  std::vector<std::string> remarks;
-  const Canvas measure(Canvas::Format::png, {8.0, 8.0}, 1.0);
-  for (const std::string& remark : plot.remarks)
-    for (std::string& line : measure.fitted(remark, kSurfaceRemarkFont, width - 2.0 * kMargin, 3, Ellipsis::end))
-      remarks.push_back(std::move(line));
+  const std::vector<std::string> remarks = wrapped(plot.remarks, kSurfaceRemarkFont, width - 2.0 * kMargin);
   const double head =
       24.0 + added_title_height(plot.title, width) + kSurfaceRemarkLine * static_cast<double>(remarks.size());
   const Size size{width, std::ceil(static_cast<double>(rows) * cell_size.height + 2.0 * kMargin + head)};
   Canvas canvas(format, size, scale);
   canvas.fill_rectangle({0.0, 0.0}, size, kWhite);
   draw_title(canvas, size, plot.title);
+  double remark_line = kMargin + kTitleFont.size + added_title_height(plot.title, width) + kSurfaceRemarkLine + 2.0;
   for (const std::string& remark : remarks) {
     canvas.text({0.5 * width, remark_line}, remark, kSurfaceRemarkFont, kFaint, Align::centre);
     remark_line += kSurfaceRemarkLine;

@@ -69,14 +69,9 @@ std::string view_png(const studies::DesignView& view) {
     top += kHeight;
     remarks += (remarks.empty() ? "" : "; ") + std::string(aspect.text);
   }
-  double y = kMargin + kTitleFont.size;
-  for (const std::string& line : title_lines(view.title, kWidth)) {
-    canvas.text({kMargin, y}, line, kTitleFont, kText, Align::left);
-    y += kTitleLineHeight;
-  }
-  y -= kTitleLineHeight;
+  draw_title(canvas, kWidth, view.title, {kMargin, kMargin + kTitleFont.size}, Align::left);
   for (const std::string& remark : view.remarks) remarks += "; " + remark;
-  y += kRemarkFont.size + 7.0;
+  const double y = kMargin + kTitleFont.size + added_title_height(view.title, kWidth) + kRemarkFont.size + 7.0;
   for (const std::string& line : canvas.fitted(remarks, kRemarkFont, kWidth - 2.0 * kMargin, 1, Ellipsis::end))
     canvas.text({kMargin, y}, line, kRemarkFont, kFaint, Align::left);
   return canvas.finish();
