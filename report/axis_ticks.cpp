@@ -52,10 +52,14 @@ std::string with_true_minus(std::string text) {
   return text;
 }
 
-/// Returns a power of ten as text: with all digits from 0.001 to 10000, otherwise with a superscript.
-std::string power_of_ten_text(int exponent) {
-  if (exponent >= 0 && exponent <= 4) return "1" + std::string(static_cast<std::size_t>(exponent), '0');
-  if (exponent < 0 && exponent >= -3) return fixed(std::pow(10.0, exponent), -exponent);
+/// Returns true if all digits of a power of ten are written.
+bool has_few_digits(int exponent) {
+  return exponent >= -3 && exponent <= 4;
+}
+
+/// Returns a power of ten like power_of_ten(), but with a superscript instead of an exponent.
+std::string power_with_superscript(int exponent) {
+  if (has_few_digits(exponent)) return power_of_ten(exponent);
   static constexpr const char* kDigits[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
   std::string text = "10";
   for (const char c : std::to_string(exponent)) text += c == '-' ? "⁻" : kDigits[c - '0'];
@@ -127,6 +131,11 @@ Ticks make_ticks(Range range, int max_intervals) {
   return ticks;
 }
 
+std::string power_of_ten(int exponent) {
+  return has_few_digits(exponent) ? fixed(std::pow(10.0, exponent), std::max(0, -exponent))
+                                  : fmt::format("1e{}", exponent);
+}
+
 LogTicks make_log_ticks(Range decades, int max_labels) {
   LogTicks ticks;
   const int first = static_cast<int>(std::ceil(decades.low - kOnTick));
@@ -137,7 +146,7 @@ LogTicks make_log_ticks(Range decades, int max_labels) {
   for (int e = first; e <= last; ++e) {
     if ((last - e) % every != 0) continue;
     ticks.decades.positions.push_back(e);
-    ticks.decades.labels.push_back(power_of_ten_text(e));
+    ticks.decades.labels.push_back(power_with_superscript(e));
   }
   if (every > 1) return ticks;
   for (int e = first - 1; e <= last; ++e)

@@ -46,6 +46,9 @@ Range drawable(Range range);
 /// \pre max_intervals >= 1
 Ticks make_ticks(Range range, int max_intervals);
 
+/// Returns a power of ten as text: with all digits from 0.001 to 10000, otherwise with an exponent, such as "1e5".
+std::string power_of_ten(int exponent);
+
 /// Ticks of a logarithmic axis. Positions are decimal logarithms.
 struct LogTicks {
   Ticks decades;              ///< powers of ten with labels such as "100" and "10⁵"
@@ -57,8 +60,8 @@ struct LogTicks {
 /// \param max_labels maximum number of labels; >= 2
 LogTicks make_log_ticks(Range decades, int max_labels);
 
-/// Returns the smallest range of whole decades that contains all positive values, or nothing if there are none. The
-/// values are decimal logarithms.
+/// Returns the smallest range of whole decades that contains all values, or nothing if there are no values.
+/// \param logarithms decimal logarithms of the values; logarithms that are not finite are ignored
 /// \param max_decades number of decades below the highest one to which the range is limited
 std::optional<Range> whole_decades(std::span<const double> logarithms, int max_decades);
 

@@ -25,6 +25,10 @@ LabelBox box_of(const MarkedPoint& point) {
   return {{point.at.x - point.radius, point.at.y - point.radius}, {2.0 * point.radius, 2.0 * point.radius}};
 }
 
+Point nearest_point(const LabelBox& box, Point to) {
+  return {std::clamp(to.x, box.corner.x, box.right()), std::clamp(to.y, box.corner.y, box.bottom())};
+}
+
 /// Returns the label in the given direction from its mark. The edge of the label is at the given distance.
 /// \param angle counter-clockwise from the right, in radians
 LabelBox candidate(const MarkedPoint& point, double distance, double angle) {
@@ -49,14 +53,14 @@ class LabelPlacer {
   PlacedLabel place(const MarkedPoint& point) {
     const double nearest = point.radius + kLabelGap;
     for (const bool inside : {true, false})
-      for (double distance = nearest; inside ? distance < farthest_ : true; distance += kDistanceStep)
+      for (double distance = nearest; !inside || distance < farthest_; distance += kDistanceStep)
         for (int k = 0; k < kDirections; ++k) {
           // Directions alternate between both sides, beginning on the right.
           const int step = (k + 1) / 2 * (k % 2 == 0 ? -1 : 1);
           const LabelBox box = candidate(point, distance, 2.0 * std::numbers::pi * step / kDirections);
           if ((inside && !contains(bounds_, box)) || !is_free(box)) continue;
           occupied_.push_back(box);
-          return placed(point, box, distance > nearest);
+          return {box, distance > nearest, nearest_point(box, point.at)};
         }
     return {};
   }
@@ -66,14 +70,6 @@ class LabelPlacer {
     const LabelBox wanted = enlarged(box, kClearance);
     return std::none_of(occupied_.begin(), occupied_.end(),
                         [&](const LabelBox& other) { return other.overlaps(wanted); });
-  }
-
-  static PlacedLabel placed(const MarkedPoint& point, const LabelBox& box, bool has_leader) {
-    PlacedLabel label{box, has_leader, point.at, point.at};
-    if (has_leader)
-      label.leader_to = {std::clamp(point.at.x, box.corner.x, box.right()),
-                         std::clamp(point.at.y, box.corner.y, box.bottom())};
-    return label;
   }
 
   LabelBox bounds_;

@@ -25,12 +25,11 @@ struct MarkedPoint {
   Size label;
 };
 
-/// Position of a label. The line leads from the mark to the label if the label is not next to its mark.
+/// Position of a label.
 struct PlacedLabel {
   LabelBox box;
-  bool has_leader = false;
-  Point leader_from;
-  Point leader_to;
+  bool has_leader = false;  ///< true: the label is not next to its mark, so that a line must lead to the label
+  Point leader_end;         ///< point of the label that is nearest to the mark
 };
 
 /// Places one label per point, in the order of the points. The label is to the right of its mark if there is room.

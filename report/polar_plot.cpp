@@ -1,12 +1,9 @@
 #include "report/polar_plot.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "core/number_format.h"
 #include "report/contours.h"
 #include "report/label_layout.h"
 #include "report/style.h"
@@ -54,17 +51,13 @@ struct PolarColours {
   }
 };
 
-std::string decade_text(int exponent) {
-  return exponent >= -3 && exponent <= 4 ? shortest(std::pow(10.0, exponent)) : fmt::format("1e{}", exponent);
-}
-
 /// Returns a logarithmic scale that ends at the largest value and covers kPolarDecades.
 PolarColours decades_up_to(double largest) {
   const double top = largest > 0.0 ? std::log10(largest) : 0.0;
   PolarColours colours{{top - kPolarDecades, top}, true, &kViridis, {}};
   for (int e = static_cast<int>(std::ceil(colours.range.low)); e <= static_cast<int>(std::floor(top)); ++e) {
     colours.ticks.positions.push_back(e);
-    colours.ticks.labels.push_back(decade_text(e));
+    colours.ticks.labels.push_back(power_of_ten(e));
   }
   return colours;
 }
@@ -124,14 +117,30 @@ void draw_azimuths(Canvas& canvas, Point centre) {
   canvas.text({centre.x, centre.y + kAway + 8.0}, "270°", kPolarTickFont, kFaint, Align::centre);
 }
 
-void draw_rings(Canvas& canvas, const PolarPanel& panel, Point centre) {
+/// Ring of directions at the same distance from the centre of a disc.
+struct Ring {
+  double radius = 0.0;
+  Point label_end;  ///< right end of the baseline of the label, relative to the centre of the disc
+  std::string label;
+};
+
+std::vector<Ring> rings_of(const PolarPanel& panel) {
   const double scale = 0.5 * kDisc / panel.radius_deg;
   const Ticks ticks = make_ticks({0.0, panel.radius_deg}, 4);
+  std::vector<Ring> rings;
   for (std::size_t k = 0; k < ticks.positions.size(); ++k) {
     if (!(ticks.positions[k] > 0.0)) continue;
-    canvas.line(circle(centre, scale * ticks.positions[k]), {kRing, 0.7, {3.0, 3.0}});
-    canvas.text({centre.x + 0.7071 * scale * ticks.positions[k] - 2.0, centre.y + 0.7071 * scale * ticks.positions[k]},
-                ticks.labels[k] + "°", kPolarTickFont, kRing, Align::right);
+    const double diagonal = 0.7071 * scale * ticks.positions[k];
+    rings.push_back({scale * ticks.positions[k], {diagonal - 2.0, diagonal}, ticks.labels[k] + "°"});
+  }
+  return rings;
+}
+
+void draw_rings(Canvas& canvas, const PolarPanel& panel, Point centre) {
+  for (const Ring& ring : rings_of(panel)) {
+    canvas.line(circle(centre, ring.radius), {kRing, 0.7, {3.0, 3.0}});
+    canvas.text({centre.x + ring.label_end.x, centre.y + ring.label_end.y}, ring.label, kPolarTickFont, kRing,
+                Align::right);
   }
   canvas.line({{centre.x - 5.0, centre.y}, {centre.x + 5.0, centre.y}}, {kRing, 0.8, {}});
   canvas.line({{centre.x, centre.y - 5.0}, {centre.x, centre.y + 5.0}}, {kRing, 0.8, {}});
@@ -157,22 +166,24 @@ PolarMarkStyle style_of(PolarMark::Kind kind) {
 /// Returns the boxes of the labels at the rings, relative to the centre of the disc.
 std::vector<LabelBox> ring_label_boxes(const Canvas& canvas, const PolarPanel& panel) {
   std::vector<LabelBox> boxes;
-  const double scale = 0.5 * kDisc / panel.radius_deg;
-  const Ticks ticks = make_ticks({0.0, panel.radius_deg}, 4);
-  for (std::size_t k = 0; k < ticks.positions.size(); ++k) {
-    const double width = canvas.text_width(ticks.labels[k] + "°", kPolarTickFont);
-    const double at = 0.7071 * scale * ticks.positions[k];
-    if (ticks.positions[k] > 0.0) boxes.push_back({{at - 2.0 - width, at - 8.0}, {width, 10.0}});
+  for (const Ring& ring : rings_of(panel)) {
+    const double width = canvas.text_width(ring.label, kPolarTickFont);
+    boxes.push_back({{ring.label_end.x - width, ring.label_end.y - 8.0}, {width, 10.0}});
   }
   return boxes;
 }
 
+/// Returns the position of a mark, relative to the centre of the disc.
+Point position_of(const PolarPanel& panel, const PolarMark& mark) {
+  const double scale = 0.5 * kDisc / panel.radius_deg;
+  return {scale * mark.right_deg, -scale * mark.up_deg};
+}
+
 /// Returns the labels of the marks, relative to the centre of the disc.
 std::vector<PlacedLabel> labels_of(const Canvas& canvas, const PolarPanel& panel) {
-  const double scale = 0.5 * kDisc / panel.radius_deg;
   std::vector<MarkedPoint> points;
   for (const PolarMark& mark : panel.marks)
-    points.push_back({{scale * mark.right_deg, -scale * mark.up_deg},
+    points.push_back({position_of(panel, mark),
                       style_of(mark.kind).outline,
                       {canvas.text_width(mark.label, kPolarTickFont) + 2.0 * kMarkLabelPadding, kMarkLabelHeight}});
   const double half_width = 0.5 * kPolarCell.width - 2.0;
@@ -181,16 +192,15 @@ std::vector<PlacedLabel> labels_of(const Canvas& canvas, const PolarPanel& panel
 }
 
 void draw_marks(Canvas& canvas, const PolarPanel& panel, Point centre) {
-  const double scale = 0.5 * kDisc / panel.radius_deg;
   const std::vector<PlacedLabel> labels = labels_of(canvas, panel);
   const auto moved = [&](Point p) { return Point{centre.x + p.x, centre.y + p.y}; };
-  for (const PlacedLabel& label : labels)
-    if (label.has_leader)
+  for (std::size_t k = 0; k < labels.size(); ++k)
+    if (labels[k].has_leader)
       for (const auto& [colour, width] : {std::pair{kBlack, 2.2}, std::pair{kWhite, 0.9}})
-        canvas.line({moved(label.leader_from), moved(label.leader_to)}, {colour, width, {}});
+        canvas.line({moved(position_of(panel, panel.marks[k])), moved(labels[k].leader_end)}, {colour, width, {}});
   for (std::size_t k = 0; k < labels.size(); ++k) {
     const PolarMark& mark = panel.marks[k];
-    const Point at{centre.x + scale * mark.right_deg, centre.y - scale * mark.up_deg};
+    const Point at = moved(position_of(panel, mark));
     const PolarMarkStyle style = style_of(mark.kind);
     canvas.marker(at, style.shape, style.outline, kBlack);
     canvas.marker(at, style.shape, style.size, style.colour);

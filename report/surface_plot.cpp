@@ -198,12 +198,6 @@ Range decades(const LogPanel& panel, bool of_x, double most) {
   return drawable({std::floor(range.low), std::ceil(range.high)});
 }
 
-std::string power_of_ten(int exponent) {
-  if (exponent >= 0 && exponent <= 4) return fmt::format("{}", static_cast<int>(std::lround(std::pow(10.0, exponent))));
-  if (exponent < 0 && exponent >= -3) return fmt::format("{:.{}f}", std::pow(10.0, exponent), -exponent);
-  return fmt::format("1e{}", exponent);
-}
-
 void draw(Canvas& canvas, const LogPanel& panel, Point cell, Size room) {
   constexpr double kMaxDecades = 12.0;
   const Area area{{cell.x + kSurfaceLeft, cell.y + kTop}, {room.width + 60.0, room.height}};
