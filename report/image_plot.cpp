@@ -15,6 +15,8 @@ namespace {
 constexpr Font kImageLabelFont{11.5, false};
 constexpr Font kImageTickFont{10.5, false};
 
+constexpr AxisStyle kImageBarAxis{.font = kImageTickFont, .tick = 4.0, .y_label_gap = 7.0, .baseline = 3.6};
+
 constexpr double kRemarkHeight = 17.0;
 constexpr double kPicture = 340.0;    ///< length of the longer side of a picture
 constexpr double kPanelTop = 30.0;    ///< space for the title of a panel
@@ -58,11 +60,6 @@ double panel_width(const ImagePanel& panel) {
   return std::max(200.0, picture_size(panel).width) + kImageBarGap + kImageBarWidth + kBarTexts;
 }
 
-void draw_tick(Canvas& canvas, Point at, const std::string& label) {
-  canvas.line({at, {at.x + 4.0, at.y}}, {kAxis, 1.0, {}});
-  canvas.text({at.x + 7.0, at.y + 3.6}, label, kImageTickFont, kText, Align::left);
-}
-
 void draw_value_bar(Canvas& canvas, const ImagePanel& panel, const ValueScale& scale, Point corner, double height) {
   std::vector<Colour> colours;
   for (int k = 0; k < kBarSteps; ++k) colours.push_back(colour_of(1.0 - (k + 0.5) / kBarSteps));
@@ -73,12 +70,12 @@ void draw_value_bar(Canvas& canvas, const ImagePanel& panel, const ValueScale& s
   if (scale.is_logarithmic) {
     const int top = static_cast<int>(std::floor(std::log10(scale.full) + 1e-9));
     for (int e = top; e > std::log10(scale.full) - kImageDecades - 1e-9; --e)
-      draw_tick(canvas, {x, y_at(std::pow(10.0, e))},
-                std::abs(e) < 4 ? shortest(std::pow(10.0, e)) : fmt::format("1e{}", e));
+      draw_bar_tick(canvas, kImageBarAxis, {x, y_at(std::pow(10.0, e))},
+                    std::abs(e) < 4 ? shortest(std::pow(10.0, e)) : fmt::format("1e{}", e));
   } else {
     const Ticks ticks = make_ticks({0.0, scale.full}, height > 150.0 ? 5 : 2);
     for (std::size_t k = 0; k < ticks.positions.size(); ++k)
-      draw_tick(canvas, {x, y_at(ticks.positions[k])}, ticks.labels[k]);
+      draw_bar_tick(canvas, kImageBarAxis, {x, y_at(ticks.positions[k])}, ticks.labels[k]);
   }
   if (height > 150.0)
     canvas.text({x + kBarTexts - 22.0, corner.y + 0.5 * height}, panel.value_label, kImageLabelFont, kText,

@@ -41,6 +41,11 @@ constexpr AxisStyle kMapAxis{.font = kMapTickFont,
                              .x_label_gap = kMapTickLength + 3.0 + kMapTickFont.size,
                              .y_label_gap = kMapTickLength + 3.0,
                              .baseline = 0.36 * kMapTickFont.size};
+constexpr AxisStyle kMapBarAxis{.font = kMapTickFont,
+                                .tick = kMapTickLength,
+                                .y_label_gap = kMapTickLength + 4.0,
+                                .baseline = 0.36 * kMapTickFont.size,
+                                .width = 0.9};
 constexpr double kPlanLeft = 40.0;  ///< distance of the plan from the left end of its cell, for the labels of the axis
 constexpr double kMapBarWidth = 16.0, kHatchSpacing = 6.0;
 /// Distance by which regions are enlarged. Without it, the background would be visible between the anti-aliased edges
@@ -295,14 +300,10 @@ void draw_colour_bar(Canvas& canvas, const MapPlot& plot, const MapLayout& layou
                           colour_at(kMapScale, 1.0 - (k + 0.5) / kColourSteps));
   const AxisScale scale{layout.values, bottom, layout.bar_top};
   draw_frame(canvas, {layout.bar_left, layout.bar_top}, {kMapBarWidth, layout.bar_height}, 0.9);
+  draw_bar_ticks(canvas, kMapBarAxis, scale, layout.value_ticks, right);
   double widest = 0.0;
-  for (std::size_t k = 0; k < layout.value_ticks.positions.size(); ++k) {
-    const double y = scale.at(layout.value_ticks.positions[k]);
-    const std::string& label = layout.value_ticks.labels[k];
-    canvas.line({{right, y}, {right + kMapTickLength, y}}, {kAxis, 0.9, {}});
-    canvas.text({right + kMapTickLength + 4.0, y + 0.36 * kMapTickFont.size}, label, kMapTickFont, kText, Align::left);
+  for (const std::string& label : layout.value_ticks.labels)
     widest = std::max(widest, canvas.text_width(label, kMapTickFont));
-  }
   canvas.text(
       {right + kMapTickLength + 4.0 + widest + 6.0 + kMapLabelFont.size, layout.bar_top + 0.5 * layout.bar_height},
       plot.value_label, kMapLabelFont, kText, Align::centre, true);

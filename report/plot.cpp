@@ -28,8 +28,6 @@ constexpr Font kLabelFont{13.5, false};
 constexpr Font kTickFont{12.0, false};
 constexpr Font kLegendFont{12.0, false};
 
-constexpr double kPlotWidth = kPlotAreaWidth;
-constexpr double kPlotHeight = kPlotAreaHeight;
 constexpr double kTickLength = 5.0;
 constexpr AxisStyle kPlotAxis{.font = kTickFont,
                               .tick = kTickLength,
@@ -47,8 +45,8 @@ constexpr std::size_t kMaxMarkers = 45;  ///< maximum number of points of a seri
                                          ///< drawn as lines only
 constexpr int kMaxXTicks = 9;
 constexpr int kMaxYTicks = 7;
-constexpr int kMaxAxisDecades =
-    8;  ///< maximum number of decades of a logarithmic axis, from the largest value downwards
+/// Maximum number of decades of a logarithmic axis, from the largest value downwards.
+constexpr int kMaxAxisDecades = 8;
 constexpr double kMinorTickLength = 3.0;
 /// Minimum half length of an error bar that is drawn. A shorter error bar would be hidden by the marker or the line.
 constexpr double kShortestErrorBar = 1.5;
@@ -192,8 +190,10 @@ std::vector<LegendEntry> legend_entries(const LinePlot& plot, const Canvas& canv
       const bool with_markers =
           std::ranges::any_of(plot.series, [&](const Series& s) { return s.look == key.look && has_markers(s); });
       SeriesStyle look = look_of(key.look);
-      if (scale) look.colour = kFaint;
-      if (scale) look.dashes = kDashes[key.look % kDashes.size()];
+      if (scale) {
+        look.colour = kFaint;
+        look.dashes = kDashes[key.look % kDashes.size()];
+      }
       add(key.label, look, with_markers);
     }
   } else {
@@ -218,7 +218,7 @@ double widest(const std::vector<std::string>& labels, const Canvas& canvas) {
 Ticks x_ticks_that_fit(Range range, const Canvas& canvas) {
   for (int most = kMaxXTicks;; --most) {
     Ticks ticks = make_ticks(range, most);
-    const double room = ticks.step / range.span() * kPlotWidth;
+    const double room = ticks.step / range.span() * kPlotAreaWidth;
     if (most == 1 || widest(ticks.labels, canvas) + 10.0 <= room) return ticks;
   }
 }
@@ -236,15 +236,15 @@ Layout lay_out(const LinePlot& plot, const Canvas& canvas) {
   } else {
     layout.y_ticks = make_ticks(y_range, kMaxYTicks);
   }
-  layout.title = canvas.fitted(plot.title, kTitleFont, kPlotWidth, kMaxTitleLines, Ellipsis::end);
-  layout.x_label = canvas.fitted(plot.x_label, kLabelFont, kPlotWidth, 2, Ellipsis::end);
-  layout.y_label = canvas.fitted(plot.y_label, kLabelFont, kPlotHeight, 2, Ellipsis::end);
+  layout.title = canvas.fitted(plot.title, kTitleFont, kPlotAreaWidth, kMaxTitleLines, Ellipsis::end);
+  layout.x_label = canvas.fitted(plot.x_label, kLabelFont, kPlotAreaWidth, 2, Ellipsis::end);
+  layout.y_label = canvas.fitted(plot.y_label, kLabelFont, kPlotAreaHeight, 2, Ellipsis::end);
   layout.legend = legend_entries(plot, canvas);
   layout.scale = drawn_scale(plot);
   if (layout.scale) {
     layout.scale_ticks = make_ticks(*layout.scale, kMaxBarTicks);
     layout.scale_tick_width = widest(layout.scale_ticks.labels, canvas);
-    layout.scale_label = canvas.fitted(plot.scale_label, kLabelFont, kPlotHeight, 2, Ellipsis::end);
+    layout.scale_label = canvas.fitted(plot.scale_label, kLabelFont, kPlotAreaHeight, 2, Ellipsis::end);
   }
 
   double row_width = -2.0 * kLegendGap;
@@ -254,7 +254,8 @@ Layout lay_out(const LinePlot& plot, const Canvas& canvas) {
     row_width += width + 2.0 * kLegendGap;
     column_width = std::max(column_width, width);
   }
-  if (!layout.legend.empty()) layout.legend_place = row_width <= kPlotWidth ? LegendPlace::row : LegendPlace::column;
+  if (!layout.legend.empty())
+    layout.legend_place = row_width <= kPlotAreaWidth ? LegendPlace::row : LegendPlace::column;
   layout.legend_width = layout.legend_place == LegendPlace::row ? row_width : column_width;
 
   const double y_tick_width = widest(layout.y_ticks.labels, canvas);
@@ -272,29 +273,29 @@ Layout lay_out(const LinePlot& plot, const Canvas& canvas) {
   const double right = std::max(kMargin, 0.5 * widest(layout.x_ticks.labels, canvas) + 8.0) + bar;
   const double column_height = in_column ? kLegendRow * static_cast<double>(layout.legend.size()) : 0.0;
   layout.corner = {left, top};
-  layout.figure = {std::ceil(left + kPlotWidth + right + (in_column ? layout.legend_width + kMargin : 0.0)),
-                   std::ceil(top + std::max(kPlotHeight + below, column_height + kMargin))};
-  layout.x = {x_range, left, left + kPlotWidth};
-  layout.y = {y_range, top + kPlotHeight, top};
+  layout.figure = {std::ceil(left + kPlotAreaWidth + right + (in_column ? layout.legend_width + kMargin : 0.0)),
+                   std::ceil(top + std::max(kPlotAreaHeight + below, column_height + kMargin))};
+  layout.x = {x_range, left, left + kPlotAreaWidth};
+  layout.y = {y_range, top + kPlotAreaHeight, top};
   return layout;
 }
 
 void draw_axes(Canvas& canvas, const Layout& layout) {
   const double left = layout.corner.x;
-  const double right = left + kPlotWidth;
+  const double right = left + kPlotAreaWidth;
   const double top = layout.corner.y;
-  const double bottom = top + kPlotHeight;
-  const auto grid = [&](Point from, Point to, double value) {
-    canvas.line({from, to}, {kGrid, value == 0.0 ? 1.6 : 0.9, {}});
+  const double bottom = top + kPlotAreaHeight;
+  const auto grid = [&](Point from, Point to, bool is_zero) {
+    canvas.line({from, to}, {kGrid, is_zero ? 1.6 : 0.9, {}});
   };
   for (const double value : layout.y_minor_ticks) {
     canvas.line({{left, layout.y.at(value)}, {right, layout.y.at(value)}}, {kMinorGrid, 0.7, {}});
     canvas.line({{left - kMinorTickLength, layout.y.at(value)}, {left, layout.y.at(value)}}, {kAxis, 0.7, {}});
   }
   for (const double value : layout.x_ticks.positions)
-    grid({layout.x.at(value), top}, {layout.x.at(value), bottom}, value);
+    grid({layout.x.at(value), top}, {layout.x.at(value), bottom}, value == 0.0);
   for (const double value : layout.y_ticks.positions)
-    grid({left, layout.y.at(value)}, {right, layout.y.at(value)}, layout.y_is_logarithmic ? 1.0 : value);
+    grid({left, layout.y.at(value)}, {right, layout.y.at(value)}, !layout.y_is_logarithmic && value == 0.0);
 
   canvas.line({{left, top}, {left, bottom}, {right, bottom}}, {kAxis, kPlotAxis.width, {}});
   draw_x_ticks(canvas, kPlotAxis, layout.x, layout.x_ticks, bottom);
@@ -302,8 +303,8 @@ void draw_axes(Canvas& canvas, const Layout& layout) {
 }
 
 void draw_texts(Canvas& canvas, const Layout& layout) {
-  const double middle_x = layout.corner.x + 0.5 * kPlotWidth;
-  const double middle_y = layout.corner.y + 0.5 * kPlotHeight;
+  const double middle_x = layout.corner.x + 0.5 * kPlotAreaWidth;
+  const double middle_y = layout.corner.y + 0.5 * kPlotAreaHeight;
   const auto lines = [](const std::vector<std::string>& texts, Font font, double first_baseline, auto&& put) {
     double baseline = first_baseline;
     for (const std::string& text : texts) {
@@ -314,7 +315,7 @@ void draw_texts(Canvas& canvas, const Layout& layout) {
   lines(layout.title, kTitleFont, layout.title_top + kTitleFont.size, [&](const std::string& text, double baseline) {
     canvas.text({middle_x, baseline}, text, kTitleFont, kText, Align::centre);
   });
-  const double x_label_top = layout.corner.y + kPlotHeight + kTickLength + 8.0 + kTickFont.size + 8.0;
+  const double x_label_top = layout.corner.y + kPlotAreaHeight + kTickLength + 8.0 + kTickFont.size + 8.0;
   lines(layout.x_label, kLabelFont, x_label_top + kLabelFont.size, [&](const std::string& text, double baseline) {
     canvas.text({middle_x, baseline}, text, kLabelFont, kText, Align::centre);
   });
@@ -326,7 +327,7 @@ void draw_texts(Canvas& canvas, const Layout& layout) {
 void draw_legend(Canvas& canvas, const Layout& layout) {
   if (layout.legend_place == LegendPlace::none) return;
   const bool in_row = layout.legend_place == LegendPlace::row;
-  Point at = in_row ? Point{layout.corner.x + 0.5 * (kPlotWidth - layout.legend_width), layout.corner.y - 15.0}
+  Point at = in_row ? Point{layout.corner.x + 0.5 * (kPlotAreaWidth - layout.legend_width), layout.corner.y - 15.0}
                     : Point{layout.figure.width - kMargin - layout.legend_width, layout.corner.y + 0.5 * kLegendRow};
   for (const LegendEntry& entry : layout.legend) {
     if (entry.is_sample) {
@@ -346,27 +347,22 @@ void draw_legend(Canvas& canvas, const Layout& layout) {
 /// Draws the colour bar to the right of the plot area, with its ticks and its label.
 void draw_scale(Canvas& canvas, const Layout& layout) {
   if (!layout.scale) return;
-  const Point corner{layout.corner.x + kPlotWidth + kBarGap, layout.corner.y};
-  draw_colour_bar(canvas, line_colours(), corner, {kBarWidth, kPlotHeight});
-  draw_frame(canvas, corner, {kBarWidth, kPlotHeight});
-  const AxisScale at{*layout.scale, corner.y + kPlotHeight, corner.y};
+  const Point corner{layout.corner.x + kPlotAreaWidth + kBarGap, layout.corner.y};
+  draw_colour_bar(canvas, line_colours(), corner, {kBarWidth, kPlotAreaHeight});
+  draw_frame(canvas, corner, {kBarWidth, kPlotAreaHeight});
+  const AxisScale at{*layout.scale, corner.y + kPlotAreaHeight, corner.y};
   const double left = corner.x + kBarWidth;
-  for (std::size_t k = 0; k < layout.scale_ticks.positions.size(); ++k) {
-    const double y = at.at(layout.scale_ticks.positions[k]);
-    canvas.line({{left, y}, {left + kBarAxis.tick, y}}, {kAxis, kBarAxis.width, {}});
-    canvas.text({left + kBarAxis.y_label_gap, y + kBarAxis.baseline}, layout.scale_ticks.labels[k], kTickFont, kText,
-                Align::left);
-  }
+  draw_bar_ticks(canvas, kBarAxis, at, layout.scale_ticks, left);
   double baseline = left + kBarAxis.y_label_gap + layout.scale_tick_width + 8.0 + kLabelFont.size;
   for (const std::string& text : layout.scale_label) {
-    canvas.text({baseline, corner.y + 0.5 * kPlotHeight}, text, kLabelFont, kText, Align::centre, true);
+    canvas.text({baseline, corner.y + 0.5 * kPlotAreaHeight}, text, kLabelFont, kText, Align::centre, true);
     baseline += kLabelFont.size * kLineSpacing;
   }
 }
 
 /// Returns the radius of markers. The radius is smaller if points are close together, so that markers do not overlap.
 double marker_radius(const Series& series, const Layout& layout) {
-  double closest = kPlotWidth;
+  double closest = kPlotAreaWidth;
   for (std::size_t i = 1; series.has_line && i < series.x.size(); ++i) {
     if (!is_drawn(series, i - 1) || !is_drawn(series, i)) continue;
     closest = std::min(closest, std::hypot(layout.x.at(series.x[i]) - layout.x.at(series.x[i - 1]),
@@ -379,7 +375,7 @@ void draw_series(Canvas& canvas, const Layout& layout, const Series& series, con
   const auto place = [&](double x, double y) { return Point{layout.x.at(x), layout.y.at(y)}; };
   // The clip area extends beyond the axes by half of the line width, so that curves on the border are drawn with full
   // width.
-  canvas.clip({layout.corner.x - 1.5, layout.corner.y - 1.5}, {kPlotWidth + 3.0, kPlotHeight + 3.0});
+  canvas.clip({layout.corner.x - 1.5, layout.corner.y - 1.5}, {kPlotAreaWidth + 3.0, kPlotAreaHeight + 3.0});
   // The lines between markers are thin, because they only guide the eye.
   const double width = has_markers(series) ? 1.1 : 1.8;
   std::vector<Point> stretch;

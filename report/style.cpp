@@ -77,6 +77,11 @@ void draw_y_tick(Canvas& canvas, const AxisStyle& look, Point at, std::string_vi
   canvas.text({at.x - look.y_label_gap, at.y + look.baseline}, label, look.font, kText, Align::right);
 }
 
+void draw_bar_tick(Canvas& canvas, const AxisStyle& look, Point at, std::string_view label) {
+  canvas.line({at, {at.x + look.tick, at.y}}, {kAxis, look.width, {}});
+  canvas.text({at.x + look.y_label_gap, at.y + look.baseline}, label, look.font, kText, Align::left);
+}
+
 void draw_x_ticks(Canvas& canvas, const AxisStyle& look, const AxisScale& scale, const Ticks& ticks, double y) {
   for (std::size_t k = 0; k < ticks.positions.size(); ++k)
     draw_x_tick(canvas, look, {scale.at(ticks.positions[k]), y}, ticks.labels[k]);
@@ -85,6 +90,11 @@ void draw_x_ticks(Canvas& canvas, const AxisStyle& look, const AxisScale& scale,
 void draw_y_ticks(Canvas& canvas, const AxisStyle& look, const AxisScale& scale, const Ticks& ticks, double x) {
   for (std::size_t k = 0; k < ticks.positions.size(); ++k)
     draw_y_tick(canvas, look, {x, scale.at(ticks.positions[k])}, ticks.labels[k]);
+}
+
+void draw_bar_ticks(Canvas& canvas, const AxisStyle& look, const AxisScale& scale, const Ticks& ticks, double x) {
+  for (std::size_t k = 0; k < ticks.positions.size(); ++k)
+    draw_bar_tick(canvas, look, {x, scale.at(ticks.positions[k])}, ticks.labels[k]);
 }
 
 }  // namespace retrace::report

@@ -97,16 +97,20 @@ struct AxisStyle {
   Font font;
   double tick = 4.0;         ///< length of a tick
   double x_label_gap = 0.0;  ///< distance from the x axis to the baseline of its labels
-  double y_label_gap = 0.0;  ///< distance from the y axis to the end of its labels
+  double y_label_gap = 0.0;  ///< distance from the y axis, or from a colour bar, to the labels
   double baseline = 0.0;     ///< distance of the baseline of a y label below its tick
   double width = 1.0;
 };
 
 void draw_x_tick(Canvas& canvas, const AxisStyle& look, Point at, std::string_view label);
 void draw_y_tick(Canvas& canvas, const AxisStyle& look, Point at, std::string_view label);
+/// Draws a tick on the right side of a colour bar.
+void draw_bar_tick(Canvas& canvas, const AxisStyle& look, Point at, std::string_view label);
 /// Draws the ticks of a horizontal axis at the height y.
 void draw_x_ticks(Canvas& canvas, const AxisStyle& look, const AxisScale& scale, const Ticks& ticks, double y);
 /// Draws the ticks of a vertical axis at x.
 void draw_y_ticks(Canvas& canvas, const AxisStyle& look, const AxisScale& scale, const Ticks& ticks, double x);
+/// Draws the ticks of a colour bar whose right side is at x.
+void draw_bar_ticks(Canvas& canvas, const AxisStyle& look, const AxisScale& scale, const Ticks& ticks, double x);
 
 }  // namespace retrace::report

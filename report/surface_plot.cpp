@@ -107,14 +107,9 @@ void draw_bar(Canvas& canvas, const Area& area, const ColourScale& colours, Rang
   draw_frame(canvas, {left, area.corner.y}, {kSurfaceBarWidth, area.size.height});
   const AxisScale scale{range, area.bottom(), area.corner.y};
   const Ticks ticks = make_ticks(range, intervals);
+  draw_bar_ticks(canvas, kSurfaceAxis, scale, ticks, left + kSurfaceBarWidth);
   double widest = 0.0;
-  for (std::size_t i = 0; i < ticks.positions.size(); ++i) {
-    const double y = scale.at(ticks.positions[i]);
-    canvas.line({{left + kSurfaceBarWidth, y}, {left + kSurfaceBarWidth + 4.0, y}}, {kAxis, 1.0, {}});
-    canvas.text({left + kSurfaceBarWidth + 7.0, y + 0.36 * kSurfaceTickFont.size}, ticks.labels[i], kSurfaceTickFont,
-                kText, Align::left);
-    widest = std::max(widest, canvas.text_width(ticks.labels[i], kSurfaceTickFont));
-  }
+  for (const std::string& tick : ticks.labels) widest = std::max(widest, canvas.text_width(tick, kSurfaceTickFont));
   canvas.text({left + kSurfaceBarWidth + widest + 22.0, area.corner.y + 0.5 * area.size.height}, label,
               kSurfaceLabelFont, kText, Align::centre, true);
 }
