@@ -131,6 +131,18 @@ Ticks make_ticks(Range range, int max_intervals) {
   return ticks;
 }
 
+double next_round_number(double value) {
+  NiceStep step{1, static_cast<int>(std::floor(std::log10(value)))};
+  while (step.times(1.0) < value * (1.0 - kNarrowest)) step = step.next();
+  return step.times(1.0);
+}
+
+double previous_round_number(double value) {
+  NiceStep step{1, static_cast<int>(std::floor(std::log10(value)))};
+  while (step.next().times(1.0) <= value) step = step.next();
+  return step.times(1.0);
+}
+
 std::string power_of_ten(int exponent) {
   return has_few_digits(exponent) ? fixed(std::pow(10.0, exponent), std::max(0, -exponent))
                                   : fmt::format("1e{}", exponent);

@@ -46,6 +46,15 @@ Range drawable(Range range);
 /// \pre max_intervals >= 1
 Ticks make_ticks(Range range, int max_intervals);
 
+/// Returns the smallest number that is 1, 2 or 5 times a power of ten and not less than a value, apart from rounding
+/// errors.
+/// \pre value > 0
+double next_round_number(double value);
+
+/// Returns the largest number that is 1, 2 or 5 times a power of ten and not greater than a value.
+/// \pre value > 0
+double previous_round_number(double value);
+
 /// Returns a power of ten as text: with all digits from 0.001 to 10000, otherwise with an exponent, such as "1e5".
 std::string power_of_ten(int exponent);
 

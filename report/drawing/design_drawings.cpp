@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <vector>
 
 #include "core/number_format.h"
@@ -22,12 +21,7 @@ constexpr double kExaggerated = 1.0 + 1e-9;
 /// Returns the largest factor of 1, 2 or 5 times a power of ten with which heights of the given span fit the plot.
 double exaggeration_for(double height_mm, double length_mm) {
   constexpr double kFilled = 0.92;  // fraction of the plot's height that the heights may fill
-  const double largest = kFilled * kPlotAreaHeight / kPlotAreaWidth * length_mm / height_mm;
-  const double decade = std::pow(10.0, std::floor(std::log10(largest)));
-  double factor = decade;
-  for (const double step : {2.0, 5.0})
-    if (step * decade <= largest) factor = step * decade;
-  return factor;
+  return previous_round_number(kFilled * kPlotAreaHeight / kPlotAreaWidth * length_mm / height_mm);
 }
 
 /// Returns the profile of a curved entrance face along two lines through its centre. The scale of the heights is

@@ -9,21 +9,9 @@
 #include "studies/closed_loop/verification.h"
 
 namespace retrace::report {
-namespace {
-
-constexpr double kNmPerUm = 1e3;
-
-/// Returns the smallest number that is not less than the value and is 1, 2 or 5 times a power of ten.
-double rounded_up(double value) {
-  const double decade = std::pow(10.0, std::floor(std::log10(value)));
-  for (const double step : {1.0, 2.0, 5.0})
-    if (step * decade >= value * (1.0 - 1e-9)) return step * decade;
-  return 10.0 * decade;
-}
-
-}  // namespace
 
 SurfacePlot error_map_plot(const studies::ErrorMap& map) {
+  constexpr double kNmPerUm = kNmPerMm / kUmPerMm;
   double low_nm = 0.0;
   double high_nm = 0.0;
   for (const double value : map.field.height_nm) {
@@ -32,7 +20,7 @@ SurfacePlot error_map_plot(const studies::ErrorMap& map) {
     high_nm = std::max(high_nm, value);
   }
   const double largest_nm = std::max(-low_nm, high_nm);
-  const double limit_nm = rounded_up(std::max(1e-3, std::min(largest_nm, map.colour_range_nm)));
+  const double limit_nm = next_round_number(std::max(1e-3, std::min(largest_nm, map.colour_range_nm)));
   const bool in_um = limit_nm >= kNmPerUm;
   const double unit_nm = in_um ? kNmPerUm : 1.0;
   const char* const unit = in_um ? "µm" : "nm";
