@@ -3,6 +3,7 @@
 // Curved faces through which light enters a part, and their range of heights and slopes over the part's outline.
 
 #include <array>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <variant>
@@ -42,6 +43,9 @@ class EntranceSurface {
 
 /// Entrance of a part: an exact surface, or a mesh whose triangles all face +z.
 using Entrance = std::variant<std::shared_ptr<const EntranceSurface>, std::shared_ptr<const SurfacePatch>>;
+
+/// Height of a curved entrance face in mm at a point of the part frame. NaN where there is no face.
+using EntranceHeights = std::function<double(const Vec2& point_mm)>;
 
 /// Range of heights and slopes of an entrance surface over the outline of a part.
 struct EntranceRange {

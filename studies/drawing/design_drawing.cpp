@@ -224,7 +224,7 @@ std::string zones_text(const Part& part) {
                      part.elements_partial);
 }
 
-/// Returns the outlines of the cells of a zone, of which the part has one patch.
+/// Returns the centres of the cells of a zone. All cells are stored zone by zone in one patch.
 std::vector<Vec2> centres_of_cells(const Part& part, std::size_t zone) {
   std::size_t first = 0;
   for (std::size_t k = 0; k < zone; ++k) first += part.zones[k].cells;

@@ -34,7 +34,7 @@ struct AngleDimension {
 struct PlanZone {
   std::vector<geometry::Polygon> regions_mm;  ///< regions of the zone; empty if the zone consists of elements
   std::vector<geometry::Vec2> labels_mm;      ///< positions of the number of the zone, within the zone
-  std::string description;                    ///< such as "1307 elements, 148 cut; 50 % of the area"
+  std::string description;                    ///< such as "1307 full elements and 148 cut, 50.0 % of the area"
 };
 
 struct PlanPanel {

@@ -12,7 +12,8 @@
 namespace retrace::studies {
 namespace {
 
-using geometry::FacetRole, geometry::Part, geometry::SurfacePatch, geometry::Vec2, geometry::Vec3;
+using geometry::EntranceHeights, geometry::FacetRole, geometry::Part, geometry::SurfacePatch, geometry::Vec2,
+    geometry::Vec3;
 
 // Tolerance of the cosine between the normals of two neighbouring triangles. Within it, there is no edge between them.
 constexpr double kSameDirection = 1e-6;
@@ -101,7 +102,7 @@ design::Design piece_of(const design::Design& design, std::vector<std::string>& 
 constexpr int kEntranceCells = 220;
 
 /// Appends the sides of a part and its curved entrance face, which is sampled on a grid.
-void add_curved_entrance(DesignView& view, const Part& part, const HeightFunction& height) {
+void add_curved_entrance(DesignView& view, const Part& part, const EntranceHeights& height) {
   const geometry::Rectangle box = geometry::bounding_box(part.outline);
   const double cell_mm = box.size().maxCoeff() / kEntranceCells;
   const Vec2 centre = box.centre();
@@ -167,7 +168,7 @@ DesignView view_of_mesh(const design::Design& design) {
 
 }  // namespace
 
-DesignView view_of(const Part& part, const HeightFunction& entrance_height) {
+DesignView view_of(const Part& part, const EntranceHeights& entrance_height) {
   DesignView view;
   std::vector<std::vector<Edge>> edges;
   for (const SurfacePatch& patch : part.patches) edges.push_back(edges_of(patch.vertices, patch.triangles));
@@ -205,8 +206,7 @@ DesignView view_of(const design::Design& design) {
   return view;
 }
 
-DesignView view_of(const design::Design& design, const Part& part, const HeightFunction& entrance_height) {
-  if (!entrance_height) return view_of(design);
+DesignView view_of(const design::Design& design, const Part& part, const EntranceHeights& entrance_height) {
   const bool omits_elements = has_very_small_elements(part);
   DesignView view = view_of(omits_elements ? with_plane_back(part) : part, entrance_height);
   if (omits_elements) {

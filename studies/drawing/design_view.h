@@ -4,11 +4,11 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "design/design.h"
+#include "geometry/entrance/entrance_surface.h"
 #include "geometry/part/closed_boundary.h"
 
 namespace retrace::studies {
@@ -23,20 +23,20 @@ struct DesignView {
   bool has_curved_entrance = false;                 ///< true: the entrance face is not a plane
 };
 
-/// Height of an entrance face at a point of the part frame, in mm.
-using HeightFunction = std::function<double(const geometry::Vec2& point_mm)>;
-
 /// Returns the surface of a finite part with its edges.
 /// \param entrance_height heights of a curved entrance face; empty for a plane face
-DesignView view_of(const geometry::Part& part, const HeightFunction& entrance_height = {});
+DesignView view_of(const geometry::Part& part, const geometry::EntranceHeights& entrance_height = {});
 
 /// Returns the view of a design. Of infinite arrays, and of arrays with very small elements, it shows only a few
-/// elements. If the entrance face is curved, the view shows the whole part, without elements that are very small.
-/// \param part part of the design; only used if the entrance face is curved
-/// \param entrance_height heights of a curved entrance face; empty for a plane face
+/// elements.
 /// \throw InputError under the same conditions as part_of_design()
 DesignView view_of(const design::Design& design);
-DesignView view_of(const design::Design& design, const geometry::Part& part, const HeightFunction& entrance_height);
+
+/// Returns the view of a design with a curved entrance face. It shows the whole part, without elements that are very
+/// small.
+/// \param part part of the design
+DesignView view_of(const design::Design& design, const geometry::Part& part,
+                   const geometry::EntranceHeights& entrance_height);
 
 /// Number of elements that are shown along a side of an array that is too large to be shown as a whole.
 inline constexpr double kExcerptElements = 8.0;

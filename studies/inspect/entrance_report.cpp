@@ -15,8 +15,8 @@ using geometry::Vec2, geometry::Vec3;
 constexpr int kPoints = 400;
 
 /// Returns the profile of the face along an axis.
-EntranceReport::Profile profile_along(Eigen::Index axis, const EntranceHeights& height, const geometry::Part& part,
-                                      const Vec2& centre) {
+EntranceReport::Profile profile_along(Eigen::Index axis, const geometry::EntranceHeights& height,
+                                      const geometry::Part& part, const Vec2& centre) {
   const geometry::Rectangle box = geometry::bounding_box(part.outline);
   EntranceReport::Profile profile;
   for (int k = 0; k <= kPoints; ++k) {
@@ -30,7 +30,7 @@ EntranceReport::Profile profile_along(Eigen::Index axis, const EntranceHeights& 
 
 }  // namespace
 
-EntranceHeights heights_of(const geometry::Entrance& entrance, const geometry::Part& part) {
+geometry::EntranceHeights heights_of(const geometry::Entrance& entrance, const geometry::Part& part) {
   const geometry::Rectangle box = geometry::bounding_box(part.outline);
   const Vec2 centre = 0.5 * (box.lower + box.upper);
   // Heights are measured by rays from above, for surfaces as well as meshes.
@@ -48,7 +48,7 @@ EntranceHeights heights_of(const geometry::Entrance& entrance, const geometry::P
 EntranceReport report_entrance(const geometry::Entrance& entrance, const geometry::Part& part) {
   const geometry::Rectangle box = geometry::bounding_box(part.outline);
   const Vec2 centre = 0.5 * (box.lower + box.upper);
-  const EntranceHeights height = heights_of(entrance, part);
+  const geometry::EntranceHeights height = heights_of(entrance, part);
   EntranceReport report;
   report.range = geometry::entrance_range(entrance, part.outline);
   report.steepest_deg = Angle::from_rad(std::atan(report.range.steepest_slope)).deg();

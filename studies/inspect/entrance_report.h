@@ -2,7 +2,6 @@
 
 // Heights, profiles and maximum slope of a curved entrance face, for `retrace inspect`.
 
-#include <functional>
 #include <vector>
 
 #include "geometry/entrance/entrance_surface.h"
@@ -23,12 +22,9 @@ struct EntranceReport {
   Profile along_y;
 };
 
-/// Heights of a curved entrance face at points, in the part frame. NaN where there is no face.
-using EntranceHeights = std::function<double(const geometry::Vec2& point_mm)>;
-
 /// Returns a function for the heights of a curved entrance face.
 /// \pre the entrance face covers the part (entrance_of_design())
-EntranceHeights heights_of(const geometry::Entrance& entrance, const geometry::Part& part);
+geometry::EntranceHeights heights_of(const geometry::Entrance& entrance, const geometry::Part& part);
 
 /// Returns the report on a curved entrance face.
 /// \pre the entrance face covers the part (entrance_of_design())
