@@ -63,17 +63,18 @@ std::string wrote_line(const fs::path& file) {
   return fmt::format("wrote {}\n", printable(file.string(), std::string::npos));
 }
 
-bool is_short(std::string_view text) {
-  return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')) <= kMaxTableLines;
+bool is_shown_whole(std::string_view table, const CommonOptions& common) {
+  return common.out.empty() || static_cast<std::size_t>(std::count(table.begin(), table.end(), '\n')) <= kMaxTableLines;
 }
 
 std::string without_middle(const std::string& text, const CommonOptions& common, std::string_view file) {
-  if (common.out.empty() || is_short(text)) return text;
+  if (is_shown_whole(text, common)) return text;
   std::vector<std::string_view> lines;
   for (std::string_view rest = text; !rest.empty();) {
-    const std::size_t end = std::min(rest.size(), rest.find('\n') + (rest.find('\n') != std::string::npos ? 1U : 0U));
-    lines.push_back(rest.substr(0, end));
-    rest.remove_prefix(end);
+    const std::size_t end = rest.find('\n');
+    const std::size_t length = end == std::string_view::npos ? rest.size() : end + 1;
+    lines.push_back(rest.substr(0, length));
+    rest.remove_prefix(length);
   }
   constexpr std::size_t kHead = kMaxTableLines / 2;
   constexpr std::size_t kTail = kMaxTableLines - kHead - 1;

@@ -29,12 +29,12 @@ std::string wrote_line(const std::filesystem::path& file);
 /// files, these are at most 30 lines.
 inline constexpr std::size_t kMaxTableLines = 22;
 
-/// Returns true if a text has at most kMaxTableLines lines.
-bool is_short(std::string_view text);
+/// Returns true if the terminal shows all lines of a table: if it has at most kMaxTableLines lines, or if the command
+/// has no output folder.
+bool is_shown_whole(std::string_view table, const CommonOptions& common);
 
-/// Returns a text without its middle lines if it has more than kMaxTableLines lines and the command has an output
-/// folder. A line gives the number of lines that are left out.
-/// \param file name of the file in the output folder that contains all values
+/// Returns a text without its middle lines unless is_shown_whole() is true. A line gives the number of lines that are
+/// left out. \param file name of the file in the output folder that contains all values
 std::string without_middle(const std::string& text, const CommonOptions& common, std::string_view file);
 
 /// Returns the files of the designs and all files that the designs refer to.

@@ -15,37 +15,24 @@ namespace retrace {
 namespace {
 
 RrePoint from_study(const studies::RrePoint& point) {
-  RrePoint told{.design = point.design,
-                .incidence_deg = point.incidence_deg,
-                .azimuth_deg = point.azimuth_deg,
-                .wavelength_nm = point.wavelength_nm,
-                .acceptance_half_angle_deg = point.acceptance_half_angle_deg,
-                .rre = point.rre,
-                .std_error = point.std_error,
-                .engine = point.engine,
-                .ledger = {},
-                .missed_target = point.missed_target};
+  RrePoint result{.design = point.design,
+                  .incidence_deg = point.incidence_deg,
+                  .azimuth_deg = point.azimuth_deg,
+                  .wavelength_nm = point.wavelength_nm,
+                  .acceptance_half_angle_deg = point.acceptance_half_angle_deg,
+                  .rre = point.rre,
+                  .std_error = point.std_error,
+                  .engine = point.engine,
+                  .ledger = {},
+                  .missed_target = point.missed_target};
   for (std::size_t k = 0; k < raytrace::kAccountCount; ++k)
-    told.ledger.emplace(raytrace::kAccountNames[k], point.ledger.power[k]);
-  return told;
-}
-
-/// Divides a list into rows.
-std::vector<std::vector<double>> rows_of(const std::vector<double>& values, std::size_t columns) {
-  std::vector<std::vector<double>> rows;
-  for (auto row = values.begin(); row != values.end(); row += static_cast<std::ptrdiff_t>(columns))
-    rows.emplace_back(row, row + static_cast<std::ptrdiff_t>(columns));
-  return rows;
+    result.ledger.emplace(raytrace::kAccountNames[k], point.ledger.power[k]);
+  return result;
 }
 
 RreMap from_study(const studies::RreMap& map) {
-  return {map.design,
-          map.acceptance_half_angle_deg,
-          map.incidence_deg,
-          map.azimuth_deg,
-          rows_of(map.rre, map.incidence_deg.size()),
-          rows_of(map.std_error, map.incidence_deg.size()),
-          map.mean()};
+  return {map.design,        map.acceptance_half_angle_deg, map.incidence_deg, map.azimuth_deg,
+          map.rows(map.rre), map.rows(map.std_error),       map.mean()};
 }
 
 /// Adds the polar maps and their drawings.
@@ -72,12 +59,11 @@ RreResult rre(const std::vector<Design>& designs, const RreRequest& request, con
   result.complete = found.complete;
   result.json = studies::rre_json(found);
   result.csv = studies::rre_csv(found);
-  const bool has_maps = found.has_map && found.complete;
-  result.table =
-      (has_maps ? studies::rre_map_table(found) : studies::rre_table(found)) + studies::derivative_table(found);
+  result.table = (found.has_complete_maps() ? studies::rre_map_table(found) : studies::rre_table(found)) +
+                 studies::derivative_table(found);
   if (request.footprint) result.footprint = studies::footprint_json(found);
   if (request.far_field) result.far_field = studies::far_field_json(found);
-  if (has_maps)
+  if (found.has_complete_maps())
     add_maps(held, result);
   else if (!found.points.empty())
     result.curve = drawing_of([held] { return report::rre_plot(*held); });

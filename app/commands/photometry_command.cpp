@@ -123,7 +123,7 @@ ExitCode run(const PhotometryOptions& options, const CommonOptions& common) {
   }
   constexpr std::size_t kFewRows = 8;
   std::string table = studies::photometry_table(result);
-  if (!common.out.empty() && !is_short(table)) table = studies::photometry_table(result, kFewRows);
+  if (!is_shown_whole(table, common)) table = studies::photometry_table(result, kFewRows);
   return files.write(studies::photometry_json(result), table, result.warnings,
                      {.complete = result.complete, .is_yes = result.passes()});
 }

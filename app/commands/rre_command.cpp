@@ -107,10 +107,9 @@ Words what_shortens_rre(const studies::RreSettings& request) {
 
 /// Returns the text for the terminal: the table, or a summary if the table is long and is in the output folder.
 std::string text_of(const studies::RreResult& result, const CommonOptions& common) {
-  const bool has_maps = result.has_map && result.complete;
-  if (has_maps) return studies::rre_map_table(result) + studies::derivative_table(result);
+  if (result.has_complete_maps()) return studies::rre_map_table(result) + studies::derivative_table(result);
   const std::string table = studies::rre_table(result) + studies::derivative_table(result);
-  return common.out.empty() || is_short(table) ? table : studies::rre_summary(result);
+  return is_shown_whole(table, common) ? table : studies::rre_summary(result, kMaxTableLines);
 }
 
 ExitCode run(const RreOptions& options, const CommonOptions& common) {

@@ -57,7 +57,7 @@ inline constexpr std::size_t kMaxMapPanels = 12;
 
 /// Returns polar maps of RRE in percent over incidence and azimuth, with contour lines: one panel for each design and
 /// acceptance cone.
-/// \pre the result has maps and is complete
+/// \pre result.has_complete_maps()
 PolarPlot rre_map_plot(const studies::RreResult& result);
 
 /// Returns polar maps of the difference of RRE between two designs, in percentage points: that of the second design

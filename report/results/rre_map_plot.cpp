@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/number_format.h"
+#include "design/io/design_json.h"
 #include "report/results/result_plots.h"
 #include "studies/rre/rre_map.h"
 
@@ -72,7 +73,7 @@ PolarPlot rre_map_plot(const RreResult& result) {
 }
 
 bool rre_maps_can_be_compared(const RreResult& result) {
-  return result.has_map && result.complete && result.designs.size() == 2 &&
+  return result.has_complete_maps() && result.designs.size() == 2 &&
          result.designs[0].detector.acceptance_half_angle_deg == result.designs[1].detector.acceptance_half_angle_deg;
 }
 

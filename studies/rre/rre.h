@@ -114,7 +114,9 @@ struct RreResult {
   std::vector<ReturnedLight> returned;
   std::vector<EntranceFace> faces;    ///< entrance face of each design, if footprints were requested
   std::size_t traced_directions = 0;  ///< number of directions that were traced, for all designs together
-  bool has_map = false;               ///< true: the points are a grid for polar maps, see rre_maps()
+  bool has_map = false;               ///< true: the request was for polar maps
+  /// Returns true if the points are a complete grid for polar maps, see rre_maps().
+  bool has_complete_maps() const { return has_map && complete; }
   std::uint64_t rays = 0;
   double elapsed_s = 0.0;
   Warnings warnings;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "core/error.h"
 #include "core/number_format.h"
@@ -88,6 +89,15 @@ void resolve_grid(RreSettings& settings) {
   sort_and_remove_repeated(settings.azimuth_deg);
   check_incidences(settings.incidence_deg);
   check_azimuths(settings.azimuth_deg);
+}
+
+std::vector<std::vector<double>> RreMap::rows(const std::vector<double>& values) const {
+  std::vector<std::vector<double>> rows;
+  for (std::size_t k = 0; k < azimuth_deg.size(); ++k) {
+    const std::span<const double> values_of_azimuth = row(values, k);
+    rows.emplace_back(values_of_azimuth.begin(), values_of_azimuth.end());
+  }
+  return rows;
 }
 
 double RreMap::at(double incidence, double azimuth) const {
@@ -173,8 +183,7 @@ std::vector<RreMap> rre_maps(const RreResult& result) {
     std::copy_if(result.points.begin(), result.points.end(), std::back_inserter(points),
                  [d](const RrePoint& point) { return point.design == d; });
     if (points.empty()) continue;
-    const std::vector<RreMap> of_design = maps_of(points);
-    maps.insert(maps.end(), of_design.begin(), of_design.end());
+    for (RreMap& map : maps_of(points)) maps.push_back(std::move(map));
   }
   return maps;
 }

@@ -22,6 +22,14 @@ struct RreMap {
   std::size_t index(std::size_t incidence, std::size_t azimuth) const {
     return azimuth * incidence_deg.size() + incidence;
   }
+  /// Returns the values of one azimuth, with one value for each incidence.
+  /// \param values `rre` or `std_error`
+  std::span<const double> row(const std::vector<double>& values, std::size_t azimuth) const {
+    return std::span(values).subspan(index(0, azimuth), incidence_deg.size());
+  }
+  /// Returns values with the indices [azimuth][incidence].
+  /// \param values `rre` or `std_error`
+  std::vector<std::vector<double>> rows(const std::vector<double>& values) const;
   /// Returns RRE at any direction, by linear interpolation between the four surrounding directions of the grid. NaN if
   /// the incidence is outside the grid.
   double at(double incidence, double azimuth) const;
@@ -38,7 +46,7 @@ struct RreMap {
 void resolve_grid(RreSettings& settings);
 
 /// Returns the maps of a result: for each design, one for each acceptance cone.
-/// \pre result.has_map, and the result is complete
+/// \pre result.has_complete_maps()
 std::vector<RreMap> rre_maps(const RreResult& result);
 
 /// Returns the map with the differences b - a. Its standard errors are those of the differences.

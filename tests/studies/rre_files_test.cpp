@@ -161,7 +161,7 @@ RreResult smooth_result(std::size_t designs, std::size_t azimuths) {
 }
 
 TEST(RreFiles, SummaryTellsThePointsTheMaximumAndTheHalfAngles) {
-  const std::vector<std::string> lines = lines_of(rre_summary(smooth_result(2, 1)));
+  const std::vector<std::string> lines = lines_of(rre_summary(smooth_result(2, 1), 22));
   ASSERT_EQ(lines.size(), 3U);
   std::istringstream line(lines[1]);
   std::string name, azimuth, points, start, start_deg, top, top_deg, low, high;
@@ -180,9 +180,9 @@ TEST(RreFiles, SummaryTellsThePointsTheMaximumAndTheHalfAngles) {
 TEST(RreFiles, SummaryIsShortForAnyNumberOfCurves) {
   for (const std::size_t designs : {1U, 3U, 40U})
     for (const std::size_t azimuths : {1U, 12U, 36U})
-      EXPECT_LE(lines_of(rre_summary(smooth_result(designs, azimuths))).size(), 22U) << designs << ' ' << azimuths;
-  EXPECT_EQ(lines_of(rre_summary(smooth_result(1, 36))).size(), 2U) << "one line for all azimuths";
-  EXPECT_EQ(rre_summary(RreResult{}), "");
+      EXPECT_LE(lines_of(rre_summary(smooth_result(designs, azimuths), 22)).size(), 22U) << designs << ' ' << azimuths;
+  EXPECT_EQ(lines_of(rre_summary(smooth_result(1, 36), 22)).size(), 2U) << "one line for all azimuths";
+  EXPECT_EQ(rre_summary(RreResult{}, 22), "");
 }
 
 }  // namespace

@@ -10,7 +10,6 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <span>
 #include <string_view>
 #include <tuple>
 #include <utility>
@@ -140,21 +139,13 @@ std::string line_of(const RrePoint& point, const RreDerivative& by, const Design
 }
 
 Json map_json(const RreMap& map) {
-  const auto rows_of = [&](const std::vector<double>& values) {
-    Json rows = Json::array();
-    const std::size_t columns = map.incidence_deg.size();
-    for (std::size_t k = 0; k < map.azimuth_deg.size(); ++k)
-      rows.push_back(std::vector<double>(values.begin() + static_cast<std::ptrdiff_t>(k * columns),
-                                         values.begin() + static_cast<std::ptrdiff_t>((k + 1) * columns)));
-    return rows;
-  };
   return {{"design", map.design},
           {"acceptance_half_angle_deg", map.acceptance_half_angle_deg},
           {"mean_rre", map.mean()},
           {"incidence_deg", map.incidence_deg},
           {"azimuth_deg", map.azimuth_deg},
-          {"rre", rows_of(map.rre)},
-          {"std_error", rows_of(map.std_error)}};
+          {"rre", map.rows(map.rre)},
+          {"std_error", map.rows(map.std_error)}};
 }
 
 /// Direction of a map with its value.
@@ -207,7 +198,7 @@ std::string rre_json(const RreResult& result) {
   json["seed"] = result.seed;
   json["points"] = Json::array();
   for (const RrePoint& p : result.points) json["points"].push_back(point_json(p));
-  if (result.has_map && result.complete) {
+  if (result.has_complete_maps()) {
     json["maps"] = Json::array();
     for (const RreMap& map : rre_maps(result)) json["maps"].push_back(map_json(map));
   }
@@ -251,8 +242,7 @@ std::string rre_map_csv(const RreResult& result) {
       csv.row("design", "acceptance_half_angle_deg", "azimuth_deg", incidences);
     }
     for (std::size_t k = 0; k < map.azimuth_deg.size(); ++k)
-      csv.row(map.design, map.acceptance_half_angle_deg, map.azimuth_deg[k],
-              std::span(map.rre).subspan(map.index(0, k), map.incidence_deg.size()));
+      csv.row(map.design, map.acceptance_half_angle_deg, map.azimuth_deg[k], map.row(map.rre, k));
   }
   return csv.text();
 }
@@ -276,20 +266,18 @@ struct CurveSummary {
   bool has_all_azimuths = false;
 };
 
-constexpr std::size_t kMaxSummaryLines = 22;
-
 /// Returns the curves of the result. If they are too many, all azimuths of a design and cone belong to one curve.
-std::vector<CurveSummary> curves_of(const RreResult& result) {
+std::vector<CurveSummary> curves_of(const RreResult& result, std::size_t max_lines) {
   for (const bool has_all_azimuths : {false, true}) {
-    std::map<std::tuple<std::size_t, double, double>, std::size_t> place;
+    std::map<std::tuple<std::size_t, double, double>, std::size_t> curve_index;
     std::vector<CurveSummary> curves;
     for (const RrePoint& p : result.points) {
-      const auto [it, is_new] = place.try_emplace(
+      const auto [it, is_new] = curve_index.try_emplace(
           {p.design, has_all_azimuths ? 0.0 : p.azimuth_deg, p.acceptance_half_angle_deg}, curves.size());
       if (is_new) curves.push_back({{}, has_all_azimuths});
       curves[it->second].points.push_back(&p);
     }
-    if (has_all_azimuths || curves.size() < kMaxSummaryLines) return curves;
+    if (has_all_azimuths || curves.size() < max_lines) return curves;
   }
   return {};
 }
@@ -334,15 +322,15 @@ std::string half_text(const CurveSummary& curve, const RrePoint& start) {
 
 }  // namespace
 
-std::string rre_summary(const RreResult& result) {
-  const std::vector<CurveSummary> curves = curves_of(result);
+std::string rre_summary(const RreResult& result, std::size_t max_lines) {
+  const std::vector<CurveSummary> curves = curves_of(result, max_lines);
   if (curves.empty()) return {};
   const bool several_cones = has_several_cones(result);
   const DesignColumn designs(result);
   std::string table = designs.heading() + "azimuth_deg  ";
   if (several_cones) table += "acceptance_deg  ";
   table += "points     RRE_%  at_deg     max_%  at_deg  half_at_deg\n";
-  const std::size_t shown = curves.size() < kMaxSummaryLines ? curves.size() : kMaxSummaryLines - 2;
+  const std::size_t shown = curves.size() < max_lines ? curves.size() : max_lines - 2;
   for (std::size_t k = 0; k < shown; ++k) {
     const CurveSummary& curve = curves[k];
     const auto is_normal = [](const RrePoint* p) { return p->incidence_deg == 0.0; };

@@ -18,18 +18,19 @@ std::string rre_csv(const RreResult& result);
 std::string rre_table(const RreResult& result);
 
 /// Returns the polar maps as CSV: one line for each map and azimuth, with one column for each incidence.
-/// \pre result.has_map
+/// \pre result.has_complete_maps()
 std::string rre_map_csv(const RreResult& result);
 
 /// Returns a summary of the polar maps for the terminal, in percent: for each map, the mean, the extreme values and at
 /// most 17 incidences with the smallest, the mean and the largest value over the azimuths.
-/// \pre result.has_map
+/// \pre result.has_complete_maps()
 std::string rre_map_table(const RreResult& result);
 
-/// Returns a table of at most 22 lines for the terminal: for each curve, the number of points, RRE at normal incidence
+/// Returns a table of limited length for the terminal: for each curve, the number of points, RRE at normal incidence
 /// (or at the first angle), the maximum and its angle, and the angles at which RRE falls to half of its value at normal
 /// incidence. If there are too many curves, the azimuths of a design have one line.
-std::string rre_summary(const RreResult& result);
+/// \param max_lines maximum number of lines, >= 3
+std::string rre_summary(const RreResult& result, std::size_t max_lines);
 
 /// Returns a table for the terminal with the derivatives of RRE, as a fraction, per unit of each parameter. Empty if
 /// none were requested.
