@@ -61,8 +61,7 @@ void warn_of_panels(studies::RreResult& result) {
 
 /// Adds the files of polar maps. The difference of the maps is drawn if there are two designs.
 void add_map_files(ResultFiles& files, std::size_t designs, const studies::RreResult& result) {
-  const auto if_complete = [&](const auto& content) { return result.complete ? content() : std::string(); };
-  files.add("map.csv", [=, &result] { return if_complete([&] { return studies::rre_map_csv(result); }); });
+  files.add("map.csv", [&] { return result.complete ? studies::rre_map_csv(result) : std::string(); });
   files.add_drawing("map", [&] { return report::rre_map_plot(result); });
   if (designs == 2) files.add_drawing("map_difference", [&] { return report::rre_map_difference_plot(result); });
 }

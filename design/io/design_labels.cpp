@@ -24,9 +24,9 @@ using Indices = std::vector<std::size_t>;
 constexpr std::size_t kMaxKeys = 3;
 constexpr std::size_t kLongestValue = 32;  ///< number of bytes
 
-/// Keys that do not describe the part or its light.
-bool is_told_otherwise(const std::string& path) {
-  return path == "source" || path == "title" || path == "spectrum" || path == "schema";
+/// Returns true if a key describes the part or its light.
+bool is_compared(const std::string& path) {
+  return !(path == "source" || path == "title" || path == "spectrum" || path == "schema");
 }
 
 std::string text_of(const Json& value) {
@@ -46,7 +46,7 @@ struct Flat {
   void add(const Json& table, const std::string& within) {
     for (const auto& [key, value] : table.items()) {
       const std::string path = within.empty() ? key : within + "." + key;
-      if (is_told_otherwise(path)) continue;
+      if (!is_compared(path)) continue;
       order.push_back(path);
       values.emplace(path, &value);
       if (value.is_object()) add(value, path);
@@ -84,7 +84,7 @@ class Labeller {
     Indices all(designs_.size());
     std::iota(all.begin(), all.end(), 0U);
     DesignLabels labels;
-    labels.names = all.size() == 1 ? names_ : numbered(labels_of(all, true));
+    labels.names = all.size() == 1 ? names_ : numbered(labels_of(all));
     const std::vector<std::string> keys = differing(all);
     if (keys.size() != 1) return labels;
     for (const Flat& flat : flat_) {
@@ -159,17 +159,16 @@ class Labeller {
   /// Returns the name of the file without folder and extension, or the short name if the design has no file.
   std::string file_name(std::size_t d) const {
     const Json& design = designs_[d];
-    const auto source = design.is_object() ? design.find("source") : design.end();
-    if (!design.is_object() || source == design.end() || !source->is_string()) return names_[d];
+    const auto source = design.find("source");
+    if (source == design.end() || !source->is_string()) return names_[d];
     const std::string file = source->get<std::string>();
     const std::string stem = std::filesystem::path(file).stem().string();
     return stem.empty() || file == "-" ? names_[d] : stem;
   }
 
   /// Returns labels for some designs. Designs that are equal, or that cannot be distinguished, have equal labels.
-  std::vector<std::string> labels_of(const Indices& which, bool is_first) const {
+  std::vector<std::string> labels_of(const Indices& which) const {
     if (const auto labels = by_keys(which)) return *labels;
-    if (!is_first) return std::vector<std::string>(which.size());
     std::vector<std::string> labels;
     for (const std::size_t d : which) labels.push_back(file_name(d));
     std::map<std::string, Indices> groups;
@@ -178,16 +177,17 @@ class Labeller {
       if (members.size() < 2) continue;
       Indices designs;
       for (const std::size_t k : members) designs.push_back(which[k]);
-      const std::vector<std::string> more = more_of(designs);
+      const std::vector<std::string> more = labels_within_file(designs);
       for (std::size_t k = 0; k < members.size(); ++k)
         if (!more[k].empty()) labels[members[k]] = groups.size() > 1 ? name + ", " + more[k] : more[k];
     }
     return labels;
   }
 
-  /// Returns texts that distinguish designs of the same file: differing keys, or different titles.
-  std::vector<std::string> more_of(const Indices& which) const {
-    std::vector<std::string> labels = labels_of(which, false);
+  /// Returns texts that distinguish designs of the same file: differing keys, or different titles. They are empty if
+  /// the designs cannot be distinguished.
+  std::vector<std::string> labels_within_file(const Indices& which) const {
+    std::vector<std::string> labels = by_keys(which).value_or(std::vector<std::string>(which.size()));
     if (!std::all_of(labels.begin(), labels.end(), [](const std::string& text) { return text.empty(); })) return labels;
     std::set<std::string> titles;
     for (const std::size_t d : which) titles.insert(names_[d]);

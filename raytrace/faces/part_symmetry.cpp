@@ -21,10 +21,10 @@ using geometry::Vec2, geometry::Vec3;
 // equal if the norm of their difference is at most kSameNormal.
 constexpr double kSamePlace = 1e-8;
 constexpr double kSameNormal = 1e-9;
-// Memory in bytes per facet of FacetsByPlace.
+// Memory in bytes per facet of FacetsByCentroid.
 constexpr double kBytesPerFacet = 350.0;
 
-/// Returns true if a FacetsByPlace of all facets of the part fits into the memory budget.
+/// Returns true if a FacetsByCentroid of all facets of the part fits into the memory budget.
 bool fits_memory(const Part& part) {
   double facets = 0.0;
   for (const Placement& placement : part.placements)
@@ -40,7 +40,7 @@ struct PlacedFacet {
   geometry::FacetRole role = geometry::FacetRole::retro_facet;
 };
 
-PlacedFacet standing(const SurfacePatch& patch, const PatchFacet& facet, const Vec3& shift) {
+PlacedFacet placed_facet(const SurfacePatch& patch, const PatchFacet& facet, const Vec3& shift) {
   PlacedFacet result{{}, Vec3::Zero(), facet.normal, facet.role};
   for (std::uint32_t c = 0; c < facet.corner_count; ++c)
     result.corners.push_back(patch.vertices[patch.corners[facet.first_corner + c]] + shift);
@@ -79,14 +79,14 @@ PlacedFacet shifted(PlacedFacet facet, const Vec2& shift_mm) {
 }
 
 /// All facets of a part. A facet can be looked up by its centroid.
-class FacetsByPlace {
+class FacetsByCentroid {
  public:
-  explicit FacetsByPlace(const Part& part) : near_mm_(kSamePlace * part.size_mm), by_middle_(near_mm_) {
+  explicit FacetsByCentroid(const Part& part) : near_mm_(kSamePlace * part.size_mm), by_middle_(near_mm_) {
     for (const Placement& placement : part.placements) {
       const SurfacePatch& patch = part.patches[placement.patch];
       const Vec3 shift(placement.offset_mm.x(), placement.offset_mm.y(), placement.height_mm);
       for (const PatchFacet& facet : patch.facets) {
-        facets_.push_back(standing(patch, facet, shift));
+        facets_.push_back(placed_facet(patch, facet, shift));
         by_middle_.insert(facets_.back().middle, facets_.size() - 1);
       }
     }
@@ -127,7 +127,7 @@ std::vector<PlacedFacet> central_facets(const Part& part) {
   for (std::size_t k = first; k < first + each; ++k) {
     const PatchCell& cell = patch.cells[k];
     for (std::uint32_t f = cell.first_facet; f < cell.first_facet + cell.facet_count; ++f)
-      facets.push_back(standing(patch, patch.facets[f], {offset.x(), offset.y(), 0.0}));
+      facets.push_back(placed_facet(patch, patch.facets[f], {offset.x(), offset.y(), 0.0}));
   }
   return facets;
 }
@@ -163,7 +163,7 @@ class InfiniteFacets {
     });
   }
 
-  FacetsByPlace all_;
+  FacetsByCentroid all_;
   std::vector<PlacedFacet> central_;
   Vec2 middle_ = Vec2::Zero();
   Vec2 period_mm_;
@@ -174,7 +174,10 @@ class InfiniteFacets {
 class FiniteFacets {
  public:
   explicit FiniteFacets(const Part& part)
-      : all_(part), outline_(part.outline), near_mm_(kSamePlace * part.size_mm), centre_mm_(centroid(part.outline)) {}
+      : all_(part),
+        outline_(part.outline),
+        near_mm_(kSamePlace * part.size_mm),
+        centre_mm_(geometry::centroid(std::span<const Vec2>(part.outline))) {}
 
   /// Returns true if a linear map about the centre of the outline does not change the part.
   bool has_symmetry(const Eigen::Matrix2d& linear) const {
@@ -184,8 +187,6 @@ class FiniteFacets {
   }
 
  private:
-  static Vec2 centroid(const geometry::Polygon& outline) { return geometry::centroid(std::span<const Vec2>(outline)); }
-
   /// Returns true if the image of each corner of the outline is one of its corners.
   bool keeps_outline(const PlaneMap& map) const {
     return std::all_of(outline_.begin(), outline_.end(), [&](const Vec2& p) {
@@ -194,7 +195,7 @@ class FiniteFacets {
     });
   }
 
-  FacetsByPlace all_;
+  FacetsByCentroid all_;
   geometry::Polygon outline_;
   double near_mm_;
   Vec2 centre_mm_;
@@ -243,7 +244,6 @@ std::vector<Eigen::Matrix2d> symmetries_of(const Part& part) {
     }
     for (const Eigen::Index axis : {0, 1})
       if (facets.has_symmetry(reflection(axis))) multiply(maps, reflection(axis));
-    return true;
   });
   return maps;
 }

@@ -3,9 +3,8 @@
 // Symmetries of a part about its normal. If a part is symmetric, symmetric directions of incidence give symmetric
 // results, so that only one of them has to be traced.
 
-#include <vector>
-
 #include <Eigen/Core>
+#include <vector>
 
 #include "geometry/part/part.h"
 

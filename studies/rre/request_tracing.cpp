@@ -117,11 +117,11 @@ void add_values(const std::vector<Direction>& directions, std::vector<AdaptiveCu
 }
 
 /// Returns the next angles of incidence of each design.
-std::vector<std::vector<double>> next_of(std::vector<AdaptiveCurve>& curves) {
-  std::vector<std::vector<double>> places;
-  places.reserve(curves.size());
-  for (AdaptiveCurve& curve : curves) places.push_back(curve.next());
-  return places;
+std::vector<std::vector<double>> next_incidences(std::vector<AdaptiveCurve>& curves) {
+  std::vector<std::vector<double>> incidences;
+  incidences.reserve(curves.size());
+  for (AdaptiveCurve& curve : curves) incidences.push_back(curve.next());
+  return incidences;
 }
 
 bool are_empty(const std::vector<std::vector<double>>& lists) {
@@ -130,13 +130,13 @@ bool are_empty(const std::vector<std::vector<double>>& lists) {
 
 /// Sorts directions by design, azimuth in the order of the request, and ascending incidence.
 void put_in_order(std::vector<Direction>& directions, const std::vector<double>& azimuth_deg) {
-  const auto place = [&](const Direction& direction) {
+  const auto sort_key = [&](const Direction& direction) {
     const RrePoint& at = direction.at;
     const auto azimuth = std::find(azimuth_deg.begin(), azimuth_deg.end(), at.azimuth_deg);
     return std::tuple(at.design, azimuth - azimuth_deg.begin(), at.incidence_deg);
   };
   std::sort(directions.begin(), directions.end(),
-            [&](const Direction& a, const Direction& b) { return place(a) < place(b); });
+            [&](const Direction& a, const Direction& b) { return sort_key(a) < sort_key(b); });
 }
 
 /// Returns a text about each design whose curve is not resolved.
@@ -163,16 +163,16 @@ TracedRequest trace_chosen(const std::vector<design::Design>& designs, const std
   for (std::size_t d = 0; d < designs.size(); ++d)
     curves.emplace_back(request.incidence_spans, kinks_of(designs[d], models[d], request), request.incidence_deg,
                         std::max(kCurveTolerance, target_error_of(request)));
-  auto places = next_of(curves);
-  while (traced.complete && !are_empty(places)) {
-    std::vector<Direction> round = directions_of(models, request, places);
+  auto incidences = next_incidences(curves);
+  while (traced.complete && !are_empty(incidences)) {
+    std::vector<Direction> round = directions_of(models, request, incidences);
     trace_points(designs, models, tracing, round, &part);
     part.finish_round();
     traced.complete = all_are_traced(round);
     if (traced.complete) {
       add_values(round, curves);
-      places = next_of(curves);
-      traced.complete = are_empty(places) || !is_cancelled(cancel);
+      incidences = next_incidences(curves);
+      traced.complete = are_empty(incidences) || !is_cancelled(cancel);
     }
     std::move(round.begin(), round.end(), std::back_inserter(traced.directions));
   }
@@ -184,7 +184,7 @@ TracedRequest trace_chosen(const std::vector<design::Design>& designs, const std
 
 /// Returns the maps of directions that do not change RRE of a design. The first is the identity. The others are only
 /// used if all optical properties are the same in all directions.
-std::vector<Eigen::Matrix2d> symmetries_of(const design::Design& design, const design::OpticalModel& model) {
+std::vector<Eigen::Matrix2d> rre_symmetries(const design::Design& design, const design::OpticalModel& model) {
   const raytrace::EngineFacts facts = design::engine_facts(design, &model.optics);
   const raytrace::Stokes& light = design.light.polarisation;
   const bool is_polarised = light.q != 0.0 || light.u != 0.0 || light.v != 0.0;
@@ -213,7 +213,7 @@ raytrace::Stokes mapped(raytrace::Stokes stokes, const SharedDirection& to_trace
 }
 
 /// Sets the results of a direction from those of an equivalent direction that was traced.
-void share(const Direction& traced, const SharedDirection& shared, Direction& direction) {
+void set_results(const Direction& traced, const SharedDirection& shared, Direction& direction) {
   const RrePoint at = direction.at;
   direction = traced;
   direction.at = at;
@@ -224,41 +224,39 @@ void share(const Direction& traced, const SharedDirection& shared, Direction& di
   }
 }
 
-/// Returns the directions of one design, in groups that share one trace.
+/// Returns the directions of all designs, in groups that share one trace.
+/// \param directions directions, sorted by design
 std::vector<EquivalentDirections> group_directions(const std::vector<Direction>& directions,
-                                                   const design::Design& design, const design::OpticalModel& model) {
-  std::vector<geometry::Vec3> all;
-  for (const Direction& direction : directions) all.push_back(to_source(direction));
-  return group_equivalent_directions(all, symmetries_of(design, model));
+                                                   const std::vector<design::Design>& designs,
+                                                   const std::vector<design::OpticalModel>& models) {
+  std::vector<EquivalentDirections> groups;
+  for (std::size_t first = 0, last = 0; first < directions.size(); first = last) {
+    const std::size_t design = directions[first].at.design;
+    std::vector<geometry::Vec3> to_sources;
+    for (; last < directions.size() && directions[last].at.design == design; ++last)
+      to_sources.push_back(to_source(directions[last]));
+    for (EquivalentDirections& group :
+         group_equivalent_directions(to_sources, rre_symmetries(designs[design], models[design]))) {
+      for (SharedDirection& shared : group) shared.index += first;
+      groups.push_back(std::move(group));
+    }
+  }
+  return groups;
 }
 
 /// Traces the grid of a polar map. Of equivalent directions, only one is traced.
 TracedRequest trace_grid(const std::vector<design::Design>& designs, const std::vector<design::OpticalModel>& models,
                          const RreSettings& request, std::vector<Direction> directions, Progress* progress,
                          const Cancellation* cancel) {
-  struct Share {
-    std::size_t direction, traced;
-    SharedDirection shared;
-  };
-  std::vector<Share> shares;
+  const std::vector<EquivalentDirections> groups = group_directions(directions, designs, models);
   std::vector<Direction> representatives;
-  for (auto first = directions.begin(); first != directions.end();) {
-    const std::size_t d = first->at.design;
-    const auto last = std::find_if(first, directions.end(), [&](const Direction& at) { return at.at.design != d; });
-    const auto offset = static_cast<std::size_t>(first - directions.begin());
-    for (const EquivalentDirections& group : group_directions({first, last}, designs[d], models[d])) {
-      for (const SharedDirection& shared : group)
-        shares.push_back({offset + shared.index, representatives.size(), shared});
-      representatives.push_back(directions[offset + group.front().index]);
-    }
-    first = last;
-  }
+  for (const EquivalentDirections& group : groups) representatives.push_back(directions[group.front().index]);
   TracedRequest traced;
   DirectionTracing tracing(designs, models, request, cancel);
   trace_points(designs, models, tracing, representatives, progress);
   traced.complete = all_are_traced(representatives);
-  for (const Share& share_of : shares)
-    share(representatives[share_of.traced], share_of.shared, directions[share_of.direction]);
+  for (std::size_t k = 0; k < groups.size(); ++k)
+    for (const SharedDirection& shared : groups[k]) set_results(representatives[k], shared, directions[shared.index]);
   traced.directions = std::move(directions);
   traced.traced_directions = representatives.size();
   return traced;
