@@ -44,8 +44,8 @@ ValueScale scale_of(const ImagePanel& panel) {
   return {full > 0.0 ? full : 1.0, panel.is_logarithmic};
 }
 
-Colour colour_of(double share) {
-  const auto [r, g, b] = light_colour(share);
+Colour colour_of(double fraction) {
+  const auto [r, g, b] = light_colour(fraction);
   return {r, g, b};
 }
 
@@ -96,12 +96,10 @@ void draw_scale_bar(Canvas& canvas, const ImagePanel& panel, Point corner, doubl
 void draw(Canvas& canvas, const ImagePanel& panel, Point corner) {
   canvas.text({corner.x, corner.y + 16.0}, panel.title, kPanelFont, kText, Align::left);
   const ValueScale scale = scale_of(panel);
-  std::vector<Colour> colours;
-  colours.reserve(panel.values.size());
-  for (const double value : panel.values) colours.push_back(colour_of(scale.fraction(value)));
   const Point at{corner.x, corner.y + kPanelTop};
   const Size size = picture_size(panel);
-  canvas.image(at, size, panel.columns, colours);
+  draw_values(canvas, at, size, panel.columns, panel.values,
+              [&](double value) { return colour_of(scale.fraction(value)); });
   draw_frame(canvas, at, size);
   draw_value_bar(canvas, panel, scale, {at.x + size.width + kImageBarGap, at.y}, size.height);
   draw_scale_bar(canvas, panel, {at.x, at.y + size.height}, size.width);

@@ -97,13 +97,15 @@ void draw_contours(Canvas& canvas, const PolarPanel& panel, Point centre, const 
 
 void draw_disc(Canvas& canvas, const PolarPanel& panel, Point centre, const PolarColours& colours) {
   const double radius = 0.5 * kDisc;
-  std::vector<Colour> pixels;
-  for (std::size_t row = panel.columns; row-- > 0;)
-    for (std::size_t column = 0; column < panel.columns; ++column)
-      pixels.push_back(colours.colour(panel.values[row * panel.columns + column]));
-  if (pixels.empty()) return;
+  if (panel.columns == 0) return;
+  std::vector<double> from_top;
+  for (std::size_t row = panel.columns; row-- > 0;) {
+    const auto first = panel.values.begin() + static_cast<std::ptrdiff_t>(row * panel.columns);
+    from_top.insert(from_top.end(), first, first + static_cast<std::ptrdiff_t>(panel.columns));
+  }
   canvas.clip(circle(centre, radius));
-  canvas.image({centre.x - radius, centre.y - radius}, {kDisc, kDisc}, panel.columns, pixels);
+  draw_values(canvas, {centre.x - radius, centre.y - radius}, {kDisc, kDisc}, panel.columns, from_top,
+              [&](double value) { return colours.colour(value); });
   if (!colours.is_logarithmic) draw_contours(canvas, panel, centre, colours);
   canvas.end_clip();
 }

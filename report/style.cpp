@@ -33,6 +33,14 @@ void draw_within(Canvas& canvas, double width, Ellipsis ellipsis, Point baseline
     canvas.text(baseline, line, font, colour, align);
 }
 
+void draw_values(Canvas& canvas, Point corner, Size size, std::size_t columns, const std::vector<double>& values,
+                 const std::function<Colour(double)>& colour) {
+  std::vector<Colour> pixels;
+  pixels.reserve(values.size());
+  for (const double value : values) pixels.push_back(colour(value));
+  canvas.image(corner, size, columns, pixels);
+}
+
 Canvas measuring_canvas() {
   return {Canvas::Format::png, {8.0, 8.0}, 1.0};
 }

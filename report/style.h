@@ -3,6 +3,8 @@
 // Colours and elements that all plots have in common. This header is private to report/.
 
 #include <array>
+#include <cstddef>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -72,6 +74,12 @@ void draw_frame(Canvas& canvas, Point corner, Size size, double width = 1.0);
 /// Draws a text in one line. A text that is wider than `width` is shortened.
 void draw_within(Canvas& canvas, double width, Ellipsis ellipsis, Point baseline, std::string_view text, Font font,
                  Colour colour, Align align);
+
+/// Draws a grid of values as coloured pixels.
+/// \param values values of the grid, row by row from the top
+/// \param colour returns the colour of a value
+void draw_values(Canvas& canvas, Point corner, Size size, std::size_t columns, const std::vector<double>& values,
+                 const std::function<Colour(double)>& colour);
 
 /// Returns a small canvas for the computation of sizes of texts, which do not depend on the canvas.
 Canvas measuring_canvas();

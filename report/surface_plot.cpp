@@ -161,10 +161,9 @@ void draw(Canvas& canvas, const GridPanel& panel, Point cell, Size room) {
   const bool is_deviation = panel.deviation_limit > 0.0;
   const ColourScale& scale = is_deviation ? kBlueWhiteRed : kViridis;
   const Range range = is_deviation ? Range{-panel.deviation_limit, panel.deviation_limit} : colour_range(small.values);
-  std::vector<Colour> colours;
-  for (const double v : small.values)
-    colours.push_back(std::isfinite(v) ? colour_at(scale, (v - range.low) / range.span()) : kMissingColour);
-  canvas.image(area.corner, area.size, small.columns, colours);
+  draw_values(canvas, area.corner, area.size, small.columns, small.values, [&](double v) {
+    return std::isfinite(v) ? colour_at(scale, (v - range.low) / range.span()) : kMissingColour;
+  });
   draw_frame(canvas, area.corner, area.size);
   const bool in_mm = std::max(panel.x_size_um, panel.y_size_um) >= kMillimetresFromUm;
   const double per_um = in_mm ? 1e-3 : 1.0;
