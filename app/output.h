@@ -34,7 +34,8 @@ inline constexpr std::size_t kMaxTableLines = 22;
 bool is_shown_whole(std::string_view table, const CommonOptions& common);
 
 /// Returns a text without its middle lines unless is_shown_whole() is true. A line gives the number of lines that are
-/// left out. \param file name of the file in the output folder that contains all values
+/// left out.
+/// \param file name of the file in the output folder that contains all values
 std::string without_middle(const std::string& text, const CommonOptions& common, std::string_view file);
 
 /// Returns the files of the designs and all files that the designs refer to.

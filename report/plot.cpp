@@ -266,10 +266,10 @@ Layout lay_out(const LinePlot& plot, const Canvas& canvas) {
   const double left =
       kMargin + height_of(layout.y_label, kLabelFont) + (layout.y_label.empty() ? 0.0 : 6.0) + y_tick_width + 12.0;
   const double below = kTickLength + 8.0 + kTickFont.size + 8.0 + height_of(layout.x_label, kLabelFont) + kMargin;
-  // The last label of the x axis may extend beyond the right end of the plot.
   const double bar = layout.scale ? kBarGap + kBarWidth + kTickLength + 3.0 + layout.scale_tick_width + 8.0 +
                                         height_of(layout.scale_label, kLabelFont)
                                   : 0.0;
+  // The last label of the x axis may extend beyond the right end of the plot.
   const double right = std::max(kMargin, 0.5 * widest(layout.x_ticks.labels, canvas) + 8.0) + bar;
   const double column_height = in_column ? kLegendRow * static_cast<double>(layout.legend.size()) : 0.0;
   layout.corner = {left, top};
