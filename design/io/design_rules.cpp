@@ -111,11 +111,13 @@ void check_room(const Document& document, const PartSpec& part) {
                                                    count, kMaxElements));
 }
 
+constexpr std::string_view kNotInfinite =
+    "not allowed for array.extent = \"infinite\": give x_length_mm and y_length_mm instead";
+
 void check_array_on_substrate(const Document& document, const PartSpec& part) {
   constexpr std::string_view key = "substrate.kind";
   if (!document.has("substrate")) return;
-  if (part.array.extent == Extent::infinite)
-    document.fail(key, "not allowed for array.extent = \"infinite\": give x_length_mm and y_length_mm instead");
+  if (part.array.extent == Extent::infinite) document.fail(key, kNotInfinite);
   if (part.array.arrangement == Arrangement::single)
     document.fail(key, "not allowed for array.arrangement = \"single\"");
   if (part.array.x_offset_mm > 0.0 || part.array.y_offset_mm > 0.0)
@@ -318,8 +320,7 @@ void check_entrance(const Document& document) {
       document.has("entrance_surface.mesh") ? "entrance_surface.mesh" : "entrance_surface.turned_part";
   if (!document.has(key))
     document.fail(key, "is missing: give the file of a turned part, or an STL file with entrance_surface.mesh");
-  if (has_elements(document) && document.text("array.extent") == "infinite")
-    document.fail(key, "not allowed for array.extent = \"infinite\": give x_length_mm and y_length_mm instead");
+  if (has_elements(document) && document.text("array.extent") == "infinite") document.fail(key, kNotInfinite);
 }
 
 constexpr std::string_view kFormTerms = "form.terms";

@@ -72,12 +72,10 @@ constexpr Condition kFiniteOnly[] = {
 constexpr Condition kGapOnly[] = {kArrayOfNoBall, is(kKind, kRtp), is_not(kArrangement, kSingle)};
 constexpr Condition kOffsetOnly[] = {kArrayOfNoBall, is(kArrangement, kOffset)};
 constexpr Condition kNoBallArray[] = {kArrayOfNoBall};
-constexpr Condition kMaskOnly[] = {
-    kArrayOfNoBall, is(kKind, kRtp),
-    is_not(kArrangement, kSingle,
-           "only allowed for array.extent = \"finite\" and if array.arrangement is not \"single\""),
-    is_not(kExtent, kInfinite,
-           "only allowed for array.extent = \"finite\" and if array.arrangement is not \"single\"")};
+constexpr std::string_view kNeedsFiniteArray =
+    "only allowed for array.extent = \"finite\" and if array.arrangement is not \"single\"";
+constexpr Condition kMaskOnly[] = {kArrayOfNoBall, is(kKind, kRtp), is_not(kArrangement, kSingle, kNeedsFiniteArray),
+                                   is_not(kExtent, kInfinite, kNeedsFiniteArray)};
 constexpr Condition kThresholdOnly[] = {kArrayOfNoBall, is_given("array.mask")};
 constexpr Condition kBallGapOnly[] = {is(kKind, kBall), is_not(kArrangement, kSingle)};
 

@@ -20,8 +20,8 @@ constexpr double kLastIncidenceDeg = 80.0;
 constexpr double kAzimuthStepDeg = 10.0;
 // Maximum distance of adjacent azimuths. With larger distances, a map would show mainly interpolated values.
 constexpr double kMaxGapDeg = 120.0;
-// Azimuths that differ by less are equal.
-constexpr double kSameAzimuthDeg = 1e-9;
+// Angles that differ by less are equal.
+constexpr double kSameAngleDeg = 1e-9;
 
 std::vector<double> steps(double last, double step) {
   std::vector<double> values;
@@ -31,13 +31,13 @@ std::vector<double> steps(double last, double step) {
 
 void sort_and_remove_repeated(std::vector<double>& values) {
   std::sort(values.begin(), values.end());
-  values.erase(std::unique(values.begin(), values.end(), [](double a, double b) { return b - a < kSameAzimuthDeg; }),
+  values.erase(std::unique(values.begin(), values.end(), [](double a, double b) { return b - a < kSameAngleDeg; }),
                values.end());
 }
 
 double reduced_azimuth(double deg) {
   const double reduced = deg - 360.0 * std::floor(deg / 360.0);
-  return 360.0 - reduced < kSameAzimuthDeg ? 0.0 : reduced;
+  return 360.0 - reduced < kSameAngleDeg ? 0.0 : reduced;
 }
 
 /// Returns the azimuth after the one with the given index, which is above 360 degrees after the last one.
@@ -69,7 +69,7 @@ void check_azimuths(const std::vector<double>& azimuth_deg) {
   double gap = 0.0;
   for (std::size_t k = 0; k < azimuth_deg.size(); ++k)
     gap = std::max(gap, next_azimuth(azimuth_deg, k) - azimuth_deg[k]);
-  if (gap > kMaxGapDeg + kSameAzimuthDeg)
+  if (gap > kMaxGapDeg + kSameAngleDeg)
     throw InputError(Field{"azimuth_deg"},
                      fmt::format("a map needs azimuths around the full circle with gaps of at most {} degrees, got a "
                                  "gap of {} degrees",

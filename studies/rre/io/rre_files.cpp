@@ -266,20 +266,18 @@ struct CurveSummary {
   bool has_all_azimuths = false;
 };
 
-/// Returns the curves of the result. If they are too many, all azimuths of a design and cone belong to one curve.
-std::vector<CurveSummary> curves_of(const RreResult& result, std::size_t max_lines) {
-  for (const bool has_all_azimuths : {false, true}) {
-    std::map<std::tuple<std::size_t, double, double>, std::size_t> curve_index;
-    std::vector<CurveSummary> curves;
-    for (const RrePoint& p : result.points) {
-      const auto [it, is_new] = curve_index.try_emplace(
-          {p.design, has_all_azimuths ? 0.0 : p.azimuth_deg, p.acceptance_half_angle_deg}, curves.size());
-      if (is_new) curves.push_back({{}, has_all_azimuths});
-      curves[it->second].points.push_back(&p);
-    }
-    if (has_all_azimuths || curves.size() < max_lines) return curves;
+/// Returns the curves of the result.
+/// \param has_all_azimuths true: all azimuths of a design and cone belong to one curve
+std::vector<CurveSummary> curves_of(const RreResult& result, bool has_all_azimuths) {
+  std::map<std::tuple<std::size_t, double, double>, std::size_t> curve_index;
+  std::vector<CurveSummary> curves;
+  for (const RrePoint& p : result.points) {
+    const auto [it, is_new] = curve_index.try_emplace(
+        {p.design, has_all_azimuths ? 0.0 : p.azimuth_deg, p.acceptance_half_angle_deg}, curves.size());
+    if (is_new) curves.push_back({{}, has_all_azimuths});
+    curves[it->second].points.push_back(&p);
   }
-  return {};
+  return curves;
 }
 
 /// Returns the smallest angles on either side of normal incidence at which RRE falls to half of a value, by linear
@@ -323,8 +321,9 @@ std::string half_text(const CurveSummary& curve, const RrePoint& start) {
 }  // namespace
 
 std::string rre_summary(const RreResult& result, std::size_t max_lines) {
-  const std::vector<CurveSummary> curves = curves_of(result, max_lines);
+  std::vector<CurveSummary> curves = curves_of(result, false);
   if (curves.empty()) return {};
+  if (curves.size() >= max_lines) curves = curves_of(result, true);
   const bool several_cones = has_several_cones(result);
   const DesignColumn designs(result);
   std::string table = designs.heading() + "azimuth_deg  ";
