@@ -50,7 +50,7 @@ struct CameraSample {
   Contact contact;
   double luminance = 0.0;                              ///< luminance along the path, cd/m^2
   double weight = 1.0 / CameraTracer::kPointsPerPass;  ///< weight of the path in the mean of its pixel
-  double gain = 1.0;                                   ///< factor of the lamp's light, see ReturnedLight
+  double gain = 1.0;                                   ///< factor of the lamp's light, see ReturnCorrection
   bool shows_part() const { return contact.kind == Contact::Kind::face || contact.kind == Contact::Kind::side; }
 };
 
@@ -60,11 +60,7 @@ class SensorAccumulator : public ExitObserver, public CellObserver {
  public:
   /// On a film, the lamp is evaluated at the start of the path.
   SensorAccumulator(const Luminaire& luminaire, const CameraScene& scene, std::vector<CameraSample>& looks)
-      : luminaire_(luminaire),
-        surroundings_(scene.surroundings),
-        returned_(scene.returned),
-        film_(scene.film.has_value()),
-        looks_(looks) {}
+      : luminaire_(luminaire), scene_(scene), looks_(looks) {}
 
   /// Selects the path to which the following events of PathWalker belong.
   void begin(std::size_t look) { look_ = static_cast<std::uint32_t>(look); }
@@ -74,29 +70,27 @@ class SensorAccumulator : public ExitObserver, public CellObserver {
   }
   void on_exit(std::uint32_t owner, const Vec3& position, const Vec3& direction, double power) override {
     CameraSample& look = looks_[owner];
-    const Vec3& from = film_ ? look.contact.world : position;
+    const Vec3& from = scene_.film ? look.contact.world : position;
     const Vec3 towards = look.contact.world_from_local * direction;
-    const double lamp = returned_ && look.contact.kind == Contact::Kind::face
-                            ? look.gain * luminaire_.blurred_luminance(from, towards, returned_->blur)
+    const double lamp = look.contact.kind == Contact::Kind::face
+                            ? look.gain * luminaire_.luminance(from, towards, scene_.correction.blur)
                             : luminaire_.luminance(from, towards);
-    look.luminance += power * (surroundings_.entrance_side + lamp);
+    look.luminance += power * (scene_.surroundings.entrance_side + lamp);
   }
   /// Adds the luminance in the direction in which the entrance face reflects the path from outside.
   void on_front_reflection(std::uint32_t owner, const Vec3& direction, double power) {
     CameraSample& look = looks_[owner];
-    look.luminance += power * surroundings_.entrance_side;
-    if (!returned_ || returned_->has_front_reflection)
+    look.luminance += power * scene_.surroundings.entrance_side;
+    if (scene_.has_front_reflection)
       look.luminance += power * luminaire_.luminance(look.contact.world, look.contact.world_from_local * direction);
   }
   void on_transmission(std::uint32_t owner, double power) override {
-    looks_[owner].luminance += surroundings_.back_side * power;
+    looks_[owner].luminance += scene_.surroundings.back_side * power;
   }
 
  private:
   const Luminaire& luminaire_;
-  const Surroundings& surroundings_;
-  const std::optional<ReturnedLight>& returned_;
-  bool film_ = false;
+  const CameraScene& scene_;
   std::vector<CameraSample>& looks_;
   std::uint32_t look_ = 0;
 };
@@ -107,90 +101,6 @@ Vec2 in_unit_disc(double u, double v) {
 }
 
 }  // namespace
-
-DiffractionBlur DiffractionBlur::for_cells(double width_mm, double wavelength_nm, double reach_rad) {
-  // Far from its centre, the diffraction pattern of a circular aperture of diameter D has the mean density
-  // lambda / (pi^3 D angle^3) per steradian. The tail has this density at large angles.
-  const double spread_rad = 1e-6 * wavelength_nm / width_mm;
-  DiffractionBlur blur;
-  blur.tail_width_rad = std::max(spread_rad, reach_rad);
-  blur.tail_fraction = 2.0 * spread_rad / (pi * pi * blur.tail_width_rad);
-  return blur;
-}
-
-double DiffractionBlur::per_sr(const ApertureKernel& kernel, double separation_rad) const {
-  const double core = kernel.per_sr(separation_rad);
-  if (!(tail_fraction > 0.0)) return core;
-  const double square = separation_rad * separation_rad + tail_width_rad * tail_width_rad;
-  return (1.0 - tail_fraction) * core + tail_fraction * tail_width_rad / (2.0 * pi * square * std::sqrt(square));
-}
-
-double ReturnedLight::gain_at(const Vec2& local_mm) const {
-  struct Interval {
-    std::size_t first = 0;
-    std::size_t last = 0;
-    double fraction = 0.0;
-  };
-  const auto interval = [&](Eigen::Index axis, std::size_t count) {
-    const double length = face_mm.upper[axis] - face_mm.lower[axis];
-    if (count < 2 || !(length > 0.0)) return Interval{};
-    const auto steps = static_cast<double>(count - 1);
-    const double at = std::clamp((local_mm[axis] - face_mm.lower[axis]) / length, 0.0, 1.0) * steps;
-    const double first = std::min(std::floor(at), steps - 1.0);
-    return Interval{static_cast<std::size_t>(first), static_cast<std::size_t>(first) + 1, at - first};
-  };
-  const Interval x = interval(0, columns);
-  const Interval y = interval(1, rows);
-  const auto along_x = [&](std::size_t row) {
-    return std::lerp(gain[row * columns + x.first], gain[row * columns + x.last], x.fraction);
-  };
-  return std::lerp(along_x(y.first), along_x(y.last), y.fraction);
-}
-
-FacePoint face_point(const geometry::Part& part, const CameraScene& scene, const Vec2& local_mm) {
-  FacePoint point{local_mm, {local_mm.x(), local_mm.y(), part.thickness_mm}, Eigen::Matrix3d::Identity()};
-  if (!scene.film || !scene.film->radius_mm) return point;
-  const double radius = *scene.film->radius_mm;
-  const double angle = local_mm.x() / radius;
-  const Vec3 normal(std::sin(angle), 0.0, std::cos(angle));
-  point.world_mm = Vec3(0.0, local_mm.y(), part.thickness_mm - radius) + radius * normal;
-  point.world_from_local.col(0) = Vec3::UnitY().cross(normal);
-  point.world_from_local.col(2) = normal;
-  return point;
-}
-
-geometry::Rectangle visible_face(const geometry::Part& part, const CameraScene& scene) {
-  // Number of points of the picture along each side at which the visible area is searched. The result is enlarged by
-  // one step between these points, and then limited to the face.
-  constexpr int kPoints = 33;
-  geometry::Rectangle face;
-  if (scene.film) {
-    const Vec2 half = 0.5 * Vec2(scene.film->width_mm, scene.film->height_mm);
-    face = {-half, half};
-  } else {
-    face = geometry::moved(geometry::bounding_box(part.outline), -EntranceSampler(part).centre_mm());
-  }
-  const Vec2 size = 2.0 * face.upper.cwiseAbs().cwiseMax(face.lower.cwiseAbs());
-  const Film film = scene.film.value_or(Film{size.x(), size.y(), {}});
-  const Lens lens(scene.view);
-  std::optional<geometry::Rectangle> seen;
-  const double columns = static_cast<double>(scene.view.columns);
-  const double rows = static_cast<double>(scene.view.rows);
-  for (int k = 0; k < kPoints * kPoints; ++k) {
-    const Vec2 at(columns * (k % kPoints) / (kPoints - 1), rows * (k / kPoints) / (kPoints - 1));
-    const Contact contact = contact_with(film, part.thickness_mm, lens.ray(at, Vec2::Zero()));
-    if (contact.kind != Contact::Kind::face) continue;
-    const Vec2 local = contact.local.head<2>();
-    if (!seen) seen = geometry::Rectangle{local, local};
-    seen->lower = seen->lower.cwiseMin(local);
-    seen->upper = seen->upper.cwiseMax(local);
-  }
-  if (!seen) return face;
-  const Vec2 step = scene.view.width_mm * Vec2(1.0, rows / columns) / (kPoints - 1);
-  seen->lower = (seen->lower - step).cwiseMax(face.lower);
-  seen->upper = (seen->upper + step).cwiseMin(face.upper);
-  return *seen;
-}
 
 void CameraImage::add(const CameraPass& pass) {
   const std::size_t pixels = luminance.size();
@@ -447,8 +357,7 @@ void CameraTracer::Impl::look(const WorldRay& ray, std::size_t wavelength, std::
   CameraSample& look = block.looks.emplace_back();
   look.contact = contact_of(ray);
   const Contact contact = look.contact;
-  if (scene.returned && contact.kind == Contact::Kind::face)
-    look.gain = scene.returned->gain_at(contact.local.head<2>());
+  if (contact.kind == Contact::Kind::face) look.gain = scene.correction.gain_at(contact.local.head<2>());
   if (contact.kind == Contact::Kind::nothing) look.luminance = scene.surroundings.back_side;
   if (contact.kind == Contact::Kind::nothing || contact.kind == Contact::Kind::dark) return;
   const Optics& optics = setups[wavelength].optics;

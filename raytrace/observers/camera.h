@@ -10,9 +10,9 @@
 #include "core/angle.h"
 #include "core/progress.h"
 #include "geometry/part/part.h"
-#include "raytrace/light/aperture_kernel.h"
 #include "raytrace/light/optics.h"
 #include "raytrace/light/path_policy.h"
+#include "raytrace/observers/return_correction.h"
 
 namespace retrace::raytrace {
 
@@ -41,6 +41,8 @@ struct LampDisc {
 struct Surroundings {
   double entrance_side = 0.0;  ///< luminance for paths that leave through the entrance face
   double back_side = 0.0;      ///< luminance for paths that leave through other faces or miss the part
+
+  bool has_light() const { return entrance_side > 0.0 || back_side > 0.0; }
 };
 
 /// A thin sheet of an infinite part, bent around a body. Light is traced as in a plane part that is tangent to the film
@@ -53,34 +55,6 @@ struct Film {
                                     ///< not set
 };
 
-/// Approximate angular distribution of light that a cell returns in one direction and spreads by diffraction, averaged
-/// over the discs of lamp and pupil. It is the average over the discs (ApertureKernel) plus a tail that falls with the
-/// third power of the angle, as the mean diffraction pattern of an aperture does (docs/theory/images.md).
-struct DiffractionBlur {
-  double tail_fraction = 0.0;   ///< fraction of the light in the tail; 0 to 1
-  double tail_width_rad = 1.0;  ///< angle at which the tail begins to fall; > 0
-
-  /// Returns the blur for cells of a given width.
-  /// \param reach_rad sum of the radii of both discs; > 0
-  static DiffractionBlur for_cells(double width_mm, double wavelength_nm, double reach_rad);
-  /// Returns the density per steradian at an angular separation. Its integral is 1.
-  double per_sr(const ApertureKernel& kernel, double separation_rad) const;
-};
-
-/// Light of the lamp that comes back through the part: the light of geometrical optics, blurred and multiplied by a
-/// gain. The gain varies slowly over the entrance face. It is interpolated bilinearly between the points of a grid.
-struct ReturnedLight {
-  DiffractionBlur blur;
-  geometry::Rectangle face_mm;  ///< area of the grid, in the frame of FacePoint::local_mm
-  std::size_t columns = 1;      ///< number of grid points along x; >= 1
-  std::size_t rows = 1;
-  std::vector<double> gain = {1.0};  ///< row by row, with increasing y
-  bool has_front_reflection = true;  ///< false: the picture does not show the reflection of the lamp in the face
-
-  /// Returns the gain at a point. Outside of the grid, it is the gain of the nearest point of the grid's border.
-  double gain_at(const geometry::Vec2& local_mm) const;
-};
-
 /// Method of averaging over the discs of lamp and pupil: analytically with ApertureKernel, or by sampling points.
 enum class DiscAverage { kernel, sampled };
 
@@ -90,21 +64,12 @@ struct CameraScene {
   Surroundings surroundings;
   std::optional<Film> film;  ///< set for infinite parts
   DiscAverage discs = DiscAverage::kernel;
-  /// Replaces, for light of the lamp that comes back through the entrance face, the average over both discs. The
-  /// reflection of the lamp in the entrance face is not changed. Needs DiscAverage::kernel.
-  std::optional<ReturnedLight> returned;
+  /// Applies to light of the lamp that enters and leaves through the entrance face. The blur requires
+  /// DiscAverage::kernel.
+  ReturnCorrection correction;
+  /// False: the picture does not show the reflection of the lamp at the outer side of the entrance face.
+  bool has_front_reflection = true;
 };
-
-/// Point of the entrance face, in the camera frame and in the frame in which light is traced.
-struct FacePoint {
-  geometry::Vec2 local_mm = geometry::Vec2::Zero();  ///< on a film: arc length along x, and y
-  geometry::Vec3 world_mm = geometry::Vec3::Zero();
-  Eigen::Matrix3d world_from_local = Eigen::Matrix3d::Identity();
-};
-FacePoint face_point(const geometry::Part& part, const CameraScene& scene, const geometry::Vec2& local_mm);
-/// Returns a rectangle, in the coordinates of FacePoint::local_mm, that contains the visible area of the entrance face.
-/// It is the bounding box of the face if the picture shows no point of the face.
-geometry::Rectangle visible_face(const geometry::Part& part, const CameraScene& scene);
 
 /// The optics at one of the wavelengths of the lamp.
 struct WeightedOptics {

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "raytrace/light/aperture_kernel.h"
+#include "raytrace/light/light.h"
 #include "raytrace/observers/camera.h"
 
 namespace retrace::raytrace {
@@ -77,15 +78,10 @@ class Luminaire {
   }
 
   /// Returns the luminance of the lamp along a ray, in cd/m^2. With DiscAverage::kernel, it is the average over the
-  /// discs of lamp and pupil.
-  double luminance(const Vec3& from, const Vec3& direction) const {
+  /// discs of lamp and pupil, spread by diffraction.
+  double luminance(const Vec3& from, const Vec3& direction, const DiffractionBlur& blur = {}) const {
     if (!(intensity_ > 0.0)) return 0.0;
-    return discs_ == DiscAverage::kernel ? averaged(from, direction, {}) : luminance_of_disc(from, direction);
-  }
-
-  /// Returns the luminance as luminance() does, with the light spread by diffraction.
-  double blurred_luminance(const Vec3& from, const Vec3& direction, const DiffractionBlur& blur) const {
-    return intensity_ > 0.0 ? averaged(from, direction, blur) : 0.0;
+    return discs_ == DiscAverage::kernel ? averaged(from, direction, blur) : luminance_of_disc(from, direction);
   }
 
  private:
@@ -120,6 +116,14 @@ class Luminaire {
   double intensity_ = 0.0;  ///< luminous intensity towards the target, in lx mm^2
 };
 
+/// Returns the axes of the frame in which light is traced, at a point of a film with the given normal. They are the
+/// columns of the matrix.
+inline Eigen::Matrix3d axes_of_film(const Vec3& normal) {
+  Eigen::Matrix3d axes;
+  axes << Vec3::UnitY().cross(normal), Vec3::UnitY(), normal;
+  return axes;
+}
+
 /// Returns the first intersection of a ray with a curved or plane film. The film touches the plane z = thickness_mm at
 /// x = y = 0.
 inline Contact contact_with(const Film& film, double thickness_mm, const WorldRay& ray) {
@@ -133,9 +137,7 @@ inline Contact contact_with(const Film& film, double thickness_mm, const WorldRa
     contact.kind = normal.dot(ray.direction) < 0.0 ? Contact::Kind::face : Contact::Kind::dark;
     contact.world = world;
     contact.local = {u, world.y(), thickness_mm};
-    contact.world_from_local.col(0) = Vec3::UnitY().cross(normal);
-    contact.world_from_local.col(1) = Vec3::UnitY();
-    contact.world_from_local.col(2) = normal;
+    contact.world_from_local = axes_of_film(normal);
     return true;
   };
   if (!film.radius_mm) {

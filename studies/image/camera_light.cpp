@@ -6,12 +6,11 @@
 #include <cmath>
 #include <map>
 #include <numeric>
-#include <utility>
 
 #include "core/task_progress.h"
 #include "raytrace/engines/wavelengths.h"
-#include "raytrace/light/light_setup.h"
-#include "raytrace/observers/coefficients.h"
+#include "raytrace/observers/camera_face.h"
+#include "raytrace/observers/small_angle.h"
 
 namespace retrace::studies {
 namespace {
@@ -78,11 +77,10 @@ std::vector<raytrace::WeightedOptics> CameraLight::optics() const {
   return all;
 }
 
-std::optional<raytrace::ReturnedLight> CameraLight::geometric() const {
-  if (std::abs(flux_ - 1.0) < 1e-9) return std::nullopt;
-  raytrace::ReturnedLight light;
-  light.gain = {flux_};
-  return light;
+CameraLight::Returned CameraLight::without_diffraction() const {
+  Returned result;
+  if (std::abs(flux_ - 1.0) >= 1e-9) result.correction.gain = {flux_};
+  return result;
 }
 
 /// Gains at the points of a grid over the visible face.
@@ -98,52 +96,35 @@ class CameraLight::Grid {
         geometric_(light.photometer_),
         beams_(diffracted_.make_tracer()) {
     geometric_.ignore_diffraction();
-    returned_.face_mm = raytrace::visible_face(part, scene);
+    correction_.face_mm = raytrace::visible_face(part, scene);
     const double cells_mm = diffracted_.cell_width_mm() > 0.0 ? diffracted_.cell_width_mm() : part.size_mm;
-    returned_.blur =
+    correction_.blur =
         raytrace::DiffractionBlur::for_cells(cells_mm, kBlurWavelengthNm, diffracted_.kernel().reach_rad());
-    if (geometric_.is_exact()) return;
     // Without beams of geometrical optics, the gain is computed at the centre only.
-    traced_mean_ = traced_mean(view_at(part_, scene_, returned_.face_mm.centre()));
+    if (!geometric_.is_exact()) traced_mean_ = traced_mean(view_at(part_, scene_, correction_.face_mm.centre()));
   }
 
-  Returned computed(Progress* progress) {
+  /// Computes the returned light. Returns nothing if the computation was cancelled.
+  std::optional<Returned> compute(Progress* progress) {
     Returned result;
-    const int centre = kMaxIntervals / 2;
     if (traced_mean_) {
-      PartProgress part(progress, 0.0, 1.0);
-      result.cancelled = !compute({{centre, centre}}, &part);
-      if (result.cancelled) return result;
-      returned_.gain = {nodes_.at({centre, centre}).gain};
+      if (!compute_nodes({kCentre}, progress)) return std::nullopt;
+      result.correction = correction_;
+      result.correction.gain = {nodes_.at(kCentre).gain};
     } else {
-      PartProgress first(progress, 0.0, 0.3);
-      result.cancelled = !compute(points_of(1, {{centre, centre}}), &first);
-      if (result.cancelled) return result;
-      int intervals = 1;
-      double begin = 0.3;
-      double error = error_of(1, {{centre, centre}});
-      for (double enough = kUniformity; error > enough && intervals < kMaxIntervals; enough = kInterpolationError) {
-        intervals *= 2;
-        PartProgress next(progress, begin, begin + 0.5 * (1.0 - begin));
-        begin += 0.5 * (1.0 - begin);
-        const std::vector<Index> points = points_of(intervals, {});
-        result.cancelled = !compute(points, &next);
-        if (result.cancelled) return result;
-        error = error_of(intervals / 2, points);
-      }
-      returned_.columns = returned_.rows = static_cast<std::size_t>(intervals) + 1;
-      returned_.gain.clear();
-      for (const Index& index : points_of(intervals, {})) returned_.gain.push_back(nodes_.at(index).gain);
+      const std::optional<int> intervals = refine(progress);
+      if (!intervals) return std::nullopt;
+      result.correction = correction_with(*intervals);
     }
-    result.light = returned_;
-    result.r_a = nodes_.at({centre, centre}).r_a;
-    for (const auto& [index, node] : nodes_) result.is_incomplete = result.is_incomplete || node.is_incomplete;
+    result.r_a = nodes_.at(kCentre).r_a;
+    result.is_incomplete = std::ranges::any_of(nodes_, [](const auto& item) { return item.second.is_incomplete; });
     return result;
   }
 
  private:
   /// Numbers of a grid point along x and y, in steps of the finest grid.
   using Index = std::array<int, 2>;
+  static constexpr Index kCentre = {kMaxIntervals / 2, kMaxIntervals / 2};
   struct Node {
     double gain = 1.0;
     double luminance = 0.0;  ///< luminance per illuminance
@@ -169,7 +150,26 @@ class CameraLight::Grid {
 
   Vec2 local_mm(const Index& index) const {
     const Vec2 fraction = Vec2(index[0], index[1]) / kMaxIntervals;
-    return returned_.face_mm.lower + returned_.face_mm.size().cwiseProduct(fraction);
+    return correction_.face_mm.lower + correction_.face_mm.size().cwiseProduct(fraction);
+  }
+
+  /// Computes finer grids until one is fine enough. Returns its number of intervals along each side, or nothing if the
+  /// computation was cancelled.
+  std::optional<int> refine(Progress* progress) {
+    PartProgress first(progress, 0.0, 0.3);
+    if (!compute_nodes(points_of(1, {kCentre}), &first)) return std::nullopt;
+    int intervals = 1;
+    double begin = 0.3;
+    double error = error_of(1, {kCentre});
+    for (double enough = kUniformity; error > enough && intervals < kMaxIntervals; enough = kInterpolationError) {
+      intervals *= 2;
+      PartProgress next(progress, begin, begin + 0.5 * (1.0 - begin));
+      begin += 0.5 * (1.0 - begin);
+      const std::vector<Index> points = points_of(intervals, {});
+      if (!compute_nodes(points, &next)) return std::nullopt;
+      error = error_of(intervals / 2, points);
+    }
+    return intervals;
   }
 
   bool measure_diffracted(const View& view, Intensities& result) const {
@@ -191,31 +191,30 @@ class CameraLight::Grid {
     const raytrace::ApertureKernel kernel(view.apertures);
     for (const Photometer::WeightedField& field : *fields)
       for (const raytrace::FarFieldRay& ray : field.field.rays()) {
-        const double separation_rad = 2.0 * std::asin(std::min(1.0, 0.5 * (ray.direction - view.to_lamp).norm()));
-        result.blurred += field.weight / light_.flux_ * ray.power * returned_.blur.per_sr(kernel, separation_rad);
+        const double separation_rad = raytrace::small_angle_between(ray.direction, view.to_lamp);
+        result.blurred += field.weight / light_.flux_ * ray.power * correction_.blur.per_sr(kernel, separation_rad);
       }
     return true;
   }
 
   /// Computes the nodes that are not known yet. Returns false if the computation was cancelled.
-  bool compute(const std::vector<Index>& points, Progress* progress) {
+  bool compute_nodes(const std::vector<Index>& points, Progress* progress) {
     std::vector<Index> missing;
     for (const Index& index : points)
       if (!nodes_.contains(index) && view_at(part_, scene_, local_mm(index)).is_lit()) missing.push_back(index);
     std::vector<Intensities> measured(missing.size());
-    std::vector<Intensities> blurred(missing.size());
     const std::size_t tasks = traced_mean_ ? 1 : 2;
     TaskProgress all(progress, std::max<std::size_t>(1, tasks * missing.size()));
     const bool done = raytrace::trace_wavelengths(
         missing.size(), tasks, true, all, [&](std::size_t node, std::size_t task, Progress&) {
           const View view = view_at(part_, scene_, local_mm(missing[node]));
-          return task == 0 ? measure_diffracted(view, measured[node]) : measure_blurred(view, blurred[node]);
+          return task == 0 ? measure_diffracted(view, measured[node]) : measure_blurred(view, measured[node]);
         });
     if (!done || is_cancelled(cancel_)) return false;
     for (std::size_t k = 0; k < missing.size(); ++k) {
       const View view = view_at(part_, scene_, local_mm(missing[k]));
       const double factor = view.to_lamp.z() / view.to_eye.z();
-      const double mean = traced_mean_ ? *traced_mean_ : blurred[k].blurred;
+      const double mean = traced_mean_ ? *traced_mean_ : measured[k].blurred;
       Node& node = nodes_[missing[k]];
       node.luminance = factor * measured[k].diffracted;
       node.r_a = view.to_lamp.z() * measured[k].diffracted;
@@ -226,13 +225,20 @@ class CameraLight::Grid {
     return true;
   }
 
+  /// Returns the correction that is interpolated in a grid.
+  /// \pre the nodes of the grid have been computed
+  raytrace::ReturnCorrection correction_with(int intervals) const {
+    raytrace::ReturnCorrection correction = correction_;
+    correction.columns = correction.rows = static_cast<std::size_t>(intervals) + 1;
+    correction.gain.clear();
+    for (const Index& index : points_of(intervals, {})) correction.gain.push_back(nodes_.at(index).gain);
+    return correction;
+  }
+
   /// Returns the largest error of the luminance that interpolation in a grid causes at some points, relative to the
   /// largest luminance.
-  double error_of(int intervals, const std::vector<Index>& points) {
-    raytrace::ReturnedLight coarse = returned_;
-    coarse.columns = coarse.rows = static_cast<std::size_t>(intervals) + 1;
-    coarse.gain.clear();
-    for (const Index& index : points_of(intervals, {})) coarse.gain.push_back(nodes_.at(index).gain);
+  double error_of(int intervals, const std::vector<Index>& points) const {
+    const raytrace::ReturnCorrection coarse = correction_with(intervals);
     double error = 0.0;
     double largest = 0.0;
     for (const auto& [index, node] : nodes_) largest = std::max(largest, node.luminance);
@@ -265,9 +271,8 @@ class CameraLight::Grid {
     scene.view.pupil = view.apertures.receiver;
     scene.lamp = {scene.view.target_mm + distance_mm * view.to_lamp, 1.0, view.apertures.source};
     scene.surroundings = {};
-    scene.returned = raytrace::ReturnedLight{};
-    scene.returned->blur = returned_.blur;
-    scene.returned->has_front_reflection = false;
+    scene.correction.blur = correction_.blur;
+    scene.has_front_reflection = false;
     const raytrace::CameraTracer tracer(part_, light_.optics(), scene, raytrace::kCameraPolicy, 1,
                                         raytrace::CameraEngine::embree);
     raytrace::CameraImage image = tracer.empty_image();
@@ -283,20 +288,17 @@ class CameraLight::Grid {
   Photometer diffracted_;
   Photometer geometric_;
   raytrace::BeamTracer beams_;
-  raytrace::ReturnedLight returned_;
+  raytrace::ReturnCorrection correction_;  ///< blur and area of the grid; without gains
   std::optional<double> traced_mean_;
   std::map<Index, Node> nodes_;
 };
 
-CameraLight::Returned CameraLight::returned(const geometry::Part& part, const raytrace::CameraScene& scene,
-                                            Progress* progress, const Cancellation* cancel) const {
-  Returned result;
+std::optional<CameraLight::Returned> CameraLight::returned(const geometry::Part& part,
+                                                           const raytrace::CameraScene& scene, Progress* progress,
+                                                           const Cancellation* cancel) const {
   const bool is_wide = photometer_.cell_width_mm() >= photometer_.min_undiffracted_mm();
-  if (!has_diffraction() || is_wide || !(scene.lamp.illuminance_lx > 0.0)) {
-    result.light = geometric();
-    return result;
-  }
-  return Grid(*this, part, scene, cancel).computed(progress);
+  if (!has_diffraction() || is_wide || !(scene.lamp.illuminance_lx > 0.0)) return without_diffraction();
+  return Grid(*this, part, scene, cancel).compute(progress);
 }
 
 }  // namespace retrace::studies

@@ -27,20 +27,19 @@ class CameraLight {
   const Photometer& photometer() const { return photometer_; }
 
   struct Returned {
-    /// Empty if the light of geometrical optics is the result, without a correction.
-    std::optional<raytrace::ReturnedLight> light;
+    raytrace::ReturnCorrection correction;
     /// R_A in cd/(lx m^2) for the directions of lamp and eye as seen from the centre of the visible face. Empty if it
     /// was not computed.
     std::optional<double> r_a;
     bool is_incomplete = false;  ///< true: significant light has not been diffracted, because the cells differ too much
-    bool cancelled = false;
   };
-  /// Computes the light that returns to the eye, with diffraction if possible.
+  /// Computes the light that returns to the eye, with diffraction if possible. Returns nothing if the computation was
+  /// cancelled.
   /// \throw BudgetError if the exact engine needs too many beams
-  Returned returned(const geometry::Part& part, const raytrace::CameraScene& scene, Progress* progress,
-                    const Cancellation* cancel) const;
+  std::optional<Returned> returned(const geometry::Part& part, const raytrace::CameraScene& scene, Progress* progress,
+                                   const Cancellation* cancel) const;
   /// Returns the light of geometrical optics.
-  std::optional<raytrace::ReturnedLight> geometric() const;
+  Returned without_diffraction() const;
 
  private:
   class Grid;
