@@ -41,8 +41,6 @@ constexpr double kMinWindow_deg = 2.0, kMaxWindow_deg = 10.0;
 // Minimum R_L in cd/(lx m^2) at which the eye is regarded as reached by retroreflected light. A white matt surface has
 // 0.32.
 constexpr double kMinRetroreflected = 1e-3;
-// Noise of pixels for which colours are averaged over one pixel to each side. Noisier pictures use more pixels.
-constexpr double kNoiseOfColours = 0.02;
 // Part of the progress that the computation of the returned light takes.
 constexpr double kProgressOfLight = 0.3;
 
@@ -150,6 +148,15 @@ double angle_deg(const Vec3& a, const Vec3& b) {
   return Angle::from_rad(std::atan2(a.cross(b).norm(), a.dot(b))).deg();
 }
 
+/// The following functions return vectors from the target to the eye and to the lamp.
+Vec3 to_eye(const raytrace::CameraScene& scene) {
+  return scene.view.eye_mm - scene.view.target_mm;
+}
+
+Vec3 to_lamp(const raytrace::CameraScene& scene) {
+  return scene.lamp.position_mm - scene.view.target_mm;
+}
+
 /// Returns the design with the requested dye.
 design::Design with_dye(design::Design design, const CameraRequest& r) {
   const std::filesystem::path file = dye_file_of(r.dye, false, {});
@@ -167,13 +174,7 @@ PhotometrySettings photometry_of(const CameraRequest& r, const raytrace::CameraS
   PhotometrySettings settings;
   settings.area_cm2 = 1.0;
   settings.apertures = {scene.lamp.diameter, scene.view.pupil};
-  const double observation_deg =
-      Angle::from_rad(std::acos(std::clamp((scene.view.eye_mm - scene.view.target_mm)
-                                               .normalized()
-                                               .dot((scene.lamp.position_mm - scene.view.target_mm).normalized()),
-                                           -1.0, 1.0)))
-          .deg();
-  settings.window_deg = std::clamp(observation_deg + 1.0, kMinWindow_deg, kMaxWindow_deg);
+  settings.window_deg = std::clamp(angle_deg(to_eye(scene), to_lamp(scene)) + 1.0, kMinWindow_deg, kMaxWindow_deg);
   settings.light = light_from_name(r.light);
   settings.dye = r.dye;
   settings.diffraction = r.diffraction;
@@ -298,58 +299,6 @@ class PassLedger : public TaskLedger {
 
 }  // namespace
 
-std::array<double, 3> CameraColours::rgb(double y, std::size_t pixel) const {
-  // Bradford's matrix from XYZ to cone responses, and the matrix from XYZ to linear sRGB.
-  const Eigen::Matrix3d cones{{0.8951, 0.2664, -0.1614}, {-0.7502, 1.7135, 0.0367}, {0.0389, -0.0685, 1.0296}};
-  const Eigen::Matrix3d rgb_of_xyz{
-      {3.2404542, -1.5371385, -0.4985314}, {-0.9692660, 1.8760108, 0.0415560}, {0.0556434, -0.2040259, 1.0572252}};
-  const Vec3 d65(0.95047, 1.0, 1.08883);
-  const Vec3 white(lamp[0], lamp[1], lamp[2]);
-  const Vec3 xyz(x[pixel] * lamp[0], y * lamp[1], z[pixel] * lamp[2]);
-  const Vec3 scale = (cones * d65).cwiseQuotient(cones * white);
-  const Vec3 rgb = rgb_of_xyz * cones.inverse() * scale.asDiagonal() * cones * xyz;
-  return {rgb[0], rgb[1], rgb[2]};
-}
-
-namespace {
-
-/// Returns a picture of another response with the luminance of each pixel and the colour of its neighbourhood: the
-/// ratio of the means of both pictures over a square. The responses are traced separately, and their noise would appear
-/// as colours. The eye resolves colours less than luminances. \param reach half of the side of the square, in pixels
-std::vector<double> with_mean_colour(const raytrace::CameraImage& luminance, const std::vector<double>& other,
-                                     std::size_t reach) {
-  const std::size_t columns = luminance.columns;
-  const std::size_t rows = luminance.rows;
-  /// Sums over all pixels above and to the left, with one more row and column.
-  const auto sums_of = [&](const std::vector<double>& values) {
-    std::vector<double> sums((columns + 1) * (rows + 1), 0.0);
-    for (std::size_t r = 0; r < rows; ++r)
-      for (std::size_t c = 0; c < columns; ++c)
-        sums[(r + 1) * (columns + 1) + c + 1] = values[r * columns + c] + sums[r * (columns + 1) + c + 1] +
-                                                sums[(r + 1) * (columns + 1) + c] - sums[r * (columns + 1) + c];
-    return sums;
-  };
-  const std::vector<double> y = sums_of(luminance.luminance);
-  const std::vector<double> z = sums_of(other);
-  std::vector<double> result(other.size());
-  for (std::size_t r = 0; r < rows; ++r)
-    for (std::size_t c = 0; c < columns; ++c) {
-      const std::size_t top = r - std::min(r, reach);
-      const std::size_t left = c - std::min(c, reach);
-      const std::size_t bottom = std::min(rows, r + reach + 1);
-      const std::size_t right = std::min(columns, c + reach + 1);
-      const auto within = [&](const std::vector<double>& sums) {
-        return sums[bottom * (columns + 1) + right] - sums[top * (columns + 1) + right] -
-               sums[bottom * (columns + 1) + left] + sums[top * (columns + 1) + left];
-      };
-      const double all = within(y);
-      result[r * columns + c] = all > 0.0 ? luminance.luminance[r * columns + c] * within(z) / all : 0.0;
-    }
-  return result;
-}
-
-}  // namespace
-
 /// Tracers of all layers of a picture. The picture of a response is the sum of one or two layers: the light of the
 /// lamp, and that of the surroundings if the part is coloured.
 struct CameraStudy::Tracers {
@@ -375,6 +324,11 @@ struct CameraStudy::Tracers {
       all.insert(all.end(), sum->begin(), sum->end());
     }
     return all;
+  }
+  /// Returns the result of pass() as the result of a task.
+  std::optional<std::string> pass_bytes(std::uint64_t number, const Cancellation* cancel) const {
+    const auto passes = pass(static_cast<std::uint32_t>(number), cancel);
+    return passes ? std::optional(bytes_of(*passes)) : std::nullopt;
   }
 };
 
@@ -408,15 +362,13 @@ std::shared_ptr<const CameraStudy::Tracers> CameraStudy::tracers(Progress* progr
         by_cells ? raytrace::CameraEngine::fastest : raytrace::CameraEngine::embree));
   };
   tracers->responses = lights_.size();
-  const bool has_surroundings = scene_.surroundings.entrance_side > 0.0 || scene_.surroundings.back_side > 0.0;
-  const bool is_separate = lights_.size() > 1 && has_surroundings;
+  const bool is_separate = lights_.size() > 1 && scene_.surroundings.has_light();
   const bool is_by_kernel = scene_.discs == raytrace::DiscAverage::kernel;
   for (std::size_t k = 0; k < lights_.size(); ++k) {
     const CameraLight& light = *lights_[k];
     const auto count = static_cast<double>(lights_.size());
     PartProgress part(progress, static_cast<double>(k) / count, static_cast<double>(k + 1) / count);
-    CameraLight::Returned returned;
-    returned.light = light.geometric();
+    std::optional<CameraLight::Returned> returned = light.without_diffraction();
     if (!light.has_diffraction()) {
       tracers->no_diffraction = light.photometer().why_undiffracted();
     } else if (is_by_kernel && !tracers->no_diffraction) {
@@ -426,11 +378,11 @@ std::shared_ptr<const CameraStudy::Tracers> CameraStudy::tracers(Progress* progr
         tracers->no_diffraction = Undiffracted::too_many_beams;
       }
     }
-    if (returned.cancelled) return nullptr;
-    if (returned.is_incomplete) tracers->no_diffraction = Undiffracted::unequal_cells;
-    if (k == 0) tracers->r_a = returned.r_a;
+    if (!returned) return nullptr;
+    if (returned->is_incomplete) tracers->no_diffraction = Undiffracted::unequal_cells;
+    if (k == 0) tracers->r_a = returned->r_a;
     raytrace::CameraScene scene = scene_;
-    scene.returned = returned.light;
+    scene.correction = returned->correction;
     if (is_separate) scene.surroundings = {};
     add(light.optics(), scene, request_.seed);
   }
@@ -457,13 +409,17 @@ ComputeTask CameraStudy::passes() const {
       if (!shared->tracers) shared->tracers = this->tracers(nullptr, cancel);
       tracers = shared->tracers;
     }
-    if (!tracers) return std::nullopt;
-    const auto pass = tracers->pass(static_cast<std::uint32_t>(number), cancel);
-    return pass ? std::optional(bytes_of(*pass)) : std::nullopt;
+    return tracers ? tracers->pass_bytes(number, cancel) : std::nullopt;
   };
 }
 
 namespace {
+
+/// Returns the tristimulus values of the lamp, with Y = 1.
+materials::Tristimulus lamp_colour(PhotometricLight light) {
+  const materials::Tristimulus lamp = materials::tristimulus(lamp_power(light), materials::shipped_colour_matching());
+  return {lamp[0] / lamp[1], 1.0, lamp[2] / lamp[1]};
+}
 
 /// Ledger of a process that was cancelled before its first pass.
 class NoPasses : public TaskLedger {
@@ -480,12 +436,40 @@ void leave(const DistributeTasks& distribute) {
   distribute([](std::uint64_t, const Cancellation*) { return std::optional<std::string>(); }, none);
 }
 
+/// Adds the warnings of a complete picture.
+void add_warnings(CameraResult& result) {
+  const std::string name = result.design.source_name();
+  const CameraRequest& request = result.request;
+  const raytrace::CameraImage& image = result.image;
+  if (!request.passes && image.relative_noise() > request.noise)
+    result.warnings.push_back(
+        {"noise_above_target",
+         fmt::format("{}: the noise of {} is above the target of {} after {} passes. The target requires about {:.2g} "
+                     "passes, but at most {} are made unless you set the number of passes",
+                     name, fixed(image.relative_noise(), 4), shortest(request.noise), image.passes,
+                     passes_needed(image, request), CameraStudy::kMaxPasses)});
+  if (result.no_diffraction && request.diffraction)
+    result.warnings.push_back({"no_diffraction", fmt::format("{}: the light of the lamp is that of geometrical optics, "
+                                                             "without diffraction: {}",
+                                                             name, text_of(*result.no_diffraction))});
+  const double illuminance_lx = result.scene.lamp.illuminance_lx;
+  const double returned = result.r_a ? *result.r_a / std::max(1e-9, to_eye(result.scene).normalized().z())
+                                     : image.part_mean() / std::max(1e-300, illuminance_lx);
+  // The traced picture does not show which part of the light is that of the surroundings.
+  const bool is_known = result.r_a || !result.scene.surroundings.has_light();
+  if (illuminance_lx > 0.0 && is_known && returned < kMinRetroreflected)
+    result.warnings.push_back(
+        {"no_retroreflected_light",
+         fmt::format(
+             "{}: no retroreflected light reaches this eye: the luminance of the returned light is {} cd/m2 per "
+             "lux at the centre, and that of a white wall is 0.32. Choose a smaller observation angle, or "
+             "another direction of the lamp",
+             name, fixed_visible(returned, 3))});
+}
+
 }  // namespace
 
-CameraResult CameraStudy::run(Progress* progress, const Cancellation* cancel,
-                              const std::function<void(const CameraResult&)>& after_pass,
-                              const DistributeTasks& distribute) const {
-  const auto start = std::chrono::steady_clock::now();
+CameraResult CameraStudy::empty_result() const {
   CameraResult result;
   result.design = design_;
   result.request = request_;
@@ -493,17 +477,23 @@ CameraResult CameraStudy::run(Progress* progress, const Cancellation* cancel,
   result.scene = scene_;
   result.background = background_;
   result.warnings = model_.warnings;
-  const Vec3 to_eye = scene_.view.eye_mm - scene_.view.target_mm;
-  const Vec3 to_lamp = scene_.lamp.position_mm - scene_.view.target_mm;
-  result.observation_deg = angle_deg(to_eye, to_lamp);
-  result.entrance_deg = angle_deg(to_lamp, Vec3::UnitZ());
-  result.viewing_deg = angle_deg(to_eye, Vec3::UnitZ());
-  PartProgress of_light(progress, 0.0, kProgressOfLight);
-  const std::shared_ptr<const Tracers> tracers = this->tracers(&of_light, cancel);
+  result.observation_deg = angle_deg(to_eye(scene_), to_lamp(scene_));
+  result.entrance_deg = angle_deg(to_lamp(scene_), Vec3::UnitZ());
+  result.viewing_deg = angle_deg(to_eye(scene_), Vec3::UnitZ());
+  return result;
+}
+
+CameraResult CameraStudy::run(Progress* progress, const Cancellation* cancel,
+                              const std::function<void(const CameraResult&)>& after_pass,
+                              const DistributeTasks& distribute) const {
+  const auto start = std::chrono::steady_clock::now();
+  CameraResult result = empty_result();
   const auto finish = [&] {
     result.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return result;
   };
+  PartProgress of_light(progress, 0.0, kProgressOfLight);
+  const std::shared_ptr<const Tracers> tracers = this->tracers(&of_light, cancel);
   if (!tracers) {
     if (distribute) leave(distribute);
     result.complete = false;
@@ -513,19 +503,11 @@ CameraResult CameraStudy::run(Progress* progress, const Cancellation* cancel,
   result.r_a = tracers->r_a;
   result.engine = tracers->layers.front()->is_by_cells() ? "cell" : "embree";
   std::vector<raytrace::CameraImage> images(tracers->responses, tracers->layers.front()->empty_image());
-  result.image = images.front();
+  std::optional<materials::Tristimulus> lamp;
+  if (images.size() > 1) lamp = lamp_colour(light_from_name(request_.light));
   const auto take_images = [&] {
     result.image = images.front();
-    if (images.size() < 3) return;
-    if (!result.colours) {
-      const materials::Tristimulus lamp =
-          materials::tristimulus(lamp_power(light_from_name(request_.light)), materials::shipped_colour_matching());
-      result.colours.emplace().lamp = {lamp[0] / lamp[1], 1.0, lamp[2] / lamp[1]};
-    }
-    const double noise = images.front().passes > 1 ? images.front().relative_noise() : 1.0;
-    const auto reach = static_cast<std::size_t>(std::clamp(std::ceil(noise / kNoiseOfColours), 1.0, 12.0));
-    result.colours->x = with_mean_colour(images[0], images[1].luminance, reach);
-    result.colours->z = with_mean_colour(images[0], images[2].luminance, reach);
+    if (lamp) result.colours = colours_of(images, *lamp);
   };
   const std::function<void()> preview = [&] {
     if (!after_pass) return;
@@ -534,43 +516,19 @@ CameraResult CameraStudy::run(Progress* progress, const Cancellation* cancel,
   };
   PartProgress of_passes(progress, kProgressOfLight, 1.0);
   PassLedger ledger(request_, images, &of_passes, preview);
-  if (distribute)
-    distribute(
-        [tracers](std::uint64_t number, const Cancellation* stop) -> std::optional<std::string> {
-          const auto pass = tracers->pass(static_cast<std::uint32_t>(number), stop);
-          return pass ? std::optional(bytes_of(*pass)) : std::nullopt;
-        },
-        ledger);
-  while (!distribute && !ledger.is_finished()) {
-    const auto pass = tracers->pass(images.front().passes, cancel);
-    if (!pass) break;
-    ledger.add(*pass);
+  if (distribute) {
+    distribute([tracers](std::uint64_t number, const Cancellation* stop) { return tracers->pass_bytes(number, stop); },
+               ledger);
+  } else {
+    while (!ledger.is_finished()) {
+      const auto pass = tracers->pass(images.front().passes, cancel);
+      if (!pass) break;
+      ledger.add(*pass);
+    }
   }
   take_images();
   result.complete = ledger.is_finished();
-  if (result.complete && !request_.passes && result.image.relative_noise() > request_.noise)
-    result.warnings.push_back(
-        {"noise_above_target",
-         fmt::format("{}: the noise of {} is above the target of {} after {} passes. The target requires about {:.2g} "
-                     "passes, but at most {} are made unless you set the number of passes",
-                     design_.source_name(), fixed(result.image.relative_noise(), 4), shortest(request_.noise),
-                     result.image.passes, passes_needed(result.image, request_), kMaxPasses)});
-  const bool has_surroundings = scene_.surroundings.entrance_side > 0.0 || scene_.surroundings.back_side > 0.0;
-  const double returned = result.r_a ? *result.r_a / std::max(1e-9, to_eye.normalized().z())
-                                     : result.image.part_mean() / std::max(1e-300, scene_.lamp.illuminance_lx);
-  const bool is_dark = result.r_a ? returned < kMinRetroreflected : !has_surroundings && returned < kMinRetroreflected;
-  if (result.complete && result.no_diffraction && request_.diffraction)
-    result.warnings.push_back({"no_diffraction", fmt::format("{}: the light of the lamp is that of geometrical optics, "
-                                                             "without diffraction: {}",
-                                                             design_.source_name(), text_of(*result.no_diffraction))});
-  if (result.complete && scene_.lamp.illuminance_lx > 0.0 && is_dark)
-    result.warnings.push_back(
-        {"no_retroreflected_light",
-         fmt::format(
-             "{}: no retroreflected light reaches this eye: the luminance of the returned light is {} cd/m2 per "
-             "lux at the centre, and that of a white wall is 0.32. Choose a smaller observation angle, or "
-             "another direction of the lamp",
-             design_.source_name(), fixed_visible(returned, 3))});
+  if (result.complete) add_warnings(result);
   return finish();
 }
 

@@ -12,10 +12,10 @@
 #include "core/progress.h"
 #include "core/shared_tasks.h"
 #include "design/optical_model.h"
-#include "materials/chromaticity.h"
 #include "raytrace/observers/camera.h"
 #include "requests/image.h"
 #include "studies/image/background.h"
+#include "studies/image/camera_colours.h"
 #include "studies/image/camera_light.h"
 #include "studies/image/image_result.h"
 #include "studies/image/lamp.h"
@@ -24,18 +24,6 @@ namespace retrace::studies {
 
 /// Default width and height, in mm, of the sheet that the picture shows for an infinite part.
 inline constexpr std::array<double, 2> kDefaultFilmMm = {100.0, 100.0};
-
-/// Colours of a picture of a coloured part. The three values of a pixel are those of the functions x, y and z of the
-/// CIE 1931 observer, each relative to the lamp: they are equal if the pixel has the chromaticity of the lamp.
-struct CameraColours {
-  std::vector<double> x;  ///< cd/m^2; CameraResult::image contains y
-  std::vector<double> z;
-  materials::Tristimulus lamp{};  ///< tristimulus values of the lamp, with Y = 1
-
-  /// Returns the linear sRGB values of a pixel (IEC 61966-2-1), in cd/m^2. The lamp is white: its chromaticity is
-  /// adapted to D65 (K. M. Lam 1985, "Bradford").
-  std::array<double, 3> rgb(double y, std::size_t pixel) const;
-};
 
 struct CameraResult : ImageResultBase {
   CameraRequest request;
@@ -83,6 +71,8 @@ class CameraStudy {
  private:
   struct Tracers;
 
+  /// Returns a result without a picture: the request, the design and the geometry.
+  CameraResult empty_result() const;
   /// Computes the returned light and makes the tracers. Returns null if the computation was cancelled.
   std::shared_ptr<const Tracers> tracers(Progress* progress, const Cancellation* cancel) const;
 
