@@ -156,15 +156,15 @@ std::optional<double> AngularRings::half_angle_deg(double fraction) const {
 }
 
 std::optional<FarField> detector_far_field(const geometry::Part& part, const Optics& optics,
-                                           const Illumination& illumination, const DetectorSetting& setting,
+                                           const Illumination& illumination, double acceptance_deg,
                                            const BeamPolicy& beams, const FarFieldPolicy& policy,
-                                           std::vector<FarFieldRay>& specular, const Cancellation* cancel) {
+                                           std::vector<FarFieldRay>& specular) {
   FarFieldCollector collector(part, illumination, policy);
   BeamPolicy for_cells = beams;
   for_cells.separate_cells = true;
   const BeamResult traced =
       BeamTracer(part, BeamTracer::Elements::instanced)
-          .trace(optics, illumination, {setting.acceptance_deg}, for_cells, cancel, [&](const ReturnedBeam& beam) {
+          .trace(optics, illumination, {acceptance_deg}, for_cells, policy.cancel, [&](const ReturnedBeam& beam) {
             if (beam.depth > 0)
               collector.add(beam);
             else

@@ -60,14 +60,15 @@ struct DetectorMaps {
 
 /// Returns the far field of the returned light with diffraction at the cells, for a point source and a point receiver.
 /// Light that the entrance face reflects without entering is not included; it is added to `specular`.
-/// \param policy settings of the diffraction
+/// \param acceptance_deg half angle of the acceptance cone
+/// \param policy settings of the diffraction; its request for cancellation also applies to the beams
 /// \param specular receives the directions and powers of this light
-/// \return nothing if the computation was cancelled
+/// \return nothing if the tracing of beams was cancelled
 /// \throw BudgetError in the same cases as BeamTracer::trace(), or if the form of facets needs too many polygons
 std::optional<FarField> detector_far_field(const geometry::Part& part, const Optics& optics,
-                                           const Illumination& illumination, const DetectorSetting& setting,
+                                           const Illumination& illumination, double acceptance_deg,
                                            const BeamPolicy& beams, const FarFieldPolicy& policy,
-                                           std::vector<FarFieldRay>& specular, const Cancellation* cancel = nullptr);
+                                           std::vector<FarFieldRay>& specular);
 
 /// Computes the maps from beams of polygonal cross-section. The area of a pixel that a polygon covers is computed
 /// exactly.

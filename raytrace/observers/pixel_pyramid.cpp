@@ -63,18 +63,24 @@ void PixelPyramid::close(double scale) {
   std::fill(sum_.begin(), sum_.end(), 0.0);
 }
 
+std::vector<std::size_t> PixelPyramid::quarters_of(std::size_t level, std::size_t block) const {
+  std::vector<std::size_t> quarters;
+  if (level == 0) return quarters;
+  const Level& finer = levels_[level - 1];
+  for (std::size_t k = 0; k < 4; ++k) {
+    const std::size_t row = 2 * (block / levels_[level].columns) + k / 2;
+    const std::size_t column = 2 * (block % levels_[level].columns) + k % 2;
+    if (row < finer.rows && column < finer.columns) quarters.push_back(row * finer.columns + column);
+  }
+  return quarters;
+}
+
 PixelValues PixelPyramid::values(std::uint64_t rays, double largest) const {
   const double factor = student_factor(static_cast<std::size_t>(count_));
   const auto error = [&](const Level& level, std::size_t k) {
     return with_unsampled_paths(factor * std::sqrt(level.squares[k] / (count_ - 1.0) / count_),
                                 static_cast<double>(rays), largest / level.pixels[k]);
   };
-  const Level& finest = levels_.front();
-  PixelValues values{finest.mean, std::vector<double>(finest.mean.size())};
-  if (levels_.size() == 1) {
-    for (std::size_t k = 0; k < finest.mean.size(); ++k) values.std_error[k] = error(finest, k);
-    return values;
-  }
   // The largest value is that of the finest level on which it is accurate. On finer levels, it is too large by the
   // noise.
   double brightest = 0.0;
@@ -87,34 +93,28 @@ PixelValues PixelPyramid::values(std::uint64_t rays, double largest) const {
     const bool is_dark = level.mean[k] < rule_.dark * brightest;
     return error(level, k) <= rule_.relative_error * (is_dark ? brightest : level.mean[k]);
   };
-  const std::function<void(std::size_t, std::size_t, std::size_t)> divide = [&](std::size_t l, std::size_t row,
-                                                                                std::size_t column) {
+  const Level& finest = levels_.front();
+  PixelValues values{finest.mean, std::vector<double>(finest.mean.size())};
+  const auto merge = [&](std::size_t l, std::size_t k) {
     const Level& level = levels_[l];
-    bool can_divide = l > 0;
-    for (std::size_t child = 0; child < 4 && can_divide; ++child) {
-      const std::size_t r = 2 * row + child / 2;
-      const std::size_t c = 2 * column + child % 2;
-      const Level& finer = levels_[l - 1];
-      if (r < finer.rows && c < finer.columns) can_divide = satisfies(finer, r * finer.columns + c);
-    }
-    if (can_divide) {
-      for (std::size_t child = 0; child < 4; ++child) {
-        const std::size_t r = 2 * row + child / 2;
-        const std::size_t c = 2 * column + child % 2;
-        if (r < levels_[l - 1].rows && c < levels_[l - 1].columns) divide(l - 1, r, c);
-      }
-      return;
-    }
     const std::size_t side = std::size_t{1} << l;
-    const std::size_t k = row * level.columns + column;
+    const std::size_t top = k / level.columns * side;
+    const std::size_t left = k % level.columns * side;
     const double std_error = error(level, k);
-    for (std::size_t y = row * side; y < std::min(finest.rows, (row + 1) * side); ++y)
-      for (std::size_t x = column * side; x < std::min(finest.columns, (column + 1) * side); ++x) {
+    for (std::size_t y = top; y < std::min(finest.rows, top + side); ++y)
+      for (std::size_t x = left; x < std::min(finest.columns, left + side); ++x) {
         values.value[y * finest.columns + x] = level.mean[k];
         values.std_error[y * finest.columns + x] = std_error;
       }
   };
-  divide(levels_.size() - 1, 0, 0);
+  const std::function<void(std::size_t, std::size_t)> divide = [&](std::size_t l, std::size_t k) {
+    const std::vector<std::size_t> quarters = quarters_of(l, k);
+    const bool can_divide =
+        l > 0 && std::ranges::all_of(quarters, [&](std::size_t q) { return satisfies(levels_[l - 1], q); });
+    if (!can_divide) return merge(l, k);
+    for (const std::size_t quarter : quarters) divide(l - 1, quarter);
+  };
+  for (std::size_t k = 0; k < levels_.back().mean.size(); ++k) divide(levels_.size() - 1, k);
   return values;
 }
 

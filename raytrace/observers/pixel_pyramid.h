@@ -57,6 +57,9 @@ class PixelPyramid {
     void take(const std::vector<double>& sums, double scale, double count);
   };
 
+  /// Returns the blocks of the next finer level into which a block is divided. Returns none on the finest level.
+  std::vector<std::size_t> quarters_of(std::size_t level, std::size_t block) const;
+
   std::vector<double> sum_;
   std::vector<Level> levels_;  ///< pixels first
   BinRule rule_;

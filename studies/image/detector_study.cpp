@@ -131,24 +131,25 @@ raytrace::DetectorSetting DetectorStudy::setting_of(const raytrace::PixelGrid& f
 }
 
 raytrace::DetectorMaps DetectorStudy::trace(const design::SpectralOptics& light,
-                                            const raytrace::DetectorSetting& setting, std::size_t number, bool exact,
-                                            std::uint64_t rays, Progress* progress, const Cancellation* cancel) const {
+                                            const raytrace::DetectorSetting& setting, std::size_t number,
+                                            std::optional<std::uint64_t> rays, Progress* progress,
+                                            const Cancellation* cancel) const {
   const raytrace::Illumination illumination = illumination_of(design_, request_);
-  if (exact)
+  if (!rays)
     return raytrace::exact_detector_maps(model_.part, light.optics, illumination, setting, beam_policy(), cancel);
   return raytrace::sampled_detector_maps(model_.part, light.optics, illumination, setting,
-                                         std::max<std::uint64_t>(1, rays / model_.spectral.size()),
+                                         std::max<std::uint64_t>(1, *rays / model_.spectral.size()),
                                          raytrace::seed_at(request_.seed, number), {}, progress, cancel);
 }
 
-raytrace::DetectorMaps DetectorStudy::trace_all(const raytrace::DetectorSetting& setting, bool exact,
-                                                std::uint64_t rays, Progress* progress,
+raytrace::DetectorMaps DetectorStudy::trace_all(const raytrace::DetectorSetting& setting,
+                                                std::optional<std::uint64_t> rays, Progress* progress,
                                                 const Cancellation* cancel) const {
   raytrace::DetectorMaps maps;
   const std::size_t wavelengths = model_.spectral.size();
   TaskProgress all(progress, wavelengths);
   raytrace::trace_wavelengths(1, wavelengths, false, all, [&](std::size_t, std::size_t k, Progress& task) {
-    add(maps, trace(model_.spectral[k], setting, k, exact, rays, &task, cancel), model_.spectral[k].weight);
+    add(maps, trace(model_.spectral[k], setting, k, rays, &task, cancel), model_.spectral[k].weight);
     return maps.complete;
   });
   return maps;
@@ -171,6 +172,34 @@ double DetectorStudy::window_deg(const raytrace::AngularRings& rings, bool with_
   return std::min(rounded_up(wanted_deg), 90.0);
 }
 
+/// Returns the far field of one wavelength with diffraction: the power per steradian in each bin of directions, and
+/// then the power outside of the bins. Returns nothing if the computation was cancelled.
+std::optional<std::vector<double>> DetectorStudy::diffracted_map(const design::SpectralOptics& light,
+                                                                 const raytrace::DetectorSetting& setting,
+                                                                 const Cancellation* cancel) const {
+  const raytrace::DirectionGrid& angles = setting.angles;
+  raytrace::BeamPolicy beams = beam_policy();
+  beams.max_beams = std::min(beams.max_beams, kBeamsOfDiffraction);
+  raytrace::FarFieldPolicy policy;
+  policy.wavelength_nm = light.wavelength_nm;
+  policy.window_rad = kDiffractedAround * angles.half_width_rad();
+  // Patterns that are narrower than the bins are not visible.
+  policy.finest_detail_rad = 2.0 * angles.half_width_rad() / static_cast<double>(angles.columns());
+  policy.max_polygons =
+      static_cast<std::size_t>(std::clamp(kPolygonsTimesBins / static_cast<double>(angles.size()), 100.0, 20'000.0));
+  policy.cancel = cancel;
+  std::vector<raytrace::FarFieldRay> specular;
+  const auto field = raytrace::detector_far_field(model_.part, light.optics, illumination_of(design_, request_),
+                                                  setting.acceptance_deg, beams, policy, specular);
+  if (!field) return std::nullopt;
+  std::vector<double> map = field->binned(setting.frame, angles);
+  for (const raytrace::FarFieldRay& ray : specular)
+    map[angles.bin_of(setting.frame.angles_rad(ray.direction)).value_or(angles.size())] += ray.power;
+  if (is_cancelled(cancel)) return std::nullopt;
+  for (std::size_t bin = 0; bin < angles.size(); ++bin) map[bin] /= angles.solid_angle_sr(bin);
+  return map;
+}
+
 /// Replaces the angular map by the far field with diffraction. Returns false if this is not possible; the map is then
 /// unchanged, and the result contains the reason.
 bool DetectorStudy::add_diffraction(DetectorResult& result, const raytrace::DetectorSetting& setting,
@@ -179,45 +208,23 @@ bool DetectorStudy::add_diffraction(DetectorResult& result, const raytrace::Dete
     result.without_diffraction = "rough facets";
     return false;
   }
-  const double bins = static_cast<double>(setting.angles.size());
-  raytrace::BeamPolicy beams = beam_policy();
-  beams.max_beams = std::min(beams.max_beams, kBeamsOfDiffraction);
-  raytrace::DetectorMaps maps;
+  std::vector<double> sum;
   try {
     for (const design::SpectralOptics& light : model_.spectral) {
-      raytrace::FarFieldPolicy policy;
-      policy.wavelength_nm = light.wavelength_nm;
-      policy.window_rad = kDiffractedAround * setting.angles.half_width_rad();
-      // Patterns that are narrower than the bins are not visible.
-      policy.finest_detail_rad = 2.0 * setting.angles.half_width_rad() / static_cast<double>(setting.angles.columns());
-      policy.max_polygons = static_cast<std::size_t>(std::clamp(kPolygonsTimesBins / bins, 100.0, 20'000.0));
-      policy.cancel = cancel;
-      std::vector<raytrace::FarFieldRay> specular;
-      const auto field = raytrace::detector_far_field(model_.part, light.optics, illumination_of(design_, request_),
-                                                      setting, beams, policy, specular, cancel);
-      if (!field) {
+      const std::optional<std::vector<double>> map = diffracted_map(light, setting, cancel);
+      if (!map) {
         result.maps.complete = false;
         return true;
       }
-      std::vector<double> power = field->binned(setting.frame, setting.angles);
-      for (const raytrace::FarFieldRay& ray : specular)
-        power[setting.angles.bin_of(setting.frame.angles_rad(ray.direction)).value_or(setting.angles.size())] +=
-            ray.power;
-      if (cancel != nullptr && cancel->requested()) {
-        result.maps.complete = false;
-        return true;
-      }
-      maps.outside += light.weight * power.back();
-      power.pop_back();
-      for (std::size_t bin = 0; bin < power.size(); ++bin) power[bin] /= setting.angles.solid_angle_sr(bin);
-      add(maps.per_sr.value, power, light.weight);
+      add(sum, *map, light.weight);
     }
   } catch (const BudgetError&) {
     result.without_diffraction = "too many beams";
     return false;
   }
-  result.maps.per_sr = std::move(maps.per_sr);
-  result.maps.outside = maps.outside;
+  result.maps.outside = sum.back();
+  sum.pop_back();
+  result.maps.per_sr = {std::move(sum), {}};
   result.has_diffraction = true;
   return true;
 }
@@ -236,8 +243,8 @@ DetectorResult DetectorStudy::run(Progress* progress, const Cancellation* cancel
   AttemptProgress attempt(progress);
   if (exact) {
     try {
-      result.maps = trace_all(setting_of(result.face, request_.window_deg.value_or(kWindowWithoutLightDeg)), true, 0,
-                              &attempt, cancel);
+      result.maps = trace_all(setting_of(result.face, request_.window_deg.value_or(kWindowWithoutLightDeg)),
+                              std::nullopt, &attempt, cancel);
     } catch (const BudgetError&) {
       if (engine_ == raytrace::Engine::exact) throw;
       exact = false;  // the exact engine needs too many beams
@@ -249,19 +256,17 @@ DetectorResult DetectorStudy::run(Progress* progress, const Cancellation* cancel
     if (!add_diffraction(result, setting_of(result.face, result.window_deg), cancel)) {
       result.window_deg = window_deg(result.maps.rings, false);
       attempt.begin_again();
-      result.maps = trace_all(setting_of(result.face, result.window_deg), true, 0, &attempt, cancel);
+      result.maps = trace_all(setting_of(result.face, result.window_deg), std::nullopt, &attempt, cancel);
     }
   } else if (!exact) {
     result.without_diffraction = "rays";
-    if (request_.window_deg) {
-      result.window_deg = *request_.window_deg;
-    } else {
-      const raytrace::DetectorMaps pilot =
-          trace_all(setting_of({result.face.bounds_mm(), 1, 1}, kWindowWithoutLightDeg), false,
-                    std::min(rays, kPilotRays), nullptr, cancel);
-      result.window_deg = window_deg(pilot.rings, false);
-    }
-    result.maps = trace_all(setting_of(result.face, result.window_deg), false, rays, &attempt, cancel);
+    raytrace::AngularRings rings;
+    if (!request_.window_deg)
+      rings = trace_all(setting_of({result.face.bounds_mm(), 1, 1}, kWindowWithoutLightDeg), std::min(rays, kPilotRays),
+                        nullptr, cancel)
+                  .rings;
+    result.window_deg = window_deg(rings, false);
+    result.maps = trace_all(setting_of(result.face, result.window_deg), rays, &attempt, cancel);
   }
   result.face_error = std::max(raytrace::largest_relative_error(result.maps.leaving, kDarkFace),
                                raytrace::largest_relative_error(result.maps.entering, kDarkFace));

@@ -3,6 +3,9 @@
 // Maps of the returned light over the face and over angles. `retrace image` runs this study if a detector is requested.
 
 #include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "core/progress.h"
 #include "design/engine_facts.h"
@@ -46,14 +49,20 @@ class DetectorStudy {
   DetectorResult run(Progress* progress = nullptr, const Cancellation* cancel = nullptr) const;
 
  private:
+  /// Computes the maps at one wavelength.
+  /// \param rays number of rays at all wavelengths; if not set, light is traced as beams
   raytrace::DetectorMaps trace(const design::SpectralOptics& light, const raytrace::DetectorSetting& setting,
-                               std::size_t number, bool exact, std::uint64_t rays, Progress* progress,
+                               std::size_t number, std::optional<std::uint64_t> rays, Progress* progress,
                                const Cancellation* cancel) const;
-  raytrace::DetectorMaps trace_all(const raytrace::DetectorSetting& setting, bool exact, std::uint64_t rays,
+  /// Computes the maps at all wavelengths. The parameters are those of trace().
+  raytrace::DetectorMaps trace_all(const raytrace::DetectorSetting& setting, std::optional<std::uint64_t> rays,
                                    Progress* progress, const Cancellation* cancel) const;
   raytrace::DetectorSetting setting_of(const raytrace::PixelGrid& face, double window_deg) const;
   raytrace::BeamPolicy beam_policy() const;
   double window_deg(const raytrace::AngularRings& rings, bool with_diffraction) const;
+  std::optional<std::vector<double>> diffracted_map(const design::SpectralOptics& light,
+                                                    const raytrace::DetectorSetting& setting,
+                                                    const Cancellation* cancel) const;
   bool add_diffraction(DetectorResult& result, const raytrace::DetectorSetting& setting,
                        const Cancellation* cancel) const;
 
