@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/srgb.h"
+
 namespace retrace::report {
 namespace {
 
@@ -50,10 +52,7 @@ double ToneCurve::shown(double luminance) const {
   if (!(luminance > 0.0)) return 0.0;
   switch (tone) {
     case Tone::linear: return std::min(1.0, luminance / white);
-    case Tone::log: {
-      const double encoded = std::clamp(1.0 + std::log10(luminance / white) / kToneDecades, 0.0, 1.0);
-      return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
-    }
+    case Tone::log: return linear_from_srgb(std::clamp(1.0 + std::log10(luminance / white) / kToneDecades, 0.0, 1.0));
     case Tone::reinhard: break;
   }
   const double scale = key / grey;
@@ -96,9 +95,7 @@ std::vector<double> tone_mapped(const std::vector<double>& luminance, double key
 }
 
 unsigned char srgb_byte(double linear) {
-  const double x = std::clamp(linear, 0.0, 1.0);
-  const double encoded = x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1.0 / 2.4) - 0.055;
-  return static_cast<unsigned char>(std::lround(255.0 * encoded));
+  return static_cast<unsigned char>(std::lround(255.0 * srgb_from_linear(std::clamp(linear, 0.0, 1.0))));
 }
 
 }  // namespace retrace::report

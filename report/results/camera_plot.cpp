@@ -6,6 +6,7 @@
 #include <span>
 
 #include "core/number_format.h"
+#include "core/srgb.h"
 #include "design/io/design_json.h"
 #include "report/axis_ticks.h"
 #include "report/canvas.h"
@@ -111,16 +112,12 @@ std::vector<Colour> displayed_pixels(const CameraResult& result, const ToneCurve
       const std::array<double, 3> behind = result.background->seen(k, image.columns, image.rows);
       const double free = 1.0 - image.coverage[k];
       for (std::size_t c = 0; c < 3; ++c) (result.background->is_luminance ? pixel : photograph)[c] += free * behind[c];
-      if (result.background->is_luminance)
-        luminance += free * (0.2126 * behind[0] + 0.7152 * behind[1] + 0.0722 * behind[2]);
+      if (result.background->is_luminance) luminance += free * srgb_luminance(behind);
     }
     const double shown = tone.shown(luminance);
-    double intensity = shown;
-    for (std::size_t c = 0; c < 3; ++c) {
+    for (std::size_t c = 0; c < 3; ++c)
       pixel[c] = (luminance > 0.0 ? shown * pixel[c] / luminance : 0.0) + photograph[c];
-      intensity += std::array{0.2126, 0.7152, 0.0722}[c] * photograph[c];
-    }
-    colours.push_back(displayed(pixel, intensity));
+    colours.push_back(displayed(pixel, shown + srgb_luminance(photograph)));
   }
   return colours;
 }

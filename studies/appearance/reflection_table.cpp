@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/srgb.h"
+
 namespace retrace::studies {
 namespace {
 
@@ -51,8 +53,7 @@ double thirds_of(const std::array<Angle, 2>& range, double rad) {
 }  // namespace
 
 double luminous(const Rgb& rgb) {
-  // The coefficients are the second row of the matrix of IEC 61966-2-1, with all digits of the standard.
-  return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
+  return srgb_luminance(rgb);
 }
 
 Vec2 ReflectionTable::deviation(std::size_t index) const {

@@ -9,17 +9,12 @@
 
 #include "core/error.h"
 #include "core/pictures.h"
+#include "core/srgb.h"
 
 namespace retrace::studies {
 namespace {
 
 constexpr std::size_t kMaxPixels = std::size_t{1} << 26U;
-
-/// Returns the light of an sRGB value (IEC 61966-2-1).
-float linear_of(std::uint8_t value) {
-  const double encoded = value / 255.0;
-  return static_cast<float>(encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4));
-}
 
 Background photograph(const BytePicture& picture) {
   Background background{picture.columns, picture.rows, {}, false};
@@ -28,7 +23,8 @@ Background photograph(const BytePicture& picture) {
   for (std::size_t k = 0; k < picture.columns * picture.rows; ++k) {
     std::array<float, 3> rgb{};
     for (std::size_t c = 0; c < 3; ++c)
-      rgb[c] = linear_of(picture.values[k * picture.channels + std::min(c, colours - 1)]);
+      rgb[c] =
+          static_cast<float>(linear_from_srgb(picture.values[k * picture.channels + std::min(c, colours - 1)] / 255.0));
     background.rgb.push_back(rgb);
   }
   return background;
