@@ -5,6 +5,7 @@
 #include <chrono>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "app/commands.h"
 #include "app/interrupt.h"
@@ -216,12 +217,17 @@ ExitCode run_series(const ImageOptions& options, const CommonOptions& common, co
   if (options.false_colour) throw InputError("image: --false-colour is possible only for one picture");
   std::vector<design::Design> designs;
   for (const std::string& file : options.designs) designs.push_back(design::read_design(file, common.overrides));
+  const auto request = request_of<CameraRequest>(sequence.front(), common);
   const bool is_sequence = sequence.size() > 1;
   const std::size_t count = std::max(sequence.size(), designs.size());
   std::vector<std::unique_ptr<const studies::CameraStudy>> studies;
   std::vector<studies::CameraResult> results;
-  ResultFiles files(common, files_of(designs, request_of<CameraRequest>(sequence.front(), common)), "image.json");
-  const auto tone = [&results] { return report::camera_tone(results); };
+  std::optional<report::ToneCurve> curve;
+  ResultFiles files(common, files_of(designs, request), "image.json");
+  const auto tone = [&results, &curve] {
+    if (!curve) curve = report::camera_tone(results);
+    return *curve;
+  };
   for (std::size_t k = 0; k < count; ++k) {
     const std::string name = fmt::format("camera_{:02}", k + 1);
     files.add(name + ".exr", [&results, k] {
@@ -237,22 +243,21 @@ ExitCode run_series(const ImageOptions& options, const CommonOptions& common, co
   check_can_draw(common);
   const OrderlyInterrupt interrupt;
   files.prepare();
-  interrupt.run(common, {"rendering", what_shortens(request_of<CameraRequest>(sequence.front(), common))},
-                [&](Progress* bar, const Cancellation* cancel) {
-                  for (std::size_t k = 0; k < count && !is_cancelled(cancel); ++k) {
-                    PartProgress part(bar, static_cast<double>(k) / static_cast<double>(count),
-                                      static_cast<double>(k + 1) / static_cast<double>(count));
-                    studies::CameraResult result = studies[k]->run(&part, cancel);
-                    if (result.image.passes > 0) results.push_back(std::move(result));
-                  }
-                });
+  interrupt.run(common, {"rendering", what_shortens(request)}, [&](Progress* bar, const Cancellation* cancel) {
+    for (std::size_t k = 0; k < count && !is_cancelled(cancel); ++k) {
+      PartProgress part(bar, static_cast<double>(k) / static_cast<double>(count),
+                        static_cast<double>(k + 1) / static_cast<double>(count));
+      studies::CameraResult result = studies[k]->run(&part, cancel);
+      if (result.image.passes > 0) results.push_back(std::move(result));
+    }
+  });
   Warnings warnings;
   for (const studies::CameraResult& result : results)
     warnings.insert(warnings.end(), result.warnings.begin(), result.warnings.end());
   const bool is_complete =
       results.size() == count && std::ranges::all_of(results, [](const auto& result) { return result.complete; });
-  return files.write(studies::camera_series_json(results, is_complete), studies::camera_series_table(results), warnings,
-                     {.complete = is_complete});
+  return files.write(studies::camera_series_json(results, warnings, is_complete), studies::camera_series_table(results),
+                     warnings, {.complete = is_complete});
 }
 
 ExitCode run_road(const ImageOptions& options, const CommonOptions& common, design::Design design) {

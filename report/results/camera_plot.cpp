@@ -109,7 +109,7 @@ std::vector<Colour> displayed_pixels(const CameraResult& result, const ToneCurve
     std::array<double, 3> pixel{rgb[0][k], rgb[1][k], rgb[2][k]};
     std::array<double, 3> photograph{};
     if (result.background) {
-      const std::array<double, 3> behind = result.background->seen(k, image.columns, image.rows);
+      const std::array<double, 3> behind = result.background->mean_colour(k, image.columns, image.rows);
       const double free = 1.0 - image.coverage[k];
       for (std::size_t c = 0; c < 3; ++c) (result.background->is_luminance ? pixel : photograph)[c] += free * behind[c];
       if (result.background->is_luminance) luminance += free * srgb_luminance(behind);
@@ -155,10 +155,9 @@ std::string light_text(const CameraResult& result) {
 }
 
 std::string exposure_text(const CameraResult& result, const ToneCurve& tone) {
-  return fmt::format(
-      "white is {} cd/m\u00b2 (EV100 {}, {}), {} tone curve", figure(tone.white), fixed(tone.ev100(), 1),
-      result.request.exposure_ev ? "given" : "automatic",
-      result.request.tone == "reinhard" ? "Reinhard's" : (result.request.tone == "log" ? "logarithmic" : "linear"));
+  return fmt::format("white is {} cd/m\u00b2 (EV100 {}, {}), {} tone curve", figure(tone.white), fixed(tone.ev100(), 1),
+                     result.request.exposure_ev ? "given" : "automatic",
+                     tone.tone == Tone::reinhard ? "Reinhard's" : (tone.tone == Tone::log ? "logarithmic" : "linear"));
 }
 
 std::string name_of(const CameraResult& result) {
@@ -168,11 +167,6 @@ std::string name_of(const CameraResult& result) {
   else if (result.request.dye != "none")
     name += ", dyed";
   return name;
-}
-
-/// Returns the lines of a text that fit the width.
-std::vector<std::string> lines_of(const Canvas& canvas, const std::string& text, double width) {
-  return canvas.fitted(text, kLineFont, width, 3, Ellipsis::end);
 }
 
 /// Returns the size of a picture on the canvas. Small pictures are enlarged by a whole factor.
@@ -247,7 +241,7 @@ double draw_tile(Canvas* canvas, const Canvas& metrics, const CameraResult& resu
       canvas->text({corner.x, y}, line, kNameFont, kBright, Align::left);
   }
   for (const std::string& text : texts)
-    for (const std::string& line : lines_of(metrics, text, width)) {
+    for (const std::string& line : metrics.fitted(text, kLineFont, width, 3, Ellipsis::end)) {
       y += kLine;
       if (canvas != nullptr) canvas->text({corner.x, y}, line, kLineFont, kDim, Align::left);
     }
@@ -287,7 +281,8 @@ std::string camera_png(const CameraResult& result) {
 std::string camera_sheet_png(std::span<const CameraResult> results, const ToneCurve& tone) {
   constexpr std::size_t kMaxColumns = 4;
   const std::size_t count = results.size();
-  const std::size_t columns = count <= kMaxColumns ? count : (count + (count + 3) / 4 - 1) / ((count + 3) / 4);
+  const std::size_t rows = (count + kMaxColumns - 1) / kMaxColumns;
+  const std::size_t columns = (count + rows - 1) / rows;
   const Canvas metrics(Canvas::Format::png, {1.0, 1.0}, 1.0);
   const auto texts_of = [](const CameraResult& result) {
     return std::vector<std::string>{geometry_text(result), light_text(result)};

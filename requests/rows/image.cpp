@@ -226,8 +226,7 @@ constexpr Row kCameraRows[] = {
     {"background",
      File{"a picture"},
      "picture behind the part in the PNG file: a photograph (PNG, JPEG; white is the white of the exposure), or "
-     "OpenEXR "
-     "in cd/m2",
+     "OpenEXR in cd/m2",
      access<&CameraRequest::background>,
      {.value = "FILE", .otherwise = "black"}},
     seed_row<CameraRequest>()};

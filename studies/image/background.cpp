@@ -4,7 +4,8 @@
 
 namespace retrace::studies {
 
-std::array<double, 3> Background::seen(std::size_t pixel, std::size_t picture_columns, std::size_t picture_rows) const {
+std::array<double, 3> Background::mean_colour(std::size_t pixel, std::size_t picture_columns,
+                                              std::size_t picture_rows) const {
   constexpr int kSamples = 4;  // along each side of a pixel
   const auto own_columns = static_cast<double>(columns);
   const auto own_rows = static_cast<double>(rows);

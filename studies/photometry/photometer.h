@@ -127,8 +127,8 @@ class Photometer {
   /// reflects, either at its outer side, or at its inner side between two retroreflections by elements.
   /// \pre is_exact()
   void ignore_mirror_image() { has_mirror_image_ = false; }
-  /// Ignores, in later measurements, the light that the entrance face reflects at its outer side.
-  /// \pre is_exact()
+  /// Ignores, in later measurements by beams, the light that the entrance face reflects at its outer side. Measurements
+  /// by rays are not changed.
   void ignore_front_reflection() { has_front_reflection_ = false; }
   /// Makes later measurements use geometrical optics, without diffraction.
   void ignore_diffraction();

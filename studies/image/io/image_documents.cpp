@@ -123,14 +123,12 @@ std::string camera_json(const CameraResult& result) {
   return image_text(camera_content(result), result.elapsed_s, result.warnings, result.complete);
 }
 
-std::string camera_series_json(const std::vector<CameraResult>& results, bool complete) {
+std::string camera_series_json(const std::vector<CameraResult>& results, const Warnings& warnings, bool complete) {
   Json json = {{"kind", "camera_series"}, {"pictures", Json::array()}};
   double elapsed_s = 0.0;
-  Warnings warnings;
   for (const CameraResult& result : results) {
     json["pictures"].push_back(camera_content(result));
     elapsed_s += result.elapsed_s;
-    warnings.insert(warnings.end(), result.warnings.begin(), result.warnings.end());
   }
   return image_text(std::move(json), elapsed_s, warnings, complete);
 }

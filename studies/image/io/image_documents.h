@@ -16,8 +16,9 @@ namespace retrace::studies {
 std::string detector_json(const DetectorResult& result);
 std::string camera_json(const CameraResult& result);
 /// Returns the document of several camera pictures.
+/// \param warnings warnings of all pictures
 /// \param complete true if all requested pictures are complete
-std::string camera_series_json(const std::vector<CameraResult>& results, bool complete);
+std::string camera_series_json(const std::vector<CameraResult>& results, const Warnings& warnings, bool complete);
 std::string road_json(const RoadResult& result);
 
 /// The following functions return tables for the terminal.
