@@ -44,9 +44,7 @@ ToneCurve tone_of_exposure(double ev100, Tone tone);
 /// is the grey of Tone::reinhard.
 ToneCurve tone_of_picture(const std::vector<double>& luminance, Tone tone, double key = 0.18);
 
-/// Converts luminances to display intensities with the global operator of E. Reinhard et al., ACM Trans. Graph. 21, 267
-/// (2002), eq. 4. The logarithmic mean of the pixels that are not dark is mapped to the intensity `key`. The 99.9th
-/// percentile is mapped to white.
+/// Converts the luminances of a picture to display intensities, with Tone::reinhard and the curve of tone_of_picture().
 /// \param luminance each >= 0
 /// \return display intensities 0..1, linear
 std::vector<double> tone_mapped(const std::vector<double>& luminance, double key = 0.18);

@@ -59,40 +59,40 @@ struct CameraSample {
 class SensorAccumulator : public ExitObserver, public CellObserver {
  public:
   /// On a film, the lamp is evaluated at the start of the path.
-  SensorAccumulator(const Luminaire& luminaire, const CameraScene& scene, std::vector<CameraSample>& looks)
-      : luminaire_(luminaire), scene_(scene), looks_(looks) {}
+  SensorAccumulator(const Luminaire& luminaire, const CameraScene& scene, std::vector<CameraSample>& paths)
+      : luminaire_(luminaire), scene_(scene), paths_(paths) {}
 
   /// Selects the path to which the following events of PathWalker belong.
-  void begin(std::size_t look) { look_ = static_cast<std::uint32_t>(look); }
+  void begin(std::size_t path) { path_ = static_cast<std::uint32_t>(path); }
   void on_exit(const ExitEvent& departure) override {
     if (departure.is_through_entrance())
-      on_exit(look_, departure.position, departure.direction, departure.light.power());
+      on_exit(path_, departure.position, departure.direction, departure.light.power());
   }
   void on_exit(std::uint32_t owner, const Vec3& position, const Vec3& direction, double power) override {
-    CameraSample& look = looks_[owner];
-    const Vec3& from = scene_.film ? look.contact.world : position;
-    const Vec3 towards = look.contact.world_from_local * direction;
-    const double lamp = look.contact.kind == Contact::Kind::face
-                            ? look.gain * luminaire_.luminance(from, towards, scene_.correction.blur)
+    CameraSample& path = paths_[owner];
+    const Vec3& from = scene_.film ? path.contact.world : position;
+    const Vec3 towards = path.contact.world_from_local * direction;
+    const double lamp = path.contact.kind == Contact::Kind::face
+                            ? path.gain * luminaire_.luminance(from, towards, scene_.correction.blur)
                             : luminaire_.luminance(from, towards);
-    look.luminance += power * (scene_.surroundings.entrance_side + lamp);
+    path.luminance += power * (scene_.surroundings.entrance_side + lamp);
   }
   /// Adds the luminance in the direction in which the entrance face reflects the path from outside.
   void on_front_reflection(std::uint32_t owner, const Vec3& direction, double power) {
-    CameraSample& look = looks_[owner];
-    look.luminance += power * scene_.surroundings.entrance_side;
+    CameraSample& path = paths_[owner];
+    path.luminance += power * scene_.surroundings.entrance_side;
     if (scene_.has_front_reflection)
-      look.luminance += power * luminaire_.luminance(look.contact.world, look.contact.world_from_local * direction);
+      path.luminance += power * luminaire_.luminance(path.contact.world, path.contact.world_from_local * direction);
   }
   void on_transmission(std::uint32_t owner, double power) override {
-    looks_[owner].luminance += scene_.surroundings.back_side * power;
+    paths_[owner].luminance += scene_.surroundings.back_side * power;
   }
 
  private:
   const Luminaire& luminaire_;
   const CameraScene& scene_;
-  std::vector<CameraSample>& looks_;
-  std::uint32_t look_ = 0;
+  std::vector<CameraSample>& paths_;
+  std::uint32_t path_ = 0;
 };
 
 Vec2 in_unit_disc(double u, double v) {
@@ -193,10 +193,11 @@ struct CameraTracer::Impl {
   std::size_t rows_of_block() const {
     return std::max<std::size_t>(1, kPathsTogether * setups.size() / (kPointsPerPass * scene.view.columns));
   }
-  void look(const WorldRay& ray, std::size_t wavelength, std::uint32_t pixel, std::uint32_t point, Block& block) const;
-  void look_from(std::uint32_t pixel, std::uint32_t pass, Block& block) const;
+  void add_path(const WorldRay& ray, std::size_t wavelength, std::uint32_t pixel, std::uint32_t point,
+                Block& block) const;
+  void add_paths(std::uint32_t pixel, std::uint32_t pass, Block& block) const;
   std::array<PixelGuide::Point, kPointsPerPass> points_of(std::uint32_t pixel, std::uint32_t pass) const;
-  std::optional<PixelProjection> place_of(std::uint32_t pixel) const;
+  std::optional<PixelProjection> projection_of(std::uint32_t pixel) const;
   std::uint32_t tile_of(std::size_t pixel) const {
     const std::size_t row = pixel / scene.view.columns * tiles_along / scene.view.rows;
     const std::size_t column = pixel % scene.view.columns * tiles_along / scene.view.columns;
@@ -205,7 +206,7 @@ struct CameraTracer::Impl {
   bool is_guided(std::size_t pixel) const { return guide && has_guide[pixel]; }
   struct GuideTraining;
   std::optional<CameraPass> trace(std::uint32_t pass, const Cancellation* cancel,
-                                  GuideTraining* lesson = nullptr) const;
+                                  GuideTraining* training = nullptr) const;
   std::optional<CameraPass> trace_and_learn(std::uint32_t pass, const Cancellation* cancel);
   void follow_together(std::uint32_t pass, std::uint32_t block_number, Block& block, const Cancellation* cancel) const;
 
@@ -245,17 +246,17 @@ struct CameraTracer::Impl::GuideTraining {
   }
 
   /// Appends the paths of consecutive pixels to the samples.
-  /// \param looks paths, kPointsPerPass per pixel
+  /// \param paths kPointsPerPass paths per pixel
   /// \param pixel index of the first pixel
-  void take(const std::vector<CameraSample>& looks, std::size_t pixel, PixelGuide::Samples& into) {
-    for (std::size_t k = 0; k < looks.size(); k += kPointsPerPass, ++pixel) {
-      const std::span<const CameraSample, kPointsPerPass> of(looks.data() + k, kPointsPerPass);
-      if (!hidden.guide) levels[pixel] = level_of(of);
+  void append(const std::vector<CameraSample>& paths, std::size_t pixel, PixelGuide::Samples& into) {
+    for (std::size_t k = 0; k < paths.size(); k += kPointsPerPass, ++pixel) {
+      const std::span<const CameraSample, kPointsPerPass> paths_of_pixel(paths.data() + k, kPointsPerPass);
+      if (!hidden.guide) levels[pixel] = level_of(paths_of_pixel);
       if (pixel % stride != 0) continue;
-      for (const CameraSample& look : of)
-        if (look.contact.kind == Contact::Kind::face)
-          into.push_back(guide.sample(look.contact.local.head<2>(), hidden.tile_of(pixel),
-                                      static_cast<float>(look.luminance) - levels[pixel]));
+      for (const CameraSample& path : paths_of_pixel)
+        if (path.contact.kind == Contact::Kind::face)
+          into.push_back(guide.sample(path.contact.local.head<2>(), hidden.tile_of(pixel),
+                                      static_cast<float>(path.luminance) - levels[pixel]));
     }
   }
 
@@ -269,9 +270,9 @@ struct CameraTracer::Impl::GuideTraining {
  private:
   /// Returns the typical luminance of a pixel. It is the second smallest value of its paths, because the few areas that
   /// differ from the rest of the pixel are usually brighter.
-  static float level_of(std::span<const CameraSample, kPointsPerPass> looks) {
+  static float level_of(std::span<const CameraSample, kPointsPerPass> paths) {
     std::array<double, kPointsPerPass> seen;
-    std::ranges::transform(looks, seen.begin(), &CameraSample::luminance);
+    std::ranges::transform(paths, seen.begin(), &CameraSample::luminance);
     std::ranges::sort(seen);
     return static_cast<float>(seen[1]);
   }
@@ -318,16 +319,16 @@ Contact CameraTracer::Impl::contact_of(const WorldRay& ray) const {
 
 /// Rows of the picture that are traced together in one pass. Each thread reuses its block to avoid memory allocations.
 struct CameraTracer::Impl::Block {
-  explicit Block(const Impl& h) : sight(h.luminaire, h.scene, looks), starts(h.setups.size()) {
+  explicit Block(const Impl& h) : accumulator(h.luminaire, h.scene, paths), starts(h.setups.size()) {
     for (const PathSetup& setup : h.setups) {
-      walkers.emplace_back(setup, tally, &sight);
+      walkers.emplace_back(setup, tally, &accumulator);
       if (h.cells) cell_walkers.emplace_back(setup, setup.policy, *h.cells, h.centre_mm, true);
     }
   }
   Block(const Block&) = delete;
 
   void begin() {
-    looks.clear();
+    paths.clear();
     for (std::vector<CellRay>& of_wavelength : starts) of_wavelength.clear();
     tally = Tally(1);
   }
@@ -337,34 +338,34 @@ struct CameraTracer::Impl::Block {
               std::uint32_t sample, std::uint32_t& choices) {
     const auto behind = [&] { return tally.other[Account::transmitted] + tally.other[Account::side_exit]; };
     const double before = behind();
-    sight.begin(start.owner);
+    accumulator.begin(start.owner);
     walkers[wavelength].resume(start.position, start.ray, key, replicate, sample, choices);
-    sight.on_transmission(start.owner, behind() - before);
+    accumulator.on_transmission(start.owner, behind() - before);
   }
 
-  std::vector<CameraSample> looks;  ///< kPointsPerPass per pixel
+  std::vector<CameraSample> paths;  ///< kPointsPerPass per pixel
   Tally tally{1};
-  SensorAccumulator sight;
+  SensorAccumulator accumulator;
   std::vector<PathWalker> walkers;  ///< indexed by wavelength
   std::vector<CellWalker> cell_walkers;
   std::vector<std::vector<CellRay>> starts;  ///< indexed by wavelength: paths that are traced together
 };
 
 /// Adds a path to a block. The path is traced immediately, or queued for the cell engine.
-void CameraTracer::Impl::look(const WorldRay& ray, std::size_t wavelength, std::uint32_t pixel, std::uint32_t point,
-                              Block& block) const {
-  const auto number = static_cast<std::uint32_t>(block.looks.size());
-  CameraSample& look = block.looks.emplace_back();
-  look.contact = contact_of(ray);
-  const Contact contact = look.contact;
-  if (contact.kind == Contact::Kind::face) look.gain = scene.correction.gain_at(contact.local.head<2>());
-  if (contact.kind == Contact::Kind::nothing) look.luminance = scene.surroundings.back_side;
+void CameraTracer::Impl::add_path(const WorldRay& ray, std::size_t wavelength, std::uint32_t pixel, std::uint32_t point,
+                                  Block& block) const {
+  const auto number = static_cast<std::uint32_t>(block.paths.size());
+  CameraSample& path = block.paths.emplace_back();
+  path.contact = contact_of(ray);
+  const Contact contact = path.contact;
+  if (contact.kind == Contact::Kind::face) path.gain = scene.correction.gain_at(contact.local.head<2>());
+  if (contact.kind == Contact::Kind::nothing) path.luminance = scene.surroundings.back_side;
   if (contact.kind == Contact::Kind::nothing || contact.kind == Contact::Kind::dark) return;
   const Optics& optics = setups[wavelength].optics;
   const Vec3 direction = contact.world_from_local.transpose() * ray.direction;
   Ray start{direction, {}, contact.kind != Contact::Kind::outside, false};
   start.light.s_axis = direction.unitOrthogonal();
-  if (look.shows_part()) {
+  if (path.shows_part()) {
     const bool is_side = contact.kind == Contact::Kind::side;
     const Vec3 normal = is_side ? setups[wavelength].sides[contact.side].normal : Vec3(Vec3::UnitZ());
     const double cosine = -normal.dot(direction);
@@ -376,9 +377,9 @@ void CameraTracer::Impl::look(const WorldRay& ray, std::size_t wavelength, std::
     if (is_side || !optics.lossless_entrance) {
       start.light = start.light.transmitted(f);
       if (is_side)
-        block.sight.on_transmission(number, front.power());
+        block.accumulator.on_transmission(number, front.power());
       else
-        block.sight.on_front_reflection(number, mirrored(direction, normal), front.power());
+        block.accumulator.on_front_reflection(number, mirrored(direction, normal), front.power());
     }
   }
   const CellRay on{contact.local, start, number};
@@ -391,7 +392,7 @@ void CameraTracer::Impl::look(const WorldRay& ray, std::size_t wavelength, std::
 }
 
 /// Returns the area of the entrance face that a pixel shows. Returns nothing if the pixel also shows something else.
-std::optional<PixelProjection> CameraTracer::Impl::place_of(std::uint32_t pixel) const {
+std::optional<PixelProjection> CameraTracer::Impl::projection_of(std::uint32_t pixel) const {
   const auto columns = static_cast<std::uint32_t>(scene.view.columns);
   const Vec2 corner(pixel % columns, pixel / columns);
   std::array<Vec2, 4> at;
@@ -408,7 +409,7 @@ std::array<PixelGuide::Point, CameraTracer::kPointsPerPass> CameraTracer::Impl::
                                                                                           std::uint32_t pass) const {
   if (is_guided(pixel)) {
     const auto words = philox({seed, kGuideStream}, pass, pixel);
-    auto points = guide->points(*place_of(pixel), {words[0], words[1], words[2], words[3]});
+    auto points = guide->points(*projection_of(pixel), {words[0], words[1], words[2], words[3]});
     // The index of a point determines its wavelength. The points are rotated by a random number of indices, so that
     // every wavelength receives points that the guide has selected.
     const auto turn = static_cast<std::ptrdiff_t>(philox({seed, kGuideStream}, pass, pixel, 1)[0] % kPointsPerPass);
@@ -426,7 +427,7 @@ std::array<PixelGuide::Point, CameraTracer::kPointsPerPass> CameraTracer::Impl::
 }
 
 /// Starts the paths of one pixel in a pass.
-void CameraTracer::Impl::look_from(std::uint32_t pixel, std::uint32_t pass, Block& block) const {
+void CameraTracer::Impl::add_paths(std::uint32_t pixel, std::uint32_t pass, Block& block) const {
   const auto columns = static_cast<std::uint32_t>(scene.view.columns);
   const Vec2 corner(pixel % columns, pixel / columns);
   const auto points = points_of(pixel, pass);
@@ -440,9 +441,9 @@ void CameraTracer::Impl::look_from(std::uint32_t pixel, std::uint32_t pass, Bloc
     const Vec2 pupil = scene.discs == DiscAverage::sampled
                            ? in_unit_disc(unit_interval(random[1]), unit_interval(random[2]))
                            : Vec2(Vec2::Zero());
-    const std::size_t number = block.looks.size();
-    look(lens.ray(corner + points[k].within, pupil), wavelength, pixel, point, block);
-    block.looks[number].weight = points[k].weight;
+    const std::size_t number = block.paths.size();
+    add_path(lens.ray(corner + points[k].within, pupil), wavelength, pixel, point, block);
+    block.paths[number].weight = points[k].weight;
   }
 }
 
@@ -456,23 +457,23 @@ void CameraTracer::Impl::follow_together(std::uint32_t pass, std::uint32_t block
     if (block.starts[w].empty()) continue;
     CellWalker& walker = block.cell_walkers[w];
     const auto sample = static_cast<std::uint32_t>(block_number * setups.size() + w);
-    walker.follow(block.starts[w], entrance_mm, key, pass, sample, block.tally, block.sight);
+    walker.follow(block.starts[w], entrance_mm, key, pass, sample, block.tally, block.accumulator);
     std::uint32_t choices = walker.choices();
     for (const CellRay& ray : walker.handed_over()) block.resume(ray, w, key, pass, sample, choices);
   }
 }
 
 /// Traces one pass over the picture.
-/// \param lesson receives training samples for the guide; may be null
+/// \param training receives training samples for the guide; may be null
 std::optional<CameraPass> CameraTracer::Impl::trace(std::uint32_t number, const Cancellation* cancel,
-                                                    GuideTraining* lesson) const {
+                                                    GuideTraining* training) const {
   const std::size_t columns = scene.view.columns;
   const std::size_t pixels = columns * scene.view.rows;
   CameraPass result(2 * pixels + 1, 0.0);
   std::vector<double> on_part(pixels, 0.0);
   const std::size_t rows = rows_of_block();
   std::vector<double> lost((scene.view.rows + rows - 1) / rows, 0.0);
-  if (lesson != nullptr) lesson->samples.resize(lost.size());
+  if (training != nullptr) training->samples.resize(lost.size());
   tbb::enumerable_thread_specific<std::unique_ptr<Block>> blocks;
   for_each_in_parallel(lost.size(), [&](std::size_t block_number) {
     const FlushDenormals flush;
@@ -484,22 +485,22 @@ std::optional<CameraPass> CameraTracer::Impl::trace(std::uint32_t number, const 
     const std::size_t last = std::min(pixels, first + rows * columns);
     for (std::size_t pixel = first; pixel < last; ++pixel) {
       if (is_cancelled(cancel)) return;
-      look_from(static_cast<std::uint32_t>(pixel), number, block);
+      add_paths(static_cast<std::uint32_t>(pixel), number, block);
     }
     if (cells) follow_together(number, static_cast<std::uint32_t>(block_number), block, cancel);
-    for (std::size_t k = 0; k < block.looks.size(); ++k) {
-      const CameraSample& look = block.looks[k];
+    for (std::size_t k = 0; k < block.paths.size(); ++k) {
+      const CameraSample& path = block.paths[k];
       const std::size_t pixel = first + k / kPointsPerPass;
       // The weights of a pixel's points add up to 1 only on average. The weights are therefore applied to the
       // difference from the typical luminance of the pixel, so that deviations of their sum from 1 cause little noise.
       const double level = is_guided(pixel) ? static_cast<double>(levels[pixel]) : 0.0;
-      const double luminance = level / kPointsPerPass + look.weight * (look.luminance - level);
+      const double luminance = level / kPointsPerPass + path.weight * (path.luminance - level);
       result[pixel] += luminance;
-      if (!look.shows_part()) continue;
+      if (!path.shows_part()) continue;
       on_part[pixel] += luminance;
       result[pixels + pixel] += 1.0 / kPointsPerPass;
     }
-    if (lesson != nullptr) lesson->take(block.looks, first, lesson->samples[block_number]);
+    if (training != nullptr) training->append(block.paths, first, training->samples[block_number]);
     lost[block_number] = block.tally.other[Account::lost];
   });
   if (is_cancelled(cancel)) return std::nullopt;
@@ -515,24 +516,24 @@ std::optional<CameraPass> CameraTracer::Impl::trace(std::uint32_t number, const 
 
 /// Traces a pass and trains the guide with it. If the pass is cancelled, the guide remains unchanged.
 std::optional<CameraPass> CameraTracer::Impl::trace_and_learn(std::uint32_t number, const Cancellation* cancel) {
-  GuideTraining lesson(*this);
-  std::optional<CameraPass> result = trace(number, cancel, &lesson);
+  GuideTraining training(*this);
+  std::optional<CameraPass> result = trace(number, cancel, &training);
   if (!result) return std::nullopt;
-  lesson.guide.train(lesson.samples);
-  std::vector<std::uint8_t> serves(lesson.pixels, 0);
+  training.guide.train(training.samples);
+  std::vector<std::uint8_t> reduces_noise(training.pixels, 0);
   for_each_in_parallel(scene.view.rows, [&](std::size_t row) {
     if (is_cancelled(cancel)) return;
     for (std::size_t column = 0; column < scene.view.columns; ++column) {
       const std::size_t pixel = row * scene.view.columns + column;
-      const std::optional<PixelProjection> place = place_of(static_cast<std::uint32_t>(pixel));
-      serves[pixel] = place && lesson.guide.reduces_noise(*place) ? 1 : 0;
+      const std::optional<PixelProjection> projection = projection_of(static_cast<std::uint32_t>(pixel));
+      reduces_noise[pixel] = projection && training.guide.reduces_noise(*projection) ? 1 : 0;
     }
   });
   if (is_cancelled(cancel)) return std::nullopt;
   has_learnt_all = guide.has_value();
-  guide = std::move(lesson.guide);
-  has_guide.assign(serves.begin(), serves.end());
-  levels = std::move(lesson.levels);
+  guide = std::move(training.guide);
+  has_guide.assign(reduces_noise.begin(), reduces_noise.end());
+  levels = std::move(training.levels);
   return result;
 }
 

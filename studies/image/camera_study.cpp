@@ -99,13 +99,14 @@ bool is_behind(const raytrace::Film& film, double thickness_mm, const Vec3& p) {
   return *film.radius_mm > 0.0 ? from_axis <= *film.radius_mm : from_axis >= -*film.radius_mm;
 }
 
-void check_place(const geometry::Part& part, const raytrace::CameraScene& scene, const Vec3& place, Field field,
-                 const char* what) {
-  const bool bad = scene.film ? is_behind(*scene.film, part.thickness_mm, place) : is_inside(part, place);
+void check_position(const geometry::Part& part, const raytrace::CameraScene& scene, const Vec3& position, Field field,
+                    const char* what) {
+  const bool bad = scene.film ? is_behind(*scene.film, part.thickness_mm, position) : is_inside(part, position);
   if (bad)
-    throw InputError(field, fmt::format("the {} must be outside the {}, got {} mm", what,
-                                        scene.film ? "body, in front of the entrance face" : "part", text_of(place)));
-  if (place == scene.view.target_mm) throw InputError(field, "must differ from the point that the camera looks at");
+    throw InputError(field,
+                     fmt::format("the {} must be outside the {}, got {} mm", what,
+                                 scene.film ? "body, in front of the entrance face" : "part", text_of(position)));
+  if (position == scene.view.target_mm) throw InputError(field, "must differ from the point that the camera looks at");
 }
 
 double shown_width(const CameraRequest& r, const geometry::Part& part) {
@@ -204,8 +205,8 @@ CameraStudy::CameraStudy(design::Design design, CameraRequest request, raytrace:
   model_ = design::make_model(dyed_, materials::MaterialLibrary::shipped());
   scene_ = scene_of(request_, lamp_, model_.part);
   scene_.discs = discs;
-  check_place(model_.part, scene_, scene_.view.eye_mm, {request_.eye_mm ? "eye_mm" : "observation_deg"}, "camera");
-  check_place(model_.part, scene_, scene_.lamp.position_mm, {request_.lamp_mm ? "lamp_mm" : "v_deg"}, "lamp");
+  check_position(model_.part, scene_, scene_.view.eye_mm, {request_.eye_mm ? "eye_mm" : "observation_deg"}, "camera");
+  check_position(model_.part, scene_, scene_.lamp.position_mm, {request_.lamp_mm ? "lamp_mm" : "v_deg"}, "lamp");
   const Vec3 view = (scene_.view.target_mm - scene_.view.eye_mm).normalized();
   if (view.cross(scene_.view.up).norm() < 1e-6) scene_.view.up = view.unitOrthogonal();
   if (!request_.background.empty())

@@ -57,7 +57,7 @@ Vec3 eye_at(const RoadScene& s, double distance_m) {
   return {s.eye_right, s.eye_height, distance_m + s.eye_behind};
 }
 
-Vec3 reflector_place(const RoadScene& s, std::size_t side) {
+Vec3 reflector_position(const RoadScene& s, std::size_t side) {
   return {side == 0 ? -s.reflector_half_gap : s.reflector_half_gap, s.reflector_height, 0.0};
 }
 
@@ -124,8 +124,8 @@ Seen seen_along(const RoadScene& s, const RoadView& view, const std::array<Vec3,
     const Vec3 at = eye - eye.z() / direction.z() * direction;
     const Vec2 on_rear = at.head<2>();
     for (std::size_t side = 0; side < 2; ++side) {
-      const Vec3 place = reflector_place(s, side);
-      if (quad(place.x(), place.y(), 0.5 * s.reflector_width, 0.5 * s.reflector_tall).holds(on_rear))
+      const Vec3 position = reflector_position(s, side);
+      if (quad(position.x(), position.y(), 0.5 * s.reflector_width, 0.5 * s.reflector_tall).holds(on_rear))
         return {view.reflectors[side].luminance, view.reflectors[side].luminance};
     }
     if (const auto reflectance = car_reflectance(s, on_rear))
@@ -142,11 +142,11 @@ void add_veil(const RoadScene& s, RoadView& view, double degrees_per_pixel,
   const Vec3 eye = eye_at(s, view.distance_m);
   const double area = s.reflector_width * s.reflector_tall;
   for (std::size_t side = 0; side < 2; ++side) {
-    const Vec3 place = reflector_place(s, side);
-    const Vec3 way = place - eye;
+    const Vec3 position = reflector_position(s, side);
+    const Vec3 way = position - eye;
     const double at_pupil_lx =
         view.reflectors[side].luminance * area * std::abs(way.normalized().z()) / way.squaredNorm();
-    const Vec2 centre = pixel_of(place);
+    const Vec2 centre = pixel_of(position);
     for (std::size_t k = 0; k < view.luminance.size(); ++k) {
       const Vec2 pixel(static_cast<double>(k % s.columns) + 0.5, static_cast<double>(k / s.columns) + 0.5);
       const double veil = at_pupil_lx * veil_per_lx((pixel - centre).norm() * degrees_per_pixel);
@@ -186,8 +186,8 @@ void draw_road(const RoadScene& s, RoadView& view) {
       view.coloured[row * s.columns + column] = sum.coloured;
     }
   });
-  add_veil(s, view, s.field_deg / static_cast<double>(s.columns), [&](const Vec3& place) {
-    const Vec3 way = place - eye;
+  add_veil(s, view, s.field_deg / static_cast<double>(s.columns), [&](const Vec3& position) {
+    const Vec3 way = position - eye;
     const double along = way.dot(forward);
     return Vec2(level + Vec2(way.dot(right), -way.y()) / along / pixel);
   });
@@ -258,7 +258,7 @@ RoadResult RoadStudy::run(Progress* progress, const Cancellation* cancel) const 
     std::vector<PhotometerSetting> settings;
     for (const auto& [side, lamp] : {Pair{0, 0}, Pair{0, 1}, Pair{1, 0}, Pair{1, 1}}) {
       // The reflector is mounted on the car without rotation, so that its axes are those of the scene.
-      const Vec3 reflector = reflector_place(result.scene, side);
+      const Vec3 reflector = reflector_position(result.scene, side);
       settings.push_back(setting_of({(lamps[lamp] - reflector).normalized(), (eye - reflector).normalized()}));
     }
     const auto done = static_cast<double>(result.views.size());
@@ -276,10 +276,10 @@ RoadResult RoadStudy::run(Progress* progress, const Cancellation* cancel) const 
       RoadReflector& reflector = view.reflectors[side];
       reflector.observation_deg[lamp] = settings[k].observation_deg.front();
       reflector.r_a[lamp] = (*readings)[k].r_a.front();
-      const Vec3 place = reflector_place(result.scene, side);
+      const Vec3 position = reflector_position(result.scene, side);
       // Without a lamp file, `lamp_cd` is the intensity towards the reflectors.
-      const double cd = scene_.lamp ? intensity(scene_, lamps[lamp], place) : scene_.lamp_cd;
-      reflector.illuminance_lx[lamp] = cd / (lamps[lamp] - place).squaredNorm();
+      const double cd = scene_.lamp ? intensity(scene_, lamps[lamp], position) : scene_.lamp_cd;
+      reflector.illuminance_lx[lamp] = cd / (lamps[lamp] - position).squaredNorm();
       reflector.luminance += (*readings)[k].r_l.front() * reflector.illuminance_lx[lamp];
     }
     draw_road(result.scene, view);

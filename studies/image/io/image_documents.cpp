@@ -18,7 +18,7 @@ double largest(const std::vector<double>& values) {
   return values.empty() ? 0.0 : *std::max_element(values.begin(), values.end());
 }
 
-Json place(const geometry::Vec3& p) {
+Json position_json(const geometry::Vec3& p) {
   return Json::array({p.x(), p.y(), p.z()});
 }
 
@@ -81,9 +81,9 @@ Json camera_content(const CameraResult& result) {
   json["columns"] = asked.columns;
   json["rows"] = asked.rows;
   json["width_mm"] = result.scene.view.width_mm;
-  json["eye_mm"] = place(result.scene.view.eye_mm);
-  json["lamp_mm"] = place(result.scene.lamp.position_mm);
-  json["target_mm"] = place(result.scene.view.target_mm);
+  json["eye_mm"] = position_json(result.scene.view.eye_mm);
+  json["lamp_mm"] = position_json(result.scene.lamp.position_mm);
+  json["target_mm"] = position_json(result.scene.view.target_mm);
   json["observation_deg"] = result.observation_deg;
   json["entrance_deg"] = result.entrance_deg;
   json["viewing_deg"] = result.viewing_deg;
