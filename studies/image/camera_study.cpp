@@ -158,17 +158,11 @@ Vec3 to_lamp(const raytrace::CameraScene& scene) {
   return scene.lamp.position_mm - scene.view.target_mm;
 }
 
-/// Returns the design with the requested dye.
-design::Design with_dye(design::Design design, const CameraRequest& r) {
+/// Returns the spectral absorption of the requested dye. Empty if no dye is requested.
+materials::SpectralCurve dye_absorption_per_mm(const CameraRequest& r) {
   const std::filesystem::path file = dye_file_of(r.dye, false, {});
-  if (file.empty()) return design;
-  const materials::SpectralCurve curve =
-      read_named(Field{"dye"}, [&] { return materials::read_spectral_absorption(file); });
-  std::vector<design::SpectralAbsorption> absorption;
-  for (std::size_t k = 0; k < curve.values.size(); ++k)
-    absorption.push_back({curve.wavelengths_nm[k], curve.values[k]});
-  design.substance.absorption_per_mm = std::move(absorption);
-  return design;
+  if (file.empty()) return {};
+  return read_named(Field{"dye"}, [&] { return materials::read_spectral_absorption(file); });
 }
 
 PhotometrySettings photometry_of(const CameraRequest& r, const raytrace::CameraScene& scene) {
@@ -201,7 +195,7 @@ CameraStudy::CameraStudy(design::Design design, CameraRequest request, raytrace:
                      "camera images do not support entrance faces that scatter light: use retrace rre, photometry or "
                      "image --detector");
   check_film(request_, design_.is_infinite());
-  dyed_ = with_dye(design_, request_);
+  dyed_ = with_dye(design_, dye_absorption_per_mm(request_));
   model_ = design::make_model(dyed_, materials::MaterialLibrary::shipped());
   scene_ = scene_of(request_, lamp_, model_.part);
   scene_.discs = discs;

@@ -106,15 +106,6 @@ design::Design lit(design::Design design, const PhotometrySettings& request, con
   return design;
 }
 
-design::Design dyed(design::Design design, const PhotometrySettings& request) {
-  const materials::SpectralCurve& dye = request.dye_absorption_per_mm;
-  if (dye.values.empty()) return design;
-  std::vector<design::SpectralAbsorption> curve;
-  for (std::size_t k = 0; k < dye.values.size(); ++k) curve.push_back({dye.wavelengths_nm[k], dye.values[k]});
-  design.substance.absorption_per_mm = std::move(curve);
-  return design;
-}
-
 /// Returns a map after averaging over the discs (apertures) of source and receiver. The kernel is evaluated at the
 /// pixels of the map.
 std::vector<double> blurred(const std::vector<double>& map, std::size_t columns, double step_rad,
@@ -167,9 +158,18 @@ raytrace::ReturnFrame frame_of(const PhotometerSetting& setting) {
   return raytrace::return_frame(geometry_of(setting, 0.0));
 }
 
+design::Design with_dye(design::Design design, const materials::SpectralCurve& absorption_per_mm) {
+  if (absorption_per_mm.values.empty()) return design;
+  std::vector<design::SpectralAbsorption> curve;
+  for (std::size_t k = 0; k < absorption_per_mm.values.size(); ++k)
+    curve.push_back({absorption_per_mm.wavelengths_nm[k], absorption_per_mm.values[k]});
+  design.substance.absorption_per_mm = std::move(curve);
+  return design;
+}
+
 Photometer::Photometer(const design::Design& design, const PhotometrySettings& request, std::size_t parts,
                        PhotometricResponse response)
-    : design_(dyed(design, request)), request_(request), kernel_(request.apertures) {
+    : design_(with_dye(design, request.dye_absorption_per_mm)), request_(request), kernel_(request.apertures) {
   const materials::MaterialLibrary library = materials::MaterialLibrary::shipped();
   if (design_.balls()) check_balls(design_);
   check_engine(design_, design::engine_facts(design_, nullptr), request.engine);

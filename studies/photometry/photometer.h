@@ -245,6 +245,9 @@ class Photometer {
   bool has_front_reflection_ = true;
 };
 
+/// Returns the design with the absorption of a dye in its body. Returns the same design if the curve is empty.
+design::Design with_dye(design::Design design, const materials::SpectralCurve& absorption_per_mm);
+
 /// Returns the relative spectral power of a CIE illuminant, per nm.
 /// \pre `light` is not the design's own light
 materials::SpectralCurve lamp_power(PhotometricLight light);
