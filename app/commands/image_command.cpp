@@ -127,11 +127,13 @@ class Preview {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-/// Returns all files that a camera picture reads.
-std::vector<std::string> files_of(const std::vector<design::Design>& designs, const CameraRequest& request) {
+/// Returns all files that a picture of a camera or a road reads.
+template <class Request>
+std::vector<std::string> files_of(const std::vector<design::Design>& designs, const Request& request) {
   std::vector<std::string> files = files_read(designs);
   if (!request.lamp.empty()) files.push_back(request.lamp.string());
-  if (!request.background.empty()) files.push_back(request.background.string());
+  if constexpr (requires { request.background; })
+    if (!request.background.empty()) files.push_back(request.background.string());
   if (const auto dye = studies::dye_file_of(request.dye, false, {}); !dye.empty()) files.push_back(dye.string());
   return files;
 }
@@ -261,10 +263,8 @@ ExitCode run_series(const ImageOptions& options, const CommonOptions& common, co
 }
 
 ExitCode run_road(const ImageOptions& options, const CommonOptions& common, design::Design design) {
-  std::vector<std::string> inputs = files_read({design});
   const auto request = request_of<RoadRequest>(options.fields, common);
-  if (!request.lamp.empty()) inputs.push_back(request.lamp.string());
-  if (const auto dye = studies::dye_file_of(request.dye, false, {}); !dye.empty()) inputs.push_back(dye.string());
+  const std::vector<std::string> inputs = files_of({design}, request);
   const studies::RoadStudy study(std::move(design), request);
   check_can_draw(common);
   const OrderlyInterrupt interrupt;
