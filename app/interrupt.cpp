@@ -16,6 +16,7 @@ namespace {
 
 Cancellation cancellation_asked;
 std::atomic<bool> is_orderly{false};
+std::atomic<bool> is_silent{false};
 
 // Time from the first interrupt within which the work must stop. After this time, a timer sends SIGALRM, which ends the
 // process.
@@ -34,7 +35,7 @@ std::string_view last_line;
 
 extern "C" void end_now(int) {
   remove_temporary_files();
-  static_cast<void>(!::write(STDERR_FILENO, last_line.data(), last_line.size()));
+  if (!is_silent.load()) static_cast<void>(!::write(STDERR_FILENO, last_line.data(), last_line.size()));
   ::_exit(static_cast<int>(ExitCode::interrupted));
 }
 
@@ -56,6 +57,10 @@ void install_interrupt_handlers() {
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
   if (std::signal(SIGHUP, on_interrupt) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
+}
+
+void print_nothing_on_interrupt() {
+  is_silent.store(true);
 }
 
 OrderlyInterrupt::OrderlyInterrupt() {

@@ -38,7 +38,9 @@ ExitCode run_on_ranks(const CommonOptions& common, std::size_t at_a_time,
                       const std::function<ComputeTask()>& help) {
   if (!compute::MpiSession::is_launched()) return lead(nullptr);
   compute::MpiSession session;
+  if (session.rank() != 0) print_nothing_on_interrupt();
   const ExitCode code = session.rank() == 0 ? lead(&session) : serve(common, at_a_time, help, session);
+  print_nothing_on_interrupt();
   if (session.end()) return code;
   // Some ranks may have been lost, and MPI_Finalize could wait for them forever. The process therefore ends without it.
   std::fflush(nullptr);

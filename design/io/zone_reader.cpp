@@ -66,7 +66,7 @@ bool changes_kind(const ZoneChange& change, const Document& document) {
 }
 
 /// Returns the changes of a zone.
-/// \throw InputError if a change does not have the form KEY=VALUE, or if its key must be equal in all zones
+/// \throw InputError if a change does not have the form KEY=VALUE, or if its key must have the same value in all zones
 std::vector<ZoneChange> changes_of(const Document& document, std::size_t zone) {
   const std::string key = entry_of(zone) + ".set";
   std::vector<ZoneChange> changes;

@@ -21,7 +21,7 @@ inline constexpr std::size_t kMaxFacetPlanesBytes = std::size_t{512} << 20;
 /// rotated element), and 2 is the opposite facet. For cube corners, 1 to 3 are the facets between the dihedral edges,
 /// starting from the edge at 0 degrees. Flares have the numbers 4 to 6 and replace a missing hexagonal element
 /// (ElementPlanes::flares). Caps have the numbers 7 to 9 and are the surfaces that a chisel leaves over the apex
-/// (ElementPlanes::caps). The lines of caps must follow the lines of the element's facets.
+/// (ElementPlanes::caps). In the file, the lines of the caps must come after the lines of the facets of the same element.
 /// \param spec array to which the planes belong; planes may differ from its facets by at most 5 degrees and a tenth of
 ///        the depth
 /// \throw InputError with file, line and column

@@ -43,7 +43,7 @@ struct EngineFacts {
   bool needs_plain_sampling = false;  ///< the request uses Sampling::Kind::plain
 };
 
-/// Returns the facts that follow from optical properties. All other members of the result are false.
+/// Returns the facts that can be derived from optical properties. All other facts are false.
 EngineFacts facts_of(const Optics& optics);
 
 /// Reason why an engine cannot be used: a property of the model or of the requested result.

@@ -16,7 +16,7 @@ bool is_mirror_symmetric(const geometry::Part& part, Eigen::Index axis);
 
 /// Returns the orthogonal maps of directions in the plane z = 0 that do not change a part: its rotations about the z
 /// axis by multiples of 60 or 90 degrees, its reflections across the x and y axes, and their products. The first is the
-/// identity. An infinite part may be shifted after the map.
+/// identity. For an infinite part, maps that leave it unchanged except for a shift also count.
 std::vector<Eigen::Matrix2d> symmetries_of(const geometry::Part& part);
 
 }  // namespace retrace::raytrace

@@ -17,7 +17,8 @@ std::vector<double> with_mean_colour(const raytrace::CameraImage& luminance, con
                                      std::size_t reach) {
   const std::size_t columns = luminance.columns;
   const std::size_t rows = luminance.rows;
-  // Sums over all pixels above and to the left, with one more row and column.
+  // Summed-area table: each value is the sum over all pixels above and to its left. It has one row and one column more
+  // than the picture.
   const auto sums_of = [&](const std::vector<double>& values) {
     std::vector<double> sums((columns + 1) * (rows + 1), 0.0);
     for (std::size_t r = 0; r < rows; ++r)

@@ -19,7 +19,7 @@ void require(bool holds, const char* key, const char* allowed, double given) {
   if (!holds) throw InputError({"", 0, key}, std::string(allowed) + ", got " + shortest(given));
 }
 
-// Minimum correlation length in um without a warning, for roughness with a lay (different correlation lengths along x
+// Smallest correlation length in um for which no warning is given, for roughness with a lay (different correlation lengths along x
 // and y). The phase model is used for such roughness. Below this length, it overestimates scatter by 9 % at 45 degrees
 // (docs/theory/scatter.md).
 constexpr double kLongOfLay = 2.0;
