@@ -1,4 +1,4 @@
-/* made by tools/live_page; engine.wasm.gz 41b62c3ac176bef5de27c70b505e0a521e79e63372deb47dccb26276b45efafc */
+/* made by tools/live_page; engine.wasm.gz 12966f1f9fc0241623f2592d7a6057a98b1a4c8938e91c6ac66380b34aa42d28 */
 
 var makeRetrace = (() => {
   var _scriptDir = typeof document !== 'undefined' && document.currentScript ? document.currentScript.src : undefined;

@@ -12,8 +12,8 @@
 
 namespace retrace::studies {
 
-/// Direction of incidence in a group of directions that share one trace. Only the first direction of the group is traced.
-/// The results of the others are computed from its light.
+/// Direction of incidence in a group of directions that share one trace. Only the first direction of the group is
+/// traced. The results of the others are computed from its light.
 struct SharedDirection {
   std::size_t index = 0;
   /// Symmetry of the part that maps directions of view to those of the traced light. Components along z do not change.

@@ -99,8 +99,8 @@ inline std::map<std::string_view, bool> chosen_keys(const Table& table) {
   return chosen;
 }
 
-/// Sets all required keys and, at random, some optional keys. Keys are set in the order of their rows, because the allowed
-/// values of a key may depend on the values of earlier keys.
+/// Sets all required keys and, at random, some optional keys. Keys are set in the order of their rows, because the
+/// allowed values of a key may depend on the values of earlier keys.
 inline void fill(Document& document, const Table& table, const std::string& path) {
   const std::map<std::string_view, bool> chosen = chosen_keys(table);
   for (const Row& row : table.rows) {

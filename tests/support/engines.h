@@ -43,8 +43,8 @@ inline void expect_engines_agree(const geometry::PartSpec& spec, double most_tru
   EXPECT_LT(sampled.ledger[Account::lost], 1e-9);
 }
 
-/// Traces a part with beams. Expects that it returns the fraction `expected` of the light at normal incidence and absorbs the
-/// remainder.
+/// Traces a part with beams. Expects that it returns the fraction `expected` of the light at normal incidence and
+/// absorbs the remainder.
 inline void expect_returned_or_absorbed(const geometry::Part& part, const raytrace::Optics& optics, double expected) {
   using raytrace::Account;
   raytrace::BeamPolicy policy;

@@ -47,8 +47,8 @@ FacetForm paraboloid(double depth_mm, double radius_mm) {
   return form;
 }
 
-// Compares the far field of a cube corner with a pixel model for two form errors of the facets: a paraboloid (sink mark),
-// and a form without symmetry, which reveals errors of positions, signs and axes.
+// Compares the far field of a cube corner with a pixel model for two form errors of the facets: a paraboloid (sink
+// mark), and a form without symmetry, which reveals errors of positions, signs and axes.
 TEST(FormedAperture, CubeCornerAgreesWithAPixelModel) {
   constexpr double kAperture = 0.5;
   const double radius = 0.5 * kAperture / std::sqrt(4.0 / 3.0);  // half the diagonal of a square facet
