@@ -14,6 +14,7 @@
 #include "core/memory_budget.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
+#include "core/requirement_text.h"
 #include "core/text.h"
 #include "core/version.h"
 #include "requests/row.h"
@@ -63,11 +64,21 @@ void add_check(CLI::Option& option, const Traits& traits) {
     option.check(not_empty());
 }
 
-/// Returns the help text of an argument, followed by the options that it requires.
+/// Returns true if the help text of the argument begins with the options of which one is required, such as
+/// "camera, road: TEXT" for --camera and --road.
+bool is_at_start(const Need& need, const Argument& argument) {
+  Words modes;
+  for (const Condition& condition : need)
+    if (condition.kind == Condition::Kind::given) modes.push_back(condition.option.substr(2));
+  return modes.size() == need.size() && argument.help.starts_with(fmt::format("{}: ", fmt::join(modes, ", ")));
+}
+
+/// Returns the help text of an argument, followed by its requirements.
 std::string help_of(const Argument& argument) {
   Words needs;
-  for (const Need& need : argument.traits.needs) needs.push_back(text_of(need));
-  return needs.empty() ? argument.help : fmt::format("{} Needs: {}", argument.help, fmt::join(needs, ", "));
+  for (const Need& need : argument.traits.needs)
+    if (!is_at_start(need, argument)) needs.push_back(text_of(need));
+  return needs.empty() ? argument.help : fmt::format("{} ({})", argument.help, fmt::join(needs, "; "));
 }
 
 template <class Value>
@@ -164,21 +175,17 @@ void check_needs(const GivenOptions& options, const std::vector<Argument>& argum
       if (std::ranges::any_of(need, holds)) continue;
       const Condition& first = need.front();
       const bool is_of_value = first.kind == Condition::Kind::value;
-      if (need.size() == 1 && first.kind == Condition::Kind::absent)
-        throw InputError({"", 0, option_names(argument).back()}, "not allowed together with " + first.option);
       throw InputError({"", 0, option_names(argument).back()},
-                       fmt::format("requires {}{}", text_of(need),
-                                   is_of_value ? ", got " + printable(options.value(first.option)) : ""));
+                       text_of(need) + (is_of_value ? ", got " + printable(options.value(first.option)) : ""));
     }
   }
 }
 
 /// Returns the names of the commands as "a, b and c".
-std::string in_words(std::span<const Command> all) {
-  std::string text;
-  for (std::size_t k = 0; k < all.size(); ++k)
-    text += (k == 0 ? "" : k + 1 == all.size() ? " and " : ", ") + all[k].name;
-  return text;
+std::string names_of(std::span<const Command> all) {
+  Words names;
+  for (const Command& command : all) names.push_back(command.name);
+  return in_words(names, "and");
 }
 
 /// Returns the error message for a command line in which the command or a required argument is missing. If the command
@@ -190,7 +197,7 @@ std::string missing(const CLI::App& app, const std::string& otherwise) {
     if (word.starts_with('-')) return "unknown option " + printable(word);
   if (!app.get_subcommands().empty()) return otherwise;
   return (unknown.empty() ? "a command is required" : "unknown command " + printable(unknown.front())) +
-         "; the commands are " + in_words(commands());
+         "; the commands are " + names_of(commands());
 }
 
 /// Returns an error message of CLI11 as one line, in which long words are shortened.

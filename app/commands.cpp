@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "core/requirement_text.h"
 #include "core/schema/reader.h"
 #include "design/io/design_format.h"
 
@@ -50,14 +51,17 @@ Need absent(const std::string& option) {
 }
 
 std::string text_of(const Need& need) {
-  const auto text_of_one = [](const Condition& condition) -> std::string {
-    if (condition.kind == Condition::Kind::absent) return "no " + condition.option;
-    if (condition.kind == Condition::Kind::given) return condition.option;
-    return fmt::format("{} {}", condition.option, fmt::join(condition.values, " or "));
-  };
-  Words texts;
-  for (const Condition& condition : need) texts.push_back(text_of_one(condition));
-  return fmt::format("{}", fmt::join(texts, " or "));
+  Words required;
+  Words excluded;
+  for (const Condition& condition : need) {
+    if (condition.kind == Condition::Kind::absent)
+      excluded.push_back(condition.option);
+    else if (condition.kind == Condition::Kind::given)
+      required.push_back(condition.option);
+    else
+      required.push_back(fmt::format("{} {}", condition.option, fmt::join(condition.values, " or ")));
+  }
+  return requirement_text(required, excluded);
 }
 
 Words option_names(const Argument& argument) {

@@ -9,6 +9,7 @@
 #include "core/message_text.h"
 #include "core/number_format.h"
 #include "core/overloaded.h"
+#include "core/requirement_text.h"
 #include "requests/row.h"
 
 namespace retrace::requests {
@@ -164,23 +165,20 @@ class Conditions {
 
   /// Returns the error message for a field whose need is not met.
   std::string complaint(Need need) const {
-    if (need.size() > 1 || need.front().is != schema::Condition::Is::absent)
-      return fmt::format("requires {}{}", text_of(need), given(need));
-    const Row* const other = row_of(request_, need.front().key);
-    return "not allowed together with " + reference(other != nullptr ? other->field() : Field{need.front().key});
-  }
-
-  std::string text_of(Need need) const {
-    std::vector<std::string> texts;
+    std::vector<std::string> required;
+    std::vector<std::string> excluded;
     for (const schema::Condition& condition : need) {
       const Row* const other = row_of(request_, condition.key);
       const std::string name = reference(other != nullptr ? other->field() : Field{condition.key});
       using Is = schema::Condition::Is;
-      texts.push_back(condition.is == Is::given    ? name
-                      : condition.is == Is::absent ? "no " + name
-                                                   : fmt::format("{} {}", name, fmt::join(condition.words, " or ")));
+      if (condition.is == Is::absent)
+        excluded.push_back(name);
+      else if (condition.is == Is::given)
+        required.push_back(name);
+      else
+        required.push_back(fmt::format("{} {}", name, fmt::join(condition.words, " or ")));
     }
-    return fmt::format("{}", fmt::join(texts, " or "));
+    return requirement_text(required, excluded) + given(need);
   }
 
   /// Returns the text ", got VALUE", with the value of the field to which the first condition refers. Returns an empty
