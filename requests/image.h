@@ -106,10 +106,18 @@ struct CameraRequest {
   std::uint32_t seed = 1;
 };
 
-/// Settings for images of two reflectors on a car ahead, as a driver sees them at night (`retrace image --road`).
+/// Settings for pictures of reflectors on a car ahead, or of a sign on a mast, as a driver sees them at night
+/// (`retrace image --road`).
 struct RoadRequest {
   /// Distances of the car ahead.
   std::vector<double> distance_m = {10.0, 30.0, 100.0};
+  std::string mount = "car";
+  std::optional<std::array<double, 2>> reflector_mm = {};
+  std::string outline = "auto";
+  std::optional<double> reflector_height_m = {};
+  std::optional<double> lateral_m = {};
+  std::optional<double> mast_m = {};
+  std::string symbol = "arrow";
   /// Intensity of each headlamp towards the reflectors; > 0 and <= 1e+06.
   double lamp_cd = 10'000.0;
   /// IES or EULUMDAT file (.ies, .ldt) of the lamp or headlamps. Default: the same intensity in all directions.
@@ -118,8 +126,16 @@ struct RoadRequest {
   double lamp_height_m = 0.65;
   /// Downward tilt of the axis of a lamp from a file, in degrees; >= -45 and <= 45.
   double lamp_aim_deg = 0.0;
+  double eye_height_m = 1.2;
+  double asphalt_mcd = 15.0;
+  double marking_mcd = 150.0;
   /// Dye of the reflectors: none, red, amber (illustrative) or a file.
   std::string dye = "none";
+  std::size_t columns = 640;
+  std::size_t rows = 440;
+  double field_deg = 13.0;
+  std::optional<double> exposure_ev = {};
+  std::string tone = "reinhard";
   /// Seed of the random numbers; a whole number >= 0 and <= 4294967295.
   std::uint32_t seed = 1;
 };

@@ -52,7 +52,7 @@ std::vector<Argument> arguments(ImageOptions& options) {
       {"--detector", "maps of the returned light, by position on the entrance face and by direction",
        &options.detector},
       {"--camera", "the part in the light of a lamp, as a camera sees it", &options.camera},
-      {"--road", "two of the reflectors on a car ahead at night, as seen by a driver", &options.road},
+      {"--road", "reflectors on a car ahead or a sign at night, as seen by a driver", &options.road},
       {"--false-colour",
        "camera: also write the luminance in false colours",
        &options.false_colour,
@@ -275,6 +275,9 @@ ExitCode run_road(const ImageOptions& options, const CommonOptions& common, desi
   };
   add("road.png", [](const auto& r) { return report::road_png(r); });
   add("road.exr", [](const auto& r) { return report::exr_file(report::road_picture(r)); });
+  for (std::size_t k = 0; request.distance_m.size() > 1 && k < request.distance_m.size(); ++k)
+    files.add(fmt::format("road_{:02}.png", k + 1),
+              [&result, k] { return k < result.views.size() ? report::road_view_png(result, k) : ""; });
   files.prepare();
   interrupt.run(common, {"tracing", {"give fewer distances (--road-distance-m)"}},
                 [&](Progress* bar, const Cancellation* cancel) { result = study.run(bar, cancel); });
@@ -306,7 +309,8 @@ Command image_command() {
       .summary = "pictures of a detector or a camera",
       .manual =
           "Computes pictures: maps of a detector on the entrance face, the part as a camera sees it in the light "
-          "of a lamp, or two such reflectors on a car ahead at night. One of `--detector`, `--camera` and `--road` "
+          "of a lamp, or such reflectors on a car ahead or a sign at night. One of `--detector`, `--camera` and "
+          "`--road` "
           "selects the kind of picture. Pictures need `--out`; OpenEXR files contain the numbers. `--camera` accepts "
           "several designs, which are shown next to each other with the same exposure. Alternatively, one of the "
           "angles or the distance can be a list, which gives a sequence of pictures.",

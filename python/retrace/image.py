@@ -119,8 +119,12 @@ def road(
     threads: int | None = None,
     progress: Progress = None,
 ) -> ImageResult:
-    """Computes a driver's view at night of a car ahead with two such reflectors ("road"), as
-    `retrace image --road`."""
+    """Computes a driver's view at night of a car ahead with two such reflectors, or of a sign
+    ("road": luminance Y, the parts reflected and veil of it, and linear sRGB values R, G and B with
+    the lamp as white, all in cd/m2), as `retrace image --road`.
+
+    reflector_mm, pixels: two numbers each. lamp: a photometric file. exposure_ev, tone: only for
+    the drawing."""
     request = _core.RoadRequest()  # generated: sets the fields of the request road
     taken, count = design_of(design), thread_count(threads)
     with teller(progress, "tracing") as tell:

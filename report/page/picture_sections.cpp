@@ -44,7 +44,8 @@ PageCell of_lamp(const Json& reflector, const char* key, std::size_t lamp) {
 PageSection road_section(const ResultDocument& document) {
   PageSection section = titled(
       "Night road",
-      "Two such reflectors on the rear of a car ahead, in the light of both headlamps, as the driver sees them.");
+      "Two such reflectors on the rear of a car ahead, or a sign, in the light of both headlamps, as the driver sees "
+      "them.");
   PageTable table;
   table.caption = "The reflectors";
   table.csv_name = csv_name(document, "reflectors");
@@ -55,7 +56,8 @@ PageSection road_section(const ResultDocument& document) {
   for (const Json& view : list(document.json, "views")) {
     const Json& reflectors = list(view, "reflectors");
     for (std::size_t k = 0; k < reflectors.size() && table.rows.size() < kMaxRows; ++k) {
-      std::vector<PageCell> row = {number(view, "distance_m"), k == 0 ? "left" : "right",
+      std::vector<PageCell> row = {number(view, "distance_m"),
+                                   reflectors.size() == 1 ? "sign" : (k == 0 ? "left" : "right"),
                                    number(reflectors[k], "luminance_cd_per_m2")};
       for (const std::size_t lamp : {0U, 1U})
         for (const char* key : {"observation_deg", "r_a_cd_per_lx_m2", "illuminance_lx"})

@@ -8,10 +8,10 @@
 #include "core/number_format.h"
 #include "core/srgb.h"
 #include "design/io/design_json.h"
-#include "report/axis_ticks.h"
 #include "report/canvas.h"
 #include "report/colour_scale.h"
 #include "report/image_plot.h"
+#include "report/results/picture_display.h"
 #include "report/results/result_plots.h"
 #include "studies/image/camera_study.h"
 
@@ -72,32 +72,9 @@ FloatPicture luminance_picture(const CameraResult& result) {
 
 namespace {
 
-constexpr Colour kPaper{0.10, 0.105, 0.12};
-constexpr Colour kBright{0.94, 0.94, 0.94};
-constexpr Colour kDim{0.70, 0.72, 0.76};
-constexpr Font kNameFont{13.0, true};
-constexpr Font kLineFont{11.0, false};
-constexpr double kGap = 12.0;
-constexpr double kLine = 16.0;
-constexpr double kBarHeight = 10.0;
 constexpr double kMinTileWidth = 380.0;
 // Maximum width of a tile in a sheet of several pictures.
 constexpr double kSheetTileWidth = 400.0;
-
-/// Returns the colour that is displayed for linear sRGB values. The hue is kept: colours outside of the display's range
-/// become paler, and colours brighter than white approach white, as on film.
-Colour displayed(std::array<double, 3> rgb, double intensity) {
-  double lowest = 0.0;
-  for (const double value : rgb) lowest = std::min(lowest, value);
-  if (lowest < 0.0)
-    for (double& value : rgb) value = intensity + (value - intensity) * intensity / (intensity - lowest);
-  const double brightest = std::max({rgb[0], rgb[1], rgb[2]});
-  if (brightest > 1.0) {
-    const double paler = 0.4 * (1.0 - 1.0 / brightest);
-    for (double& value : rgb) value = std::lerp(value / brightest, 1.0, paler);
-  }
-  return {srgb_byte(rgb[0]) / 255.0, srgb_byte(rgb[1]) / 255.0, srgb_byte(rgb[2]) / 255.0};
-}
 
 std::vector<Colour> displayed_pixels(const CameraResult& result, const ToneCurve& tone) {
   const raytrace::CameraImage& image = result.image;
@@ -126,12 +103,6 @@ double metres(const geometry::Vec3& from, const geometry::Vec3& to) {
   return 1e-3 * (from - to).norm();
 }
 
-/// Returns a number with about four digits.
-std::string figure(double value) {
-  if (value >= 100.0) return fixed(value, 0);
-  return value >= 10.0 ? fixed(value, 1) : fixed_visible(value, 2);
-}
-
 std::string geometry_text(const CameraResult& result) {
   const raytrace::CameraScene& scene = result.scene;
   const double eye_m = metres(scene.view.eye_mm, scene.view.target_mm);
@@ -154,12 +125,6 @@ std::string light_text(const CameraResult& result) {
   return text;
 }
 
-std::string exposure_text(const CameraResult& result, const ToneCurve& tone) {
-  return fmt::format("white is {} cd/m\u00b2 (EV100 {}, {}), {} tone curve", figure(tone.white), fixed(tone.ev100(), 1),
-                     result.request.exposure_ev ? "given" : "automatic",
-                     tone.tone == Tone::reinhard ? "Reinhard's" : (tone.tone == Tone::log ? "logarithmic" : "linear"));
-}
-
 std::string name_of(const CameraResult& result) {
   std::string name = design::short_name(result.design);
   if (result.request.dye == "red" || result.request.dye == "amber")
@@ -175,45 +140,6 @@ Size shown_size(const CameraResult& result, double width) {
   const auto rows = static_cast<double>(result.image.rows);
   const double factor = columns >= width ? width / columns : std::max(1.0, std::floor(width / columns));
   return {factor * columns, factor * rows};
-}
-
-/// Draws a bar with the displayed intensities of luminances and their values.
-void draw_luminance_bar(Canvas& canvas, const ToneCurve& tone, Point corner, double width) {
-  constexpr int kSteps = 256;
-  const bool is_log = tone.tone == Tone::log;
-  const auto luminance_at = [&](double fraction) {
-    return is_log ? tone.white * std::pow(10.0, kToneDecades * (fraction - 1.0)) : fraction * tone.white;
-  };
-  std::vector<Colour> colours;
-  for (int k = 0; k < kSteps; ++k) {
-    const double grey = srgb_byte(tone.shown(luminance_at((k + 0.5) / kSteps))) / 255.0;
-    colours.push_back({grey, grey, grey});
-  }
-  canvas.image(corner, {width, kBarHeight}, kSteps, colours);
-  const auto tick = [&](double fraction, const std::string& label, Align align) {
-    const double x = corner.x + fraction * width;
-    canvas.line({{x, corner.y + kBarHeight}, {x, corner.y + kBarHeight + 3.0}}, {kDim, 1.0, {}});
-    canvas.text({x, corner.y + kBarHeight + 14.0}, label, kLineFont, kDim, align);
-  };
-  if (!is_log) {
-    const Ticks ticks = make_ticks({0.0, tone.white}, 4);
-    for (std::size_t k = 0; k < ticks.positions.size(); ++k)
-      if (ticks.positions[k] < 0.85 * tone.white)
-        tick(ticks.positions[k] / tone.white, ticks.labels[k], k == 0 ? Align::left : Align::centre);
-  } else {
-    for (int e = static_cast<int>(std::ceil(std::log10(tone.white) - kToneDecades));
-         e <= std::floor(std::log10(tone.white)); ++e) {
-      const double fraction = 1.0 + (e - std::log10(tone.white)) / kToneDecades;
-      if (fraction < 0.8)
-        tick(fraction, std::abs(e) < 4 ? shortest(std::pow(10.0, e)) : fmt::format("1e{}", e),
-             fraction < 0.03 ? Align::left : Align::centre);
-    }
-  }
-  tick(1.0, "cd/m\u00b2", Align::right);
-}
-
-bool has_bar(const ToneCurve& tone) {
-  return tone.tone != Tone::reinhard;
 }
 
 /// Draws a scale bar for lengths whose right end is at `end`. Returns the width of the bar and its label.
@@ -262,7 +188,8 @@ ToneCurve camera_tone(std::span<const CameraResult> results) {
 
 std::string camera_png(const CameraResult& result, const ToneCurve& tone) {
   const double width = std::max(kMinTileWidth, static_cast<double>(result.image.columns));
-  const std::vector<std::string> texts = {geometry_text(result), light_text(result), exposure_text(result, tone)};
+  const std::vector<std::string> texts = {geometry_text(result), light_text(result),
+                                          exposure_text(tone, result.request.exposure_ev.has_value())};
   const Canvas metrics(Canvas::Format::png, {1.0, 1.0}, 1.0);
   const double height = draw_tile(nullptr, metrics, result, tone, {0.0, 0.0}, width, texts);
   const double bar = has_bar(tone) ? kGap + kBarHeight + 18.0 : 0.0;
@@ -311,7 +238,8 @@ std::string camera_sheet_png(std::span<const CameraResult> results, const ToneCu
   if (has_bar(tone))
     draw_luminance_bar(canvas, tone, {kGap, y}, std::min(2.0 * kSheetTileWidth, size.width - 2.0 * kGap));
   const std::vector<std::string> last =
-      canvas.fitted(exposure_text(results.front(), tone), kLineFont, size.width - 2.0 * kGap, 1, Ellipsis::end);
+      canvas.fitted(exposure_text(tone, results.front().request.exposure_ev.has_value()), kLineFont,
+                    size.width - 2.0 * kGap, 1, Ellipsis::end);
   for (const std::string& line : last) canvas.text({kGap, y + bar + kLine - 4.0}, line, kLineFont, kDim, Align::left);
   return canvas.finish();
 }

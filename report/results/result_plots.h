@@ -130,13 +130,18 @@ std::string camera_sheet_png(std::span<const studies::CameraResult> results, con
 /// Returns a plot of the luminance with a logarithmic colour scale.
 ImagePlot false_colour_plot(const studies::CameraResult& result);
 
-/// Returns a PNG file with the driver's views of the road next to each other. All views have the same exposure.
-/// Distances and luminances are written below them.
+/// Returns a PNG file with the driver's views of the road next to each other. All views have the same exposure. Each
+/// view has an inset with the enlarged reflector, and a caption with distance, angles, illuminance and luminance.
+/// \pre there is at least one view
 /// \throw OutputError if the picture cannot be drawn
-std::string road_png(const studies::RoadResult& result, double scale = 1.5);
+std::string road_png(const studies::RoadResult& result);
+/// Returns a PNG file with one view, displayed with the exposure of all views. Throws like road_png().
+/// \param view index of the view
+std::string road_view_png(const studies::RoadResult& result, std::size_t view);
 
-/// Returns a picture with all views next to each other. The channel Y contains the luminance. The channel `reflected`
-/// contains the part of this luminance that comes from the reflectors.
+/// Returns a picture with all views next to each other, in cd/m^2. The channel Y contains the luminance, `reflected`
+/// the part of it that comes directly from the reflectors, and `veil` the part that is scattered in the eye. R, G and B
+/// are linear sRGB values with the lamp as white.
 FloatPicture road_picture(const studies::RoadResult& result);
 
 /// Returns a plot of the tool path through one element, for roughing or finishing.

@@ -2,91 +2,206 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <span>
 
 #include "core/number_format.h"
 #include "design/io/design_json.h"
 #include "report/canvas.h"
 #include "report/colour_scale.h"
+#include "report/results/picture_display.h"
 #include "report/results/result_plots.h"
 #include "studies/image/road_study.h"
 
 namespace retrace::report {
 namespace {
 
-using studies::RoadResult, studies::RoadView;
+using geometry::Vec2;
+using studies::RoadPixels, studies::RoadResult, studies::RoadView;
 
-constexpr Colour kBackground{0.07, 0.075, 0.09};
-constexpr Colour kText{0.93, 0.93, 0.93};
-constexpr Colour kFaint{0.66, 0.68, 0.72};
-constexpr double kMargin = 14.0;
-constexpr double kHead = 40.0;
-constexpr double kCaption = 46.0;
-constexpr double kViewWidth = 330.0;
+constexpr Font kTitleFont{15.0, true};
+constexpr Font kInsetFont{9.5, false};
+constexpr double kHead = 34.0;
+// Smallest width of a picture. Smaller pictures are enlarged by a whole factor.
+constexpr double kMinViewWidth = 320.0;
+// Number of pixels per unit of length. A pixel of a picture is then a pixel of the file, unless the picture is small.
+constexpr double kPixelsPerUnit = 1.5;
+constexpr std::size_t kMaxColumns = 3;
 // Brightness of the picture to which the logarithmic mean of the luminances is mapped. It is low, because the scene is
 // at night.
-constexpr double kNightKey = 0.045;
+constexpr double kNightKey = 0.015;
 
-/// Returns the colour of white light after the dye, in linear sRGB with luminance 1. Components may be outside of the
-/// range of the display.
-std::array<double, 3> tint_of(const std::string& dye) {
-  if (dye == "red") return {3.2, 0.42, 0.28};
-  if (dye == "amber") return {2.1, 0.76, 0.08};
-  return {1.0, 1.0, 1.0};
-}
-
-std::vector<double> all_luminances(const RoadResult& result) {
-  std::vector<double> all;
-  for (const RoadView& view : result.views) all.insert(all.end(), view.luminance.begin(), view.luminance.end());
-  return all;
-}
-
-std::vector<Colour> colours_of(const RoadResult& result, const RoadView& view, const double* shown) {
-  const std::array<double, 3> tint = tint_of(result.scene.dye);
+std::vector<Colour> colours_of(const RoadPixels& pixels, const ToneCurve& tone) {
   std::vector<Colour> colours;
-  colours.reserve(view.luminance.size());
-  for (std::size_t k = 0; k < view.luminance.size(); ++k) {
-    const double part = view.luminance[k] > 0.0 ? view.coloured[k] / view.luminance[k] : 0.0;
-    std::array<double, 3> channel{};
-    for (std::size_t c = 0; c < 3; ++c) {
-      // Light from the reflectors has the colour of the dye. All other light is white. Overexposed pixels become white,
-      // as on film.
-      const double colour = part * tint[c] + (1.0 - part);
-      channel[c] = srgb_byte(shown[k] * colour + 0.3 * std::max(0.0, shown[k] - 0.75)) / 255.0;
-    }
-    colours.push_back({channel[0], channel[1], channel[2]});
+  colours.reserve(pixels.luminance.size());
+  for (std::size_t k = 0; k < pixels.luminance.size(); ++k) {
+    // The curve is applied to the brightest component, so that bright reflectors keep their colour.
+    std::array<double, 3> rgb = pixels.rgb[k];
+    const double brightest = std::max({rgb[0], rgb[1], rgb[2]});
+    const double factor = brightest > 0.0 ? tone.shown(brightest) / brightest : 0.0;
+    for (double& value : rgb) value *= factor;
+    colours.push_back(displayed(rgb, factor * pixels.luminance[k]));
   }
   return colours;
 }
 
+/// Returns "1.08", or "1.08 and 2.10" if two values are displayed differently.
+std::string both(const double (&values)[2], int digits) {
+  const std::string left = fixed_visible(values[0], digits);
+  const std::string right = fixed_visible(values[1], digits);
+  return left == right ? left : fmt::format("{} and {}", left, right);
+}
+
+std::string reflectors_text(const RoadView& view) {
+  const auto one = [](const studies::RoadReflector& reflector) {
+    return fmt::format("{} cd/m\u00b2 ({} cd)", figure(reflector.luminance), figure(reflector.intensity_cd));
+  };
+  if (view.reflectors.size() == 1) return "sign " + one(view.reflectors[0]);
+  return fmt::format("reflectors {} and {}", one(view.reflectors[0]), one(view.reflectors[1]));
+}
+
+std::string angles_text(const RoadView& view) {
+  const studies::RoadReflector& last = view.reflectors.back();
+  return fmt::format("observation angle {}\u00b0, illuminance {} lx", both(last.observation_deg, 2),
+                     figure(last.illuminance_lx[0] + last.illuminance_lx[1]));
+}
+
+std::string scene_text(const RoadResult& result) {
+  const studies::RoadScene& s = result.scene;
+  const std::string lamps = s.lamp ? s.lamp->name.substr(s.lamp->name.find_last_of('/') + 1)
+                                   : fmt::format("2 x {} cd in all directions", shortest(s.lamp_cd));
+  return fmt::format(
+      "Luminances and intensities of the reflectors are computed. The scene is illustrative: headlamps {}, asphalt R_L "
+      "{}, markings R_L {} mcd/(lx m\u00b2), R_L in the 30 m geometry.",
+      lamps, shortest(1e3 * s.asphalt_r_l), shortest(1e3 * s.marking_r_l));
+}
+
+/// Returns the size of a picture on the canvas.
+Size shown_size(const RoadResult& result) {
+  const double width = static_cast<double>(result.scene.columns) / kPixelsPerUnit;
+  const double factor = std::max(1.0, std::ceil(kMinViewWidth / width));
+  return {factor * width, factor * static_cast<double>(result.scene.rows) / kPixelsPerUnit};
+}
+
+/// Draws the inset with the enlarged reflector in an upper corner of the picture, and marks the reflector.
+void draw_inset(Canvas& canvas, const RoadResult& result, const RoadView& view, const ToneCurve& tone, Point corner,
+                Size size) {
+  const double factor = size.width / static_cast<double>(result.scene.columns);
+  const auto& camera = view.inset_camera;
+  const Size inset{factor * static_cast<double>(camera.columns), factor * static_cast<double>(camera.rows)};
+  const double margin = 0.025 * size.width;
+  const double magnification = view.camera.pixel / camera.pixel;
+  const Vec2 target = factor * view.camera.position_of(result.scene.reflectors.back());
+  const bool is_left = target.x() > 0.62 * size.width;
+  const Point at{is_left ? corner.x + margin : corner.x + size.width - margin - inset.width, corner.y + margin};
+  const Stroke line{kDim, 0.7, {}};
+  const Stroke faint{{0.45, 0.47, 0.51}, 0.6, {}};
+  // Frame around the part of the picture that the inset shows, and lines from its corners to the inset.
+  const Size part{std::max(3.0, inset.width / magnification), std::max(2.0, inset.height / magnification)};
+  const Point from{corner.x + target.x() - 0.5 * part.width, corner.y + target.y() - 0.5 * part.height};
+  const auto frame = [&](Point upper_left, Size extent, const Stroke& stroke) {
+    canvas.line({upper_left,
+                 {upper_left.x + extent.width, upper_left.y},
+                 {upper_left.x + extent.width, upper_left.y + extent.height},
+                 {upper_left.x, upper_left.y + extent.height},
+                 upper_left},
+                stroke);
+  };
+  canvas.clip(corner, size);
+  if (magnification > 1.2) {
+    frame(from, part, faint);
+    canvas.line({{from.x, from.y}, {at.x, at.y + inset.height}}, faint);
+    canvas.line({{from.x + part.width, from.y}, {at.x + inset.width, at.y + inset.height}}, faint);
+  }
+  canvas.image(at, inset, camera.columns, colours_of(view.inset, tone));
+  frame(at, inset, line);
+  if (magnification > 1.2)
+    canvas.text({at.x + inset.width - 4.0, at.y + inset.height - 5.0},
+                fmt::format("x {}", magnification < 10.0 ? fixed(magnification, 1) : fixed(magnification, 0)),
+                kInsetFont, kBright, Align::right);
+  canvas.end_clip();
+}
+
+/// Draws a view with its caption. Returns the height.
+/// \param canvas if null, only the height is determined, with the font metrics of `metrics`
+double draw_view(Canvas* canvas, const Canvas& metrics, const RoadResult& result, const RoadView& view,
+                 const ToneCurve& tone, Point corner) {
+  const Size size = shown_size(result);
+  if (canvas != nullptr) {
+    canvas->image(corner, size, result.scene.columns, colours_of(view.picture, tone));
+    draw_inset(*canvas, result, view, tone, corner, size);
+  }
+  double y = corner.y + size.height + 18.0;
+  if (canvas != nullptr)
+    canvas->text({corner.x, y}, fmt::format("{} m", shortest(view.distance_m)), kNameFont, kBright, Align::left);
+  for (const std::string& text : {angles_text(view), reflectors_text(view)})
+    for (const std::string& line : metrics.fitted(text, kLineFont, size.width, 2, Ellipsis::end)) {
+      y += kLine;
+      if (canvas != nullptr) canvas->text({corner.x, y}, line, kLineFont, kDim, Align::left);
+    }
+  return y - corner.y;
+}
+
+std::string name_of(const RoadResult& result) {
+  const std::string& dye = result.request.dye;
+  const bool is_named = dye == "red" || dye == "amber";
+  return design::short_name(result.design) + (dye == "none" ? "" : is_named ? ", " + dye : ", dyed");
+}
+
+ToneCurve road_tone(const RoadResult& result) {
+  const Tone tone = tone_of(result.request.tone);
+  if (result.request.exposure_ev) return tone_of_exposure(*result.request.exposure_ev, tone);
+  std::vector<double> all;
+  for (const RoadView& view : result.views)
+    all.insert(all.end(), view.picture.luminance.begin(), view.picture.luminance.end());
+  return tone_of_picture(all, tone, kNightKey);
+}
+
+std::string drawn(const RoadResult& result, std::span<const RoadView> views, const ToneCurve& tone) {
+  const Canvas metrics(Canvas::Format::png, {1.0, 1.0}, 1.0);
+  const std::size_t count = views.size();
+  const std::size_t rows = (count + kMaxColumns - 1) / kMaxColumns;
+  const std::size_t columns = (count + rows - 1) / rows;
+  double tallest = 0.0;
+  for (const RoadView& view : views)
+    tallest = std::max(tallest, draw_view(nullptr, metrics, result, view, tone, {0.0, 0.0}));
+  const Size view_size = shown_size(result);
+  const double width = 2.0 * kGap + static_cast<double>(columns) * (view_size.width + kGap) - kGap;
+  std::vector<std::string> notes;
+  for (const std::string& text : {scene_text(result), "All pictures have the same exposure: " +
+                                                          exposure_text(tone, result.request.exposure_ev.has_value())})
+    for (const std::string& line : metrics.fitted(text, kLineFont, width - 2.0 * kGap, 4, Ellipsis::end))
+      notes.push_back(line);
+  const double bar = has_bar(tone) ? kGap + kBarHeight + 18.0 : 0.0;
+  const double height = kHead + static_cast<double>(rows) * (tallest + 1.5 * kGap) +
+                        static_cast<double>(notes.size()) * kLine + bar + 0.5 * kGap;
+  const Size size{width, std::ceil(height)};
+  Canvas canvas(Canvas::Format::png, size, kPixelsPerUnit);
+  canvas.fill_rectangle({0.0, 0.0}, size, kPaper);
+  const std::string title = name_of(result) + ": what a driver sees at night";
+  for (const std::string& line : canvas.fitted(title, kTitleFont, width - 2.0 * kGap, 1, Ellipsis::middle))
+    canvas.text({kGap, 23.0}, line, kTitleFont, kBright, Align::left);
+  for (std::size_t k = 0; k < count; ++k)
+    draw_view(&canvas, metrics, result, views[k], tone,
+              {kGap + static_cast<double>(k % columns) * (view_size.width + kGap),
+               kHead + static_cast<double>(k / columns) * (tallest + 1.5 * kGap)});
+  double y = kHead + static_cast<double>(rows) * (tallest + 1.5 * kGap);
+  for (const std::string& line : notes) {
+    canvas.text({kGap, y}, line, kLineFont, kDim, Align::left);
+    y += kLine;
+  }
+  if (has_bar(tone)) draw_luminance_bar(canvas, tone, {kGap, y}, std::min(480.0, width - 2.0 * kGap));
+  return canvas.finish();
+}
+
 }  // namespace
 
-std::string road_png(const RoadResult& result, double scale) {
-  const auto views = static_cast<double>(result.views.size());
-  const double height = kViewWidth * static_cast<double>(result.scene.rows) / static_cast<double>(result.scene.columns);
-  const Size size{kMargin + std::max(1.0, views) * (kViewWidth + kMargin), kHead + height + kCaption};
-  Canvas canvas(Canvas::Format::png, size, scale);
-  canvas.fill_rectangle({0.0, 0.0}, size, kBackground);
-  const std::string title =
-      fmt::format("{}{}: view of a driver, lit by the car's own headlamps", design::short_name(result.design),
-                  result.scene.dye.empty() ? "" : ", " + result.scene.dye);
-  for (const std::string& line : canvas.fitted(title, {15.0, true}, size.width - 2.0 * kMargin, 1, Ellipsis::middle))
-    canvas.text({kMargin, 25.0}, line, {15.0, true}, kText, Align::left);
-  const std::vector<double> shown = tone_mapped(all_luminances(result), kNightKey);
-  double x = kMargin;
-  const double* at = shown.data();
-  for (const RoadView& view : result.views) {
-    canvas.image({x, kHead}, {kViewWidth, height}, result.scene.columns, colours_of(result, view, at));
-    at += view.luminance.size();
-    canvas.text({x, kHead + height + 18.0}, fmt::format("{} m", shortest(view.distance_m)), {13.0, true}, kText,
-                Align::left);
-    canvas.text({x, kHead + height + 35.0},
-                fmt::format("observation angle {}\u00b0, reflectors {} and {} cd/m\u00b2",
-                            fixed_visible(view.reflectors[0].observation_deg[0], 2),
-                            fixed(view.reflectors[0].luminance, 1), fixed(view.reflectors[1].luminance, 1)),
-                {11.0, false}, kFaint, Align::left);
-    x += kViewWidth + kMargin;
-  }
-  return canvas.finish();
+std::string road_png(const RoadResult& result) {
+  return drawn(result, result.views, road_tone(result));
+}
+
+std::string road_view_png(const RoadResult& result, std::size_t view) {
+  return drawn(result, std::span(result.views).subspan(view, 1), road_tone(result));
 }
 
 FloatPicture road_picture(const RoadResult& result) {
@@ -94,19 +209,23 @@ FloatPicture road_picture(const RoadResult& result) {
   FloatPicture picture;
   picture.columns = columns * result.views.size();
   picture.rows = result.scene.rows;
-  std::vector<double> luminance;
-  std::vector<double> reflected;
-  for (std::size_t row = 0; row < picture.rows; ++row)
-    for (const RoadView& view : result.views) {
-      const auto from = static_cast<std::ptrdiff_t>(row * columns);
-      const auto to = static_cast<std::ptrdiff_t>((row + 1) * columns);
-      luminance.insert(luminance.end(), view.luminance.begin() + from, view.luminance.begin() + to);
-      reflected.insert(reflected.end(), view.coloured.begin() + from, view.coloured.begin() + to);
-    }
-  picture.channels = {{"Y", luminance}, {"reflected", reflected}};
+  // Channels and the luminances of a pixel for each of them.
+  const auto add = [&](const char* name, const auto& value) {
+    std::vector<double> values;
+    for (std::size_t row = 0; row < picture.rows; ++row)
+      for (const RoadView& view : result.views)
+        for (std::size_t k = row * columns; k < (row + 1) * columns; ++k) values.push_back(value(view.picture, k));
+    picture.add_channel(name, values);
+  };
+  add("Y", [](const RoadPixels& pixels, std::size_t k) { return pixels.luminance[k]; });
+  add("reflected", [](const RoadPixels& pixels, std::size_t k) { return pixels.reflected[k]; });
+  add("veil", [](const RoadPixels& pixels, std::size_t k) { return pixels.veil[k]; });
+  for (std::size_t c = 0; c < 3; ++c)
+    add(std::array{"R", "G", "B"}[c], [c](const RoadPixels& pixels, std::size_t k) { return pixels.rgb[k][c]; });
   picture.texts = picture_texts("road", result.design);
   picture.texts.emplace_back("retrace:unit", "cd/m2");
-  picture.numbers = {{"retrace:field_deg", result.scene.field_deg}, {"retrace:lamp_cd", result.request.lamp_cd}};
+  picture.numbers = {{"retrace:field_deg", result.scene.field_deg}};
+  if (!result.scene.lamp) picture.numbers.emplace_back("retrace:lamp_cd", result.scene.lamp_cd);
   return picture;
 }
 

@@ -70,20 +70,52 @@ constexpr Row kDetectorRows[] = {{"incidence_deg",
                                   kNeedRays},
                                  seed_row<DetectorRequest>()};
 
-schema::Value camera_pixels(const CameraRequest& request) {
+// Rows that pictures of a camera and of a road have in common.
+
+template <class Type>
+schema::Value pixels_of(const Type& request) {
   return std::vector<double>{static_cast<double>(request.columns), static_cast<double>(request.rows)};
 }
-void set_camera_pixels(CameraRequest& request, const schema::Value& value) {
+template <class Type>
+void set_pixels(Type& request, const schema::Value& value) {
   const auto& numbers = std::get<std::vector<double>>(value);
   request.columns = static_cast<std::size_t>(numbers[0]);
   request.rows = static_cast<std::size_t>(numbers[1]);
 }
+template <class Type>
+constexpr Row pixels_row() {
+  return {"pixels",
+          Numbers{2, {.low = 1.0, .high = kMaxPictureSide}, "numbers", true},
+          "columns and rows of the picture",
+          access_by<pixels_of<Type>, set_pixels<Type>>,
+          {.value = "CxR", .notation = Notation::by_x}};
+}
+template <class Type>
+constexpr Row exposure_row() {
+  return {"exposure_ev",
+          Number{{.low = -30.0, .high = 40.0}},
+          "exposure of the PNG file as an exposure value at ISO 100 (EV100); luminances of 1.2 x 2^EV cd/m2 are white",
+          access<&Type::exposure_ev>,
+          {.value = "EV", .otherwise = "such that the brightest thousandth of the pixels is white"}};
+}
+template <class Type>
+constexpr Row tone_row() {
+  return {"tone",
+          Word{kTones},
+          "tone curve of the PNG file: reinhard (adaptation of the eye), linear, or log (four decades)",
+          access<&Type::tone>,
+          {.value = "CURVE"}};
+}
 
-void check_camera(const void* object) {
-  const auto& request = *static_cast<const CameraRequest*>(object);
+template <class Type>
+void check_pixels(const Type& request) {
   if (request.columns * request.rows > kMaxPixels)
     throw InputError(Field{"pixels"}, fmt::format("must be at most {} pixels in total, got {}x{}", kMaxPixels,
                                                   request.columns, request.rows));
+}
+
+void check_camera(const void* object) {
+  check_pixels(*static_cast<const CameraRequest*>(object));
 }
 
 constexpr NumberRange kLampAngle{.low = -90.0, .low_included = false, .high = 90.0, .high_included = false};
@@ -155,11 +187,7 @@ constexpr Row kCameraRows[] = {
      "illuminance by uniform light from behind and around the part",
      access<&CameraRequest::backlight_lx>,
      {.value = "E"}},
-    {"pixels",
-     Numbers{2, {.low = 1.0, .high = kMaxPictureSide}, "numbers", true},
-     "columns and rows of the picture",
-     access_by<camera_pixels, set_camera_pixels>,
-     {.value = "CxR", .notation = Notation::by_x}},
+    pixels_row<CameraRequest>(),
     {"field_mm",
      Number{{.low = 0.0, .low_included = false}},
      "width of the field of view at the part",
@@ -213,16 +241,8 @@ constexpr Row kCameraRows[] = {
      "add diffraction to the light of geometrical optics",
      access<&CameraRequest::diffraction>,
      {.notation = Notation::absent}},
-    {"exposure_ev",
-     Number{{.low = -30.0, .high = 40.0}},
-     "exposure of the PNG file as an exposure value at ISO 100 (EV100); luminances of 1.2 x 2^EV cd/m2 are white",
-     access<&CameraRequest::exposure_ev>,
-     {.value = "EV", .otherwise = "such that the brightest thousandth of the pixels is white"}},
-    {"tone",
-     Word{kTones},
-     "tone curve of the PNG file: reinhard (adaptation of the eye), linear, or log (four decades)",
-     access<&CameraRequest::tone>,
-     {.value = "CURVE"}},
+    exposure_row<CameraRequest>(),
+    tone_row<CameraRequest>(),
     {"background",
      File{"a picture"},
      "picture behind the part in the PNG file: a photograph (PNG, JPEG; white is the white of the exposure), or "
@@ -231,49 +251,124 @@ constexpr Row kCameraRows[] = {
      {.value = "FILE", .otherwise = "black"}},
     seed_row<CameraRequest>()};
 
+constexpr std::string_view kMounts[] = {"car", "sign"};
+constexpr std::string_view kOutlines[] = {"auto", "rectangle", "ellipse", "triangle", "octagon"};
+constexpr std::string_view kSymbols[] = {"arrow", "none"};
+constexpr schema::Condition kSign[] = {schema::is("mount", schema::only(kMounts, "sign"))};
+constexpr Need kNeedSign[] = {kSign};
+
 void check_road(const void* object) {
   constexpr std::size_t most = 6;
-  const std::size_t count = static_cast<const RoadRequest*>(object)->distance_m.size();
+  const auto& request = *static_cast<const RoadRequest*>(object);
+  const std::size_t count = request.distance_m.size();
   if (count > most)
     throw InputError(Field{"road.distance_m"}, fmt::format("must be 1 to {} distances, got {}", most, count));
+  check_pixels(request);
 }
 
-constexpr Row kRoadRows[] = {{"distance_m",
-                              NumberOrNumbers{{.low = 5.0, .high = 1000.0}},
-                              "distances of the car ahead",
-                              access<&RoadRequest::distance_m>,
-                              {.value = "LIST",
-                               .notation = Notation::number_list,
-                               .option = "--road-distance-m",
-                               .qualified = "road.distance_m"}},
-                             {"lamp_cd",
-                              Number{{.low = 0.0, .low_included = false, .high = 1e6}},
-                              "intensity of each headlamp towards the reflectors",
-                              access<&RoadRequest::lamp_cd>,
-                              {.value = "I"},
-                              kNeedNoLampFile},
-                             {"lamp",
-                              File{"an IES or EULUMDAT file"},
-                              "IES or EULUMDAT file (.ies, .ldt) of the lamp or headlamps",
-                              access<&RoadRequest::lamp>,
-                              {.value = "FILE", .otherwise = "the same intensity in all directions"}},
-                             {"lamp_height_m",
-                              Number{{.low = 0.2, .high = 3.0}},
-                              "height of the centres of the headlamps",
-                              access<&RoadRequest::lamp_height_m>,
-                              {.value = "H"}},
-                             {"lamp_aim_deg",
-                              Number{kLampAim},
-                              "downward tilt of the axis of a lamp from a file",
-                              access<&RoadRequest::lamp_aim_deg>,
-                              {.value = "D"},
-                              kNeedLampFile},
-                             {"dye",
-                              kDye,
-                              "dye of the reflectors: none, red, amber (illustrative) or a file",
-                              access<&RoadRequest::dye>,
-                              {.value = "NAME|FILE"}},
-                             seed_row<RoadRequest>()};
+constexpr Row kRoadRows[] = {
+    {"distance_m",
+     NumberOrNumbers{{.low = 5.0, .high = 1000.0}},
+     "distances of the car ahead or the sign",
+     access<&RoadRequest::distance_m>,
+     {.value = "LIST",
+      .notation = Notation::number_list,
+      .option = "--road-distance-m",
+      .qualified = "road.distance_m"}},
+    {"mount",
+     Word{kMounts},
+     "object that carries the reflectors: the rear of a car, which has two, or a sign on a mast",
+     access<&RoadRequest::mount>,
+     {.value = "OBJECT"}},
+    {"reflector_mm",
+     Numbers{2, {.low = 0.0, .low_included = false, .high = 5000.0}},
+     "width and height of each reflector or of the sign",
+     access<&RoadRequest::reflector_mm>,
+     {.value = "WxH",
+      .notation = Notation::by_x,
+      .otherwise = "the size of a finite design; 120x25 on a car and 600x600 on a sign if it is infinite"}},
+    {"outline",
+     Word{kOutlines},
+     "outline of each reflector or of the sign; auto: that of a finite design, otherwise a rectangle on a car and an "
+     "ellipse on a sign",
+     access<&RoadRequest::outline>,
+     {.value = "SHAPE"}},
+    {"reflector_height_m",
+     Number{{.low = 0.0, .low_included = false, .high = 20.0}},
+     "height of the centre of the reflectors or of the sign above the road",
+     access<&RoadRequest::reflector_height_m>,
+     {.value = "H", .otherwise = "0.6 on a car, 2.2 on a sign"}},
+    {"lateral_m",
+     Number{{.low = -20.0, .high = 20.0}},
+     "distance of each reflector from the centre of the car, or of the sign from the centre of the lane; positive to "
+     "the right",
+     access<&RoadRequest::lateral_m>,
+     {.value = "X", .otherwise = "0.72 on a car, 4 on a sign"}},
+    {"mast_m",
+     Number{{.low = 0.0, .low_included = false, .high = 25.0}},
+     "height of the mast of a sign; at least the height of the sign's centre",
+     access<&RoadRequest::mast_m>,
+     {.value = "H", .otherwise = "up to the upper edge of the sign"},
+     kNeedSign},
+    {"symbol",
+     Word{kSymbols},
+     "opaque black symbol on a sign: arrow or none",
+     access<&RoadRequest::symbol>,
+     {.value = "SYMBOL"},
+     kNeedSign},
+    {"lamp_cd",
+     Number{{.low = 0.0, .low_included = false, .high = 1e6}},
+     "intensity of each headlamp, the same in all directions ahead",
+     access<&RoadRequest::lamp_cd>,
+     {.value = "I"},
+     kNeedNoLampFile},
+    {"lamp",
+     File{"an IES or EULUMDAT file"},
+     "IES or EULUMDAT file (.ies, .ldt) of the lamp or headlamps",
+     access<&RoadRequest::lamp>,
+     {.value = "FILE", .otherwise = "the same intensity in all directions"}},
+    {"lamp_height_m",
+     Number{{.low = 0.2, .high = 3.0}},
+     "height of the centres of the headlamps",
+     access<&RoadRequest::lamp_height_m>,
+     {.value = "H"}},
+    {"lamp_aim_deg",
+     Number{kLampAim},
+     "downward tilt of the axis of a lamp from a file",
+     access<&RoadRequest::lamp_aim_deg>,
+     {.value = "D"},
+     kNeedLampFile},
+    {"eye_height_m",
+     Number{{.low = 0.3, .high = 5.0}},
+     "height of the driver's eyes above the road",
+     access<&RoadRequest::eye_height_m>,
+     {.value = "H"}},
+    {"asphalt_mcd",
+     Number{{.low = 0.0, .high = 1000.0}},
+     "coefficient of retroreflected luminance R_L of the asphalt in the 30 m geometry, in mcd/(lx m2); the default is "
+     "illustrative",
+     access<&RoadRequest::asphalt_mcd>,
+     {.value = "RL"}},
+    {"marking_mcd",
+     Number{{.low = 0.0, .high = 5000.0}},
+     "coefficient of retroreflected luminance R_L of the markings in the 30 m geometry, in mcd/(lx m2); the default is "
+     "illustrative",
+     access<&RoadRequest::marking_mcd>,
+     {.value = "RL"}},
+    {"dye",
+     kDye,
+     "dye of the reflectors: none, red, amber (illustrative) or a file",
+     access<&RoadRequest::dye>,
+     {.value = "NAME|FILE"}},
+    pixels_row<RoadRequest>(),
+    {"field_deg",
+     Number{{.low = 1.0, .high = 90.0}},
+     "angular width of the picture",
+     access<&RoadRequest::field_deg>,
+     {.value = "W"}},
+    exposure_row<RoadRequest>(),
+    tone_row<RoadRequest>(),
+    seed_row<RoadRequest>()};
 
 }  // namespace
 

@@ -132,6 +132,21 @@ class Equality(unittest.TestCase):
                 "--lamp-aim-deg=0.5",
             ),
         )
+        sign = rt.image.road(
+            reflector,
+            distance_m=[30],
+            mount="sign",
+            reflector_mm=(600, 400),
+            outline="rectangle",
+            symbol="none",
+            pixels=(80, 60),
+        )
+        self.assertEqual(sign["road"]["Y"].shape, (60, 80))
+        self.assertLessEqual({"reflected", "veil", "R", "G", "B"}, set(sign["road"]))
+        self.assertAlmostEqual(
+            sign.document["scene"]["reflector_area_m2"],
+            0.6 * 0.4 - (0.6 - 0.016) * (0.4 - 0.016) + (0.6 - 0.04) * (0.4 - 0.04),
+        )
 
 
 class Studies(unittest.TestCase):
@@ -359,6 +374,8 @@ class Pictures(unittest.TestCase):
             (rt.image.camera, {"noise": "low"}, "noise"),
             (rt.image.road, {"distance_m": []}, "distance_m"),
             (rt.image.road, {"lamp_cd": 0}, "lamp_cd"),
+            (rt.image.road, {"mount": "sign", "mast_m": 1}, "mast_m"),
+            (rt.image.road, {"eye_height_m": -1}, "eye_height_m"),
             (rt.image.road, {"lamp": "lamp.txt"}, "lamp"),
             (rt.image.camera, {"lamp": 3}, "lamp"),
         ):

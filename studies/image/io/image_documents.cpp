@@ -133,8 +133,42 @@ std::string camera_series_json(const std::vector<CameraResult>& results, const W
   return image_text(std::move(json), elapsed_s, warnings, complete);
 }
 
+namespace {
+
+Json road_scene_json(const RoadScene& s) {
+  Json json = {{"mount", s.mount == RoadMount::car ? "car" : "sign"},
+               {"lamp_height_m", s.lamp_height},
+               {"lamp_half_gap_m", s.lamp_half_gap},
+               {"lamp_diameter_m", s.lamp_diameter},
+               {"eye_height_m", s.eye_height},
+               {"eye_right_m", s.eye_right},
+               {"eye_behind_m", s.eye_behind},
+               {"reflector_height_m", s.reflectors.back().y()},
+               {"lateral_m", s.reflectors.back().x()},
+               {"reflector_width_m", s.size().x()},
+               {"reflector_tall_m", s.size().y()},
+               {"reflector_area_m2", s.area()},
+               {"asphalt_r_l_cd_per_lx_m2", s.asphalt_r_l},
+               {"marking_r_l_cd_per_lx_m2", s.marking_r_l}};
+  if (s.mount == RoadMount::sign) json["mast_height_m"] = s.mast_height;
+  json["linear_srgb"] = s.tint;
+  return json;
+}
+
+/// Returns the corners of a reflector in the picture, in pixels.
+Json corners_json(const RoadScene& s, const RoadView& view, const geometry::Vec3& reflector) {
+  Json corners = Json::array();
+  for (const geometry::Vec2& point : s.outline) {
+    const geometry::Vec2 position = view.camera.position_of(reflector + geometry::Vec3(point.x(), point.y(), 0.0));
+    corners.push_back({position.x(), position.y()});
+  }
+  return corners;
+}
+
+}  // namespace
+
 std::string road_json(const RoadResult& result) {
-  Json json = {{"kind", "road"}, {"design", design::to_json(result.design)}};
+  Json json = header("road", result.design, result.request.seed);
   json["engine"] = result.engine;
   if (const auto& lamp = result.scene.lamp)
     json["lamp"] = lamp_json(*lamp, result.request.lamp_aim_deg);
@@ -144,40 +178,38 @@ std::string road_json(const RoadResult& result) {
   json["columns"] = result.scene.columns;
   json["rows"] = result.scene.rows;
   json["field_deg"] = result.scene.field_deg;
-  const RoadScene& s = result.scene;
-  json["scene"] = {{"lamp_height_m", s.lamp_height},
-                   {"lamp_half_gap_m", s.lamp_half_gap},
-                   {"lamp_diameter_m", s.lamp_diameter},
-                   {"eye_height_m", s.eye_height},
-                   {"eye_right_m", s.eye_right},
-                   {"eye_behind_m", s.eye_behind},
-                   {"reflector_height_m", s.reflector_height},
-                   {"reflector_half_gap_m", s.reflector_half_gap},
-                   {"reflector_width_m", s.reflector_width},
-                   {"reflector_tall_m", s.reflector_tall}};
+  json["scene"] = road_scene_json(result.scene);
   json["views"] = Json::array();
   for (const RoadView& view : result.views) {
     Json reflectors = Json::array();
-    for (const RoadReflector& r : view.reflectors)
-      reflectors.push_back({{"observation_deg", Json::array({r.observation_deg[0], r.observation_deg[1]})},
-                            {"r_a_cd_per_lx_m2", Json::array({r.r_a[0], r.r_a[1]})},
-                            {"illuminance_lx", Json::array({r.illuminance_lx[0], r.illuminance_lx[1]})},
-                            {"luminance_cd_per_m2", r.luminance}});
+    for (std::size_t k = 0; k < view.reflectors.size(); ++k) {
+      const RoadReflector& r = view.reflectors[k];
+      reflectors.push_back({{"observation_deg", r.observation_deg},
+                            {"entrance_deg", r.entrance_deg},
+                            {"r_a_cd_per_lx_m2", r.r_a},
+                            {"r_i_cd_per_lx", {r.r_a[0] * result.scene.area(), r.r_a[1] * result.scene.area()}},
+                            {"illuminance_lx", r.illuminance_lx},
+                            {"luminance_cd_per_m2", r.luminance},
+                            {"intensity_cd", r.intensity_cd},
+                            {"corners_px", corners_json(result.scene, view, result.scene.reflectors[k])}});
+    }
     json["views"].push_back({{"distance_m", view.distance_m}, {"reflectors", std::move(reflectors)}});
   }
   return image_text(std::move(json), result.elapsed_s, result.warnings, result.complete);
 }
 
 std::string road_table(const RoadResult& result) {
-  std::string table = fmt::format("{:>10} {:>10} {:>9} {:>9} {:>9} {:>9} {:>12}\n", "distance_m", "reflector",
-                                  "alpha_l", "alpha_r", "R_A_l", "R_A_r", "L_cd_per_m2");
+  std::string table = fmt::format("{:>10} {:>10} {:>9} {:>9} {:>9} {:>9} {:>9} {:>12} {:>10}\n", "distance_m",
+                                  "reflector", "alpha_l", "alpha_r", "R_A_l", "R_A_r", "E_lx", "L_cd_per_m2", "I_cd");
   for (const RoadView& view : result.views)
-    for (std::size_t side = 0; side < 2; ++side) {
-      const RoadReflector& r = view.reflectors[side];
-      table += fmt::format("{:>10} {:>10} {:>9} {:>9} {:>9} {:>9} {:>12}\n", shortest(view.distance_m),
-                           side == 0 ? "left" : "right", fixed_visible(r.observation_deg[0], 2),
-                           fixed_visible(r.observation_deg[1], 2), fixed(r.r_a[0], 2), fixed(r.r_a[1], 2),
-                           fixed(r.luminance, 2));
+    for (std::size_t k = 0; k < view.reflectors.size(); ++k) {
+      const RoadReflector& r = view.reflectors[k];
+      const char* name = view.reflectors.size() == 1 ? "sign" : (k == 0 ? "left" : "right");
+      table += fmt::format("{:>10} {:>10} {:>9} {:>9} {:>9} {:>9} {:>9} {:>12} {:>10}\n", shortest(view.distance_m),
+                           name, fixed_visible(r.observation_deg[0], 2), fixed_visible(r.observation_deg[1], 2),
+                           fixed(r.r_a[0], 2), fixed(r.r_a[1], 2),
+                           fixed_visible(r.illuminance_lx[0] + r.illuminance_lx[1], 2), fixed(r.luminance, 2),
+                           fixed_visible(r.intensity_cd, 3));
     }
   return table;
 }

@@ -159,6 +159,24 @@ TEST_F(Image, WrongOptionsAreRefused) {
       {{"--road", "--lamp=brick.toml"}, "--lamp"},
       {{"--road", "--lamp-aim-deg=1"}, "--lamp-aim-deg"},
       {{"--road", "--lamp-height-m=0"}, "--lamp-height-m"},
+      {{"--road", "--eye-height-m=-1"}, "--eye-height-m"},
+      {{"--road", "--mount=lorry"}, "--mount"},
+      {{"--road", "--mast-m=3"}, "--mast-m"},
+      {{"--road", "--symbol=none"}, "--symbol"},
+      {{"--road", "--mount=sign", "--mast-m=2"}, "--mast-m"},
+      {{"--road", "--mount=sign", "--reflector-height-m=-1"}, "--reflector-height-m"},
+      {{"--road", "--reflector-mm=-120x25"}, "--reflector-mm"},
+      {{"--road", "--reflector-mm=1000x25"}, "--reflector-mm"},
+      {{"--road", "--outline=star"}, "--outline"},
+      {{"--road", "--lateral-m=2"}, "--lateral-m"},
+      {{"--road", "--asphalt-mcd=-1"}, "--asphalt-mcd"},
+      {{"--road", "--marking-mcd=nan"}, "--marking-mcd"},
+      {{"--road", "--field-deg=0"}, "--field-deg"},
+      {{"--road", "--pixels=0x10"}, "--pixels"},
+      {{"--road", "--pixels=10000x10000"}, "--pixels"},
+      {{"--road", "--exposure-ev=100"}, "--exposure-ev"},
+      {{"--road", "--tone=film"}, "--tone"},
+      {{"--road", "--dye=no.csv"}, "--dye"},
       {{"--road", "--lamp=" + example("low_beam.ies"), "--lamp-aim-deg=46"}, "--lamp-aim-deg"},
       {{"--camera", "--cylinder-mm=50"}, "--cylinder-mm"},
       {{"--camera", "--set", "light.polarisation=linear"}, "brick.toml: light.polarisation"},
@@ -186,9 +204,10 @@ TEST_F(Image, OptionsOfAnotherKindOfPictureAreRefused) {
        {"--distance-m", "--observation-deg", "--v-deg", "--h-deg", "--rotation-deg", "--eye-mm", "--lamp-mm",
         "--lamp-arcmin", "--pupil-arcmin", "--illuminance-lx", "--ambient-lx", "--backlight-lx", "--field-mm",
         "--film-mm", "--cylinder-mm", "--noise", "--passes", "--false-colour"}},
-      {{"--road"}, {"--road-distance-m", "--lamp-cd", "--lamp-height-m", "--dye"}},
-      {{"--detector", "--camera"}, {"--pixels"}},
-      {{"--camera", "--road"}, {"--lamp"}}};
+      {{"--road"},
+       {"--road-distance-m", "--mount", "--reflector-mm", "--outline", "--lateral-m", "--lamp-cd", "--lamp-height-m",
+        "--field-deg"}},
+      {{"--camera", "--road"}, {"--lamp", "--dye", "--exposure-ev", "--tone"}}};
   for (const auto& [kinds, names] : options)
     for (const std::string& name : names)
       for (const std::string& kind : all) {

@@ -274,8 +274,9 @@ TEST(Lamp, CutOffIsSeenOnTheRoad) {
     scene.lamp_aim_deg = aim_deg;
     RoadView view;
     view.distance_m = 30.0;
+    view.reflectors.resize(2);
     draw_road(scene, view);
-    return view.luminance;
+    return view.picture.luminance;
   };
   const auto sum = [](const std::vector<double>& values) {
     double total = 0.0;
