@@ -6,6 +6,7 @@
 #include <span>
 
 #include "core/number_format.h"
+#include "core/srgb.h"
 #include "design/io/design_json.h"
 #include "report/canvas.h"
 #include "report/colour_scale.h"
@@ -36,11 +37,13 @@ std::vector<Colour> colours_of(const RoadPixels& pixels, const ToneCurve& tone) 
   colours.reserve(pixels.luminance.size());
   for (std::size_t k = 0; k < pixels.luminance.size(); ++k) {
     // The curve is applied to the brightest component, so that bright reflectors keep their colour.
+    // Colours outside of the display's range get its nearest colour: negative components are 0.
     std::array<double, 3> rgb = pixels.rgb[k];
+    for (double& value : rgb) value = std::max(value, 0.0);
     const double brightest = std::max({rgb[0], rgb[1], rgb[2]});
     const double factor = brightest > 0.0 ? tone.shown(brightest) / brightest : 0.0;
     for (double& value : rgb) value *= factor;
-    colours.push_back(displayed(rgb, factor * pixels.luminance[k]));
+    colours.push_back(displayed(rgb, srgb_luminance(rgb)));
   }
   return colours;
 }
@@ -52,18 +55,12 @@ std::string both(const double (&values)[2], int digits) {
   return left == right ? left : fmt::format("{} and {}", left, right);
 }
 
-std::string reflectors_text(const RoadView& view) {
-  const auto one = [](const studies::RoadReflector& reflector) {
-    return fmt::format("{} cd/m\u00b2 ({} cd)", figure(reflector.luminance), figure(reflector.intensity_cd));
-  };
-  if (view.reflectors.size() == 1) return "sign " + one(view.reflectors[0]);
-  return fmt::format("reflectors {} and {}", one(view.reflectors[0]), one(view.reflectors[1]));
-}
-
-std::string angles_text(const RoadView& view) {
-  const studies::RoadReflector& last = view.reflectors.back();
-  return fmt::format("observation angle {}\u00b0, illuminance {} lx", both(last.observation_deg, 2),
-                     figure(last.illuminance_lx[0] + last.illuminance_lx[1]));
+/// Returns the values of one reflector.
+std::string reflector_text(const RoadView& view, std::size_t k) {
+  const studies::RoadReflector& r = view.reflectors[k];
+  const char* name = view.reflectors.size() == 1 ? "sign" : (k == 0 ? "left" : "right");
+  return fmt::format("{}: observation angle {}\u00b0, {} lx, {} cd/m\u00b2, {} cd", name, both(r.observation_deg, 2),
+                     figure(r.illuminance_lx[0] + r.illuminance_lx[1]), figure(r.luminance), figure(r.intensity_cd));
 }
 
 std::string scene_text(const RoadResult& result) {
@@ -92,13 +89,14 @@ void draw_inset(Canvas& canvas, const RoadResult& result, const RoadView& view, 
   const double margin = 0.025 * size.width;
   const double magnification = view.camera.pixel / camera.pixel;
   const Vec2 target = factor * view.camera.position_of(result.scene.reflectors.back());
-  const bool is_left = target.x() > 0.62 * size.width;
-  const Point at{is_left ? corner.x + margin : corner.x + size.width - margin - inset.width, corner.y + margin};
+  // Frame around the part of the picture that the inset shows. It is large enough not to hide a distant reflector.
+  const Size part{std::max(12.0, inset.width / magnification), std::max(8.0, inset.height / magnification)};
+  const Point from{corner.x + target.x() - 0.5 * part.width, corner.y + target.y() - 0.5 * part.height};
+  const double right = corner.x + size.width - margin - inset.width;
+  const bool is_left = from.x + part.width > right - margin && from.y < corner.y + inset.height + 2.0 * margin;
+  const Point at{is_left ? corner.x + margin : right, corner.y + margin};
   const Stroke line{kDim, 0.7, {}};
   const Stroke faint{{0.45, 0.47, 0.51}, 0.6, {}};
-  // Frame around the part of the picture that the inset shows, and lines from its corners to the inset.
-  const Size part{std::max(3.0, inset.width / magnification), std::max(2.0, inset.height / magnification)};
-  const Point from{corner.x + target.x() - 0.5 * part.width, corner.y + target.y() - 0.5 * part.height};
   const auto frame = [&](Point upper_left, Size extent, const Stroke& stroke) {
     canvas.line({upper_left,
                  {upper_left.x + extent.width, upper_left.y},
@@ -110,8 +108,15 @@ void draw_inset(Canvas& canvas, const RoadResult& result, const RoadView& view, 
   canvas.clip(corner, size);
   if (magnification > 1.2) {
     frame(from, part, faint);
-    canvas.line({{from.x, from.y}, {at.x, at.y + inset.height}}, faint);
-    canvas.line({{from.x + part.width, from.y}, {at.x + inset.width, at.y + inset.height}}, faint);
+    if (from.y > at.y + inset.height) {
+      canvas.line({{from.x, from.y}, {at.x, at.y + inset.height}}, faint);
+      canvas.line({{from.x + part.width, from.y}, {at.x + inset.width, at.y + inset.height}}, faint);
+    } else {
+      const double inset_side = is_left ? at.x + inset.width : at.x;
+      const double frame_side = is_left ? from.x : from.x + part.width;
+      canvas.line({{frame_side, from.y}, {inset_side, at.y}}, faint);
+      canvas.line({{frame_side, from.y + part.height}, {inset_side, at.y + inset.height}}, faint);
+    }
   }
   canvas.image(at, inset, camera.columns, colours_of(view.inset, tone));
   frame(at, inset, line);
@@ -134,8 +139,8 @@ double draw_view(Canvas* canvas, const Canvas& metrics, const RoadResult& result
   double y = corner.y + size.height + 18.0;
   if (canvas != nullptr)
     canvas->text({corner.x, y}, fmt::format("{} m", shortest(view.distance_m)), kNameFont, kBright, Align::left);
-  for (const std::string& text : {angles_text(view), reflectors_text(view)})
-    for (const std::string& line : metrics.fitted(text, kLineFont, size.width, 2, Ellipsis::end)) {
+  for (std::size_t k = 0; k < view.reflectors.size(); ++k)
+    for (const std::string& line : metrics.fitted(reflector_text(view, k), kLineFont, size.width, 2, Ellipsis::end)) {
       y += kLine;
       if (canvas != nullptr) canvas->text({corner.x, y}, line, kLineFont, kDim, Align::left);
     }
@@ -168,8 +173,9 @@ std::string drawn(const RoadResult& result, std::span<const RoadView> views, con
   const Size view_size = shown_size(result);
   const double width = 2.0 * kGap + static_cast<double>(columns) * (view_size.width + kGap) - kGap;
   std::vector<std::string> notes;
-  for (const std::string& text : {scene_text(result), "All pictures have the same exposure: " +
-                                                          exposure_text(tone, result.request.exposure_ev.has_value())})
+  const std::string exposure = exposure_text(tone, result.request.exposure_ev.has_value());
+  for (const std::string& text :
+       {scene_text(result), (result.views.size() > 1 ? "One exposure for all distances: " : "Exposure: ") + exposure})
     for (const std::string& line : metrics.fitted(text, kLineFont, width - 2.0 * kGap, 4, Ellipsis::end))
       notes.push_back(line);
   const double bar = has_bar(tone) ? kGap + kBarHeight + 18.0 : 0.0;
@@ -178,8 +184,11 @@ std::string drawn(const RoadResult& result, std::span<const RoadView> views, con
   const Size size{width, std::ceil(height)};
   Canvas canvas(Canvas::Format::png, size, kPixelsPerUnit);
   canvas.fill_rectangle({0.0, 0.0}, size, kPaper);
-  const std::string title = name_of(result) + ": what a driver sees at night";
-  for (const std::string& line : canvas.fitted(title, kTitleFont, width - 2.0 * kGap, 1, Ellipsis::middle))
+  const std::string name = name_of(result);
+  const std::string title = name + ": what a driver sees at night";
+  const bool fits = canvas.text_width(title, kTitleFont) <= width - 2.0 * kGap;
+  for (const std::string& line :
+       canvas.fitted(fits ? title : name, kTitleFont, width - 2.0 * kGap, 1, Ellipsis::middle))
     canvas.text({kGap, 23.0}, line, kTitleFont, kBright, Align::left);
   for (std::size_t k = 0; k < count; ++k)
     draw_view(&canvas, metrics, result, views[k], tone,

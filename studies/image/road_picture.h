@@ -23,9 +23,12 @@ struct RoadReflector {
 /// Pinhole camera at the eye of the driver. Positions in the picture are in pixels, x to the right and y downwards from
 /// the upper left corner.
 struct RoadCamera {
-  geometry::Vec3 eye, forward, right, up;
-  double pixel = 0.0;      ///< size of a pixel on a plane at the distance 1
-  geometry::Vec2 ahead{};  ///< position of the direction `forward` in the picture
+  geometry::Vec3 eye = geometry::Vec3::Zero();
+  geometry::Vec3 forward = -geometry::Vec3::UnitZ();
+  geometry::Vec3 right = geometry::Vec3::UnitX();
+  geometry::Vec3 up = geometry::Vec3::UnitY();
+  double pixel = 0.0;                             ///< size of a pixel on a plane at the distance 1
+  geometry::Vec2 ahead = geometry::Vec2::Zero();  ///< position of the direction `forward` in the picture
   std::size_t columns = 0;
   std::size_t rows = 0;
 
