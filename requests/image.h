@@ -109,16 +109,28 @@ struct CameraRequest {
 /// Settings for pictures of reflectors on a car ahead, or of a sign on a mast, as a driver sees them at night
 /// (`retrace image --road`).
 struct RoadRequest {
-  /// Distances of the car ahead.
+  /// Distances of the car ahead or the sign.
   std::vector<double> distance_m = {10.0, 30.0, 100.0};
+  /// Object that carries the reflectors: the rear of a car, which has two, or a sign on a mast.
   std::string mount = "car";
+  /// Width and height of each reflector or of the sign, in mm. Default: the size of a finite design; 120x25 on a car
+  /// and 600x600 on a sign if it is infinite.
   std::optional<std::array<double, 2>> reflector_mm = {};
+  /// Outline of each reflector or of the sign: rectangle, ellipse, triangle, octagon, or auto for that of a finite
+  /// design, otherwise a rectangle on a car and an ellipse on a sign.
   std::string outline = "auto";
+  /// Height of the centre of the reflectors or of the sign above the road; > 0 and <= 20. Default: 0.6 on a car, 2.2 on
+  /// a sign.
   std::optional<double> reflector_height_m = {};
+  /// Distance of each reflector from the centre of the car, or of the sign from the centre of the lane; positive to the
+  /// right; >= -20 and <= 20. Default: 0.72 on a car, 4 on a sign.
   std::optional<double> lateral_m = {};
+  /// Height of the mast of a sign; at least the height of the sign's centre; > 0 and <= 25. Default: up to the upper
+  /// edge of the sign.
   std::optional<double> mast_m = {};
+  /// Opaque black symbol on a sign: arrow or none.
   std::string symbol = "arrow";
-  /// Intensity of each headlamp towards the reflectors; > 0 and <= 1e+06.
+  /// Intensity of each headlamp, the same in all directions ahead; > 0 and <= 1e+06.
   double lamp_cd = 10'000.0;
   /// IES or EULUMDAT file (.ies, .ldt) of the lamp or headlamps. Default: the same intensity in all directions.
   std::filesystem::path lamp = {};
@@ -126,15 +138,26 @@ struct RoadRequest {
   double lamp_height_m = 0.65;
   /// Downward tilt of the axis of a lamp from a file, in degrees; >= -45 and <= 45.
   double lamp_aim_deg = 0.0;
+  /// Height of the driver's eyes above the road; >= 0.3 and <= 5.
   double eye_height_m = 1.2;
+  /// Coefficient of retroreflected luminance R_L of the asphalt in the 30 m geometry, in mcd/(lx m2); the default is
+  /// illustrative; >= 0 and <= 1000.
   double asphalt_mcd = 15.0;
+  /// Coefficient of retroreflected luminance R_L of the markings in the 30 m geometry, in mcd/(lx m2); the default is
+  /// illustrative; >= 0 and <= 5000.
   double marking_mcd = 150.0;
   /// Dye of the reflectors: none, red, amber (illustrative) or a file.
   std::string dye = "none";
+  /// Columns and rows of the picture.
   std::size_t columns = 640;
+  /// Columns and rows of the picture.
   std::size_t rows = 440;
+  /// Angular width of the picture, in degrees; >= 1 and <= 90.
   double field_deg = 13.0;
+  /// Exposure of the PNG file as an exposure value at ISO 100 (EV100); luminances of 1.2 x 2^EV cd/m2 are white; >= -30
+  /// and <= 40. Default: such that the brightest thousandth of the pixels is white.
   std::optional<double> exposure_ev = {};
+  /// Tone curve of the PNG file: reinhard (adaptation of the eye), linear, or log (four decades).
   std::string tone = "reinhard";
   /// Seed of the random numbers; a whole number >= 0 and <= 4294967295.
   std::uint32_t seed = 1;

@@ -289,8 +289,8 @@ constexpr Row kRoadRows[] = {
       .otherwise = "the size of a finite design; 120x25 on a car and 600x600 on a sign if it is infinite"}},
     {"outline",
      Word{kOutlines},
-     "outline of each reflector or of the sign; auto: that of a finite design, otherwise a rectangle on a car and an "
-     "ellipse on a sign",
+     "outline of each reflector or of the sign: rectangle, ellipse, triangle, octagon, or auto for that of a finite "
+     "design, otherwise a rectangle on a car and an ellipse on a sign",
      access<&RoadRequest::outline>,
      {.value = "SHAPE"}},
     {"reflector_height_m",
