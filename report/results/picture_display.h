@@ -1,6 +1,6 @@
 #pragma once
 
-// How pictures of luminances are displayed: colours, captions, and a bar of the displayed luminances. This header is
+// Display of pictures of luminances: colours, captions, and a bar of the displayed luminances. This header is
 // private to report/.
 
 #include <array>
