@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/error.h"
 #include "core/schema/access.h"
 #include "requests/rows/common.h"
@@ -15,6 +17,8 @@ constexpr std::string_view kTones[] = {"reinhard", "linear", "log"};
 constexpr NumberRange kLampAim{.low = -45.0, .high = 45.0};
 constexpr double kMaxPictureSide = 16384.0;
 constexpr std::size_t kMaxPixels = std::size_t{1} << 26U;
+// Pictures of a road are kept in memory with all their channels.
+constexpr std::size_t kMaxRoadPixels = std::size_t{1} << 24U;
 
 constexpr Row kDetectorRows[] = {{"incidence_deg",
                                   Number{kIncidence},
@@ -107,15 +111,17 @@ constexpr Row tone_row() {
           {.value = "CURVE"}};
 }
 
+/// Checks the total number of pixels of one or more pictures of the same size.
 template <class Type>
-void check_pixels(const Type& request) {
-  if (request.columns * request.rows > kMaxPixels)
-    throw InputError(Field{"pixels"}, fmt::format("must be at most {} pixels in total, got {}x{}", kMaxPixels,
-                                                  request.columns, request.rows));
+void check_pixels(const Type& request, std::size_t pictures, std::size_t most) {
+  if (request.columns * request.rows * pictures > most)
+    throw InputError(Field{"pixels"},
+                     fmt::format("must be at most {} pixels in total, got {}x{}{}", most, request.columns, request.rows,
+                                 pictures > 1 ? fmt::format(" for each of {} distances", pictures) : ""));
 }
 
 void check_camera(const void* object) {
-  check_pixels(*static_cast<const CameraRequest*>(object));
+  check_pixels(*static_cast<const CameraRequest*>(object), 1, kMaxPixels);
 }
 
 constexpr NumberRange kLampAngle{.low = -90.0, .low_included = false, .high = 90.0, .high_included = false};
@@ -263,7 +269,7 @@ void check_road(const void* object) {
   const std::size_t count = request.distance_m.size();
   if (count > most)
     throw InputError(Field{"road.distance_m"}, fmt::format("must be 1 to {} distances, got {}", most, count));
-  check_pixels(request);
+  check_pixels(request, std::max<std::size_t>(count, 1), kMaxRoadPixels);
 }
 
 constexpr Row kRoadRows[] = {

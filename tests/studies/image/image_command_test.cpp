@@ -174,6 +174,7 @@ TEST_F(Image, WrongOptionsAreRefused) {
       {{"--road", "--field-deg=0"}, "--field-deg"},
       {{"--road", "--pixels=0x10"}, "--pixels"},
       {{"--road", "--pixels=10000x10000"}, "--pixels"},
+      {{"--road", "--pixels=4096x2048", "--road-distance-m=10,20,30"}, "--pixels"},
       {{"--road", "--exposure-ev=100"}, "--exposure-ev"},
       {{"--road", "--tone=film"}, "--tone"},
       {{"--road", "--dye=no.csv"}, "--dye"},
