@@ -1,12 +1,17 @@
 #include "retrace/image.h"
 
+#include <fmt/format.h>
+
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "core/threads.h"
 #include "library/content.h"
 #include "library/drawing_content.h"
 #include "report/io/picture_file.h"
 #include "report/results/result_plots.h"
+#include "studies/image/camera_series.h"
 #include "studies/image/io/image_documents.h"
 
 namespace retrace {
@@ -39,7 +44,7 @@ ImageResult detector(const Design& design, const DetectorRequest& request, const
   ImageResult result;
   const auto found =
       run<studies::DetectorStudy>(design, request, running, result, studies::detector_json, studies::detector_table);
-  if (!found->complete) return result;
+  if (!found->has_maps()) return result;
   result.pictures = {picture_of("irradiance", report::irradiance_picture(*found),
                                 drawing_of([found] { return report::irradiance_plot(*found); })),
                      picture_of("angular", report::angular_picture(*found),
@@ -54,6 +59,28 @@ ImageResult camera(const Design& design, const CameraRequest& request, const Run
   if (found->image.passes == 0) return result;
   result.pictures = {picture_of("camera", report::luminance_picture(*found),
                                 drawing_of_text([found] { return report::camera_png(*found); }, false))};
+  return result;
+}
+
+ImageResult camera_series(const std::vector<Design>& designs, const std::vector<CameraRequest>& requests,
+                          const Running& running) {
+  std::vector<design::Design> contents;
+  for (const Design& design : designs) contents.push_back(design.content().design);
+  const studies::CameraSeries series(contents, requests);
+  const auto found = std::make_shared<studies::CameraSeriesResult>();
+  run_with_threads(running.threads, [&] { *found = series.run(running.progress, running.cancellation); });
+  ImageResult result;
+  result.warnings = found->warnings;
+  result.complete = found->complete;
+  result.json = studies::camera_series_json(found->pictures, found->warnings, found->complete);
+  result.table = studies::camera_series_table(found->pictures);
+  if (found->pictures.empty()) return result;
+  const auto tone = std::make_shared<const report::ToneCurve>(report::camera_tone(found->pictures));
+  for (std::size_t k = 0; k < found->pictures.size(); ++k)
+    result.pictures.push_back(
+        picture_of(fmt::format("camera_{:02}", k + 1), report::luminance_picture(found->pictures[k]),
+                   drawing_of_text([found, tone, k] { return report::camera_png(found->pictures[k], *tone); }, false)));
+  result.sheet = drawing_of_text([found, tone] { return report::camera_sheet_png(found->pictures, *tone); }, false);
   return result;
 }
 

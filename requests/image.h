@@ -31,7 +31,8 @@ struct DetectorRequest {
   /// Minimum power of a beam that is followed, as a fraction of the incident power; > 0 and < 1. Default: such that at
   /// most 1e-5 of the power is truncated.
   std::optional<double> cutoff = {};
-  /// Number of Monte Carlo rays; a whole number >= 1 and <= 68719476736. Default: 4194304.
+  /// Number of Monte Carlo rays; a whole number >= 1 and <= 68719476736. Default: as many as small bins require, from
+  /// 4194304 to 33554432.
   std::optional<std::uint64_t> samples = {};
   /// Largest relative standard error of a bin where there is light. Pixels are merged until it is reached; 0: pixels
   /// are not merged; >= 0 and < 1.

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -6,6 +7,9 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "app/commands.h"
 #include "app/interrupt.h"
@@ -22,6 +26,7 @@
 #include "report/results/result_plots.h"
 #include "requests/descriptions.h"
 #include "requests/number_list.h"
+#include "studies/image/camera_series.h"
 #include "studies/image/io/image_documents.h"
 #include "studies/photometry/io/standard_reader.h"
 
@@ -33,6 +38,8 @@ constexpr std::chrono::seconds kPreview{10};
 // Number of passes that each MPI rank computes at a time. A pass traces four light paths per pixel and uses all threads
 // of the rank.
 constexpr std::size_t kPassesAtATime = 1;
+// Number of pictures of a series that each MPI rank computes at a time.
+constexpr std::size_t kPicturesAtATime = 1;
 // Name of the camera picture. Previews are written to the same file.
 constexpr const char* kCameraPng = "camera.png";
 
@@ -75,8 +82,8 @@ Words what_shortens(const DetectorRequest& request) {
   const bool may_be_exact = request.engine == "exact" || request.engine == "auto";
   Words advice;
   if (request.engine != "exact")
-    advice.push_back(
-        fmt::format("give a smaller --samples (now {})", request.samples.value_or(studies::kDefaultDetectorRays)));
+    advice.push_back(request.samples ? fmt::format("give a smaller --samples (now {})", *request.samples)
+                                     : fmt::format("give a larger --bin-error (now {})", shortest(request.bin_error)));
   if (may_be_exact) advice.emplace_back("give a larger --cutoff");
   return advice;
 }
@@ -92,7 +99,7 @@ ExitCode run_detector(const ImageOptions& options, const CommonOptions& common, 
   studies::DetectorResult result;
   ResultFiles files(common, files_read({design}), "image.json");
   const auto add = [&](const std::string& name, auto content) {
-    files.add(name, [&result, content] { return result.complete ? content(result) : ""; });
+    files.add(name, [&result, content] { return result.has_maps() ? content(result) : ""; });
   };
   add("irradiance.exr", [](const auto& r) { return report::exr_file(report::irradiance_picture(r)); });
   add("irradiance.png", [](const auto& r) { return report::render_png(report::irradiance_plot(r)); });
@@ -184,9 +191,9 @@ ExitCode run_camera(const ImageOptions& options, const CommonOptions& common) {
 /// Fields of a camera picture that may be lists. A list gives a sequence of pictures.
 constexpr std::array<std::string_view, 5> kSequenceFields = {"distance_m", "observation_deg", "v_deg", "h_deg",
                                                              "rotation_deg"};
-constexpr std::size_t kMaxPictures = 64;
 
-/// Returns the fields of each picture of a sequence. If no field is a list, there is one picture.
+/// Returns the fields of each picture of a sequence. If no field is a list of several different values, there is one
+/// picture.
 std::vector<FieldTexts> sequence_of(const FieldTexts& fields) {
   std::vector<FieldTexts> sequence;
   std::string listed;
@@ -198,8 +205,9 @@ std::vector<FieldTexts> sequence_of(const FieldTexts& fields) {
     const std::vector<double> values = requests::read_number_list(*found->second, Field{name});
     if (!listed.empty())
       throw InputError(Field{name}, fmt::format("only one option may be a list, and {} is one already", listed));
-    if (values.size() > kMaxPictures)
-      throw InputError(Field{name}, fmt::format("must be 1 to {} values, got {}", kMaxPictures, values.size()));
+    if (values.size() > studies::CameraSeries::kMaxPictures)
+      throw InputError(Field{name}, fmt::format("must be 1 to {} values, got {}", studies::CameraSeries::kMaxPictures,
+                                                values.size()));
     listed = option;
     for (const double value : values) {
       FieldTexts one = fields;
@@ -211,55 +219,73 @@ std::vector<FieldTexts> sequence_of(const FieldTexts& fields) {
   return sequence;
 }
 
+/// Several designs, or several requests, of which `retrace image --camera` makes pictures with the same exposure.
+struct SeriesInput {
+  std::vector<design::Design> designs;
+  std::vector<CameraRequest> requests;
+};
+
+SeriesInput series_input(const ImageOptions& options, const CommonOptions& common,
+                         const std::vector<FieldTexts>& sequence) {
+  SeriesInput input;
+  for (const std::string& file : options.designs) input.designs.push_back(design::read_design(file, common.overrides));
+  for (const FieldTexts& fields : sequence) input.requests.push_back(request_of<CameraRequest>(fields, common));
+  return input;
+}
+
+/// Computes the pictures of a series and writes the results.
+/// \param session MPI session; null if the program does not run under MPI
+ExitCode photograph_series(const ImageOptions& options, const CommonOptions& common,
+                           const std::vector<FieldTexts>& sequence, compute::MpiSession* session) {
+  const SeriesInput input = series_input(options, common, sequence);
+  const CameraRequest& request = input.requests.front();
+  const studies::CameraSeries series(input.designs, input.requests);
+  studies::CameraSeriesResult result;
+  std::optional<report::ToneCurve> curve;
+  ResultFiles files(common, files_of(input.designs, request), "image.json");
+  const auto tone = [&result, &curve] {
+    if (!curve) curve = report::camera_tone(result.pictures);
+    return *curve;
+  };
+  for (std::size_t k = 0; k < series.size(); ++k) {
+    const std::string name = fmt::format("camera_{:02}", k + 1);
+    const auto add = [&](const char* extension, auto content) {
+      files.add(name + extension,
+                [&result, k, content] { return k < result.pictures.size() ? content(result.pictures[k]) : ""; });
+    };
+    add(".exr", [](const auto& picture) { return report::exr_file(report::luminance_picture(picture)); });
+    add(".png", [tone](const auto& picture) { return report::camera_png(picture, tone()); });
+  }
+  files.add(sequence.size() > 1 ? "sheet.png" : kCameraPng, [&result, tone] {
+    return result.pictures.empty() ? "" : report::camera_sheet_png(result.pictures, tone());
+  });
+  check_can_draw(common);
+  const OrderlyInterrupt interrupt;
+  files.prepare();
+  interrupt.run(common, {"rendering", what_shortens(request)}, [&](Progress* bar, const Cancellation* cancel) {
+    result = series.run(bar, cancel, distribute_among(session, kPicturesAtATime, cancel));
+  });
+  for (const Warning& remark : remarks_of(session)) result.warnings.push_back(remark);
+  return files.write(studies::camera_series_json(result.pictures, result.warnings, result.complete),
+                     studies::camera_series_table(result.pictures), result.warnings, {.complete = result.complete});
+}
+
 /// Computes several camera pictures, one for each design or for each value of a list, and displays them with the same
 /// exposure.
 ExitCode run_series(const ImageOptions& options, const CommonOptions& common, const std::vector<FieldTexts>& sequence) {
   if (sequence.size() > 1 && options.designs.size() > 1)
     throw InputError("image: a list of values is possible only for one design");
   if (options.false_colour) throw InputError("image: --false-colour is possible only for one picture");
-  std::vector<design::Design> designs;
-  for (const std::string& file : options.designs) designs.push_back(design::read_design(file, common.overrides));
-  const auto request = request_of<CameraRequest>(sequence.front(), common);
-  const bool is_sequence = sequence.size() > 1;
-  const std::size_t count = std::max(sequence.size(), designs.size());
-  std::vector<std::unique_ptr<const studies::CameraStudy>> studies;
-  std::vector<studies::CameraResult> results;
-  std::optional<report::ToneCurve> curve;
-  ResultFiles files(common, files_of(designs, request), "image.json");
-  const auto tone = [&results, &curve] {
-    if (!curve) curve = report::camera_tone(results);
-    return *curve;
-  };
-  for (std::size_t k = 0; k < count; ++k) {
-    const std::string name = fmt::format("camera_{:02}", k + 1);
-    files.add(name + ".exr", [&results, k] {
-      return k < results.size() ? report::exr_file(report::luminance_picture(results[k])) : "";
-    });
-    files.add(name + ".png",
-              [&results, k, tone] { return k < results.size() ? report::camera_png(results[k], tone()) : ""; });
-    studies.push_back(std::make_unique<const studies::CameraStudy>(
-        designs[is_sequence ? 0 : k], request_of<CameraRequest>(sequence[is_sequence ? k : 0], common)));
-  }
-  files.add(is_sequence ? "sheet.png" : kCameraPng,
-            [&results, tone] { return results.empty() ? "" : report::camera_sheet_png(results, tone()); });
-  check_can_draw(common);
-  const OrderlyInterrupt interrupt;
-  files.prepare();
-  interrupt.run(common, {"rendering", what_shortens(request)}, [&](Progress* bar, const Cancellation* cancel) {
-    for (std::size_t k = 0; k < count && !is_cancelled(cancel); ++k) {
-      PartProgress part(bar, static_cast<double>(k) / static_cast<double>(count),
-                        static_cast<double>(k + 1) / static_cast<double>(count));
-      studies::CameraResult result = studies[k]->run(&part, cancel);
-      if (result.image.passes > 0) results.push_back(std::move(result));
-    }
-  });
-  Warnings warnings;
-  for (const studies::CameraResult& result : results)
-    warnings.insert(warnings.end(), result.warnings.begin(), result.warnings.end());
-  const bool is_complete =
-      results.size() == count && std::ranges::all_of(results, [](const auto& result) { return result.complete; });
-  return files.write(studies::camera_series_json(results, warnings, is_complete), studies::camera_series_table(results),
-                     warnings, {.complete = is_complete});
+  return run_on_ranks(
+      common, kPicturesAtATime,
+      [&](compute::MpiSession* session) { return photograph_series(options, common, sequence, session); },
+      [&]() -> ComputeTask {
+        const SeriesInput input = series_input(options, common, sequence);
+        const auto series = std::make_shared<const studies::CameraSeries>(input.designs, input.requests);
+        return [series, compute = series->pictures()](std::uint64_t picture, const Cancellation* cancel) {
+          return compute(picture, cancel);
+        };
+      });
 }
 
 ExitCode run_road(const ImageOptions& options, const CommonOptions& common, design::Design design) {
@@ -285,16 +311,30 @@ ExitCode run_road(const ImageOptions& options, const CommonOptions& common, desi
                      {.complete = result.complete});
 }
 
-ExitCode run(const ImageOptions& options, const CommonOptions& common) {
-  if (static_cast<int>(options.detector) + static_cast<int>(options.camera) + static_cast<int>(options.road) != 1)
+/// Checks that exactly one kind of picture is requested.
+void check_kind(const ImageOptions& options) {
+  std::vector<std::string> given;
+  for (const auto& [is_given, name] : {std::pair{options.detector, "--detector"}, std::pair{options.camera, "--camera"},
+                                       std::pair{options.road, "--road"}})
+    if (is_given) given.emplace_back(name);
+  if (given.size() == 1) return;
+  if (given.empty())
     throw InputError("image: one of --detector, --camera and --road is required; see retrace image --help");
+  throw InputError(fmt::format("image: must be one kind of picture (--detector, --camera or --road), got {}",
+                               fmt::join(given, " and ")));
+}
+
+ExitCode run(const ImageOptions& options, const CommonOptions& common) {
+  check_kind(options);
   if (options.designs.size() > 1 && !options.camera)
     throw InputError("image: several designs are possible only with --camera");
   if (std::ranges::count(options.designs, "-") > 1) throw InputError("standard input (-) can be given only one time");
   if (options.camera) {
     const std::vector<FieldTexts> sequence = sequence_of(options.fields);
-    return sequence.size() > 1 || options.designs.size() > 1 ? run_series(options, common, sequence)
-                                                             : run_camera(options, common);
+    if (sequence.size() > 1 || options.designs.size() > 1) return run_series(options, common, sequence);
+    ImageOptions one = options;
+    one.fields = sequence.front();
+    return run_camera(one, common);
   }
   design::Design design = design::read_design(options.designs.front(), common.overrides);
   return options.detector ? run_detector(options, common, std::move(design))

@@ -3,8 +3,13 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cstdio>
 #include <memory>
+#include <mutex>
 #include <stdexcept>
 #include <string>
 
@@ -18,6 +23,36 @@ namespace {
 [[noreturn]] void fail(const std::string& why) {
   throw std::runtime_error(why.empty() ? "it ends early or is damaged" : why);
 }
+
+/// Discards what is written to standard error while an object of this class exists. libpng and libjpeg write their
+/// errors and warnings there, in addition to the errors that OpenImageIO returns.
+class SilentLibraries {
+ public:
+  SilentLibraries() : lock_(mutex()) {
+    std::fflush(stderr);
+    saved_ = ::fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 0);
+    const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
+    if (saved_ >= 0 && nowhere >= 0) ::dup2(nowhere, STDERR_FILENO);
+    if (nowhere >= 0) ::close(nowhere);
+  }
+  ~SilentLibraries() {
+    std::fflush(stderr);
+    if (saved_ < 0) return;
+    ::dup2(saved_, STDERR_FILENO);
+    ::close(saved_);
+  }
+  SilentLibraries(const SilentLibraries&) = delete;
+  SilentLibraries& operator=(const SilentLibraries&) = delete;
+
+ private:
+  static std::mutex& mutex() {
+    static std::mutex mutex;
+    return mutex;
+  }
+
+  std::lock_guard<std::mutex> lock_;
+  int saved_ = -1;
+};
 
 std::unique_ptr<OIIO::ImageInput> opened(const std::filesystem::path& file) {
   auto input = OIIO::ImageInput::open(file.string());
@@ -42,11 +77,13 @@ std::string encoded(const char* name, const OIIO::ImageSpec& spec, OIIO::TypeDes
 class OpenImageIo final : public PictureFiles {
  public:
   Size size(const std::filesystem::path& file) const override {
+    const SilentLibraries silent;
     const OIIO::ImageSpec spec = opened(file)->spec();
     return {static_cast<std::size_t>(spec.width), static_cast<std::size_t>(spec.height)};
   }
 
   BytePicture read(const std::filesystem::path& file) const override {
+    const SilentLibraries silent;
     const auto input = opened(file);
     const OIIO::ImageSpec& spec = input->spec();
     BytePicture picture{static_cast<std::size_t>(spec.width),
@@ -61,6 +98,7 @@ class OpenImageIo final : public PictureFiles {
   }
 
   FloatPicture read_floats(const std::filesystem::path& file) const override {
+    const SilentLibraries silent;
     const auto input = opened(file);
     const OIIO::ImageSpec& spec = input->spec();
     FloatPicture picture{static_cast<std::size_t>(spec.width), static_cast<std::size_t>(spec.height), {}, {}, {}};

@@ -27,6 +27,7 @@ struct Picture {
 
 struct ImageResult {
   std::vector<Picture> pictures;
+  Drawing sheet;  ///< drawing of all pictures of a series next to each other; empty for one picture
   Warnings warnings;
   bool complete = true;
   std::string json;   ///< JSON document retrace.image/1
@@ -40,6 +41,16 @@ RETRACE_API ImageResult detector(const Design& design, const DetectorRequest& re
                                  const Running& running = {});
 /// Computes a camera picture of the part. Throws like detector().
 RETRACE_API ImageResult camera(const Design& design, const CameraRequest& request = {}, const Running& running = {});
+/// Computes several camera pictures, which are displayed with the same exposure: one for each design, or one for each
+/// request. Their names are "camera_01", "camera_02" and so on. The JSON document has the kind `camera_series`. If the
+/// computation is cancelled, the result has only the pictures that were computed.
+/// \param designs one design, or one for each picture; at most 64
+/// \param requests one request, or one for each picture; at most 64
+/// \throw InputError if both lists have several elements, or in the same cases as camera()
+/// \throw BudgetError if the ray tracer lost power
+RETRACE_API ImageResult camera_series(const std::vector<Design>& designs,
+                                      const std::vector<CameraRequest>& requests = {CameraRequest()},
+                                      const Running& running = {});
 /// Computes the views from a car at night. Throws like detector().
 RETRACE_API ImageResult road(const Design& design, const RoadRequest& request = {}, const Running& running = {});
 

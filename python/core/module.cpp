@@ -78,6 +78,7 @@ template <class Request>
 py::class_<Request> request_class(py::module_& module, const char* name) {
   return py::class_<Request>(module, name)
       .def(py::init<>())
+      .def("copy", [](const Request& request) { return request; })
       .def("assign", [](Request& request, const std::string& field, const py::object& value) {
         assign(request, field, field_value(value));
       });
@@ -298,7 +299,9 @@ void bind_images(py::module_& module) {
   request_class<DetectorRequest>(module, "DetectorRequest");
   request_class<CameraRequest>(module, "CameraRequest");
   request_class<RoadRequest>(module, "RoadRequest");
-  result_class<ImageResult>(module, "ImageResult").def_readonly("complete", &ImageResult::complete);
+  result_class<ImageResult>(module, "ImageResult")
+      .def_readonly("complete", &ImageResult::complete)
+      .def_readonly("sheet", &ImageResult::sheet);
   const auto bind = [&]<class Request>(const char* name,
                                        ImageResult (*function)(const Design&, const Request&, const Running&)) {
     module.def(name,
@@ -311,6 +314,12 @@ void bind_images(py::module_& module) {
   bind("detector", detector);
   bind("camera", camera);
   bind("road", road);
+  module.def("camera_series", [](const std::vector<Design>& designs, const std::vector<CameraRequest>& requests,
+                                 const py::object& progress, unsigned threads) {
+    return told(watched(progress, threads, [designs, requests](const Running& running) {
+      return camera_series(designs, requests, running);
+    }));
+  });
 }
 
 std::vector<double> numbers_of(const Numbers& array) {

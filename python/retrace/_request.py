@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple, ParamSpec, TypeVar
 
 from ._arguments import checked, flag, number, number_list, pairs, path, refuse, whole, word
@@ -63,6 +63,27 @@ def given(request: Any, fields: Fields, **values: object) -> Any:
             continue
         request.assign(field.name, _converted(keyword, value, field))
     return request
+
+
+def with_values(
+    request: Any, fields: Fields, name: str, lists: Mapping[str, object] | None
+) -> list[Any]:
+    """Returns a copy of a request for each value of a list. Without a list, returns the request.
+
+    name: keyword that contains the list, for messages
+    lists: a dict of one keyword whose field is a number, and a list of its values"""
+    if lists is None:
+        return [request]
+    numeric = sorted(keyword for keyword, field in fields.items() if field.kind == "number")
+    allowed = f"one of {', '.join(numeric)} with a list of values, such as {{{numeric[0]!r}: [1, 2]}}"
+    if not isinstance(lists, Mapping) or len(lists) != 1 or next(iter(lists)) not in numeric:
+        raise refuse(name, allowed, lists)
+    keyword, values = next(iter(lists.items()))
+    requests = []
+    for value in number_list(keyword, values):
+        requests.append(request.copy())
+        requests[-1].assign(fields[keyword].name, value)
+    return requests
 
 
 def described(fields: Fields) -> Callable[[Callable[_P, _R]], Callable[_P, _R]]:

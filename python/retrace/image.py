@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from . import _core
 from ._arguments import Numbers, PathLike, thread_count
-from ._design import AnyDesign, design_of
+from ._design import AnyDesign, design_of, designs_of
 from ._fields import FIELDS
 from ._progress import Progress, teller
-from ._request import described, given
+from ._request import described, given, with_values
 from ._results import Array, Drawing, Result, needed, unit_of
 
-__all__ = ["ImageResult", "Picture", "camera", "detector", "road"]
+__all__ = ["ImageResult", "Picture", "camera", "camera_series", "detector", "road"]
 
 
 class Picture(Mapping[str, Array]):
@@ -55,7 +55,8 @@ class Picture(Mapping[str, Array]):
 
 
 class ImageResult(Result):
-    """Pictures by the names of their files."""
+    """Pictures by the names of their files. A series also has the drawing "sheet", which shows all
+    pictures next to each other."""
 
     _told = ("kind", "engine")
 
@@ -64,7 +65,10 @@ class ImageResult(Result):
 
     def __init__(self, made: tuple[Any, dict[str, tuple[dict[str, Array], Any]]]) -> None:
         core, pictures = made
-        super().__init__(core, drawings={name: drawing for name, (_, drawing) in pictures.items()})
+        drawings = {name: drawing for name, (_, drawing) in pictures.items()}
+        if core.sheet:
+            drawings["sheet"] = core.sheet
+        super().__init__(core, drawings=drawings)
         self.pictures = {name: Picture(name, *content) for name, content in pictures.items()}
 
     def __getitem__(self, name: str) -> Picture:
@@ -109,6 +113,30 @@ def camera(
     taken, count = design_of(design), thread_count(threads)
     with teller(progress, "rendering") as tell:
         return ImageResult(_core.camera(taken._core, request, tell, count))
+
+
+@described(FIELDS["camera"])
+def camera_series(
+    designs: AnyDesign | Sequence[AnyDesign],
+    values: Mapping[str, Numbers] | None = None,
+    *,
+    # generated: keywords of the request camera
+    threads: int | None = None,
+    progress: Progress = None,
+) -> ImageResult:
+    """Computes several camera pictures with the same exposure ("camera_01", "camera_02" and so on;
+    drawing "sheet": all of them), as `retrace image --camera` with several designs or a list.
+
+    designs: one design, or a list with one design for each picture. values: dict of one keyword
+    whose value is a number, and its value for each picture, such as {"observation_deg": [0.2, 0.5]};
+    only for one design. All other keywords are those of camera()."""
+    request = _core.CameraRequest()  # generated: sets the fields of the request camera
+    taken, count = designs_of(designs), thread_count(threads)
+    requests = with_values(request, FIELDS["camera"], "values", values)
+    with teller(progress, "rendering") as tell:
+        return ImageResult(
+            _core.camera_series([design._core for design in taken], requests, tell, count)
+        )
 
 
 @described(FIELDS["road"])

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 
 #include "core/angle.h"
 #include "core/error.h"
@@ -22,7 +23,6 @@ namespace {
 
 using geometry::Polygon;
 
-constexpr std::uint32_t kDetectorReplicates = 32;
 constexpr std::uint32_t kRaysPerDetectorTask = 2048;
 
 /// Returns the outline of the entrance face, or of one period if the part is infinite.
@@ -131,10 +131,6 @@ class Recorder : public ExitObserver {
   std::optional<std::size_t> entry_;
 };
 
-void add_to(std::vector<double>& sums, const std::vector<Deposit>& deposits) {
-  for (const Deposit& d : deposits) sums[d.pixel] += d.power;
-}
-
 }  // namespace
 
 std::optional<std::size_t> AngularRings::ring_at(double angle_rad) {
@@ -194,81 +190,168 @@ DetectorMaps exact_detector_maps(const geometry::Part& part, const Optics& optic
   return maps;
 }
 
-DetectorMaps sampled_detector_maps(const geometry::Part& part, const Optics& optics, const Illumination& illumination,
-                                   const DetectorSetting& setting, std::uint64_t rays, std::uint32_t seed,
-                                   const PathPolicy& policy, Progress* progress, const Cancellation* cancel) {
-  const EntranceSampler entrance(part);
-  const BackSurface surface(part, entrance.centre_mm());
-  const PathSetup setup(part, surface, entrance.centre_mm(), optics, illumination, {setting.acceptance_deg}, policy);
-  const auto per_replicate = static_cast<std::uint32_t>(
-      std::clamp<std::uint64_t>((rays + kDetectorReplicates - 1) / kDetectorReplicates, 1, UINT32_MAX / 2));
-  const std::size_t tasks = (per_replicate + kRaysPerDetectorTask - 1) / kRaysPerDetectorTask;
-  const std::size_t bins = setting.angles.size();
-  PixelPyramid leaving(setting.face.columns(), setting.face.rows(), setting.face_bins);
-  PixelPyramid entering(setting.face.columns(), setting.face.rows(), setting.face_bins);
-  PixelPyramid angles(setting.angles.columns(), setting.angles.rows(), setting.angle_bins);
-  PixelPyramid rre(1, 1, {});
-  DetectorMaps maps = empty_maps(setting);
-  double outside = 0.0;
-  TaskProgress all(progress, kDetectorReplicates * tasks);
-  for (std::uint32_t replicate = 0; replicate < kDetectorReplicates; ++replicate) {
-    const auto words = philox({seed, kScrambleStream}, replicate, 0);
+struct DetectorSampler::Impl {
+  /// A wavelength, ready to be traced.
+  struct Light {
+    Light(const Impl& all, const DetectorLight& light, const Illumination& illumination, const PathPolicy& policy)
+        : setup(all.part, all.surface, all.entrance.centre_mm(), *light.optics, illumination,
+                {all.setting.acceptance_deg}, policy),
+          weight(light.weight),
+          seed(light.seed) {}
+    PathSetup setup;
+    double weight;
+    std::uint32_t seed;
+  };
+
+  Impl(const geometry::Part& traced_part, const std::vector<DetectorLight>& all, const Illumination& illumination,
+       const DetectorSetting& wanted, std::uint64_t rays, const PathPolicy& policy)
+      : part(traced_part), setting(wanted), entrance(part), surface(part, entrance.centre_mm()) {
+    for (const DetectorLight& light : all) {
+      lights.emplace_back(*this, light, illumination, policy);
+      largest_weight = std::max(largest_weight, light.weight);
+    }
+    const std::uint64_t shares = kReplicates * lights.size();
+    per_replicate =
+        static_cast<std::uint32_t>(std::clamp<std::uint64_t>((rays + shares - 1) / shares, 1, UINT32_MAX / 2));
+    tasks = (per_replicate + kRaysPerDetectorTask - 1) / kRaysPerDetectorTask;
+  }
+
+  /// Traces the rays of one wavelength and one replicate, and adds them to the sums of the present replicate. Returns
+  /// false if tracing was cancelled.
+  bool trace(const Light& light, TaskProgress& all, const Cancellation* cancel) {
+    const auto words = philox({light.seed, kScrambleStream}, finished, 0);
     const SobolSquare square((std::uint64_t{words[0]} << 32) | words[1], (std::uint64_t{words[2]} << 32) | words[3]);
     std::vector<Deposits> done(tasks);
     for_each_in_parallel(tasks, [&](std::size_t task) {
-      if (cancel != nullptr && cancel->requested()) return;
+      if (is_cancelled(cancel)) return;
       const FlushDenormals flush;
       Deposits& deposits = done[task];
       Tally tally(1);
-      Recorder recorder(part, entrance.centre_mm(), setup, setting, deposits);
-      PathWalker walker(setup, tally, &recorder);
+      Recorder recorder(part, entrance.centre_mm(), light.setup, setting, deposits);
+      PathWalker walker(light.setup, tally, &recorder);
       const auto first = static_cast<std::uint32_t>(task) * kRaysPerDetectorTask;
       for (std::uint32_t ray = first; ray < std::min(first + kRaysPerDetectorTask, per_replicate); ++ray) {
         const Vec2 entry = entrance(square(ray));
         recorder.enters(entry);
-        walker.trace(entry, {seed, kChoiceStream}, replicate, ray);
+        walker.trace(entry, {light.seed, kChoiceStream}, finished, ray);
       }
       deposits.truncated = tally.other[Account::truncated];
       deposits.lost = tally.other[Account::lost];
       TaskProgress::Task(all).finish();
     });
-    if (cancel != nullptr && cancel->requested()) {
-      maps.complete = false;
-      return maps;
-    }
+    if (is_cancelled(cancel)) return false;
     for (const Deposits& deposits : done) {
-      add_to(leaving.replicate(), deposits.leaving);
-      add_to(entering.replicate(), deposits.entering);
-      for (const Deposit& d : deposits.angles) (d.pixel < bins ? angles.replicate()[d.pixel] : outside) += d.power;
-      for (const Deposit& d : deposits.rings)
-        maps.rings.power[d.pixel] += d.power / per_replicate / kDetectorReplicates;
-      rre.replicate()[0] += deposits.in_cone;
-      maps.truncated += deposits.truncated / per_replicate / kDetectorReplicates;
+      add(deposits, light.weight);
       if (deposits.lost > kLostLimit * per_replicate)
         throw BudgetError(
             "rays missed every face from inside the part: this is a defect of retrace, please report "
             "the design");
     }
+    return true;
+  }
+
+  void add(const Deposits& deposits, double weight) {
+    const auto bins = static_cast<std::uint32_t>(setting.angles.size());
+    for (const Deposit& d : deposits.leaving) leaving.replicate()[d.pixel] += weight * d.power;
+    for (const Deposit& d : deposits.entering) entering.replicate()[d.pixel] += weight * d.power;
+    for (const Deposit& d : deposits.angles)
+      (d.pixel < bins ? angles.replicate()[d.pixel] : sums.outside) += weight * d.power;
+    for (const Deposit& d : deposits.rings) sums.rings.power[d.pixel] += weight * d.power / per_replicate;
+    rre.replicate()[0] += weight * deposits.in_cone;
+    sums.truncated += weight * deposits.truncated / per_replicate;
+  }
+
+  double irradiance_of_ray() const { return part.entrance_area_mm2 / setting.face.pixel_area_mm2(); }
+
+  void close_replicate() {
     const double share = 1.0 / per_replicate;
-    const double to_irradiance = share * part.entrance_area_mm2 / setting.face.pixel_area_mm2();
-    leaving.close(to_irradiance);
-    entering.close(to_irradiance);
+    leaving.close(share * irradiance_of_ray());
+    entering.close(share * irradiance_of_ray());
     angles.close(share);
     rre.close(share);
+    // Sums of finished replicates only; a cancelled replicate is not included.
+    closed.outside = sums.outside;
+    closed.truncated = sums.truncated;
+    closed.rings = sums.rings;
+    ++finished;
   }
-  maps.rays = std::uint64_t{per_replicate} * kDetectorReplicates;
-  const double irradiance_of_ray = part.entrance_area_mm2 / setting.face.pixel_area_mm2();
-  maps.leaving = leaving.values(maps.rays, irradiance_of_ray);
-  maps.entering = entering.values(maps.rays, irradiance_of_ray);
-  maps.per_sr = angles.values(maps.rays, 1.0);
-  maps.outside = outside / per_replicate / kDetectorReplicates;
-  for (std::size_t bin = 0; bin < setting.angles.size(); ++bin) {
-    maps.per_sr.value[bin] /= setting.angles.solid_angle_sr(bin);
-    maps.per_sr.std_error[bin] /= setting.angles.solid_angle_sr(bin);
+
+  const geometry::Part& part;
+  const DetectorSetting& setting;
+  EntranceSampler entrance;
+  BackSurface surface;
+  std::deque<Light> lights;
+  double largest_weight = 0.0;
+  std::uint32_t per_replicate = 1;  ///< number of rays of one wavelength in a replicate
+  std::size_t tasks = 1;            ///< number of tasks into which these rays are divided
+  std::uint32_t finished = 0;       ///< number of finished replicates
+  PixelPyramid leaving{setting.face.columns(), setting.face.rows(), setting.face_bins};
+  PixelPyramid entering{setting.face.columns(), setting.face.rows(), setting.face_bins};
+  PixelPyramid angles{setting.angles.columns(), setting.angles.rows(), setting.angle_bins};
+  PixelPyramid rre{1, 1, {}};
+  /// Sums of the numbers that have no standard error, over all replicates and over the finished ones.
+  struct Sums {
+    double outside = 0.0;
+    double truncated = 0.0;
+    AngularRings rings;
+  };
+  Sums sums, closed;
+};
+
+DetectorSampler::DetectorSampler(const geometry::Part& part, const std::vector<DetectorLight>& lights,
+                                 const Illumination& illumination, const DetectorSetting& setting, std::uint64_t rays,
+                                 const PathPolicy& policy)
+    : impl_(std::make_unique<Impl>(part, lights, illumination, setting, rays, policy)) {}
+
+DetectorSampler::~DetectorSampler() = default;
+
+bool DetectorSampler::add_pass(Progress* progress, const Cancellation* cancel) {
+  TaskProgress all(progress, kReplicates * impl_->lights.size() * impl_->tasks);
+  for (std::uint32_t replicate = 0; replicate < kReplicates; ++replicate) {
+    for (const Impl::Light& light : impl_->lights)
+      if (!impl_->trace(light, all, cancel)) return false;
+    impl_->close_replicate();
   }
-  const PixelValues total = rre.values(maps.rays, 1.0);
+  return true;
+}
+
+std::uint32_t DetectorSampler::replicates() const {
+  return impl_->finished;
+}
+
+DetectorMaps DetectorSampler::maps() const {
+  const Impl& all = *impl_;
+  const double replicates = all.finished;
+  const auto wavelengths = static_cast<double>(all.lights.size());
+  DetectorMaps maps;
+  maps.rays = std::uint64_t{all.per_replicate} * all.finished * all.lights.size();
+  // A ray of the wavelength with the largest weight adds this amount to the sum over all rays.
+  const double largest = all.largest_weight * wavelengths;
+  maps.leaving = all.leaving.values(maps.rays, largest * all.irradiance_of_ray());
+  maps.entering = all.entering.values(maps.rays, largest * all.irradiance_of_ray());
+  maps.per_sr = all.angles.values(maps.rays, largest);
+  for (std::size_t bin = 0; bin < all.setting.angles.size(); ++bin) {
+    maps.per_sr.value[bin] /= all.setting.angles.solid_angle_sr(bin);
+    maps.per_sr.std_error[bin] /= all.setting.angles.solid_angle_sr(bin);
+  }
+  maps.outside = all.closed.outside / all.per_replicate / replicates;
+  maps.truncated = all.closed.truncated / replicates;
+  maps.rings = all.closed.rings;
+  for (double& power : maps.rings.power) power /= replicates;
+  const PixelValues total = all.rre.values(maps.rays, largest);
   maps.rre = total.value[0];
   maps.std_error = total.std_error[0];
+  return maps;
+}
+
+DetectorMaps sampled_detector_maps(const geometry::Part& part, const Optics& optics, const Illumination& illumination,
+                                   const DetectorSetting& setting, std::uint64_t rays, std::uint32_t seed,
+                                   const PathPolicy& policy, Progress* progress, const Cancellation* cancel) {
+  const std::vector<DetectorLight> lights = {{&optics, 1.0, seed}};
+  DetectorSampler sampler(part, lights, illumination, setting, rays, policy);
+  if (sampler.add_pass(progress, cancel)) return sampler.maps();
+  DetectorMaps maps = empty_maps(setting);
+  maps.complete = false;
   return maps;
 }
 

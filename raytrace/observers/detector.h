@@ -4,6 +4,7 @@
 // the directions of the light.
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -77,7 +78,42 @@ DetectorMaps exact_detector_maps(const geometry::Part& part, const Optics& optic
                                  const DetectorSetting& setting, const BeamPolicy& policy,
                                  const Cancellation* cancel = nullptr);
 
-/// Computes the maps from rays, in 32 independent replicates with equal numbers of rays.
+/// Light of one wavelength that DetectorSampler traces.
+struct DetectorLight {
+  const Optics* optics = nullptr;  ///< not null
+  double weight = 1.0;             ///< fraction of the incident power; the weights of all wavelengths add up to 1
+  std::uint32_t seed = 1;
+};
+
+/// Computes the maps from rays, in passes of independent replicates. More passes make the maps more accurate.
+class DetectorSampler {
+ public:
+  /// Number of replicates in a pass.
+  static constexpr std::uint32_t kReplicates = 32;
+
+  /// \param rays number of rays in a pass at all wavelengths together; it is rounded up to a multiple of the number of
+  ///        replicates and wavelengths
+  /// \pre all arguments and the optics of `lights` outlive the object; there is at least one wavelength
+  DetectorSampler(const geometry::Part& part, const std::vector<DetectorLight>& lights,
+                  const Illumination& illumination, const DetectorSetting& setting, std::uint64_t rays,
+                  const PathPolicy& policy);
+  ~DetectorSampler();
+
+  /// Traces the next pass. Returns false if it was cancelled; the finished replicates are kept.
+  /// \throw BudgetError if power is lost
+  bool add_pass(Progress* progress = nullptr, const Cancellation* cancel = nullptr);
+  /// Returns the number of finished replicates.
+  std::uint32_t replicates() const;
+  /// Returns the maps of all finished replicates.
+  /// \pre replicates() > 1
+  DetectorMaps maps() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Computes the maps of one wavelength from one pass of rays. The maps are empty if the computation was cancelled.
 /// \throw BudgetError if power is lost
 DetectorMaps sampled_detector_maps(const geometry::Part& part, const Optics& optics, const Illumination& illumination,
                                    const DetectorSetting& setting, std::uint64_t rays, std::uint32_t seed,

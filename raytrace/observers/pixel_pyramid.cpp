@@ -30,6 +30,23 @@ double largest_relative_error(const PixelValues& values, double dark) {
   return largest;
 }
 
+std::size_t bin_width(const PixelValues& values, double fraction) {
+  std::vector<double> of_level;
+  double total = 0.0;
+  for (std::size_t k = 0; k < values.level.size(); ++k) {
+    const std::size_t level = values.level[k];
+    if (of_level.size() <= level) of_level.resize(level + 1, 0.0);
+    of_level[level] += values.value[k];
+    total += values.value[k];
+  }
+  double sum = 0.0;
+  for (std::size_t level = 0; level < of_level.size(); ++level) {
+    sum += of_level[level];
+    if (sum >= fraction * total) return std::size_t{1} << level;
+  }
+  return 1;
+}
+
 PixelPyramid::PixelPyramid(std::size_t columns, std::size_t rows, const BinRule& rule)
     : sum_(columns * rows, 0.0), rule_(rule) {
   std::vector<double> pixels(columns * rows, 1.0);
@@ -94,7 +111,8 @@ PixelValues PixelPyramid::values(std::uint64_t rays, double largest) const {
     return error(level, k) <= rule_.relative_error * (is_dark ? brightest : level.mean[k]);
   };
   const Level& finest = levels_.front();
-  PixelValues values{finest.mean, std::vector<double>(finest.mean.size())};
+  PixelValues values{finest.mean, std::vector<double>(finest.mean.size()),
+                     std::vector<std::uint8_t>(finest.mean.size())};
   const auto merge = [&](std::size_t l, std::size_t k) {
     const Level& level = levels_[l];
     const std::size_t side = std::size_t{1} << l;
@@ -105,6 +123,7 @@ PixelValues PixelPyramid::values(std::uint64_t rays, double largest) const {
       for (std::size_t x = left; x < std::min(finest.columns, left + side); ++x) {
         values.value[y * finest.columns + x] = level.mean[k];
         values.std_error[y * finest.columns + x] = std_error;
+        values.level[y * finest.columns + x] = static_cast<std::uint8_t>(l);
       }
   };
   const std::function<void(std::size_t, std::size_t)> divide = [&](std::size_t l, std::size_t k) {

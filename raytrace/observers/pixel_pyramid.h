@@ -14,6 +14,8 @@ namespace retrace::raytrace {
 struct PixelValues {
   std::vector<double> value;
   std::vector<double> std_error;
+  /// Level of the bin of each pixel: a bin has 2^level x 2^level pixels. Empty if the values are not sampled.
+  std::vector<std::uint8_t> level = {};
 };
 
 /// Rule by which pixels are merged.
@@ -27,6 +29,11 @@ struct BinRule {
 
 /// Returns the largest standard error relative to the value, of all pixels that are not dark. 0 if there are none.
 double largest_relative_error(const PixelValues& values, double dark);
+
+/// Returns the smallest width such that bins of at most this width contain a given fraction of the sum of all values,
+/// in pixels. Bins at the border of the grid count with their full width. Returns 1 if values are not sampled. \param
+/// fraction 0 to 1
+std::size_t bin_width(const PixelValues& values, double fraction);
 
 /// Means and standard errors over replicates, for the pixels of a grid and for all blocks of 2^k x 2^k pixels.
 class PixelPyramid {

@@ -73,8 +73,9 @@ FloatPicture luminance_picture(const CameraResult& result) {
 namespace {
 
 constexpr double kMinTileWidth = 380.0;
-// Maximum width of a tile in a sheet of several pictures.
+// Maximum size of a picture in a sheet of several pictures.
 constexpr double kSheetTileWidth = 400.0;
+constexpr Size kSheetTile{kSheetTileWidth, 600.0};
 
 std::vector<Colour> displayed_pixels(const CameraResult& result, const ToneCurve& tone) {
   const raytrace::CameraImage& image = result.image;
@@ -135,11 +136,13 @@ std::string name_of(const CameraResult& result) {
 }
 
 /// Returns the size of a picture on the canvas. Small pictures are enlarged by a whole factor.
-Size shown_size(const CameraResult& result, double width) {
+/// \param largest maximum width and height
+Size shown_size(const CameraResult& result, const Size& largest) {
   const auto columns = static_cast<double>(result.image.columns);
   const auto rows = static_cast<double>(result.image.rows);
-  const double factor = columns >= width ? width / columns : std::max(1.0, std::floor(width / columns));
-  return {factor * columns, factor * rows};
+  const double factor = std::min(largest.width / columns, largest.height / rows);
+  const double shown = factor >= 1.0 ? std::floor(factor) : factor;
+  return {shown * columns, shown * rows};
 }
 
 /// Draws a scale bar for lengths whose right end is at `end`. Returns the width of the bar and its label.
@@ -155,9 +158,11 @@ double draw_length_bar(Canvas& canvas, const CameraResult& result, Point end, do
 
 /// Draws a picture with its name and lines. Returns the height.
 /// \param canvas if null, only the height is determined, with the font metrics of `metrics`
+/// \param largest maximum width and height of the picture; the name and the lines have the same maximum width
 double draw_tile(Canvas* canvas, const Canvas& metrics, const CameraResult& result, const ToneCurve& tone, Point corner,
-                 double width, const std::vector<std::string>& texts) {
-  const Size size = shown_size(result, width);
+                 const Size& largest, const std::vector<std::string>& texts) {
+  const double width = largest.width;
+  const Size size = shown_size(result, largest);
   const double x = corner.x + 0.5 * (width - size.width);
   if (canvas != nullptr) canvas->image({x, corner.y}, size, result.image.columns, displayed_pixels(result, tone));
   double y = corner.y + size.height + 18.0;
@@ -191,12 +196,13 @@ std::string camera_png(const CameraResult& result, const ToneCurve& tone) {
   const std::vector<std::string> texts = {geometry_text(result), light_text(result),
                                           exposure_text(tone, result.request.exposure_ev.has_value())};
   const Canvas metrics(Canvas::Format::png, {1.0, 1.0}, 1.0);
-  const double height = draw_tile(nullptr, metrics, result, tone, {0.0, 0.0}, width, texts);
+  const Size largest{width, std::max(2.0 * kMinTileWidth, static_cast<double>(result.image.rows))};
+  const double height = draw_tile(nullptr, metrics, result, tone, {0.0, 0.0}, largest, texts);
   const double bar = has_bar(tone) ? kGap + kBarHeight + 18.0 : 0.0;
   const Size size{width + 2.0 * kGap, std::ceil(kGap + height + bar + kGap)};
   Canvas canvas(Canvas::Format::png, size, 1.0);
   canvas.fill_rectangle({0.0, 0.0}, size, kPaper);
-  draw_tile(&canvas, metrics, result, tone, {kGap, kGap}, width, texts);
+  draw_tile(&canvas, metrics, result, tone, {kGap, kGap}, largest, texts);
   if (has_bar(tone)) draw_luminance_bar(canvas, tone, {kGap, 2.0 * kGap + height}, width);
   return canvas.finish();
 }
@@ -216,8 +222,7 @@ std::string camera_sheet_png(std::span<const CameraResult> results, const ToneCu
   };
   std::vector<double> heights;
   for (std::size_t k = 0; k < count; ++k) {
-    const double height =
-        draw_tile(nullptr, metrics, results[k], tone, {0.0, 0.0}, kSheetTileWidth, texts_of(results[k]));
+    const double height = draw_tile(nullptr, metrics, results[k], tone, {0.0, 0.0}, kSheetTile, texts_of(results[k]));
     if (k % columns == 0) heights.push_back(0.0);
     heights.back() = std::max(heights.back(), height);
   }
@@ -231,7 +236,7 @@ std::string camera_sheet_png(std::span<const CameraResult> results, const ToneCu
   double y = kGap;
   for (std::size_t k = 0; k < count; ++k) {
     const double x = kGap + static_cast<double>(k % columns) * (kSheetTileWidth + kGap);
-    draw_tile(&canvas, metrics, results[k], tone, {x, y}, kSheetTileWidth, texts_of(results[k]));
+    draw_tile(&canvas, metrics, results[k], tone, {x, y}, kSheetTile, texts_of(results[k]));
     if (k % columns + 1 == columns) y += heights[k / columns] + 1.5 * kGap;
   }
   y = height;

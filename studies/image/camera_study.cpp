@@ -17,6 +17,7 @@
 #include "core/number_format.h"
 #include "core/task_progress.h"
 #include "design/engine_facts.h"
+#include "design/io/design_reader.h"
 #include "materials/io/spectrum_reader.h"
 #include "raytrace/observers/photometric_geometry.h"
 #include "requests/descriptions.h"
@@ -41,6 +42,10 @@ constexpr double kMinWindow_deg = 2.0, kMaxWindow_deg = 10.0;
 // Minimum R_L in cd/(lx m^2) at which the eye is regarded as reached by retroreflected light. A white matt surface has
 // 0.32.
 constexpr double kMinRetroreflected = 1e-3;
+// Value of the field `dye` for a part without a dye.
+constexpr std::string_view kNoDye = "none";
+// Maximum luminance, in cd/m^2, of the lamp and the surroundings. OpenEXR files contain numbers up to 3.4e38.
+constexpr double kMaxLuminance = 1e30;
 // Part of the progress that the computation of the returned light takes.
 constexpr double kProgressOfLight = 0.3;
 
@@ -158,6 +163,22 @@ Vec3 to_lamp(const raytrace::CameraScene& scene) {
   return scene.lamp.position_mm - scene.view.target_mm;
 }
 
+/// Refuses a lamp or surroundings whose luminance is too large for the numbers in picture files.
+/// \param has_file true if the intensity of the lamp comes from a file
+void check_luminances(const raytrace::CameraScene& scene, bool has_file) {
+  const double width_rad = std::max(scene.lamp.diameter.rad(), scene.view.pupil.rad());
+  const double lamp = scene.lamp.illuminance_lx / (0.25 * std::numbers::pi * width_rad * width_rad);
+  const auto check = [](double luminance, std::string_view field, std::string_view what) {
+    if (!(luminance > kMaxLuminance)) return;
+    throw InputError(Field{field}, fmt::format("the luminance of {} must be at most {} cd/m2, so that pictures can "
+                                               "contain it, got {:.3g} cd/m2",
+                                               what, shortest(kMaxLuminance), luminance));
+  };
+  check(scene.surroundings.entrance_side, "ambient_lx", "the surroundings");
+  check(scene.surroundings.back_side, "backlight_lx", "the surroundings");
+  check(lamp, has_file ? "lamp" : "illuminance_lx", "the lamp");
+}
+
 /// Returns the spectral absorption of the requested dye. Empty if no dye is requested.
 materials::SpectralCurve dye_absorption_per_mm(const CameraRequest& r) {
   const std::filesystem::path file = dye_file_of(r.dye, false, {});
@@ -171,7 +192,7 @@ PhotometrySettings photometry_of(const CameraRequest& r, const raytrace::CameraS
   settings.apertures = {scene.lamp.diameter, scene.view.pupil};
   settings.window_deg = std::clamp(angle_deg(to_eye(scene), to_lamp(scene)) + 1.0, kMinWindow_deg, kMaxWindow_deg);
   settings.light = light_from_name(r.light);
-  settings.dye = r.dye;
+  if (r.dye != kNoDye) settings.dye = r.dye;
   settings.diffraction = r.diffraction;
   settings.seed = r.seed;
   return settings;
@@ -183,10 +204,18 @@ bool is_unpolarised(const raytrace::Stokes& s) {
 
 }  // namespace
 
-CameraStudy::CameraStudy(design::Design design, CameraRequest request, raytrace::DiscAverage discs)
-    : design_(std::move(design)), request_(std::move(request)) {
+std::shared_ptr<const Background> background_of(const CameraRequest& request) {
+  if (request.background.empty()) return nullptr;
+  return std::make_shared<const Background>(read_background(request.background, Field{"background"}));
+}
+
+CameraStudy::CameraStudy(design::Design design, CameraRequest request, raytrace::DiscAverage discs,
+                         std::shared_ptr<const Background> background)
+    : design_(std::move(design)), request_(std::move(request)), background_(std::move(background)) {
   requests::check(request_);
   lamp_ = lamp_of(request_);
+  const materials::SpectralCurve dye = dye_absorption_per_mm(request_);
+  if (!background_) background_ = background_of(request_);
   if (!is_unpolarised(design_.light.polarisation))
     throw InputError({design_.source, 0, "light.polarisation"},
                      "camera images support only unpolarised light in this version: leave this key out");
@@ -195,7 +224,8 @@ CameraStudy::CameraStudy(design::Design design, CameraRequest request, raytrace:
                      "camera images do not support entrance faces that scatter light: use retrace rre, photometry or "
                      "image --detector");
   check_film(request_, design_.is_infinite());
-  dyed_ = with_dye(design_, dye_absorption_per_mm(request_));
+  dyed_ = with_dye(design_, dye);
+  if (request_.dye != kNoDye) set_where(dyed_, "body.absorption_per_mm", {request_.dye, 0, "absorption_per_mm"});
   model_ = design::make_model(dyed_, materials::MaterialLibrary::shipped());
   scene_ = scene_of(request_, lamp_, model_.part);
   scene_.discs = discs;
@@ -203,8 +233,7 @@ CameraStudy::CameraStudy(design::Design design, CameraRequest request, raytrace:
   check_position(model_.part, scene_, scene_.lamp.position_mm, {request_.lamp_mm ? "lamp_mm" : "v_deg"}, "lamp");
   const Vec3 view = (scene_.view.target_mm - scene_.view.eye_mm).normalized();
   if (view.cross(scene_.view.up).norm() < 1e-6) scene_.view.up = view.unitOrthogonal();
-  if (!request_.background.empty())
-    background_ = std::make_shared<const Background>(read_background(request_.background, Field{"background"}));
+  check_luminances(scene_, lamp_.has_value());
   using enum PhotometricResponse;
   const PhotometrySettings photometry = photometry_of(request_, scene_);
   const bool has_colours = dyed_.substance.is_coloured() && photometry.light != PhotometricLight::of_design;
@@ -302,6 +331,7 @@ struct CameraStudy::Tracers {
   std::size_t responses = 1;  ///< number of responses: 1 or 3
   std::optional<NoDiffraction> no_diffraction;
   std::optional<double> r_a;
+  double r_a_error = 0.0;
 
   /// Traces a pass of each response. Returns the passes one after the other, or nothing if tracing was cancelled.
   std::optional<std::vector<double>> pass(std::uint32_t number, const Cancellation* cancel) const {
@@ -375,7 +405,10 @@ std::shared_ptr<const CameraStudy::Tracers> CameraStudy::tracers(Progress* progr
     }
     if (!returned) return nullptr;
     if (returned->is_incomplete) tracers->no_diffraction = Undiffracted::unequal_cells;
-    if (k == 0) tracers->r_a = returned->r_a;
+    if (k == 0) {
+      tracers->r_a = returned->r_a;
+      tracers->r_a_error = returned->r_a_error;
+    }
     raytrace::CameraScene scene = scene_;
     scene.correction = returned->correction;
     if (is_separate) scene.surroundings = {};
@@ -478,53 +511,118 @@ CameraResult CameraStudy::empty_result() const {
   return result;
 }
 
-CameraResult CameraStudy::run(Progress* progress, const Cancellation* cancel,
-                              const std::function<void(const CameraResult&)>& after_pass,
-                              const DistributeTasks& distribute) const {
-  const auto start = std::chrono::steady_clock::now();
+CameraResult CameraStudy::result_with(const Numbers& numbers) const {
   CameraResult result = empty_result();
-  const auto finish = [&] {
-    result.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    return result;
-  };
+  result.no_diffraction = numbers.no_diffraction;
+  result.r_a = numbers.r_a;
+  result.r_a_error = numbers.r_a_error;
+  result.complete = numbers.complete;
+  result.elapsed_s = numbers.elapsed_s;
+  if (numbers.images.empty()) return result;
+  result.engine = numbers.is_by_cells ? "cell" : "embree";
+  result.image = numbers.images.front();
+  if (numbers.images.size() > 1)
+    result.colours = colours_of(numbers.images, lamp_colour(light_from_name(request_.light)));
+  if (result.complete) add_warnings(result);
+  return result;
+}
+
+CameraStudy::Numbers CameraStudy::compute(Progress* progress, const Cancellation* cancel,
+                                          const std::function<void(const CameraResult&)>& after_pass,
+                                          const DistributeTasks& distribute) const {
+  const auto start = std::chrono::steady_clock::now();
+  const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
+  Numbers numbers;
   PartProgress of_light(progress, 0.0, kProgressOfLight);
   const std::shared_ptr<const Tracers> tracers = this->tracers(&of_light, cancel);
   if (!tracers) {
     if (distribute) leave(distribute);
-    result.complete = false;
-    return finish();
+    numbers.elapsed_s = seconds();
+    return numbers;
   }
-  result.no_diffraction = tracers->no_diffraction;
-  result.r_a = tracers->r_a;
-  result.engine = tracers->layers.front()->is_by_cells() ? "cell" : "embree";
-  std::vector<raytrace::CameraImage> images(tracers->responses, tracers->layers.front()->empty_image());
-  std::optional<materials::Tristimulus> lamp;
-  if (images.size() > 1) lamp = lamp_colour(light_from_name(request_.light));
-  const auto take_images = [&] {
-    result.image = images.front();
-    if (lamp) result.colours = colours_of(images, *lamp);
-  };
+  numbers.no_diffraction = tracers->no_diffraction;
+  numbers.r_a = tracers->r_a;
+  numbers.r_a_error = tracers->r_a_error;
+  numbers.is_by_cells = tracers->layers.front()->is_by_cells();
+  numbers.images.assign(tracers->responses, tracers->layers.front()->empty_image());
   const std::function<void()> preview = [&] {
-    if (!after_pass) return;
-    take_images();
-    after_pass(result);
+    if (after_pass) after_pass(result_with(numbers));
   };
   PartProgress of_passes(progress, kProgressOfLight, 1.0);
-  PassLedger ledger(request_, images, &of_passes, preview);
+  PassLedger ledger(request_, numbers.images, &of_passes, preview);
   if (distribute) {
     distribute([tracers](std::uint64_t number, const Cancellation* stop) { return tracers->pass_bytes(number, stop); },
                ledger);
   } else {
     while (!ledger.is_finished()) {
-      const auto pass = tracers->pass(images.front().passes, cancel);
+      const auto pass = tracers->pass(numbers.images.front().passes, cancel);
       if (!pass) break;
       ledger.add(*pass);
     }
   }
-  take_images();
-  result.complete = ledger.is_finished();
-  if (result.complete) add_warnings(result);
-  return finish();
+  numbers.complete = ledger.is_finished();
+  numbers.elapsed_s = seconds();
+  return numbers;
+}
+
+CameraResult CameraStudy::run(Progress* progress, const Cancellation* cancel,
+                              const std::function<void(const CameraResult&)>& after_pass,
+                              const DistributeTasks& distribute) const {
+  return result_with(compute(progress, cancel, after_pass, distribute));
+}
+
+std::optional<std::string> CameraStudy::run_to_bytes(const Cancellation* cancel) const {
+  const Numbers numbers = compute(nullptr, cancel, {}, {});
+  if (!numbers.complete) return std::nullopt;
+  const auto* undiffracted = numbers.no_diffraction ? std::get_if<Undiffracted>(&*numbers.no_diffraction) : nullptr;
+  const auto* obstacle = numbers.no_diffraction ? std::get_if<raytrace::Obstacle>(&*numbers.no_diffraction) : nullptr;
+  // Numbers that do not exist are negative.
+  std::vector<double> all = {numbers.r_a.value_or(-1.0),
+                             numbers.r_a_error,
+                             undiffracted != nullptr ? static_cast<double>(*undiffracted) : -1.0,
+                             obstacle != nullptr ? static_cast<double>(*obstacle) : -1.0,
+                             numbers.is_by_cells ? 1.0 : 0.0,
+                             numbers.elapsed_s};
+  for (const raytrace::CameraImage& image : numbers.images) {
+    all.insert(all.end(), {static_cast<double>(image.passes), static_cast<double>(image.paths),
+                           static_cast<double>(image.part_means.size())});
+    for (const auto* values : {&image.part_means, &image.luminance, &image.squares, &image.coverage})
+      all.insert(all.end(), values->begin(), values->end());
+  }
+  return bytes_of(all);
+}
+
+CameraResult CameraStudy::result_of(const std::string& bytes) const {
+  const std::vector<double> all = numbers_of(bytes);
+  auto at = all.begin();
+  const auto next = [&] { return *at++; };
+  Numbers numbers;
+  numbers.complete = true;
+  if (const double r_a = next(); r_a >= 0.0) numbers.r_a = r_a;
+  numbers.r_a_error = next();
+  if (const double reason = next(); reason >= 0.0)
+    numbers.no_diffraction = static_cast<Undiffracted>(static_cast<int>(reason));
+  if (const double obstacle = next(); obstacle >= 0.0)
+    numbers.no_diffraction = static_cast<raytrace::Obstacle>(static_cast<int>(obstacle));
+  numbers.is_by_cells = next() > 0.0;
+  numbers.elapsed_s = next();
+  const std::size_t pixels = request_.columns * request_.rows;
+  while (at != all.end()) {
+    raytrace::CameraImage image;
+    image.columns = request_.columns;
+    image.rows = request_.rows;
+    image.passes = static_cast<std::uint32_t>(next());
+    image.paths = static_cast<std::uint64_t>(next());
+    const auto means = static_cast<std::size_t>(next());
+    const auto take = [&](std::vector<double>& values, std::size_t count) {
+      values.assign(at, at + static_cast<std::ptrdiff_t>(count));
+      at += static_cast<std::ptrdiff_t>(count);
+    };
+    take(image.part_means, means);
+    for (auto* values : {&image.luminance, &image.squares, &image.coverage}) take(*values, pixels);
+    numbers.images.push_back(std::move(image));
+  }
+  return result_with(numbers);
 }
 
 }  // namespace retrace::studies

@@ -8,6 +8,8 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "core/progress.h"
 #include "core/shared_tasks.h"
@@ -36,10 +38,15 @@ struct CameraResult : ImageResultBase {
   std::optional<NoDiffraction> no_diffraction;
   /// R_A in cd/(lx m^2) with diffraction for the centre of the visible face; empty if it was not computed.
   std::optional<double> r_a;
+  double r_a_error = 0.0;        ///< standard error of `r_a`, because weak beams are resampled
   double observation_deg = 0.0;  ///< angle as seen from the centre of the face
   double entrance_deg = 0.0;
   double viewing_deg = 0.0;
 };
+
+/// Reads the requested picture behind the part. Returns null if none is requested.
+/// \throw InputError at the field `background` if the picture cannot be read
+std::shared_ptr<const Background> background_of(const CameraRequest& request);
 
 /// Study of a checked request, ready to run.
 class CameraStudy {
@@ -51,9 +58,11 @@ class CameraStudy {
   static constexpr std::uint32_t kPassesToJudge = 64;
 
   /// \param discs method by which the luminance is averaged over the lamp and the pupil
-  /// \throw InputError if a number is out of range, if the eye or the lamp is inside the part, or if light is polarised
-  CameraStudy(design::Design design, CameraRequest request,
-              raytrace::DiscAverage discs = raytrace::DiscAverage::kernel);
+  /// \param background result of background_of(), if it has already been read; null: it is read from the request
+  /// \throw InputError if a number is out of range, if the eye or the lamp is inside the part, if light is polarised,
+  /// or if a file cannot be read. Files are read before the model of the part is made.
+  CameraStudy(design::Design design, CameraRequest request, raytrace::DiscAverage discs = raytrace::DiscAverage::kernel,
+              std::shared_ptr<const Background> background = nullptr);
 
   /// Computes the picture.
   /// \param after_pass function that receives the unfinished result after every pass; one call at a time
@@ -62,6 +71,11 @@ class CameraStudy {
   CameraResult run(Progress* progress = nullptr, const Cancellation* cancel = nullptr,
                    const std::function<void(const CameraResult&)>& after_pass = {},
                    const DistributeTasks& distribute = {}) const;
+  /// Computes the picture in this process, like run(), and returns its numbers as bytes, from which result_of() makes
+  /// the result. Returns nothing if the computation was cancelled.
+  std::optional<std::string> run_to_bytes(const Cancellation* cancel) const;
+  /// \param bytes result of run_to_bytes() of an equal study
+  CameraResult result_of(const std::string& bytes) const;
   /// Returns a task that traces the pass with a given number, using all threads.
   /// \pre the study exists as long as the task
   ComputeTask passes() const;
@@ -70,9 +84,23 @@ class CameraStudy {
 
  private:
   struct Tracers;
+  /// Numbers of a picture. They and the request determine the result.
+  struct Numbers {
+    std::vector<raytrace::CameraImage> images;  ///< one for each element of `lights_`
+    std::optional<NoDiffraction> no_diffraction;
+    std::optional<double> r_a;
+    double r_a_error = 0.0;
+    bool is_by_cells = false;
+    bool complete = false;
+    double elapsed_s = 0.0;
+  };
 
   /// Returns a result without a picture: the request, the design and the geometry.
   CameraResult empty_result() const;
+  CameraResult result_with(const Numbers& numbers) const;
+  /// Computes the picture. The parameters are those of run().
+  Numbers compute(Progress* progress, const Cancellation* cancel,
+                  const std::function<void(const CameraResult&)>& after_pass, const DistributeTasks& distribute) const;
   /// Computes the returned light and makes the tracers. Returns null if the computation was cancelled.
   std::shared_ptr<const Tracers> tracers(Progress* progress, const Cancellation* cancel) const;
 

@@ -27,6 +27,8 @@ constexpr std::uint64_t kBeamsOfDiffraction = 4'000'000;
 constexpr double kPolygonsTimesBins = 4e7;
 // Ratio of the angle within which beams are diffracted to the half width of the angular map.
 constexpr double kDiffractedAround = 1.5;
+// Minimum number of replicates from which the maps of an interrupted computation are made.
+constexpr std::uint32_t kMinReplicates = 8;
 // Number of rays that determine the half width of the angular map.
 constexpr std::uint64_t kPilotRays = std::uint64_t{1} << 16;
 // Fraction of the light near the source that the angular map contains, without diffraction.
@@ -130,29 +132,65 @@ raytrace::DetectorSetting DetectorStudy::setting_of(const raytrace::PixelGrid& f
           {request_.bin_error, kDarkAngles}};
 }
 
-raytrace::DetectorMaps DetectorStudy::trace(const design::SpectralOptics& light,
-                                            const raytrace::DetectorSetting& setting, std::size_t number,
-                                            std::optional<std::uint64_t> rays, Progress* progress,
-                                            const Cancellation* cancel) const {
-  const raytrace::Illumination illumination = illumination_of(design_, request_);
-  if (!rays)
-    return raytrace::exact_detector_maps(model_.part, light.optics, illumination, setting, beam_policy(), cancel);
-  return raytrace::sampled_detector_maps(model_.part, light.optics, illumination, setting,
-                                         std::max<std::uint64_t>(1, *rays / model_.spectral.size()),
-                                         raytrace::seed_at(request_.seed, number), {}, progress, cancel);
-}
-
-raytrace::DetectorMaps DetectorStudy::trace_all(const raytrace::DetectorSetting& setting,
-                                                std::optional<std::uint64_t> rays, Progress* progress,
-                                                const Cancellation* cancel) const {
+raytrace::DetectorMaps DetectorStudy::trace_beams(const raytrace::DetectorSetting& setting, Progress* progress,
+                                                  const Cancellation* cancel) const {
   raytrace::DetectorMaps maps;
   const std::size_t wavelengths = model_.spectral.size();
   TaskProgress all(progress, wavelengths);
-  raytrace::trace_wavelengths(1, wavelengths, false, all, [&](std::size_t, std::size_t k, Progress& task) {
-    add(maps, trace(model_.spectral[k], setting, k, rays, &task, cancel), model_.spectral[k].weight);
+  raytrace::trace_wavelengths(1, wavelengths, false, all, [&](std::size_t, std::size_t k, Progress&) {
+    const design::SpectralOptics& light = model_.spectral[k];
+    add(maps,
+        raytrace::exact_detector_maps(model_.part, light.optics, illumination_of(design_, request_), setting,
+                                      beam_policy(), cancel),
+        light.weight);
     return maps.complete;
   });
+  if (maps.complete) return maps;
+  maps = {};
+  maps.complete = false;
   return maps;
+}
+
+std::vector<raytrace::DetectorLight> DetectorStudy::lights() const {
+  std::vector<raytrace::DetectorLight> all;
+  for (std::size_t k = 0; k < model_.spectral.size(); ++k)
+    all.push_back({&model_.spectral[k].optics, model_.spectral[k].weight, raytrace::seed_at(request_.seed, k)});
+  return all;
+}
+
+raytrace::AngularRings DetectorStudy::pilot_rings(const raytrace::PixelGrid& face, const Cancellation* cancel) const {
+  const raytrace::DetectorSetting setting = setting_of({face.bounds_mm(), 1, 1}, kWindowWithoutLightDeg);
+  const std::uint64_t rays = std::min(request_.samples.value_or(kPilotRays), kPilotRays);
+  const std::vector<raytrace::DetectorLight> lights = this->lights();
+  raytrace::DetectorSampler sampler(model_.part, lights, illumination_of(design_, request_), setting, rays, {});
+  if (!sampler.add_pass(nullptr, cancel)) return {};
+  return sampler.maps().rings;
+}
+
+void DetectorStudy::trace_rays(const raytrace::DetectorSetting& setting, Progress* progress, const Cancellation* cancel,
+                               DetectorResult& result) const {
+  const std::vector<raytrace::DetectorLight> lights = this->lights();
+  raytrace::DetectorSampler sampler(model_.part, lights, illumination_of(design_, request_), setting,
+                                    request_.samples.value_or(kDetectorRaysPerPass), {});
+  // Without merging, no error is requested that more rays could reach.
+  const bool is_fixed = request_.samples || !(request_.bin_error > 0.0);
+  const std::uint32_t passes = is_fixed ? 1 : kMaxDetectorPasses;
+  const auto is_small = [](std::size_t bin, std::size_t width) {
+    return static_cast<double>(bin) <= std::max(1.0, kSmallBin * static_cast<double>(width));
+  };
+  for (std::uint32_t pass = 1; pass <= passes; ++pass) {
+    PartProgress part(progress, (pass - 1.0) / passes, static_cast<double>(pass) / passes);
+    const bool done = sampler.add_pass(&part, cancel);
+    result.maps = sampler.replicates() >= kMinReplicates ? sampler.maps() : raytrace::DetectorMaps();
+    result.maps.complete = done;
+    result.face_bin_pixels =
+        std::max(bin_width(result.maps.leaving, kLightInSmallBins), bin_width(result.maps.entering, kLightInSmallBins));
+    result.angle_bin_pixels = bin_width(result.maps.per_sr, kLightInSmallBins);
+    const bool is_reached = is_small(result.face_bin_pixels, std::max(setting.face.columns(), setting.face.rows())) &&
+                            is_small(result.angle_bin_pixels, setting.angles.columns());
+    if (!done || is_reached) return;
+  }
+  result.is_limit_reached = !is_fixed;
 }
 
 /// Returns the half width of the angular map. It is the given one, or such that the map contains 99.9 % of the light
@@ -213,6 +251,7 @@ bool DetectorStudy::add_diffraction(DetectorResult& result, const raytrace::Dete
     for (const design::SpectralOptics& light : model_.spectral) {
       const std::optional<std::vector<double>> map = diffracted_map(light, setting, cancel);
       if (!map) {
+        result.maps = {};
         result.maps.complete = false;
         return true;
       }
@@ -238,13 +277,13 @@ DetectorResult DetectorStudy::run(Progress* progress, const Cancellation* cancel
   result.acceptance_half_angle_deg = design_.detector.acceptance_half_angle_deg.back();
   result.face = face_grid(model_.part, request_.pixels);
   result.is_period = model_.part.period_mm.has_value();
-  const std::uint64_t rays = request_.samples.value_or(kDefaultDetectorRays);
   bool exact = raytrace::is_exact(engine_, facts_);
   AttemptProgress attempt(progress);
+  const double first_window_deg = request_.window_deg.value_or(kWindowWithoutLightDeg);
+  result.window_deg = first_window_deg;
   if (exact) {
     try {
-      result.maps = trace_all(setting_of(result.face, request_.window_deg.value_or(kWindowWithoutLightDeg)),
-                              std::nullopt, &attempt, cancel);
+      result.maps = trace_beams(setting_of(result.face, first_window_deg), &attempt, cancel);
     } catch (const BudgetError&) {
       if (engine_ == raytrace::Engine::exact) throw;
       exact = false;  // the exact engine needs too many beams
@@ -256,17 +295,14 @@ DetectorResult DetectorStudy::run(Progress* progress, const Cancellation* cancel
     if (!add_diffraction(result, setting_of(result.face, result.window_deg), cancel)) {
       result.window_deg = window_deg(result.maps.rings, false);
       attempt.begin_again();
-      result.maps = trace_all(setting_of(result.face, result.window_deg), std::nullopt, &attempt, cancel);
+      // The first maps have this window already if it is the requested one.
+      if (result.window_deg != first_window_deg)
+        result.maps = trace_beams(setting_of(result.face, result.window_deg), &attempt, cancel);
     }
   } else if (!exact) {
     result.without_diffraction = "rays";
-    raytrace::AngularRings rings;
-    if (!request_.window_deg)
-      rings = trace_all(setting_of({result.face.bounds_mm(), 1, 1}, kWindowWithoutLightDeg), std::min(rays, kPilotRays),
-                        nullptr, cancel)
-                  .rings;
-    result.window_deg = window_deg(rings, false);
-    result.maps = trace_all(setting_of(result.face, result.window_deg), rays, &attempt, cancel);
+    if (!request_.window_deg) result.window_deg = window_deg(pilot_rings(result.face, cancel), false);
+    trace_rays(setting_of(result.face, result.window_deg), &attempt, cancel, result);
   }
   result.face_error = std::max(raytrace::largest_relative_error(result.maps.leaving, kDarkFace),
                                raytrace::largest_relative_error(result.maps.entering, kDarkFace));

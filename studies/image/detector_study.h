@@ -16,8 +16,13 @@
 
 namespace retrace::studies {
 
-/// Default number of rays for a detector.
-inline constexpr std::uint64_t kDefaultDetectorRays = std::uint64_t{1} << 22;
+/// Number of rays in a pass, and the maximum number of passes, if the request contains no number of rays.
+inline constexpr std::uint64_t kDetectorRaysPerPass = std::uint64_t{1} << 22;
+inline constexpr std::uint32_t kMaxDetectorPasses = 8;
+/// Fraction of the light that must be in small bins before no more rays are added, and the maximum width of small bins
+/// as a fraction of the width of the map.
+inline constexpr double kLightInSmallBins = 0.9;
+inline constexpr double kSmallBin = 0.01;
 
 /// Fractions of the largest value of a map below which bins count as dark.
 inline constexpr double kDarkFace = 0.01;
@@ -35,6 +40,14 @@ struct DetectorResult : ImageResultBase {
   /// Largest standard error of a bin with light, relative to its value; 0 if light was traced as beams.
   double face_error = 0.0;
   double angle_error = 0.0;
+  /// Width of bins, in pixels, such that bins of at most this width contain kLightInSmallBins of the light.
+  std::size_t face_bin_pixels = 1;
+  std::size_t angle_bin_pixels = 1;
+  /// True if bins are larger than small bins (kSmallBin) although the maximum number of rays was traced.
+  bool is_limit_reached = false;
+
+  /// Returns true if there are maps. There are none if the computation was cancelled too early.
+  bool has_maps() const { return !maps.leaving.value.empty(); }
 };
 
 /// Study of a detector. The constructor checks the request and prepares the model; run() computes the maps.
@@ -49,14 +62,16 @@ class DetectorStudy {
   DetectorResult run(Progress* progress = nullptr, const Cancellation* cancel = nullptr) const;
 
  private:
-  /// Computes the maps at one wavelength.
-  /// \param rays number of rays at all wavelengths; if not set, light is traced as beams
-  raytrace::DetectorMaps trace(const design::SpectralOptics& light, const raytrace::DetectorSetting& setting,
-                               std::size_t number, std::optional<std::uint64_t> rays, Progress* progress,
-                               const Cancellation* cancel) const;
-  /// Computes the maps at all wavelengths. The parameters are those of trace().
-  raytrace::DetectorMaps trace_all(const raytrace::DetectorSetting& setting, std::optional<std::uint64_t> rays,
-                                   Progress* progress, const Cancellation* cancel) const;
+  /// Computes the maps from beams. They are empty if the computation was cancelled.
+  raytrace::DetectorMaps trace_beams(const raytrace::DetectorSetting& setting, Progress* progress,
+                                     const Cancellation* cancel) const;
+  /// Computes the maps from rays, and adds the width of bins to `result`. If the computation was cancelled, the maps
+  /// contain the finished replicates, or nothing if these are too few.
+  void trace_rays(const raytrace::DetectorSetting& setting, Progress* progress, const Cancellation* cancel,
+                  DetectorResult& result) const;
+  /// Returns the distribution of some rays over the angle from the direction to the source.
+  raytrace::AngularRings pilot_rings(const raytrace::PixelGrid& face, const Cancellation* cancel) const;
+  std::vector<raytrace::DetectorLight> lights() const;
   raytrace::DetectorSetting setting_of(const raytrace::PixelGrid& face, double window_deg) const;
   raytrace::BeamPolicy beam_policy() const;
   double window_deg(const raytrace::AngularRings& rings, bool with_diffraction) const;

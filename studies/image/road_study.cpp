@@ -140,7 +140,7 @@ RoadResult RoadStudy::run(Progress* progress, const Cancellation* cancel) const 
   for (const double distance_m : request_.distance_m) {
     photometry = photometry_at(scene_, distance_m, request_.seed);
     photometry.dye_absorption_per_mm = dye_absorption_per_mm_;
-    photometry.dye = scene_.dye;
+    if (!dye_absorption_per_mm_.values.empty()) photometry.dye = scene_.dye;
     Photometer photometer(design_, photometry, kSpansOfRoad);
     const std::vector<PhotometerSetting> settings = settings_of(scene_, distance_m);
     const auto done = static_cast<double>(result.views.size());

@@ -102,7 +102,7 @@ design::Design lit(design::Design design, const PhotometrySettings& request, con
   spectrum.photopic = false;
   for (const double w : light.wavelengths_nm) spectrum.lines.push_back({w, 1.0});
   design.light.colour = spectrum;
-  set_where(design, "body.absorption_per_mm", {request.dye, 0, "absorption_per_mm"});
+  if (!request.dye.empty()) set_where(design, "body.absorption_per_mm", {request.dye, 0, "absorption_per_mm"});
   return design;
 }
 

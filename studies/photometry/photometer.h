@@ -123,6 +123,10 @@ class Photometer {
     first_answer
   };
   void set_effort(Effort effort) { effort_ = effort; }
+  /// Sets the cut-off power of later measurements, as a fraction of the power that falls on one element. It replaces
+  /// that of the request.
+  /// \param cutoff > 0
+  void set_cutoff_of_element(double cutoff) { request_.cutoff = cutoff; }
   /// Ignores the mirror image of the light in later measurements. The mirror image is the light that the entrance face
   /// reflects, either at its outer side, or at its inner side between two retroreflections by elements.
   /// \pre is_exact()
@@ -130,6 +134,8 @@ class Photometer {
   /// Ignores, in later measurements by beams, the light that the entrance face reflects at its outer side. Measurements
   /// by rays are not changed.
   void ignore_front_reflection() { has_front_reflection_ = false; }
+  /// Returns the number of independent replicates of resampled beams.
+  std::uint32_t replicates() const;
   /// Makes later measurements use geometrical optics, without diffraction.
   void ignore_diffraction();
   /// Returns the optical model at each traced wavelength.
@@ -229,7 +235,6 @@ class Photometer {
   bool resamples_weak() const;   ///< true: beams below the cut-off power are resampled; false: they are truncated
   double element_count() const;  ///< number of elements over which the light is distributed, >= 1
   double cutoff() const;
-  std::uint32_t replicates() const;
 
   design::Design design_;
   PhotometrySettings request_;

@@ -387,6 +387,30 @@ TEST(Library, PicturesAreNumbers) {
   for (const auto& [channel, values] : result.pictures[0].channels) EXPECT_EQ(values.size(), 400U) << channel;
 }
 
+/// The pictures of a series are those of single requests, and the document is that of the command.
+TEST(Library, SeriesOfPicturesHasOneExposure) {
+  const TemporaryFolder folder;
+  const std::string file = example("rtp_brick_5mm.toml");
+  CameraRequest request;
+  request.columns = 16;
+  request.rows = 12;
+  request.passes = 2;
+  std::vector<CameraRequest> requests(2, request);
+  requests[0].observation_deg = 0.2;
+  requests[1].observation_deg = 0.5;
+  const Design design = Design::load(file);
+  const ImageResult series = camera_series({design}, requests);
+  EXPECT_EQ(without_elapsed(series.json),
+            document(folder, {"image", file, "--camera", "--pixels=16x12", "--passes=2", "--observation-deg=0.2,0.5"}));
+  ASSERT_EQ(series.pictures.size(), 2U);
+  EXPECT_EQ(series.pictures[1].name, "camera_02");
+  EXPECT_EQ(series.pictures[1].channels, camera(design, requests[1]).pictures[0].channels);
+  EXPECT_TRUE(series.sheet.png().starts_with("\x89PNG"));
+  EXPECT_EQ(camera_series({design, design}, {request}).pictures.size(), 2U);
+  EXPECT_THROW(camera_series({design, design}, requests), InputError);
+  EXPECT_THROW(camera_series({}, requests), InputError);
+}
+
 TEST(Library, OnePageHasSeveralResults) {
   const Design design = Design::load(example("rtp_single_0p45mm.toml"));
   const RreResult curve = rre(design, {.incidence_deg = {0, 10}});

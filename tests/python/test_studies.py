@@ -108,6 +108,28 @@ class Equality(unittest.TestCase):
         red = rt.image.camera(BRICK, pixels=(24, 18), passes=2, v_deg=5, dye="red")["camera"]
         self.assertLessEqual({"X", "Y", "Z", "R", "G", "B"}, set(red))
         self.assertGreater(red["R"].mean(), 4 * abs(red["G"].mean()))
+        small_camera = {"pixels": (16, 12), "passes": 2}
+        series = rt.image.camera_series(BRICK, {"observation_deg": [0.2, 0.5]}, **small_camera)
+        self.assertEqual(list(series.pictures), ["camera_01", "camera_02"])
+        self.assertTrue(series.drawings["sheet"].png.startswith(b"\x89PNG"))
+        one = rt.image.camera(BRICK, observation_deg=0.5, **small_camera)["camera"]
+        np.testing.assert_array_equal(series["camera_02"]["Y"], one["Y"])
+        self.assertEqual(
+            program.answer(
+                rt.image.camera_series, BRICK, {"observation_deg": [0.2, 0.5]}, **small_camera
+            ),
+            program.document(
+                "image", BRICK, "--camera", "--pixels=16x12", "--passes=2", "--observation-deg=0.2,0.5"
+            ),
+        )
+        two = rt.image.camera_series([BRICK, BRICK], **small_camera)
+        self.assertEqual(len(two.pictures), 2)
+        for wrong in ({}, {"pixels": [1]}, {"v_deg": [1], "h_deg": [2]}, {"tone": ["log"]}, [1, 2]):
+            with self.subTest(values=wrong), self.assertRaises(rt.InputError) as refused:
+                rt.image.camera_series(BRICK, wrong)
+            self.assertEqual(refused.exception.key, "values")
+        with self.assertRaises(rt.InputError):
+            rt.image.camera_series([BRICK, BRICK], {"v_deg": [1, 2]}, **small_camera)
         reflector = program.example("reflex_reflector.toml")
         self.assertEqual(
             program.answer(rt.image.road, reflector, distance_m=[30], dye="red"),

@@ -56,18 +56,20 @@ std::string detector_json(const DetectorResult& result) {
   json["angles"] = {{"half_width_deg", result.window_deg},
                     {"has_diffraction", result.has_diffraction},
                     {"columns", result.request.angle_pixels},
-                    {"rows", result.request.angle_pixels},
-                    {"outside", result.maps.outside}};
-  json["rre"] = result.maps.rre;
-  json["std_error"] = result.maps.std_error;
-  json["truncated"] = result.maps.truncated;
-  if (result.engine != "exact")
-    json["bins"] = {{"error_requested", result.request.bin_error},
-                    {"face_error", result.face_error},
-                    {"angle_error", result.angle_error}};
-  json["relative_irradiance_max"] = largest(result.maps.leaving.value);
-  json["per_sr_max"] = largest(result.maps.per_sr.value);
-  json[result.engine == "exact" ? "beams" : "rays"] = result.maps.rays;
+                    {"rows", result.request.angle_pixels}};
+  if (result.has_maps()) {
+    json["angles"]["outside"] = result.maps.outside;
+    json["rre"] = result.maps.rre;
+    json["std_error"] = result.maps.std_error;
+    json["truncated"] = result.maps.truncated;
+    if (result.engine != "exact")
+      json["bins"] = {{"error_requested", result.request.bin_error}, {"face_error", result.face_error},
+                      {"angle_error", result.angle_error},           {"face_pixels", result.face_bin_pixels},
+                      {"angle_pixels", result.angle_bin_pixels},     {"limit_reached", result.is_limit_reached}};
+    json["relative_irradiance_max"] = largest(result.maps.leaving.value);
+    json["per_sr_max"] = largest(result.maps.per_sr.value);
+    json[result.engine == "exact" ? "beams" : "rays"] = result.maps.rays;
+  }
   return image_text(std::move(json), result.elapsed_s, result.warnings, result.complete);
 }
 
@@ -95,7 +97,10 @@ Json camera_content(const CameraResult& result) {
   json["dye"] = asked.dye;
   json["has_diffraction"] = !result.no_diffraction;
   if (result.no_diffraction) json["why_no_diffraction"] = text_of(*result.no_diffraction);
-  if (result.r_a) json["r_a_cd_per_lx_m2"] = *result.r_a;
+  if (result.r_a) {
+    json["r_a_cd_per_lx_m2"] = *result.r_a;
+    json["r_a_std_error_cd_per_lx_m2"] = result.r_a_error;
+  }
   if (result.lamp) json["lamp"] = lamp_json(*result.lamp, asked.lamp_aim_deg);
   json["ambient_lx"] = asked.ambient_lx;
   json["backlight_lx"] = asked.backlight_lx;
@@ -215,13 +220,20 @@ std::string road_table(const RoadResult& result) {
 }
 
 std::string detector_table(const DetectorResult& result) {
+  if (!result.has_maps()) return "no maps: the computation was interrupted\n";
   std::string table =
       fmt::format("RRE {} % ({}); relative irradiance up to {}; {} % of the light leaves beyond {} degrees\n",
                   fixed(100.0 * result.maps.rre, 3), result.engine, fixed(largest(result.maps.leaving.value), 3),
                   fixed(100.0 * result.maps.outside, 2), shortest(result.window_deg));
-  if (result.engine != "exact")
-    table += fmt::format("bins with light: standard error up to {} % on the face, {} % by direction\n",
-                         fixed(100.0 * result.face_error, 2), fixed(100.0 * result.angle_error, 2));
+  if (result.engine == "exact") return table;
+  table += fmt::format("bins with light: standard error up to {} % on the face, {} % by direction\n",
+                       fixed(100.0 * result.face_error, 2), fixed(100.0 * result.angle_error, 2));
+  if (result.request.bin_error > 0.0)
+    table += fmt::format(
+        "{} % of the light is in bins of at most {} pixels on the face, {} pixels by direction; "
+        "{} rays{}\n",
+        fixed(100.0 * kLightInSmallBins, 0), result.face_bin_pixels, result.angle_bin_pixels, result.maps.rays,
+        result.is_limit_reached ? ", the maximum of a run without --samples" : "");
   return table;
 }
 

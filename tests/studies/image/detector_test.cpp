@@ -281,6 +281,97 @@ TEST(DetectorStudy, AngularMapHasDiffraction) {
   EXPECT_LT(by_rays.window_deg, 0.2) << "without diffraction, the light returns in one direction";
 }
 
+/// Without a number of rays, rays are added in passes until bins are small. A large error needs only one pass.
+TEST(DetectorStudy, RaysAreAddedUntilBinsAreSmall) {
+  design::Design design;
+  design.part() = infinite(RtpElement{2.0, 2.0}, Arrangement::offset, 1.0);
+  design.substance.refractive_index = kPmma;
+  DetectorRequest request;
+  request.engine = "montecarlo";
+  request.pixels = 100;
+  request.angle_pixels = 21;
+  request.bin_error = 0.2;
+  const studies::DetectorResult coarse = studies::DetectorStudy(design, request).run();
+  EXPECT_EQ(coarse.maps.rays, studies::kDetectorRaysPerPass);
+  EXPECT_EQ(coarse.face_bin_pixels, 1U);
+  EXPECT_FALSE(coarse.is_limit_reached);
+  EXPECT_LE(coarse.face_error, 0.2);
+  request.bin_error = 0.03;
+  const studies::DetectorResult fine = studies::DetectorStudy(design, request).run();
+  EXPECT_GT(fine.maps.rays, studies::kDetectorRaysPerPass);
+  EXPECT_EQ(fine.is_limit_reached, fine.face_bin_pixels > 1 || fine.angle_bin_pixels > 1);
+  request.samples = 1U << 14;
+  const studies::DetectorResult fixed = studies::DetectorStudy(design, request).run();
+  EXPECT_EQ(fixed.maps.rays, 1U << 14);
+  EXPECT_FALSE(fixed.is_limit_reached);
+}
+
+/// Progress that cancels the computation when it reaches a fraction.
+class CancelAt : public Progress {
+ public:
+  explicit CancelAt(double fraction) : fraction_(fraction) {}
+  void at(double fraction) override {
+    if (fraction >= fraction_) cancel.request();
+  }
+  Cancellation cancel;
+
+ private:
+  double fraction_;
+};
+
+/// An interrupted run has the maps of the finished replicates, if these are enough.
+TEST(DetectorStudy, FinishedReplicatesRemainAfterAnInterrupt) {
+  design::Design design;
+  design.part() = infinite(RtpElement{2.0, 2.0}, Arrangement::offset, 1.0);
+  design.substance.refractive_index = kPmma;
+  DetectorRequest request;
+  request.engine = "montecarlo";
+  request.pixels = 20;
+  request.samples = 1U << 18;
+  CancelAt late(0.5);
+  const studies::DetectorResult half = studies::DetectorStudy(design, request).run(&late, &late.cancel);
+  EXPECT_FALSE(half.complete);
+  ASSERT_TRUE(half.has_maps());
+  EXPECT_LT(half.maps.rays, 1U << 18);
+  const studies::DetectorResult whole = studies::DetectorStudy(design, request).run();
+  EXPECT_NEAR(half.maps.rre, whole.maps.rre, student_bound(1) * std::hypot(half.maps.std_error, whole.maps.std_error));
+  CancelAt early(0.0);
+  const studies::DetectorResult none = studies::DetectorStudy(design, request).run(&early, &early.cancel);
+  EXPECT_FALSE(none.complete);
+  EXPECT_FALSE(none.has_maps());
+  request = {};
+  Cancellation now;
+  now.request();
+  const studies::DetectorResult exact = studies::DetectorStudy(design, request).run(nullptr, &now);
+  EXPECT_EQ(exact.engine, "exact");
+  EXPECT_FALSE(exact.has_maps());
+  EXPECT_GT(exact.window_deg, 0.0);
+}
+
+/// Light of several wavelengths has the sums of the maps of each wavelength.
+TEST(DetectorMaps, WavelengthsAreAdded) {
+  const Part part = build_part(infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 1.0));
+  const Illumination light = from(20.0);
+  const DetectorSetting setting = setting_of(part, 12, 12, light);
+  Optics other = pmma();
+  other.index = 1.55;
+  const Optics first = pmma();
+  const std::vector<DetectorLight> lights = {{&first, 0.3, 5}, {&other, 0.7, 6}};
+  DetectorSampler sampler(part, lights, light, setting, 1U << 16, {});
+  ASSERT_TRUE(sampler.add_pass());
+  const DetectorMaps both = sampler.maps();
+  const DetectorMaps a = sampled_detector_maps(part, first, light, setting, 1U << 15, 5, {});
+  const DetectorMaps b = sampled_detector_maps(part, other, light, setting, 1U << 15, 6, {});
+  EXPECT_NEAR(both.rre, 0.3 * a.rre + 0.7 * b.rre, 1e-12);
+  for (std::size_t k = 0; k < both.leaving.value.size(); ++k)
+    EXPECT_NEAR(both.leaving.value[k], 0.3 * a.leaving.value[k] + 0.7 * b.leaving.value[k], 1e-9);
+  ASSERT_TRUE(sampler.add_pass());
+  const DetectorMaps twice = sampler.maps();
+  EXPECT_EQ(twice.rays, 2U * both.rays);
+  EXPECT_LT(twice.std_error, both.std_error);
+  EXPECT_NEAR(power_of_directions(twice, setting.angles), power_of_directions(both, setting.angles), 5e-3);
+}
+
 /// The window contains 99.9 % of the light, or is the given one.
 TEST(DetectorStudy, WindowFitsTheLight) {
   design::Design design;

@@ -53,6 +53,9 @@ TEST_F(Image, DetectorStatesTheErrorOfItsBins) {
   EXPECT_FALSE(merged["angles"]["has_diffraction"].get<bool>());
   const Json pixels = run("0", "pixels");
   EXPECT_GT(pixels["bins"]["face_error"].get<double>(), 0.03) << "pixels without merging are noisy";
+  EXPECT_GT(merged["bins"]["face_pixels"].get<int>(), 1);
+  EXPECT_EQ(pixels["bins"]["face_pixels"], 1);
+  EXPECT_FALSE(merged["bins"]["limit_reached"].get<bool>());
   EXPECT_EQ(pixels["rre"], merged["rre"]);
 }
 
@@ -107,6 +110,39 @@ TEST_F(Image, CameraSaysThatThePartIsBlack) {
   ASSERT_EQ(json["warnings"].size(), 1U);
 }
 
+/// A list whose values are all the same gives one picture, and a narrow picture with a bar of luminances can be drawn.
+TEST_F(Image, ListsOfOneValueAndNarrowPicturesAreOnePicture) {
+  const Json json = retrace_json(folder_, {"image", "brick.toml", "--camera", "--pixels=1x200", "--passes=2",
+                                           "--tone=log", "--distance-m=3,3,3", "-o", "out"});
+  EXPECT_EQ(json["kind"], "camera");
+  EXPECT_NEAR(json["eye_mm"][2].get<double>(), 3001.0, 0.5);
+  EXPECT_TRUE(folder_.read("out/camera.png").starts_with("\x89PNG"));
+}
+
+/// A damaged picture gives one line, although libpng writes a line of its own.
+TEST_F(Image, DamagedBackgroundsAreRefusedWithOneLine) {
+  retrace(folder_, {"image", "brick.toml", "--camera", "--pixels=8x6", "--passes=2", "-o", "out"});
+  const std::string png = folder_.read("out/camera.png");
+  folder_.write("short.png", png.substr(0, png.size() / 2));
+  folder_.write("text.png", "not a picture");
+  for (const char* name : {"short.png", "text.png", "none.png"}) {
+    const Outcome outcome =
+        retrace(folder_, {"image", "brick.toml", "--camera", std::string("--background=") + name, "-o", "out"});
+    EXPECT_EQ(refused_at(outcome), "--background");
+    EXPECT_EQ(lines_of(outcome.err).size(), 1U) << outcome.err;
+  }
+}
+
+/// A message about absorption that does not cover the light names the design or the file of the dye.
+TEST_F(Image, MessagesNameTheFileOfTheAbsorption) {
+  const std::string list = kBrick + "absorption_per_mm = [[560.0, 0.01], [600.0, 0.02]]\n";
+  folder_.write("narrow.toml", list);
+  folder_.write("dye.csv", "wavelength_nm,absorption_per_mm\n560,0.1\n600,0.2\n");
+  EXPECT_TRUE(refused_at(retrace(folder_, {"image", "narrow.toml", "--camera"})).starts_with("narrow.toml"));
+  EXPECT_TRUE(
+      refused_at(retrace(folder_, {"image", "brick.toml", "--camera", "--dye=dye.csv"})).starts_with("dye.csv"));
+}
+
 TEST_F(Image, WrongOptionsAreRefused) {
   const std::vector<std::pair<Arguments, std::string>> cases = {
       {{}, "image"},
@@ -150,6 +186,10 @@ TEST_F(Image, WrongOptionsAreRefused) {
       {{"--camera", "--pupil-arcmin=-1"}, "--pupil-arcmin"},
       {{"--camera", "--illuminance-lx=-1"}, "--illuminance-lx"},
       {{"--camera", "--illuminance-lx=inf"}, "--illuminance-lx"},
+      {{"--camera", "--illuminance-lx=1e300"}, "--illuminance-lx"},
+      {{"--camera", "--ambient-lx=1e300"}, "--ambient-lx"},
+      {{"--camera", "--backlight-lx=1e300"}, "--backlight-lx"},
+      {{"--camera", "--distance-m=1,2", "--v-deg=1,2"}, "--v-deg"},
       {{"--camera", "--ambient-lx=bright"}, "--ambient-lx"},
       {{"--camera", "--field-mm=0"}, "--field-mm"},
       {{"--camera", "--noise=0"}, "--noise"},

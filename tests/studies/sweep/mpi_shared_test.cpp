@@ -158,6 +158,10 @@ TEST_F(CommandsByMpi, CameraIsTheSame) {
   expect_same_by_ranks("image d.toml --camera --pixels 24x18 --passes 7 --ambient-lx 1 --false-colour", 4);
 }
 
+TEST_F(CommandsByMpi, SeriesOfPicturesIsTheSame) {
+  expect_same_by_ranks("image d.toml --camera --pixels 24x18 --passes 3 --v-deg 0,5,10", 8);
+}
+
 TEST_F(CommandsByMpi, CameraThatLooksAtItsNoiseIsTheSame) {
   // The ranks may compute more passes than the requested noise requires. The additional passes must not change the
   // picture.
