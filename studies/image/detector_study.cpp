@@ -101,8 +101,8 @@ void add(raytrace::DetectorMaps& sum, const raytrace::DetectorMaps& more, double
 
 }  // namespace
 
-DetectorStudy::DetectorStudy(design::Design design, DetectorRequest request)
-    : design_(std::move(design)), request_(std::move(request)) {
+DetectorStudy::DetectorStudy(design::Design design, DetectorRequest request, std::uint64_t rays_per_pass)
+    : design_(std::move(design)), request_(std::move(request)), rays_per_pass_(rays_per_pass) {
   requests::check(request_);
   engine_ = raytrace::engine_from_name(request_.engine);
   model_ = design::make_model(design_, materials::MaterialLibrary::shipped());
@@ -171,7 +171,7 @@ void DetectorStudy::trace_rays(const raytrace::DetectorSetting& setting, Progres
                                DetectorResult& result) const {
   const std::vector<raytrace::DetectorLight> lights = this->lights();
   raytrace::DetectorSampler sampler(model_.part, lights, illumination_of(design_, request_), setting,
-                                    request_.samples.value_or(kDetectorRaysPerPass), {});
+                                    request_.samples.value_or(rays_per_pass_), {});
   // Without merging, no error is requested that more rays could reach.
   const bool is_fixed = request_.samples || !(request_.bin_error > 0.0);
   const std::uint32_t passes = is_fixed ? 1 : kMaxDetectorPasses;

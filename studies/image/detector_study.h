@@ -53,9 +53,10 @@ struct DetectorResult : ImageResultBase {
 /// Study of a detector. The constructor checks the request and prepares the model; run() computes the maps.
 class DetectorStudy {
  public:
+  /// \param rays_per_pass number of rays in a pass if the request contains no number of rays
   /// \throw InputError if a number is out of range, if a material is unknown, or if the engine cannot trace the light
   /// or the facets
-  DetectorStudy(design::Design design, DetectorRequest request);
+  DetectorStudy(design::Design design, DetectorRequest request, std::uint64_t rays_per_pass = kDetectorRaysPerPass);
 
   /// Computes the maps.
   /// \throw BudgetError if power was lost, or if too many beams are needed
@@ -83,6 +84,7 @@ class DetectorStudy {
 
   design::Design design_;
   DetectorRequest request_;
+  std::uint64_t rays_per_pass_;
   raytrace::Engine engine_;
   design::OpticalModel model_;
   raytrace::EngineFacts facts_;

@@ -281,27 +281,35 @@ TEST(DetectorStudy, AngularMapHasDiffraction) {
   EXPECT_LT(by_rays.window_deg, 0.2) << "without diffraction, the light returns in one direction";
 }
 
-/// Without a number of rays, rays are added in passes until bins are small. A large error needs only one pass.
+/// Without a number of rays, rays are added in passes until bins are small, or until the maximum number of passes.
 TEST(DetectorStudy, RaysAreAddedUntilBinsAreSmall) {
+  constexpr std::uint64_t kRays = 1U << 16;
   design::Design design;
   design.part() = infinite(RtpElement{2.0, 2.0}, Arrangement::offset, 1.0);
   design.substance.refractive_index = kPmma;
   DetectorRequest request;
   request.engine = "montecarlo";
-  request.pixels = 100;
+  request.pixels = 40;
   request.angle_pixels = 21;
-  request.bin_error = 0.2;
-  const studies::DetectorResult coarse = studies::DetectorStudy(design, request).run();
-  EXPECT_EQ(coarse.maps.rays, studies::kDetectorRaysPerPass);
+  const auto run = [&](double error) {
+    request.bin_error = error;
+    return studies::DetectorStudy(design, request, kRays).run();
+  };
+  const studies::DetectorResult coarse = run(0.5);
+  EXPECT_EQ(coarse.maps.rays, kRays);
   EXPECT_EQ(coarse.face_bin_pixels, 1U);
   EXPECT_FALSE(coarse.is_limit_reached);
-  EXPECT_LE(coarse.face_error, 0.2);
-  request.bin_error = 0.03;
-  const studies::DetectorResult fine = studies::DetectorStudy(design, request).run();
-  EXPECT_GT(fine.maps.rays, studies::kDetectorRaysPerPass);
+  // This error is below that of the pixels after one pass, so that one pass is not enough.
+  const studies::DetectorResult fine = run(0.6 * coarse.face_error);
+  EXPECT_GT(fine.maps.rays, kRays);
   EXPECT_EQ(fine.is_limit_reached, fine.face_bin_pixels > 1 || fine.angle_bin_pixels > 1);
+  const studies::DetectorResult limited = run(0.05 * coarse.face_error);
+  EXPECT_TRUE(limited.is_limit_reached);
+  EXPECT_EQ(limited.maps.rays, studies::kMaxDetectorPasses * kRays);
+  EXPECT_GT(limited.face_bin_pixels, 1U);
+  EXPECT_LT(limited.maps.std_error, coarse.maps.std_error);
   request.samples = 1U << 14;
-  const studies::DetectorResult fixed = studies::DetectorStudy(design, request).run();
+  const studies::DetectorResult fixed = run(0.05);
   EXPECT_EQ(fixed.maps.rays, 1U << 14);
   EXPECT_FALSE(fixed.is_limit_reached);
 }
