@@ -68,8 +68,10 @@ class ResultFiles {
   void add(const std::string& name, Content content);
   /// Adds a drawing in the output folder, as NAME.svg and NAME.png.
   /// \param plot function that returns the plot
+  /// \param is_available function that returns false if there is nothing to draw, so that no file is written; empty:
+  /// the drawing is always available
   template <class Plot>
-  void add_drawing(const std::string& name, Plot plot);
+  void add_drawing(const std::string& name, Plot plot, std::function<bool()> is_available = {});
   /// Adds a file in the output folder that this class checks but does not write. The caller writes it.
   /// \return path of the file; empty if there is no output folder
   std::filesystem::path reserve(const std::string& name);
@@ -108,14 +110,17 @@ class ResultFiles {
 };
 
 template <class Plot>
-void ResultFiles::add_drawing(const std::string& name, Plot plot) {
+void ResultFiles::add_drawing(const std::string& name, Plot plot, std::function<bool()> is_available) {
   const auto made = std::make_shared<std::optional<decltype(plot())>>();
   const auto once = [ made, plot ]() -> const auto& {
     if (!*made) *made = plot();
     return **made;
   };
-  add(name + ".svg", [once] { return render_svg(once()); });
-  add(name + ".png", [once] { return render_png(once()); });
+  const auto drawn_if_available = [is_available = std::move(is_available)](auto draw) -> Content {
+    return [is_available, draw] { return is_available && !is_available() ? std::string() : draw(); };
+  };
+  add(name + ".svg", drawn_if_available([once] { return render_svg(once()); }));
+  add(name + ".png", drawn_if_available([once] { return render_png(once()); }));
 }
 
 /// Output of a command whose result is a text, such as a job file or a page. The text is written to the file of --out.

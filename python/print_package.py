@@ -146,7 +146,8 @@ def files_module(program: str) -> str:
 
 
 def default_of(field: dict) -> object:
-    """Returns the default of a keyword. A list of one number is written as this number."""
+    """Returns the default of a keyword. A list of one number is written as this number. An empty list
+    of numbers means that no list is given: None."""
     if field.get("usual"):
         numbers = [float(text) for text in field["usual"].split("x")]
         return tuple(numbers) if field["kind"] == "numbers" else None
@@ -163,6 +164,8 @@ def default_of(field: dict) -> object:
         return tuple(int(number) for number in default)
     if field["kind"] in ("numbers", "number_or_numbers"):
         default = [float(number) for number in default]
+    if field["kind"] == "number_or_numbers" and not default:
+        return None
     is_one = field["kind"] == "number_or_numbers" and len(default) == 1
     return default[0] if is_one else tuple(default)
 

@@ -13,12 +13,13 @@ namespace retrace {
 /// Settings for the retroreflective efficiency as a function of the direction of the incident light, as in
 /// `retrace rre`.
 struct RreRequest {
-  /// Angles of incidence, in degrees; they may be an empty list if there are ranges with automatically chosen angles.
-  std::vector<double> incidence_deg = {0.0};
+  /// Angles of incidence, in degrees. Default: 0, or none if there are ranges with automatically chosen angles; for
+  /// maps 0:80:5.
+  std::vector<double> incidence_deg = {};
   /// Ranges in which further angles of incidence are chosen automatically, as many as the curve requires, in degrees.
   std::vector<std::array<double, 2>> incidence_spans_deg = {};
-  /// Azimuths of the source, in degrees.
-  std::vector<double> azimuth_deg = {0.0};
+  /// Azimuths of the source, in degrees. Default: 0; for maps 0:350:10.
+  std::vector<double> azimuth_deg = {};
   /// Method of tracing: exact, stochastic, montecarlo (cell or embree), or auto: the fastest for each direction.
   std::string engine = "auto";
   /// Standard error of RRE to reach, as a fraction; with exact, the maximum truncated power; > 0 and < 1. Default:
@@ -39,8 +40,7 @@ struct RreRequest {
   bool footprint = false;
   /// Compute the directions in which light leaves the entrance face.
   bool far_field = false;
-  /// Compute RRE over incidence and azimuth as a polar map; the default directions are then 0 to 80 degrees in steps of
-  /// 5, and all azimuths in steps of 10 degrees.
+  /// Compute RRE over incidence and azimuth as a polar map.
   bool map = false;
 };
 

@@ -14,6 +14,7 @@
 #include "requests/descriptions.h"
 #include "requests/number_list.h"
 #include "studies/rre/io/rre_files.h"
+#include "studies/rre/rre_map.h"
 #include "studies/rre/rre_request.h"
 
 namespace retrace::app {
@@ -21,15 +22,17 @@ namespace {
 
 struct RreOptions {
   std::vector<std::string> designs;
-  std::string incidence = "0";
+  std::optional<std::string> incidence;
   FieldTexts fields;
 };
 
 std::vector<Argument> arguments(RreOptions& options) {
-  std::vector<Argument> all = {
-      {"DESIGN", "design files; - is standard input", &options.designs, files(".toml")},
-      {"--incidence LIST", "incidence angles in degrees: a,b,c, start:stop:step and start:stop:auto",
-       &options.incidence}};
+  std::vector<Argument> all = {{"DESIGN", "design files; - is standard input", &options.designs, files(".toml")},
+                               {"--incidence LIST",
+                                "incidence angles in degrees: a,b,c, start:stop:step and start:stop:auto",
+                                &options.incidence,
+                                {},
+                                "0; with --map 0:80:5"}};
   const std::array<CommandRequest, 1> of_command = {{{requests::description<RreRequest>()}}};
   for (Argument& argument : field_arguments(of_command, options.fields)) all.push_back(std::move(argument));
   return all;
@@ -37,9 +40,11 @@ std::vector<Argument> arguments(RreOptions& options) {
 
 studies::RreSettings settings_of(const RreOptions& options, const CommonOptions& common) {
   auto request = request_of<RreRequest>(options.fields, common);
-  requests::CurveList incidence = requests::read_curve_list(options.incidence, Field{"incidence_deg"});
-  request.incidence_deg = std::move(incidence.values);
-  request.incidence_spans_deg = std::move(incidence.chosen);
+  if (options.incidence) {
+    requests::CurveList incidence = requests::read_curve_list(*options.incidence, Field{"incidence_deg"});
+    request.incidence_deg = std::move(incidence.values);
+    request.incidence_spans_deg = std::move(incidence.chosen);
+  }
   return studies::resolve(request);
 }
 
@@ -59,11 +64,29 @@ void warn_of_panels(studies::RreResult& result) {
                                          report::kMaxFootprintPanels, result.returned.size())});
 }
 
-/// Adds the files of polar maps. The difference of the maps is drawn if there are two designs.
+/// Adds a warning if the drawings do not show all polar maps, or if the maps of two designs cannot be compared.
+void warn_of_maps(studies::RreResult& result) {
+  const std::size_t maps = studies::rre_maps(result).size();
+  if (maps > report::kMaxMapPanels)
+    result.warnings.push_back({"maps_omitted", fmt::format("map.svg and map.png show the first {} of {} polar maps",
+                                                           report::kMaxMapPanels, maps)});
+  if (maps > 0 && result.designs.size() == 2 && !report::rre_maps_can_be_compared(result))
+    result.warnings.push_back({"difference_omitted",
+                               "the difference of the maps is not drawn, because the two designs have different values "
+                               "of detector.acceptance_half_angle_deg"});
+}
+
+/// Adds the files of polar maps. The difference of the maps is drawn if there are two designs whose maps can be
+/// compared.
 void add_map_files(ResultFiles& files, std::size_t designs, const studies::RreResult& result) {
-  files.add("map.csv", [&] { return result.complete ? studies::rre_map_csv(result) : std::string(); });
-  files.add_drawing("map", [&] { return report::rre_map_plot(result); });
-  if (designs == 2) files.add_drawing("map_difference", [&] { return report::rre_map_difference_plot(result); });
+  const auto has_maps = [&] { return result.has_complete_maps(); };
+  files.add("map.csv", [&] { return studies::rre_map_csv(result); });
+  files.add_drawing(
+      "map", [&] { return report::rre_map_plot(result); }, has_maps);
+  if (designs == 2)
+    files.add_drawing(
+        "map_difference", [&] { return report::rre_map_difference_plot(result); },
+        [&] { return report::rre_maps_can_be_compared(result); });
 }
 
 /// Adds the output files of the command.
@@ -124,6 +147,7 @@ ExitCode run(const RreOptions& options, const CommonOptions& common) {
   interrupt.run(common, {"tracing", to_shorten},
                 [&](Progress* bar, const Cancellation* cancel) { result = study.run(bar, cancel); });
   warn_of_panels(result);
+  warn_of_maps(result);
   return files.write(
       studies::rre_json(result), text_of(result, common), result.warnings,
       {.complete = result.complete, .interrupted = fmt::format("finished points: {}", result.points.size())});
@@ -142,7 +166,7 @@ Command rre_command() {
 
 A LIST can combine values `a,b,c` and ranges `start:stop:step`, which include the stop, such as `--incidence=-40:40:5`. With `start:stop:auto`, `--incidence` selects the angles automatically: the ends, 0, the angles at which total reflection begins or ends, and as many others as needed for linear interpolation with an error below the target error or 1e-3, whichever is greater.
 
-`--map` computes RRE over incidence and azimuth as a polar map, with contour lines. Without lists, the directions are `--incidence=0:80:5` and `--azimuth=0:350:10`. Directions that symmetries of the part map to each other are traced only one time. The default target error is 1e-3. With two designs, the difference of their maps is drawn as well.
+`--map` computes RRE over incidence and azimuth as a polar map, with contour lines. Without `--incidence` and `--azimuth`, the directions are `--incidence=0:80:5` and `--azimuth=0:350:10`. Directions that symmetries of the part map to each other are traced only one time. The default target error is 1e-3. With two designs, the difference of their maps is drawn as well.
 
 `--derivatives` computes the derivatives of RRE with respect to size, angle of the facets, index, thickness and incidence, with an estimate of their errors. Where RRE has a kink or a jump, a derivative is left out and the reason is given. `--footprint` and `--far-field` write files of these names to the folder of `--out`.)",
       .reads = {"retrace.design/1"},

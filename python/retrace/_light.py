@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from . import _core
-from ._arguments import Numbers, thread_count
+from ._arguments import Numbers, number_list, thread_count
 from ._design import AnyDesign, design_of, designs_of
 from ._errors import InputError
 from ._fields import FIELDS
@@ -216,6 +216,8 @@ def rre(
     on its own. threads: maximum number of threads [all cores]."""
     taken = designs_of(designs)
     request = _core.RreRequest()  # generated: sets the fields of the request rre
+    if incidence_deg is not None and len(incidence_spans_deg) == 0:
+        number_list("incidence_deg", incidence_deg)  # refuses an empty list
     count = thread_count(threads)
     with teller(progress, "tracing") as tell:
         return RreResult(_core.rre([design._core for design in taken], request, tell, count))

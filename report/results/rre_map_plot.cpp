@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "core/number_format.h"
-#include "design/io/design_json.h"
+#include "design/io/design_labels.h"
 #include "report/results/result_plots.h"
 #include "studies/rre/rre_map.h"
 
@@ -63,9 +63,10 @@ PolarPlot empty_plot(std::string title, std::string value_label, PolarScale scal
 PolarPlot rre_map_plot(const RreResult& result) {
   PolarPlot plot = empty_plot("Retroreflective efficiency over incidence and azimuth", "Retroreflective efficiency (%)",
                               PolarScale::linear);
+  const std::vector<std::string> names = design::design_labels(result.designs).names;
   for (const RreMap& map : studies::rre_maps(result)) {
     if (plot.panels.size() == kMaxMapPanels) break;
-    plot.panels.push_back(panel_of(map, design::short_name(result.designs[map.design]),
+    plot.panels.push_back(panel_of(map, names[map.design],
                                    fmt::format("{}; mean up to {}°: {} %", cone_text(map),
                                                shortest(map.incidence_deg.back()), fixed(100.0 * map.mean(), 2))));
   }
@@ -78,9 +79,9 @@ bool rre_maps_can_be_compared(const RreResult& result) {
 }
 
 PolarPlot rre_map_difference_plot(const RreResult& result) {
-  PolarPlot plot = empty_plot(
-      fmt::format("{} minus {}", design::short_name(result.designs[1]), design::short_name(result.designs[0])),
-      "Difference (percentage points)", PolarScale::difference);
+  const std::vector<std::string> names = design::design_labels(result.designs).names;
+  PolarPlot plot = empty_plot(fmt::format("{} minus {}", names[1], names[0]), "Difference (percentage points)",
+                              PolarScale::difference);
   const std::vector<RreMap> maps = studies::rre_maps(result);
   const std::size_t cones = maps.size() / 2;
   for (std::size_t k = 0; k < std::min(cones, kMaxMapPanels); ++k) {

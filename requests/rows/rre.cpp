@@ -57,21 +57,23 @@ void check_rre(const void* object) {
     if (!(from < to))
       throw InputError(Field{"incidence_spans_deg"},
                        fmt::format("a range must have start < stop, got {} and {}", shortest(from), shortest(to)));
-  if (request.incidence_deg.empty() && request.incidence_spans_deg.empty())
-    throw InputError(Field{"incidence_deg"}, "must contain at least one number, got none");
 }
 
 constexpr Row kRreRows[] = {
     {"incidence_deg",
      NumberOrNumbers{.range = kIncidence, .may_be_empty = true},
-     "angles of incidence; they may be an empty list if there are ranges with automatically chosen angles",
+     "angles of incidence",
      access<&RreRequest::incidence_deg>,
-     {.value = "LIST", .notation = Notation::number_list, .option = "--incidence", .is_no_option = true}},
+     {.value = "LIST",
+      .notation = Notation::number_list,
+      .option = "--incidence",
+      .otherwise = "0, or none if there are ranges with automatically chosen angles; for maps 0:80:5",
+      .is_no_option = true}},
     {"azimuth_deg",
      NumberOrNumbers{kAzimuth},
      "azimuths of the source",
      access<&RreRequest::azimuth_deg>,
-     {.value = "LIST", .notation = Notation::number_list, .option = "--azimuth"}},
+     {.value = "LIST", .notation = Notation::number_list, .option = "--azimuth", .otherwise = "0; for maps 0:350:10"}},
     {"incidence_spans_deg",
      NumberRows{.columns = 2, .range = kIncidence, .min_rows = 0, .max_rows = 100'000, .what = "ranges"},
      "ranges in which further angles of incidence are chosen automatically, as many as the curve requires",
@@ -126,8 +128,7 @@ constexpr Row kRreRows[] = {
      kRreNeedExactAndOut},
     {"map",
      Flag{},
-     "compute RRE over incidence and azimuth as a polar map; the default directions are then 0 to 80 degrees in steps "
-     "of 5, and all azimuths in steps of 10 degrees",
+     "compute RRE over incidence and azimuth as a polar map",
      access<&RreRequest::map>,
      {},
      kRreNeedGrid},

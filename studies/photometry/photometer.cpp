@@ -8,10 +8,10 @@
 #include "core/error.h"
 #include "core/task_progress.h"
 #include "design/io/design_reader.h"
+#include "design/light_symmetry.h"
 #include "design/part_of_design.h"
 #include "materials/io/spectrum_reader.h"
 #include "raytrace/engines/wavelengths.h"
-#include "raytrace/faces/part_symmetry.h"
 #include "raytrace/observers/coefficients.h"
 
 namespace retrace::studies {
@@ -22,6 +22,9 @@ using geometry::Vec3, raytrace::PhotometricGeometry;
 // Maximum power whose diffraction may be omitted because the budget of polygons is exhausted, as a fraction of the
 // incident power. If more power is affected, the reading counts as lacking diffraction.
 constexpr double kMaxUndiffractedFraction = 1e-4;
+
+// Maximum norm of the difference of two orthogonal maps that count as one map.
+constexpr double kSameMap = 1e-9;
 
 Angle deg(double value) {
   return Angle::from_deg(value);
@@ -286,14 +289,15 @@ PhotometerReading Photometer::reading_of(const PhotometerSetting& setting,
   return reading;
 }
 
-/// Returns no mirror symmetry if the facets have a form (deviation from a plane), because the form may not be
-/// symmetric.
 std::array<bool, 2> Photometer::mirrors() const {
-  const raytrace::Stokes& light = design_.light.polarisation;
   std::array<bool, 2> mirrors{};
-  if (design_.balls() || facts_.has_form || light.u != 0.0 || light.v != 0.0) return mirrors;
-  for (const std::size_t axis : {0U, 1U})
-    mirrors[axis] = raytrace::is_mirror_symmetric(model_.part, static_cast<Eigen::Index>(axis));
+  const std::vector<Eigen::Matrix2d> maps = design::light_symmetries(design_, model_);
+  for (const Eigen::Index axis : {0, 1}) {
+    Eigen::Matrix2d reflection = Eigen::Matrix2d::Identity();
+    reflection(axis, axis) = -1.0;
+    mirrors[static_cast<std::size_t>(axis)] =
+        std::ranges::any_of(maps, [&](const Eigen::Matrix2d& map) { return (map - reflection).norm() < kSameMap; });
+  }
   return mirrors;
 }
 
@@ -301,8 +305,9 @@ std::vector<EquivalentDirections> Photometer::group_equivalent_settings(
     const std::vector<PhotometerSetting>& settings) const {
   std::vector<Vec3> to_source;
   for (const PhotometerSetting& setting : settings) to_source.push_back(frame_of(setting).to_source);
-  return group_equivalent_directions(to_source,
-                                     reflections_of(settings.size() > 1 ? mirrors() : std::array<bool, 2>{}));
+  if (settings.size() < 2) return group_equivalent_directions(to_source, {Eigen::Matrix2d::Identity()});
+  return group_equivalent_directions(
+      to_source, shares_rotations_ ? design::light_symmetries(design_, model_) : reflections_of(mirrors()));
 }
 
 std::optional<std::vector<PhotometerReading>> Photometer::measure_in_one_light(

@@ -81,9 +81,12 @@ class Photometer {
   raytrace::BeamTracer make_tracer() const;
   const raytrace::ApertureKernel& kernel() const { return kernel_; }
 
-  /// Returns two values, for the axes x and y. A value is true if the part and the polarisation of the light do not
-  /// change when this axis is reversed.
+  /// Returns two values, for the axes x and y. A value is true if the reversal of this axis is one of
+  /// design::light_symmetries().
   std::array<bool, 2> mirrors() const;
+  /// Makes later calls of group_equivalent_settings() and measure() use all symmetries of the part. Otherwise, only
+  /// reflections of the axes x and y are used.
+  void share_rotations() { shares_rotations_ = true; }
   /// Groups the settings. All settings of a group can be measured from one traced far field.
   std::vector<EquivalentDirections> group_equivalent_settings(const std::vector<PhotometerSetting>& settings) const;
 
@@ -248,6 +251,7 @@ class Photometer {
   Effort effort_ = Effort::full;
   bool has_mirror_image_ = true;
   bool has_front_reflection_ = true;
+  bool shares_rotations_ = false;  ///< see share_rotations()
 };
 
 /// Returns the design with the absorption of a dye in its body. Returns the same design if the curve is empty.

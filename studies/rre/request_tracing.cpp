@@ -6,11 +6,9 @@
 #include <iterator>
 #include <tuple>
 #include <utility>
-#include <variant>
 
-#include "design/engine_facts.h"
+#include "design/light_symmetry.h"
 #include "design/total_reflection.h"
-#include "raytrace/faces/part_symmetry.h"
 #include "raytrace/light/light_setup.h"
 #include "studies/rre/adaptive_curve.h"
 #include "studies/rre/equivalent_directions.h"
@@ -182,19 +180,6 @@ TracedRequest trace_chosen(const std::vector<design::Design>& designs, const std
   return traced;
 }
 
-/// Returns the maps of directions that do not change RRE of a design. The first is the identity. The others are only
-/// used if all optical properties are the same in all directions.
-std::vector<Eigen::Matrix2d> rre_symmetries(const design::Design& design, const design::OpticalModel& model) {
-  const raytrace::EngineFacts facts = design::engine_facts(design, &model.optics);
-  const raytrace::Stokes& light = design.light.polarisation;
-  const bool is_polarised = light.q != 0.0 || light.u != 0.0 || light.v != 0.0;
-  const bool has_height_map = std::holds_alternative<design::HeightMapTexture>(design.surface.texture);
-  if (facts.has_balls || facts.has_curved_entrance || facts.has_unequal_backs || facts.has_form ||
-      design.surface.entrance.scratch_azimuth_deg || has_height_map || is_polarised)
-    return {Eigen::Matrix2d::Identity()};
-  return raytrace::symmetries_of(model.part);
-}
-
 geometry::Vec3 to_source(const Direction& direction) {
   return raytrace::direction_to_source(
       {Angle::from_deg(direction.at.incidence_deg), Angle::from_deg(direction.at.azimuth_deg), {}});
@@ -213,10 +198,12 @@ raytrace::Stokes mapped(raytrace::Stokes stokes, const SharedDirection& to_trace
 }
 
 /// Sets the results of a direction from those of an equivalent direction that was traced.
-void set_results(const Direction& traced, const SharedDirection& shared, Direction& direction) {
+/// \param is_shared value of Direction::is_shared
+void set_results(const Direction& traced, const SharedDirection& shared, bool is_shared, Direction& direction) {
   const RrePoint at = direction.at;
   direction = traced;
   direction.at = at;
+  direction.is_shared = is_shared;
   for (RrePoint& point : direction.points) {
     point.incidence_deg = at.incidence_deg;
     point.azimuth_deg = at.azimuth_deg;
@@ -236,7 +223,7 @@ std::vector<EquivalentDirections> group_directions(const std::vector<Direction>&
     for (; last < directions.size() && directions[last].at.design == design; ++last)
       to_sources.push_back(to_source(directions[last]));
     for (EquivalentDirections& group :
-         group_equivalent_directions(to_sources, rre_symmetries(designs[design], models[design]))) {
+         group_equivalent_directions(to_sources, design::light_symmetries(designs[design], models[design]))) {
       for (SharedDirection& shared : group) shared.index += first;
       groups.push_back(std::move(group));
     }
@@ -256,7 +243,8 @@ TracedRequest trace_grid(const std::vector<design::Design>& designs, const std::
   trace_points(designs, models, tracing, representatives, progress);
   traced.complete = all_are_traced(representatives);
   for (std::size_t k = 0; k < groups.size(); ++k)
-    for (const SharedDirection& shared : groups[k]) set_results(representatives[k], shared, directions[shared.index]);
+    for (const SharedDirection& shared : groups[k])
+      set_results(representatives[k], shared, &shared != &groups[k].front(), directions[shared.index]);
   traced.directions = std::move(directions);
   traced.traced_directions = representatives.size();
   return traced;

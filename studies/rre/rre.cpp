@@ -288,10 +288,13 @@ RreResult RreStudy::run(std::optional<std::size_t> design, Progress* progress, c
   result.complete = traced.complete;
   result.traced_directions = traced.traced_directions;
   for (const std::string& text : traced.warnings) result.warnings.push_back({"curve_not_resolved", text});
+  if (request.map && !traced.complete)
+    result.warnings.push_back({"map_incomplete", "polar maps are left out, because not all directions are finished"});
   for (Direction& direction : traced.directions) {
-    for (const std::uint64_t rays : direction.rays) result.rays += rays;
+    if (!direction.is_shared)
+      for (const std::uint64_t rays : direction.rays) result.rays += rays;
     const bool missed_target = std::count(direction.missed_target.begin(), direction.missed_target.end(), 1) > 0;
-    if (missed_target)
+    if (missed_target && !direction.is_shared)
       result.warnings.push_back(
           {"target_missed", missed_target_text(designs[direction.at.design], direction.at, request)});
     for (RrePoint& point : direction.points) point.missed_target = missed_target;

@@ -81,9 +81,8 @@ void check_azimuths(const std::vector<double>& azimuth_deg) {
 void resolve_grid(RreSettings& settings) {
   if (!settings.incidence_spans.empty())
     throw InputError(Field{"incidence_deg"}, "a map needs a list of angles of incidence without automatic ranges");
-  const std::vector<double> not_given = {0.0};
-  if (settings.incidence_deg == not_given) settings.incidence_deg = steps(kLastIncidenceDeg, kIncidenceStepDeg);
-  if (settings.azimuth_deg == not_given) settings.azimuth_deg = steps(360.0 - kAzimuthStepDeg, kAzimuthStepDeg);
+  if (settings.incidence_deg.empty()) settings.incidence_deg = steps(kLastIncidenceDeg, kIncidenceStepDeg);
+  if (settings.azimuth_deg.empty()) settings.azimuth_deg = steps(360.0 - kAzimuthStepDeg, kAzimuthStepDeg);
   for (double& azimuth : settings.azimuth_deg) azimuth = reduced_azimuth(azimuth);
   sort_and_remove_repeated(settings.incidence_deg);
   sort_and_remove_repeated(settings.azimuth_deg);
@@ -178,6 +177,7 @@ std::vector<RreMap> maps_of(const std::vector<RrePoint>& points) {
 
 std::vector<RreMap> rre_maps(const RreResult& result) {
   std::vector<RreMap> maps;
+  if (!result.has_complete_maps()) return maps;
   for (std::size_t d = 0; d < result.designs.size(); ++d) {
     std::vector<RrePoint> points;
     std::copy_if(result.points.begin(), result.points.end(), std::back_inserter(points),

@@ -40,13 +40,12 @@ struct RreMap {
   double mean() const;
 };
 
-/// Sets the default grid of directions for a polar map and checks a grid that the request gives. Azimuths are reduced
-/// to 0 to 360 degrees. Both lists are sorted, and repeated values are removed.
+/// Replaces empty lists of angles by the default grid of a polar map, and checks lists that the request gives. Azimuths
+/// are reduced to 0 to 360 degrees. Both lists are sorted, and repeated values are removed.
 /// \throw InputError at `incidence_deg` or `azimuth_deg` if the list is not suitable for a map
 void resolve_grid(RreSettings& settings);
 
-/// Returns the maps of a result: for each design, one for each acceptance cone.
-/// \pre result.has_complete_maps()
+/// Returns the maps of a result: for each design, one for each acceptance cone. Empty unless has_complete_maps().
 std::vector<RreMap> rre_maps(const RreResult& result);
 
 /// Returns the map with the differences b - a. Its standard errors are those of the differences.

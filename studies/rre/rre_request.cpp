@@ -22,6 +22,8 @@ RreSettings resolve(const RreRequest& request) {
   settings.far_field = request.far_field;
   settings.map = request.map;
   if (settings.map) resolve_grid(settings);
+  if (settings.incidence_deg.empty() && settings.incidence_spans.empty()) settings.incidence_deg = {0.0};
+  if (settings.azimuth_deg.empty()) settings.azimuth_deg = {0.0};
   return settings;
 }
 

@@ -21,6 +21,8 @@ struct Direction {
   std::vector<RrePoint> points;     ///< one for each cone; empty until all wavelengths are traced
   std::optional<Footprint> footprint;
   std::optional<FarField> far_field;
+  /// True: the results are those of an equivalent direction, which was traced. Its rays must not be counted again.
+  bool is_shared = false;
 };
 
 /// Returns true if the request allows beam tracing. A number of rays or plain sampling excludes it.

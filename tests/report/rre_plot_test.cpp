@@ -108,5 +108,51 @@ TEST(RrePlot, DesignsThatDifferInANumberAreColoursOfAScale) {
   EXPECT_FALSE(words.legend.has_value());
 }
 
+/// Returns polar maps of two designs with the same title.
+/// \param second_cone acceptance cone of the second design
+studies::RreResult maps_of_two(double second_cone) {
+  studies::RreResult result;
+  result.has_map = true;
+  for (const std::size_t d : {0U, 1U}) {
+    design::Design design;
+    design.title = "Prisms";
+    design.detector.acceptance_half_angle_deg = {d == 0 ? 0.5 : second_cone};
+    result.designs.push_back(design);
+    for (const double azimuth : {0.0, 120.0, 240.0})
+      for (const double incidence : {0.0, 60.0}) {
+        studies::RrePoint point;
+        point.design = d;
+        point.incidence_deg = incidence;
+        point.azimuth_deg = azimuth;
+        point.acceptance_half_angle_deg = design.detector.acceptance_half_angle_deg.front();
+        point.rre = d == 0 ? 0.25 : 0.5;
+        result.points.push_back(point);
+      }
+  }
+  return result;
+}
+
+// Equal names of designs are numbered.
+TEST(RreMapPlot, DesignsOfTheSameTitleHaveDifferentNames) {
+  const studies::RreResult result = maps_of_two(0.5);
+  const PolarPlot plot = rre_map_plot(result);
+  ASSERT_EQ(plot.panels.size(), 2U);
+  EXPECT_EQ(plot.panels[0].title, "Prisms (1)");
+  EXPECT_EQ(plot.panels[1].title, "Prisms (2)");
+  ASSERT_TRUE(rre_maps_can_be_compared(result));
+  const PolarPlot difference = rre_map_difference_plot(result);
+  EXPECT_EQ(difference.title, "Prisms (2) minus Prisms (1)");
+  for (const double value : difference.panels.front().values) EXPECT_NEAR(value, 25.0, 1e-12);
+}
+
+TEST(RreMapPlot, OnlyCompleteMapsOfEqualConesCanBeCompared) {
+  EXPECT_FALSE(rre_maps_can_be_compared(maps_of_two(1.0)));
+  studies::RreResult incomplete = maps_of_two(0.5);
+  incomplete.complete = false;
+  incomplete.points.resize(3);
+  EXPECT_FALSE(rre_maps_can_be_compared(incomplete));
+  EXPECT_TRUE(rre_map_plot(incomplete).panels.empty());
+}
+
 }  // namespace
 }  // namespace retrace::report::rre_plot_test

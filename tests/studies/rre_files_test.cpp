@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -44,6 +45,47 @@ RreResult some_result() {
     result.points.push_back(point);
   }
   return result;
+}
+
+/// Returns polar maps of two designs with two acceptance cones each.
+RreResult some_maps() {
+  RreResult result;
+  result.designs.resize(2);
+  for (design::Design& design : result.designs) design.title = "Same";
+  result.has_map = true;
+  result.traced_directions = 7;
+  for (std::size_t d = 0; d < 2; ++d)
+    for (const double azimuth : {0.0, 120.0, 240.0})
+      for (const double incidence : {0.0, 30.0})
+        for (const double cone : {0.5, 1.0}) {
+          RrePoint point;
+          point.design = d;
+          point.incidence_deg = incidence;
+          point.azimuth_deg = azimuth;
+          point.acceptance_half_angle_deg = cone;
+          point.rre = 0.5 * cone;
+          result.points.push_back(point);
+        }
+  return result;
+}
+
+// Directions are counted one time, although each direction has one point for each acceptance cone. Designs with the
+// same title have different names.
+TEST(RreFiles, TableOfMapsCountsDirections) {
+  const std::vector<std::string> lines = lines_of(rre_map_table(some_maps()));
+  ASSERT_GT(lines.size(), 2U);
+  EXPECT_TRUE(lines[0].starts_with("RRE of 12 directions; 7 were traced")) << lines[0];
+  EXPECT_TRUE(lines[2].starts_with("Same (1), acceptance 0.5")) << lines[2];
+  EXPECT_EQ(std::ranges::count_if(lines, [](const std::string& line) { return line.starts_with("Same (2), "); }), 2);
+}
+
+TEST(RreFiles, IncompleteMapsAreEmpty) {
+  RreResult result = some_maps();
+  EXPECT_EQ(Json::parse(rre_json(result))["maps"].size(), 4U);
+  result.complete = false;
+  result.points.resize(2);
+  EXPECT_FALSE(Json::parse(rre_json(result)).contains("maps"));
+  EXPECT_TRUE(rre_map_csv(result).empty());
 }
 
 TEST(RreFiles, JsonHoldsTheResultExactly) {

@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -66,7 +68,8 @@ TEST(RreMap, SharesSymmetricDirections) {
       {"triangular cubes", cubes("triangular_icc"), 1 + 2},
       {"prisms", infinite_design("rtp", "base_mm = 0.5\nwidth_mm = 0.5\n"), 1 + 4},
       {"dihedral errors", cubes("hexagonal_icc", "[surface]\ndihedral_error_arcmin = [2, 3, 3]\n"), 1 + 7},
-      {"polarised light", cubes("hexagonal_icc", "[light]\npolarisation = [1, 0.5, 0, 0]\n"), 1 + 12}};
+      {"light that is polarised along x", cubes("hexagonal_icc", "[light]\npolarisation = [1, 0.5, 0, 0]\n"), 1 + 7},
+      {"obliquely polarised light", cubes("hexagonal_icc", "[light]\npolarisation = [1, 0, 0.5, 0]\n"), 1 + 12}};
   for (const Shared& shared : all) {
     RreRequest request = map_request({0.0, 11.0}, steps(350.0, 30.0));
     const RreResult map = run(shared.design, request);
@@ -86,6 +89,52 @@ TEST(RreMap, SharesSymmetricDirections) {
         EXPECT_NEAR(a.ledger.power[account], b.ledger.power[account], 2e-5) << shared.name;
     }
   }
+}
+
+/// Rays of a direction that others share are counted one time, and a missed target error causes one warning. The points
+/// of all equivalent directions record that the target was missed.
+TEST(RreMap, CountsTracedDirectionsOneTime) {
+  RreRequest request = map_request({0.0, 20.0}, steps(350.0, 60.0));
+  request.engine = "montecarlo";
+  request.target_error = std::nullopt;
+  request.samples = 64;
+  const RreResult map = run(cubes("hexagonal_icc"), request);
+  ASSERT_EQ(map.points.size(), 12U);
+  EXPECT_EQ(map.traced_directions, 1U + 2U);
+  RreRequest one = request;
+  one.map = false;
+  one.incidence_deg = {20.0};
+  one.azimuth_deg = {0.0};
+  EXPECT_EQ(map.rays, map.traced_directions * run(cubes("hexagonal_icc"), one).rays);
+  request.samples = std::nullopt;
+  request.target_error = 1e-7;  // rays do not reach it
+  request.incidence_deg = {19.0, 20.0};
+  request.azimuth_deg = {0.0, 120.0, 240.0};
+  const RreResult missed = run(cubes("hexagonal_icc"), request);
+  EXPECT_EQ(missed.traced_directions, 2U);
+  for (const RrePoint& point : missed.points) EXPECT_TRUE(point.missed_target);
+  EXPECT_EQ(std::ranges::count(missed.warnings, std::string_view("target_missed"), &Warning::id), 2);
+}
+
+/// Cancels a run at the first progress.
+class CancelAtOnce : public Progress {
+ public:
+  explicit CancelAtOnce(Cancellation& cancellation) : cancellation_(cancellation) {}
+  void at(double /*fraction*/) override { cancellation_.request(); }
+
+ private:
+  Cancellation& cancellation_;
+};
+
+TEST(RreMap, CancelledRunsHaveNoMaps) {
+  Cancellation cancellation;
+  CancelAtOnce progress(cancellation);
+  const RreResult result = RreStudy({design::parse_design(cubes("hexagonal_icc"), "design")},
+                                    resolve(map_request({0.0, 30.0, 60.0}, steps(350.0, 10.0))))
+                               .run(&progress, &cancellation);
+  EXPECT_FALSE(result.complete);
+  EXPECT_TRUE(rre_maps(result).empty());
+  EXPECT_EQ(std::ranges::count(result.warnings, std::string_view("map_incomplete"), &Warning::id), 1);
 }
 
 /// Returns the value of the function 0.5 + 0.3 cos(2 azimuth) sin(incidence) + 0.1 cos(incidence).
@@ -165,16 +214,17 @@ TEST(RreMap, GridsAreCompletedAndChecked) {
     }
     return "";
   };
-  request.azimuth_deg = {0.0, 90.0, 180.0};
-  EXPECT_EQ(refused_field(request), "azimuth_deg");
-  request.azimuth_deg = {30.0};
-  EXPECT_EQ(refused_field(request), "azimuth_deg");
-  request.azimuth_deg = {0.0};
-  request.incidence_deg = {20.0};
-  EXPECT_EQ(refused_field(request), "incidence_deg");
-  request.incidence_deg = {-10.0, 0.0, 10.0};
-  EXPECT_EQ(refused_field(request), "incidence_deg");
-  request.incidence_deg = {0.0};
+  // A single 0 is a list like any other one.
+  for (const std::vector<double>& too_few : {std::vector{0.0, 90.0, 180.0}, {30.0}, {0.0}}) {
+    request.azimuth_deg = too_few;
+    EXPECT_EQ(refused_field(request), "azimuth_deg");
+  }
+  request.azimuth_deg = {};
+  for (const std::vector<double>& unsuitable : {std::vector{20.0}, {0.0}, {-10.0, 0.0, 10.0}}) {
+    request.incidence_deg = unsuitable;
+    EXPECT_EQ(refused_field(request), "incidence_deg");
+  }
+  request.incidence_deg = {};
   request.incidence_spans_deg = {{0.0, 20.0}};
   EXPECT_EQ(refused_field(request), "incidence_deg");
 }

@@ -248,14 +248,20 @@ std::string rre_map_csv(const RreResult& result) {
 }
 
 std::string rre_map_table(const RreResult& result) {
-  std::string text = fmt::format("RRE of {} directions; {} were traced, the others follow from symmetries\n",
-                                 result.points.size(), result.traced_directions);
-  for (const RreMap& map : rre_maps(result))
-    text += fmt::format("\n{}, acceptance {} degrees, RRE in percent\n",
-                        printable(design::short_name(result.designs[map.design])),
-                        shortest(map.acceptance_half_angle_deg)) +
-            summary_of(map);
-  return text;
+  const std::vector<RreMap> maps = rre_maps(result);
+  const std::vector<std::string> names = design::design_labels(result.designs).names;
+  std::size_t directions = 0;
+  std::string summaries;
+  for (std::size_t k = 0; k < maps.size(); ++k) {
+    // The maps of a design for several acceptance cones have the same directions.
+    if (k == 0 || maps[k].design != maps[k - 1].design) directions += maps[k].rre.size();
+    summaries += fmt::format("\n{}, acceptance {} degrees, RRE in percent\n", printable(names[maps[k].design]),
+                             shortest(maps[k].acceptance_half_angle_deg)) +
+                 summary_of(maps[k]);
+  }
+  return fmt::format("RRE of {} directions; {} were traced, the others follow from symmetries\n", directions,
+                     result.traced_directions) +
+         summaries;
 }
 
 namespace {

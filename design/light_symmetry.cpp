@@ -1,0 +1,30 @@
+#include "design/light_symmetry.h"
+
+#include <variant>
+
+#include "design/engine_facts.h"
+#include "raytrace/faces/part_symmetry.h"
+
+namespace retrace::design {
+namespace {
+
+/// Returns true if the facets or the entrance face may have properties that are not symmetric although the part is.
+bool has_oriented_faces(const Design& design, const OpticalModel& model) {
+  const raytrace::EngineFacts facts = engine_facts(design, &model.optics);
+  return facts.has_balls || facts.has_curved_entrance || facts.has_unequal_backs || facts.has_form ||
+         design.surface.entrance.scratch_azimuth_deg ||
+         std::holds_alternative<HeightMapTexture>(design.surface.texture);
+}
+
+}  // namespace
+
+std::vector<Eigen::Matrix2d> light_symmetries(const Design& design, const OpticalModel& model) {
+  const raytrace::Stokes& light = design.light.polarisation;
+  if (has_oriented_faces(design, model) || light.u != 0.0 || light.v != 0.0) return {Eigen::Matrix2d::Identity()};
+  std::vector<Eigen::Matrix2d> maps = raytrace::symmetries_of(model.part);
+  if (light.q != 0.0)
+    std::erase_if(maps, [](const Eigen::Matrix2d& map) { return map.cwiseAbs().diagonal().minCoeff() < 0.5; });
+  return maps;
+}
+
+}  // namespace retrace::design
