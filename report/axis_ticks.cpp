@@ -57,9 +57,7 @@ bool has_few_digits(int exponent) {
   return exponent >= -3 && exponent <= 4;
 }
 
-/// Returns a power of ten like power_of_ten(), but with a superscript instead of an exponent.
 std::string power_with_superscript(int exponent) {
-  if (has_few_digits(exponent)) return power_of_ten(exponent);
   static constexpr const char* kDigits[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
   std::string text = "10";
   for (const char c : std::to_string(exponent)) text += c == '-' ? "⁻" : kDigits[c - '0'];
@@ -143,9 +141,25 @@ double previous_round_number(double value) {
   return step.times(1.0);
 }
 
-std::string power_of_ten(int exponent) {
-  return has_few_digits(exponent) ? fixed(std::pow(10.0, exponent), std::max(0, -exponent))
-                                  : fmt::format("1e{}", exponent);
+std::vector<std::string> decade_labels(const std::vector<int>& exponents) {
+  const bool has_digits = std::ranges::all_of(exponents, has_few_digits);
+  std::vector<std::string> labels;
+  for (const int exponent : exponents)
+    labels.push_back(has_digits ? fixed(std::pow(10.0, exponent), std::max(0, -exponent))
+                                : power_with_superscript(exponent));
+  return labels;
+}
+
+Ticks decade_ticks(Range decades) {
+  Ticks ticks;
+  ticks.step = 1.0;
+  std::vector<int> exponents;
+  for (int e = static_cast<int>(std::ceil(decades.low - kOnTick)); e <= std::floor(decades.high + kOnTick); ++e) {
+    exponents.push_back(e);
+    ticks.positions.push_back(e);
+  }
+  ticks.labels = decade_labels(exponents);
+  return ticks;
 }
 
 LogTicks make_log_ticks(Range decades, int max_labels) {
@@ -155,11 +169,13 @@ LogTicks make_log_ticks(Range decades, int max_labels) {
   int every = 1;
   while ((last - first) / every + 1 > max_labels) ++every;
   ticks.decades.step = every;
+  std::vector<int> exponents;
   for (int e = first; e <= last; ++e) {
     if ((last - e) % every != 0) continue;
+    exponents.push_back(e);
     ticks.decades.positions.push_back(e);
-    ticks.decades.labels.push_back(power_with_superscript(e));
   }
+  ticks.decades.labels = decade_labels(exponents);
   if (every > 1) return ticks;
   for (int e = first - 1; e <= last; ++e)
     for (int m = 2; m <= 9; ++m) {

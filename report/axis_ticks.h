@@ -55,12 +55,16 @@ double next_round_number(double value);
 /// \pre value > 0
 double previous_round_number(double value);
 
-/// Returns a power of ten as text: with all digits from 0.001 to 10000, otherwise with an exponent, such as "1e5".
-std::string power_of_ten(int exponent);
+/// Returns the labels of powers of ten on one axis. All labels have the same form: all digits, such as "100", if every
+/// exponent is from -3 to 4, and otherwise superscripts, such as "10²" and "10⁵".
+std::vector<std::string> decade_labels(const std::vector<int>& exponents);
+
+/// Returns ticks at the powers of ten within a range of decimal logarithms. Positions are decimal logarithms.
+Ticks decade_ticks(Range decades);
 
 /// Ticks of a logarithmic axis. Positions are decimal logarithms.
 struct LogTicks {
-  Ticks decades;              ///< powers of ten with labels such as "100" and "10⁵"
+  Ticks decades;              ///< powers of ten with labels, see decade_labels()
   std::vector<double> minor;  ///< 2 to 9 times powers of ten, in ascending order
 };
 

@@ -1,7 +1,5 @@
 #include "report/image_plot.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -68,10 +66,10 @@ void draw_value_bar(Canvas& canvas, const ImagePanel& panel, const ValueScale& s
   const auto y_at = [&](double value) { return corner.y + height * (1.0 - scale.fraction(value)); };
   const double x = corner.x + kImageBarWidth;
   if (scale.is_logarithmic) {
-    const int top = static_cast<int>(std::floor(std::log10(scale.full) + 1e-9));
-    for (int e = top; e > std::log10(scale.full) - kImageDecades - 1e-9; --e)
-      draw_bar_tick(canvas, kImageBarAxis, {x, y_at(std::pow(10.0, e))},
-                    std::abs(e) < 4 ? shortest(std::pow(10.0, e)) : fmt::format("1e{}", e));
+    const double top = std::log10(scale.full);
+    const Ticks ticks = decade_ticks({top - kImageDecades, top});
+    for (std::size_t k = 0; k < ticks.positions.size(); ++k)
+      draw_bar_tick(canvas, kImageBarAxis, {x, y_at(std::pow(10.0, ticks.positions[k]))}, ticks.labels[k]);
   } else {
     const Ticks ticks = make_ticks({0.0, scale.full}, height > 150.0 ? 5 : 2);
     for (std::size_t k = 0; k < ticks.positions.size(); ++k)

@@ -54,12 +54,8 @@ struct PolarColours {
 /// Returns a logarithmic scale that ends at the largest value and covers kPolarDecades.
 PolarColours decades_up_to(double largest) {
   const double top = largest > 0.0 ? std::log10(largest) : 0.0;
-  PolarColours colours{{top - kPolarDecades, top}, true, &kViridis, {}};
-  for (int e = static_cast<int>(std::ceil(colours.range.low)); e <= static_cast<int>(std::floor(top)); ++e) {
-    colours.ticks.positions.push_back(e);
-    colours.ticks.labels.push_back(power_of_ten(e));
-  }
-  return colours;
+  const Range range{top - kPolarDecades, top};
+  return {range, true, &kViridis, decade_ticks(range)};
 }
 
 PolarColours colours_of(const PolarPlot& plot) {
@@ -85,12 +81,11 @@ Point on_disc(const PolarPanel& panel, Point centre, Point on_grid) {
 void draw_contours(Canvas& canvas, const PolarPanel& panel, Point centre, const PolarColours& colours) {
   for (const double level : colours.ticks.positions) {
     if (colours.range.low < 0.0 && level == 0.0) continue;
-    const Colour at = colours.colour(level);
-    const bool is_light = 0.3 * at.red + 0.6 * at.green + 0.1 * at.blue > 0.55;
+    const Colour colour = contour_colour(colours.colour(level));
     for (const std::vector<Point>& line : contour_lines(panel.values, panel.columns, level)) {
       std::vector<Point> drawn;
       for (const Point& p : line) drawn.push_back(on_disc(panel, centre, p));
-      canvas.line(drawn, {is_light ? kText : kWhite, 0.7, {}});
+      canvas.line(drawn, {colour, 0.7, {}});
     }
   }
 }
@@ -165,6 +160,16 @@ PolarMarkStyle style_of(PolarMark::Kind kind) {
   return {};
 }
 
+}  // namespace
+
+void draw_mark(Canvas& canvas, Point at, PolarMark::Kind kind) {
+  const PolarMarkStyle style = style_of(kind);
+  canvas.marker(at, style.shape, style.outline, kBlack);
+  canvas.marker(at, style.shape, style.size, style.colour);
+}
+
+namespace {
+
 /// Returns the boxes of the labels at the rings, relative to the centre of the disc.
 std::vector<LabelBox> ring_label_boxes(const Canvas& canvas, const PolarPanel& panel) {
   std::vector<LabelBox> boxes;
@@ -203,9 +208,7 @@ void draw_marks(Canvas& canvas, const PolarPanel& panel, Point centre) {
   for (std::size_t k = 0; k < labels.size(); ++k) {
     const PolarMark& mark = panel.marks[k];
     const Point at = moved(position_of(panel, mark));
-    const PolarMarkStyle style = style_of(mark.kind);
-    canvas.marker(at, style.shape, style.outline, kBlack);
-    canvas.marker(at, style.shape, style.size, style.colour);
+    draw_mark(canvas, at, mark.kind);
     const LabelBox& box = labels[k].box;
     const Point corner = moved(box.corner);
     const Point end{corner.x + box.size.width, corner.y + box.size.height};

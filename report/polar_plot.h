@@ -53,6 +53,12 @@ struct LabelBox;
 /// do not overlap.
 std::vector<LabelBox> mark_label_boxes(const PolarPanel& panel);
 
+class Canvas;
+struct Point;
+
+/// Draws a mark with a black outline.
+void draw_mark(Canvas& canvas, Point at, PolarMark::Kind kind);
+
 /// Draws the plot. render_svg() and render_png() call this function.
 std::string render(const PolarPlot& plot, PlotFormat format, double scale);
 

@@ -58,6 +58,10 @@ void draw_title(Canvas& canvas, Size figure, std::string_view title) {
   draw_title(canvas, figure.width, title, {0.5 * figure.width, kMargin + kTitleFont.size}, Align::centre);
 }
 
+Colour contour_colour(Colour area) {
+  return 0.3 * area.red + 0.6 * area.green + 0.1 * area.blue > 0.55 ? kText : kWhite;
+}
+
 void draw_title(Canvas& canvas, double figure_width, std::string_view title, Point baseline, Align align) {
   for (const std::string& line : title_lines(title, figure_width)) {
     canvas.text(baseline, line, kTitleFont, kText, align);

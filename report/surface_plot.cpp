@@ -197,15 +197,16 @@ void draw(Canvas& canvas, const LogPanel& panel, Point cell, Size room) {
   const Area area{{cell.x + kSurfaceLeft, cell.y + kTop}, {room.width + 60.0, room.height}};
   const AxisScale x{decades(panel, true, kMaxDecades), area.corner.x, area.right()};
   const AxisScale y{decades(panel, false, kMaxDecades), area.bottom(), area.corner.y};
-  for (int e = static_cast<int>(std::ceil(x.values.low)); e <= static_cast<int>(std::floor(x.values.high)); ++e) {
+  const Ticks x_ticks = decade_ticks(x.values);
+  for (const double e : x_ticks.positions)
     canvas.line({{x.at(e), area.corner.y}, {x.at(e), area.bottom()}}, {kSurfaceGrid, 0.9, {}});
-    draw_x_tick(canvas, kSurfaceAxis, {x.at(e), area.bottom()}, power_of_ten(e));
-  }
-  const int y_step = y.values.span() > 7.0 ? 2 : 1;
-  for (int e = static_cast<int>(std::ceil(y.values.low)); e <= static_cast<int>(std::floor(y.values.high));
-       e += y_step) {
-    canvas.line({{area.corner.x, y.at(e)}, {area.right(), y.at(e)}}, {kSurfaceGrid, 0.9, {}});
-    draw_y_tick(canvas, kSurfaceAxis, {area.corner.x, y.at(e)}, power_of_ten(e));
+  draw_x_ticks(canvas, kSurfaceAxis, x, x_ticks, area.bottom());
+  const Ticks y_ticks = decade_ticks(y.values);
+  const std::size_t y_step = y.values.span() > 7.0 ? 2 : 1;
+  for (std::size_t k = 0; k < y_ticks.positions.size(); k += y_step) {
+    const double at = y.at(y_ticks.positions[k]);
+    canvas.line({{area.corner.x, at}, {area.right(), at}}, {kSurfaceGrid, 0.9, {}});
+    draw_y_tick(canvas, kSurfaceAxis, {area.corner.x, at}, y_ticks.labels[k]);
   }
   canvas.clip(area.corner, area.size);
   for (std::size_t c = 0; c < panel.curves.size(); ++c) {

@@ -41,12 +41,20 @@ TEST(MakeTicks, WritesVeryLargeAndVerySmallWithAnExponent) {
 TEST(MakeLogTicks, MarksDecadesAndTheirMultiples) {
   const LogTicks ticks = make_log_ticks({-1.0, 5.0}, 9);
   EXPECT_EQ(ticks.decades.positions, (std::vector<double>{-1, 0, 1, 2, 3, 4, 5}));
-  EXPECT_EQ(ticks.decades.labels, (Texts{"0.1", "1", "10", "100", "1000", "10000", "10⁵"}));
+  EXPECT_EQ(ticks.decades.labels, (Texts{"10⁻¹", "10⁰", "10¹", "10²", "10³", "10⁴", "10⁵"}));
   ASSERT_EQ(ticks.minor.size(), 6U * 8U);
   for (std::size_t k = 0; k < ticks.minor.size(); ++k)
     EXPECT_NEAR(std::pow(10.0, ticks.minor[k]),
                 (2.0 + static_cast<double>(k % 8)) * std::pow(10.0, std::floor(static_cast<double>(k) / 8.0) - 1.0),
                 1e-9 * std::pow(10.0, ticks.minor[k]));
+}
+
+// The labels of one axis are either all digits or all superscripts.
+TEST(MakeLogTicks, LabelsHaveOneForm) {
+  EXPECT_EQ(make_log_ticks({-2.0, 1.5}, 9).decades.labels, (Texts{"0.01", "0.1", "1", "10"}));
+  EXPECT_EQ(decade_ticks({-2.5, 1.0}).labels, (Texts{"0.01", "0.1", "1", "10"}));
+  EXPECT_EQ(decade_ticks({3.0, 5.0}).labels, (Texts{"10³", "10⁴", "10⁵"}));
+  EXPECT_EQ(decade_labels({-4, 0}), (Texts{"10⁻⁴", "10⁰"}));
 }
 
 TEST(MakeLogTicks, LabelsAFractionOfManyDecades) {
