@@ -1,7 +1,10 @@
 #include "retrace/photometry.h"
 
 #include <memory>
+#include <utility>
+#include <vector>
 
+#include "core/error.h"
 #include "core/threads.h"
 #include "library/content.h"
 #include "library/drawing_content.h"
@@ -27,11 +30,40 @@ PhotometricPoint from_study(const studies::PhotometricPoint& point) {
   return told;
 }
 
-}  // namespace
+CoefficientMap from_study(const studies::CoefficientMap& map) {
+  CoefficientMap told;
+  told.design = map.design;
+  told.rotation_deg = map.rotation_deg;
+  told.presentation_deg = map.presentation_deg;
+  told.entrance_deg = map.entrance_deg;
+  told.observation_deg = map.observation_deg;
+  for (std::size_t k = 0; k < map.entrance_deg.size(); ++k) {
+    const auto row = [&](const std::vector<double>& values) {
+      const auto first = values.begin() + static_cast<std::ptrdiff_t>(map.index(k, 0));
+      return std::vector<double>(first, first + std::ssize(map.observation_deg));
+    };
+    told.r_a.push_back(row(map.r_a));
+    told.std_error.push_back(row(map.std_error));
+  }
+  return told;
+}
 
-PhotometryResult photometry(const Design& design, const PhotometryRequest& request, const Running& running) {
+/// Adds the maps over entrance and observation angle, and their drawings.
+void add_maps(const std::shared_ptr<const studies::PhotometryResult>& found, PhotometryResult& result) {
+  for (const studies::CoefficientMap& map : found->coefficient_maps) result.maps.push_back(from_study(map));
+  result.map = drawing_of([found] { return report::coefficient_map_plot(*found); });
+  if (found->request.compared)
+    result.map_ratio = drawing_of([found] { return report::coefficient_ratio_plot(*found); });
+}
+
+/// \param compared design whose map is compared, or null
+PhotometryResult measured(const Design& design, const Design* compared, const PhotometryRequest& request,
+                          const Running& running) {
   const design::Design& of_study = design.content().design;
-  const studies::PhotometryStudy study(of_study, studies::resolve(request, of_study.substance.is_coloured()));
+  studies::PhotometrySettings settings = studies::resolve(request, of_study.substance.is_coloured());
+  if (compared != nullptr)
+    settings.compared = studies::compared_design(request, compared->content().design, settings.test_plan.colour);
+  const studies::PhotometryStudy study(of_study, std::move(settings));
   const auto held = std::make_shared<studies::PhotometryResult>();
   studies::PhotometryResult& found = *held;
   run_with_threads(running.threads, [&] { found = study.run(running.progress, running.cancellation); });
@@ -43,10 +75,23 @@ PhotometryResult photometry(const Design& design, const PhotometryRequest& reque
   result.complete = found.complete;
   result.json = studies::photometry_json(found);
   result.csv = studies::photometry_csv(found);
-  result.table = studies::photometry_table(found);
+  result.table = studies::photometry_table(found) + studies::coefficient_map_table(found);
+  if (!found.coefficient_maps.empty()) add_maps(held, result);
   if (!found.maps.empty()) result.far_field = drawing_of([held] { return report::far_field_plot(*held); });
   if (!found.curves.empty()) result.observation = drawing_of([held] { return report::observation_plot(*held); });
   return result;
+}
+
+}  // namespace
+
+PhotometryResult photometry(const Design& design, const PhotometryRequest& request, const Running& running) {
+  return measured(design, nullptr, request, running);
+}
+
+PhotometryResult photometry(const Design& design, const Design& compared, const PhotometryRequest& request,
+                            const Running& running) {
+  if (!request.map) throw InputError(Field{"map"}, "must be true for the comparison of two designs, got false");
+  return measured(design, &compared, request, running);
 }
 
 }  // namespace retrace

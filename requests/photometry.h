@@ -52,6 +52,15 @@ struct PhotometryRequest {
   bool window_power = false;
   /// Search for a changed design that passes, if a test point fails.
   bool advice = true;
+  /// Compute a map of R_A over entrance and observation angle, or of R_I if the standard limits R_I.
+  bool map = false;
+  /// Entrance angles of the map, in degrees; negative angles are on the opposite side of the normal. Default: 0:60:5.
+  std::vector<double> map_entrance_deg = {};
+  /// Observation angles of the map, in degrees. Default: 41 angles from 0 to the half angle of the far field.
+  std::vector<double> map_observation_deg = {};
+  /// Presentation angles of the map, in degrees; one panel for each of them and each rotation; 0: the source is in the
+  /// plane of normal and observer. Default: 0.
+  std::vector<double> map_presentation_deg = {};
   /// Compute the maps and curves for the drawings "far_field" and "r_a".
   bool pictures = false;
 };

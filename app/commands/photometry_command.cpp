@@ -24,6 +24,7 @@ namespace {
 
 struct PhotometryOptions {
   std::string design;
+  std::string compare;  ///< design file whose map is compared; empty: none
   FieldTexts fields;
 };
 
@@ -54,6 +55,10 @@ std::vector<Argument> arguments(PhotometryOptions& options) {
     if (argument.name.starts_with("--colour ")) argument.traits.words = colours;
     all.push_back(std::move(argument));
   }
+  Argument compare{"--compare DESIGN", "a second design, for maps of both designs and of their ratio", &options.compare,
+                   files(".toml")};
+  compare.traits.needs = {any_given({"--map"})};
+  all.push_back(std::move(compare));
   return all;
 }
 
@@ -64,6 +69,34 @@ void add_files(ResultFiles& files, const studies::PhotometryResult& result) {
   files.add("far_field.csv", [&] { return studies::far_field_map_csv(result); });
   files.add_drawing("far_field", [&] { return report::far_field_plot(result); });
   files.add_drawing("r_a", [&] { return report::observation_plot(result); });
+}
+
+/// Adds the files of the maps over entrance and observation angle. Maps that are not finished have no files.
+/// \param has_compared true if there is a second design
+void add_map_files(ResultFiles& files, bool has_compared, const studies::PhotometryResult& result) {
+  const auto has_maps = [&] { return !result.coefficient_maps.empty(); };
+  files.add("map.csv", [&] { return studies::coefficient_map_csv(result); });
+  files.add_drawing(
+      "map", [&] { return report::coefficient_map_plot(result); }, has_maps);
+  if (!has_compared) return;
+  files.add("map_ratio.csv", [&] { return studies::coefficient_ratio_csv(result); });
+  files.add_drawing(
+      "map_ratio", [&] { return report::coefficient_ratio_plot(result); }, has_maps);
+}
+
+/// Adds a warning if the drawing does not show all maps.
+void warn_of_panels(studies::PhotometryResult& result) {
+  if (result.coefficient_maps.size() <= report::kMaxMapPanels) return;
+  result.warnings.push_back({"maps_omitted", fmt::format("map.svg and map.png show the first {} of {} maps",
+                                                         report::kMaxMapPanels, result.coefficient_maps.size())});
+}
+
+/// Returns the tables for the terminal. Long tables are shortened if they are in the output folder.
+std::string text_of(const studies::PhotometryResult& result, const CommonOptions& common) {
+  const std::string table = studies::photometry_table(result) + studies::coefficient_map_table(result);
+  if (is_shown_whole(table, common)) return table;
+  const bool has_maps = !result.coefficient_maps.empty();
+  return studies::photometry_table(result, has_maps ? 3 : 8) + studies::coefficient_map_table(result, 1);
 }
 
 /// Returns advice for a shorter run: options to change, with their current values.
@@ -77,6 +110,7 @@ Words what_shortens_photometry(const PhotometryRequest& request, const studies::
     advice.push_back(
         fmt::format("give a smaller --samples (now {})", request.samples.value_or(studies::kDefaultRaysPerDirection)));
   if (has_rotations) advice.emplace_back("give fewer rotations (--rotation)");
+  if (request.map) advice.emplace_back("give fewer entrance angles of the map (--map-entrance)");
   return advice;
 }
 
@@ -96,7 +130,9 @@ std::string first_answer_of(const studies::PhotometryStudy& study, std::optional
 
 ExitCode run(const PhotometryOptions& options, const CommonOptions& common) {
   const design::Design design = design::read_design(options.design, common.overrides);
-  std::vector<std::string> inputs = files_read({design});
+  std::vector<design::Design> designs = {design};
+  if (!options.compare.empty()) designs.push_back(design::read_design(options.compare, common.overrides));
+  std::vector<std::string> inputs = files_read(designs);
   auto request = request_of<PhotometryRequest>(options.fields, common);
   request.pictures = !common.out.empty();
   const bool is_coloured = design.substance.is_coloured();
@@ -104,12 +140,15 @@ ExitCode run(const PhotometryOptions& options, const CommonOptions& common) {
   inputs.push_back(studies::limits_file_of(request.standard).string());
   const std::filesystem::path dye = studies::dye_file_of(request.dye, is_coloured, settings.test_plan.colour);
   if (!dye.empty()) inputs.push_back(dye.string());
+  if (designs.size() > 1)
+    settings.compared = studies::compared_design(request, designs.back(), settings.test_plan.colour);
   const bool has_rotations = settings.rotation_deg.size() > 1;
   const studies::PhotometryStudy study(design, std::move(settings));
   const OrderlyInterrupt interrupt;
   studies::PhotometryResult result;
   ResultFiles files(common, inputs, "photometry.json");
   add_files(files, result);
+  if (request.map) add_map_files(files, designs.size() > 1, result);
   files.prepare();
   const RunText text{"tracing", what_shortens_photometry(request, study, has_rotations)};
   {
@@ -121,10 +160,8 @@ ExitCode run(const PhotometryOptions& options, const CommonOptions& common) {
       result = study.run(&bar, cancel);
     });
   }
-  constexpr std::size_t kFewRows = 8;
-  std::string table = studies::photometry_table(result);
-  if (!is_shown_whole(table, common)) table = studies::photometry_table(result, kFewRows);
-  return files.write(studies::photometry_json(result), table, result.warnings,
+  warn_of_panels(result);
+  return files.write(studies::photometry_json(result), text_of(result, common), result.warnings,
                      {.complete = result.complete, .is_yes = result.passes()});
 }
 
@@ -137,6 +174,7 @@ Command photometry_command() {
               "Coefficients of retroreflection at the test points of a standard, their limits, a verdict, and what "
               "to change if a point fails; the colour of the returned light, with a verdict of its own. `--class` and "
               "`--colour` are needed where the standard has several. "
+              "`--map` adds maps of R_A, or of R_I if the standard limits R_I, over entrance and observation angle. "
               "Exits with 1 if a limit is missed, the colour lies outside its boundaries, or the verdict on the points "
               "is undetermined.",
           .reads = {"retrace.design/1", "limits (CSV)", "absorption of a dye (CSV)"},

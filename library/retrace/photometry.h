@@ -2,6 +2,7 @@
 
 // Computes coefficients of retroreflection at the test points of a standard, and a verdict.
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,17 @@ struct PhotometricPoint {
   std::string verdict;  ///< pass, unconfirmed, undetermined or fail
 };
 
+/// R_A over entrance and observation angle, for one design, rotation and presentation angle.
+struct CoefficientMap {
+  std::size_t design = 0;                      ///< 0: the design; 1: the compared design
+  double rotation_deg = 0.0;                   ///< rotation of the part about its normal
+  double presentation_deg = 0.0;               ///< 0: the source is in the plane of normal and observer
+  std::vector<double> entrance_deg;            ///< ascending
+  std::vector<double> observation_deg;         ///< ascending
+  std::vector<std::vector<double>> r_a;        ///< in cd/(lx m^2), with the indices [entrance][observation]
+  std::vector<std::vector<double>> std_error;  ///< as `r_a`
+};
+
 struct PhotometryResult {
   std::vector<PhotometricPoint> points;
   std::string verdict;
@@ -35,12 +47,21 @@ struct PhotometryResult {
   std::string table;    ///< summary as text
   Drawing far_field;    ///< R_A around the direction to the source; empty unless PhotometryRequest::pictures is true
   Drawing observation;  ///< R_A over the observation angle; empty unless PhotometryRequest::pictures is true
+  /// Maps over entrance and observation angle; empty unless PhotometryRequest::map is true and the run is complete.
+  std::vector<CoefficientMap> maps;
+  Drawing map;        ///< the maps, of R_A or of R_I if the standard limits R_I; empty if there are none
+  Drawing map_ratio;  ///< ratio of the compared design to the design; empty unless there are two designs
 };
 
 /// Computes the coefficients at all test points and compares them with the limits of the standard.
 /// \throw InputError
 /// \throw BudgetError if the ray tracer lost power
 RETRACE_API PhotometryResult photometry(const Design& design, const PhotometryRequest& request,
+                                        const Running& running = {});
+
+/// Computes also the maps of a second design, and the ratio of its maps to those of the first design.
+/// \throw InputError also if PhotometryRequest::map is false
+RETRACE_API PhotometryResult photometry(const Design& design, const Design& compared, const PhotometryRequest& request,
                                         const Running& running = {});
 
 }  // namespace retrace

@@ -8,6 +8,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <chrono>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -152,13 +153,15 @@ void bind_photometry(py::module_& module) {
       .def_readonly("passes", &PhotometryResult::passes)
       .def_readonly("csv", &PhotometryResult::csv)
       .def_readonly("far_field", &PhotometryResult::far_field)
-      .def_readonly("observation", &PhotometryResult::observation);
-  module.def("photometry",
-             [](const Design& design, const PhotometryRequest& request, const py::object& progress, unsigned threads) {
-               return watched(progress, threads, [design, request](const Running& running) {
-                 return photometry(design, request, running);
-               });
-             });
+      .def_readonly("observation", &PhotometryResult::observation)
+      .def_readonly("map", &PhotometryResult::map)
+      .def_readonly("map_ratio", &PhotometryResult::map_ratio);
+  module.def("photometry", [](const Design& design, const std::optional<Design>& compared,
+                              const PhotometryRequest& request, const py::object& progress, unsigned threads) {
+    return watched(progress, threads, [design, compared, request](const Running& running) {
+      return compared ? photometry(design, *compared, request, running) : photometry(design, request, running);
+    });
+  });
 }
 
 void bind_part(py::module_& module) {

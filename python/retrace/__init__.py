@@ -15,6 +15,7 @@ from ._design import Design
 from ._errors import BudgetError, Error, InputError, OutputError
 from ._fabrication import Fabrication, Job, Verification, fabricate, job, verify
 from ._light import (
+    CoefficientMap,
     Footprint,
     PhotometryResult,
     PolarMap,
@@ -52,6 +53,7 @@ __version__: str = _version()
 
 __all__ = [
     "BudgetError",
+    "CoefficientMap",
     "Columns",
     "Design",
     "Drawing",

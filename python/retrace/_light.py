@@ -6,6 +6,8 @@ import json
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import numpy as np
+
 from . import _core
 from ._arguments import Numbers, number_list, thread_count
 from ._design import AnyDesign, design_of, designs_of
@@ -16,6 +18,7 @@ from ._request import described, given
 from ._results import Array, Columns, Result, dataset_of, frozen, html_table
 
 __all__ = [
+    "CoefficientMap",
     "Footprint",
     "PhotometryResult",
     "PolarMap",
@@ -261,8 +264,42 @@ class PhotometryResult(Result):
     complete: bool
 
     def __init__(self, core: Any) -> None:
-        super().__init__(core, drawings={"far_field": core.far_field, "r_a": core.observation})
+        super().__init__(
+            core,
+            drawings={
+                "far_field": core.far_field,
+                "r_a": core.observation,
+                "map": core.map,
+                "map_ratio": core.map_ratio,
+            },
+        )
         self.passes = core.passes
+
+    def coefficient_map(
+        self,
+        rotation_deg: float | None = None,
+        presentation_deg: float | None = None,
+        *,
+        design: int = 0,
+    ) -> CoefficientMap:
+        """Returns the map of R_A over entrance and observation angle, if photometry() was called
+        with map=True.
+
+        rotation_deg, presentation_deg: angles of the map; None: the first map. design: 0 for the
+        design, 1 for the compared design. Raises InputError if there is no such map."""
+        maps = self.document.get("maps", [])
+        if not maps:
+            raise InputError("there are no maps; call photometry() with map=True", key="design")
+        keys = [(one["design"], one["rotation_deg"], one["presentation_deg"]) for one in maps]
+        for one, (index, rotation, presentation) in zip(maps, keys):
+            is_asked = rotation_deg in (None, rotation) and presentation_deg in (None, presentation)
+            if index == design and is_asked:
+                return CoefficientMap(one, self.document["area_cm2"])
+        raise InputError(
+            f"there is no such map; the maps have the designs, rotations and presentation angles "
+            f"{keys}",
+            key="design",
+        )
 
     def _repr_html_(self) -> str | None:
         names = (
@@ -279,10 +316,63 @@ class PhotometryResult(Result):
         return html_table(rows) + f"<p>{self.verdict}</p>"
 
 
+class CoefficientMap:
+    """Coefficient of retroreflection R_A of one design over entrance and observation angle, at one
+    rotation of the part and one presentation angle."""
+
+    rotation_deg: float
+    presentation_deg: float
+    entrance_deg: Array  #: entrance angles, ascending
+    observation_deg: Array  #: observation angles, ascending
+    r_a: Array  #: R_A in cd/(lx m2), with the shape (entrance angles, observation angles)
+    std_error: Array  #: standard errors of r_a, in the same shape
+    r_i: Array  #: R_I of the part in mcd/lx, in the same shape
+    lacks_diffraction: bool  #: true if diffraction is significant but not included
+
+    def __init__(self, map: Mapping[str, Any], area_cm2: float) -> None:
+        """map: an element of the list `maps` of the document. area_cm2: area of the part."""
+        self.rotation_deg = map["rotation_deg"]
+        self.presentation_deg = map["presentation_deg"]
+        self.entrance_deg = frozen(map["entrance_deg"])
+        self.observation_deg = frozen(map["observation_deg"])
+        self.r_a = frozen(map["r_a_cd_per_lx_m2"])
+        self.std_error = frozen(map["std_error_cd_per_lx_m2"])
+        self.r_i = frozen(0.1 * area_cm2 * self.r_a)
+        self.lacks_diffraction = map["lacks_diffraction"]
+
+    def _check_grid(self, other: CoefficientMap) -> None:
+        for name in ("entrance_deg", "observation_deg"):
+            if not np.array_equal(getattr(self, name), getattr(other, name)):
+                raise InputError(f"the maps must have the same {name}", key="other")
+
+    def ratio(self, other: CoefficientMap) -> Array:
+        """Returns R_A of this map divided by R_A of another map with the same angles. Values are
+        NaN where the other R_A is 0."""
+        self._check_grid(other)
+        is_defined = other.r_a > 0
+        return frozen(
+            np.where(is_defined, self.r_a / np.where(is_defined, other.r_a, 1.0), np.nan)
+        )
+
+    def difference(self, other: CoefficientMap) -> Array:
+        """Returns R_A of this map minus R_A of another map with the same angles, in
+        cd/(lx m2)."""
+        self._check_grid(other)
+        return frozen(self.r_a - other.r_a)
+
+    def __repr__(self) -> str:
+        return (
+            f"<CoefficientMap: {len(self.entrance_deg)} entrance angles, "
+            f"{len(self.observation_deg)} observation angles, r_a {self.r_a.min():.6g} to "
+            f"{self.r_a.max():.6g}>"
+        )
+
+
 @described(FIELDS["photometry"])
 def photometry(
     design: AnyDesign,
     *,
+    compare: AnyDesign | None = None,
     # generated: keywords of the request photometry
     threads: int | None = None,
     progress: Progress = None,
@@ -290,11 +380,13 @@ def photometry(
     """Computes the coefficients of retroreflection at the test points of a standard, with limits
     and a verdict, as `retrace photometry`.
 
+    compare: a second design, for maps of both designs and the drawing "map_ratio"; needs map=True.
     diffraction: False for the geometric far field without diffraction. advice: suggest changes of
     the design if a point fails. pictures: make the drawings "far_field" and "r_a", which takes
     time."""
     taken = design_of(design)
+    compared = None if compare is None else design_of(compare)._core
     request = _core.PhotometryRequest()  # generated: sets the fields of the request photometry
     count = thread_count(threads)
     with teller(progress, "tracing") as tell:
-        return PhotometryResult(_core.photometry(taken._core, request, tell, count))
+        return PhotometryResult(_core.photometry(taken._core, compared, request, tell, count))

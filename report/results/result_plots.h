@@ -10,6 +10,7 @@
 
 #include "core/pictures.h"
 #include "report/colour_scale.h"
+#include "report/contour_plot.h"
 #include "report/image_plot.h"
 #include "report/map_plot.h"
 #include "report/mixture_plot.h"
@@ -82,6 +83,16 @@ LinePlot roughness_plot(const studies::RoughnessResult& result);
 /// Returns a plot of R_A as a function of direction, for directions around the direction to the source. It shows the
 /// test points and has one panel for each map of the result.
 PolarPlot far_field_plot(const studies::PhotometryResult& result);
+
+/// Returns maps of R_A, or of R_I if the standard limits R_I, over entrance and observation angle, with contour lines:
+/// one panel for each design, rotation and presentation angle, up to kMaxMapPanels. Test points of the standard in the
+/// plane of a panel are marked. \pre the result has coefficient maps
+ContourPlot coefficient_map_plot(const studies::PhotometryResult& result);
+
+/// Returns maps of the ratio of the compared design to the design of the study, with one panel for each rotation and
+/// presentation angle, up to kMaxMapPanels.
+/// \pre the result has coefficient maps of two designs
+ContourPlot coefficient_ratio_plot(const studies::PhotometryResult& result);
 
 /// Returns a plot of R_A against the observation angle, with one curve for each entrance angle.
 LinePlot observation_plot(const studies::PhotometryResult& result);

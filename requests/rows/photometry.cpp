@@ -12,6 +12,14 @@ using schema::access;
 
 constexpr std::string_view kStandards[] = {"r150", "j594", "bicycle", "d4956", "iso20471", "stvzvo"};
 constexpr NumberRange kApertureArcmin{.low = 0.0, .high = 300.0};
+/// Allowed entrance angles of a map. They are those of limits files.
+constexpr NumberRange kMapEntrance{.low = -85.0, .high = 85.0};
+constexpr NumberRange kMapObservation{.low = 0.0, .high = 10.0};
+constexpr NumberRange kMapPresentation{.low = -180.0, .high = 180.0};
+/// Maximum number of angles in a list of a map.
+constexpr std::size_t kMaxMapAngles = 1000;
+constexpr schema::Condition kPhotometryMap[] = {schema::is_given("map")};
+constexpr Need kPhotometryNeedMap[] = {kPhotometryMap};
 
 void check_photometry(const void* object) {
   constexpr std::size_t most = 720;
@@ -119,6 +127,30 @@ constexpr Row kPhotometryRows[] = {
      "search for a changed design that passes, if a test point fails",
      access<&PhotometryRequest::advice>,
      {.notation = Notation::absent}},
+    {"map", Flag{}, "compute a map of R_A over entrance and observation angle, or of R_I if the standard limits R_I",
+     access<&PhotometryRequest::map>},
+    {"map_entrance_deg",
+     NumberOrNumbers{.range = kMapEntrance, .max_count = kMaxMapAngles},
+     "entrance angles of the map; negative angles are on the opposite side of the normal",
+     access<&PhotometryRequest::map_entrance_deg>,
+     {.value = "LIST", .notation = Notation::number_list, .option = "--map-entrance", .otherwise = "0:60:5"},
+     kPhotometryNeedMap},
+    {"map_observation_deg",
+     NumberOrNumbers{.range = kMapObservation, .max_count = kMaxMapAngles},
+     "observation angles of the map",
+     access<&PhotometryRequest::map_observation_deg>,
+     {.value = "LIST",
+      .notation = Notation::number_list,
+      .option = "--map-observation",
+      .otherwise = "41 angles from 0 to the half angle of the far field"},
+     kPhotometryNeedMap},
+    {"map_presentation_deg",
+     NumberOrNumbers{.range = kMapPresentation, .max_count = kMaxMapAngles},
+     "presentation angles of the map; one panel for each of them and each rotation; 0: the source is in the plane of "
+     "normal and observer",
+     access<&PhotometryRequest::map_presentation_deg>,
+     {.value = "LIST", .notation = Notation::number_list, .option = "--map-presentation", .otherwise = "0"},
+     kPhotometryNeedMap},
     {"pictures",
      Flag{},
      "compute the maps and curves for the drawings \"far_field\" and \"r_a\"",

@@ -14,6 +14,7 @@
 #include "core/number_format.h"
 #include "core/task_progress.h"
 #include "studies/photometry/advice.h"
+#include "studies/photometry/coefficient_map.h"
 #include "studies/photometry/colour.h"
 #include "studies/photometry/photometer.h"
 
@@ -253,6 +254,13 @@ class TablesOfChanges {
   std::vector<std::size_t> order_;  ///< order in which the settings are measured
 };
 
+/// Returns the settings of the compared design: its dye replaces that of the design of the study.
+PhotometrySettings settings_of_compared(PhotometrySettings settings) {
+  settings.dye = settings.compared->dye;
+  settings.dye_absorption_per_mm = settings.compared->dye_absorption_per_mm;
+  return settings;
+}
+
 }  // namespace
 
 double arcmin_of(Angle diameter) {
@@ -325,6 +333,17 @@ Verdict area_verdict(const TestPlan& test_plan, double area_cm2) {
   return verdict;
 }
 
+std::vector<design::Design> PhotometryResult::map_designs() const {
+  std::vector<design::Design> designs = {design};
+  if (request.compared) designs.push_back(request.compared->design);
+  return designs;
+}
+
+bool PhotometryResult::limits_are_r_i() const {
+  const std::vector<TestPoint>& limits = request.test_plan.points;
+  return !limits.empty() && limits.front().unit != PhotometricUnit::cd_per_lx_per_m2;
+}
+
 struct PhotometryStudy::Prepared {
   design::Design design;
   PhotometrySettings request;
@@ -342,6 +361,8 @@ PhotometryStudy::PhotometryStudy(design::Design design, PhotometrySettings setti
         fmt::format(
             "the engine exact requires plane and smooth faces, but the faces of {} scatter light: use {} montecarlo",
             design.source_name(), reference({"engine"})));
+  if (settings.compared)  // refuses a design that the photometer does not support
+    const Photometer ignored(settings.compared->design, settings_of_compared(settings), materials::kSpectralParts);
   prepared_->plan = plan_of(settings, mirrors_source(design));
   prepared_->design = std::move(design);
   prepared_->request = std::move(settings);
@@ -395,18 +416,62 @@ UndeterminedReason reason_of(const std::vector<PhotometricPoint>& points, const 
 
 /// Measures with the exact engine, or by Monte Carlo if the exact engine needs too many beams and the request allows
 /// both.
-std::optional<std::vector<PhotometerReading>> readings_of(Photometer& photometer, const PhotometrySettings& request,
-                                                          const Plan& plan, Progress* progress,
-                                                          const Cancellation* cancel) {
+/// \param measure function that measures with the photometer and reports its progress
+template <class Measure>
+auto measure_within_budget(Photometer& photometer, const PhotometrySettings& request, Progress* progress,
+                           const Measure& measure) {
   AttemptProgress attempt(progress);
   try {
-    return photometer.measure(plan.settings, &attempt, cancel);
+    return measure(attempt);
   } catch (const BudgetError&) {
     if (request.engine == raytrace::Engine::exact || !photometer.is_exact()) throw;
     photometer.use_monte_carlo();
     attempt.begin_again();
-    return photometer.measure(plan.settings, &attempt, cancel);
+    return measure(attempt);
   }
+}
+
+std::optional<std::vector<PhotometerReading>> readings_of(Photometer& photometer, const PhotometrySettings& request,
+                                                          const Plan& plan, Progress* progress,
+                                                          const Cancellation* cancel) {
+  return measure_within_budget(photometer, request, progress,
+                               [&](Progress& attempt) { return photometer.measure(plan.settings, &attempt, cancel); });
+}
+
+/// Adds the maps of one design. Returns false if the computation was cancelled.
+/// \param design index of the design, see CoefficientMap
+bool add_design_maps(Photometer& photometer, const PhotometrySettings& request, std::size_t design, Progress* progress,
+                     const Cancellation* cancel, PhotometryResult& result) {
+  std::optional<DesignMaps> measured = measure_within_budget(photometer, request, progress, [&](Progress& attempt) {
+    return measure_maps(photometer, request, design, &attempt, cancel);
+  });
+  if (!measured) return false;
+  for (CoefficientMap& map : measured->maps) result.coefficient_maps.push_back(std::move(map));
+  result.map_directions += measured->directions;
+  result.traced_map_directions += measured->traced_directions;
+  return true;
+}
+
+/// Adds the maps over entrance and observation angle if they are requested. Returns false if the computation was
+/// cancelled; the result then has no such maps.
+bool add_coefficient_maps(const Photometer& photometer, Progress* progress, const Cancellation* cancel,
+                          PhotometryResult& result) {
+  const PhotometrySettings& request = result.request;
+  if (!request.map_grid) return true;
+  Photometer own = photometer;
+  PartProgress first(progress, 0.0, request.compared ? 0.5 : 1.0);
+  bool is_complete = add_design_maps(own, request, 0, &first, cancel, result);
+  if (is_complete && request.compared) {
+    const PhotometrySettings of_compared = settings_of_compared(request);
+    Photometer compared(request.compared->design, of_compared, materials::kSpectralParts);
+    PartProgress second(progress, 0.5, 1.0);
+    is_complete = add_design_maps(compared, of_compared, 1, &second, cancel, result);
+  }
+  if (!is_complete) {
+    result.coefficient_maps.clear();
+    result.map_directions = result.traced_map_directions = 0;
+  }
+  return is_complete;
 }
 
 bool measures_colour(const PhotometrySettings& request) {
@@ -421,17 +486,26 @@ bool may_search_change(const design::Design& design, const PhotometrySettings& r
 
 /// Progress objects of the stages of PhotometryStudy::run(). Each stage fills a fraction of the whole progress.
 struct StageProgress {
-  PartProgress readings, colour, pictures, change;
+  PartProgress readings, colour, maps, pictures, change;
 };
 
 /// Divides the progress of a run among its stages, in proportion to estimates of their durations.
-StageProgress stages_of(Progress* whole, const design::Design& design, const PhotometrySettings& request) {
+/// \param directions number of directions of light in which readings are measured
+StageProgress stages_of(Progress* whole, const design::Design& design, const PhotometrySettings& request,
+                        std::size_t directions) {
   const double colour = 1.0 + (measures_colour(request) ? 0.3 : 0.0);
-  const double pictures = colour + (request.pictures ? 0.3 : 0.0);
+  double maps = colour;
+  if (request.map_grid) {
+    const std::size_t of_maps =
+        request.rotation_deg.size() * request.map_grid->presentation_deg.size() * request.map_grid->entrance_deg.size();
+    maps += (request.compared ? 2.0 : 1.0) * static_cast<double>(of_maps) / static_cast<double>(directions);
+  }
+  const double pictures = maps + (request.pictures ? 0.3 : 0.0);
   const double change = pictures + (may_search_change(design, request) ? 1.0 : 0.0);
   return {{whole, 0.0, 1.0 / change},
           {whole, 1.0 / change, colour / change},
-          {whole, colour / change, pictures / change},
+          {whole, colour / change, maps / change},
+          {whole, maps / change, pictures / change},
           {whole, pictures / change, 1.0}};
 }
 
@@ -481,7 +555,7 @@ PhotometryResult PhotometryStudy::run(Progress* progress, const Cancellation* ca
   result.request = request;
   result.warnings = photometer.warnings();
   result.wavelengths_nm = photometer.wavelengths_nm();
-  StageProgress stages = stages_of(progress, design, request);
+  StageProgress stages = stages_of(progress, design, request, std::max<std::size_t>(1, plan.settings.size()));
   const auto readings = readings_of(photometer, request, plan, &stages.readings, cancel);
   result.engine = photometer.engine_name();
   result.has_diffraction = photometer.has_diffraction();
@@ -502,6 +576,9 @@ PhotometryResult PhotometryStudy::run(Progress* progress, const Cancellation* ca
     result.reason = reason_of(result.points, photometer);
   }
   if (result.complete) result.complete = add_colour(photometer, &stages.colour, cancel, result);
+  if (result.complete) result.complete = add_coefficient_maps(photometer, &stages.maps, cancel, result);
+  if (request.map_grid && result.coefficient_maps.empty())
+    result.warnings.push_back({"map_incomplete", "the maps of R_A are left out, because they are not finished"});
   if (result.complete && request.pictures)
     result.complete = add_pictures(design, request, plan, photometer.is_exact(), &stages.pictures, cancel, result);
   if (result.complete) result.complete = add_change(photometer, plan, &stages.change, cancel, result);

@@ -37,6 +37,21 @@ PhotometricLight light_from_name(std::string_view name);
 /// Default number of rays per direction of incidence.
 inline constexpr std::uint64_t kDefaultRaysPerDirection = std::uint64_t{1} << 20;
 
+/// Angles of a map of R_A over entrance and observation angle. Each list is in ascending order.
+struct CoefficientGrid {
+  std::vector<double> entrance_deg;     ///< in [-85, 85]; at least 2
+  std::vector<double> observation_deg;  ///< inside the window of the far field; at least 2
+  /// Presentation angles, with one map for each of them. At 0, the source is in the plane of normal and observer.
+  std::vector<double> presentation_deg;
+};
+
+/// Design whose map is compared with that of the design of the study.
+struct ComparedDesign {
+  design::Design design;
+  std::string dye;                                 ///< as PhotometrySettings::dye
+  materials::SpectralCurve dye_absorption_per_mm;  ///< as PhotometrySettings::dye_absorption_per_mm
+};
+
 /// Settings of the study. resolve() in io/standard_reader.h makes them from a PhotometryRequest and reads the files of
 /// the standard and of the dye.
 struct PhotometrySettings {
@@ -57,6 +72,10 @@ struct PhotometrySettings {
   std::optional<std::uint64_t> rays;  ///< Monte Carlo: number of rays per direction; empty: kDefaultRaysPerDirection
   std::uint32_t seed = 1;
   bool pictures = false;  ///< true: maps and curves are computed
+  /// Angles of a map of R_A over entrance and observation angle; empty: no such map. There is one map for each rotation
+  /// and each presentation angle.
+  std::optional<CoefficientGrid> map_grid;
+  std::optional<ComparedDesign> compared;  ///< design of which maps are computed as well; only together with map_grid
   /// True: the power in directions inside and outside of the window (see window_deg) is integrated. This check is slow.
   bool window_power = false;
   bool advice = true;   ///< true: if the design fails, the study searches for a change with which it passes
@@ -122,6 +141,24 @@ struct FarFieldMap {
   double half_width_deg = 0.0;
   std::size_t columns = 0;  ///< number of columns, and of rows
   std::vector<double> r_a;  ///< row by row from below, as seen from the source
+};
+
+/// Coefficient of retroreflection R_A of one design over entrance and observation angle, at one rotation of the part
+/// and one presentation angle.
+struct CoefficientMap {
+  std::size_t design = 0;  ///< 0: design of the study; 1: PhotometrySettings::compared
+  double rotation_deg = 0.0;
+  double presentation_deg = 0.0;
+  std::vector<double> entrance_deg;     ///< ascending
+  std::vector<double> observation_deg;  ///< ascending
+  std::vector<double>
+      r_a;  ///< in cd/(lx m^2); all observation angles of the first entrance angle, then of the next one
+  std::vector<double> std_error;   ///< as `r_a`
+  bool lacks_diffraction = false;  ///< true: diffraction is significant but not included
+
+  std::size_t index(std::size_t entrance, std::size_t observation) const {
+    return entrance * observation_deg.size() + observation;
+  }
 };
 
 /// Curve of R_A over the observation angle, for one entrance angle.
@@ -212,10 +249,19 @@ struct PhotometryResult {
   std::optional<PhotometricChange> change;
   std::vector<FarFieldMap> maps;
   std::vector<ObservationCurve> curves;
+  /// Maps over entrance and observation angle, by design, rotation and presentation angle. Empty if they were not
+  /// requested, or if the run was cancelled before all of them were finished.
+  std::vector<CoefficientMap> coefficient_maps;
+  std::size_t map_directions = 0;         ///< number of directions of light of all maps
+  std::size_t traced_map_directions = 0;  ///< number of them that were traced; symmetric directions share one
   double elapsed_s = 0.0;
   Warnings warnings;
   bool complete = true;
 
+  /// Returns the designs of the coefficient maps: the design of the study and, if there is one, the compared design.
+  std::vector<design::Design> map_designs() const;
+  /// Returns true if the limits of the standard are limits of R_I instead of R_A.
+  bool limits_are_r_i() const;
   /// Returns true if every point and the area satisfy their limits, and if the colour does not fail.
   bool passes() const { return every_point_holds(verdict) && !(colour && colour->verdict() == Verdict::fail); }
 };

@@ -278,5 +278,40 @@ TEST(List, ShowsTheStandards) {
   EXPECT_NE(retrace(folder, {"list", "standards"}).out.find("bicycle"), std::string::npos);
 }
 
+TEST(Photometry, MapsHaveTheValuesOfTheTestPoints) {
+  const TemporaryFolder folder;
+  folder.write("d.toml", kDesign);
+  folder.write("e.toml", kDesign);
+  const Outcome outcome = run_limits(folder, "S,,red,0.2,-20,0,1,cd/lx/m2,read\n",
+                                     {kWide, "--map", "--map-entrance=0,20,40", "--map-observation=0.1,0.2",
+                                      "--rotation=0", "--compare=e.toml", "-o", "out"});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const Json json = folder.json("out/photometry.json");
+  ASSERT_EQ(json["maps"].size(), 2U);
+  EXPECT_EQ(json["map_quantity"], "r_a");
+  EXPECT_NEAR(json["maps"][0]["r_a_cd_per_lx_m2"][1][1].get<double>(),
+              json["points"][0]["r_a_cd_per_lx_m2"].get<double>(), 1e-9);
+  EXPECT_EQ(lines_of(folder.read("out/map.csv")).size(), 1U + 2U * 3U);
+  EXPECT_EQ(lines_of(folder.read("out/map_ratio.csv")).size(), 1U + 3U);
+  for (const std::string name : {"map.svg", "map.png", "map_ratio.svg", "map_ratio.png"})
+    EXPECT_FALSE(folder.read("out/" + name).empty()) << name;
+  EXPECT_LE(lines_of(outcome.out).size(), 40U);
+}
+
+TEST(Photometry, MapsOfUnsuitableAnglesAreRefused) {
+  const TemporaryFolder folder;
+  folder.write("d.toml", kDesign);
+  folder.write("l.csv", kHeader + "S,,red,0.2,0,0,1,mcd/lx,read\n");
+  expect_refused(folder,
+                 {{{"--map-entrance=0,10"}, "--map-entrance"},
+                  {{"--compare=d.toml"}, "--compare"},
+                  {{"--map", "--map-entrance=10"}, "--map-entrance"},
+                  {{"--map", "--map-entrance=0,86"}, "--map-entrance"},
+                  {{"--map", "--map-observation=0.2,2.5"}, "--map-observation"},
+                  {{"--map", "--map-observation=0.2,0.2"}, "--map-observation"},
+                  {{"--map", "--map-presentation=200"}, "--map-presentation"}},
+                 photometry({"--standard=l.csv"}));
+}
+
 }  // namespace
 }  // namespace retrace::test::photometry_test

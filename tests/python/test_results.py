@@ -52,6 +52,49 @@ class Results(unittest.TestCase):
         with self.assertRaises(rt.InputError):
             self.result.polar()
 
+    def test_maps_of_photometry_have_the_values_of_the_points(self):
+        given = {
+            "standard": "d4956",
+            "class_": "I",
+            "colour": "white",
+            "area_cm2": 100,
+            "light": "design",
+            "advice": False,
+        }
+        design = rt.Design.load(program.example("honeycomb_infinite.toml"))
+        result = rt.photometry(
+            design,
+            compare=design,
+            map=True,
+            map_entrance_deg=[-4, 0, 30],
+            map_observation_deg=[0.2, 0.5],
+            **given,
+        )
+        found = result.coefficient_map()
+        self.assertEqual(found.r_a.shape, (3, 2))
+        for point in result.points.rows:
+            entrance = np.flatnonzero(found.entrance_deg == -point["v_deg"])[0]
+            observation = np.flatnonzero(found.observation_deg == point["observation_deg"])[0]
+            self.assertAlmostEqual(
+                found.r_a[entrance, observation] / point["r_a_cd_per_lx_m2"], 1, delta=1e-3
+            )
+            self.assertAlmostEqual(
+                found.r_i[entrance, observation] / point["value_mcd_per_lx"], 1, delta=1e-3
+            )
+        other = result.coefficient_map(design=1)
+        np.testing.assert_array_equal(found.ratio(other), np.ones((3, 2)))
+        np.testing.assert_array_equal(found.difference(other), np.zeros((3, 2)))
+        self.assertIn("map", result.drawings)
+        self.assertIn("map_ratio", result.drawings)
+        with self.assertRaises(rt.InputError):
+            result.coefficient_map(rotation_deg=17)
+        plain = rt.photometry(design, **given)
+        self.assertNotIn("map", plain.drawings)
+        with self.assertRaises(rt.InputError):
+            plain.coefficient_map()
+        with self.assertRaises(rt.InputError):
+            rt.photometry(design, compare=design, **given)
+
     def test_keys_that_are_left_out_are_nan(self):
         exact = rt.rre(program.example("honeycomb_infinite.toml"), incidence_deg=[0, 10])
         depths = [point.get("depth") for point in json.loads(exact.json)["points"]]

@@ -212,5 +212,23 @@ TEST(PhotometryVerdict, AReceiverThatNoRayMetHasTheErrorOfOne) {
   EXPECT_EQ(run(design_of(honeycomb(0.0, 20.0)), request).verdict, Verdict::fail);
 }
 
+// A table of limited length shows the smallest margins, also if several points have equal margins.
+TEST(PhotometryTable, KeepsTheSmallestMargins) {
+  PhotometryResult result;
+  result.request.test_plan = points_at({0.1, 0.2, 0.3, 0.4}, 1.0);
+  for (const TestPoint& test_point : result.request.test_plan.points) {
+    PhotometricPoint point;
+    point.test_point = test_point;
+    point.limit_mcd_per_lx = 100.0;
+    point.r_i_mcd_per_lx = test_point.observation_deg == 0.4 ? 110.0 : 150.0;
+    result.points.push_back(point);
+  }
+  const std::string table = photometry_table(result, 2);
+  EXPECT_NE(table.find("   0.10 "), std::string::npos) << table;
+  EXPECT_NE(table.find("   0.40 "), std::string::npos) << table;
+  EXPECT_EQ(table.find("   0.20 "), std::string::npos) << table;
+  EXPECT_NE(table.find("and 2 points"), std::string::npos) << table;
+}
+
 }  // namespace
 }  // namespace retrace::studies::photometry_verdict_test

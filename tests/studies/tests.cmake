@@ -11,7 +11,8 @@ retrace_test(studies_tests
           ${CMAKE_CURRENT_LIST_DIR}/spectrum_of_light_test.cpp ${CMAKE_CURRENT_LIST_DIR}/texture_test.cpp ${CMAKE_CURRENT_LIST_DIR}/wet_back_test.cpp
   LIBRARIES retrace::roughness retrace::rre retrace::inspect)
 retrace_test(studies_tests
-  SOURCES ${CMAKE_CURRENT_LIST_DIR}/light_symmetry_test.cpp ${CMAKE_CURRENT_LIST_DIR}/limits_test.cpp ${CMAKE_CURRENT_LIST_DIR}/photometric_colour_test.cpp ${CMAKE_CURRENT_LIST_DIR}/photometry_test.cpp
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/coefficient_map_test.cpp ${CMAKE_CURRENT_LIST_DIR}/light_symmetry_test.cpp
+          ${CMAKE_CURRENT_LIST_DIR}/limits_test.cpp ${CMAKE_CURRENT_LIST_DIR}/photometric_colour_test.cpp ${CMAKE_CURRENT_LIST_DIR}/photometry_test.cpp
           ${CMAKE_CURRENT_LIST_DIR}/temperature_test.cpp ${CMAKE_CURRENT_LIST_DIR}/glass_of_design_test.cpp
           ${CMAKE_CURRENT_LIST_DIR}/photometry_verdict_test.cpp ${CMAKE_CURRENT_LIST_DIR}/form_of_design_test.cpp
           ${CMAKE_CURRENT_LIST_DIR}/entrance_state_test.cpp ${CMAKE_CURRENT_LIST_DIR}/photometric_first_answer_test.cpp

@@ -3,14 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "core/csv.h"
-#include "core/infinity.h"
 #include "core/json_text.h"
 #include "core/message_text.h"
 #include "core/number_format.h"
 #include "design/io/design_json.h"
+#include "design/io/design_labels.h"
+#include "studies/photometry/coefficient_map.h"
 
 namespace retrace::studies {
 namespace {
@@ -114,6 +117,35 @@ Json test_plan_json(const PhotometryResult& result) {
           {"limits_complete", asked.test_plan.is_complete}};
 }
 
+/// Returns the values of a map as lists, with the indices [entrance][observation].
+std::vector<std::vector<double>> rows_of(const CoefficientMap& map, const std::vector<double>& values) {
+  std::vector<std::vector<double>> rows;
+  for (std::size_t k = 0; k < map.entrance_deg.size(); ++k) {
+    const auto first = values.begin() + static_cast<std::ptrdiff_t>(map.index(k, 0));
+    rows.emplace_back(first, first + std::ssize(map.observation_deg));
+  }
+  return rows;
+}
+
+/// Adds the maps over entrance and observation angle to the document.
+void add_maps(const PhotometryResult& result, Json& json) {
+  if (result.request.compared) {
+    json["compared_design"] = design::to_json(result.request.compared->design);
+    json["compared_dye"] = result.request.compared->dye;
+  }
+  json["map_quantity"] = result.limits_are_r_i() ? "r_i" : "r_a";
+  json["maps"] = Json::array();
+  for (const CoefficientMap& map : result.coefficient_maps)
+    json["maps"].push_back({{"design", map.design},
+                            {"rotation_deg", map.rotation_deg},
+                            {"presentation_deg", map.presentation_deg},
+                            {"entrance_deg", map.entrance_deg},
+                            {"observation_deg", map.observation_deg},
+                            {"r_a_cd_per_lx_m2", rows_of(map, map.r_a)},
+                            {"std_error_cd_per_lx_m2", rows_of(map, map.std_error)},
+                            {"lacks_diffraction", map.lacks_diffraction}});
+}
+
 std::string point_text(const PhotometricPoint& p) {
   std::string text = p.verdict() == Verdict::fail ? "FAIL" : std::string(verdict_name(p.verdict()));
   if (p.is_lower_bound) text += " (at least)";
@@ -123,25 +155,34 @@ std::string point_text(const PhotometricPoint& p) {
   return text;
 }
 
+/// Returns the indices, in ascending order, of the points with the smallest margins. Of points with equal margins, the
+/// first ones are selected.
+/// \param max_count maximum number of points
+std::vector<std::size_t> indices_of_smallest_margins(const std::vector<PhotometricPoint>& points,
+                                                     std::size_t max_count) {
+  std::vector<std::size_t> indices(points.size());
+  std::iota(indices.begin(), indices.end(), std::size_t{0});
+  std::ranges::stable_sort(indices, {}, [&](std::size_t k) { return points[k].margin(); });
+  indices.resize(std::min(max_count, indices.size()));
+  std::ranges::sort(indices);
+  return indices;
+}
+
 /// Returns the readings as the rows of a table for the terminal.
 /// \param max_rows maximum number of rows; those with the smallest margins are kept
 std::string rows_of(const std::vector<PhotometricPoint>& points, std::size_t max_rows) {
-  std::vector<double> margins;
-  for (const PhotometricPoint& p : points) margins.push_back(p.margin());
-  std::ranges::sort(margins);
-  const double largest = margins.size() > max_rows ? margins[max_rows - 1] : kInfinity;
   std::string table = fmt::format("{:>7} {:>6} {:>6} {:>9} {:>11} {:>11} {:>9} {:>8}  {}\n", "alpha", "V", "H",
                                   "rotation", "mcd/lx", "limit", "margin_%", "R_A", "verdict");
-  std::size_t rows = 0;
-  for (const PhotometricPoint& p : points) {
-    if (p.margin() > largest || rows == max_rows) continue;
-    ++rows;
+  const std::vector<std::size_t> shown = indices_of_smallest_margins(points, max_rows);
+  for (const std::size_t k : shown) {
+    const PhotometricPoint& p = points[k];
     table += fmt::format("{:>7} {:>6} {:>6} {:>9} {:>11} {:>11} {:>9} {:>8}  {}\n",
                          fixed_visible(p.test_point.observation_deg, 2), shortest(p.test_point.v_deg),
                          shortest(p.test_point.h_deg), shortest(p.rotation_deg), fixed(p.r_i_mcd_per_lx, 2),
                          fixed(p.limit_mcd_per_lx, 2), fixed(100.0 * p.margin(), 1), fixed(p.r_a, 1), point_text(p));
   }
-  if (rows < points.size()) table += fmt::format("... and {} points with larger margins\n", points.size() - rows);
+  if (shown.size() < points.size())
+    table += fmt::format("... and {} points with margins that are not smaller\n", points.size() - shown.size());
   return table;
 }
 
@@ -229,6 +270,7 @@ std::string photometry_json(const PhotometryResult& result) {
   if (result.colour) json["chromaticity"] = colour_json(*result.colour);
   json["directions"] = Json::array();
   for (const PhotometricDirection& d : result.directions) json["directions"].push_back(direction_json(d));
+  if (!result.coefficient_maps.empty()) add_maps(result, json);
   json["changes"] = Json::array();
   if (result.change) json["changes"].push_back(change_json(*result.change));
   json["elapsed_s"] = result.elapsed_s;
@@ -257,6 +299,106 @@ std::string far_field_map_csv(const PhotometryResult& result) {
       csv.row(map.v_deg, map.h_deg, fixed(middle(k % map.columns), 6), fixed(middle(k / map.columns), 6), map.r_a[k]);
     }
   return csv.text();
+}
+
+namespace {
+
+/// Returns maps as CSV, see coefficient_map_csv().
+/// \param quantity value of the column `quantity`
+/// \param factor factor by which the values of the maps are multiplied
+std::string maps_csv(const std::vector<CoefficientMap>& maps, const std::string& quantity, double factor) {
+  CsvWriter csv;
+  for (const CoefficientMap& map : maps) {
+    if (csv.text().empty()) {
+      std::vector<std::string> angles;
+      for (const double angle : map.observation_deg) angles.push_back("observation_deg=" + shortest(angle));
+      csv.row("design", "quantity", "rotation_deg", "presentation_deg", "entrance_deg", angles);
+    }
+    const std::vector<std::vector<double>> rows = rows_of(map, map.r_a);
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      std::vector<std::string> values;
+      for (const double value : rows[k]) values.push_back(std::isfinite(value) ? shortest(factor * value) : "");
+      csv.row(map.design, quantity, map.rotation_deg, map.presentation_deg, map.entrance_deg[k], values);
+    }
+  }
+  return csv.text();
+}
+
+/// Quantity of the maps of a result: R_A, or R_I if the standard limits R_I.
+struct MapQuantity {
+  std::string_view name;  ///< such as "R_A"
+  std::string_view unit;
+  std::string_view key;  ///< name with its unit in CSV files
+  double factor = 1.0;   ///< value divided by R_A in cd/(lx m^2)
+};
+
+MapQuantity quantity_of(const PhotometryResult& result) {
+  if (!result.limits_are_r_i()) return {"R_A", "cd/(lx m2)", "r_a_cd_per_lx_m2", 1.0};
+  return {"R_I", "mcd/lx", "r_i_mcd_per_lx",
+          in_mcd_per_lx(1.0, PhotometricUnit::cd_per_lx_per_m2, result.request.area_cm2)};
+}
+
+/// Returns the indices of at most 8 of `count` values: the first one and others at equal distances.
+std::vector<std::size_t> shown_indices(std::size_t count) {
+  constexpr std::size_t kMaxShown = 8;
+  const std::size_t step = (count + kMaxShown - 1) / kMaxShown;
+  std::vector<std::size_t> indices;
+  for (std::size_t k = 0; k < count; k += step) indices.push_back(k);
+  return indices;
+}
+
+/// Returns a number with four significant digits, or with all digits before the decimal point.
+std::string four_digits(double value) {
+  if (!std::isfinite(value)) return "-";
+  const double magnitude = std::abs(value) > 0.0 ? std::floor(std::log10(std::abs(value))) : 0.0;
+  return fixed(value, static_cast<int>(std::clamp(3.0 - magnitude, 0.0, 6.0)));
+}
+
+/// Returns the table of one map: one line for each entrance angle, one column for each observation angle.
+std::string table_of_map(const CoefficientMap& map, double factor) {
+  const std::vector<std::size_t> columns = shown_indices(map.observation_deg.size());
+  std::string table = "entrance_deg";
+  for (const std::size_t column : columns)
+    table += fmt::format(" {:>9}", fixed_visible(map.observation_deg[column], 2));
+  table += "\n";
+  for (const std::size_t row : shown_indices(map.entrance_deg.size())) {
+    table += fmt::format("{:>12}", shortest(map.entrance_deg[row]));
+    for (const std::size_t column : columns)
+      table += fmt::format(" {:>9}", four_digits(factor * map.r_a[map.index(row, column)]));
+    table += "\n";
+  }
+  return table;
+}
+
+}  // namespace
+
+std::string coefficient_map_csv(const PhotometryResult& result) {
+  const MapQuantity quantity = quantity_of(result);
+  return maps_csv(result.coefficient_maps, std::string(quantity.key), quantity.factor);
+}
+
+std::string coefficient_ratio_csv(const PhotometryResult& result) {
+  return maps_csv(ratio_maps(result), "ratio", 1.0);
+}
+
+std::string coefficient_map_table(const PhotometryResult& result, std::size_t max_tables) {
+  if (result.coefficient_maps.empty()) return {};
+  const MapQuantity quantity = quantity_of(result);
+  const std::vector<std::string> names = design::design_labels(result.map_designs()).names;
+  std::string text = fmt::format("\nmap of {} in {} for light from {} directions; {} were traced\n", quantity.name,
+                                 quantity.unit, result.map_directions, result.traced_map_directions);
+  const auto heading = [](const std::string& name, const CoefficientMap& map) {
+    return fmt::format("{}, rotation {}, presentation angle {}; columns: observation angle\n", printable(name),
+                       shortest(map.rotation_deg), shortest(map.presentation_deg));
+  };
+  std::vector<std::string> tables;
+  for (const CoefficientMap& map : result.coefficient_maps)
+    tables.push_back(heading(names[map.design], map) + table_of_map(map, quantity.factor));
+  for (const CoefficientMap& map : ratio_maps(result))
+    tables.push_back(heading("ratio of the second design to the first", map) + table_of_map(map, 1.0));
+  for (std::size_t k = 0; k < std::min(max_tables, tables.size()); ++k) text += tables[k];
+  if (tables.size() > max_tables) text += fmt::format("... and {} more maps\n", tables.size() - max_tables);
+  return text;
 }
 
 std::string first_answer_table(const PhotometricFirstAnswer& answer) {

@@ -20,6 +20,21 @@ std::string photometry_csv(const PhotometryResult& result);
 /// Directions are in degrees to the right of the direction to the source and above it.
 std::string far_field_map_csv(const PhotometryResult& result);
 
+/// Returns the maps over entrance and observation angle as CSV: one line for each map and entrance angle, with one
+/// column for each observation angle. The values are R_A in cd/(lx m^2), or R_I in mcd/lx if the standard limits R_I.
+/// Empty if there are no maps.
+std::string coefficient_map_csv(const PhotometryResult& result);
+
+/// Returns the ratios of the maps of two designs as CSV, see coefficient_map_csv(). Ratios that are not defined, because
+/// the first value is 0, are empty. Empty unless there are maps of two designs.
+std::string coefficient_ratio_csv(const PhotometryResult& result);
+
+/// Returns tables of the maps over entrance and observation angle for the terminal, with at most 8 angles in each
+/// direction. Empty if there are no maps.
+/// \param max_tables maximum number of tables; a line gives the number of the others
+std::string coefficient_map_table(const PhotometryResult& result,
+                                  std::size_t max_tables = std::numeric_limits<std::size_t>::max());
+
 /// Returns a table of the preliminary readings with their standard errors, for the terminal.
 std::string first_answer_table(const PhotometricFirstAnswer& answer);
 

@@ -3,12 +3,16 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <tuple>
+#include <utility>
+
 #include "core/data_directory.h"
 #include "core/error.h"
 #include "core/message_text.h"
 #include "core/named_file.h"
 #include "materials/io/spectrum_reader.h"
 #include "requests/descriptions.h"
+#include "studies/photometry/coefficient_map.h"
 #include "studies/photometry/io/limits_reader.h"
 #include "studies/photometry/standards.h"
 
@@ -37,6 +41,16 @@ PhotometrySettings settings_of_standard(const PhotometryRequest& request) {
   return settings;
 }
 
+/// Returns the name and the absorption of the dye of a design. Both are empty if no dye is used.
+/// \param colour colour of the part in the test plan
+std::pair<std::string, materials::SpectralCurve> dye_of(const PhotometryRequest& request, bool design_is_coloured,
+                                                        const std::string& colour) {
+  const fs::path file = dye_file_of(request.dye, design_is_coloured, colour);
+  if (file.empty()) return {};
+  return {request.dye.value_or(colour),
+          read_named(Field{"dye"}, [&] { return materials::read_spectral_absorption(file); })};
+}
+
 }  // namespace
 
 fs::path limits_file_of(const std::string& standard) {
@@ -62,11 +76,8 @@ fs::path dye_file_of(const std::optional<std::string>& dye, bool design_is_colou
 PhotometrySettings resolve(const PhotometryRequest& request, bool design_is_coloured) {
   requests::check(request);
   PhotometrySettings settings = settings_of_standard(request);
-  const fs::path dye = dye_file_of(request.dye, design_is_coloured, settings.test_plan.colour);
-  if (!dye.empty()) {
-    settings.dye = request.dye.value_or(settings.test_plan.colour);
-    settings.dye_absorption_per_mm = read_named(Field{"dye"}, [&] { return materials::read_spectral_absorption(dye); });
-  }
+  std::tie(settings.dye, settings.dye_absorption_per_mm) =
+      dye_of(request, design_is_coloured, settings.test_plan.colour);
   settings.area_cm2 = request.area_cm2;
   if (request.rotation_deg) settings.rotation_deg = *request.rotation_deg;
   if (request.source_arcmin) settings.apertures.source = Angle::from_deg(*request.source_arcmin / 60.0);
@@ -81,8 +92,16 @@ PhotometrySettings resolve(const PhotometryRequest& request, bool design_is_colo
   settings.rays = request.samples;
   settings.seed = request.seed;
   settings.advice = request.advice;
+  if (request.map)
+    settings.map_grid = resolve_grid(
+        {request.map_entrance_deg, request.map_observation_deg, request.map_presentation_deg}, settings.window_deg);
   settings.colour = true;
   return settings;
+}
+
+ComparedDesign compared_design(const PhotometryRequest& request, design::Design design, const std::string& colour) {
+  auto [dye, absorption_per_mm] = dye_of(request, design.substance.is_coloured(), colour);
+  return {std::move(design), std::move(dye), std::move(absorption_per_mm)};
 }
 
 }  // namespace retrace::studies

@@ -30,4 +30,9 @@ std::filesystem::path dye_file_of(const std::optional<std::string>& dye, bool de
 /// \throw InputError at a field of the request, or at a line of the file with limits
 PhotometrySettings resolve(const PhotometryRequest& request, bool design_is_coloured);
 
+/// Returns a design that is compared with that of the study, with the dye that the request gives it.
+/// \param colour colour of the part in the test plan
+/// \throw InputError at the field `dye`
+ComparedDesign compared_design(const PhotometryRequest& request, design::Design design, const std::string& colour);
+
 }  // namespace retrace::studies
