@@ -23,7 +23,7 @@ struct LongRun {
   std::string name;
   Arguments arguments;
   int signal = SIGINT;
-  double before_s = 1.0;              ///< processor time before the interrupt
+  double before_s = 0.5;              ///< processor time before the interrupt
   std::vector<Arguments> first = {};  ///< runs that create the inputs
 };
 
@@ -105,9 +105,9 @@ INSTANTIATE_TEST_SUITE_P(
         LongRun{"export", {"export", "wide.toml", "e.stl"}, SIGTERM},
         LongRun{"export_of_a_material", {"export", kReflector, "m.json", "--threads=1"}},
         LongRun{"turn", {"turn", example("turning/lenslet_array.toml"), "-o", "t"}, SIGHUP},
-        LongRun{"fabricate", kFabricate, SIGTERM, 1.0, {kJob}},
+        LongRun{"fabricate", kFabricate, SIGTERM, 0.5, {kJob}},
         LongRun{"validate", {"validate", "--threads=1", "-o", "v.md"}},
-        LongRun{"verify", {"verify", "job.toml", "f/program.ngc", "--threads=1"}, SIGINT, 1.0, {kJob, kFabricate}},
+        LongRun{"verify", {"verify", "job.toml", "f/program.ngc", "--threads=1"}, SIGINT, 0.5, {kJob, kFabricate}},
         LongRun{"rays",
                 {"rays", "wide.toml", "--emitter=lambertian", "--threads=1", "--rays=1000000000", "--split=1e-5", "-o",
                  "r.csv"}},

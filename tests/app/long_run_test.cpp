@@ -14,7 +14,7 @@ namespace {
 using namespace std::chrono_literals;
 
 // Processor time, in s, after which a run is interrupted. The program estimates the remaining time within 2 s.
-constexpr double kBefore_s = 4.0;
+constexpr double kBefore_s = 2.5;
 
 const std::string kStudy =
     "design = \"" + example("tail_lamp_100cm2.toml") +

@@ -1,5 +1,6 @@
 """Functions that run the program on its examples. Tests compare the results with the package."""
 
+import functools
 import json
 import os
 import pathlib
@@ -11,6 +12,7 @@ import retrace as rt
 PROGRAM = os.environ["RETRACE_PROGRAM"]
 SOURCE = pathlib.Path(os.environ["RETRACE_SOURCE_DIR"])
 EXAMPLES = SOURCE / "examples"
+IS_LONG_RUN = os.environ.get("RETRACE_LONG_TESTS") == "1"
 
 # Keywords of a short photometry of a red part by R150.
 RED_R150 = {
@@ -49,12 +51,12 @@ def some_designs(first):
 
     A long run returns all designs.
     """
-    return designs() if os.environ.get("RETRACE_LONG_TESTS") == "1" else designs()[first::3]
+    return designs() if IS_LONG_RUN else designs()[first::3]
 
 
 def least(of_all):
     """Returns the minimum number of results for some_designs() if all designs have `of_all` results."""
-    return of_all if os.environ.get("RETRACE_LONG_TESTS") == "1" else of_all // 4
+    return of_all if IS_LONG_RUN else of_all // 4
 
 
 def same(text):
@@ -70,8 +72,9 @@ def run(*arguments, folder=None):
     return ended.returncode, ended.stdout.decode(), ended.stderr.decode()
 
 
+@functools.cache
 def requests():
-    """Returns the descriptions of all requests."""
+    """Returns the descriptions of all requests, for which the program runs only one time."""
     return json.loads(run("list", "requests", "--json", "-")[1])["requests"]
 
 

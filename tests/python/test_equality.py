@@ -133,10 +133,10 @@ class Equality(unittest.TestCase):
 
     def test_inspect(self):
         self.walk(
-            program.designs(),
+            program.some_designs(2),
             lambda file: program.document("inspect", file),
             lambda file: program.answer(rt.inspect, file),
-            least=20,
+            least=program.least(20),
         )
 
     def test_export(self):
@@ -233,7 +233,7 @@ class Equality(unittest.TestCase):
         self.assertGreaterEqual(fabricated, 2)
 
     def test_verify(self):
-        job = rt.job(program.example("rtp_brick_2mm.toml"), tool_width_mm=1)
+        job = rt.job(program.example("rtp_brick_5mm.toml"), tool_width_mm=1)
         made = rt.fabricate(job)
         ((name, text),) = made.programs.items()
         with tempfile.TemporaryDirectory() as folder:

@@ -76,12 +76,15 @@ class Equality(unittest.TestCase):
             "--angle-pixels=11",
         ]
         answers = 0
-        for file in program.some_designs(1):
+        # Usually every ninth design, because the pictures of some designs take a second.
+        designs = program.some_designs(1)
+        files = designs if program.IS_LONG_RUN else designs[::3]
+        for file in files:
             with self.subTest(file=os.path.relpath(file, program.EXAMPLES)):
                 expected = program.document("image", file, *options)
                 self.assertEqual(program.answer(rt.image.detector, file, **small), expected)
                 answers += expected[0] is not None
-        self.assertGreaterEqual(answers, program.least(15))
+        self.assertGreaterEqual(answers, 15 if program.IS_LONG_RUN else 1)
         self.assertEqual(
             program.answer(
                 rt.image.camera,

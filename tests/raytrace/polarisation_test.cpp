@@ -76,7 +76,7 @@ TEST(Polarisation, AllEnginesAgree) {
                    std::to_string(light.v));
       const Illumination illumination = polarised(c.incidence_deg, c.azimuth_deg, light);
       const ReferenceResult reference =
-          reference_trace(part, c.optics, illumination, kCone, test::sample_size<std::uint64_t>(4096, 8192), 5);
+          reference_trace(part, c.optics, illumination, kCone, test::sample_size<std::uint64_t>(2048, 8192), 5);
       const BeamResult exact = BeamTracer(part).trace(c.optics, illumination, {kCone}, leaving(1e-5));
       const ConeResult sampled = MonteCarlo(part).trace(c.optics, illumination, {kCone}, rays(1U << 16), {}).cones[0];
       const double slack = reference.mean[Account::truncated] + 2e-5;

@@ -5,6 +5,7 @@
 
 #include "raytrace/paths/monte_carlo.h"
 #include "tests/support/designs.h"
+#include "tests/support/sample_size.h"
 #include "tests/support/statistics.h"
 
 namespace retrace::testing::rough_variance_test {
@@ -31,11 +32,14 @@ MonteCarloResult trace(const Part& part, std::uint64_t count, std::uint32_t seed
 TEST(RoughVariance, ErrorsAreTrue) {
   constexpr std::uint32_t kSeeds = 60;
   const Part part = build_part(kCubes);
-  const ConeResult truth = trace(part, 1U << 18, 1000, {}).cones[0];
+  // The fraction of intervals that contain the truth does not depend on the number of points. The long run has 32 times
+  // as many points as a short one.
+  const auto points = test::sample_size(1U << 11, 1U << 13);
+  const ConeResult truth = trace(part, 32 * points, 1000, {}).cones[0];
   const double t95 = student_bound_of(0.05, Sampling::kReplicates);
   int within = 0;
   for (std::uint32_t seed = 1; seed <= kSeeds; ++seed) {
-    const ConeResult run = trace(part, 1U << 13, seed, {}).cones[0];
+    const ConeResult run = trace(part, points, seed, {}).cones[0];
     within += std::abs(run.rre - truth.rre) <= t95 * std::hypot(run.std_error, truth.std_error) ? 1 : 0;
   }
   // The expected number is 57 of 60 runs. Fewer than 50 occur by chance in one of a thousand runs of the tests.

@@ -14,6 +14,7 @@
 #include "raytrace/sampling/replicate_means.h"
 #include "raytrace/sampling/sobol.h"
 #include "tests/support/designs.h"
+#include "tests/support/sample_size.h"
 #include "tests/support/statistics.h"
 
 namespace retrace::testing::sampling_test {
@@ -189,9 +190,10 @@ TEST(StandardError, IsTrue) {
     const MonteCarlo tracer(part);
     int covered = 0;
     const double t95 = student_bound_of(0.05, Sampling::kReplicates);
+    // The fraction of intervals that contain the truth does not depend on the number of rays.
+    const std::uint64_t count = test::sample_size(1U << 11, 1U << 13);
     for (std::uint32_t seed = 1; seed <= 200; ++seed) {
-      const ConeResult result =
-          tracer.trace(truth.optics, truth.illumination, {0.5}, rays(1U << 13, seed), {}).cones[0];
+      const ConeResult result = tracer.trace(truth.optics, truth.illumination, {0.5}, rays(count, seed), {}).cones[0];
       if (std::abs(result.rre - truth.rre) <= t95 * result.spread) ++covered;
     }
     EXPECT_GE(covered, 180);

@@ -7,6 +7,7 @@
 #include "raytrace/exact/beam_tracer.h"
 #include "raytrace/paths/monte_carlo.h"
 #include "tests/support/designs.h"
+#include "tests/support/sample_size.h"
 #include "tests/support/statistics.h"
 
 namespace retrace::testing::scatter_test {
@@ -82,7 +83,9 @@ TEST(MeanField, IsNowhereMoreThanRaysBring) {
     optics.facet_scatter = model;
     const Ledger ledger = BeamTracer(part).trace(optics, from(8.0, 20.0), {1e-4}, policy).ledgers[0];
     const double mean = ledger[Account::retroreflected];
-    const ConeResult traced = MonteCarlo(part).trace(optics, from(8.0, 20.0), {1e-4}, rays(1U << 17), {}).cones[0];
+    // The bound contains the spread of the rays, and is thus valid for any number of rays.
+    const Sampling sampling = rays(test::sample_size(1U << 15, 1U << 17));
+    const ConeResult traced = MonteCarlo(part).trace(optics, from(8.0, 20.0), {1e-4}, sampling, {}).cones[0];
     const double bound = student_bound(4) * traced.spread + 1e-4;
     EXPECT_LE(mean, traced.rre + bound);
     if (&model == &models.front()) {
@@ -100,10 +103,12 @@ TEST(RoughFacets, EffectGrowsFromNothing) {
                                infinite(TriangularCube{1.0}, Arrangement::triangular, 0.5)}) {
     const Part part = build_part(spec);
     const MonteCarlo tracer(part);
-    const ConeResult smooth = tracer.trace(pmma(), from(3.0, 0.0), {0.5}, rays(1U << 16), {}).cones[0];
+    // The bounds are multiples of the spread of the results, and thus valid for any number of rays.
+    const Sampling sampling = rays(test::sample_size(1U << 14, 1U << 16));
+    const ConeResult smooth = tracer.trace(pmma(), from(3.0, 0.0), {0.5}, sampling, {}).cones[0];
     double before = smooth.rre;
     for (const double sq_nm : {0.001, 5.0, 15.0, 40.0}) {
-      const ConeResult result = tracer.trace(rough(pmma(), sq_nm), from(3.0, 0.0), {0.5}, rays(1U << 16), {}).cones[0];
+      const ConeResult result = tracer.trace(rough(pmma(), sq_nm), from(3.0, 0.0), {0.5}, sampling, {}).cones[0];
       const double error = 4.0 * std::hypot(result.spread, smooth.spread);
       if (sq_nm < 1.0) {
         EXPECT_NEAR(result.rre, smooth.rre, error);

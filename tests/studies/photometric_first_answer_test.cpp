@@ -14,6 +14,7 @@
 #include "studies/photometry/io/photometry_files.h"
 #include "studies/photometry/photometry.h"
 #include "tests/studies/photometric_requests.h"
+#include "tests/support/sample_size.h"
 
 namespace retrace::studies::photometric_first_answer_test {
 namespace {
@@ -44,11 +45,25 @@ PhotometrySettings request_by(raytrace::Engine engine) {
   return request;
 }
 
+/// A measurement with an engine, and its preliminary readings. Several tests use them, so that they are computed only
+/// one time.
+struct Measured {
+  explicit Measured(raytrace::Engine engine)
+      : study(cubes(), request_by(engine)), result(study.run()), first(study.first_answer(kRayShare)) {}
+
+  PhotometryStudy study;
+  PhotometryResult result;
+  std::optional<PhotometricFirstAnswer> first;
+};
+const Measured& measured(raytrace::Engine engine) {
+  static const Measured by_rays(raytrace::Engine::montecarlo);
+  static const Measured by_beams(raytrace::Engine::automatic);
+  return engine == raytrace::Engine::montecarlo ? by_rays : by_beams;
+}
+
 TEST(PhotometricFirstAnswer, AgreesWithTheFinalReadingsWithinItsErrors) {
   for (const raytrace::Engine engine : {raytrace::Engine::montecarlo, raytrace::Engine::automatic}) {
-    const PhotometryStudy study(cubes(), request_by(engine));
-    const PhotometryResult result = study.run();
-    const auto first = study.first_answer(kRayShare);
+    const auto& [study, result, first] = measured(engine);
     ASSERT_TRUE(first.has_value());
     EXPECT_FALSE(first->lacks_diffraction);
     ASSERT_EQ(first->points.size(), result.points.size());
@@ -70,14 +85,12 @@ TEST(PhotometricFirstAnswer, AgreesWithTheFinalReadingsWithinItsErrors) {
 }
 
 TEST(PhotometricFirstAnswer, CostsLess) {
-  const PhotometryStudy by_beams(cubes(), request_by(raytrace::Engine::automatic));
-  EXPECT_LT(3 * by_beams.first_answer(kRayShare)->wavelengths_nm.size(), by_beams.run().wavelengths_nm.size());
+  const Measured& by_beams = measured(raytrace::Engine::automatic);
+  EXPECT_LT(3 * by_beams.first->wavelengths_nm.size(), by_beams.result.wavelengths_nm.size());
   // The preliminary readings use 1/32 of the rays. Their expected standard error is sqrt(32) = 5.7 times as large.
-  const PhotometryStudy by_rays(cubes(), request_by(raytrace::Engine::montecarlo));
-  const PhotometryResult result = by_rays.run();
-  EXPECT_GT(by_rays.first_answer(kRayShare)->points[0].std_error_mcd_per_lx,
-            2.0 * result.points[0].std_error_mcd_per_lx);
-  EXPECT_EQ(by_rays.first_answer(1.0)->points[0].r_a, result.points[0].r_a) << "with all rays it is the final reading";
+  const auto& [study, result, first] = measured(raytrace::Engine::montecarlo);
+  EXPECT_GT(first->points[0].std_error_mcd_per_lx, 2.0 * result.points[0].std_error_mcd_per_lx);
+  EXPECT_EQ(study.first_answer(1.0)->points[0].r_a, result.points[0].r_a) << "with all rays it is the final reading";
 }
 
 /// Stores all reported values of the progress, which are fractions from 0 to 1.
@@ -143,9 +156,8 @@ class Meanwhile : public Progress {
 
 TEST(PhotometricFirstAnswer, ChangesNothingOfTheMeasurementThatRunsMeanwhile) {
   for (const raytrace::Engine engine : {raytrace::Engine::montecarlo, raytrace::Engine::automatic}) {
-    const PhotometryStudy study(cubes(), request_by(engine));
-    PhotometryResult alone = study.run();
-    const auto first = study.first_answer(kRayShare);
+    const auto& [study, result, first] = measured(engine);
+    PhotometryResult alone = result;
     Meanwhile meanwhile(study);
     PhotometryResult with_first = study.run(&meanwhile);
     ASSERT_TRUE(meanwhile.answer().has_value());
@@ -158,7 +170,7 @@ TEST(PhotometricFirstAnswer, ChangesNothingOfTheMeasurementThatRunsMeanwhile) {
 
 TEST(PhotometricFirstAnswer, StopsWithTheMeasurementThatItBelongsTo) {
   for (const raytrace::Engine engine : {raytrace::Engine::montecarlo, raytrace::Engine::automatic}) {
-    const PhotometryStudy study(cubes(), request_by(engine));
+    const PhotometryStudy& study = measured(engine).study;
     Cancellation whole;
     const Cancellation part(&whole);
     EXPECT_TRUE(study.first_answer(kRayShare, &part).has_value());
@@ -182,11 +194,12 @@ TEST(PhotometricFirstAnswer, MeasurementsStopAtAnyMoment) {
     const Clock::time_point begin = Clock::now();
     ASSERT_TRUE(study.run().complete);
     const std::chrono::duration<double> whole = Clock::now() - begin;
-    constexpr int kStops = 16;
-    for (int k = 0; k < kStops; ++k) {
+    // The stops are spread evenly over the run, and every stop is another test of the same kind.
+    const int stops = test::sample_size(5, 16);
+    for (int k = 0; k < stops; ++k) {
       Cancellation cancel;
       std::thread user([&] {
-        std::this_thread::sleep_for(whole * (k + 0.5) / kStops);
+        std::this_thread::sleep_for(whole * (k + 0.5) / stops);
         cancel.request();
       });
       const PhotometryResult result = study.run(nullptr, &cancel);

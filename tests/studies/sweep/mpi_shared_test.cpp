@@ -22,6 +22,10 @@ const std::string kBrick =
     "[element]\nkind = \"rtp\"\nbase_mm = 0.45\nwidth_mm = 0.45\n[array]\narrangement = \"offset\"\n"
     "extent = \"infinite\"\n[body]\nthickness_mm = 2\n";
 
+/// Command that takes some seconds.
+const std::string kLongRoughness =
+    "roughness d.toml --sa 5,10,15,20,25,30,35,40,50,60 --correlation-length-um 5 --facets facets.csv --samples 60000";
+
 class CommandsByMpi : public ByMpi {
  protected:
   CommandsByMpi() {
@@ -60,6 +64,14 @@ class CommandsByMpi : public ByMpi {
     expect_same_files("alone", "one", files);
     expect_same_files("alone", "three", files);
   }
+  /// Returns the table of kLongRoughness from a single process. It is computed only one time.
+  std::string long_roughness_alone() {
+    static const std::string table = [this] {
+      run_alone(kLongRoughness + " --quiet -o alone");
+      return folder_.read("alone/roughness.csv");
+    }();
+    return table;
+  }
   /// Sends a signal to a rank during the computation.
   /// \return text that the job has written to standard error
   std::string outcome_without_rank(int rank, int signal, const std::string& arguments, const std::string& options) {
@@ -87,10 +99,6 @@ std::vector<int> numbers_of_lost_ranks(const std::string& said) {
   return numbers;
 }
 
-/// Command that takes some seconds.
-const std::string kLongRoughness =
-    "roughness d.toml --sa 5,10,15,20,25,30,35,40,50,60 --correlation-length-um 5 --facets facets.csv --samples 60000";
-
 TEST_F(CommandsByMpi, RoughnessIsTheSame) {
   expect_same_by_ranks("roughness d.toml --sa 0,10,40 --correlation-length-um 5,50 --facets facets.csv --samples 4096",
                        4);
@@ -99,22 +107,20 @@ TEST_F(CommandsByMpi, RoughnessIsTheSame) {
 TEST_F(CommandsByMpi, RoughnessWarnsOfTheSame) {
   // For the larger values of Sa, the scatter model is outside of its range.
   expect_same_by_ranks(
-      "roughness d.toml --sa 0,300,400 --correlation-length-um 5 --facets facets.csv --target-error 1e-2", 4);
+      "roughness d.toml --sa 0,200,250 --correlation-length-um 5 --facets facets.csv --target-error 3e-2", 4);
   EXPECT_FALSE(folder_.json("three/roughness.json")["warnings"].empty());
 }
 
 TEST_F(CommandsByMpi, RoughnessGoesOnWithoutARankThatIsInterrupted) {
   const std::string said = outcome_without_rank(1, SIGTERM, kLongRoughness, "");
   EXPECT_EQ(numbers_of_lost_ranks(said), (std::vector<int>{1})) << said;
-  run_alone(kLongRoughness + " --quiet -o alone");
-  EXPECT_EQ(folder_.read("out/roughness.csv"), folder_.read("alone/roughness.csv"));
+  EXPECT_EQ(folder_.read("out/roughness.csv"), long_roughness_alone());
 }
 
 TEST_F(CommandsByMpi, RoughnessGoesOnWithoutARankThatIsKilled) {
   const std::string said = outcome_without_rank(2, SIGKILL, kLongRoughness, "--enable-recovery");
   EXPECT_EQ(numbers_of_lost_ranks(said), (std::vector<int>{2, kMpiSilenceS})) << said;
-  run_alone(kLongRoughness + " --quiet -o alone");
-  EXPECT_EQ(folder_.read("out/roughness.csv"), folder_.read("alone/roughness.csv"));
+  EXPECT_EQ(folder_.read("out/roughness.csv"), long_roughness_alone());
 }
 
 TEST_F(CommandsByMpi, InterruptedRoughnessKeepsWhatIsFinished) {
