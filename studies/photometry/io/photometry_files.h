@@ -25,8 +25,8 @@ std::string far_field_map_csv(const PhotometryResult& result);
 /// Empty if there are no maps.
 std::string coefficient_map_csv(const PhotometryResult& result);
 
-/// Returns the ratios of the maps of two designs as CSV, see coefficient_map_csv(). Ratios that are not defined, because
-/// the first value is 0, are empty. Empty unless there are maps of two designs.
+/// Returns the ratios of the maps of two designs as CSV, see coefficient_map_csv(). Ratios that are not defined,
+/// because the first value is 0, are empty. Empty unless there are maps of two designs.
 std::string coefficient_ratio_csv(const PhotometryResult& result);
 
 /// Returns tables of the maps over entrance and observation angle for the terminal, with at most 8 angles in each
