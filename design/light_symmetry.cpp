@@ -1,5 +1,6 @@
 #include "design/light_symmetry.h"
 
+#include <cmath>
 #include <variant>
 
 #include "design/engine_facts.h"
@@ -22,8 +23,11 @@ std::vector<Eigen::Matrix2d> light_symmetries(const Design& design, const Optica
   const raytrace::Stokes& light = design.light.polarisation;
   if (has_oriented_faces(design, model) || light.u != 0.0 || light.v != 0.0) return {Eigen::Matrix2d::Identity()};
   std::vector<Eigen::Matrix2d> maps = raytrace::symmetries_of(model.part);
-  if (light.q != 0.0)
-    std::erase_if(maps, [](const Eigen::Matrix2d& map) { return map.cwiseAbs().diagonal().minCoeff() < 0.5; });
+  constexpr double kSameNumber = 1e-9;
+  const auto is_diagonal = [](const Eigen::Matrix2d& map) {
+    return std::abs(map(0, 1)) < kSameNumber && std::abs(map(1, 0)) < kSameNumber;
+  };
+  if (light.q != 0.0) std::erase_if(maps, [&](const Eigen::Matrix2d& map) { return !is_diagonal(map); });
   return maps;
 }
 
