@@ -293,7 +293,7 @@ class Surfaces {
     rear(rounded(trapezoid(half - 0.03, half - 0.02, 0.20, waist + 0.03), 0.09), kPaint, kNavy);
     rear(rounded(trapezoid(half - 0.005, half - 0.005, 0.28, 0.80), 0.12), kPaint, kNavy);
     // Bumper with a dark lower part, joint of the tail gate, tail lamps and licence plate.
-    rear(rounded(trapezoid(half - 0.09, half - 0.03, 0.165, 0.37), 0.06), kPlastic, kGrey);
+    rear(rounded(trapezoid(half - 0.09, half - 0.04, 0.165, 0.31), 0.05), kPlastic, kGrey);
     rear(box(0.0, 0.668, half - 0.03, 0.004), kPlastic, kGrey);
     for (const double side : {-1.0, 1.0})
       rear(rounded(box(side * (half - 0.125), 0.815, 0.105, 0.085), 0.04), kTailLamp, kLens);
