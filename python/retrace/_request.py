@@ -74,8 +74,8 @@ def with_values(
     lists: a dict of one keyword whose field is a number, and a list of its values"""
     if lists is None:
         return [request]
-    numeric = sorted(keyword for keyword, field in fields.items() if field.kind == "number")
-    allowed = f"one of {', '.join(numeric)} with a list of values, such as {{{numeric[0]!r}: [1, 2]}}"
+    numeric = [keyword for keyword, field in fields.items() if field.kind == "number"]
+    allowed = f"a dict of one keyword with its values, such as {{{numeric[0]!r}: [1, 2]}}"
     if not isinstance(lists, Mapping) or len(lists) != 1 or next(iter(lists)) not in numeric:
         raise refuse(name, allowed, lists)
     keyword, values = next(iter(lists.items()))

@@ -33,6 +33,14 @@ std::string direction_text(const DetectorResult& result) {
   return text;
 }
 
+/// Returns a remark about the largest standard error of bins with light.
+std::string error_text(double relative_error) {
+  constexpr double kSmallest = 1e-3;  // smaller errors are not visible in a picture
+  return fmt::format(
+      "bins with light have a standard error of {} %",
+      relative_error < kSmallest ? "less than 0.1" : "at most " + fixed_visible(100.0 * relative_error, 1));
+}
+
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> picture_texts(const char* kind, const design::Design& design) {
@@ -48,9 +56,7 @@ ImagePlot irradiance_plot(const DetectorResult& result) {
   plot.remarks.push_back(fmt::format("{}; returned within {}°: RRE {} %{}", direction_text(result),
                                      shortest(result.acceptance_half_angle_deg), fixed(100.0 * result.maps.rre, 2),
                                      result.is_period ? "; one period of an infinite array" : ""));
-  if (result.face_error > 0.0)
-    plot.remarks.push_back(fmt::format("bins with light have a standard error of at most {} %",
-                                       fixed_visible(100.0 * result.face_error, 1)));
+  if (result.face_error > 0.0) plot.remarks.push_back(error_text(result.face_error));
   const auto panel = [&](const char* title, const std::vector<double>& values) {
     return ImagePanel{title,
                       "irradiance divided by that of the beam",
@@ -74,9 +80,7 @@ ImagePlot angular_plot(const DetectorResult& result) {
                                          ? std::string("with diffraction, for a point source")
                                          : fmt::format("without diffraction ({})", result.without_diffraction),
                                      fixed(100.0 * result.maps.outside, 2)));
-  if (result.angle_error > 0.0)
-    plot.remarks.push_back(fmt::format("bins with light have a standard error of at most {} %",
-                                       fixed_visible(100.0 * result.angle_error, 1)));
+  if (result.angle_error > 0.0) plot.remarks.push_back(error_text(result.angle_error));
   ImagePanel panel{"Fraction of the light by direction",
                    "per steradian",
                    result.request.angle_pixels,

@@ -112,8 +112,8 @@ TEST_F(Image, CameraSaysThatThePartIsBlack) {
 
 /// A list whose values are all the same gives one picture, and a narrow picture with a bar of luminances can be drawn.
 TEST_F(Image, ListsOfOneValueAndNarrowPicturesAreOnePicture) {
-  const Json json = retrace_json(folder_, {"image", "brick.toml", "--camera", "--pixels=1x200", "--passes=2",
-                                           "--tone=log", "--distance-m=3,3,3", "-o", "out"});
+  const Json json = retrace_json(folder_, {"image", "brick.toml", "--camera", "--no-diffraction", "--pixels=1x200",
+                                           "--passes=2", "--tone=log", "--distance-m=3,3,3", "-o", "out"});
   EXPECT_EQ(json["kind"], "camera");
   EXPECT_NEAR(json["eye_mm"][2].get<double>(), 3001.0, 0.5);
   EXPECT_TRUE(folder_.read("out/camera.png").starts_with("\x89PNG"));
@@ -121,7 +121,7 @@ TEST_F(Image, ListsOfOneValueAndNarrowPicturesAreOnePicture) {
 
 /// A damaged picture gives one line, although libpng writes a line of its own.
 TEST_F(Image, DamagedBackgroundsAreRefusedWithOneLine) {
-  retrace(folder_, {"image", "brick.toml", "--camera", "--pixels=8x6", "--passes=2", "-o", "out"});
+  retrace(folder_, {"image", "brick.toml", "--camera", "--no-diffraction", "--pixels=8x6", "--passes=2", "-o", "out"});
   const std::string png = folder_.read("out/camera.png");
   folder_.write("short.png", png.substr(0, png.size() / 2));
   folder_.write("text.png", "not a picture");
