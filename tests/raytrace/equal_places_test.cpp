@@ -104,7 +104,7 @@ struct Pair {
 const std::vector<Pair>& pairs() {
   static const std::vector<Pair> all = [] {
     Optics optics = pmma();
-    optics.absorption_per_mm = 0.6;  // weakens beams with long paths, so that fewer beams are above the cut-off
+    optics.absorption_per_mm = 0.2;  // weakens beams with long paths, so that fewer beams are above the cut-off
     const std::vector<double> cones = {0.5, 60.0};
     std::vector<Pair> result;
     for (const Question& question : questions()) {

@@ -11,4 +11,4 @@ retrace_script_test(page/layout_test
 set_tests_properties(page/layout_test PROPERTIES TIMEOUT 600 LABELS slow)
 retrace_script_test(page/browser_test
   COMMAND "${RETRACE_PYTHON}" -B report/page/browser_test.py "$<TARGET_FILE:retrace>" "${PROJECT_SOURCE_DIR}")
-set_tests_properties(page/browser_test PROPERTIES TIMEOUT 600 LABELS slow)
+set_tests_properties(page/browser_test PROPERTIES TIMEOUT 600 RUN_SERIAL ON LABELS slow)
