@@ -108,6 +108,10 @@ TEST(FixedVisible, SmallValuesAreNotZero) {
   EXPECT_EQ(fixed_visible(-0.005, 2), "-0.005");
   EXPECT_EQ(fixed_visible(0.0, 2), "0.00");
   EXPECT_EQ(fixed_visible(1e-12, 2), "0.00") << "a rounding error counts as 0";
+  // Below ten units of the last digit, a number has three significant digits.
+  EXPECT_EQ(fixed_visible(0.0234, 2), "0.0234");
+  EXPECT_EQ(fixed_visible(-0.0999, 2), "-0.0999");
+  EXPECT_EQ(fixed_visible(0.1234, 2), "0.12");
 }
 
 // The printed number is on the same side of the bound as the exact value.

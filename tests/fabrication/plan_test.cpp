@@ -320,6 +320,19 @@ TEST(Time, OfAMoveFromRestToRest) {
   EXPECT_DOUBLE_EQ(rest_to_rest_s(0.0, {2.0, 1.0}), 0.0);
 }
 
+/// A move with linear axes is as long as their path. A rotation is as long as its path in the plane of both angles,
+/// even if only C rotates.
+TEST(Time, LengthOfAMove) {
+  EXPECT_DOUBLE_EQ((AxisTravel{Vec3(3.0, 0.0, -4.0), 7.0, 30.0}).length(), 5.0);
+  EXPECT_DOUBLE_EQ((AxisTravel{Vec3::Zero(), -3.0, 4.0}).length(), 5.0);
+  EXPECT_DOUBLE_EQ((AxisTravel{Vec3::Zero(), 0.0, -30.0}).length(), 30.0);
+  Machine m = machine("paper");
+  m.control.rapids_are_straight = true;
+  m.settling_s.value = 0.0;
+  const MotionLimits limits = {m.c.speed_deg_per_s.value, m.c.acceleration_deg_per_s2.value, m.c.jerk_deg_per_s3.value};
+  EXPECT_DOUBLE_EQ(rotary_move_s(m, 0.0, 30.0), rest_to_rest_s(30.0, limits));
+}
+
 /// Simulates an axis that accelerates from rest to `speed` with limited jerk. The jerk is positive until the
 /// acceleration reaches its limit. It is negative at the end, so that the acceleration is 0 when the axis reaches
 /// `speed`.

@@ -83,5 +83,35 @@ TEST(FlatPolygon, ClockwiseCornersAreLeftOut) {
   EXPECT_EQ(chain.size(), 4U);
 }
 
+/// Every second corner of a star turns clockwise. Each removal requires another check of two neighbours, so that all
+/// clockwise corners are found only if removals extend the search.
+TEST(FlatPolygon, EveryClockwiseCornerOfAStarIsLeftOut) {
+  for (const int points : {5, 8, 20}) {
+    FlatPolygon star;
+    for (int k = 0; k < 2 * points; ++k) {
+      const double turn = std::numbers::pi * k / points;
+      const double radius = k % 2 == 0 ? 1.0 : 0.4;
+      star.emplace_back(radius * std::cos(turn), radius * std::sin(turn));
+    }
+    make_convex(star);
+    EXPECT_EQ(star.size(), static_cast<std::size_t>(points));
+    EXPECT_NEAR(area(star), 0.5 * points * std::sin(2.0 * std::numbers::pi / points), 1e-12);
+  }
+}
+
+/// The second rectangle has a convex union with the first one only after the third rectangle has been joined.
+TEST(FlatPolygon, PiecesAreTriedAgainAfterAJoin) {
+  const auto rectangle = [](double left, double right, double bottom, double top) {
+    FlatPolygon polygon;
+    for (const Vec2& p : {Vec2(left, bottom), Vec2(right, bottom), Vec2(right, top), Vec2(left, top)})
+      polygon.emplace_back(p.x(), p.y());
+    return polygon;
+  };
+  FlatPolygons pieces = {rectangle(0.0, 1.0, 0.0, 1.0), rectangle(0.0, 2.0, 1.0, 2.0), rectangle(1.0, 2.0, 0.0, 1.0)};
+  join_convex(pieces, 1e-13);
+  ASSERT_EQ(pieces.size(), 1U);
+  EXPECT_NEAR(area(pieces[0]), 4.0, 1e-12);
+}
+
 }  // namespace
 }  // namespace retrace::testing::flat_polygon_test

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "core/error.h"
 #include "studies/photometry/io/limits_reader.h"
@@ -20,6 +21,16 @@ constexpr const char* kHeader = "standard,class,colour,observation_deg,v_deg,h_d
 
 std::string message_of(const std::string& table) {
   return refusal_of([&] { parse_limits(table, "l.csv"); }, "accepted");
+}
+
+// The source of J594 is a disc of 50 mm, and its receiver a rectangle of 13 x 25 mm, both at 30.5 m. A disc of the same
+// area replaces the rectangle.
+TEST(Limits, AperturesOfJ594AreThoseOfItsFixture) {
+  const ShippedStandard* const j594 = find_standard("j594");
+  ASSERT_NE(j594, nullptr);
+  const auto arcmin = [](double diameter_mm) { return 60.0 * Angle::from_rad(diameter_mm / 30500.0).deg(); };
+  EXPECT_NEAR(60.0 * j594->apertures.source.deg(), arcmin(50.0), 0.05);
+  EXPECT_NEAR(60.0 * j594->apertures.receiver.deg(), arcmin(2.0 * std::sqrt(13.0 * 25.0 / std::numbers::pi)), 0.05);
 }
 
 TEST(Limits, ShippedProgrammesHoldTheirPoints) {

@@ -2,8 +2,10 @@
 // diffraction; and errors.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "materials/io/spectrum_reader.h"
 #include "studies/photometry/io/photometry_files.h"
@@ -113,6 +115,25 @@ TEST(PhotometricColour, WithDispersionAndDiffractionIsThatOfItsSpectrum) {
   EXPECT_NEAR(found.y, expected.y, 2e-4);
   const bool is_colourless = std::hypot(expected.x - 0.44757, expected.y - 0.40745) < 1e-3;
   EXPECT_FALSE(is_colourless) << "diffraction colours what it sends aside";
+}
+
+// Diffraction colours the light of cube corners differently in each rotation. The colour with the smallest margin to a
+// boundary is reported, whatever the order of the rotations.
+TEST(PhotometricColour, IsTheWorstOfAllRotations) {
+  design::Design design = design_of(honeycomb(0.75, 0.5));
+  PhotometrySettings request = colour_request(PhotometricLight::illuminant_a, 1.0 / 3.0);
+  request.diffraction = true;
+  request.engine = raytrace::Engine::exact;
+  request.test_plan.boundaries = {at_most(1.0, 0.0, 0.6)};
+  request.test_plan.boundaries[0].observation_deg = 1.0 / 3.0;
+  const auto margin = [&](const std::vector<double>& rotation_deg) {
+    request.rotation_deg = rotation_deg;
+    return run(design, request).colour.value().boundaries.at(0).margin;
+  };
+  const double one = margin({0.0}), other = margin({20.0});
+  EXPECT_GT(std::abs(one - other), 1e-4);
+  EXPECT_NEAR(margin({0.0, 20.0}), std::min(one, other), 1e-9);
+  EXPECT_NEAR(margin({20.0, 0.0}), std::min(one, other), 1e-9);
 }
 
 // Total reflection in prisms of N-BK7 ends at an angle of incidence that depends on the wavelength, from 5.6 to 6

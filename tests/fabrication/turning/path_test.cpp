@@ -174,6 +174,24 @@ TEST(TurningKinematics, OfAnInclinedPlaneAreThoseOfASine) {
   EXPECT_NEAR(axis_figures(passes, 0).speed_mm_per_s, 0.5, 1e-9);
 }
 
+/// The motion of an axis with constant acceleration is reconstructed exactly from points at unequal intervals.
+TEST(TurningPath, MotionAtUnequalIntervalsIsExactForAParabola) {
+  Pass pass;
+  double time_s = 0.0;
+  for (const double seconds : {0.0, 0.1, 0.4, 0.2, 0.7, 0.3, 0.1, 0.5}) {
+    time_s += seconds;
+    PathPoint& point = pass.emplace_back();
+    point.z_mm = 1.0 - 2.0 * time_s + 1.5 * time_s * time_s;
+    point.seconds = seconds;
+  }
+  const std::vector<AxisState> states = axis_states(pass, 2);
+  ASSERT_EQ(states.size(), pass.size());
+  for (std::size_t i = 1; i + 1 < states.size(); ++i) {
+    EXPECT_NEAR(states[i].speed_mm_per_s, -2.0 + 3.0 * states[i].time_s, 1e-12) << i;
+    EXPECT_NEAR(states[i].acceleration_mm_per_s2, 3.0, 1e-12) << i;
+  }
+}
+
 /// Returns the exact acceleration of Z by a series in time, on a spiral of ten revolutions with one revolution per
 /// second and a feed of 5 um.
 double acceleration(const FreeformSurface& surface, double c) {

@@ -232,6 +232,14 @@ TEST(ApertureKernel, IsTheDensityOfTheDifferenceOfTwoDiscs) {
   EXPECT_NEAR(integral, 1.0, 1e-7);
 }
 
+/// The transform of a disc is 2 J1(x) / x. Near x = 0 it is a series, which must be as accurate up to its last
+/// argument.
+TEST(ApertureKernel, TransformOfADiscIsThatOfBessel) {
+  EXPECT_EQ(disc_transform(0.0), 1.0);
+  for (const double x : {1e-6, 1e-3, 0.005, 0.00999, 0.01001, 0.1, 1.0, 5.0})
+    EXPECT_NEAR(disc_transform(x), 2.0 * std::cyl_bessel_j(1.0, x) / x, 1e-10) << x;
+}
+
 // A Lambertian surface has R_A = rho cos(beta) cos(nu) / pi and R_L = rho cos(beta) / pi, with the reflectance rho, the
 // entrance angle beta and the viewing angle nu.
 TEST(Coefficients, LambertianGivesTheCosines) {

@@ -160,6 +160,18 @@ TEST(PhotometricGeometry, PublishedRelationsHold) {
   }
 }
 
+/// Rotations by 180 and -180 degrees are equal. They are reported as 180 degrees, whatever the rounding errors.
+TEST(PhotometricGeometry, HalfATurnIsPositive) {
+  for (const double epsilon_deg : {180.0, -180.0})
+    for (double beta1_deg = -30.0; beta1_deg <= 30.0; beta1_deg += 7.5)
+      for (double beta2_deg = -30.0; beta2_deg <= 30.0; beta2_deg += 7.5) {
+        const PhotometricGeometry geometry = {Angle::from_deg(0.33), Angle::from_deg(beta1_deg),
+                                              Angle::from_deg(beta2_deg), Angle::from_deg(epsilon_deg)};
+        EXPECT_NEAR(geometry_of(directions_of(geometry)).epsilon.deg(), 180.0, 1e-9)
+            << epsilon_deg << ' ' << beta1_deg << ' ' << beta2_deg;
+      }
+}
+
 // In the part frame, a rotation of the part by epsilon moves the source and the observer by -epsilon about the normal.
 // The orientation angle increases by epsilon.
 TEST(PhotometricGeometry, EpsilonTurnsThePartAboutItsNormal) {

@@ -92,7 +92,7 @@ class BrowserCase(unittest.TestCase):
         return colours
 
     def wait(self, condition):
-        return WebDriverWait(self.driver, 60, poll_frequency=0.1).until(condition)
+        return WebDriverWait(self.driver, 180, poll_frequency=0.1).until(condition)
 
     def all(self, selector):
         return self.driver.find_elements(By.CSS_SELECTOR, selector)

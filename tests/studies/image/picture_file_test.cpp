@@ -6,6 +6,9 @@
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "core/srgb.h"
 #include "report/colour_scale.h"
 #include "report/image_plot.h"
 
@@ -85,6 +88,17 @@ TEST(ToneMapped, KeepsTheOrderAndTheMiddleAtItsKey) {
   EXPECT_EQ(srgb_byte(0.0), 0);
   EXPECT_EQ(srgb_byte(2.0), 255);
   EXPECT_EQ(srgb_byte(0.2140411), 128 - 1);  // IEC 61966-2-1: 0.5 encoded is 0.2140 linear
+}
+
+/// Equal ratios of luminance are equal steps of the encoded value, from black to white.
+TEST(ToneCurve, LogarithmShowsDecadesInEqualSteps) {
+  ToneCurve curve;
+  curve.tone = Tone::log;
+  curve.white = 50.0;
+  for (const double decades : {0.0, 0.5, 1.0, 2.0, 3.5, kToneDecades})
+    EXPECT_NEAR(srgb_from_linear(curve.shown(50.0 * std::pow(10.0, -decades))), 1.0 - decades / kToneDecades, 1e-9);
+  EXPECT_EQ(curve.shown(1e4), 1.0);
+  EXPECT_EQ(curve.shown(50.0 * std::pow(10.0, -kToneDecades - 1.0)), 0.0);
 }
 
 TEST(ImagePlot, DrawsTheSameAgainAndStrangeValues) {
