@@ -165,8 +165,8 @@ ToneCurve road_tone(const RoadResult& result) {
 std::string drawn(const RoadResult& result, std::span<const RoadView> views, const ToneCurve& tone) {
   const Canvas metrics(Canvas::Format::png, {1.0, 1.0}, 1.0);
   const std::size_t count = views.size();
-  const std::size_t rows = (count + kMaxColumns - 1) / kMaxColumns;
-  const std::size_t columns = (count + rows - 1) / rows;
+  const std::size_t rows = std::max<std::size_t>(1, (count + kMaxColumns - 1) / kMaxColumns);
+  const std::size_t columns = std::max<std::size_t>(1, (count + rows - 1) / rows);
   double tallest = 0.0;
   for (const RoadView& view : views)
     tallest = std::max(tallest, draw_view(nullptr, metrics, result, view, tone, {0.0, 0.0}));
