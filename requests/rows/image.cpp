@@ -64,18 +64,18 @@ constexpr Row kDetectorRows[] = {
      Integer{kSamples},
      "number of Monte Carlo rays",
      access<&DetectorRequest::samples>,
-     {.value = "N", .otherwise = "as many as small bins require, from 4194304 to 33554432"},
+     {.value = "N", .otherwise = "4194304, increased to at most 33554432 until the bins are small"},
      kNeedRays},
     {"bin_error",
      Number{{.low = 0.0, .high = 1.0, .high_included = false}},
-     "largest relative standard error of a bin where there is light. Pixels are merged "
-     "until it is reached; 0: pixels are not merged",
+     "maximum relative standard error of a bin with light; pixels are merged into bins until it "
+     "is reached; 0: pixels are not merged",
      access<&DetectorRequest::bin_error>,
      {.value = "E"},
      kNeedRays},
     seed_row<DetectorRequest>()};
 
-// Rows that pictures of a camera and of a road have in common.
+// Rows that are used for camera pictures and for road pictures.
 
 template <class Type>
 schema::Value pixels_of(const Type& request) {
@@ -276,7 +276,7 @@ void check_road(const void* object) {
 constexpr Row kRoadRows[] = {
     {"distance_m",
      NumberOrNumbers{{.low = 5.0, .high = 1000.0}},
-     "distances of the car ahead or the sign",
+     "distances from the headlamps to the reflectors, along the road; 1 to 6 distances, each from 5 to 1000 m",
      access<&RoadRequest::distance_m>,
      {.value = "LIST",
       .notation = Notation::number_list,
@@ -284,20 +284,20 @@ constexpr Row kRoadRows[] = {
       .qualified = "road.distance_m"}},
     {"mount",
      Word{kMounts},
-     "object that carries the reflectors: the rear of a car, which has two, or a sign on a mast",
+     "object that carries the reflectors: car (two reflectors at the rear) or sign (on a mast)",
      access<&RoadRequest::mount>,
      {.value = "OBJECT"}},
     {"reflector_mm",
      Numbers{2, {.low = 0.0, .low_included = false, .high = 5000.0}},
-     "width and height of each reflector or of the sign",
+     "width and height of each reflector or of the sign; each > 0 and <= 5000",
      access<&RoadRequest::reflector_mm>,
      {.value = "WxH",
       .notation = Notation::by_x,
-      .otherwise = "the size of a finite design; 120x25 on a car and 600x600 on a sign if it is infinite"}},
+      .otherwise = "the size of a finite design; for an infinite design, 120x25 on a car and 600x600 on a sign"}},
     {"outline",
      Word{kOutlines},
-     "outline of each reflector or of the sign: rectangle, ellipse, triangle, octagon, or auto for that of a finite "
-     "design, otherwise a rectangle on a car and an ellipse on a sign",
+     "outline of each reflector or of the sign: rectangle, ellipse, triangle, octagon or auto; auto is the outline of "
+     "a finite design; for an infinite design, it is a rectangle on a car and an ellipse on a sign",
      access<&RoadRequest::outline>,
      {.value = "SHAPE"}},
     {"reflector_height_m",
@@ -307,8 +307,8 @@ constexpr Row kRoadRows[] = {
      {.value = "H", .otherwise = "0.6 on a car, 2.2 on a sign"}},
     {"lateral_m",
      Number{{.low = -20.0, .high = 20.0}},
-     "distance of each reflector from the centre of the car, or of the sign from the centre of the lane; positive to "
-     "the right",
+     "lateral distance of each reflector from the centre of the car, or of the sign from the centre of the driver's "
+     "lane; positive to the right",
      access<&RoadRequest::lateral_m>,
      {.value = "X", .otherwise = "0.72 on a car, 4 on a sign"}},
     {"mast_m",
@@ -370,7 +370,7 @@ constexpr Row kRoadRows[] = {
     pixels_row<RoadRequest>(),
     {"field_deg",
      Number{{.low = 1.0, .high = 90.0}},
-     "angular width of the picture",
+     "horizontal field of view of the picture",
      access<&RoadRequest::field_deg>,
      {.value = "W"}},
     exposure_row<RoadRequest>(),

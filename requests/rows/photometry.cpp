@@ -12,7 +12,7 @@ using schema::access;
 
 constexpr std::string_view kStandards[] = {"r150", "j594", "bicycle", "d4956", "iso20471", "stvzvo"};
 constexpr NumberRange kApertureArcmin{.low = 0.0, .high = 300.0};
-/// Allowed entrance angles of a map. They are those of limits files.
+/// Allowed entrance angles of a map, as in limits files.
 constexpr NumberRange kMapEntrance{.low = -85.0, .high = 85.0};
 constexpr NumberRange kMapObservation{.low = 0.0, .high = 10.0};
 constexpr NumberRange kMapPresentation{.low = -180.0, .high = 180.0};
@@ -131,13 +131,13 @@ constexpr Row kPhotometryRows[] = {
      access<&PhotometryRequest::map>},
     {"map_entrance_deg",
      NumberOrNumbers{.range = kMapEntrance, .max_count = kMaxMapAngles},
-     "entrance angles of the map; negative angles are on the opposite side of the normal",
+     "entrance angles of the map; at least two, from -85 to 85; negative angles are on the opposite side of the normal",
      access<&PhotometryRequest::map_entrance_deg>,
      {.value = "LIST", .notation = Notation::number_list, .option = "--map-entrance", .otherwise = "0:60:5"},
      kPhotometryNeedMap},
     {"map_observation_deg",
      NumberOrNumbers{.range = kMapObservation, .max_count = kMaxMapAngles},
-     "observation angles of the map",
+     "observation angles of the map; at least two, from 0 to the half angle of the far field",
      access<&PhotometryRequest::map_observation_deg>,
      {.value = "LIST",
       .notation = Notation::number_list,
@@ -146,8 +146,8 @@ constexpr Row kPhotometryRows[] = {
      kPhotometryNeedMap},
     {"map_presentation_deg",
      NumberOrNumbers{.range = kMapPresentation, .max_count = kMaxMapAngles},
-     "presentation angles of the map; one panel for each of them and each rotation; 0: the source is in the plane of "
-     "normal and observer",
+     "presentation angles of the map; from -180 to 180; one map for each presentation angle and rotation; at 0, the "
+     "observer is on the side of the normal, as seen from the source",
      access<&PhotometryRequest::map_presentation_deg>,
      {.value = "LIST", .notation = Notation::number_list, .option = "--map-presentation", .otherwise = "0"},
      kPhotometryNeedMap},

@@ -67,7 +67,7 @@ constexpr Row kRreRows[] = {
      {.value = "LIST",
       .notation = Notation::number_list,
       .option = "--incidence",
-      .otherwise = "0, or none if there are ranges with automatically chosen angles; for maps 0:80:5",
+      .otherwise = "0, or no angles if ranges with automatically chosen angles are given; for maps 0:80:5",
       .is_no_option = true}},
     {"azimuth_deg",
      NumberOrNumbers{kAzimuth},
