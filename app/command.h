@@ -49,9 +49,8 @@ using Need = std::vector<Condition>;
 Need any_given(const Words& options);
 /// Returns the requirement that `option` is not given.
 Need absent(const std::string& option);
-/// Returns a requirement as text for help and messages, such as "requires --camera or --road", "not allowed together
-/// with
-/// --lamp" or "requires --engine auto or exact if --cutoff is given".
+/// Returns a requirement as text for help and messages. Examples are "requires --camera or --road", "not allowed
+/// together with --lamp" and "requires --engine auto or exact if --cutoff is given".
 std::string text_of(const Need& need);
 
 /// Properties of an argument that restrict its value and its combination with other options.

@@ -16,7 +16,7 @@ namespace retrace::app {
 /// If the program was started with SIGHUP ignored, for example by nohup, SIGHUP remains ignored.
 void install_interrupt_handlers();
 
-/// From this call on, an interrupt that ends the program prints no message. Use it for an MPI rank that has nothing to
+/// Makes later interrupts end the program without a message. Use this function for an MPI rank that has nothing to
 /// report: the launcher interrupts all ranks as soon as one of them ends with an error.
 void print_nothing_on_interrupt();
 

@@ -17,7 +17,8 @@ inline double srgb_from_linear(double linear) {
   return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
 }
 
-/// Returns the luminance of linear values, in their unit. The coefficients have all digits of the standard.
+/// Returns the luminance of linear values, in the same unit. The coefficients are those of the standard, with four
+/// digits.
 inline double srgb_luminance(const std::array<double, 3>& rgb) {
   return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
 }

@@ -11,8 +11,9 @@
 namespace retrace::design {
 
 /// Returns the orthogonal maps of directions in the plane z = 0 that change neither the part, nor its optical
-/// properties, nor the polarisation of its light. The first is the identity. Light from directions that such a map
-/// relates gives results that the same map relates, so that only one of these directions has to be traced.
+/// properties, nor the polarisation of its light. The first is the identity. If such a map takes one direction of
+/// incidence to another one, it also takes the results of the first direction to those of the second. Only one of them
+/// has to be traced.
 ///
 /// Only the identity is returned for balls, curved entrance faces, elements with different media behind them, facets
 /// with a form or a height map, scratches with one azimuth, and light whose Stokes parameter u or v is not 0. If only q

@@ -146,8 +146,8 @@ def files_module(program: str) -> str:
 
 
 def default_of(field: dict) -> object:
-    """Returns the default of a keyword. A list of one number is written as this number. An empty list
-    of numbers means that no list is given: None."""
+    """Returns the default of a keyword: a number instead of a list of one number, and None instead
+    of an empty list of numbers."""
     if field.get("usual"):
         numbers = [float(text) for text in field["usual"].split("x")]
         return tuple(numbers) if field["kind"] == "numbers" else None

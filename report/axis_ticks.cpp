@@ -52,7 +52,7 @@ std::string with_true_minus(std::string text) {
   return text;
 }
 
-/// Returns true if all digits of a power of ten are written.
+/// Returns true if a power of ten is written with all its digits instead of a superscript.
 bool has_few_digits(int exponent) {
   return exponent >= -3 && exponent <= 4;
 }

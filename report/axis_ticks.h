@@ -46,8 +46,8 @@ Range drawable(Range range);
 /// \pre max_intervals >= 1
 Ticks make_ticks(Range range, int max_intervals);
 
-/// Returns the smallest number that is 1, 2 or 5 times a power of ten and not less than a value, apart from rounding
-/// errors.
+/// Returns the smallest number not less than a value, apart from rounding errors, that is 1, 2 or 5 times a power of
+/// ten.
 /// \pre value > 0
 double next_round_number(double value);
 
@@ -59,7 +59,7 @@ double previous_round_number(double value);
 /// exponent is from -3 to 4, and otherwise superscripts, such as "10²" and "10⁵".
 std::vector<std::string> decade_labels(const std::vector<int>& exponents);
 
-/// Returns ticks at the powers of ten within a range of decimal logarithms. Positions are decimal logarithms.
+/// Returns ticks at the powers of ten within a range. The range and the positions are decimal logarithms.
 Ticks decade_ticks(Range decades);
 
 /// Ticks of a logarithmic axis. Positions are decimal logarithms.

@@ -139,7 +139,7 @@ struct ContourLayout {
   Size cell() const { return {kContourLeft + area.width + kContourRight, kContourAbove + area.height + kContourBelow}; }
 };
 
-/// Returns the number of panels in a row: at most 4, such that the last row is full if possible.
+/// Returns the number of panels in a row. It is at most 4, and is chosen such that the last row is full if possible.
 std::size_t panels_abreast(std::size_t count) {
   if (count <= 3) return count;
   if (count == 4) return 2;

@@ -31,7 +31,7 @@ struct ContourPanel {
 /// Colour scale of contour panels. Both scales are logarithmic.
 enum class ContourScale {
   decades,  ///< up to four decades below the largest value
-  ratio     ///< with white for 1 and the same range for values below and above 1
+  ratio     ///< values around 1, which is white; the scale extends by the same factor below and above 1
 };
 
 /// Panels, up to four in a row, with one colour scale and equal axes.
@@ -53,7 +53,8 @@ struct ContourLevels {
   std::vector<std::string> labels;
 };
 
-/// Returns the colour scale of a plot: 1, 2 and 5 times powers of ten, or round ratios if all ratios are near 1.
+/// Returns the colour scale of a plot and its contour lines. They are at 1, 2 and 5 times powers of ten, or at round
+/// ratios if all ratios are near 1.
 ContourLevels contour_levels(const ContourPlot& plot);
 
 /// Draws the plot. render_svg() and render_png() call this function.

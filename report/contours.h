@@ -11,7 +11,7 @@ namespace retrace::report {
 
 /// Returns the lines on which values on a grid are equal to a level, by marching squares with linear interpolation
 /// along the edges of the cells (W. E. Lorensen and H. E. Cline, Computer Graphics 21, 163 (1987), in two dimensions).
-/// A closed line ends at its first point. Cells with a corner that is not finite have no line.
+/// A closed line ends at its first point. Cells with a corner value that is not finite contain no line.
 /// \param values values at the corners of the cells, row by row
 /// \param columns number of values in a row, >= 1
 /// \return points in units of the distance of two values: x is the column, y is the row

@@ -55,7 +55,7 @@ struct LinePlot {
   /// Entries of the legend. By default, the labels of the curves.
   std::optional<std::vector<LegendKey>> legend = {};
   std::optional<Range> x_range = {};  ///< range of the x axis; by default, the range of the points
-  /// Range of the y axis. By default, rounded_range() of the points, or whole decades.
+  /// Range of the y axis. The default is rounded_range() of the points, or whole decades if the axis is logarithmic.
   std::optional<Range> y_range = {};
   bool y_is_logarithmic = false;  ///< true: the y axis has decades; points with y <= 0 are omitted
 };

@@ -96,8 +96,8 @@ double added_title_height(std::string_view title, double figure_width);
 /// Draws the title, centred at the top of a figure, in as many lines as title_lines() returns.
 void draw_title(Canvas& canvas, Size figure, std::string_view title);
 
-/// Draws the lines of a title at another position.
-/// \param baseline left end or centre of the baseline of the first line, as given by `align`
+/// Draws the lines of a title at a given position.
+/// \param baseline left end or centre of the baseline of the first line, according to `align`
 void draw_title(Canvas& canvas, double figure_width, std::string_view title, Point baseline, Align align);
 
 /// Wraps texts to at most three lines each, and returns the lines of all texts.

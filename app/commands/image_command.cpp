@@ -219,7 +219,7 @@ std::vector<FieldTexts> sequence_of(const FieldTexts& fields) {
   return sequence;
 }
 
-/// Several designs, or several requests, of which `retrace image --camera` makes pictures with the same exposure.
+/// Several designs, or several requests, for which `retrace image --camera` computes pictures with the same exposure.
 struct SeriesInput {
   std::vector<design::Design> designs;
   std::vector<CameraRequest> requests;
@@ -349,11 +349,10 @@ Command image_command() {
       .summary = "pictures of a detector or a camera",
       .manual =
           "Computes pictures: maps of a detector on the entrance face, the part as a camera sees it in the light "
-          "of a lamp, or such reflectors on a car ahead or a sign at night. One of `--detector`, `--camera` and "
-          "`--road` "
-          "selects the kind of picture. Pictures need `--out`; OpenEXR files contain the numbers. `--camera` accepts "
-          "several designs, which are shown next to each other with the same exposure. Alternatively, one of the "
-          "angles or the distance can be a list, which gives a sequence of pictures.",
+          "of a lamp, or reflectors of the design on a car ahead or a sign at night. One of `--detector`, `--camera` "
+          "and `--road` selects the kind of picture. Pictures need `--out`; OpenEXR files contain the numbers. "
+          "`--camera` accepts several designs, which are shown next to each other with the same exposure. "
+          "Alternatively, one of the angles or the distance can be a list, which gives a sequence of pictures.",
       .reads = {"retrace.design/1", "absorption of a dye (CSV)", "lamps (IES LM-63, EULUMDAT)"},
       .writes = {"retrace.image/1"},
       .begin = begins<ImageOptions>(arguments, run)};

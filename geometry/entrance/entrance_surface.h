@@ -44,7 +44,8 @@ class EntranceSurface {
 /// Entrance of a part: an exact surface, or a mesh whose triangles all face +z.
 using Entrance = std::variant<std::shared_ptr<const EntranceSurface>, std::shared_ptr<const SurfacePatch>>;
 
-/// Height of a curved entrance face in mm at a point of the part frame. NaN where there is no face.
+/// Function that returns the height in mm of a curved entrance face at a point of the part frame, or NaN where there is
+/// no face.
 using EntranceHeights = std::function<double(const Vec2& point_mm)>;
 
 /// Range of heights and slopes of an entrance surface over the outline of a part.

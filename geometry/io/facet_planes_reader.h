@@ -22,8 +22,8 @@ inline constexpr std::size_t kMaxFacetPlanesBytes = std::size_t{512} << 20;
 /// starting from the edge at 0 degrees. Flares have the numbers 4 to 6 and replace a missing hexagonal element
 /// (ElementPlanes::flares). Caps have the numbers 7 to 9 and are the surfaces that a chisel leaves over the apex
 /// (ElementPlanes::caps). In the file, the lines of the caps must come after the lines of the facets of the same
-/// element. \param spec array to which the planes belong; planes may differ from its facets by at most 5 degrees and a
-/// tenth of
+/// element.
+/// \param spec array to which the planes belong; planes may differ from its facets by at most 5 degrees and a tenth of
 ///        the depth
 /// \throw InputError with file, line and column
 geometry::FacetPlanes parse_facet_planes(std::string_view text, const std::string& file,

@@ -29,7 +29,7 @@ struct PhotometricPoint {
 struct CoefficientMap {
   std::size_t design = 0;                      ///< 0: the design; 1: the compared design
   double rotation_deg = 0.0;                   ///< rotation of the part about its normal
-  double presentation_deg = 0.0;               ///< 0: the source is in the plane of normal and observer
+  double presentation_deg = 0.0;               ///< angle about the source from the normal to the observer
   std::vector<double> entrance_deg;            ///< ascending
   std::vector<double> observation_deg;         ///< ascending
   std::vector<std::vector<double>> r_a;        ///< in cd/(lx m^2), with the indices [entrance][observation]
@@ -59,8 +59,9 @@ struct PhotometryResult {
 RETRACE_API PhotometryResult photometry(const Design& design, const PhotometryRequest& request,
                                         const Running& running = {});
 
-/// Computes also the maps of a second design, and the ratio of its maps to those of the first design.
-/// \throw InputError also if PhotometryRequest::map is false
+/// Computes the results of the first design, the maps of both designs, and the ratio of the second maps to the first.
+/// \throw InputError if PhotometryRequest::map is false
+/// \throw InputError, BudgetError in the same cases as the function for one design
 RETRACE_API PhotometryResult photometry(const Design& design, const Design& compared, const PhotometryRequest& request,
                                         const Running& running = {});
 

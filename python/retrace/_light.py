@@ -285,8 +285,9 @@ class PhotometryResult(Result):
         """Returns the map of R_A over entrance and observation angle, if photometry() was called
         with map=True.
 
-        rotation_deg, presentation_deg: angles of the map; None: the first map. design: 0 for the
-        design, 1 for the compared design. Raises InputError if there is no such map."""
+        rotation_deg, presentation_deg: angles of the map; None: any angle. design: 0 for the
+        design, 1 for the compared design. The first map that satisfies these conditions is
+        returned. Raises InputError if there is no such map."""
         maps = self.document.get("maps", [])
         if not maps:
             raise InputError("there are no maps; call photometry() with map=True", key="design")
@@ -330,7 +331,7 @@ class CoefficientMap:
     lacks_diffraction: bool  #: true if diffraction is significant but not included
 
     def __init__(self, map: Mapping[str, Any], area_cm2: float) -> None:
-        """map: an element of the list `maps` of the document. area_cm2: area of the part."""
+        """map: element of the list `maps` of the JSON document. area_cm2: area of the part."""
         self.rotation_deg = map["rotation_deg"]
         self.presentation_deg = map["presentation_deg"]
         self.entrance_deg = frozen(map["entrance_deg"])
@@ -346,8 +347,8 @@ class CoefficientMap:
                 raise InputError(f"the maps must have the same {name}", key="other")
 
     def ratio(self, other: CoefficientMap) -> Array:
-        """Returns R_A of this map divided by R_A of another map with the same angles. Values are
-        NaN where the other R_A is 0."""
+        """Returns R_A of this map divided by R_A of another map. Values are NaN where the other R_A
+        is 0. Raises InputError if the maps have different angles."""
         self._check_grid(other)
         is_defined = other.r_a > 0
         return frozen(
@@ -355,8 +356,8 @@ class CoefficientMap:
         )
 
     def difference(self, other: CoefficientMap) -> Array:
-        """Returns R_A of this map minus R_A of another map with the same angles, in
-        cd/(lx m2)."""
+        """Returns R_A of this map minus R_A of another map, in cd/(lx m2). Raises InputError if the
+        maps have different angles."""
         self._check_grid(other)
         return frozen(self.r_a - other.r_a)
 

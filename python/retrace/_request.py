@@ -68,10 +68,10 @@ def given(request: Any, fields: Fields, **values: object) -> Any:
 def with_values(
     request: Any, fields: Fields, name: str, lists: Mapping[str, object] | None
 ) -> list[Any]:
-    """Returns a copy of a request for each value of a list. Without a list, returns the request.
+    """Returns a copy of a request for each value of a list, or only the request if `lists` is None.
 
-    name: keyword that contains the list, for messages
-    lists: a dict of one keyword whose field is a number, and a list of its values"""
+    name: name of the argument `lists` in messages
+    lists: a dict that contains one keyword, whose field is a number, with a list of its values"""
     if lists is None:
         return [request]
     numeric = [keyword for keyword, field in fields.items() if field.kind == "number"]

@@ -124,12 +124,13 @@ def camera_series(
     threads: int | None = None,
     progress: Progress = None,
 ) -> ImageResult:
-    """Computes several camera pictures with the same exposure ("camera_01", "camera_02" and so on;
-    drawing "sheet": all of them), as `retrace image --camera` with several designs or a list.
+    """Computes several camera pictures with the same exposure, as `retrace image --camera` with
+    several designs or a list. The pictures are "camera_01", "camera_02" and so on. The drawing
+    "sheet" shows all of them.
 
-    designs: one design, or a list with one design for each picture. values: dict of one keyword
-    whose value is a number, and its value for each picture, such as {"observation_deg": [0.2, 0.5]};
-    only for one design. All other keywords are those of camera()."""
+    designs: one design, or a list with one design for each picture. values: a dict such as
+    {"observation_deg": [0.2, 0.5]}, with one keyword of camera() whose value is a number, and its
+    values, one for each picture; only for one design. All other keywords are those of camera()."""
     request = _core.CameraRequest()  # generated: sets the fields of the request camera
     taken, count = designs_of(designs), thread_count(threads)
     requests = with_values(request, FIELDS["camera"], "values", values)
@@ -147,9 +148,10 @@ def road(
     threads: int | None = None,
     progress: Progress = None,
 ) -> ImageResult:
-    """Computes a driver's view at night of a car ahead with two such reflectors, or of a sign
-    ("road": luminance Y, the parts reflected and veil of it, and linear sRGB values R, G and B with
-    the lamp as white, all in cd/m2), as `retrace image --road`.
+    """Computes a driver's view at night of a car ahead with two reflectors of the design, or of a
+    sign, as `retrace image --road`. The picture "road" has the luminance Y, its parts `reflected`
+    (directly from the reflectors) and `veil` (scattered in the eye), and the linear sRGB values R,
+    G and B with the lamp as white, all in cd/m2.
 
     reflector_mm, pixels: two numbers each. lamp: a photometric file. exposure_ev, tone: only for
     the drawing."""

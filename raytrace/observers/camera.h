@@ -64,10 +64,10 @@ struct CameraScene {
   Surroundings surroundings;
   std::optional<Film> film;  ///< set for infinite parts
   DiscAverage discs = DiscAverage::kernel;
-  /// Applies to light of the lamp that enters and leaves through the entrance face. The blur requires
+  /// Correction of the lamp's light that enters and leaves through the entrance face. Its blur requires
   /// DiscAverage::kernel.
   ReturnCorrection correction;
-  /// False: the picture does not show the reflection of the lamp at the outer side of the entrance face.
+  /// True if the picture shows the reflection of the lamp at the outer side of the entrance face.
   bool has_front_reflection = true;
 };
 

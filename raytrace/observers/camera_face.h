@@ -17,8 +17,8 @@ struct FacePoint {
 };
 /// Returns the point with the given coordinates FacePoint::local_mm.
 FacePoint face_point(const geometry::Part& part, const CameraScene& scene, const geometry::Vec2& local_mm);
-/// Returns a rectangle, in the coordinates of FacePoint::local_mm, that contains the visible area of the entrance face.
-/// It is the bounding box of the face if the picture shows no point of the face.
+/// Returns a rectangle that contains the visible area of the entrance face, in the coordinates of FacePoint::local_mm.
+/// Returns the bounding box of the face if the picture shows no point of it.
 geometry::Rectangle visible_face(const geometry::Part& part, const CameraScene& scene);
 
 }  // namespace retrace::raytrace

@@ -116,8 +116,9 @@ class Luminaire {
   double intensity_ = 0.0;  ///< luminous intensity towards the target, in lx mm^2
 };
 
-/// Returns the axes of the frame in which light is traced, at a point of a film with the given normal. They are the
-/// columns of the matrix.
+/// Returns the frame in which light is traced at a point of a film. The columns of the matrix are the axes of this
+/// frame.
+/// \param normal outward unit normal of the film at the point
 inline Eigen::Matrix3d axes_of_film(const Vec3& normal) {
   Eigen::Matrix3d axes;
   axes << Vec3::UnitY().cross(normal), Vec3::UnitY(), normal;

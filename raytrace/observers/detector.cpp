@@ -269,7 +269,7 @@ struct DetectorSampler::Impl {
     entering.close(share * irradiance_of_ray());
     angles.close(share);
     rre.close(share);
-    // Sums of finished replicates only; a cancelled replicate is not included.
+    // A cancelled replicate is not included in these sums.
     closed.outside = sums.outside;
     closed.truncated = sums.truncated;
     closed.rings = sums.rings;
@@ -289,7 +289,7 @@ struct DetectorSampler::Impl {
   PixelPyramid entering{setting.face.columns(), setting.face.rows(), setting.face_bins};
   PixelPyramid angles{setting.angles.columns(), setting.angles.rows(), setting.angle_bins};
   PixelPyramid rre{1, 1, {}};
-  /// Sums of the numbers that have no standard error, over all replicates and over the finished ones.
+  /// Sums of the numbers that have no standard error: `sums` over all replicates, `closed` over the finished ones.
   struct Sums {
     double outside = 0.0;
     double truncated = 0.0;
@@ -325,7 +325,7 @@ DetectorMaps DetectorSampler::maps() const {
   const auto wavelengths = static_cast<double>(all.lights.size());
   DetectorMaps maps;
   maps.rays = std::uint64_t{all.per_replicate} * all.finished * all.lights.size();
-  // A ray of the wavelength with the largest weight adds this amount to the sum over all rays.
+  // Maximum contribution of a ray to the sum over all rays. Rays of the wavelength with the largest weight reach it.
   const double largest = all.largest_weight * wavelengths;
   maps.leaving = all.leaving.values(maps.rays, largest * all.irradiance_of_ray());
   maps.entering = all.entering.values(maps.rays, largest * all.irradiance_of_ray());

@@ -62,7 +62,7 @@ struct DetectorMaps {
 /// Returns the far field of the returned light with diffraction at the cells, for a point source and a point receiver.
 /// Light that the entrance face reflects without entering is not included; it is added to `specular`.
 /// \param acceptance_deg half angle of the acceptance cone
-/// \param policy settings of the diffraction; its request for cancellation also applies to the beams
+/// \param policy settings of the diffraction; `policy.cancel` also cancels the tracing of beams
 /// \param specular receives the directions and powers of this light
 /// \return nothing if the tracing of beams was cancelled
 /// \throw BudgetError in the same cases as BeamTracer::trace(), or if the form of facets needs too many polygons

@@ -30,9 +30,9 @@ struct BinRule {
 /// Returns the largest standard error relative to the value, of all pixels that are not dark. 0 if there are none.
 double largest_relative_error(const PixelValues& values, double dark);
 
-/// Returns the smallest width such that bins of at most this width contain a given fraction of the sum of all values,
-/// in pixels. Bins at the border of the grid count with their full width. Returns 1 if values are not sampled. \param
-/// fraction 0 to 1
+/// Returns the smallest width, in pixels, such that bins of at most this width contain a given fraction of the sum of
+/// all values. Bins at the border of the grid count with their full width. Returns 1 if the values are not sampled.
+/// \param fraction 0 to 1
 std::size_t bin_width(const PixelValues& values, double fraction);
 
 /// Means and standard errors over replicates, for the pixels of a grid and for all blocks of 2^k x 2^k pixels.
@@ -64,7 +64,8 @@ class PixelPyramid {
     void take(const std::vector<double>& sums, double scale, double count);
   };
 
-  /// Returns the blocks of the next finer level into which a block is divided. Returns none on the finest level.
+  /// Returns the indices of the blocks of the next finer level into which a block is divided; empty on the finest
+  /// level.
   std::vector<std::size_t> quarters_of(std::size_t level, std::size_t block) const;
 
   std::vector<double> sum_;

@@ -11,9 +11,10 @@
 
 namespace retrace::raytrace {
 
-/// Approximate angular distribution of light that a cell returns in one direction and spreads by diffraction, averaged
-/// over the discs of lamp and pupil. It is the average over the discs (ApertureKernel) plus a tail that falls with the
-/// third power of the angle, as the mean diffraction pattern of an aperture does (docs/theory/images.md).
+/// Approximate angular distribution of light that geometrical optics returns in one direction, after diffraction at a
+/// cell and averaged over the discs of lamp and pupil. It is the weighted sum of the average over the discs
+/// (ApertureKernel) and a tail. The tail falls with the third power of the angle, like the mean diffraction pattern of
+/// an aperture (docs/theory/images.md).
 struct DiffractionBlur {
   double tail_fraction = 0.0;   ///< fraction of the light in the tail; 0 to 1
   double tail_width_rad = 1.0;  ///< angle at which the tail begins to fall; > 0
@@ -25,9 +26,9 @@ struct DiffractionBlur {
   double per_sr(const ApertureKernel& kernel, double separation_rad) const;
 };
 
-/// Correction of the light of the lamp that comes back through the part: the light of geometrical optics is blurred and
-/// multiplied by a gain. The gain varies slowly over the entrance face. It is interpolated bilinearly between the
-/// points of a grid. By default, the light is not changed.
+/// Correction of the lamp's light that the part returns: the light of geometrical optics is blurred and multiplied by a
+/// gain. The gain varies slowly over the entrance face, and is interpolated bilinearly between the points of a grid.
+/// The default is no correction.
 struct ReturnCorrection {
   DiffractionBlur blur;
   geometry::Rectangle face_mm;  ///< area of the grid, in the frame of FacePoint::local_mm

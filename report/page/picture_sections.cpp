@@ -44,8 +44,8 @@ PageCell of_lamp(const Json& reflector, const char* key, std::size_t lamp) {
 PageSection road_section(const ResultDocument& document) {
   PageSection section = titled(
       "Night road",
-      "Two such reflectors on the rear of a car ahead, or a sign, in the light of both headlamps, as the driver sees "
-      "them.");
+      "Two reflectors of the design on the rear of a car ahead, or a sign, in the light of both headlamps, as the "
+      "driver sees them.");
   PageTable table;
   table.caption = "The reflectors";
   table.csv_name = csv_name(document, "reflectors");

@@ -135,7 +135,7 @@ std::string name_of(const CameraResult& result) {
   return name;
 }
 
-/// Returns the size of a picture on the canvas. Small pictures are enlarged by a whole factor.
+/// Returns the size of a picture on the canvas. Small pictures are enlarged by an integer factor.
 /// \param largest maximum width and height
 Size shown_size(const CameraResult& result, const Size& largest) {
   const auto columns = static_cast<double>(result.image.columns);

@@ -21,18 +21,18 @@ inline constexpr double kLine = 16.0;
 inline constexpr double kBarHeight = 10.0;
 
 /// Returns the colour that is displayed for linear sRGB values. The hue is kept: colours outside of the display's range
-/// become paler, and colours brighter than white approach white, as on film.
+/// become paler, and colours brighter than white approach white, as on photographic film.
 /// \param intensity luminance of the colour; 1 is white
 Colour displayed(std::array<double, 3> rgb, double intensity);
 
-/// Returns a number with about four digits.
+/// Returns a number as text with about four digits.
 std::string figure(double value);
 
 /// Returns a sentence about the exposure and the tone curve of a picture.
 /// \param is_given true: the user gave the exposure
 std::string exposure_text(const ToneCurve& tone, bool is_given);
 
-/// Returns true if a bar of the displayed luminances belongs to a picture.
+/// Returns true if the tone curve requires a bar of the displayed luminances below the picture.
 bool has_bar(const ToneCurve& tone);
 /// Draws a bar with the displayed intensities of luminances and their values.
 void draw_luminance_bar(Canvas& canvas, const ToneCurve& tone, Point corner, double width);

@@ -84,9 +84,10 @@ LinePlot roughness_plot(const studies::RoughnessResult& result);
 /// test points and has one panel for each map of the result.
 PolarPlot far_field_plot(const studies::PhotometryResult& result);
 
-/// Returns maps of R_A, or of R_I if the standard limits R_I, over entrance and observation angle, with contour lines:
-/// one panel for each design, rotation and presentation angle, up to kMaxMapPanels. Test points of the standard in the
-/// plane of a panel are marked. \pre the result has coefficient maps
+/// Returns maps of R_A, or of R_I if the standard limits R_I, over entrance and observation angle, with contour lines.
+/// There is one panel for each design, rotation and presentation angle, up to kMaxMapPanels. The test points of the
+/// standard with the rotation and presentation angle of a panel are marked in it.
+/// \pre the result has coefficient maps
 ContourPlot coefficient_map_plot(const studies::PhotometryResult& result);
 
 /// Returns maps of the ratio of the compared design to the design of the study, with one panel for each rotation and
@@ -146,12 +147,13 @@ ImagePlot false_colour_plot(const studies::CameraResult& result);
 /// \pre there is at least one view
 /// \throw OutputError if the picture cannot be drawn
 std::string road_png(const studies::RoadResult& result);
-/// Returns a PNG file with one view, displayed with the exposure of all views. Throws like road_png().
+/// Returns a PNG file with one view, displayed with the exposure of all views.
 /// \param view index of the view
+/// \throw OutputError if the picture cannot be drawn
 std::string road_view_png(const studies::RoadResult& result, std::size_t view);
 
-/// Returns a picture with all views next to each other, in cd/m^2. The channel Y contains the luminance, `reflected`
-/// the part of it that comes directly from the reflectors, and `veil` the part that is scattered in the eye. R, G and B
+/// Returns a picture with all views next to each other, in cd/m^2. Channel Y is the luminance. Channel `reflected` is
+/// the part of Y that comes directly from the reflectors, and `veil` the part that is scattered in the eye. R, G and B
 /// are linear sRGB values with the lamp as white.
 FloatPicture road_picture(const studies::RoadResult& result);
 

@@ -23,9 +23,10 @@ using studies::RoadPixels, studies::RoadResult, studies::RoadView;
 constexpr Font kTitleFont{15.0, true};
 constexpr Font kInsetFont{9.5, false};
 constexpr double kHead = 34.0;
-// Smallest width of a picture. Smaller pictures are enlarged by a whole factor.
+// Minimum width of a picture. Smaller pictures are enlarged by an integer factor.
 constexpr double kMinViewWidth = 320.0;
-// Number of pixels per unit of length. A pixel of a picture is then a pixel of the file, unless the picture is small.
+// Number of pixels of the file per unit of length of the drawing. A pixel of a picture is then a pixel of the file,
+// unless the picture is enlarged.
 constexpr double kPixelsPerUnit = 1.5;
 constexpr std::size_t kMaxColumns = 3;
 // Brightness of the picture to which the logarithmic mean of the luminances is mapped. It is low, because the scene is
@@ -36,8 +37,8 @@ std::vector<Colour> colours_of(const RoadPixels& pixels, const ToneCurve& tone) 
   std::vector<Colour> colours;
   colours.reserve(pixels.luminance.size());
   for (std::size_t k = 0; k < pixels.luminance.size(); ++k) {
-    // The curve is applied to the brightest component, so that bright reflectors keep their colour.
-    // Colours outside of the display's range get its nearest colour: negative components are 0.
+    // The tone curve is applied to the brightest component, so that bright reflectors keep their colour. Negative
+    // components, which cannot be displayed, are set to 0.
     std::array<double, 3> rgb = pixels.rgb[k];
     for (double& value : rgb) value = std::max(value, 0.0);
     const double brightest = std::max({rgb[0], rgb[1], rgb[2]});
@@ -127,7 +128,7 @@ void draw_inset(Canvas& canvas, const RoadResult& result, const RoadView& view, 
   canvas.end_clip();
 }
 
-/// Draws a view with its caption. Returns the height.
+/// Draws a view with its caption. Returns the height of both.
 /// \param canvas if null, only the height is determined, with the font metrics of `metrics`
 double draw_view(Canvas* canvas, const Canvas& metrics, const RoadResult& result, const RoadView& view,
                  const ToneCurve& tone, Point corner) {
@@ -218,7 +219,7 @@ FloatPicture road_picture(const RoadResult& result) {
   FloatPicture picture;
   picture.columns = columns * result.views.size();
   picture.rows = result.scene.rows;
-  // Channels and the luminances of a pixel for each of them.
+  // Adds a channel. `value` returns its value for a pixel.
   const auto add = [&](const char* name, const auto& value) {
     std::vector<double> values;
     for (std::size_t row = 0; row < picture.rows; ++row)

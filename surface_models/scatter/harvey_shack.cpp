@@ -19,9 +19,9 @@ void require(bool holds, const char* key, const char* allowed, double given) {
   if (!holds) throw InputError({"", 0, key}, std::string(allowed) + ", got " + shortest(given));
 }
 
-// Smallest correlation length in um for which no warning is given, for roughness with a lay (different correlation
-// lengths along x and y). The phase model is used for such roughness. Below this length, it overestimates scatter by 9
-// % at 45 degrees (docs/theory/scatter.md).
+// Minimum correlation length in um for which no warning is given, for roughness with a lay (different correlation
+// lengths along x and y). The phase model is used for such roughness. Below this length, the model overestimates
+// scatter by 9 % at 45 degrees (docs/theory/scatter.md).
 constexpr double kLongOfLay = 2.0;
 
 /// Returns the correlation length of Gaussian waves that have the same rms slope as waves with the period `length_um`.
