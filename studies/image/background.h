@@ -16,8 +16,9 @@ struct Background {
   std::vector<std::array<float, 3>> rgb;
   bool is_luminance = false;
 
-  /// Returns the mean colour behind a pixel of another picture, which the background covers completely. The centres of
-  /// both pictures coincide, and the parts of the background beyond the other picture are cut off.
+  /// Returns the mean colour of the background behind a pixel of another picture. The background is scaled to cover the
+  /// other picture completely. The centres of both coincide, and parts of the background beyond the other picture are
+  /// cut off.
   std::array<double, 3> mean_colour(std::size_t pixel, std::size_t picture_columns, std::size_t picture_rows) const;
 };
 

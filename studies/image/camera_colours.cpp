@@ -7,11 +7,12 @@
 namespace retrace::studies {
 namespace {
 
-// Noise of pixels for which colours are averaged over one pixel to each side. Noisier pictures use more pixels.
+// Relative noise of pixels for which colours are averaged over one pixel to each side. Noisier pictures use more
+// pixels.
 constexpr double kNoiseOfColours = 0.02;
 
-/// Returns a picture of another response with the luminance of each pixel and the colour of its neighbourhood: the
-/// ratio of the means of both pictures over a square.
+/// Returns a picture of another response with less noise. Each value is the luminance of the pixel, times the ratio of
+/// the means of `other` and `luminance` over a square around the pixel.
 /// \param reach half of the side of the square, in pixels
 std::vector<double> with_mean_colour(const raytrace::CameraImage& luminance, const std::vector<double>& other,
                                      std::size_t reach) {

@@ -24,8 +24,8 @@ struct CameraColours {
 };
 
 /// Returns the colours of a picture. The responses are traced separately, and their noise would appear as colours. Each
-/// pixel therefore has the mean colour of its neighbourhood, whose size depends on the noise. The eye resolves colours
-/// less than luminances.
+/// pixel therefore gets the mean colour of its neighbourhood, whose size depends on the noise. This is hardly visible,
+/// because the eye resolves colours less well than luminances.
 /// \param responses pictures of the responses y, x and z, in this order
 /// \param lamp tristimulus values of the lamp, with Y = 1
 CameraColours colours_of(const std::vector<raytrace::CameraImage>& responses, const materials::Tristimulus& lamp);

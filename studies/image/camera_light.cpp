@@ -34,14 +34,14 @@ constexpr std::uint32_t kMinMeanPasses = 8, kMaxMeanPasses = 256;
 constexpr std::size_t kMeanPixels = 48;
 // Wavelength of the blur, near the maximum of the eye's response. The gain corrects the blur at all wavelengths.
 constexpr double kBlurWavelengthNm = 555.0;
-// Standard error of the intensities at the centre of the face, relative to their values, above which weaker beams are
-// traced exactly.
+// Maximum relative standard error of the gain at the centre of the face. Above it, the cut-off power of beams is
+// reduced.
 constexpr double kResamplingError = 0.004;
-// Ratio of the cut-off powers of two attempts to reach this error, and the maximum number of attempts after the first.
+// Factor by which the cut-off power is reduced in each further attempt, and the maximum number of further attempts.
 constexpr double kCutoffStep = 0.1;
 constexpr int kMaxCutoffSteps = 3;
-// Part of the progress that the mean luminance of geometrical optics takes, and the part of the remainder that the
-// choice of the cut-off power takes.
+// Fraction of the progress for the mean luminance of geometrical optics, and fraction of the remaining progress for the
+// choice of the cut-off power.
 constexpr double kProgressOfMean = 0.6, kProgressOfCutoff = 0.3;
 // Luminance per illuminance, in cd/(lx m^2), below which the error is not reduced. A white matt surface has 0.32.
 constexpr double kDarkLuminance = 1e-3;
@@ -157,7 +157,7 @@ class CameraLight::Grid {
   /// Intensities per steradian at a grid point: with diffraction, and of the blurred light of geometrical optics.
   struct Intensities {
     double diffracted = 0.0;
-    double diffracted_error = 0.0;  ///< standard error, because weak beams are resampled
+    double diffracted_error = 0.0;  ///< standard error caused by the resampling of weak beams
     double blurred = 0.0;
     double blurred_error = 0.0;
     bool is_incomplete = false;
@@ -235,7 +235,8 @@ class CameraLight::Grid {
     return true;
   }
 
-  /// Returns the standard error of the sum over independent replicates, each of which was divided by their number.
+  /// Returns the standard error of the sum of all values.
+  /// \param of_replicate values of independent replicates, each already divided by the number of replicates
   static double error_of_sum(const std::vector<double>& of_replicate) {
     const auto count = static_cast<double>(of_replicate.size());
     if (of_replicate.size() < 2) return 0.0;
@@ -315,7 +316,8 @@ class CameraLight::Grid {
     return true;
   }
 
-  /// Returns the correction that is interpolated in a grid.
+  /// Returns the correction with the gains at the points of a grid.
+  /// \param intervals number of intervals of the grid along each side
   /// \pre the nodes of the grid have been computed
   raytrace::ReturnCorrection correction_with(int intervals) const {
     raytrace::ReturnCorrection correction = correction_;
@@ -386,7 +388,7 @@ class CameraLight::Grid {
   Photometer diffracted_;
   Photometer geometric_;
   raytrace::BeamTracer beams_;
-  raytrace::ReturnCorrection correction_;  ///< blur and area of the grid; without gains
+  raytrace::ReturnCorrection correction_;  ///< blur and area of the grid; the gains are set later
   std::optional<double> traced_mean_;
   std::map<Index, Node> nodes_;
 };

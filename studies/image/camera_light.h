@@ -31,7 +31,7 @@ class CameraLight {
     /// R_A in cd/(lx m^2) for the directions of lamp and eye as seen from the centre of the visible face. Empty if it
     /// was not computed.
     std::optional<double> r_a;
-    double r_a_error = 0.0;      ///< standard error of `r_a`, because weak beams are resampled
+    double r_a_error = 0.0;      ///< standard error of `r_a` caused by the resampling of weak beams
     bool is_incomplete = false;  ///< true: significant light has not been diffracted, because the cells differ too much
   };
   /// Computes the light that returns to the eye, with diffraction if possible. Returns nothing if the computation was

@@ -14,7 +14,7 @@
 namespace retrace::studies {
 
 struct CameraSeriesResult {
-  std::vector<CameraResult> pictures;  ///< in the order of the request; without pictures that have no passes
+  std::vector<CameraResult> pictures;  ///< in the order of the request, without pictures that have no finished pass
   Warnings warnings;                   ///< warnings of all pictures
   bool complete = true;                ///< true if all requested pictures are complete
 };
@@ -36,7 +36,7 @@ class CameraSeries {
   CameraSeriesResult run(Progress* progress = nullptr, const Cancellation* cancel = nullptr,
                          const DistributeTasks& distribute = {}) const;
   /// Returns a task that computes the picture with a given number, using all threads.
-  /// \pre the series exists as long as the task
+  /// \pre the series outlives the task
   ComputeTask pictures() const;
 
   std::size_t size() const { return studies_.size(); }

@@ -163,8 +163,9 @@ Vec3 to_lamp(const raytrace::CameraScene& scene) {
   return scene.lamp.position_mm - scene.view.target_mm;
 }
 
-/// Refuses a lamp or surroundings whose luminance is too large for the numbers in picture files.
+/// Checks that the luminances of the lamp and the surroundings can be stored in picture files.
 /// \param has_file true if the intensity of the lamp comes from a file
+/// \throw InputError at the field that determines the luminance, if it is too large
 void check_luminances(const raytrace::CameraScene& scene, bool has_file) {
   const double width_rad = std::max(scene.lamp.diameter.rad(), scene.view.pupil.rad());
   const double lamp = scene.lamp.illuminance_lx / (0.25 * std::numbers::pi * width_rad * width_rad);
@@ -483,7 +484,7 @@ void add_warnings(CameraResult& result) {
   const double illuminance_lx = result.scene.lamp.illuminance_lx;
   const double returned = result.r_a ? *result.r_a / std::max(1e-9, to_eye(result.scene).normalized().z())
                                      : image.part_mean() / std::max(1e-300, illuminance_lx);
-  // The traced picture does not show which part of the light is that of the surroundings.
+  // If R_A is not computed, the returned light is known only without surroundings, because the picture contains both.
   const bool is_known = result.r_a || !result.scene.surroundings.has_light();
   if (illuminance_lx > 0.0 && is_known && returned < kMinRetroreflected)
     result.warnings.push_back(
@@ -576,7 +577,7 @@ std::optional<std::string> CameraStudy::run_to_bytes(const Cancellation* cancel)
   if (!numbers.complete) return std::nullopt;
   const auto* undiffracted = numbers.no_diffraction ? std::get_if<Undiffracted>(&*numbers.no_diffraction) : nullptr;
   const auto* obstacle = numbers.no_diffraction ? std::get_if<raytrace::Obstacle>(&*numbers.no_diffraction) : nullptr;
-  // Numbers that do not exist are negative.
+  // Missing numbers are stored as -1.
   std::vector<double> all = {numbers.r_a.value_or(-1.0),
                              numbers.r_a_error,
                              undiffracted != nullptr ? static_cast<double>(*undiffracted) : -1.0,

@@ -38,7 +38,7 @@ struct CameraResult : ImageResultBase {
   std::optional<NoDiffraction> no_diffraction;
   /// R_A in cd/(lx m^2) with diffraction for the centre of the visible face; empty if it was not computed.
   std::optional<double> r_a;
-  double r_a_error = 0.0;        ///< standard error of `r_a`, because weak beams are resampled
+  double r_a_error = 0.0;        ///< standard error of `r_a` caused by the resampling of weak beams
   double observation_deg = 0.0;  ///< angle as seen from the centre of the face
   double entrance_deg = 0.0;
   double viewing_deg = 0.0;

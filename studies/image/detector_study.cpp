@@ -27,7 +27,7 @@ constexpr std::uint64_t kBeamsOfDiffraction = 4'000'000;
 constexpr double kPolygonsTimesBins = 4e7;
 // Ratio of the angle within which beams are diffracted to the half width of the angular map.
 constexpr double kDiffractedAround = 1.5;
-// Minimum number of replicates from which the maps of an interrupted computation are made.
+// Minimum number of finished replicates for which an interrupted computation returns maps.
 constexpr std::uint32_t kMinReplicates = 8;
 // Number of rays that determine the half width of the angular map.
 constexpr std::uint64_t kPilotRays = std::uint64_t{1} << 16;
@@ -172,7 +172,7 @@ void DetectorStudy::trace_rays(const raytrace::DetectorSetting& setting, Progres
   const std::vector<raytrace::DetectorLight> lights = this->lights();
   raytrace::DetectorSampler sampler(model_.part, lights, illumination_of(design_, request_), setting,
                                     request_.samples.value_or(rays_per_pass_), {});
-  // Without merging, no error is requested that more rays could reach.
+  // One pass is sufficient if pixels are not merged, because no error is then requested.
   const bool is_fixed = request_.samples || !(request_.bin_error > 0.0);
   const std::uint32_t passes = is_fixed ? 1 : kMaxDetectorPasses;
   const auto is_small = [](std::size_t bin, std::size_t width) {
@@ -295,7 +295,7 @@ DetectorResult DetectorStudy::run(Progress* progress, const Cancellation* cancel
     if (!add_diffraction(result, setting_of(result.face, result.window_deg), cancel)) {
       result.window_deg = window_deg(result.maps.rings, false);
       attempt.begin_again();
-      // The first maps have this window already if it is the requested one.
+      // The maps already have this window if the window was requested.
       if (result.window_deg != first_window_deg)
         result.maps = trace_beams(setting_of(result.face, result.window_deg), &attempt, cancel);
     }

@@ -19,8 +19,8 @@ namespace retrace::studies {
 /// Number of rays in a pass, and the maximum number of passes, if the request contains no number of rays.
 inline constexpr std::uint64_t kDetectorRaysPerPass = std::uint64_t{1} << 22;
 inline constexpr std::uint32_t kMaxDetectorPasses = 8;
-/// Fraction of the light that must be in small bins before no more rays are added, and the maximum width of small bins
-/// as a fraction of the width of the map.
+/// Fraction of the light that must be in small bins; until then, more rays are added. Maximum width of small bins, as a
+/// fraction of the width of the map.
 inline constexpr double kLightInSmallBins = 0.9;
 inline constexpr double kSmallBin = 0.01;
 
@@ -66,11 +66,12 @@ class DetectorStudy {
   /// Computes the maps from beams. They are empty if the computation was cancelled.
   raytrace::DetectorMaps trace_beams(const raytrace::DetectorSetting& setting, Progress* progress,
                                      const Cancellation* cancel) const;
-  /// Computes the maps from rays, and adds the width of bins to `result`. If the computation was cancelled, the maps
-  /// contain the finished replicates, or nothing if these are too few.
+  /// Computes the maps from rays, and stores them and the widths of bins in `result`. If the computation was cancelled,
+  /// the maps contain the finished replicates. They are empty if too few replicates are finished.
   void trace_rays(const raytrace::DetectorSetting& setting, Progress* progress, const Cancellation* cancel,
                   DetectorResult& result) const;
-  /// Returns the distribution of some rays over the angle from the direction to the source.
+  /// Traces a small number of rays, and returns the distribution of their power over the angle from the direction to
+  /// the source.
   raytrace::AngularRings pilot_rings(const raytrace::PixelGrid& face, const Cancellation* cancel) const;
   std::vector<raytrace::DetectorLight> lights() const;
   raytrace::DetectorSetting setting_of(const raytrace::PixelGrid& face, double window_deg) const;

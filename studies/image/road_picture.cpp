@@ -34,16 +34,16 @@ constexpr double kNightLight = 0.02;     ///< illuminance by the night sky from 
 constexpr double kFarthest = 3000.0;     ///< length of the road, m
 constexpr double kNearest = 0.5;         ///< distance from the eye at which surfaces are clipped, m
 
-/// Returns the luminance of light scattered in the eye, per illuminance at the pupil, in 1/sr. It is 10 / theta^2 with
-/// theta in degrees (W. S. Stiles 1929, L. L. Holladay 1927; CIE 146:2002).
-/// \param theta square of the angle from the source, in rad^2
-/// \param least value of `theta` below which the result is constant
+/// Returns the luminance of light scattered in the eye, per illuminance at the pupil, in 1/sr. It is 10 divided by the
+/// squared angle in degrees (W. S. Stiles 1929, L. L. Holladay 1927; CIE 146:2002).
+/// \param theta squared angle from the source, in rad^2
+/// \param least squared angle below which the result is constant, in rad^2
 double veil_per_lx(double theta, double least) {
   constexpr double kDegPerRad = 180.0 / pi;
   return 10.0 / (std::max(theta, least) * kDegPerRad * kDegPerRad);
 }
 
-/// Part of a reflector whose light is scattered in the eye.
+/// Part of a reflector, as a source of light that is scattered in the eye.
 struct Glow {
   Vec3 towards;           ///< direction of the part, as a unit vector
   double fraction = 0.0;  ///< fraction of the reflector's area
@@ -94,7 +94,7 @@ RoadCamera camera_towards(const RoadScene& s, const Vec3& eye, const Vec3& direc
   return camera;
 }
 
-/// Returns the camera of the inset. The last reflector, or the sign, takes half of its width or height.
+/// Returns the camera of the inset. The last reflector, or the sign, fills half of the width or height of the inset.
 RoadCamera inset_camera_at(const RoadScene& s, const RoadCamera& camera) {
   const Vec3& target = s.reflectors.back();
   RoadCamera inset = camera_towards(s, camera.eye, target - camera.eye);
@@ -106,8 +106,8 @@ RoadCamera inset_camera_at(const RoadScene& s, const RoadCamera& camera) {
   return inset;
 }
 
-/// Paints surfaces onto a picture, each over those before it. A pixel gets the exact fraction of its area that a
-/// surface covers.
+/// Paints surfaces onto a picture; later surfaces cover earlier ones. The fraction of a pixel that a surface covers is
+/// computed exactly.
 class Painter {
  public:
   /// Light that a surface sends to the eye.
@@ -415,7 +415,7 @@ class Surfaces {
 
   Vec3 on_plane(const Vec3& d, double z) const { return eye_ + (z - eye_.z()) / d.z() * d; }
 
-  /// Returns the illuminance of a vertical surface that faces the driver.
+  /// Returns the illuminance in lx of a vertical surface that faces the driver.
   double lit(const Vec3& at) const {
     double sum = 0.5 * kNightLight;
     for (const Vec3& lamp : lamps_) sum += illuminance(s_, lamp, at) * (lamp - at).normalized().z();
@@ -434,7 +434,8 @@ class Surfaces {
     painter_.solid(at_reflectors(polygon), diffuse(reflectance, colour));
   }
 
-  /// Returns an illustrative factor for the curvature of the car's rear: its sides and its upper part are inclined.
+  /// Returns an illustrative factor by which the sides and the upper part of the car's rear are darker, because they
+  /// are inclined.
   double shading(const Vec3& at) const {
     if (s_.mount != RoadMount::car) return 1.0;
     const double across = std::min(1.0, std::abs(at.x()) / (0.5 * s_.car_width));

@@ -27,7 +27,7 @@ struct RoadCamera {
   geometry::Vec3 forward = -geometry::Vec3::UnitZ();
   geometry::Vec3 right = geometry::Vec3::UnitX();
   geometry::Vec3 up = geometry::Vec3::UnitY();
-  double pixel = 0.0;                             ///< size of a pixel on a plane at the distance 1
+  double pixel = 0.0;                             ///< width of a pixel on a plane at the distance 1
   geometry::Vec2 ahead = geometry::Vec2::Zero();  ///< position of the direction `forward` in the picture
   std::size_t columns = 0;
   std::size_t rows = 0;
@@ -36,6 +36,7 @@ struct RoadCamera {
   /// Returns the direction, as a unit vector, in which a position of the picture is seen.
   geometry::Vec3 direction_at(const geometry::Vec2& position) const;
   /// Returns the solid angle of a pixel, in sr.
+  /// \param k index of the pixel, row by row from the top
   double solid_angle(std::size_t k) const;
 };
 
@@ -48,7 +49,7 @@ RoadCamera camera_at(const RoadScene& scene, double distance_m);
 struct RoadPixels {
   std::vector<double> luminance;
   std::vector<double> reflected;           ///< part of the luminance that comes directly from the reflectors
-  std::vector<double> veil;                ///< part of the luminance that is scattered in the eye
+  std::vector<double> veil;                ///< part of the luminance that comes from light scattered in the eye
   std::vector<std::array<double, 3>> rgb;  ///< linear sRGB; the lamp is white
 };
 

@@ -59,6 +59,7 @@ Polygon scaled(Polygon polygon, const Vec2& factors) {
 }
 
 /// Returns a convex polygon whose sides are moved inwards.
+/// \param by distance by which the sides are moved
 Polygon inset(const Polygon& polygon, double by) {
   const std::size_t count = polygon.size();
   const auto side = [&](std::size_t k) {
@@ -77,7 +78,7 @@ Polygon inset(const Polygon& polygon, double by) {
   return result;
 }
 
-/// Returns the distance of the nearest side of a convex polygon from the origin.
+/// Returns the distance from a point within a convex polygon to its nearest side.
 double inner_radius(const Polygon& polygon, const Vec2& centre) {
   double radius = 1e9;
   for (std::size_t k = 0; k < polygon.size(); ++k) {

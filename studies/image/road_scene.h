@@ -43,8 +43,8 @@ struct RoadScene {
   double car_width = 1.75, car_tall = 1.42;
 
   double lane_width = 3.5, line_width = 0.12;
-  double dash_length = 4.0, dash_period = 12.0;  ///< of the broken line on the left side of the driver's lane
-  double shoulder_width = 0.5;                   ///< asphalt outside of the lines at both edges
+  double dash_length = 4.0, dash_period = 12.0;  ///< length and period of the dashes left of the driver's lane
+  double shoulder_width = 0.5;                   ///< width of the asphalt outside of the edge lines
   double asphalt_r_l = 0.015;                    ///< R_L in the 30 m geometry, cd/(lx m^2)
   double marking_r_l = 0.15;
 
@@ -59,7 +59,7 @@ struct RoadScene {
   std::size_t rows = 440;
   double field_deg = 13.0;  ///< angular width of each picture; 1 to 90
 
-  /// Returns the size of the rectangle around a reflector or a sign.
+  /// Returns the size of the bounding rectangle of a reflector or a sign, in m.
   geometry::Vec2 size() const;
   /// Returns the retroreflective area of one reflector or of the sign, in m^2.
   double area() const;
@@ -71,8 +71,8 @@ struct RoadScene {
 ///        the road, if two reflectors overlap, or if the mast does not reach the sign
 RoadScene scene_of(const RoadRequest& request, const geometry::Polygon& design_outline_mm);
 
-/// Returns the positions of the left and the right headlamp. The distance is that between headlamps and reflectors
-/// along the road.
+/// Returns the positions of the left and the right headlamp.
+/// \param distance_m distance from the headlamps to the reflectors, along the road
 std::array<geometry::Vec3, 2> lamps_at(const RoadScene& scene, double distance_m);
 geometry::Vec3 eye_at(const RoadScene& scene, double distance_m);
 

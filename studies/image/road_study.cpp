@@ -24,7 +24,7 @@ using geometry::Vec3;
 
 // Number of spans of the spectrum, with two wavelengths each, for luminances and for the colour of the light.
 constexpr std::size_t kSpansOfRoad = 1, kSpansOfTint = 2;
-// Part of the progress that the colour of the light takes.
+// Fraction of the progress for the computation of the colour of the light.
 constexpr double kProgressOfColour = 0.3;
 
 /// Returns the outline of a finite design, in mm. Returns an empty polygon for an infinite design.
@@ -58,12 +58,12 @@ std::optional<std::vector<PhotometerReading>> measured(Photometer& photometer,
   }
 }
 
-/// Returns the settings of a photometer for both headlamps and each reflector: those of the first reflector for the
-/// left and the right headlamp, then those of the next reflector.
+/// Returns the settings of a photometer for each reflector and both headlamps. Each reflector has two settings, for the
+/// left and the right headlamp.
 std::vector<PhotometerSetting> settings_of(const RoadScene& scene, double distance_m) {
   std::vector<PhotometerSetting> settings;
   const Vec3 eye = eye_at(scene, distance_m);
-  // A reflector is mounted without rotation, so that its axes are those of the scene.
+  // Reflectors are mounted without rotation, so that their axes are parallel to the axes of the scene.
   for (const Vec3& reflector : scene.reflectors)
     for (const Vec3& lamp : lamps_at(scene, distance_m))
       settings.push_back(setting_of({(lamp - reflector).normalized(), (eye - reflector).normalized()}));

@@ -62,7 +62,7 @@ CoefficientGrid resolve_grid(CoefficientGrid grid, double window_deg) {
 PhotometerSetting setting_at(double entrance_deg, double presentation_deg, double rotation_deg) {
   PhotometerSetting setting;
   setting.rotation_deg = rotation_deg;
-  // The general formulas have rounding errors. Without them, readings are exactly those of the same angles V and H.
+  // At multiples of 90 degrees, the general formulas would only add rounding errors to V and H.
   if (presentation_deg == 0.0 || std::abs(presentation_deg) == 180.0) {
     setting.v_deg = (presentation_deg == 0.0 ? -entrance_deg : entrance_deg) + 0.0;
   } else if (std::abs(presentation_deg) == 90.0) {

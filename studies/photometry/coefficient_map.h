@@ -14,18 +14,18 @@ namespace retrace::studies {
 class Photometer;
 struct PhotometerSetting;
 
-/// Returns the grid of a request after its checks. Empty lists are replaced by the defaults, lists are sorted, and
-/// repeated angles are removed.
-/// \throw InputError at `map_observation_deg` if an angle is outside of the window of the far field, or at the field
-/// of a list of less than two entrance or observation angles
+/// Checks the grid of a request and returns it in the form that measure_maps() needs. Empty lists are replaced by the
+/// defaults, lists are sorted, and repeated angles are removed.
+/// \throw InputError at `map_observation_deg` if an angle is outside of the window of the far field, or at the field of
+/// a list with fewer than two entrance or observation angles
 CoefficientGrid resolve_grid(CoefficientGrid grid, double window_deg);
 
-/// Returns the geometry for light at an entrance angle: beta1 and beta2 are the components of the entrance angle in the
-/// plane of the observer and perpendicular to it. A negative entrance angle is its magnitude at the presentation angle
-/// plus 180 degrees.
+/// Returns the geometry for an entrance angle and a presentation angle. The angles V and H are computed from the
+/// components beta1 and beta2 of the entrance angle (ASTM E808, docs/theory/photometry.md). A negative entrance angle
+/// has the same meaning as its absolute value at the presentation angle plus 180 degrees.
 /// \param entrance_deg angle between the normal and the direction to the source, in (-90, 90)
 /// \param presentation_deg angle about the direction to the source from the half plane of the normal to that of the
-/// observer
+///        observer
 PhotometerSetting setting_at(double entrance_deg, double presentation_deg, double rotation_deg);
 
 /// Maps of one design, for each rotation and presentation angle.
@@ -43,8 +43,9 @@ struct DesignMaps {
 std::optional<DesignMaps> measure_maps(const Photometer& photometer, const PhotometrySettings& settings,
                                        std::size_t design, Progress* progress, const Cancellation* cancel);
 
-/// Returns the map with the ratios b / a. Ratios are NaN where a is 0. The standard errors are those of the ratios,
-/// from linear propagation of independent errors. \pre both maps have the same grid
+/// Returns the map with the ratios b / a. Ratios are NaN where a is 0. The standard errors of the ratios follow from
+/// linear propagation of independent errors.
+/// \pre both maps have the same grid
 CoefficientMap ratio(const CoefficientMap& a, const CoefficientMap& b);
 
 /// Returns the ratios of the maps of the second design to those of the first one. Empty unless there are two designs.

@@ -81,10 +81,10 @@ class Photometer {
   raytrace::BeamTracer make_tracer() const;
   const raytrace::ApertureKernel& kernel() const { return kernel_; }
 
-  /// Returns two values, for the axes x and y. A value is true if the reversal of this axis is one of
+  /// Returns two values, for the axes x and y. A value is true if the reflection that reverses this axis is one of
   /// design::light_symmetries().
   std::array<bool, 2> mirrors() const;
-  /// Makes later calls of group_equivalent_settings() and measure() use all symmetries of the part. Otherwise, only
+  /// Makes later calls of group_equivalent_settings() and measure() use all symmetries of the part. By default, only
   /// reflections of the axes x and y are used.
   void share_rotations() { shares_rotations_ = true; }
   /// Groups the settings. All settings of a group can be measured from one traced far field.

@@ -41,7 +41,7 @@ inline constexpr std::uint64_t kDefaultRaysPerDirection = std::uint64_t{1} << 20
 struct CoefficientGrid {
   std::vector<double> entrance_deg;     ///< in [-85, 85]; at least 2
   std::vector<double> observation_deg;  ///< inside the window of the far field; at least 2
-  /// Presentation angles, with one map for each of them. At 0, the source is in the plane of normal and observer.
+  /// Presentation angles, in [-180, 180]. There is one map for each of them.
   std::vector<double> presentation_deg;
 };
 
@@ -151,9 +151,9 @@ struct CoefficientMap {
   double presentation_deg = 0.0;
   std::vector<double> entrance_deg;     ///< ascending
   std::vector<double> observation_deg;  ///< ascending
-  std::vector<double>
-      r_a;  ///< in cd/(lx m^2); all observation angles of the first entrance angle, then of the next one
-  std::vector<double> std_error;   ///< as `r_a`
+  /// R_A in cd/(lx m^2): all observation angles of the first entrance angle, then of the next one.
+  std::vector<double> r_a;
+  std::vector<double> std_error;   ///< standard errors of `r_a`, in the same order
   bool lacks_diffraction = false;  ///< true: diffraction is significant but not included
 
   std::size_t index(std::size_t entrance, std::size_t observation) const {

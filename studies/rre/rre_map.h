@@ -40,8 +40,8 @@ struct RreMap {
   double mean() const;
 };
 
-/// Replaces empty lists of angles by the default grid of a polar map, and checks lists that the request gives. Azimuths
-/// are reduced to 0 to 360 degrees. Both lists are sorted, and repeated values are removed.
+/// Replaces empty lists of angles by the default grid of a polar map, and checks other lists. Azimuths are reduced to
+/// [0, 360) degrees. Both lists are sorted, and repeated values are removed.
 /// \throw InputError at `incidence_deg` or `azimuth_deg` if the list is not suitable for a map
 void resolve_grid(RreSettings& settings);
 

@@ -329,7 +329,7 @@ struct MapQuantity {
   std::string_view name;  ///< such as "R_A"
   std::string_view unit;
   std::string_view key;  ///< name with its unit in CSV files
-  double factor = 1.0;   ///< value divided by R_A in cd/(lx m^2)
+  double factor = 1.0;   ///< value of the quantity divided by R_A in cd/(lx m^2)
 };
 
 MapQuantity quantity_of(const PhotometryResult& result) {

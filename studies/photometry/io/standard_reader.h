@@ -30,9 +30,10 @@ std::filesystem::path dye_file_of(const std::optional<std::string>& dye, bool de
 /// \throw InputError at a field of the request, or at a line of the file with limits
 PhotometrySettings resolve(const PhotometryRequest& request, bool design_is_coloured);
 
-/// Returns a design that is compared with that of the study, with the dye that the request gives it.
+/// Returns the second design of a comparison with its dye. If the request has no dye, a design without spectral
+/// absorption gets the dye of the colour.
 /// \param colour colour of the part in the test plan
-/// \throw InputError at the field `dye`
+/// \throw InputError at the field `dye` if its file does not exist
 ComparedDesign compared_design(const PhotometryRequest& request, design::Design design, const std::string& colour);
 
 }  // namespace retrace::studies
