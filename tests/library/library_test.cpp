@@ -387,7 +387,7 @@ TEST(Library, PicturesAreNumbers) {
   for (const auto& [channel, values] : result.pictures[0].channels) EXPECT_EQ(values.size(), 400U) << channel;
 }
 
-/// The pictures of a series are those of single requests, and the document is that of the command.
+/// The pictures of a series are equal to those of single requests, and its document is equal to that of the command.
 TEST(Library, SeriesOfPicturesHasOneExposure) {
   const TemporaryFolder folder;
   const std::string file = example("rtp_brick_5mm.toml");

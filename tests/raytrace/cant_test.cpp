@@ -51,8 +51,8 @@ std::vector<Case> cases() {
       {"triangular with errors of angle", with_errors},
       {"infinite honeycomb", infinite(hexagon, Arrangement::honeycomb, 1.0)},
       // Rays in this thick plate have hundreds of reflections, and beams truncate several percent of the power. The
-      // error of fewer rays is much smaller. An azimuth takes ten seconds, so that the usual run has only the azimuth
-      // that is oblique to every mirror plane.
+      // error of rays is much smaller, even with fewer rays. An azimuth takes ten seconds. The usual run therefore has
+      // only the azimuth that is oblique to every mirror plane.
       {"infinite steep honeycomb", infinite(steep, Arrangement::honeycomb, 5.0), test::sample_size(1U << 13, 1U << 16),
        test::is_long_run() ? std::vector<double>{0.0, 130.0} : std::vector<double>{130.0}},
       {"infinite triangular", infinite(triangle, Arrangement::triangular, 1.0)}};

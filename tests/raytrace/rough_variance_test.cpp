@@ -32,8 +32,8 @@ MonteCarloResult trace(const Part& part, std::uint64_t count, std::uint32_t seed
 TEST(RoughVariance, ErrorsAreTrue) {
   constexpr std::uint32_t kSeeds = 60;
   const Part part = build_part(kCubes);
-  // The fraction of intervals that contain the truth does not depend on the number of points. The long run has 32 times
-  // as many points as a short one.
+  // The fraction of intervals that contain the true value does not depend on the number of points. The true value is
+  // estimated with 32 times as many points.
   const auto points = test::sample_size(1U << 11, 1U << 13);
   const ConeResult truth = trace(part, 32 * points, 1000, {}).cones[0];
   const double t95 = student_bound_of(0.05, Sampling::kReplicates);

@@ -190,7 +190,7 @@ TEST(StandardError, IsTrue) {
     const MonteCarlo tracer(part);
     int covered = 0;
     const double t95 = student_bound_of(0.05, Sampling::kReplicates);
-    // The fraction of intervals that contain the truth does not depend on the number of rays.
+    // The fraction of intervals that contain the true value does not depend on the number of rays.
     const std::uint64_t count = test::sample_size(1U << 11, 1U << 13);
     for (std::uint32_t seed = 1; seed <= 200; ++seed) {
       const ConeResult result = tracer.trace(truth.optics, truth.illumination, {0.5}, rays(count, seed), {}).cones[0];

@@ -1,4 +1,4 @@
-// Tests of plots over a rectangular grid: levels of the colour scale, and drawings of values without light.
+// Tests of plots over a rectangular grid: levels of the colour scale, and drawings of zeros and missing values.
 #include "report/contour_plot.h"
 
 #include <gtest/gtest.h>

@@ -75,13 +75,14 @@ TEST(CoefficientMap, HasTheValuesOfSingleReadings) {
             -map.entrance_deg[e];
         const PhotometricPoint point = run(design, single).points[0];
         const double r_a = map.r_a[map.index(e, o)];
-        // Symmetric directions share one trace. Beams below the cut-off are truncated, in different numbers.
+        // Symmetric directions share one trace. The values differ slightly, because different weak beams are truncated.
         EXPECT_NEAR(r_a, point.r_a, 1e-4 * point.r_a) << map.presentation_deg << ", " << map.entrance_deg[e];
         EXPECT_GT(r_a, 0.0);
       }
 }
 
-// A honeycomb is symmetric for rotations by 120 degrees. At normal incidence, all rotations are one direction.
+// A honeycomb is symmetric under rotations by 120 degrees. At normal incidence, only one direction is traced for all
+// rotations.
 TEST(CoefficientMap, SymmetricDirectionsAreTracedOneTime) {
   const PhotometryResult found =
       run(design_of(honeycomb(2.0)), map_request({{0.0, 20.0}, {0.2, 0.5}, {}}, {0.0, 120.0, 240.0}));

@@ -1,5 +1,5 @@
-// Tests of the symmetries of designs with their light: properties that break the symmetry of a part, and the common
-// rule of RRE and photometry.
+// Tests of the symmetries of designs with their light: properties that break the symmetry of a part, and agreement of
+// the photometer with these symmetries.
 #include "design/light_symmetry.h"
 
 #include <gtest/gtest.h>

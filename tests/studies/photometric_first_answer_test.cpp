@@ -45,8 +45,8 @@ PhotometrySettings request_by(raytrace::Engine engine) {
   return request;
 }
 
-/// A measurement with an engine, and its preliminary readings. Several tests use them, so that they are computed only
-/// one time.
+/// A measurement with an engine, and its preliminary readings. They are computed only one time, because several tests
+/// use them.
 struct Measured {
   explicit Measured(raytrace::Engine engine)
       : study(cubes(), request_by(engine)), result(study.run()), first(study.first_answer(kRayShare)) {}
@@ -194,7 +194,7 @@ TEST(PhotometricFirstAnswer, MeasurementsStopAtAnyMoment) {
     const Clock::time_point begin = Clock::now();
     ASSERT_TRUE(study.run().complete);
     const std::chrono::duration<double> whole = Clock::now() - begin;
-    // The stops are spread evenly over the run, and every stop is another test of the same kind.
+    // The stops are spread evenly over the run. A shorter test only has fewer of them.
     const int stops = test::sample_size(5, 16);
     for (int k = 0; k < stops; ++k) {
       Cancellation cancel;

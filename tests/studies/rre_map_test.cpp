@@ -91,7 +91,7 @@ TEST(RreMap, SharesSymmetricDirections) {
   }
 }
 
-/// Rays of a direction that others share are counted one time.
+/// The rays of equivalent directions are counted one time.
 TEST(RreMap, CountsTracedDirectionsOneTime) {
   RreRequest request = map_request({0.0, 20.0}, steps(350.0, 60.0));
   request.engine = "montecarlo";
@@ -205,7 +205,7 @@ TEST(RreMap, GridsAreCompletedAndChecked) {
     }
     return "";
   };
-  // A single 0 is a list like any other one.
+  // A list with the single value 0 also counts as given.
   for (const std::vector<double>& too_few : {std::vector{0.0, 90.0, 180.0}, {30.0}, {0.0}}) {
     request.azimuth_deg = too_few;
     EXPECT_EQ(refused_field(request), "azimuth_deg");

@@ -55,7 +55,8 @@ double r_a_of(const design::Design& design, const Geometry& at, std::optional<do
 
 CameraRequest camera_of(const Geometry& at) {
   CameraRequest camera;
-  // So distant that all points of the part see lamp and eye in the same direction, as in `retrace photometry`.
+  // At this distance, the directions of lamp and eye are nearly the same for all points of the part, as in `retrace
+  // photometry`.
   camera.distance_m = 1e5;
   camera.observation_deg = at.observation_deg;
   camera.v_deg = at.v_deg;
@@ -115,8 +116,8 @@ TEST(CameraDiffraction, LuminanceOfPrismsIsThatOfThePhotometer) {
                                  1e-7);
 }
 
-/// The picture of a finite part also shows its sides, which are dark. The intensity I = R_A E A of the whole picture is
-/// therefore compared.
+/// The picture of a finite part also shows its sides, which are dark. The test therefore compares the intensity of the
+/// whole picture with R_A E A.
 TEST(CameraDiffraction, IntensityOfFinitePrismsIsThatOfThePhotometer) {
   const design::Design design = design_of(finite(RtpElement{2.0, 2.0}, Arrangement::offset, 10.0, 10.0, 2.0), 0.0);
   for (const Geometry& at : {kGeometries[0], kGeometries[1], kGeometries[4]}) {
@@ -130,9 +131,10 @@ TEST(CameraDiffraction, IntensityOfFinitePrismsIsThatOfThePhotometer) {
   }
 }
 
-/// At a distance of 1 km, light that only the two facets of a prism return leaves in directions that depend on the
-/// position on the face. The mean luminance is then 2.6 % above that of the centre. It is the mean of the photometer
-/// over the positions: on a sheet of 300 mm, V is -0.0086 to 0.0086 degrees.
+/// The two facets of a prism reverse light in one plane only. At a distance of 1 km, the angle between the returned
+/// light and the eye therefore depends on the position on the face, and the mean luminance is 2.6 % above that of the
+/// centre. It agrees with the mean over the readings of the photometer at these positions: on a sheet of 300 mm, V is
+/// -0.0086 to 0.0086 degrees.
 TEST(CameraDiffraction, LuminanceVariesOverTheFaceAsForThePhotometer) {
   const design::Design design = design_of(infinite(RtpElement{2.0, 2.0}, Arrangement::offset, 2.0), 0.0);
   CameraRequest camera = camera_of(kGeometries[0]);

@@ -37,7 +37,7 @@ double mean_over_face(const Part& part, const DetectorSetting& setting, const st
   return sum * setting.face.pixel_area_mm2() / part.entrance_area_mm2;
 }
 
-/// Returns the sum of the angular map, with the light outside of its window.
+/// Returns the power in the angular map, plus the power outside of its window.
 double power_of_directions(const DetectorMaps& maps, const DirectionGrid& grid) {
   double power = maps.outside;
   for (std::size_t k = 0; k < grid.size(); ++k) power += maps.per_sr.value[k] * grid.solid_angle_sr(k);
@@ -281,7 +281,8 @@ TEST(DetectorStudy, AngularMapHasDiffraction) {
   EXPECT_LT(by_rays.window_deg, 0.2) << "without diffraction, the light returns in one direction";
 }
 
-/// Without a number of rays, rays are added in passes until bins are small, or until the maximum number of passes.
+/// Without a requested number of rays, rays are added in passes until bins are small, or until the maximum number of
+/// passes is reached.
 TEST(DetectorStudy, RaysAreAddedUntilBinsAreSmall) {
   constexpr std::uint64_t kRays = 1U << 16;
   design::Design design;
@@ -299,7 +300,7 @@ TEST(DetectorStudy, RaysAreAddedUntilBinsAreSmall) {
   EXPECT_EQ(coarse.maps.rays, kRays);
   EXPECT_EQ(coarse.face_bin_pixels, 1U);
   EXPECT_FALSE(coarse.is_limit_reached);
-  // This error is below that of the pixels after one pass, so that one pass is not enough.
+  // This error is smaller than that of the pixels after one pass, so that more passes are needed.
   const studies::DetectorResult fine = run(0.6 * coarse.face_error);
   EXPECT_GT(fine.maps.rays, kRays);
   EXPECT_EQ(fine.is_limit_reached, fine.face_bin_pixels > 1 || fine.angle_bin_pixels > 1);
@@ -327,7 +328,7 @@ class CancelAt : public Progress {
   double fraction_;
 };
 
-/// An interrupted run has the maps of the finished replicates, if these are enough.
+/// An interrupted run returns the maps of the finished replicates, if there are enough of them.
 TEST(DetectorStudy, FinishedReplicatesRemainAfterAnInterrupt) {
   design::Design design;
   design.part() = infinite(RtpElement{2.0, 2.0}, Arrangement::offset, 1.0);
@@ -356,7 +357,7 @@ TEST(DetectorStudy, FinishedReplicatesRemainAfterAnInterrupt) {
   EXPECT_GT(exact.window_deg, 0.0);
 }
 
-/// Light of several wavelengths has the sums of the maps of each wavelength.
+/// The maps of light of several wavelengths are the weighted sums of the maps of single wavelengths.
 TEST(DetectorMaps, WavelengthsAreAdded) {
   const Part part = build_part(infinite(HexagonalCube{1.0}, Arrangement::honeycomb, 1.0));
   const Illumination light = from(20.0);

@@ -110,7 +110,7 @@ TEST_F(Image, CameraSaysThatThePartIsBlack) {
   ASSERT_EQ(json["warnings"].size(), 1U);
 }
 
-/// A list whose values are all the same gives one picture, and a narrow picture with a bar of luminances can be drawn.
+/// A list of equal values gives one picture. A bar of luminances can also be drawn below a narrow picture.
 TEST_F(Image, ListsOfOneValueAndNarrowPicturesAreOnePicture) {
   const Json json = retrace_json(folder_, {"image", "brick.toml", "--camera", "--no-diffraction", "--pixels=1x200",
                                            "--passes=2", "--tone=log", "--distance-m=3,3,3", "-o", "out"});
@@ -119,7 +119,7 @@ TEST_F(Image, ListsOfOneValueAndNarrowPicturesAreOnePicture) {
   EXPECT_TRUE(folder_.read("out/camera.png").starts_with("\x89PNG"));
 }
 
-/// A damaged picture gives one line, although libpng writes a line of its own.
+/// The error for a damaged picture is one line: the message that libpng writes to standard error is discarded.
 TEST_F(Image, DamagedBackgroundsAreRefusedWithOneLine) {
   retrace(folder_, {"image", "brick.toml", "--camera", "--no-diffraction", "--pixels=8x6", "--passes=2", "-o", "out"});
   const std::string png = folder_.read("out/camera.png");

@@ -169,13 +169,13 @@ Vec2 centre_of(const RoadScene& scene, std::size_t k) {
   return {static_cast<double>(k % scene.columns) + 0.5, static_cast<double>(k / scene.columns) + 0.5};
 }
 
-/// In the picture, the reflectors have the positions and sizes of a pinhole projection, also if they are smaller than a
+/// In the picture, the reflectors have the positions and sizes of a pinhole projection, even if they are smaller than a
 /// pixel.
 TEST(Road, ReflectorsAreDrawnWhereTheyAre) {
   RoadScene scene;
   struct Picture {
     double distance_m, field_deg;
-    double tolerance;  ///< for the centroid, in pixels; pixels do not resolve the position of a smaller reflector
+    double tolerance;  ///< for the centroid, in pixels; larger for a reflector within one pixel
   };
   for (const auto& [distance_m, field_deg, tolerance] :
        {Picture{10.0, 9.0, 0.05}, Picture{30.0, 3.2, 0.05}, Picture{100.0, 13.0, 0.5}}) {
@@ -346,7 +346,7 @@ TEST(Road, IntensityOfASignInThePictureIsThatOfItsArea) {
   }
 }
 
-/// A finite design has its own outline and size, unless others are requested.
+/// A finite design has its own outline and size, unless another outline or size is requested.
 TEST(Road, FiniteDesignsHaveTheirOwnOutline) {
   const Polygon hexagon = {{40, 10}, {50, 20}, {50, 40}, {40, 50}, {30, 40}, {30, 20}};
   RoadRequest request;

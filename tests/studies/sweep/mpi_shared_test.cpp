@@ -64,7 +64,7 @@ class CommandsByMpi : public ByMpi {
     expect_same_files("alone", "one", files);
     expect_same_files("alone", "three", files);
   }
-  /// Returns the table of kLongRoughness from a single process. It is computed only one time.
+  /// Returns the table of kLongRoughness, computed by a single process. It is computed only in the first call.
   std::string long_roughness_alone() {
     static const std::string table = [this] {
       run_alone(kLongRoughness + " --quiet -o alone");
