@@ -46,12 +46,12 @@ RETRACE_API ImageResult camera(const Design& design, const CameraRequest& reques
 /// computation is cancelled, the result has only the pictures that were computed.
 /// \param designs one design, or one for each picture; at most 64
 /// \param requests one request, or one for each picture; at most 64
-/// \throw InputError if both lists have several elements, or in the same cases as camera()
+/// \throw InputError if both lists have several elements, if one of them is empty, or in the same cases as camera()
 /// \throw BudgetError if the ray tracer lost power
 RETRACE_API ImageResult camera_series(const std::vector<Design>& designs,
                                       const std::vector<CameraRequest>& requests = {CameraRequest()},
                                       const Running& running = {});
-/// Computes the views from a car at night. Throws like detector().
+/// Computes a driver's views at night of reflectors on a car ahead or of a sign. Throws like detector().
 RETRACE_API ImageResult road(const Design& design, const RoadRequest& request = {}, const Running& running = {});
 
 }  // namespace retrace

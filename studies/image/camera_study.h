@@ -71,20 +71,21 @@ class CameraStudy {
   CameraResult run(Progress* progress = nullptr, const Cancellation* cancel = nullptr,
                    const std::function<void(const CameraResult&)>& after_pass = {},
                    const DistributeTasks& distribute = {}) const;
-  /// Computes the picture in this process, like run(), and returns its numbers as bytes, from which result_of() makes
-  /// the result. Returns nothing if the computation was cancelled.
+  /// Computes the picture in this process, like run(), and returns its numbers as bytes for result_of(). Returns
+  /// nothing if the computation was cancelled.
   std::optional<std::string> run_to_bytes(const Cancellation* cancel) const;
+  /// Returns the result that corresponds to these bytes.
   /// \param bytes result of run_to_bytes() of an equal study
   CameraResult result_of(const std::string& bytes) const;
   /// Returns a task that traces the pass with a given number, using all threads.
-  /// \pre the study exists as long as the task
+  /// \pre the study outlives the task
   ComputeTask passes() const;
 
   const raytrace::CameraScene& scene() const { return scene_; }
 
  private:
   struct Tracers;
-  /// Numbers of a picture. They and the request determine the result.
+  /// Numbers of a picture that, together with the request, determine the result.
   struct Numbers {
     std::vector<raytrace::CameraImage> images;  ///< one for each element of `lights_`
     std::optional<NoDiffraction> no_diffraction;

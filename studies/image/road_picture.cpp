@@ -304,7 +304,7 @@ class Surfaces {
   void sign() {
     const Vec3& centre = s_.reflectors.front();
     const double half = 0.5 * s_.mast_width;
-    // The mast is a cylinder behind the sign: its edges receive and return less light.
+    // The mast is a cylinder behind the sign, so that it is darker towards its edges.
     const double behind = -half - 0.02;
     const double x = centre.x();
     std::vector<Vec3> mast = {{x - half, 0.0, behind},
@@ -382,7 +382,8 @@ class Surfaces {
       const double x = static_cast<double>(column);
       const Vec3 d = camera.direction_at(Vec2(x + 0.5, horizon));
       const double azimuth_deg = std::atan2(d.x(), -d.z()) * 180.0 / pi;
-      // A sum of waves without a common period looks irregular. The trees open towards the end of the road.
+      // The heights of the trees are a sum of waves without a common period, which looks irregular. Trees are lower
+      // near the end of the road.
       double height_deg = 0.62;
       double frequency = 0.43;
       double amplitude = 0.24;

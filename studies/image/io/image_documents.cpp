@@ -226,11 +226,11 @@ std::string detector_table(const DetectorResult& result) {
                   fixed(100.0 * result.maps.rre, 3), result.engine, fixed(largest(result.maps.leaving.value), 3),
                   fixed(100.0 * result.maps.outside, 2), shortest(result.window_deg));
   if (result.engine == "exact") return table;
-  table += fmt::format("bins with light: standard error up to {} % on the face, {} % by direction\n",
+  table += fmt::format("bins with light: standard error up to {} % on the face, {} % in the angular map\n",
                        fixed(100.0 * result.face_error, 2), fixed(100.0 * result.angle_error, 2));
   if (result.request.bin_error > 0.0)
     table += fmt::format(
-        "{} % of the light is in bins of at most {} pixels on the face, {} pixels by direction; "
+        "{} % of the light is in bins of at most {} pixels on the face, {} pixels in the angular map; "
         "{} rays{}\n",
         fixed(100.0 * kLightInSmallBins, 0), result.face_bin_pixels, result.angle_bin_pixels, result.maps.rays,
         result.is_limit_reached ? ", the maximum of a run without --samples" : "");

@@ -182,7 +182,7 @@ std::string rows_of(const std::vector<PhotometricPoint>& points, std::size_t max
                          fixed(p.limit_mcd_per_lx, 2), fixed(100.0 * p.margin(), 1), fixed(p.r_a, 1), point_text(p));
   }
   if (shown.size() < points.size())
-    table += fmt::format("... and {} points with margins that are not smaller\n", points.size() - shown.size());
+    table += fmt::format("... and {} points with larger or equal margins\n", points.size() - shown.size());
   return table;
 }
 
