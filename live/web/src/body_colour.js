@@ -23,7 +23,7 @@ function absorptionOf(design) {
   return absorption && Array.isArray(absorption.value) ? absorption.value : null;
 }
 
-/** Returns the length of the path of light through the body: in and out. */
+/** Returns the path length of light through the body in mm: twice the thickness. */
 function pathLengthOf(design) {
   return 2 * (design.thickness_mm || 1);
 }

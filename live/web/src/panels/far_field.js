@@ -3,7 +3,7 @@ import { h, s } from "../dom.js";
 import { panel } from "../frame.js";
 import { angle, percent, short } from "../units.js";
 
-const MAX_SPOTS = 6; // number of spots in the list
+const MAX_SPOTS = 6; // maximum number of spots in the list
 const HALF = 110; // half width of the drawing in its units
 const REACHES_DEG = [0.1, 0.2, 0.5, 1, 2, 5, 10, 30, 90, 180];
 const MIN_POWER = 1e-5; // minimum power of a spot that influences the range of the drawing
