@@ -484,7 +484,7 @@ void add_warnings(CameraResult& result) {
   const double illuminance_lx = result.scene.lamp.illuminance_lx;
   const double returned = result.r_a ? *result.r_a / std::max(1e-9, to_eye(result.scene).normalized().z())
                                      : image.part_mean() / std::max(1e-300, illuminance_lx);
-  // If R_A is not computed, the returned light is known only without surroundings, because the picture contains both.
+  // Without R_A, the returned light is taken from the picture, which also contains the light of the surroundings.
   const bool is_known = result.r_a || !result.scene.surroundings.has_light();
   if (illuminance_lx > 0.0 && is_known && returned < kMinRetroreflected)
     result.warnings.push_back(
