@@ -66,7 +66,7 @@ inline constexpr ColourScale kBlueWhiteRed = {{{0.129, 0.400, 0.675},
 /// \param fraction position on the scale, clamped to 0..1
 Colour colour_at(const ColourScale& scale, double fraction);
 
-/// Returns the colour of a contour line on an area of a colour: dark on light colours, and white on dark colours.
+/// Returns the colour of a contour line on a coloured area: dark on light areas, and white on dark areas.
 Colour contour_colour(Colour area);
 
 /// Draws a vertical bar with all colours, without a frame.

@@ -285,7 +285,7 @@ TEST(Road, LuminanceInTheThirtyMetreGeometryIsRl) {
   EXPECT_EQ(road_luminance(scene, lamp, {0.0, 1.2, 30.0}, {0.0, 0.0, 31.0}, 0.15), 0.0) << "behind the lamp";
 }
 
-/// The parts of the luminance add up, and the colours have the same luminance.
+/// Colours have the luminance of their pixels. Reflected light and veil together are at most this luminance.
 TEST(Road, ColoursHaveTheLuminanceOfThePixels) {
   for (const RoadView& view : road().views)
     for (std::size_t k = 0; k < view.picture.luminance.size(); k += 7) {
@@ -394,8 +394,8 @@ std::vector<std::uint8_t> part_of(const std::string& png, std::size_t left, std:
   return part;
 }
 
-/// Each view has the same pixels in its own file and in the file of all views, although the views alone would have
-/// different automatic exposures.
+/// Each view has the same pixels in its own file and in the file of all views, although the automatic exposures of
+/// single views would differ.
 TEST(Road, SeriesHasOneExposure) {
   const std::string all = report::road_png(road());
   for (const std::size_t view : {0U, 2U}) {
