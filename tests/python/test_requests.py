@@ -33,7 +33,11 @@ CALLS = {
         ["image", BRICK, "--detector"],
     ),
     "camera": (partial(rt.image.camera, BRICK), _core.CameraRequest, ["image", BRICK, "--camera"]),
-    "road": (partial(rt.image.road, BRICK), _core.RoadRequest, ["image", BRICK, "--road"]),
+    "road": (
+        partial(rt.image.road, BRICK, mount="sign"),
+        _core.RoadRequest,
+        ["image", BRICK, "--road", "--mount=sign"],
+    ),
     "metrology": (partial(rt.metrology, HEIGHTS), _core.MetrologyRequest, ["metrology", HEIGHTS]),
     "solid": (
         partial(rt.mesh, BRICK, what="mould"),
