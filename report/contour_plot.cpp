@@ -86,7 +86,7 @@ ContourLevels levels_of_ratios(double smallest, double largest) {
 
 /// Position of a value in an ascending list.
 struct ContourPosition {
-  std::size_t index = 0;  ///< index of the value before it
+  std::size_t index = 0;  ///< index of the last value at or before the position
   double fraction = 0.0;  ///< fraction of the distance to the next value
 };
 

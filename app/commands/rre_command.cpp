@@ -27,12 +27,12 @@ struct RreOptions {
 };
 
 std::vector<Argument> arguments(RreOptions& options) {
-  std::vector<Argument> all = {{"DESIGN", "design files; - is standard input", &options.designs, files(".toml")},
-                               {"--incidence LIST",
-                                "incidence angles in degrees: a,b,c, start:stop:step and start:stop:auto",
-                                &options.incidence,
-                                {},
-                                "0; with --map 0:80:5"}};
+  std::vector<Argument> all = {
+      {"DESIGN", "design files; - is standard input", &options.designs, files(".toml")},
+      {"--incidence LIST",
+       "incidence angles in degrees: a,b,c, start:stop:step and start:stop:auto [0; with --map "
+       "0:80:5]",
+       &options.incidence}};
   const std::array<CommandRequest, 1> of_command = {{{requests::description<RreRequest>()}}};
   for (Argument& argument : field_arguments(of_command, options.fields)) all.push_back(std::move(argument));
   return all;

@@ -27,7 +27,7 @@ std::string text_of_angles(const studies::CoefficientMap& map) {
                      shortest(map.presentation_deg));
 }
 
-/// Returns the panel of a map without marks.
+/// Returns the panel for a map, without any marks on it.
 /// \param factor factor by which the values of the map are multiplied
 ContourPanel panel_of(const studies::CoefficientMap& map, std::string title, double factor) {
   ContourPanel panel;

@@ -70,7 +70,7 @@ constexpr Row kRreRows[] = {
       .otherwise = "0, or no angles if ranges with automatically chosen angles are given; for maps 0:80:5",
       .is_no_option = true}},
     {"azimuth_deg",
-     NumberOrNumbers{kAzimuth},
+     NumberOrNumbers{.range = kAzimuth, .may_be_empty = true},
      "azimuths of the source",
      access<&RreRequest::azimuth_deg>,
      {.value = "LIST", .notation = Notation::number_list, .option = "--azimuth", .otherwise = "0; for maps 0:350:10"}},

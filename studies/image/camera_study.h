@@ -75,7 +75,7 @@ class CameraStudy {
   /// nothing if the computation was cancelled.
   std::optional<std::string> run_to_bytes(const Cancellation* cancel) const;
   /// Returns the result that corresponds to these bytes.
-  /// \param bytes result of run_to_bytes() of an equal study
+  /// \param bytes result of run_to_bytes() of a study with the same settings
   CameraResult result_of(const std::string& bytes) const;
   /// Returns a task that traces the pass with a given number, using all threads.
   /// \pre the study outlives the task
@@ -85,7 +85,7 @@ class CameraStudy {
 
  private:
   struct Tracers;
-  /// Numbers of a picture that, together with the request, determine the result.
+  /// The numbers that identify a picture. Together with the request, they determine the result.
   struct Numbers {
     std::vector<raytrace::CameraImage> images;  ///< one for each element of `lights_`
     std::optional<NoDiffraction> no_diffraction;

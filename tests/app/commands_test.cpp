@@ -296,8 +296,9 @@ TEST(Help, ShowsEveryOptionWithItsDefault) {
     const Outcome rre = retrace(folder, run);
     EXPECT_EQ(rre.code, 0);
     if (run.front() != "rre") continue;
-    for (const char* option : {"--incidence LIST=0", "--azimuth LIST=0", "--engine ENGINE=auto", "--samples N",
-                               "--target-error E", "[0.0001;", "--cutoff W", "[1e-10;", "--threads N", "--seed S [1]"})
+    for (const char* option :
+         {"--incidence LIST", "[0; with --map", "--azimuth LIST", "--engine ENGINE=auto", "--samples N",
+          "--target-error E", "[0.0001;", "--cutoff W", "[1e-10;", "--threads N", "--seed S [1]"})
       EXPECT_NE(rre.out.find(option), std::string::npos) << option;
   }
   for (const Arguments& run : {Arguments{"--version"}, Arguments{"rre", "--version"}}) {

@@ -248,7 +248,7 @@ TEST(Cutting, DexelsAgreeInVolume) {
 }
 
 /// The error field must agree with the exact values. For correct programs, it shows only unavoidable errors. If an
-/// element is too high, the field shows the error of height at the position of this element.
+/// element is too high, the field shows the height error at the position of that element.
 TEST(Cutting, TheErrorFieldShowsFaultsWhereTheyAre) {
   Job job = square_job(2, Arrangement::aligned);
   job.process.roughing_depth_um = 50;

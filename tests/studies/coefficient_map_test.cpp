@@ -57,7 +57,7 @@ TEST(CoefficientMap, GeometryFollowsTheIntrinsicSystem) {
   EXPECT_EQ(setting_at(30.0, 90.0, 7.0).rotation_deg, 7.0);
 }
 
-// The values of a map are those of readings at the same geometries.
+// Each value of a map equals a reading at the same geometry.
 TEST(CoefficientMap, HasTheValuesOfSingleReadings) {
   const design::Design design = design_of(honeycomb(2.0));
   PhotometrySettings request = map_request({{4.0, 20.0}, {0.2, 0.5}, {0.0, 90.0}}, {0.0, 30.0});

@@ -169,8 +169,8 @@ Vec2 centre_of(const RoadScene& scene, std::size_t k) {
   return {static_cast<double>(k % scene.columns) + 0.5, static_cast<double>(k / scene.columns) + 0.5};
 }
 
-/// In the picture, the reflectors have the positions and sizes of a pinhole projection, even if they are smaller than a
-/// pixel.
+/// In the picture, the reflectors have the positions and sizes given by a pinhole projection, even if they are smaller
+/// than a pixel.
 TEST(Road, ReflectorsAreDrawnWhereTheyAre) {
   RoadScene scene;
   struct Picture {
