@@ -11,7 +11,7 @@
 namespace retrace::geometry {
 namespace {
 
-using Numbers = std::vector<std::uint32_t>;
+using VertexRing = std::vector<std::uint32_t>;
 using Triangle = std::array<std::uint32_t, 3>;
 
 /// Maximum sine of the angle by which a border may turn inward at a corner that counts as convex. Rounding errors cause
@@ -28,7 +28,7 @@ class Triangulation {
  public:
   explicit Triangulation(const std::vector<std::vector<Vec2>>& loops) {
     for (const std::vector<Vec2>& loop : loops) {
-      Numbers& ring = rings_.emplace_back(loop.size());
+      VertexRing& ring = rings_.emplace_back(loop.size());
       std::iota(ring.begin(), ring.end(), static_cast<std::uint32_t>(vertices_.size()));
       vertices_.insert(vertices_.end(), loop.begin(), loop.end());
     }
@@ -44,19 +44,19 @@ class Triangulation {
     return doubled_area(vertices_[a], vertices_[b], vertices_[c]);
   }
 
-  std::uint32_t rightmost(const Numbers& ring) const {
+  std::uint32_t rightmost(const VertexRing& ring) const {
     return *std::ranges::max_element(ring, {}, [&](std::uint32_t v) { return vertices_[v].x(); });
   }
 
   /// Connects each hole to the outer border by a bridge (a pair of opposite edges), beginning with the hole that
   /// extends furthest towards +x (Eberly, "Triangulation by ear clipping", 2002).
   void join_holes() {
-    std::sort(rings_.begin() + 1, rings_.end(), [&](const Numbers& a, const Numbers& b) {
+    std::sort(rings_.begin() + 1, rings_.end(), [&](const VertexRing& a, const VertexRing& b) {
       return vertices_[rightmost(a)].x() > vertices_[rightmost(b)].x();
     });
     ring_ = rings_.front();
     for (std::size_t h = 1; h < rings_.size(); ++h) {
-      Numbers hole = rings_[h];
+      VertexRing hole = rings_[h];
       std::rotate(hole.begin(), std::ranges::find(hole, rightmost(hole)), hole.end());
       const auto at = ring_.begin() + static_cast<std::ptrdiff_t>(position_visible_from(hole.front()));
       hole.push_back(hole.front());
@@ -157,8 +157,8 @@ class Triangulation {
   }
 
   std::vector<Vec2> vertices_;
-  std::vector<Numbers> rings_;
-  Numbers ring_;
+  std::vector<VertexRing> rings_;
+  VertexRing ring_;
   std::size_t first_ = 0;
   std::vector<Triangle> triangles_;
 };
@@ -201,12 +201,12 @@ class TriangleJoiner {
     return t;
   }
 
-  static Numbers starting_at(Numbers ring, std::uint32_t first) {
+  static VertexRing starting_at(VertexRing ring, std::uint32_t first) {
     std::rotate(ring.begin(), std::ranges::find(ring, first), ring.end());
     return ring;
   }
 
-  bool is_convex_at(const Numbers& ring, std::size_t k) const {
+  bool is_convex_at(const VertexRing& ring, std::size_t k) const {
     const Vec2& a = vertices_[ring[(k + ring.size() - 1) % ring.size()]];
     const Vec2& b = vertices_[ring[k]];
     const Vec2& c = vertices_[ring[(k + 1) % ring.size()]];
@@ -217,12 +217,12 @@ class TriangleJoiner {
     const std::uint32_t own = ring_left_of(a, b);
     const std::uint32_t other = ring_left_of(b, a);
     if (own == other) return;
-    Numbers ring = starting_at(rings_[own], b);
-    const Numbers rest = starting_at(rings_[other], a);
+    VertexRing ring = starting_at(rings_[own], b);
+    const VertexRing rest = starting_at(rings_[other], a);
     if (ring.back() != a || rest.back() != b) return;
     const std::size_t at_a = ring.size() - 1;
     ring.insert(ring.end(), rest.begin() + 1, rest.end() - 1);
-    Numbers sorted = ring;
+    VertexRing sorted = ring;
     std::ranges::sort(sorted);
     if (std::ranges::adjacent_find(sorted) != sorted.end()) return;
     if (!is_convex_at(ring, 0) || !is_convex_at(ring, at_a)) return;
@@ -232,7 +232,7 @@ class TriangleJoiner {
 
   const std::vector<Vec2>& vertices_;
   std::vector<std::uint32_t> joined_to_;
-  std::vector<Numbers> rings_;
+  std::vector<VertexRing> rings_;
   std::map<Edge, std::uint32_t> left_of_;  ///< triangle on the left of each directed edge
 };
 

@@ -12,7 +12,7 @@ namespace retrace::geometry {
 namespace {
 
 /// Relative distance below which two points count as one point, as a fraction of the size of the outline.
-constexpr double kSamePoint = 1e-9;
+constexpr double kNearPointFraction = 1e-9;
 /// Maximum central angle of an arc that is replaced by one side of a polygon, in radians.
 constexpr double kMaxStepRad = std::numbers::pi / 4.0;
 
@@ -390,7 +390,7 @@ Outline oriented(std::vector<OutlineLoop> loops) {
 std::optional<OutlineFault> fault_of_outline(const Outline& outline, const std::vector<PolygonLoop>& polygons) {
   using Subject = OutlineFault::Subject;
   const double size_mm = bounding_box(polygons.front()).size().norm();
-  const double near_mm = kSamePoint * size_mm;
+  const double near_mm = kNearPointFraction * size_mm;
   for (const OutlineLoop& loop : outline.loops) {
     if (auto fault = opening_of(loop, near_mm)) return fault;
     for (const OutlineSide& side : loop)
