@@ -3,10 +3,13 @@
 // Describes how elements are repeated over a part: arrangement, gaps, offsets, shifted rows, partial elements. Designs
 // and fabrication jobs use the same description.
 
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace retrace::geometry {
+
+struct PlanRegion;
 
 enum class Arrangement { single, aligned, offset, checker, honeycomb, triangular };
 enum class Extent { finite, infinite };
@@ -34,6 +37,10 @@ struct ArrayLayout {
   /// mask means that all elements exist. The last column of a shifted row is beyond the border and is ignored. A row of
   /// cube corners has as many characters as there are complete cells at the y of this row.
   std::vector<std::string> pattern;
+  /// Outline of a part that is not a rectangle along the axes, or null. The array is laid out as in the bounding box of
+  /// the outline, whose lengths are `x_length_mm` and `y_length_mm`. The outline then cuts it. Elements are inside the
+  /// outline's margin, and the margins of the bounding box are as wide.
+  std::shared_ptr<const PlanRegion> outline;
 };
 
 }  // namespace retrace::geometry

@@ -97,6 +97,7 @@ void ArraySheet::lay_out_finite() {
   const Vec2 length(spec->array.x_length_mm, spec->array.y_length_mm);
   centre_mm = 0.5 * length;
   part_mm = coverage_mm = {Vec2::Zero(), length};
+  if (spec->array.outline && !spec->array.outline->is_box()) outline = spec->array.outline.get();
   if (spec->substrate) lay_on_substrate();
   if (const auto* prism = std::get_if<RtpElement>(&spec->element))
     lay_out_prisms(*prism);
@@ -224,9 +225,10 @@ SheetCell SheetPortion::sheet_cell(std::size_t cell, const Vec2& shift_mm) const
 
 BorderRelation SheetPortion::border_relation(const SheetCell& place) const {
   if (contains(block_, place.on_sheet, sheet_->sliver_mm) &&
-      (sheet_->is_upright || contains(part_, place.outline, sheet_->tolerance_mm)))
+      (sheet_->is_upright || contains(part_, place.outline, sheet_->tolerance_mm)) && is_within_outline(place.outline))
     return BorderRelation::inside;
-  return within(place, place.outline, block_).empty() ? BorderRelation::outside : BorderRelation::crossing;
+  const Polygon inner = within(place, place.outline, block_);
+  return inner.empty() || in_element_area(inner).empty() ? BorderRelation::outside : BorderRelation::crossing;
 }
 
 bool SheetPortion::is_clear_of_part(const SheetCell& place) const {
@@ -243,6 +245,46 @@ Polygon SheetPortion::within(const SheetCell& place, const Polygon& outline, con
     inner = common(outline, in_plan, sheet_->sliver_mm);
   }
   return contains(part_, inner, 0.0) ? inner : clip(inner, part_, sheet_->tolerance_mm);
+}
+
+bool SheetPortion::is_within_outline(const Polygon& in_plan) const {
+  return sheet_->outline == nullptr ||
+         is_within(moved(in_plan, origin_), sheet_->outline->elements, sheet_->tolerance_mm);
+}
+
+std::vector<Polygon> SheetPortion::clipped(Polygon in_plan, const ConvexRegion& region) const {
+  if (in_plan.empty()) return {};
+  std::vector<Polygon> portions = clip(moved(std::move(in_plan), origin_), region, sheet_->tolerance_mm);
+  for (Polygon& portion : portions) portion = moved(std::move(portion), -origin_);
+  return portions;
+}
+
+std::vector<Polygon> SheetPortion::in_element_area(Polygon in_plan) const {
+  if (sheet_->outline != nullptr) return clipped(std::move(in_plan), sheet_->outline->elements);
+  if (in_plan.empty()) return {};
+  return {std::move(in_plan)};
+}
+
+std::vector<Polygon> SheetPortion::in_outline_margin(const Polygon& in_plan) const {
+  return sheet_->outline != nullptr ? clipped(in_plan, sheet_->outline->margin) : std::vector<Polygon>{};
+}
+
+std::vector<Polygon> SheetPortion::in_outline(Polygon in_plan) const {
+  if (sheet_->outline != nullptr) return clipped(std::move(in_plan), sheet_->outline->whole);
+  if (in_plan.empty()) return {};
+  return {std::move(in_plan)};
+}
+
+bool SheetPortion::is_inside_outline(const Rectangle& in_plan) const {
+  return is_within_outline(to_polygon(in_plan));
+}
+
+std::vector<PolygonLoop> SheetPortion::outline_borders() const {
+  std::vector<PolygonLoop> borders;
+  if (sheet_->outline == nullptr) return borders;
+  for (const ConvexRegion* region : {&sheet_->outline->whole, &sheet_->outline->elements})
+    for (const PolygonLoop& border : region->borders) borders.push_back(moved(border, -origin_));
+  return borders;
 }
 
 Rectangle SheetPortion::plan_bounding_box(const Rectangle& on_sheet) const {

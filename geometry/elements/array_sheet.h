@@ -11,6 +11,7 @@
 #include "geometry/elements/lattice.h"
 #include "geometry/elements/part_spec.h"
 #include "geometry/elements/whole_elements.h"
+#include "geometry/outline/plan_region.h"
 #include "geometry/polygon.h"
 #include "geometry/substrate/substrate_surface.h"
 
@@ -40,6 +41,7 @@ struct ArraySheet {
   bool repeats_along(std::size_t axis) const;
 
   const PartSpec* spec;
+  const PlanRegion* outline = nullptr;      ///< outline that cuts the array; null for a rectangle along the axes
   std::optional<SubstrateSurface> surface;  ///< not set for the plane z = 0
   bool is_upright = true;
   std::optional<PrismBlock> prisms;  ///< set if the elements are prisms; positions are relative to the block's centre
@@ -91,6 +93,17 @@ class SheetPortion {
   /// Returns the part of an outline in plan that is within the part and within a rectangle of the sheet.
   /// \param outline the outline of `place`, or an outline within it
   Polygon within(const SheetCell& place, const Polygon& outline, const Rectangle& on_sheet) const;
+  /// Returns the portions of a polygon in plan that are inside the outline's margin, where elements are. Without an
+  /// outline, returns the polygon.
+  std::vector<Polygon> in_element_area(Polygon in_plan) const;
+  /// Returns the portions of a polygon in plan on the flat margin of the outline. Without an outline, there are none.
+  std::vector<Polygon> in_outline_margin(const Polygon& in_plan) const;
+  /// Returns the portions of a polygon in plan that are inside the outline, elements or margin.
+  std::vector<Polygon> in_outline(Polygon in_plan) const;
+  /// Returns true if the outline does not cross a rectangle in plan, and the rectangle is inside the outline's margin.
+  bool is_inside_outline(const Rectangle& in_plan) const;
+  /// Returns the borders of the outline and of the area of elements. Walls on them are border walls of the array.
+  std::vector<PolygonLoop> outline_borders() const;
   /// Returns the bounding box in plan of a rectangle on the sheet.
   Rectangle plan_bounding_box(const Rectangle& on_sheet) const;
   /// Returns the area in plan that elements fill. Walls on its border are border walls of the array.
@@ -106,6 +119,8 @@ class SheetPortion {
  private:
   Vec2 plan_of(const Vec2& on_sheet, double rim_mm = 0.0) const;
   SubstrateFrame frame_at(const Vec2& on_sheet) const;
+  bool is_within_outline(const Polygon& in_plan) const;
+  std::vector<Polygon> clipped(Polygon in_plan, const ConvexRegion& region) const;
 
   const ArraySheet* sheet_;
   Vec2 at_;              ///< origin on the sheet

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "geometry/centroid.h"
+#include "geometry/part/cover_polygons.h"
 
 namespace retrace::geometry {
 namespace {
@@ -21,6 +22,13 @@ class EntranceVertices {
       mesh_.vertices.emplace_back(p.x(), p.y(), thickness_mm_);
     }
     return it->second;
+  }
+
+  /// Returns all vertices on the entrance face.
+  std::vector<PlacedVertex> all() const {
+    std::vector<PlacedVertex> vertices;
+    for (const auto& [rim, above] : raised_) vertices.emplace_back(mesh_.vertices[above].head<2>(), above);
+    return vertices;
   }
 
  private:
@@ -54,18 +62,22 @@ BoundaryMesh closed_boundary(const Part& part) {
   for (const auto& ring : patch.border_walls) add_fan(mesh, ring, FacetRole::border_wall);
 
   EntranceVertices entrance(mesh, part.thickness_mm);
+  const bool is_one_fan = part.entrance_pieces.empty();
   const Vec2 middle = centroid(part.outline);
   const auto hub = static_cast<std::uint32_t>(mesh.vertices.size());
-  mesh.vertices.emplace_back(middle.x(), middle.y(), part.thickness_mm);
+  if (is_one_fan) mesh.vertices.emplace_back(middle.x(), middle.y(), part.thickness_mm);
   for (const auto& rim : patch.border_rim) {
     const std::uint32_t above_from = entrance.above(rim.front());
     const std::uint32_t above_to = entrance.above(rim.back());
     std::vector<std::uint32_t> side = rim;
     side.insert(side.end(), {above_to, above_from});
     add_fan(mesh, side, FacetRole::side);
+    if (!is_one_fan) continue;
     mesh.triangles.push_back({hub, above_from, above_to});
     mesh.roles.push_back(FacetRole::entrance);
   }
+  if (!is_one_fan)
+    add_cover(mesh, part.entrance_pieces, entrance.all(), 1e-8 * part.size_mm, FacetRole::entrance, true);
   return mesh;
 }
 

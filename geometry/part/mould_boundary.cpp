@@ -1,5 +1,6 @@
 #include "geometry/part/mould_boundary.h"
 #include "geometry/centroid.h"
+#include "geometry/part/cover_polygons.h"
 #include "geometry/part/triangle_mesh.h"
 
 #include <algorithm>
@@ -37,7 +38,10 @@ struct Column {
 class MouldBuilder {
  public:
   MouldBuilder(const Part& part, double block_mm)
-      : bottom_z_(-part.element_depth_mm - block_mm), middle_(centroid(part.outline)) {
+      : bottom_z_(-part.element_depth_mm - block_mm),
+        middle_(centroid(part.outline)),
+        pieces_(part.entrance_pieces),
+        tolerance_mm_(1e-8 * part.size_mm) {
     const SurfacePatch& patch = part.patches[part.placements.front().patch];
     const Vec2 offset = part.placements.front().offset_mm;
     for (const Vec3& p : patch.vertices) mesh_.vertices.emplace_back(p.x() + offset.x(), p.y() + offset.y(), p.z());
@@ -48,6 +52,7 @@ class MouldBuilder {
   BoundaryMesh build() {
     const std::vector<Edge> border = open_edges(mesh_);
     collect_columns(border);
+    if (!pieces_.empty()) return with_pieces(border);
     const std::uint32_t hub = add_vertex({middle_.x(), middle_.y(), bottom_z_});
     for (const auto& [a, b] : border) {
       // The edge is a vertical end of a wall. Both vertices are in one Column and are inserted by add_side().
@@ -60,6 +65,16 @@ class MouldBuilder {
 
  private:
   using Place = std::pair<double, double>;
+
+  /// Completes the mould of a part with notches or holes.
+  BoundaryMesh with_pieces(const std::vector<Edge>& border) {
+    for (const auto& [a, b] : border)
+      if (place(a) != place(b)) add_side(a, b);
+    std::vector<PlacedVertex> bottom;
+    for (const auto& [at, column] : columns_) bottom.emplace_back(Vec2(at.first, at.second), column.bottom);
+    add_cover(mesh_, pieces_, bottom, tolerance_mm_, FacetRole::flat_back, false);
+    return std::move(mesh_);
+  }
 
   /// Returns x and y of a vertex. Vertices above one another have exactly equal x and y.
   Place place(std::uint32_t vertex) const { return {mesh_.vertices[vertex].x(), mesh_.vertices[vertex].y()}; }
@@ -103,6 +118,8 @@ class MouldBuilder {
   BoundaryMesh mesh_;
   double bottom_z_;
   Vec2 middle_;
+  std::vector<Polygon> pieces_;
+  double tolerance_mm_;
   std::map<Place, Column> columns_;
 };
 

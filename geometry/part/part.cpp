@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "geometry/elements/array_sheet.h"
 #include "geometry/elements/facet_planes.h"
+#include "geometry/elements/lattice.h"
 #include "geometry/part/tiling.h"
 #include "geometry/part/welded_part.h"
 #include "geometry/part/zones.h"
@@ -40,11 +41,16 @@ void add_surface(Part& part, const FacetPlanes* planes, const Vec2& origin_mm, d
   if (part.spec.array.arrangement == Arrangement::single) return add_single(part, planes, origin_mm);
   const ArraySheet sheet(part.spec);
   if (part.spec.array.extent == Extent::infinite) return add_periods(part, sheet);
-  part.outline = moved(to_polygon(sheet.part_mm), origin_mm);
+  part.outline = moved(sheet.outline != nullptr ? sheet.outline->hull : to_polygon(sheet.part_mm), origin_mm);
+  if (sheet.outline != nullptr && !sheet.outline->is_convex())
+    for (const Polygon& piece : sheet.outline->whole.pieces) part.entrance_pieces.push_back(moved(piece, origin_mm));
   add_array(part, sheet, planes, origin_mm, elements_per_patch);
   if (part.elements_full < 1) throw InputError("the array is smaller than one element");
-  if (!part.spec.substrate && planes == nullptr && !(part.spec.random_tilts.sigma_arcmin > 0.0))
-    find_lattice_region(part, sheet, origin_mm);
+  if (part.spec.substrate || planes != nullptr || part.spec.random_tilts.sigma_arcmin > 0.0) return;
+  if (sheet.outline == nullptr) return find_lattice_region(part, sheet, origin_mm);
+  const Vec2 period_mm = make_lattice(part.spec, true).period_mm;
+  for (const Polygon& piece : sheet.outline->whole.pieces)
+    part.lattice_regions.push_back({moved(piece, origin_mm), {Vec2(period_mm.x(), 0.0), Vec2(0.0, period_mm.y())}});
 }
 
 /// Returns true if the back surface has the nominal heights.
@@ -54,10 +60,17 @@ bool is_nominal(const PartSpec& spec, const FacetPlanes* planes) {
 }
 
 /// Returns the lowest and highest height of a patch. On a substrate, the heights of the cells are used instead of the
-/// vertices, because some vertices are on z = 0, where the border walls end.
-std::array<double, 2> heights_of(const SurfacePatch& patch, bool on_substrate) {
+/// vertices, because some vertices are on z = 0, where the border walls end. The sides of the plate are not counted.
+/// \param has_open_sides true if the patch contains sides of the plate
+std::array<double, 2> heights_of(const SurfacePatch& patch, bool on_substrate, bool has_open_sides) {
   std::array<double, 2> range{INFINITY, -INFINITY};
   const auto add = [&](double z) { range = {std::min(range[0], z), std::max(range[1], z)}; };
+  if (has_open_sides) {
+    for (const PatchFacet& facet : patch.facets)
+      for (std::uint32_t k = 0; k < facet.corner_count && facet.role != FacetRole::side; ++k)
+        add(patch.vertices[patch.corners[facet.first_corner + k]].z());
+    return range;
+  }
   if (!on_substrate)
     for (const Vec3& vertex : patch.vertices) add(vertex.z());
   for (const PatchCell& cell : patch.cells) {
@@ -71,7 +84,8 @@ std::array<double, 2> heights_of(const SurfacePatch& patch, bool on_substrate) {
 void measure_layer(Part& part) {
   constexpr double kRounding = 1e-12;
   std::vector<std::array<double, 2>> of_patch;
-  for (const SurfacePatch& patch : part.patches) of_patch.push_back(heights_of(patch, part.spec.substrate.has_value()));
+  for (const SurfacePatch& patch : part.patches)
+    of_patch.push_back(heights_of(patch, part.spec.substrate.has_value(), !part.entrance_pieces.empty()));
   double lowest = 0.0;
   double highest = 0.0;
   for (const Placement& placement : part.placements) {
@@ -92,11 +106,15 @@ void measure(Part& part) {
     part.entrance_area_mm2 = part.period_mm->prod();
     part.retro_facet_area_mm2 /= periods;
   } else {
-    part.entrance_area_mm2 = area(part.outline);
+    part.entrance_area_mm2 = part.spec.array.outline ? part.spec.array.outline->area_mm2() : area(part.outline);
   }
 }
 
 }  // namespace
+
+std::vector<Polygon> entrance_polygons(const Part& part) {
+  return part.entrance_pieces.empty() ? std::vector<Polygon>{part.outline} : part.entrance_pieces;
+}
 
 double facet_area(const SurfacePatch& patch, const PatchFacet& facet) {
   const auto corner = [&](std::uint32_t k) { return patch.vertices[patch.corners[facet.first_corner + k]]; };
@@ -146,6 +164,7 @@ Part build(const PartSpec& spec, const Vec2& origin_mm, const FacetPlanes* plane
   if (!is_nominal(spec, planes)) measure_layer(part);
   check_plate(part);
   measure(part);
+  if (!part.entrance_pieces.empty()) part.top_mm = part.thickness_mm;
   return part;
 }
 

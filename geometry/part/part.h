@@ -52,7 +52,13 @@ struct Part {
   double size_mm = 0.0;           ///< size of an element in plan; scale for tolerances
   std::vector<SurfacePatch> patches;
   std::vector<Placement> placements;
-  Polygon outline;  ///< outline of a finite part, counter-clockwise; empty for an infinite part
+  /// Convex outline of a finite part, counter-clockwise; empty for an infinite part. For a part with notches or holes,
+  /// it is the convex hull.
+  Polygon outline;
+  /// Convex polygons that make up the entrance face of a part with notches or holes. For other parts it is empty, and
+  /// the outline is the entrance face. The sides that are not on the hull are then facets of the back surface, with the
+  /// role `side`, and `top_mm` is the height of the entrance face.
+  std::vector<Polygon> entrance_pieces;
   /// Period of an infinite part. The surface covers [-periods_beyond, 1 + periods_beyond] periods in x and y.
   std::optional<Vec2> period_mm;
   int periods_beyond = 0;  ///< number of additional periods of an infinite part on each side
@@ -63,7 +69,7 @@ struct Part {
   std::int64_t elements_full = 0;  ///< number of complete elements; for an infinite part, per period
   std::int64_t elements_partial = 0;
   std::vector<ZoneElements> zones;  ///< set only if the part has zones
-  /// Regions that together cover the plate. They are set only if the part has zones.
+  /// Regions that together cover the plate. They are set only if the part has zones or an outline.
   std::vector<LatticeRegion> lattice_regions;
   double entrance_area_mm2 = 0.0;     ///< area of the entrance face; for an infinite part, of one period
   double retro_facet_area_mm2 = 0.0;  ///< area of the retro facets; for an infinite part, in one period
@@ -89,6 +95,9 @@ Part build_part(const PartSpec& spec, const Vec2& origin_mm = Vec2::Zero());
 /// \pre spec.array.extent is finite; the facets slope in the same directions as nominal facets
 /// \throw InputError in the same cases as build_part(spec), and if planes belong to no complete element of the array
 Part build_part(const PartSpec& spec, const FacetPlanes& planes);
+
+/// Returns convex polygons that make up the entrance face of a finite part.
+std::vector<Polygon> entrance_polygons(const Part& part);
 
 /// Returns the area of a facet in mm2.
 double facet_area(const SurfacePatch& patch, const PatchFacet& facet);

@@ -36,9 +36,10 @@ double grid_of(const std::vector<Tile>& tiles) {
 
 class PatchBuilder {
  public:
-  PatchBuilder(const std::vector<Tile>& tiles, const Rectangle& block, double size_mm)
+  PatchBuilder(const std::vector<Tile>& tiles, const Rectangle& block, double size_mm, const PatchRim& rim)
       : tiles_(tiles),
         block_(block),
+        rim_(rim),
         tolerance_mm_(1e-9 * size_mm),
         index_(tolerance_mm_, std::max(grid_of(tiles), 4.0 * tolerance_mm_)) {}
 
@@ -50,6 +51,7 @@ class PatchBuilder {
     sort_walls();
     emit_facets();
     emit_border();
+    if (!rim_.hull.empty()) emit_open_sides();
     shrink();
     return std::move(patch_);
   }
@@ -221,15 +223,35 @@ class PatchBuilder {
       for (const double border : {block_.lower[axis], block_.upper[axis]})
         if (std::abs(a[axis] - border) <= tolerance_mm_ && std::abs(b[axis] - border) <= tolerance_mm_)
           return FacetRole::border_wall;
+    for (const std::vector<Vec2>& loop : rim_.borders)
+      if (is_on(loop, a, b)) return FacetRole::border_wall;
     return FacetRole::inner_wall;
   }
 
+  /// Returns true if a segment is on a side of a closed polygon.
+  bool is_on(const std::vector<Vec2>& loop, const Vec2& a, const Vec2& b) const {
+    for (std::size_t k = 0; k < loop.size(); ++k) {
+      const Vec2& from = loop[k];
+      const Vec2 side = loop[(k + 1) % loop.size()] - from;
+      const Vec2 along = side.normalized();
+      const auto is_near = [&](const Vec2& p) {
+        const Vec2 to = p - from;
+        return std::abs(along.x() * to.y() - along.y() * to.x()) <= tolerance_mm_ && along.dot(to) >= -tolerance_mm_ &&
+               along.dot(to) <= side.norm() + tolerance_mm_;
+      };
+      if (is_near(a) && is_near(b)) return true;
+    }
+    return false;
+  }
+
   void emit_facets() {
+    cell_of_tile_.resize(tiles_.size());
     for (std::uint32_t t = 0; t < tiles_.size(); ++t) {
       if (!tiles_[t].is_output) continue;
       const bool same_cell = t > 0 && tiles_[t - 1].is_output && tiles_[t - 1].cell == tiles_[t].cell;
       if (!same_cell || patch_.cells.empty())
         patch_.cells.push_back({static_cast<std::uint32_t>(patch_.facets.size()), 0, Vec3::Zero(), Vec3::Zero()});
+      cell_of_tile_[t] = static_cast<std::uint32_t>(patch_.cells.size() - 1);
       emit_tile(t);
       for (const Wall& wall : walls_of_[t]) emit_wall(wall);
       PatchCell& cell = patch_.cells.back();
@@ -323,6 +345,55 @@ class PatchBuilder {
     }
   }
 
+  /// Adds the sides that are not on the hull of the part as facets: the border wall below z = 0 and the side of the
+  /// plate above it. They get no triangles, because the triangles of the borders are made from border_walls and
+  /// border_rim.
+  void emit_open_sides() {
+    for (const SharedEdge& e : edges_) {
+      if (e.left.has_value() == e.right.has_value()) continue;
+      const std::uint32_t tile = e.left ? *e.left : *e.right;
+      if (!tiles_[tile].is_output) continue;
+      const std::uint32_t from = e.left ? e.from : e.to;
+      const std::uint32_t to = e.left ? e.to : e.from;
+      if (is_on(rim_.hull, index_[from], index_[to])) continue;
+      PatchCell cell;
+      cell.first_facet = static_cast<std::uint32_t>(patch_.facets.size());
+      cell.first_of_element = cell_of_tile_[tile];
+      const double rim_from = rim_height(tile, from);
+      const double rim_to = rim_height(tile, to);
+      emit_side(from, to, {height(tile, from), height(tile, to), rim_to, rim_from}, FacetRole::border_wall);
+      emit_side(from, to, {rim_from, rim_to, rim_.top_mm, rim_.top_mm}, FacetRole::side);
+      cell.facet_count = static_cast<std::uint32_t>(patch_.facets.size()) - cell.first_facet;
+      bound(cell);
+      patch_.cells.push_back(cell);
+    }
+  }
+
+  /// \param z heights of the corners: at the bottom above `from` and `to`, at the top above `to` and `from`
+  void emit_side(std::uint32_t from, std::uint32_t to, const std::array<double, 4>& z, FacetRole role) {
+    const bool has_from = z[3] - z[0] > tolerance_mm_;
+    const bool has_to = z[2] - z[1] > tolerance_mm_;
+    if (!has_from && !has_to) return;
+    const Vec2& a = index_[from];
+    const Vec2& b = index_[to];
+    const Vec2 along = b - a;
+    PatchFacet facet;
+    facet.role = role;
+    facet.normal = Vec3(along.y(), -along.x(), 0.0).normalized();
+    facet.offset_mm = facet.normal.head<2>().dot(a);
+    facet.first_corner = static_cast<std::uint32_t>(patch_.corners.size());
+    const auto add = [&](const Vec2& p, double height_mm) {
+      patch_.corners.push_back(static_cast<std::uint32_t>(patch_.vertices.size()));
+      patch_.vertices.emplace_back(p.x(), p.y(), height_mm);
+      ++facet.corner_count;
+    };
+    add(a, z[0]);
+    add(b, z[1]);
+    if (has_to) add(b, z[2]);
+    if (has_from) add(a, z[3]);
+    patch_.facets.push_back(facet);
+  }
+
   /// Frees unused capacity, because parts may have millions of facets.
   void shrink() {
     patch_.vertices.shrink_to_fit();
@@ -335,6 +406,7 @@ class PatchBuilder {
 
   const std::vector<Tile>& tiles_;
   const Rectangle block_;
+  const PatchRim& rim_;
   const double tolerance_mm_;
   VertexIndex index_;
   std::vector<Ring> outlines_;
@@ -343,13 +415,14 @@ class PatchBuilder {
   /// heights above each vertex in plan, ascending
   std::vector<std::vector<std::pair<double, std::uint32_t>>> columns_;
   std::vector<std::vector<Wall>> walls_of_;
+  std::vector<std::uint32_t> cell_of_tile_;
   SurfacePatch patch_;
 };
 
 }  // namespace
 
-SurfacePatch build_patch(const std::vector<Tile>& tiles, const Rectangle& block, double size_mm) {
-  return PatchBuilder(tiles, block, size_mm).build();
+SurfacePatch build_patch(const std::vector<Tile>& tiles, const Rectangle& block, double size_mm, const PatchRim& rim) {
+  return PatchBuilder(tiles, block, size_mm, rim).build();
 }
 
 }  // namespace retrace::geometry

@@ -63,10 +63,21 @@ struct SurfacePatch {
   std::vector<std::vector<std::uint32_t>> border_rim;
 };
 
+/// Borders of a part with an outline.
+struct PatchRim {
+  std::vector<std::vector<Vec2>> borders;  ///< closed polygons; walls on their sides are border walls
+  /// Convex hull of the part, or empty. The sides of a part with notches or holes are then facets of the patch, except
+  /// for those on the hull.
+  Polygon hull;
+  double top_mm = 0.0;  ///< height of the entrance face, at which these facets end
+};
+
 /// Joins tiles into a surface, and adds vertical walls where neighbouring tiles differ in height. A wall belongs to the
 /// deeper of its two tiles. Walls on the border of `block` get the role border_wall, other walls get inner_wall.
 /// \param block area that the array fills
 /// \param size_mm size of an element, for tolerances
-SurfacePatch build_patch(const std::vector<Tile>& tiles, const Rectangle& block, double size_mm);
+/// \param rim borders of a part with an outline
+SurfacePatch build_patch(const std::vector<Tile>& tiles, const Rectangle& block, double size_mm,
+                         const PatchRim& rim = {});
 
 }  // namespace retrace::geometry

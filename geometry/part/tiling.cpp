@@ -125,7 +125,7 @@ class Tiler {
     ArrayPlan plan;
     visit_cells(begin_whole(), [&](const Index& index, std::uint32_t number, const Vec2& shift_mm, bool) {
       const SheetCell place = here_->sheet_cell(index.number, shift_mm);
-      if (here_->within(place, place.outline, here_->block()).empty()) return;
+      if (here_->in_element_area(here_->within(place, place.outline, here_->block())).empty()) return;
       plan.cells.push_back(
           {number, moved(place.outline, here_->origin_mm()), sheet_.lattice.cells[index.number].is_element});
     });
@@ -147,7 +147,7 @@ class Tiler {
     std::int64_t partial = 0;
     double area_mm2 = 0.0;  ///< area of all tiles in plan
   };
-  using Key = std::array<std::int64_t, 12>;
+  using Key = std::array<std::int64_t, 13>;
 
   std::array<std::int64_t, 2> patch_size(const IndexRange& all, double elements_per_patch) const {
     const double each = std::max(1, sheet_.lattice.elements_per_period);
@@ -186,7 +186,7 @@ class Tiler {
 
   /// Returns a key that is equal for equal portions of the array. It contains the positions of borders and the shape of
   /// the substrate. The position of a border that is more than two periods away from the portion has no effect.
-  Key key_of(const IndexRange& range) const {
+  Key key_of(const IndexRange& range) {
     const double quantum = 1e-7 * sheet_.lattice.period_mm.minCoeff();
     const Vec2 reach = 2.0 * sheet_.lattice.period_mm;
     const Vec2 size =
@@ -196,6 +196,8 @@ class Tiler {
     const Rectangle in_plan = here_->plan_bounding_box(round);
     Key key{};
     std::size_t k = 0;
+    // Portions that an outline crosses are not shared.
+    if (sheet_.outline != nullptr && !here_->is_inside_outline(in_plan)) key.back() = ++portions_at_outline_;
     for (const Eigen::Index axis : {0, 1}) {
       const auto a = static_cast<std::size_t>(axis);
       const auto add = [&](const Rectangle& border, const Rectangle& within) {
@@ -217,7 +219,18 @@ class Tiler {
     for (const Tile& tile : tiles_) piece.area_mm2 += tile.is_output ? area(tile.outline) : 0.0;
     if (std::none_of(tiles_.begin(), tiles_.end(), [](const Tile& tile) { return tile.is_output; })) return;
     piece.patch = static_cast<std::uint32_t>(part_.patches.size());
-    part_.patches.push_back(build_patch(tiles_, here_->block_in_plan(), part_.size_mm));
+    part_.patches.push_back(build_patch(tiles_, here_->block_in_plan(), part_.size_mm, rim_of_part()));
+  }
+
+  /// Returns the borders of a part with an outline, relative to the portion that is being built.
+  PatchRim rim_of_part() const {
+    PatchRim rim;
+    if (sheet_.outline == nullptr) return rim;
+    rim.borders = here_->outline_borders();
+    if (sheet_.outline->is_convex()) return rim;
+    rim.hull = moved(sheet_.outline->hull, -here_->origin_mm());
+    rim.top_mm = spec_.thickness_mm - here_->height_mm();
+    return rim;
   }
 
   /// Cell of the lattice: its period and its number within the period.
@@ -289,8 +302,10 @@ class Tiler {
     }
     if (cell.is_element && spec_.array.partial_elements == PartialElements::omit) turn_to_land(cell, place);
     for (const CellFacet& facet : cell.facets) {
-      add_tile(here_->within(place, facet.outline, here_->block()), facet.plane, role_of(cell, facet),
-               facet.centroid_mm);
+      const Polygon inner = here_->within(place, facet.outline, here_->block());
+      add_tiles(here_->in_element_area(inner), facet.plane, role_of(cell, facet), facet.centroid_mm);
+      if (!inner.empty())
+        add_tiles(here_->in_outline_margin(inner), placed_plane({}, place.frame), FacetRole::flat_back);
       if (sheet_.is_upright) add_margins(place, facet.outline);
     }
     if (!sheet_.is_upright) add_margins(place, place.outline);
@@ -301,11 +316,17 @@ class Tiler {
     if (!outline.empty()) tiles_.push_back({std::move(outline), plane, role, 0, true, middle_mm});
   }
 
+  void add_tiles(std::vector<Polygon> outlines, const HeightPlane& plane, FacetRole role,
+                 const std::optional<Vec2>& middle_mm = std::nullopt) {
+    for (Polygon& outline : outlines) add_tile(std::move(outline), plane, role, middle_mm);
+  }
+
   /// Adds the land between the block of elements and the border.
   void add_margins(const SheetCell& place, const Polygon& outline) {
     for (const Rectangle& margin : margins(here_->reach(), here_->block()))
       if (!margin.empty())
-        add_tile(here_->within(place, outline, margin), placed_plane({}, place.frame), FacetRole::flat_back);
+        add_tiles(here_->in_outline(here_->within(place, outline, margin)), placed_plane({}, place.frame),
+                  FacetRole::flat_back);
   }
 
   void turn_to_land(Cell& cell, const SheetCell& place) const {
@@ -379,7 +400,7 @@ class Tiler {
   /// Checks that the cells cover the part, because cells on a substrate may leave gaps or overlap.
   void check_cover() const {
     constexpr double kAreaRounding = 1e-7;
-    const double whole_mm2 = sheet_.part_mm.size().prod();
+    const double whole_mm2 = sheet_.outline != nullptr ? sheet_.outline->area_mm2() : sheet_.part_mm.size().prod();
     if (!sheet_.surface || std::abs(covered_mm2_ - whole_mm2) <= kAreaRounding * whole_mm2) return;
     throw InputError(fmt::format(
         "the curvature of the substrate is too large for its elements: their cells cover {:.9g} mm2, but the "
@@ -392,9 +413,10 @@ class Tiler {
   const PartSpec& spec_;
   const FacetPlanes* planes_;
   std::map<Key, Piece> known_;
-  bool is_one_ = false;               ///< true if a single portion is the whole array
-  std::optional<SheetPortion> here_;  ///< portion that is being built
-  std::vector<Tile> tiles_;           ///< tiles of this portion
+  std::int64_t portions_at_outline_ = 0;  ///< number of portions that the outline of the part crosses
+  bool is_one_ = false;                   ///< true if a single portion is the whole array
+  std::optional<SheetPortion> here_;      ///< portion that is being built
+  std::vector<Tile> tiles_;               ///< tiles of this portion
   double covered_mm2_ = 0.0;
 };
 

@@ -170,7 +170,8 @@ geometry::Polygon entrance_outline(const geometry::Part& part) {
   return part.outline;
 }
 
-Beam incident_beam(const BeamScene& scene) {
+/// Returns the beam that enters a convex portion of the entrance face.
+Beam incident_beam(const BeamScene& scene, const geometry::Polygon& portion) {
   const LightSetup& setup = scene.setup;
   Beam whole;
   whole.direction = setup.entry.direction;
@@ -183,7 +184,7 @@ Beam incident_beam(const BeamScene& scene) {
   whole.entry.constant_mm = scene.centre_mm;
   whole.entry.slope.leftCols<2>().setIdentity();
   whole.entry = whole.entry.continued(whole.start, whole.direction);
-  for (const auto& p : entrance_outline(scene.part))
+  for (const auto& p : portion)
     whole.corners.push_back({p.x() - scene.centre_mm.x(), p.y() - scene.centre_mm.y(), setup.thickness_mm});
   return whole;
 }
@@ -221,14 +222,40 @@ double divide(const BeamScene& scene, const Beam& whole, const Vec2& most_step, 
 
 }  // namespace
 
+namespace {
+
+/// Divides the incident beam of a part with notches or holes. Its pieces are the regions of its symmetry. Returns the
+/// fraction of the light that has entered.
+double divide_pieces(const BeamScene& scene, const Vec2& most_step, BeamQueue& queue) {
+  double face_mm2 = 0.0;
+  for (const geometry::Polygon& piece : scene.part.entrance_pieces) face_mm2 += geometry::area(piece);
+  double entered = 0.0;
+  for (std::size_t k = 0; k < scene.part.entrance_pieces.size(); ++k) {
+    const geometry::Polygon& piece = scene.part.entrance_pieces[k];
+    Beam whole = incident_beam(scene, piece);
+    whole.area_fraction = geometry::area(piece) / face_mm2;
+    Division into(scene, whole, queue);
+    if (scene.symmetry != nullptr && !scene.symmetry->regions().empty())
+      divide_region(scene.symmetry->regions()[k], static_cast<std::uint32_t>(k), most_step, into);
+    else
+      divide_by_step(most_step, into);
+    entered += into.entered();
+  }
+  return entered;
+}
+
+}  // namespace
+
 void enter_beams(const BeamScene& scene, BeamRecord& record, BeamQueue& queue) {
-  Beam whole = incident_beam(scene);
+  Beam whole = incident_beam(scene, entrance_outline(scene.part));
   const double parts = parts_of_element(scene.part);
   if (scene.setup.infinite()) {
     if (scene.symmetry != nullptr) keep_half(*scene.symmetry, whole, queue);
     if (parts == 1.0) return queue.push(std::move(whole));
   }
-  const double entered = divide(scene, whole, step_of_entrance(scene.part, parts), queue);
+  const Vec2 most_step = step_of_entrance(scene.part, parts);
+  const double entered = scene.part.entrance_pieces.empty() ? divide(scene, whole, most_step, queue)
+                                                            : divide_pieces(scene, most_step, queue);
   record.add_rounding_loss(whole, whole.area_fraction - entered);
 }
 

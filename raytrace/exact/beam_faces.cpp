@@ -209,7 +209,7 @@ void meet_facet(const BeamStep& step, const Fragment& fragment, const Candidate&
     return;
   }
   const Vec3 against = from.inside ? Vec3(-plane.normal) : plane.normal;
-  const double ratio = optics.ratio_at_back(from.inside);
+  const double ratio = ratio_at_face(optics, facet.role, from.inside);
   const double cos_incidence = -against.dot(from.direction);
   const materials::FresnelCoefficients f = fresnel_at_back(optics, facet.role, from.inside, cos_incidence);
   beam.trail.meet(facet.cell);

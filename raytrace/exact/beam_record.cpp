@@ -80,8 +80,17 @@ void BeamRecord::observe_entrance_reflection() const {
   front.jones = entry.reflected_jones;
   front.transmission = 1.0;
   front.centre_mm = scene_.centre_mm;
-  if (!scene_.setup.infinite()) front.exit_polygon_mm = scene_.part.outline;
-  observer_(front);
+  if (scene_.setup.infinite()) return observer_(front);
+  for (const geometry::Polygon& piece : geometry::entrance_polygons(scene_.part)) {
+    // All pieces of the face reflect the same wave. Their powers are in the ratio of their areas.
+    const double fraction =
+        scene_.part.entrance_pieces.empty() ? 1.0 : geometry::area(piece) / scene_.part.entrance_area_mm2;
+    ReturnedBeam portion = front;
+    portion.exit_polygon_mm = piece;
+    portion.stokes = fraction * front.stokes;
+    portion.efficiency *= fraction;
+    observer_(portion);
+  }
 }
 
 BeamResult BeamRecord::result() const {

@@ -115,6 +115,13 @@ Account account_of_exit(geometry::FacetRole role);
 materials::FresnelCoefficients fresnel_at_back(const Optics& optics, geometry::FacetRole role, bool inside,
                                                double cos_incidence);
 
+/// Returns the refractive index before a face of the back surface divided by the index after the face. Sides of the
+/// plate are in air.
+inline double ratio_at_face(const Optics& optics, geometry::FacetRole role, bool inside) {
+  if (role != geometry::FacetRole::side) return optics.ratio_at_back(inside);
+  return inside ? optics.index : 1.0 / optics.index;
+}
+
 /// Returns the Fresnel coefficients of the entrance face for light from inside or outside the part. For
 /// `lossless_entrance`, only the angle of refraction is valid, and the amplitudes must not be used.
 materials::FresnelCoefficients fresnel_at_entrance(const Optics& optics, bool inside, double cos_incidence);

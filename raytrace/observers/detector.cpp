@@ -179,8 +179,10 @@ DetectorMaps exact_detector_maps(const geometry::Part& part, const Optics& optic
     if (beam.cone > 0) return;
     maps.rre += beam.stokes.i;
     const bool entered = beam.depth > 0;
-    spread(part, setting.face, entered ? beam.exit_polygon_mm : face, beam.stokes.i, maps.leaving.value);
-    spread(part, setting.face, entered ? beam.entry_polygon_mm : face, beam.stokes.i, maps.entering.value);
+    // The front of a finite part reflects from the polygons that make up its face.
+    const Polygon& reflecting = part.period_mm ? face : beam.exit_polygon_mm;
+    spread(part, setting.face, entered ? beam.exit_polygon_mm : reflecting, beam.stokes.i, maps.leaving.value);
+    spread(part, setting.face, entered ? beam.entry_polygon_mm : reflecting, beam.stokes.i, maps.entering.value);
   };
   const BeamResult traced =
       BeamTracer(part).trace(optics, illumination, {setting.acceptance_deg}, policy, cancel, record);

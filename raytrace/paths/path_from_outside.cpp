@@ -64,6 +64,7 @@ PathWalker::Medium PathWalker::medium_at(Vec3 position, double tolerance_mm) con
     if (is_high || setup_.entrance_face->first_hit({raised, -Vec3::UnitZ(), {}, false, kInfinity}))
       return Medium::above;
   }
+  if (!setup_.entrance_pieces.empty() && !setup_.is_over_piece(position.head<2>(), -tolerance_mm)) return Medium::below;
   if (position.z() > setup_.top_mm) return Medium::body;
   if (position.z() < -setup_.depth_mm) return Medium::below;
   // The nearest face above the position determines the medium. The position is moved slightly inward, so that rounding
@@ -117,6 +118,9 @@ bool PathWalker::arrive_from_above(State& state, double reach_mm, double toleran
   state.position += way * state.direction;
   state.position.z() = setup_.thickness_mm;
   if (setup_.infinite()) wrap(state);
+  // Light that meets no material at the height of the entrance face passes into a notch or a hole.
+  if (!setup_.entrance_pieces.empty() && !setup_.is_over_piece(state.position.head<2>(), -tolerance_mm))
+    return arrive_from_below(state);
   return arrive_at_entrance(state);
 }
 
@@ -174,7 +178,7 @@ bool PathWalker::arrive_at_side(State& state, const Vec3& normal) {
 
 /// Starts a path in the air below the back surface.
 bool PathWalker::arrive_from_below(State& state) {
-  const double lowest = -setup_.depth_mm - setup_.clearance_mm;
+  const double lowest = setup_.below_surface_mm();
   if (state.position.z() < lowest) {
     if (!(state.direction.z() > 0.0)) return false;
     state.position += (lowest - state.position.z()) / state.direction.z() * state.direction;

@@ -47,6 +47,21 @@ PathSetup::PathSetup(const geometry::Part& part, const BackSurface& back, const 
     tile_half_mm = (part.periods_beyond - 0.5) * period_mm;
   }
   if (how.entrance.scatters()) contaminated_entrance.emplace(how);
+  for (const geometry::Polygon& piece : part.entrance_pieces)
+    entrance_pieces.push_back(geometry::moved(piece, -centre));
+  // Top and entrance face have the same height.
+  if (!entrance_pieces.empty()) clearance_mm = top_mm + 0.01 * part.element_depth_mm;
+}
+
+bool PathSetup::is_over_piece(const Vec2& position_mm, double least_mm) const {
+  return std::ranges::any_of(entrance_pieces, [&](const geometry::Polygon& piece) {
+    for (std::size_t k = 0; k < piece.size(); ++k) {
+      const Vec2 along = (piece[(k + 1) % piece.size()] - piece[k]).normalized();
+      const Vec2 to = position_mm - piece[k];
+      if (along.x() * to.y() - along.y() * to.x() < least_mm) return false;
+    }
+    return true;
+  });
 }
 
 void PathWalker::trace(const Vec2& entry_mm, RandomKey key, std::uint32_t replicate, std::uint32_t sample) {
@@ -188,7 +203,7 @@ PathWalker::Step PathWalker::step_inside(State& state) const {
   if (skipped < limit) {
     auto hit = search(state, limit - skipped);
     const double end_z = state.position.z() + (limit - skipped) * state.direction.z();
-    if (!hit && (step.end == End::miss || end_z < -setup_.depth_mm - setup_.clearance_mm)) {
+    if (!hit && (step.end == End::miss || end_z < setup_.below_surface_mm())) {
       step.end = End::miss;
       hit = search_certainly(state);
     }
@@ -231,7 +246,7 @@ PathWalker::Step PathWalker::step_inside_periodic(State& state) const {
     const double up = dz > 0.0 ? (setup_.clearance_mm - state.position.z()) / dz : kInfinity;
     const double limit = std::min(up, distance_to_tile_border(state));
     auto hit = search(state, limit);
-    const bool falls_through = state.position.z() + limit * dz < -setup_.depth_mm - setup_.clearance_mm;
+    const bool falls_through = state.position.z() + limit * dz < setup_.below_surface_mm();
     if (!hit && falls_through) hit = search_certainly(state);
     if (hit) {
       move(hit->t);
@@ -319,6 +334,8 @@ void PathWalker::wrap(State& state) const {
 }
 
 bool PathWalker::is_over_part(const Vec3& position) const {
+  if (!setup_.entrance_pieces.empty())
+    return setup_.is_over_piece(position.head<2>(), setup_.clearance_mm - setup_.top_mm);
   return std::all_of(setup_.sides.begin(), setup_.sides.end(), [&](const PathSetup::Side& side) {
     return side.normal.dot(position) < side.offset_mm - setup_.clearance_mm;
   });
@@ -442,8 +459,8 @@ bool PathWalker::meet_facet(State& state, const SurfaceHit& hit) {
   const Branch branch = choose(reflected, transmitted);
   return continue_with(state, branch, reflected, against, [&](State& through) {
     through.light = transmitted;
-    through.direction =
-        refracted(through.direction, against, optics.ratio_at_back(through.inside), cos_incidence, f.cos_refracted);
+    through.direction = refracted(through.direction, against, ratio_at_face(optics, facet.role, through.inside),
+                                  cos_incidence, f.cos_refracted);
     if (through.inside) through.last_exit_role = facet.role;
     through.inside = !through.inside;
   });

@@ -24,12 +24,16 @@ EntranceSampler::EntranceSampler(const geometry::Part& part) {
   centre_mm_ = box.centre();
   lower_ = box.lower - centre_mm_;
   size_ = box.size();
-  for (const Vec2& p : part.outline) outline_.push_back(p - centre_mm_);
-  const double whole = geometry::area(outline_);
+  double whole = 0.0;
+  for (const geometry::Polygon& piece : geometry::entrance_polygons(part)) {
+    const geometry::Polygon face = geometry::moved(piece, -centre_mm_);
+    whole += geometry::area(face);
+    for (std::size_t k = 1; k + 1 < face.size(); ++k) triangles_.push_back({face[0], face[k], face[k + 1]});
+  }
   is_rectangle_ = whole >= kAllOfBox * size_.prod();
   double sum = 0.0;
-  for (std::size_t k = 1; k + 1 < outline_.size(); ++k) {
-    sum += geometry::area({outline_[0], outline_[k], outline_[k + 1]});
+  for (const auto& [a, b, c] : triangles_) {
+    sum += geometry::area({a, b, c});
     cumulative_fraction_.push_back(sum / whole);
   }
   cumulative_fraction_.back() = 1.0;
@@ -43,8 +47,9 @@ Vec2 EntranceSampler::operator()(const std::array<double, 2>& u) const {
   const double within = (u[0] - before) / (cumulative_fraction_[k] - before);
   // The square root makes the distribution over the triangle uniform.
   const double away = std::sqrt(std::clamp(within, 0.0, 1.0));
-  const Vec2 far_side = outline_[k + 1] + u[1] * (outline_[k + 2] - outline_[k + 1]);
-  return outline_[0] + away * (far_side - outline_[0]);
+  const auto& [a, b, c] = triangles_[k];
+  const Vec2 far_side = b + u[1] * (c - b);
+  return a + away * (far_side - a);
 }
 
 }  // namespace retrace::raytrace

@@ -31,8 +31,8 @@ class EntranceSampler {
   bool is_rectangle_ = false;
   Vec2 lower_ = Vec2::Zero();
   Vec2 size_ = Vec2::Zero();
-  geometry::Polygon outline_;                ///< divided into a fan of triangles from the first corner
-  std::vector<double> cumulative_fraction_;  ///< cumulative fraction of the area of the triangles
+  std::vector<std::array<Vec2, 3>> triangles_;  ///< triangles that make up the face
+  std::vector<double> cumulative_fraction_;     ///< cumulative fraction of the area of the triangles
 };
 
 }  // namespace retrace::raytrace

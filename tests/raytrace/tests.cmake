@@ -15,6 +15,7 @@ retrace_test(raytrace_tests
     ${CMAKE_CURRENT_LIST_DIR}/ledger_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/flat_polygon_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/level_beams_test.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/outline_part_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/part_symmetry_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/overlay_test.cpp
     ${CMAKE_CURRENT_LIST_DIR}/polarisation_test.cpp

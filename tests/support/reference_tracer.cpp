@@ -350,20 +350,23 @@ class Reference {
   std::vector<ReferenceExit> exits_;
 };
 
-/// Returns a random point of a convex polygon, by rejection sampling from its bounding box.
-geometry::Vec2 random_point(const geometry::Polygon& outline, std::mt19937_64& generator) {
-  const geometry::Rectangle box = geometry::bounding_box(outline);
+/// Returns a random point of the entrance face, by rejection sampling from its bounding box.
+geometry::Vec2 random_point(const geometry::Part& part, std::mt19937_64& generator) {
+  const geometry::Rectangle box = geometry::bounding_box(part.outline);
+  const std::vector<geometry::Polygon> pieces = geometry::entrance_polygons(part);
   std::uniform_real_distribution<double> x(box.lower.x(), box.upper.x());
   std::uniform_real_distribution<double> y(box.lower.y(), box.upper.y());
   for (;;) {
     const geometry::Vec2 p(x(generator), y(generator));
-    bool inside = true;
-    for (std::size_t k = 0; k < outline.size(); ++k) {
-      const geometry::Vec2 along = outline[(k + 1) % outline.size()] - outline[k];
-      const geometry::Vec2 to = p - outline[k];
-      inside = inside && along.x() * to.y() - along.y() * to.x() > 0.0;
+    for (const geometry::Polygon& outline : pieces) {
+      bool inside = true;
+      for (std::size_t k = 0; k < outline.size(); ++k) {
+        const geometry::Vec2 along = outline[(k + 1) % outline.size()] - outline[k];
+        const geometry::Vec2 to = p - outline[k];
+        inside = inside && along.x() * to.y() - along.y() * to.x() > 0.0;
+      }
+      if (inside) return p;
     }
-    if (inside) return p;
   }
 }
 
@@ -382,7 +385,7 @@ ReferenceResult reference_trace(const geometry::Part& part, const raytrace::Opti
   const std::uint64_t per_batch = rays / kBatches;
   for (std::size_t b = 0; b < kBatches; ++b)
     for (std::uint64_t k = 0; k < per_batch; ++k) {
-      const geometry::Vec2 at = random_point(part.outline, generator);
+      const geometry::Vec2 at = random_point(part, generator);
       const Ledger one = reference.trace({at.x(), at.y(), part.thickness_mm});
       for (std::size_t a = 0; a < raytrace::kAccountCount; ++a)
         batches[b].power[a] += one.power[a] / static_cast<double>(per_batch);

@@ -1,0 +1,48 @@
+#include "geometry/part/cover_polygons.h"
+
+#include <algorithm>
+
+#include "geometry/centroid.h"
+
+namespace retrace::geometry {
+
+std::vector<std::uint32_t> border_vertices(const Polygon& polygon, const std::vector<PlacedVertex>& vertices,
+                                           double tolerance_mm) {
+  std::vector<std::uint32_t> ring;
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const Vec2 side = polygon[(k + 1) % polygon.size()] - polygon[k];
+    const double length = side.norm();
+    const Vec2 along = side / length;
+    std::vector<std::pair<double, std::uint32_t>> on_side;
+    for (const auto& [position, vertex] : vertices) {
+      const Vec2 to = position - polygon[k];
+      const double at = along.dot(to);
+      const double away = along.x() * to.y() - along.y() * to.x();
+      // The end of a side is the start of the next one.
+      if (std::abs(away) <= tolerance_mm && at >= -tolerance_mm && at < length - tolerance_mm)
+        on_side.emplace_back(at, vertex);
+    }
+    std::ranges::sort(on_side);
+    for (const auto& [at, vertex] : on_side)
+      if (ring.empty() || ring.back() != vertex) ring.push_back(vertex);
+  }
+  if (ring.size() > 1 && ring.front() == ring.back()) ring.pop_back();
+  return ring;
+}
+
+void add_cover(BoundaryMesh& mesh, const std::vector<Polygon>& polygons, const std::vector<PlacedVertex>& vertices,
+               double tolerance_mm, FacetRole role, bool faces_up) {
+  for (const Polygon& polygon : polygons) {
+    std::vector<std::uint32_t> ring = border_vertices(polygon, vertices, tolerance_mm);
+    if (ring.size() < 3) continue;
+    if (!faces_up) std::ranges::reverse(ring);
+    const auto hub = static_cast<std::uint32_t>(mesh.vertices.size());
+    mesh.vertices.push_back(ring_centroid(mesh.vertices, ring));
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      mesh.triangles.push_back({hub, ring[i], ring[(i + 1) % ring.size()]});
+      mesh.roles.push_back(role);
+    }
+  }
+}
+
+}  // namespace retrace::geometry
