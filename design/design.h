@@ -18,6 +18,7 @@
 #include "core/warning.h"
 #include "geometry/elements/element_choice.h"
 #include "geometry/elements/part_spec.h"
+#include "geometry/io/dxf_outline.h"
 #include "geometry/part/zones.h"
 #include "raytrace/balls/ball_layer.h"
 #include "raytrace/light/stokes.h"
@@ -136,11 +137,19 @@ struct FacetPlanesFile {
   std::shared_ptr<const geometry::FacetPlanes> planes = {};
 };
 
+/// DXF file with the outline of a part. It is read together with the design.
+struct OutlineFile {
+  std::string name;            ///< name of the file, as given
+  std::filesystem::path file;  ///< path of the file, relative to the working directory
+  geometry::DxfSelection selection;
+};
+
 /// Array of elements, the plate in front of them, and differences between individual elements.
 struct ElementArray {
   geometry::PartSpec part;
   std::optional<ArrayMask> mask;
-  std::optional<FacetPlanesFile> facet_planes;  ///< planes of individual facets; only for finite parts without a mask
+  std::optional<FacetPlanesFile> facet_planes;   ///< planes of individual facets; only for finite parts without a mask
+  std::optional<OutlineFile> outline_file = {};  ///< file that determines `part.array.outline`
 };
 
 /// Part whose shape is given by a mesh.
@@ -383,6 +392,8 @@ struct Capabilities {
   bool substrates = true;
   bool entrances = false;
   bool wet_backs = false;
+  bool outlines = true;
+  bool notches = true;  ///< outlines that are not convex or have holes are supported; only used if `outlines`
 };
 /// Checks that a study supports a design.
 /// \throw InputError if it does not

@@ -1,11 +1,14 @@
 #include "design/io/design_document.h"
 
+#include <algorithm>
+
 #include "core/length_units.h"
 #include "core/overloaded.h"
 #include "core/schema/writer.h"
 #include "design/file_names.h"
 #include "design/io/design_format.h"
 #include "geometry/io/element_keys.h"
+#include "geometry/outline/plan_region.h"
 
 namespace retrace::design {
 namespace {
@@ -73,17 +76,53 @@ void set_element(Document& document, const Element& element) {
       element);
 }
 
+/// Writes the file of an outline, or the outline with all its arcs in the part frame.
+void set_outline(Document& document, const geometry::PlanRegion& plan, const std::optional<OutlineFile>& file) {
+  Keys keys(document, "outline");
+  keys.set("margin_mm", plan.margin_mm);
+  keys.set("tolerance_mm", plan.tolerance_mm);
+  if (file) {
+    keys.set_word("dxf", file->name);
+    if (!file->selection.layer.empty()) keys.set_word("dxf_layer", file->selection.layer);
+    if (file->selection.scale) keys.set("dxf_scale", *file->selection.scale);
+    return;
+  }
+  std::vector<std::vector<double>> corners;
+  std::vector<double> sagitta;
+  for (const geometry::OutlineSide& side : plan.outline.loops.front()) {
+    corners.push_back({side.from_mm.x(), side.from_mm.y()});
+    sagitta.push_back(0.5 * side.bulge * side.chord_mm());
+  }
+  if (corners.size() == 2) {  // two half circles
+    const geometry::OutlineSide& half = plan.outline.loops.front().front();
+    keys.set("circle_mm", std::vector{half.centre_mm().x(), half.centre_mm().y(), half.radius_mm()});
+  } else {
+    keys.set("polygon_mm", std::move(corners));
+    if (std::ranges::any_of(sagitta, [](double height) { return height != 0.0; }))
+      keys.set("side_sagitta_mm", std::move(sagitta));
+  }
+  std::vector<std::vector<double>> holes;
+  for (std::size_t k = 1; k < plan.outline.loops.size(); ++k) {
+    const geometry::OutlineSide& half = plan.outline.loops[k].front();
+    holes.push_back({half.centre_mm().x(), half.centre_mm().y(), half.radius_mm()});
+  }
+  if (!holes.empty()) keys.set("holes_mm", std::move(holes));
+}
+
 void set_array(Document& document, const ElementArray& elements) {
   const PartSpec& part = elements.part;
+  if (part.array.outline) set_outline(document, *part.array.outline, elements.outline_file);
   Keys keys(document, "array");
   keys.set_word("arrangement", word_of(part));
   if (part.array.arrangement == Arrangement::single) return;
   keys.set_choice("extent", part.array.extent);
   if (part.array.extent == Extent::finite) {
-    keys.set("x_length_mm", part.array.x_length_mm);
-    keys.set("y_length_mm", part.array.y_length_mm);
-    keys.set("x_offset_mm", part.array.x_offset_mm);
-    keys.set("y_offset_mm", part.array.y_offset_mm);
+    if (!part.array.outline) {
+      keys.set("x_length_mm", part.array.x_length_mm);
+      keys.set("y_length_mm", part.array.y_length_mm);
+      keys.set("x_offset_mm", part.array.x_offset_mm);
+      keys.set("y_offset_mm", part.array.y_offset_mm);
+    }
     keys.set_choice("partial_elements", part.array.partial_elements);
   }
   if (std::holds_alternative<RtpElement>(part.element)) {

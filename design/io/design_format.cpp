@@ -75,6 +75,20 @@ constexpr Condition kWithZones[] = {kNoMesh,
                                     is_absent("form", "not allowed together with [form]"),
                                     is_absent("array.mask", "not allowed together with array.mask"),
                                     is_absent("part.facets", "not allowed together with facets in [part]")};
+constexpr Words kSingleElement = {"single"};
+constexpr Words kInfiniteExtent = {"infinite"};
+constexpr Condition kWithOutline[] = {
+    kNoMesh,
+    kNoPlate,
+    kTableOfNoBall,
+    is_not(kArrangement, kSingleElement, "not allowed for array.arrangement = \"single\""),
+    is_not(kExtent, kInfiniteExtent, "not allowed for array.extent = \"infinite\""),
+    is_absent("zone", "not allowed together with [[zone]]"),
+    is_absent("array.mask", "not allowed together with array.mask"),
+    is_absent("part.facets", "not allowed together with facets in [part]")};
+constexpr std::string_view kOutlineBorders[] = {"polygon_mm", "circle_mm", "dxf"};
+constexpr Rule kOutlineRules[] = {OneOf{
+    kOutlineBorders, "must contain exactly one of the keys polygon_mm, circle_mm and dxf, which determine its border"}};
 constexpr std::string_view kWhereAreZones[] = {"area_fraction", "rectangles_mm", "polygon_mm", "rows",
                                                "columns",       "mask",          "rest"};
 constexpr Rule kZoneRules[] = {OneOf{kWhereAreZones,
@@ -107,6 +121,13 @@ const Table kTables[] = {
      .rows = array_rows(),
      .presence = Presence::implied,
      .when = kWithElements},
+    {.name = "outline",
+     .meaning = "Outline of a finite part that is not a rectangle. It replaces `x_length_mm`, `y_length_mm` and the "
+                "offsets of `[array]`. The array fills the bounding box of the outline, and the outline cuts it.",
+     .rows = outline_rows(),
+     .rules = kOutlineRules,
+     .presence = Presence::optional,
+     .when = kWithOutline},
     {.name = "substrate",
      .meaning = "Surface on which the elements of a finite array are placed, instead of the plane z = 0.",
      .rows = geometry::substrate_rows(),

@@ -14,6 +14,7 @@
 #include "core/sin_cos.h"
 #include "design/io/design_document.h"
 #include "design/io/design_format.h"
+#include "design/io/outline_reader.h"
 #include "design/io/part_reader.h"
 #include "design/io/zone_reader.h"
 #include "materials/io/index_record.h"
@@ -35,7 +36,7 @@ PartMesh read_mesh(const Document& document) {
 }
 
 ElementArray read_elements(const Document& document) {
-  ElementArray array = {read_part(document), {}, {}};
+  ElementArray array = {read_part(document), {}, {}, outline_file(document)};
   if (constexpr std::string_view mask = "array.mask"; document.has(mask))
     array.mask = {document.text(mask), document.file(mask), document.number("array.mask_threshold")};
   if (constexpr std::string_view facets = "part.facets"; document.has(facets))
@@ -296,15 +297,16 @@ Design with(const Design& design, std::span<const std::string> overrides) {
 
 /// Keys whose values are names of files. A store of study results lists the files of a design in this order and is
 /// valid only for this list. New keys must therefore be appended at the end.
-constexpr std::array<std::string_view, 9> kFilesOfStores = {"part.mesh",
-                                                            "array.mask",
-                                                            "surface.height_map",
-                                                            "part.facets",
-                                                            "light.spectrum",
-                                                            "entrance_surface.turned_part",
-                                                            "entrance_surface.mesh",
-                                                            "body.catalogue",
-                                                            "form.map"};
+constexpr std::array<std::string_view, 10> kFilesOfStores = {"part.mesh",
+                                                             "array.mask",
+                                                             "surface.height_map",
+                                                             "part.facets",
+                                                             "light.spectrum",
+                                                             "entrance_surface.turned_part",
+                                                             "entrance_surface.mesh",
+                                                             "body.catalogue",
+                                                             "form.map",
+                                                             "outline.dxf"};
 
 std::vector<NamedFile> files_named(std::string_view text, const std::string& source_name,
                                    std::span<const std::string> overrides) {

@@ -13,6 +13,7 @@ namespace retrace::design {
 
 std::span<const schema::Row> element_rows();
 std::span<const schema::Row> array_rows();
+std::span<const schema::Row> outline_rows();
 std::span<const schema::Row> part_rows();
 std::span<const schema::Row> entrance_rows();
 std::span<const schema::Row> zone_rows();

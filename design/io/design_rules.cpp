@@ -13,6 +13,7 @@
 #include "core/schema/conditions.h"
 #include "design/io/entrance_checks.h"
 #include "design/io/optics_checks.h"
+#include "design/io/outline_reader.h"
 #include "design/io/part_reader.h"
 #include "design/io/zone_reader.h"
 #include "geometry/elements/edges.h"
@@ -100,15 +101,18 @@ void check_length(const Document& document, std::string_view key, double length_
 void check_room(const Document& document, const PartSpec& part) {
   if (part.array.extent == Extent::infinite || part.array.arrangement == Arrangement::single) return;
   const Footprint footprint = std::visit(FootprintOf{part}, part.element);
-  check_length(document, "array.x_length_mm", part.array.x_length_mm, part.array.x_offset_mm, footprint.x_mm);
-  check_length(document, "array.y_length_mm", part.array.y_length_mm, part.array.y_offset_mm, footprint.y_mm);
+  const bool is_cut = has_outline(document);
+  const std::string_view x_key = is_cut ? outline_key(document) : "array.x_length_mm";
+  const std::string_view y_key = is_cut ? outline_key(document) : "array.y_length_mm";
+  check_length(document, x_key, part.array.x_length_mm, part.array.x_offset_mm, footprint.x_mm);
+  check_length(document, y_key, part.array.y_length_mm, part.array.y_offset_mm, footprint.y_mm);
   const double x_free_mm = part.array.x_length_mm - 2.0 * part.array.x_offset_mm + part.array.x_gap_mm;
   const double y_free_mm = part.array.y_length_mm - 2.0 * part.array.y_offset_mm + part.array.y_gap_mm;
   const double count = x_free_mm * y_free_mm / footprint.cell_area_mm2;
   if (!(count <= kMaxElements * (1.0 + kRelativeTolerance)))
-    document.fail("array.x_length_mm", fmt::format("the array would have {:.6g} elements, but at most {:.0f} are "
-                                                   "allowed: make the array smaller or its elements larger",
-                                                   count, kMaxElements));
+    document.fail(x_key, fmt::format("the array would have {:.6g} elements, but at most {:.0f} are "
+                                     "allowed: make the array smaller or its elements larger",
+                                     count, kMaxElements));
 }
 
 constexpr std::string_view kNotInfinite =
@@ -120,8 +124,19 @@ void check_array_on_substrate(const Document& document, const PartSpec& part) {
   if (part.array.extent == Extent::infinite) document.fail(key, kNotInfinite);
   if (part.array.arrangement == Arrangement::single)
     document.fail(key, "not allowed for array.arrangement = \"single\"");
+  if (has_outline(document) && part.array.x_offset_mm > 0.0)
+    document.fail(key, "not allowed together with outline.margin_mm");
   if (part.array.x_offset_mm > 0.0 || part.array.y_offset_mm > 0.0)
     document.fail(key, "not allowed together with array.x_offset_mm and y_offset_mm");
+}
+
+/// Checks that tables that need a convex outline without holes are used only with such an outline.
+void check_outline(const Document& document, const PartSpec& part) {
+  if (!part.array.outline || part.array.outline->is_convex()) return;
+  for (const std::string_view table : {"entrance_surface", "wet_back"})
+    if (document.has(table))
+      document.fail(document.has("outline.holes_mm") ? "outline.holes_mm" : outline_key(document),
+                    fmt::format("must be a convex outline without holes if the design has a table [{}]", table));
 }
 
 constexpr std::string_view kDihedralError = "surface.dihedral_error_arcmin";
@@ -345,6 +360,9 @@ void check_form(const Document& document) {
 constexpr schema::Words kSquareKeys = {"element.base_mm", "element.width_mm"};
 constexpr schema::Words kRoomKeys = {"array.x_length_mm", "array.y_length_mm", "array.x_offset_mm",
                                      "array.y_offset_mm"};
+constexpr schema::Words kOutlineKeys = {"outline.polygon_mm",      "outline.circle_mm",        "outline.dxf",
+                                        "outline.side_sagitta_mm", "outline.corner_radius_mm", "outline.holes_mm",
+                                        "outline.margin_mm",       "outline.tolerance_mm"};
 constexpr schema::Words kArrayOnSubstrateKeys = {"substrate.kind", "array.extent", "array.arrangement",
                                                  "array.x_offset_mm", "array.y_offset_mm"};
 constexpr schema::Words kDihedralKeys = {kDihedralError};
@@ -406,6 +424,13 @@ constexpr schema::Rule kRules[] = {
         kRoomKeys,
         "At least one element of a finite array must fit between its margins, and at most 1e8 elements are allowed.",
         check_by<of_array<check_room>>},
+    schema::Check{
+        kOutlineKeys,
+        "An outline must not cross or touch itself. Its holes must be inside it and apart from each other. The "
+        "arcs of its corners must fit between their neighbours, and the margin must leave one connected area "
+        "for elements. An outline that is not convex, or has holes, is not allowed together with "
+        "`[entrance_surface]` or `[wet_back]`.",
+        check_by<of_array<check_outline>>},
     schema::Check{
         kArrayOnSubstrateKeys,
         "A `[substrate]` is allowed only for finite arrays without margins, and not for the arrangement `single`.",

@@ -1,9 +1,11 @@
 #include "design/io/part_reader.h"
 
 #include <algorithm>
+#include <memory>
 #include <vector>
 
 #include "core/schema/reader.h"
+#include "design/io/outline_reader.h"
 #include "geometry/io/element_keys.h"
 #include "geometry/io/substrate_rows.h"
 
@@ -59,6 +61,15 @@ geometry::Scratch scratch_of(const Document& document, const std::string& entry)
   return scratch;
 }
 
+/// Sets the outline of an array, and its bounding box as the size of the array.
+void read_outline_into(const Document& document, geometry::ArrayLayout& array) {
+  const auto outline = std::make_shared<const geometry::PlanRegion>(read_outline(document));
+  array.x_length_mm = outline->box_mm.size().x();
+  array.y_length_mm = outline->box_mm.size().y();
+  array.x_offset_mm = array.y_offset_mm = outline->margin_mm;
+  array.outline = outline;
+}
+
 }  // namespace
 
 bool has_elements(const Document& document) {
@@ -80,6 +91,7 @@ PartSpec read_array(const Document& document) {
   read("array.y_offset_mm", part.array.y_offset_mm);
   read("array.x_gap_mm", part.array.x_gap_mm);
   read("array.y_gap_mm", part.array.y_gap_mm);
+  if (has_outline(document)) read_outline_into(document, part.array);
   part.array.partial_elements = document.choice<geometry::PartialElements>("array.partial_elements");
   if (part.array.arrangement != Arrangement::offset) return part;
   part.array.shifted_rows = document.choice<geometry::RowParity>("array.shifted_rows");

@@ -69,6 +69,10 @@ constexpr Condition kFiniteOnly[] = {
     is_not(kArrangement, kSingle,
            "not allowed for array.arrangement = \"single\", whose extent is the element's aperture"),
     is_not(kExtent, kInfinite, "not allowed for array.extent = \"infinite\", which is one periodic cell")};
+constexpr std::string_view kNotWithOutline =
+    "not allowed together with [outline], which determines the size of the part";
+constexpr Condition kLengthOnly[] = {kFiniteOnly[0], kFiniteOnly[1], kFiniteOnly[2],
+                                     is_absent("outline", kNotWithOutline)};
 constexpr Condition kGapOnly[] = {kArrayOfNoBall, is(kKind, kRtp), is_not(kArrangement, kSingle)};
 constexpr Condition kOffsetOnly[] = {kArrayOfNoBall, is(kArrangement, kOffset)};
 constexpr Condition kNoBallArray[] = {kArrayOfNoBall};
@@ -94,10 +98,10 @@ constexpr Row kArrayRows[] = {
     {"extent", Word{kFinite}, "finite", "Extent of the array. A single element is finite.", kOfSingle},
     {"extent", Word{kInfinite}, "infinite", "Extent of the array. A layer of balls is infinite.", kOfPacked},
     {"extent", Word{kExtents}, "finite", "Extent of the array. `\"infinite\"` is one periodic cell.", kOfOthers},
-    where(kSizeKeys.x_length_mm, kFiniteOnly),
-    where(kSizeKeys.y_length_mm, kFiniteOnly),
-    where(kSizeKeys.x_offset_mm, kFiniteOnly, kZeroIsNone),
-    where(kSizeKeys.y_offset_mm, kFiniteOnly, kZeroIsNone),
+    where(kSizeKeys.x_length_mm, kLengthOnly),
+    where(kSizeKeys.y_length_mm, kLengthOnly),
+    where(kSizeKeys.x_offset_mm, kLengthOnly, kZeroIsNone),
+    where(kSizeKeys.y_offset_mm, kLengthOnly, kZeroIsNone),
     {"partial_elements", Word{kPartialElements}, "cut",
      "Treatment of elements that cross the border of the part. `\"cut\"`: they are cut at the border. `\"omit\"`: they "
      "are replaced by a flat back.",

@@ -52,7 +52,7 @@ void measure_prisms(ArrayFigures& a, const design::Design& design, const Part& p
   a.shift_mm = block.shift_mm;
   a.element_is_shifted = block.is_shifted(0);
   a.element_mm = a.block_mm.lower + Vec2(a.element_is_shifted ? a.shift_mm : 0.0, 0.0);
-  if (design.mask() || design.facet_planes())
+  if (design.mask() || design.facet_planes() || spec.array.outline)
     if (const auto there = first_element_there(part, a.size_mm)) {
       a.element_mm = *there;
       a.element_is_shifted = block.is_shifted(std::llround((there->y() - a.block_mm.lower.y()) / a.pitch_mm.y()));

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "design/io/design_json.h"
+#include "geometry/outline/plan_region.h"
 #include "studies/drawing/array_figures.h"
 
 namespace retrace::studies {
@@ -105,6 +106,8 @@ PlanPanel panel_of(const Part& part, const Rectangle& window, const char* title)
   PlanPanel panel;
   panel.title = title;
   panel.outline_mm = part.outline;
+  if (part.spec.array.outline && !part.spec.array.outline->is_box())
+    panel.outline_mm = part.spec.array.outline->whole.borders.front();
   if (faces_near(part, window) <= kMaxPlanFaces)
     panel.view = plan_view(part, window);
   else

@@ -7,6 +7,7 @@
 
 #include "design/io/design_json.h"
 #include "design/part_of_design.h"
+#include "geometry/outline/plan_region.h"
 #include "geometry/part/mesh_part.h"
 
 namespace retrace::studies {
@@ -45,8 +46,9 @@ std::vector<Edge> edges_of(const std::vector<Vec3>& vertices, const std::vector<
   return edges;
 }
 
-/// Appends a convex face, with its outline. The face is not part of a SurfacePatch.
-void add_face(DesignView& view, const std::vector<Vec3>& corners, FacetRole role) {
+/// Appends a convex face. The face is not part of a SurfacePatch.
+/// \param has_edges true if the outline of the face is drawn
+void add_face(DesignView& view, const std::vector<Vec3>& corners, FacetRole role, bool has_edges = true) {
   const auto first = static_cast<std::uint32_t>(view.mesh.vertices.size());
   const auto count = static_cast<std::uint32_t>(corners.size());
   view.mesh.vertices.insert(view.mesh.vertices.end(), corners.begin(), corners.end());
@@ -54,7 +56,7 @@ void add_face(DesignView& view, const std::vector<Vec3>& corners, FacetRole role
     view.mesh.triangles.push_back({first, first + k + 1, first + k + 2});
     view.mesh.roles.push_back(role);
   }
-  for (std::uint32_t k = 0; k < count; ++k) view.edges.push_back({first + k, first + (k + 1) % count});
+  for (std::uint32_t k = 0; has_edges && k < count; ++k) view.edges.push_back({first + k, first + (k + 1) % count});
 }
 
 void add_patch(DesignView& view, const SurfacePatch& patch, const std::vector<Edge>& edges, const Vec2& offset) {
@@ -86,6 +88,7 @@ design::Design piece_of(const design::Design& design, std::vector<std::string>& 
   if (!infinite && count.maxCoeff() <= kMaxElementsAcross) return piece;
   const Vec2 wanted = kExcerptElements * pitch;
   spec.array.extent = geometry::Extent::finite;
+  spec.array.outline.reset();
   spec.array.x_length_mm = infinite ? wanted.x() : std::min(spec.array.x_length_mm, wanted.x());
   spec.array.y_length_mm = infinite ? wanted.y() : std::min(spec.array.y_length_mm, wanted.y());
   spec.array.x_offset_mm = spec.array.y_offset_mm = 0.0;
@@ -178,17 +181,22 @@ DesignView view_of(const Part& part, const EntranceHeights& entrance_height) {
     add_curved_entrance(view, part, entrance_height);
     return view;
   }
-  const auto at = [&](std::size_t k, double z) {
-    const Vec2& p = part.outline[k % part.outline.size()];
-    return Vec3(p.x(), p.y(), z);
-  };
-  std::vector<Vec3> face;
-  for (std::size_t k = 0; k < part.outline.size(); ++k) {
-    face.push_back(at(k, part.thickness_mm));
-    add_face(view, {at(k, 0.0), at(k + 1, 0.0), at(k + 1, part.thickness_mm), at(k, part.thickness_mm)},
-             FacetRole::side);
+  const bool has_pieces = !part.entrance_pieces.empty();
+  for (const geometry::PolygonLoop& border :
+       has_pieces ? part.spec.array.outline->whole.borders : std::vector<geometry::PolygonLoop>{part.outline}) {
+    const auto at = [&](std::size_t k, double z) {
+      const Vec2& p = border[k % border.size()];
+      return Vec3(p.x(), p.y(), z);
+    };
+    for (std::size_t k = 0; k < border.size(); ++k)
+      add_face(view, {at(k, 0.0), at(k + 1, 0.0), at(k + 1, part.thickness_mm), at(k, part.thickness_mm)},
+               FacetRole::side);
   }
-  add_face(view, face, FacetRole::entrance);
+  for (const geometry::Polygon& piece : geometry::entrance_polygons(part)) {
+    std::vector<Vec3> face;
+    for (const Vec2& p : piece) face.emplace_back(p.x(), p.y(), part.thickness_mm);
+    add_face(view, face, FacetRole::entrance, !has_pieces);
+  }
   return view;
 }
 

@@ -73,7 +73,7 @@ design::Design reached(const design::Design& design, const std::string& facets_f
 }
 
 void check_design(const design::Design& design, const JobRequest& request) {
-  design::require_supported(design, {.what = "retrace job --reachable", .wet_backs = true});
+  design::require_supported(design, {.what = "retrace job --reachable", .wet_backs = true, .outlines = false});
   const geometry::PartSpec& part = design.part();
   if (std::holds_alternative<geometry::RtpElement>(part.element))
     throw InputError(Field{"reachable"},

@@ -41,6 +41,7 @@ geometry::PartSpec part_to_check(const geometry::PartSpec& spec, double element_
   else
     side = 2.0 * element_mm;
   small.array.extent = geometry::Extent::finite;
+  small.array.outline.reset();
   small.array.x_length_mm = 6.0 * (side + gap) + 2.0 * spec.array.x_offset_mm;
   small.array.y_length_mm = 6.0 * (side + gap) + 2.0 * spec.array.y_offset_mm;
   return small;

@@ -52,6 +52,7 @@ FewElements few_elements(const design::Design& design, double elements) {
                            spec.array.x_length_mm > 1.01 * wanted.x() || spec.array.y_length_mm > 1.01 * wanted.y();
     if (is_larger) {
       spec.array.extent = geometry::Extent::finite;
+      spec.array.outline.reset();
       spec.array.x_length_mm = spec.array.x_length_mm > 0.0 ? std::min(spec.array.x_length_mm, wanted.x()) : wanted.x();
       spec.array.y_length_mm = spec.array.y_length_mm > 0.0 ? std::min(spec.array.y_length_mm, wanted.y()) : wanted.y();
       spec.array.x_offset_mm = spec.array.y_offset_mm = 0.0;

@@ -1,5 +1,5 @@
 retrace_test(studies_tests
-  SOURCES ${CMAKE_CURRENT_LIST_DIR}/substrate_reader_test.cpp ${CMAKE_CURRENT_LIST_DIR}/design_array_test.cpp ${CMAKE_CURRENT_LIST_DIR}/design_format_test.cpp ${CMAKE_CURRENT_LIST_DIR}/design_json_test.cpp
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/substrate_reader_test.cpp ${CMAKE_CURRENT_LIST_DIR}/outline_reader_test.cpp ${CMAKE_CURRENT_LIST_DIR}/design_array_test.cpp ${CMAKE_CURRENT_LIST_DIR}/design_format_test.cpp ${CMAKE_CURRENT_LIST_DIR}/design_json_test.cpp
           ${CMAKE_CURRENT_LIST_DIR}/design_labels_test.cpp
           ${CMAKE_CURRENT_LIST_DIR}/design_light_test.cpp ${CMAKE_CURRENT_LIST_DIR}/design_reader_test.cpp
           ${CMAKE_CURRENT_LIST_DIR}/design_surface_test.cpp ${CMAKE_CURRENT_LIST_DIR}/facet_planes_reader_test.cpp

@@ -1,0 +1,28 @@
+#pragma once
+
+// Reads the table [outline] of a design.
+
+#include <optional>
+#include <string_view>
+
+#include "core/schema/document.h"
+#include "design/design.h"
+#include "geometry/outline/plan_region.h"
+
+namespace retrace::design {
+
+bool has_outline(const schema::Document& document);
+
+/// Returns the key that contains the border of the outline.
+std::string_view outline_key(const schema::Document& document);
+
+/// Returns the file that contains the outline, or nothing if the outline is given by keys.
+std::optional<OutlineFile> outline_file(const schema::Document& document);
+
+/// Reads the outline of a part, and its DXF file.
+/// \pre has_outline()
+/// \throw InputError if the outline is open, crosses itself, has holes outside of it, or if a radius or the margin is
+///     too large
+geometry::PlanRegion read_outline(const schema::Document& document);
+
+}  // namespace retrace::design
