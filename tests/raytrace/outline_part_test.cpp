@@ -149,13 +149,13 @@ TEST(OutlinePart, ElementsAreCutOrOmitted) {
   EXPECT_EQ(static_cast<std::int64_t>(whole_elements(cut.array, cut.element).size()), cut_part.elements_full);
 }
 
-/// A large array is stored as shared patches. The same outline in one patch has the same numbers.
-TEST(OutlinePart, SharedPatchesAgreeWithOnePatch) {
+/// A large array is stored as several patches. The same outline in one patch has the same numbers.
+TEST(OutlinePart, SeveralPatchesAgreeWithOnePatch) {
   std::mt19937 random(9);
   const PartSpec spec = with_random_outline(prisms(0.5), random, 30.0, 0.1);
   const Part part = build_part(spec);
   const Part one = build_welded_part(spec);
-  EXPECT_GT(part.placements.size(), part.patches.size());
+  EXPECT_GT(part.placements.size(), 1U);
   EXPECT_EQ(one.placements.size(), 1U);
   EXPECT_EQ(part.elements_full, one.elements_full);
   EXPECT_EQ(part.elements_partial, one.elements_partial);
@@ -164,7 +164,7 @@ TEST(OutlinePart, SharedPatchesAgreeWithOnePatch) {
 
 TEST(OutlinePart, RaysStartInside) {
   std::mt19937 random(4);
-  for (int k = 0; k < 40; ++k) {
+  for (int k = 0; k < 12; ++k) {
     const PartSpec spec = with_random_outline(hexagons(0.2), random, 1.5, 0.0);
     const Part part = build_part(spec);
     const EntranceSampler sampler(part);
