@@ -36,7 +36,8 @@ materials::FresnelCoefficients fresnel_at_back(const Optics& optics, geometry::F
                                                double cos_incidence) {
   const bool is_retro = role == geometry::FacetRole::retro_facet;
   if (is_retro && optics.mirror_facets) return perfect_mirror();
-  if (!is_retro || optics.facet_layers.empty()) return materials::fresnel(ratio_at_face(optics, role, inside), cos_incidence);
+  if (!is_retro || optics.facet_layers.empty())
+    return materials::fresnel(ratio_at_face(optics, role, inside), cos_incidence);
   if (inside)
     return materials::fresnel_layers(optics.facet_layers, StackSide::body, optics.index, optics.back_index,
                                      cos_incidence);
