@@ -31,10 +31,10 @@ struct DetectorRequest {
   /// Minimum power of a beam that is followed, as a fraction of the incident power; > 0 and < 1. Default: such that at
   /// most 1e-5 of the power is truncated.
   std::optional<double> cutoff = {};
-  /// Number of Monte Carlo rays; a whole number >= 1 and <= 68719476736. Default: as many as small bins require, from
-  /// 4194304 to 33554432.
+  /// Number of Monte Carlo rays; a whole number >= 1 and <= 68719476736. Default: 4194304, increased to at most
+  /// 33554432 until the bins are small.
   std::optional<std::uint64_t> samples = {};
-  /// Largest relative standard error of a bin where there is light. Pixels are merged until it is reached; 0: pixels
+  /// Maximum relative standard error of a bin with light; pixels are merged into bins until it is reached; 0: pixels
   /// are not merged; >= 0 and < 1.
   double bin_error = 0.01;
   /// Seed of the random numbers; a whole number >= 0 and <= 4294967295.
@@ -110,21 +110,21 @@ struct CameraRequest {
 /// Settings for pictures of reflectors on a car ahead, or of a sign on a mast, as a driver sees them at night
 /// (`retrace image --road`).
 struct RoadRequest {
-  /// Distances of the car ahead or the sign.
+  /// Distances from the headlamps to the reflectors, along the road; 1 to 6 distances, each from 5 to 1000 m.
   std::vector<double> distance_m = {10.0, 30.0, 100.0};
-  /// Object that carries the reflectors: the rear of a car, which has two, or a sign on a mast.
+  /// Object that carries the reflectors: car (two reflectors at the rear) or sign (on a mast).
   std::string mount = "car";
-  /// Width and height of each reflector or of the sign, in mm. Default: the size of a finite design; 120x25 on a car
-  /// and 600x600 on a sign if it is infinite.
+  /// Width and height of each reflector or of the sign, in mm; each > 0 and <= 5000. Default: the size of a finite
+  /// design; for an infinite design, 120x25 on a car and 600x600 on a sign.
   std::optional<std::array<double, 2>> reflector_mm = {};
-  /// Outline of each reflector or of the sign: rectangle, ellipse, triangle, octagon, or auto for that of a finite
-  /// design, otherwise a rectangle on a car and an ellipse on a sign.
+  /// Outline of each reflector or of the sign: rectangle, ellipse, triangle, octagon or auto; auto is the outline of a
+  /// finite design; for an infinite design, it is a rectangle on a car and an ellipse on a sign.
   std::string outline = "auto";
   /// Height of the centre of the reflectors or of the sign above the road; > 0 and <= 20. Default: 0.6 on a car, 2.2 on
   /// a sign.
   std::optional<double> reflector_height_m = {};
-  /// Distance of each reflector from the centre of the car, or of the sign from the centre of the lane; positive to the
-  /// right; >= -20 and <= 20. Default: 0.72 on a car, 4 on a sign.
+  /// Lateral distance of each reflector from the centre of the car, or of the sign from the centre of the driver's
+  /// lane; positive to the right; >= -20 and <= 20. Default: 0.72 on a car, 4 on a sign.
   std::optional<double> lateral_m = {};
   /// Height of the mast of a sign; at least the height of the sign's centre; > 0 and <= 25. Default: up to the upper
   /// edge of the sign.
@@ -153,7 +153,7 @@ struct RoadRequest {
   std::size_t columns = 640;
   /// Columns and rows of the picture.
   std::size_t rows = 440;
-  /// Angular width of the picture, in degrees; >= 1 and <= 90.
+  /// Horizontal field of view of the picture, in degrees; >= 1 and <= 90.
   double field_deg = 13.0;
   /// Exposure of the PNG file as an exposure value at ISO 100 (EV100); luminances of 1.2 x 2^EV cd/m2 are white; >= -30
   /// and <= 40. Default: such that the brightest thousandth of the pixels is white.

@@ -54,12 +54,14 @@ struct PhotometryRequest {
   bool advice = true;
   /// Compute a map of R_A over entrance and observation angle, or of R_I if the standard limits R_I.
   bool map = false;
-  /// Entrance angles of the map, in degrees; negative angles are on the opposite side of the normal. Default: 0:60:5.
+  /// Entrance angles of the map, in degrees; at least two, from -85 to 85; negative angles are on the opposite side of
+  /// the normal. Default: 0:60:5.
   std::vector<double> map_entrance_deg = {};
-  /// Observation angles of the map, in degrees. Default: 41 angles from 0 to the half angle of the far field.
+  /// Observation angles of the map, in degrees; at least two, from 0 to the half angle of the far field. Default: 41
+  /// angles from 0 to the half angle of the far field.
   std::vector<double> map_observation_deg = {};
-  /// Presentation angles of the map, in degrees; one panel for each of them and each rotation; 0: the source is in the
-  /// plane of normal and observer. Default: 0.
+  /// Presentation angles of the map, in degrees; from -180 to 180; one map for each presentation angle and rotation; at
+  /// 0, the observer is on the side of the normal, as seen from the source. Default: 0.
   std::vector<double> map_presentation_deg = {};
   /// Compute the maps and curves for the drawings "far_field" and "r_a".
   bool pictures = false;

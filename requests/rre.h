@@ -13,8 +13,8 @@ namespace retrace {
 /// Settings for the retroreflective efficiency as a function of the direction of the incident light, as in
 /// `retrace rre`.
 struct RreRequest {
-  /// Angles of incidence, in degrees. Default: 0, or none if there are ranges with automatically chosen angles; for
-  /// maps 0:80:5.
+  /// Angles of incidence, in degrees. Default: 0, or no angles if ranges with automatically chosen angles are given;
+  /// for maps 0:80:5.
   std::vector<double> incidence_deg = {};
   /// Ranges in which further angles of incidence are chosen automatically, as many as the curve requires, in degrees.
   std::vector<std::array<double, 2>> incidence_spans_deg = {};
