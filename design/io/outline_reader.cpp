@@ -114,27 +114,33 @@ std::optional<OutlineFile> outline_file(const Document& document) {
 }
 
 PlanRegion read_outline(const Document& document) {
+  const double tolerance_mm = document.number(kTolerance);
+  const auto region_of = [&](std::vector<OutlineLoop> loops, double margin_mm) {
+    double corners = 0.0;
+    for (const OutlineLoop& loop : loops) corners += geometry::polygon_corner_count(loop, tolerance_mm);
+    if (corners > kMaxCorners)
+      document.fail(kTolerance,
+                    fmt::format("must be larger, because the polygon of the outline would have about {:.0f} "
+                                "corners, but at most {:.0f} are allowed, got {}",
+                                corners, kMaxCorners, shortest(tolerance_mm)));
+    std::optional<OutlineFault> fault;
+    PlanRegion plan = geometry::plan_region(geometry::oriented(std::move(loops)), margin_mm, tolerance_mm, fault);
+    if (fault) document.fail(key_of(document, fault->subject), fault->text);
+    return plan;
+  };
   std::vector<OutlineLoop> loops = border_of(document);
+  const double margin_mm = document.number(kMargin);
+  if (!document.has(kHoles)) return region_of(std::move(loops), margin_mm);
+  // The border is checked without the holes first: a border that crosses itself can enclose a smaller area than a hole.
+  static_cast<void>(region_of(loops, 0.0));
   double border_mm2 = 0.0;
   for (const OutlineLoop& loop : loops) border_mm2 = std::max(border_mm2, std::abs(geometry::enclosed_area_mm2(loop)));
-  if (document.has(kHoles))
-    for (const std::vector<double>& hole : document.rows(kHoles)) {
-      loops.push_back(circle_of(document, kHoles, hole));
-      if (geometry::enclosed_area_mm2(loops.back()) >= border_mm2)
-        document.fail(kHoles, "must be inside the outer border, but a hole is larger than the outline");
-    }
-  const double tolerance_mm = document.number(kTolerance);
-  double corners = 0.0;
-  for (const OutlineLoop& loop : loops) corners += geometry::polygon_corner_count(loop, tolerance_mm);
-  if (corners > kMaxCorners)
-    document.fail(kTolerance, fmt::format("must be larger, because the polygon of the outline would have about {:.0f} "
-                                          "corners, but at most {:.0f} are allowed, got {}",
-                                          corners, kMaxCorners, shortest(tolerance_mm)));
-  std::optional<OutlineFault> fault;
-  PlanRegion plan =
-      geometry::plan_region(geometry::oriented(std::move(loops)), document.number(kMargin), tolerance_mm, fault);
-  if (fault) document.fail(key_of(document, fault->subject), fault->text);
-  return plan;
+  for (const std::vector<double>& hole : document.rows(kHoles)) {
+    loops.push_back(circle_of(document, kHoles, hole));
+    if (geometry::enclosed_area_mm2(loops.back()) >= border_mm2)
+      document.fail(kHoles, "must be inside the outer border, but a hole is larger than the outline");
+  }
+  return region_of(std::move(loops), margin_mm);
 }
 
 }  // namespace retrace::design

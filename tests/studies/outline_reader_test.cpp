@@ -65,6 +65,8 @@ TEST(OutlineReader, DocumentsDescribeTheSameOutline) {
 
 TEST(OutlineReader, FaultsAreReportedAtTheirKey) {
   EXPECT_EQ(complaint(design("polygon_mm = [[0, 0], [10, 10], [10, 0], [0, 10]]")), "d.toml:8: outline.polygon_mm");
+  EXPECT_EQ(complaint(design("polygon_mm = [[0, 0], [10, 10], [10, 0], [0, 10]]\nholes_mm = [[3, 5, 1]]")),
+            "d.toml:8: outline.polygon_mm");
   EXPECT_EQ(complaint(design("polygon_mm = [[0, 0], [10, 0], [10, 0], [0, 10]]")), "d.toml:8: outline.polygon_mm");
   EXPECT_EQ(complaint(design(kSquare + "corner_radius_mm = 6")), "d.toml:9: outline.corner_radius_mm");
   EXPECT_EQ(complaint(design(kSquare + "corner_radius_mm = [1, 2]")), "d.toml:9: outline.corner_radius_mm");
