@@ -188,16 +188,39 @@ std::string names_of(std::span<const Command> all) {
   return in_words(names, "and");
 }
 
+/// Returns the error message for an unknown option. It names the most similar option of the command, if there is one.
+std::string unknown_option(const CLI::App& app, const std::string& word) {
+  std::vector<std::string> options;
+  const auto add_options_of = [&](const CLI::App& of) {
+    for (const CLI::Option* const option : of.get_options())
+      for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
+  };
+  add_options_of(app);
+  for (const CLI::App* const command : app.get_subcommands()) add_options_of(*command);
+  const std::vector<std::string_view> names(options.begin(), options.end());
+  const std::string_view similar = closest_match(std::string_view(word).substr(0, word.find('=')), names);
+  return "unknown option " + printable(word) + (similar.empty() ? "" : fmt::format(", did you mean {}?", similar));
+}
+
+/// Returns the error message for a command line with words that the command does not know, or an empty text if there
+/// are none.
+std::string unknown_word(const CLI::App& app) {
+  const std::vector<std::string> unknown = app.remaining(true);
+  const auto option = std::ranges::find_if(unknown, [](const std::string& word) { return word.starts_with('-'); });
+  if (option != unknown.end()) return unknown_option(app, *option);
+  if (unknown.empty()) return {};
+  const std::string_view what = app.get_subcommands().empty() ? "command" : "argument";
+  return fmt::format("unknown {} {}", what, printable(unknown.front()));
+}
+
 /// Returns the error message for a command line in which the command or a required argument is missing. If the command
 /// line contains an unknown option or command, the message names this word.
 /// \param otherwise message if the command line contains no unknown word
 std::string missing(const CLI::App& app, const std::string& otherwise) {
-  const std::vector<std::string> unknown = app.remaining(true);
-  for (const std::string& word : unknown)
-    if (word.starts_with('-')) return "unknown option " + printable(word);
+  const std::string unknown = unknown_word(app);
+  if (unknown.starts_with("unknown option")) return unknown;
   if (!app.get_subcommands().empty()) return otherwise;
-  return (unknown.empty() ? "a command is required" : "unknown command " + printable(unknown.front())) +
-         "; the commands are " + names_of(commands());
+  return (unknown.empty() ? "a command is required" : unknown) + "; the commands are " + names_of(commands());
 }
 
 /// Returns an error message of CLI11 as one line, in which long words are shortened.
@@ -259,6 +282,8 @@ bool parse(CLI::App& app, int argc, const char* const* argv) {
     return false;
   } catch (const CLI::RequiredError& error) {
     throw InputError(missing(app, one_line(error.what())) + "; see retrace --help");
+  } catch (const CLI::ExtrasError&) {
+    throw InputError(unknown_word(app) + "; see retrace --help");
   } catch (const CLI::ParseError& error) {
     throw InputError(message_of(error) + "; see retrace --help");
   }

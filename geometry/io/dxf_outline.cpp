@@ -47,10 +47,10 @@ struct PlacedSide {
 class DxfReader {
  public:
   DxfReader(std::string_view text, const std::string& name, const DxfSelection& selection)
-      : rest_(text), name_(name), selection_(selection) {}
+      : remainder_(text), name_(name), selection_(selection) {}
 
   std::vector<OutlineLoop> read() {
-    if (rest_.starts_with("AutoCAD Binary DXF")) fail(0, "must be an ASCII DXF file, got a binary one");
+    if (remainder_.starts_with("AutoCAD Binary DXF")) fail(0, "must be an ASCII DXF file, got a binary one");
     Group group = next();
     while (!is(group, 0, "EOF")) {
       if (!is(group, 0, "SECTION")) {
@@ -79,7 +79,7 @@ class DxfReader {
 
   /// Returns the next group. After the end of the file, returns the group of the end.
   Group next() {
-    if (rest_.empty()) return {0, "EOF", line_};
+    if (remainder_.empty()) return {0, "EOF", line_};
     Group group;
     group.line = line_ + 1;
     const std::string_view code = next_line();
@@ -93,9 +93,9 @@ class DxfReader {
   }
 
   std::string_view next_line() {
-    const std::size_t end = std::min(rest_.find('\n'), rest_.size());
-    const std::string_view line = stripped_line(rest_.substr(0, end));
-    rest_.remove_prefix(std::min(end + 1, rest_.size()));
+    const std::size_t end = std::min(remainder_.find('\n'), remainder_.size());
+    const std::string_view line = stripped_line(remainder_.substr(0, end));
+    remainder_.remove_prefix(std::min(end + 1, remainder_.size()));
     ++line_;
     return line;
   }
@@ -299,7 +299,7 @@ class DxfReader {
     return *found;
   }
 
-  std::string_view rest_;
+  std::string_view remainder_;
   const std::string& name_;
   const DxfSelection& selection_;
   int line_ = 0;

@@ -238,7 +238,7 @@ class TriangleJoiner {
 
 }  // namespace
 
-std::vector<Polygon> convex_pieces(const std::vector<std::vector<Vec2>>& loops) {
+std::vector<Polygon> convex_decomposition(const std::vector<std::vector<Vec2>>& loops) {
   if (loops.size() == 1 && is_convex(loops.front(), 0.0)) return loops;
   const Triangulation triangulation(loops);
   return TriangleJoiner(triangulation).join_all();
@@ -258,7 +258,7 @@ Polygon convex_hull(std::vector<Vec2> points) {
     hull.pop_back();
   };
   add_chain(points);
-  std::ranges::reverse(points);
+  std::reverse(points.begin(), points.end());
   add_chain(points);
   return hull;
 }

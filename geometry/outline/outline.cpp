@@ -376,8 +376,9 @@ PolygonLoop equal_area_polygon(const OutlineLoop& loop, double tolerance_mm) {
 }
 
 Outline oriented(std::vector<OutlineLoop> loops) {
-  const auto size = [](const OutlineLoop& loop) { return -std::abs(enclosed_area_mm2(loop)); };
-  std::ranges::stable_sort(loops, {}, size);
+  std::stable_sort(loops.begin(), loops.end(), [](const OutlineLoop& a, const OutlineLoop& b) {
+    return std::abs(enclosed_area_mm2(a)) > std::abs(enclosed_area_mm2(b));
+  });
   Outline outline;
   for (OutlineLoop& loop : loops) {
     const bool is_outer = outline.loops.empty();

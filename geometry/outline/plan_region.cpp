@@ -94,7 +94,7 @@ Polygon convex_inside(const Polygon& polygon, double by_mm, double tolerance_mm)
 ConvexRegion region_of(const std::vector<PolygonLoop>& borders) {
   ConvexRegion region;
   region.borders = borders;
-  region.pieces = convex_pieces(borders);
+  region.pieces = convex_decomposition(borders);
   for (const Polygon& piece : region.pieces) region.boxes.push_back(bounding_box(piece));
   return region;
 }
@@ -106,7 +106,7 @@ void append(ConvexRegion& region, const ConvexRegion& more) {
 }
 
 PolygonLoop backwards(PolygonLoop loop) {
-  std::ranges::reverse(loop);
+  std::reverse(loop.begin(), loop.end());
   return loop;
 }
 

@@ -35,7 +35,7 @@ void add_cover(BoundaryMesh& mesh, const std::vector<Polygon>& polygons, const s
   for (const Polygon& polygon : polygons) {
     std::vector<std::uint32_t> ring = border_vertices(polygon, vertices, tolerance_mm);
     if (ring.size() < 3) continue;
-    if (!faces_up) std::ranges::reverse(ring);
+    if (!faces_up) std::reverse(ring.begin(), ring.end());
     const auto hub = static_cast<std::uint32_t>(mesh.vertices.size());
     mesh.vertices.push_back(ring_centroid(mesh.vertices, ring));
     for (std::size_t i = 0; i < ring.size(); ++i) {

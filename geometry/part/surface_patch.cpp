@@ -323,13 +323,25 @@ class PatchBuilder {
     }
   }
 
-  void emit_border() {
+  /// Edge of a tile that belongs to the output, on the border of the part. The tile is to the left of the edge.
+  struct BorderEdge {
+    std::uint32_t tile = 0;
+    std::uint32_t from = 0;
+    std::uint32_t to = 0;
+  };
+
+  std::vector<BorderEdge> border_edges() const {
+    std::vector<BorderEdge> edges;
     for (const SharedEdge& e : edges_) {
       if (e.left.has_value() == e.right.has_value()) continue;
       const std::uint32_t tile = e.left ? *e.left : *e.right;
-      if (!tiles_[tile].is_output) continue;
-      const std::uint32_t from = e.left ? e.from : e.to;
-      const std::uint32_t to = e.left ? e.to : e.from;
+      if (tiles_[tile].is_output) edges.push_back({tile, e.left ? e.from : e.to, e.left ? e.to : e.from});
+    }
+    return edges;
+  }
+
+  void emit_border() {
+    for (const auto& [tile, from, to] : border_edges()) {
       const double rim_from = rim_height(tile, from);
       const double rim_to = rim_height(tile, to);
       Ring rim;
@@ -349,12 +361,7 @@ class PatchBuilder {
   /// plate above it. They get no triangles, because the triangles of the borders are made from border_walls and
   /// border_rim.
   void emit_open_sides() {
-    for (const SharedEdge& e : edges_) {
-      if (e.left.has_value() == e.right.has_value()) continue;
-      const std::uint32_t tile = e.left ? *e.left : *e.right;
-      if (!tiles_[tile].is_output) continue;
-      const std::uint32_t from = e.left ? e.from : e.to;
-      const std::uint32_t to = e.left ? e.to : e.from;
+    for (const auto& [tile, from, to] : border_edges()) {
       if (is_on(rim_.hull, index_[from], index_[to])) continue;
       PatchCell cell;
       cell.first_facet = static_cast<std::uint32_t>(patch_.facets.size());

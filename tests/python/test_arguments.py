@@ -21,7 +21,6 @@ TABLE = [
     (rt.rre, [PRISM], {"incidence_deg": "ten"}, "incidence_deg"),
     (rt.rre, [PRISM], {"incidence_deg": [1, "2"]}, "incidence_deg"),
     (rt.rre, [PRISM], {"incidence_deg": {"a": 1}}, "incidence_deg"),
-    (rt.rre, [PRISM], {"azimuth_deg": []}, "azimuth_deg"),
     (rt.rre, [PRISM], {"incidence_deg": 90}, "incidence_deg"),
     (rt.rre, [PRISM], {"incidence_deg": math.nan}, "incidence_deg"),
     (rt.rre, [PRISM], {"incidence_deg": [0, math.inf]}, "incidence_deg"),

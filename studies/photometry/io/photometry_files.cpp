@@ -162,7 +162,8 @@ std::vector<std::size_t> indices_of_smallest_margins(const std::vector<Photometr
                                                      std::size_t max_count) {
   std::vector<std::size_t> indices(points.size());
   std::iota(indices.begin(), indices.end(), std::size_t{0});
-  std::ranges::stable_sort(indices, {}, [&](std::size_t k) { return points[k].margin(); });
+  std::stable_sort(indices.begin(), indices.end(),
+                   [&](std::size_t a, std::size_t b) { return points[a].margin() < points[b].margin(); });
   indices.resize(std::min(max_count, indices.size()));
   std::ranges::sort(indices);
   return indices;
