@@ -61,7 +61,7 @@ geometry::Scratch scratch_of(const Document& document, const std::string& entry)
   return scratch;
 }
 
-/// Sets the outline of an array, and its bounding box as the size of the array.
+/// Sets the outline of an array, and sets the size of the array to the bounding box of the outline.
 void read_outline_into(const Document& document, geometry::ArrayLayout& array) {
   const auto outline = std::make_shared<const geometry::PlanRegion>(read_outline(document));
   array.x_length_mm = outline->box_mm.size().x();

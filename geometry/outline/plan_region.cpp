@@ -110,7 +110,8 @@ PolygonLoop backwards(PolygonLoop loop) {
   return loop;
 }
 
-/// Adds the areas of elements and margin to a plan. Returns false if the margin leaves no connected area of elements.
+/// Adds the area of the elements and the area of the margin to a plan. Returns false if the margin leaves no connected
+/// area for elements.
 bool add_margin(PlanRegion& plan) {
   if (!(plan.margin_mm > 0.0)) {
     plan.elements = plan.whole;

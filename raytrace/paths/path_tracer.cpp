@@ -49,7 +49,7 @@ PathSetup::PathSetup(const geometry::Part& part, const BackSurface& back, const 
   if (how.entrance.scatters()) contaminated_entrance.emplace(how);
   for (const geometry::Polygon& piece : part.entrance_pieces)
     entrance_pieces.push_back(geometry::moved(piece, -centre));
-  // Top and entrance face have the same height.
+  // The top is at the same height as the entrance face.
   if (!entrance_pieces.empty()) clearance_mm = top_mm + 0.01 * part.element_depth_mm;
 }
 

@@ -75,7 +75,7 @@ struct PhotometrySettings {
   /// Angles of a map of R_A over entrance and observation angle; empty: no such map. There is one map for each rotation
   /// and each presentation angle.
   std::optional<CoefficientGrid> map_grid;
-  std::optional<ComparedDesign> compared;  ///< design of which maps are computed as well; only together with map_grid
+  std::optional<ComparedDesign> compared;  ///< second design for which maps are computed; only together with map_grid
   /// True: the power in directions inside and outside of the window (see window_deg) is integrated. This check is slow.
   bool window_power = false;
   bool advice = true;   ///< true: if the design fails, the study searches for a change with which it passes

@@ -117,7 +117,7 @@ struct RreResult {
   bool has_map = false;               ///< true: the request was for polar maps
   /// Returns true if the points are a complete grid for polar maps, see rre_maps().
   bool has_complete_maps() const { return has_map && complete; }
-  std::uint64_t rays = 0;  ///< number of traced rays; those of a direction that others share are counted one time
+  std::uint64_t rays = 0;  ///< number of traced rays; rays of a direction that several results share are counted once
   double elapsed_s = 0.0;
   Warnings warnings;
   bool complete = true;

@@ -51,7 +51,7 @@ bool is_refused(const std::vector<OutlineLoop>& loops) {
   return fault.has_value();
 }
 
-/// Maximum distance between a circle about the origin and the corners and middles of sides of a polygon.
+/// Maximum distance of the corners and side midpoints of a polygon from a circle about the origin.
 double deviation_from_circle(double radius_mm, const PolygonLoop& polygon) {
   double most = 0.0;
   for (std::size_t k = 0; k < polygon.size(); ++k)

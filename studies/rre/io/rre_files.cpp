@@ -273,7 +273,7 @@ struct CurveSummary {
 };
 
 /// Returns the curves of the result.
-/// \param has_all_azimuths true: all azimuths of a design and cone belong to one curve
+/// \param has_all_azimuths true if one curve holds all azimuths for a given design and cone
 std::vector<CurveSummary> curves_of(const RreResult& result, bool has_all_azimuths) {
   std::map<std::tuple<std::size_t, double, double>, std::size_t> curve_index;
   std::vector<CurveSummary> curves;
