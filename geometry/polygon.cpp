@@ -6,6 +6,7 @@
 #include <span>
 
 #include "geometry/centroid.h"
+#include "geometry/plane_math.h"
 
 namespace retrace::geometry {
 namespace {
@@ -132,7 +133,15 @@ bool contains(const Polygon& polygon, const Vec2& point) {
   for (std::size_t k = 0; k < polygon.size(); ++k) {
     const Vec2 along = polygon[(k + 1) % polygon.size()] - polygon[k];
     const Vec2 to = point - polygon[k];
-    if (along.x() * to.y() - along.y() * to.x() < 0.0) return false;
+    if (plane::cross(along, to) < 0.0) return false;
+  }
+  return true;
+}
+
+bool contains(const Polygon& polygon, const Vec2& point, double tolerance_mm) {
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const Vec2 along = (polygon[(k + 1) % polygon.size()] - polygon[k]).normalized();
+    if (plane::cross(along, point - polygon[k]) < -tolerance_mm) return false;
   }
   return true;
 }

@@ -8,6 +8,7 @@
 #include "geometry/elements/plane_polygon.h"
 #include "geometry/elements/substrate_checks.h"
 #include "geometry/elements/whole_elements.h"
+#include "geometry/plane_math.h"
 
 namespace retrace::geometry {
 namespace {
@@ -60,16 +61,12 @@ std::vector<double> rim_heights(const Cell& cell, const Element& element) {
   return heights;
 }
 
-double cross(const Vec2& a, const Vec2& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
-
 /// Returns the intersection of two convex polygons. Returns an empty polygon if the intersection is not wider than the
 /// tolerance.
 Polygon common(Polygon polygon, const Polygon& other, double tolerance_mm) {
   for (std::size_t k = 0; k < other.size() && !polygon.empty(); ++k) {
     const Vec2 along = (other[(k + 1) % other.size()] - other[k]).normalized();
-    const HeightPlane inward{-cross(along, other[k]), {-along.y(), along.x()}};
+    const HeightPlane inward{-plane::cross(along, other[k]), {-along.y(), along.x()}};
     polygon = where_higher(polygon, inward, HeightPlane{});
   }
   if (other.empty() || (!polygon.empty() && area(polygon) <= tolerance_mm * bounding_box(polygon).size().norm()))

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "geometry/outline/plane_math.h"
+#include "geometry/plane_math.h"
 
 namespace retrace::geometry {
 namespace {

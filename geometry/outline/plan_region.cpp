@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "geometry/outline/convex_pieces.h"
-#include "geometry/outline/plane_math.h"
+#include "geometry/outline/convex_decomposition.h"
+#include "geometry/plane_math.h"
 
 namespace retrace::geometry {
 namespace {
@@ -175,16 +175,6 @@ bool PlanRegion::is_box() const {
   };
   return whole.borders.size() == 1 && whole.borders.front().size() == 4 &&
          std::ranges::all_of(whole.borders.front(), is_corner);
-}
-
-bool PlanRegion::contains(const Vec2& point, double near_mm) const {
-  return std::ranges::any_of(whole.pieces, [&](const Polygon& piece) {
-    for (std::size_t k = 0; k < piece.size(); ++k) {
-      const Vec2 along = piece[(k + 1) % piece.size()] - piece[k];
-      if (plane::cross(along, point - piece[k]) < -near_mm * along.norm()) return false;
-    }
-    return true;
-  });
 }
 
 PlanRegion plan_region(Outline outline, double margin_mm, double tolerance_mm, std::optional<OutlineFault>& fault) {

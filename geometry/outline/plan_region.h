@@ -36,8 +36,6 @@ struct PlanRegion {
   bool is_box() const;
   /// Returns true if the part has no holes and a convex outline.
   bool is_convex() const { return whole.pieces.size() == 1; }
-  /// Returns true if a point is inside the outline, or outside by at most `near_mm`.
-  bool contains(const Vec2& point, double near_mm) const;
 };
 
 /// Makes the plan of a part from its outline, and moves it to the origin.

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "geometry/centroid.h"
+#include "geometry/plane_math.h"
 
 namespace retrace::geometry {
 
@@ -17,7 +18,7 @@ std::vector<std::uint32_t> border_vertices(const Polygon& polygon, const std::ve
     for (const auto& [position, vertex] : vertices) {
       const Vec2 to = position - polygon[k];
       const double at = along.dot(to);
-      const double away = along.x() * to.y() - along.y() * to.x();
+      const double away = plane::cross(along, to);
       // The end of a side is the start of the next one.
       if (std::abs(away) <= tolerance_mm && at >= -tolerance_mm && at < length - tolerance_mm)
         on_side.emplace_back(at, vertex);

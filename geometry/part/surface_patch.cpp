@@ -7,6 +7,7 @@
 
 #include "geometry/centroid.h"
 #include "geometry/part/vertex_index.h"
+#include "geometry/plane_math.h"
 
 namespace retrace::geometry {
 namespace {
@@ -85,8 +86,7 @@ class PatchBuilder {
       const Vec2& before = index_[ring[(i + ring.size() - 1) % ring.size()]];
       const Vec2 along = index_[ring[(i + 1) % ring.size()]] - before;
       const Vec2 to = index_[ring[i]] - before;
-      if (std::abs(along.x() * to.y() - along.y() * to.x()) > rounding * tolerance_mm_ * along.norm())
-        kept.push_back(ring[i]);
+      if (std::abs(plane::cross(along, to)) > rounding * tolerance_mm_ * along.norm()) kept.push_back(ring[i]);
     }
     return kept.size() < 3 ? ring : kept;
   }
@@ -236,7 +236,7 @@ class PatchBuilder {
       const Vec2 along = side.normalized();
       const auto is_near = [&](const Vec2& p) {
         const Vec2 to = p - from;
-        return std::abs(along.x() * to.y() - along.y() * to.x()) <= tolerance_mm_ && along.dot(to) >= -tolerance_mm_ &&
+        return std::abs(plane::cross(along, to)) <= tolerance_mm_ && along.dot(to) >= -tolerance_mm_ &&
                along.dot(to) <= side.norm() + tolerance_mm_;
       };
       if (is_near(a) && is_near(b)) return true;

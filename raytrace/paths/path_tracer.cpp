@@ -53,14 +53,9 @@ PathSetup::PathSetup(const geometry::Part& part, const BackSurface& back, const 
   if (!entrance_pieces.empty()) clearance_mm = top_mm + 0.01 * part.element_depth_mm;
 }
 
-bool PathSetup::is_over_piece(const Vec2& position_mm, double least_mm) const {
+bool PathSetup::is_over_piece(const Vec2& position_mm, double min_distance_mm) const {
   return std::ranges::any_of(entrance_pieces, [&](const geometry::Polygon& piece) {
-    for (std::size_t k = 0; k < piece.size(); ++k) {
-      const Vec2 along = (piece[(k + 1) % piece.size()] - piece[k]).normalized();
-      const Vec2 to = position_mm - piece[k];
-      if (along.x() * to.y() - along.y() * to.x() < least_mm) return false;
-    }
-    return true;
+    return geometry::contains(piece, position_mm, -min_distance_mm);
   });
 }
 

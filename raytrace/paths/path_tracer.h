@@ -33,16 +33,18 @@ struct PathSetup : LightSetup {
   double clearance_mm = 0.0;         ///< maximum z at which the back surface is searched
   Vec2 period_mm = Vec2::Zero();     ///< period of an infinite part
   Vec2 tile_half_mm = Vec2::Zero();  ///< infinite part: half size of the tile, the region in which rays are traced
-  /// Convex polygons of the entrance face of a part with notches or holes, see Part::entrance_pieces
+  /// Convex polygons of the entrance face of a part with notches or holes, see Part::entrance_pieces.
   std::vector<geometry::Polygon> entrance_pieces;
 
-  /// Returns a height below the whole back surface. A ray from the inside that gets there has passed between two
-  /// facets.
+  /// Returns a height below the whole back surface. A ray from the inside gets there only if rounding errors let it
+  /// pass between two facets.
   double below_surface_mm() const {
     return -depth_mm - (entrance_pieces.empty() ? clearance_mm : clearance_mm - top_mm);
   }
-  /// Returns true if a position is inside one of `entrance_pieces`, with at least the distance `least_mm` to its sides.
-  bool is_over_piece(const Vec2& position_mm, double least_mm) const;
+  /// Returns true if a position is inside one of `entrance_pieces`.
+  /// \param min_distance_mm minimum distance from the sides of the polygon; with a negative value, the position may be
+  ///     outside by this distance
+  bool is_over_piece(const Vec2& position_mm, double min_distance_mm) const;
 };
 
 /// Traces polarized light through a part. At every interface, a path splits into a refracted and a reflected branch. If

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <random>
 
-#include "geometry/outline/convex_pieces.h"
+#include "geometry/outline/convex_decomposition.h"
 #include "geometry/outline/plan_region.h"
 #include "tests/geometry/outline_random.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Formulas for vectors and segments of the plane, for files of this folder.
+// Formulas for vectors and segments in the plane.
 
 #include <algorithm>
 

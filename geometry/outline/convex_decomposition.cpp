@@ -1,4 +1,4 @@
-#include "geometry/outline/convex_pieces.h"
+#include "geometry/outline/convex_decomposition.h"
 
 #include <algorithm>
 #include <array>
@@ -7,6 +7,8 @@
 #include <map>
 #include <numeric>
 #include <utility>
+
+#include "geometry/plane_math.h"
 
 namespace retrace::geometry {
 namespace {
@@ -20,7 +22,7 @@ constexpr double kConvex = 1e-13;
 
 /// Returns twice the area of a triangle. It is positive if the corners run counter-clockwise.
 double doubled_area(const Vec2& a, const Vec2& b, const Vec2& c) {
-  return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
+  return plane::cross(b - a, c - a);
 }
 
 /// Triangulates a region. Vertices are referred to by their numbers.
