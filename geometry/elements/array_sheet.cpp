@@ -222,7 +222,7 @@ SheetCell SheetPortion::sheet_cell(std::size_t cell, const Vec2& shift_mm) const
 
 BorderRelation SheetPortion::border_relation(const SheetCell& place) const {
   if (contains(block_, place.on_sheet, sheet_->sliver_mm) &&
-      (sheet_->is_upright || contains(part_, place.outline, sheet_->tolerance_mm)) && is_within_outline(place.outline))
+      (sheet_->is_upright || contains(part_, place.outline, sheet_->tolerance_mm)) && is_in_element_area(place.outline))
     return BorderRelation::inside;
   const Polygon inner = within(place, place.outline, block_);
   return inner.empty() || in_element_area(inner).empty() ? BorderRelation::outside : BorderRelation::crossing;
@@ -244,36 +244,31 @@ Polygon SheetPortion::within(const SheetCell& place, const Polygon& outline, con
   return contains(part_, inner, 0.0) ? inner : clip(inner, part_, sheet_->tolerance_mm);
 }
 
-bool SheetPortion::is_within_outline(const Polygon& in_plan) const {
+bool SheetPortion::is_in_element_area(const Polygon& in_plan) const {
   return sheet_->outline == nullptr ||
          is_within(moved(in_plan, origin_), sheet_->outline->elements, sheet_->tolerance_mm);
 }
 
-std::vector<Polygon> SheetPortion::clipped(Polygon in_plan, const ConvexRegion& region) const {
+std::vector<Polygon> SheetPortion::clipped(Polygon in_plan, ConvexRegion PlanRegion::*region) const {
   if (in_plan.empty()) return {};
-  std::vector<Polygon> portions = clip(moved(std::move(in_plan), origin_), region, sheet_->tolerance_mm);
+  if (sheet_->outline == nullptr) return {std::move(in_plan)};
+  std::vector<Polygon> portions =
+      clip(moved(std::move(in_plan), origin_), sheet_->outline->*region, sheet_->tolerance_mm);
   for (Polygon& portion : portions) portion = moved(std::move(portion), -origin_);
   return portions;
 }
 
 std::vector<Polygon> SheetPortion::in_element_area(Polygon in_plan) const {
-  if (sheet_->outline != nullptr) return clipped(std::move(in_plan), sheet_->outline->elements);
-  if (in_plan.empty()) return {};
-  return {std::move(in_plan)};
+  return clipped(std::move(in_plan), &PlanRegion::elements);
 }
 
-std::vector<Polygon> SheetPortion::in_outline_margin(const Polygon& in_plan) const {
-  return sheet_->outline != nullptr ? clipped(in_plan, sheet_->outline->margin) : std::vector<Polygon>{};
+std::vector<Polygon> SheetPortion::in_outline_margin(Polygon in_plan) const {
+  if (sheet_->outline == nullptr) return {};
+  return clipped(std::move(in_plan), &PlanRegion::margin);
 }
 
 std::vector<Polygon> SheetPortion::in_outline(Polygon in_plan) const {
-  if (sheet_->outline != nullptr) return clipped(std::move(in_plan), sheet_->outline->whole);
-  if (in_plan.empty()) return {};
-  return {std::move(in_plan)};
-}
-
-bool SheetPortion::is_inside_outline(const Rectangle& in_plan) const {
-  return is_within_outline(to_polygon(in_plan));
+  return clipped(std::move(in_plan), &PlanRegion::whole);
 }
 
 std::vector<PolygonLoop> SheetPortion::outline_borders() const {

@@ -97,11 +97,13 @@ class SheetPortion {
   /// outline, returns the polygon.
   std::vector<Polygon> in_element_area(Polygon in_plan) const;
   /// Returns the portions of a polygon in plan on the flat margin of the outline. Without an outline, there are none.
-  std::vector<Polygon> in_outline_margin(const Polygon& in_plan) const;
-  /// Returns the portions of a polygon in plan that are inside the outline, elements or margin.
+  std::vector<Polygon> in_outline_margin(Polygon in_plan) const;
+  /// Returns the portions of a polygon in plan that are inside the outline, on elements or on its margin. Without an
+  /// outline, returns the polygon.
   std::vector<Polygon> in_outline(Polygon in_plan) const;
-  /// Returns true if the outline does not cross a rectangle in plan, and the rectangle is inside the outline's margin.
-  bool is_inside_outline(const Rectangle& in_plan) const;
+  /// Returns true if a polygon in plan is completely inside the outline's margin, where elements are. Without an
+  /// outline, returns true.
+  bool is_in_element_area(const Polygon& in_plan) const;
   /// Returns the borders of the outline and of the area of elements. Walls on them are border walls of the array.
   std::vector<PolygonLoop> outline_borders() const;
   /// Returns the bounding box in plan of a rectangle on the sheet.
@@ -119,8 +121,9 @@ class SheetPortion {
  private:
   Vec2 plan_of(const Vec2& on_sheet, double rim_mm = 0.0) const;
   SubstrateFrame frame_at(const Vec2& on_sheet) const;
-  bool is_within_outline(const Polygon& in_plan) const;
-  std::vector<Polygon> clipped(Polygon in_plan, const ConvexRegion& region) const;
+  /// Returns the portions of a polygon in plan that are inside a region of the outline. Without an outline, returns the
+  /// polygon.
+  std::vector<Polygon> clipped(Polygon in_plan, ConvexRegion PlanRegion::*region) const;
 
   const ArraySheet* sheet_;
   Vec2 at_;              ///< origin on the sheet

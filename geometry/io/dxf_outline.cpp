@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/leading_number.h"
 #include "core/message_text.h"
+#include "core/text.h"
 #include "geometry/direction.h"
 
 namespace retrace::geometry {
@@ -20,9 +21,9 @@ namespace {
 constexpr double kJoinedFraction = 1e-5;
 constexpr std::size_t kMaxSides = 20'000;
 constexpr double kMaxCoordinate = 1e9;
-/// Length in mm of the units of $INSUNITS, by their numbers. 0: a unit that is not allowed.
-constexpr std::array<double, 15> kUnits = {1.0,     25.4,   304.8, 0.0,  1.0,  10.0, 1000.0, 0.0,
-                                           2.54e-5, 0.0254, 914.4, 1e-7, 1e-6, 1e-3, 100.0};
+/// Length in mm of each unit of $INSUNITS, in the order of their numbers. 0: a unit that is not allowed.
+constexpr std::array<double, 15> kUnitLengthsMm = {1.0,     25.4,   304.8, 0.0,  1.0,  10.0, 1000.0, 0.0,
+                                                   2.54e-5, 0.0254, 914.4, 1e-7, 1e-6, 1e-3, 100.0};
 
 /// Pair of a group code and its value.
 struct Group {
@@ -31,15 +32,8 @@ struct Group {
   int line = 0;  ///< line of the group code
 };
 
-std::string_view stripped_line(std::string_view line) {
-  constexpr std::string_view kBlanks = " \t\r";
-  const std::size_t first = line.find_first_not_of(kBlanks);
-  if (first == std::string_view::npos) return {};
-  return line.substr(first, line.find_last_not_of(kBlanks) - first + 1);
-}
-
-/// Side of a loop and the line at which its entity begins.
-struct PlacedSide {
+/// Side of a loop and the line of the file at which its entity begins.
+struct EntitySide {
   OutlineSide side;
   int line = 0;
 };
@@ -66,7 +60,7 @@ class DxfReader {
         group = next();
     }
     if (!has_entities_) fail(0, "must have a section ENTITIES");
-    scale_all();
+    convert_to_mm();
     return joined();
   }
 
@@ -94,7 +88,7 @@ class DxfReader {
 
   std::string_view next_line() {
     const std::size_t end = std::min(remainder_.find('\n'), remainder_.size());
-    const std::string_view line = stripped_line(remainder_.substr(0, end));
+    const std::string_view line = trimmed(remainder_.substr(0, end));
     remainder_.remove_prefix(std::min(end + 1, remainder_.size()));
     ++line_;
     return line;
@@ -115,8 +109,9 @@ class DxfReader {
       if (group.code == 9) is_unit = group.value == "$INSUNITS";
       if (group.code == 70 && is_unit) {
         const double unit = number_of(group);
-        const bool is_known = unit >= 0.0 && unit < static_cast<double>(kUnits.size()) && unit == std::floor(unit);
-        unit_mm_ = is_known ? kUnits[static_cast<std::size_t>(unit)] : 0.0;
+        const bool is_known =
+            unit >= 0.0 && unit < static_cast<double>(kUnitLengthsMm.size()) && unit == std::floor(unit);
+        unit_mm_ = is_known ? kUnitLengthsMm[static_cast<std::size_t>(unit)] : 0.0;
         unit_line_ = group.line + 1;
       }
       group = next();
@@ -176,20 +171,20 @@ class DxfReader {
                              in_quotes(kind)));
     if ((entity.extrusion - Vec3::UnitZ()).norm() > 1e-9)
       fail(line, "must be seen from +z, but the entity has another extrusion direction");
-    const auto need = [&](std::initializer_list<std::size_t> codes) {
+    const auto require = [&](std::initializer_list<std::size_t> codes) {
       for (const std::size_t code : codes)
         if (!entity.is_given[code]) fail(line, fmt::format("{} must have the group code {}", kind, code));
     };
     const auto& v = entity.values;
     if (kind == "LINE") {
-      need({10, 20, 11, 21});
+      require({10, 20, 11, 21});
       add_side({{v[10], v[20]}, {v[11], v[21]}, 0.0}, line);
     } else if (kind == "LWPOLYLINE") {
       add_polyline(entity, line);
     } else {
-      need({10, 20, 40});
+      require({10, 20, 40});
       if (!(v[40] > 0.0)) fail(line, fmt::format("{} must have a radius > 0, got {:g}", kind, v[40]));
-      if (kind == "ARC") need({50, 51});
+      if (kind == "ARC") require({50, 51});
       add_arc({v[10], v[20]}, v[40], kind == "ARC" ? v[50] : 0.0, kind == "ARC" ? v[51] : 360.0, line);
     }
   }
@@ -224,7 +219,7 @@ class DxfReader {
     sides_.push_back({side, line});
   }
 
-  void scale_all() {
+  void convert_to_mm() {
     if (sides_.empty())
       fail(0, selection_.layer.empty()
                   ? std::string("must have at least one LINE, ARC, CIRCLE or LWPOLYLINE")
@@ -232,26 +227,22 @@ class DxfReader {
     if (!selection_.scale && unit_mm_ == 0.0)
       fail(unit_line_, "must be a unit of length up to 1 m ($INSUNITS), or the design must contain dxf_scale");
     const double scale = selection_.scale.value_or(unit_mm_);
-    for (PlacedSide& placed : sides_) {
-      placed.side.from_mm *= scale;
-      placed.side.to_mm *= scale;
+    for (EntitySide& entity : sides_) {
+      entity.side.from_mm *= scale;
+      entity.side.to_mm *= scale;
     }
   }
 
+  /// Returns the diagonal of the bounding box of all ends.
   double size_mm() const {
-    Vec2 lower = sides_.front().side.from_mm;
-    Vec2 upper = lower;
-    for (const PlacedSide& placed : sides_)
-      for (const Vec2& p : {placed.side.from_mm, placed.side.to_mm}) {
-        lower = lower.cwiseMin(p);
-        upper = upper.cwiseMax(p);
-      }
-    return (upper - lower).norm();
+    std::vector<Vec2> ends;
+    for (const EntitySide& entity : sides_) ends.insert(ends.end(), {entity.side.from_mm, entity.side.to_mm});
+    return bounding_box(ends).size().norm();
   }
 
   std::vector<OutlineLoop> joined() {
     const double near_mm = kJoinedFraction * size_mm();
-    std::erase_if(sides_, [&](const PlacedSide& placed) { return placed.side.chord_mm() <= near_mm; });
+    std::erase_if(sides_, [&](const EntitySide& entity) { return entity.side.chord_mm() <= near_mm; });
     std::vector<OutlineLoop> loops;
     std::vector<bool> is_used(sides_.size(), false);
     for (std::size_t first = 0; first < sides_.size(); ++first) {
@@ -263,8 +254,7 @@ class DxfReader {
         const auto [at, is_reversed] = successor(loop.back().to_mm, is_used, near_mm, line);
         is_used[at] = true;
         line = sides_[at].line;
-        OutlineSide side = sides_[at].side;
-        if (is_reversed) side = {side.to_mm, side.from_mm, -side.bulge};
+        OutlineSide side = is_reversed ? sides_[at].side.reversed() : sides_[at].side;
         side.from_mm = loop.back().to_mm;
         loop.push_back(side);
       }
@@ -306,7 +296,7 @@ class DxfReader {
   bool has_entities_ = false;
   double unit_mm_ = 1.0;
   int unit_line_ = 0;
-  std::vector<PlacedSide> sides_;
+  std::vector<EntitySide> sides_;
 };
 
 }  // namespace

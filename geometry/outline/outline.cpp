@@ -256,13 +256,6 @@ Vec2 OutlineSide::tangent_at(double fraction) const {
   return is_arc() ? rotated(along, (fraction - 0.5) * sweep_rad()) : along;
 }
 
-Vec2 OutlineSide::point_at(double fraction) const {
-  if (fraction == 0.0) return from_mm;
-  if (fraction == 1.0) return to_mm;
-  if (!is_arc()) return from_mm + fraction * (to_mm - from_mm);
-  return centre_mm() + rotated(from_mm - centre_mm(), fraction * sweep_rad());
-}
-
 double enclosed_area_mm2(const OutlineLoop& loop) {
   PolygonLoop corners;
   double segments_mm2 = 0.0;
@@ -299,8 +292,7 @@ Rectangle Outline::bounding_box() const {
 
 OutlineLoop reversed(const OutlineLoop& loop) {
   OutlineLoop result;
-  for (auto side = loop.rbegin(); side != loop.rend(); ++side)
-    result.push_back({side->to_mm, side->from_mm, -side->bulge});
+  for (auto side = loop.rbegin(); side != loop.rend(); ++side) result.push_back(side->reversed());
   return result;
 }
 

@@ -33,7 +33,8 @@ struct OutlineSide {
   /// Returns the unit tangent at a point of the side, in the direction from `from_mm` to `to_mm`.
   /// \param fraction position along the side, from 0 at `from_mm` to 1 at `to_mm`
   Vec2 tangent_at(double fraction) const;
-  Vec2 point_at(double fraction) const;
+  /// Returns the side in the opposite direction.
+  OutlineSide reversed() const { return {to_mm, from_mm, -bulge}; }
 };
 
 /// Closed curve of sides, each of which begins where the previous side ends.

@@ -160,7 +160,8 @@ std::vector<Polygon> portions(const Polygon& polygon, const ConvexRegion& region
   return inside;
 }
 
-bool fill(const std::vector<Polygon>& portions, const Polygon& polygon, double tolerance_mm) {
+/// Returns true if portions of a polygon cover it completely.
+bool cover(const std::vector<Polygon>& portions, const Polygon& polygon, double tolerance_mm) {
   double sum = 0.0;
   for (const Polygon& portion : portions) sum += area(portion);
   return area(polygon) - sum <= tolerance_mm * perimeter(polygon);
@@ -199,12 +200,12 @@ PlanRegion plan_region(Outline outline, double margin_mm, double tolerance_mm, s
 
 std::vector<Polygon> clip(const Polygon& polygon, const ConvexRegion& region, double tolerance_mm) {
   std::vector<Polygon> inside = portions(polygon, region, tolerance_mm);
-  if (inside.size() > 1 && fill(inside, polygon, tolerance_mm)) return {polygon};
+  if (inside.size() > 1 && cover(inside, polygon, tolerance_mm)) return {polygon};
   return inside;
 }
 
 bool is_within(const Polygon& polygon, const ConvexRegion& region, double tolerance_mm) {
-  return fill(portions(polygon, region, tolerance_mm), polygon, tolerance_mm);
+  return cover(portions(polygon, region, tolerance_mm), polygon, tolerance_mm);
 }
 
 }  // namespace retrace::geometry

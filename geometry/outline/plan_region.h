@@ -15,8 +15,6 @@ struct ConvexRegion {
   std::vector<Polygon> pieces;
   std::vector<Rectangle> boxes;  ///< bounding boxes of the pieces
   std::vector<PolygonLoop> borders;
-
-  bool empty() const { return pieces.empty(); }
 };
 
 /// Plan of a part. The curves of its outline are replaced by polygons of equal area. Coordinates are in mm in the part

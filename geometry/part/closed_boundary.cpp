@@ -76,8 +76,7 @@ BoundaryMesh closed_boundary(const Part& part) {
     mesh.triangles.push_back({hub, above_from, above_to});
     mesh.roles.push_back(FacetRole::entrance);
   }
-  if (!is_one_fan)
-    add_cover(mesh, part.entrance_pieces, entrance.all(), 1e-8 * part.size_mm, FacetRole::entrance, true);
+  if (!is_one_fan) add_cover(mesh, part.entrance_pieces, entrance.all(), part.size_mm, FacetRole::entrance, true);
   return mesh;
 }
 

@@ -6,7 +6,13 @@
 #include "geometry/plane_math.h"
 
 namespace retrace::geometry {
+namespace {
 
+/// Maximum distance between a vertex and the side of a polygon on which it is, as a fraction of the size of an element.
+constexpr double kOnSideFraction = 1e-8;
+
+/// Returns the border of a convex polygon as vertices, counter-clockwise. Vertices on its sides are included.
+/// \param tolerance_mm maximum distance between a vertex and the side on which it is
 std::vector<std::uint32_t> border_vertices(const Polygon& polygon, const std::vector<PlacedVertex>& vertices,
                                            double tolerance_mm) {
   std::vector<std::uint32_t> ring;
@@ -31,10 +37,12 @@ std::vector<std::uint32_t> border_vertices(const Polygon& polygon, const std::ve
   return ring;
 }
 
+}  // namespace
+
 void add_cover(BoundaryMesh& mesh, const std::vector<Polygon>& polygons, const std::vector<PlacedVertex>& vertices,
-               double tolerance_mm, FacetRole role, bool faces_up) {
+               double size_mm, FacetRole role, bool faces_up) {
   for (const Polygon& polygon : polygons) {
-    std::vector<std::uint32_t> ring = border_vertices(polygon, vertices, tolerance_mm);
+    std::vector<std::uint32_t> ring = border_vertices(polygon, vertices, kOnSideFraction * size_mm);
     if (ring.size() < 3) continue;
     if (!faces_up) std::reverse(ring.begin(), ring.end());
     const auto hub = static_cast<std::uint32_t>(mesh.vertices.size());

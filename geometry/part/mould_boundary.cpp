@@ -41,7 +41,7 @@ class MouldBuilder {
       : bottom_z_(-part.element_depth_mm - block_mm),
         middle_(centroid(part.outline)),
         pieces_(part.entrance_pieces),
-        tolerance_mm_(1e-8 * part.size_mm) {
+        size_mm_(part.size_mm) {
     const SurfacePatch& patch = part.patches[part.placements.front().patch];
     const Vec2 offset = part.placements.front().offset_mm;
     for (const Vec3& p : patch.vertices) mesh_.vertices.emplace_back(p.x() + offset.x(), p.y() + offset.y(), p.z());
@@ -72,7 +72,7 @@ class MouldBuilder {
       if (place(a) != place(b)) add_side(a, b);
     std::vector<PlacedVertex> bottom;
     for (const auto& [at, column] : columns_) bottom.emplace_back(Vec2(at.first, at.second), column.bottom);
-    add_cover(mesh_, pieces_, bottom, tolerance_mm_, FacetRole::flat_back, false);
+    add_cover(mesh_, pieces_, bottom, size_mm_, FacetRole::flat_back, false);
     return std::move(mesh_);
   }
 
@@ -119,7 +119,7 @@ class MouldBuilder {
   double bottom_z_;
   Vec2 middle_;
   std::vector<Polygon> pieces_;
-  double tolerance_mm_;
+  double size_mm_;
   std::map<Place, Column> columns_;
 };
 

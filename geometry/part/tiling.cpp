@@ -197,7 +197,7 @@ class Tiler {
     Key key{};
     std::size_t k = 0;
     // Portions that an outline crosses are not shared.
-    if (sheet_.outline != nullptr && !here_->is_inside_outline(in_plan)) key.back() = ++portions_at_outline_;
+    if (!here_->is_in_element_area(to_polygon(in_plan))) key.back() = ++portions_at_outline_;
     for (const Eigen::Index axis : {0, 1}) {
       const auto a = static_cast<std::size_t>(axis);
       const auto add = [&](const Rectangle& border, const Rectangle& within) {
