@@ -393,7 +393,7 @@ struct Capabilities {
   bool entrances = false;
   bool wet_backs = false;
   bool outlines = true;
-  bool notches = true;  ///< outlines that are not convex or have holes are supported; only used if `outlines`
+  bool notches = true;  ///< outlines with notches or holes are supported; only used if `outlines`
 };
 /// Checks that a study supports a design.
 /// \throw InputError if it does not

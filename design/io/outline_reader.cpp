@@ -15,8 +15,7 @@
 namespace retrace::design {
 namespace {
 
-using geometry::Outline, geometry::OutlineFault, geometry::OutlineLoop, geometry::PlanRegion, geometry::Vec2,
-    schema::Document;
+using geometry::OutlineFault, geometry::OutlineLoop, geometry::PlanRegion, geometry::Vec2, schema::Document;
 
 constexpr std::string_view kPolygon = "outline.polygon_mm";
 constexpr std::string_view kCircle = "outline.circle_mm";
@@ -28,14 +27,16 @@ constexpr std::string_view kMargin = "outline.margin_mm";
 constexpr std::string_view kTolerance = "outline.tolerance_mm";
 /// Maximum number of corners of the polygons that replace all loops. It limits the time of tests for crossings.
 constexpr double kMaxCorners = 2000.0;
-/// Maximum height of an arc in multiples of its chord.
-constexpr double kMaxHeight = 5.0;
+/// Maximum sagitta of an arc, divided by its chord.
+constexpr double kMaxSagittaPerChord = 5.0;
 
-std::vector<double> list_of(const Document& document, std::string_view key, std::size_t count, std::string_view of) {
+/// Returns one number for each corner or side. A single number applies to all of them.
+/// \param items "corners" or "sides"
+std::vector<double> list_of(const Document& document, std::string_view key, std::size_t count, std::string_view items) {
   std::vector<double> values = document.numbers(key);
   if (values.size() == 1 && !document.is_list(key)) values.resize(count, values.front());
   if (values.size() != count)
-    document.fail(key, fmt::format("must have one number for each of the {} {}, got {}", count, of, values.size()));
+    document.fail(key, fmt::format("must have one number for each of the {} {}, got {}", count, items, values.size()));
   return values;
 }
 
@@ -55,9 +56,9 @@ OutlineLoop polygon_of_outline(const Document& document) {
     const Vec2& from = corners[k];
     const Vec2& to = corners[(k + 1) % count];
     const double chord = (to - from).norm();
-    if (std::abs(sagitta[k]) > kMaxHeight * chord)
+    if (std::abs(sagitta[k]) > kMaxSagittaPerChord * chord)
       document.fail(kSagitta, fmt::format("must be at most {} times the length of the side, {} mm, got {}",
-                                          shortest(kMaxHeight), shortest(chord), shortest(sagitta[k])));
+                                          shortest(kMaxSagittaPerChord), shortest(chord), shortest(sagitta[k])));
     loop.push_back({from, to, outwards * 2.0 * sagitta[k] / chord});
   }
   std::optional<geometry::CornerFault> fault;
@@ -85,6 +86,7 @@ std::vector<OutlineLoop> border_of(const Document& document) {
   return {polygon_of_outline(document)};
 }
 
+/// Returns the key at which a fault of the outline is reported.
 std::string_view key_of(const Document& document, OutlineFault::Subject subject) {
   switch (subject) {
     case OutlineFault::Subject::hole: return document.has(kHoles) ? kHoles : outline_key(document);
@@ -117,7 +119,7 @@ PlanRegion read_outline(const Document& document) {
   const double tolerance_mm = document.number(kTolerance);
   const auto region_of = [&](std::vector<OutlineLoop> loops, double margin_mm) {
     double corners = 0.0;
-    for (const OutlineLoop& loop : loops) corners += geometry::polygon_corner_count(loop, tolerance_mm);
+    for (const OutlineLoop& loop : loops) corners += geometry::estimated_corner_count(loop, tolerance_mm);
     if (corners > kMaxCorners)
       document.fail(kTolerance,
                     fmt::format("must be larger, because the polygon of the outline would have about {:.0f} "

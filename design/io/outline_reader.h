@@ -21,8 +21,9 @@ std::optional<OutlineFile> outline_file(const schema::Document& document);
 
 /// Reads the outline of a part, and its DXF file.
 /// \pre has_outline()
-/// \throw InputError if the outline is open, crosses itself, has holes outside of it, or if a radius or the margin is
-///     too large
+/// \throw InputError if the outline is open or crosses itself, if a hole is outside, or if a radius or the margin is
+/// too
+///     large
 geometry::PlanRegion read_outline(const schema::Document& document);
 
 }  // namespace retrace::design

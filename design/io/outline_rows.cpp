@@ -8,7 +8,6 @@ using namespace schema;
 constexpr NumberRange kCoordinate{.low = -1e6, .high = 1e6};
 constexpr NumberRange kRadius{.low = 0.0, .high = 1e6};
 constexpr Condition kOfPolygon[] = {is_given("polygon_mm", "only allowed together with polygon_mm")};
-
 constexpr Condition kOfDxf[] = {is_given("dxf", "only allowed together with dxf")};
 
 constexpr Row kOutlineRows[] = {
@@ -28,8 +27,7 @@ constexpr Row kOutlineRows[] = {
      "`[x, y, radius]`: a circle as outline."},
     {"dxf", File{"a DXF file"}, kNone,
      "ASCII DXF file with the outline as `LINE`, `ARC`, `CIRCLE` and `LWPOLYLINE` entities, which form closed loops. "
-     "The "
-     "loop that encloses the largest area is the border, and the others are holes."},
+     "The loop that encloses the largest area is the border, and the others are holes."},
     {"dxf_layer", Text{}, Computed{"all layers"}, "Layer of the DXF file that contains the outline.", kOfDxf},
     {"dxf_scale", kSize, Computed{"1 if the file has no unit ($INSUNITS), otherwise the length of its unit in mm"},
      "Factor that converts the unit of the DXF file to mm.", kOfDxf},

@@ -38,8 +38,8 @@ struct ArrayLayout {
   /// cube corners has as many characters as there are complete cells at the y of this row.
   std::vector<std::string> pattern;
   /// Outline of a part that is not a rectangle along the axes, or null. The array is laid out as in the bounding box of
-  /// the outline, whose lengths are `x_length_mm` and `y_length_mm`. The outline then cuts it. Elements are inside the
-  /// outline's margin, and the margins of the bounding box are as wide.
+  /// the outline, whose lengths are `x_length_mm` and `y_length_mm`. The outline then cuts it. The offsets of the
+  /// array are equal to the width of the outline's margin.
   std::shared_ptr<const PlanRegion> outline;
 };
 

@@ -71,7 +71,7 @@ class DxfReader {
     return group.code == code && group.value == value;
   }
 
-  /// Returns the next group. After the end of the file, returns the group of the end.
+  /// Returns the next group. After the end of the text, returns the group "0, EOF", which ends a DXF file.
   Group next() {
     if (remainder_.empty()) return {0, "EOF", line_};
     Group group;
@@ -126,7 +126,7 @@ class DxfReader {
     return group;
   }
 
-  /// Values of an entity. Of codes that occur several times, the last value is stored.
+  /// Values of an entity, by their group codes. If a code occurs several times, the last value is stored.
   struct Entity {
     std::array<double, 60> values{};
     std::array<bool, 60> is_given{};
@@ -189,7 +189,7 @@ class DxfReader {
     }
   }
 
-  /// Adds an arc as two halves, because a bulge describes arcs near a full circle only with large errors.
+  /// Adds an arc as two halves, because the bulge of an arc grows without limit as the arc approaches a full circle.
   void add_arc(const Vec2& centre, double radius, double from_deg, double to_deg, int line) {
     double sweep_deg = std::fmod(to_deg - from_deg, 360.0);
     if (sweep_deg <= 0.0) sweep_deg += 360.0;
@@ -240,6 +240,7 @@ class DxfReader {
     return bounding_box(ends).size().norm();
   }
 
+  /// Returns the closed loops that the sides form.
   std::vector<OutlineLoop> joined() {
     const double near_mm = kJoinedFraction * size_mm();
     std::erase_if(sides_, [&](const EntitySide& entity) { return entity.side.chord_mm() <= near_mm; });
@@ -265,7 +266,8 @@ class DxfReader {
     return loops;
   }
 
-  /// Returns the side that begins or ends at a point, and true if it ends there.
+  /// Returns the number of the unused side that begins or ends at a point, and true if it ends there.
+  /// \param line line of the file for the message if there is no such side
   std::pair<std::size_t, bool> successor(const Vec2& end, const std::vector<bool>& is_used, double near_mm,
                                          int line) const {
     std::optional<std::pair<std::size_t, bool>> found;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Divides regions of the plane, which need not be convex and may have holes, into convex polygons.
+// Divides regions of the plane into convex polygons. Regions need not be convex and may have holes.
 
 #include <vector>
 

@@ -11,7 +11,7 @@
 namespace retrace::geometry {
 namespace {
 
-/// Relative distance below which two points count as one point, as a fraction of the size of the outline.
+/// Maximum distance between two points that count as one point, as a fraction of the size of the outline.
 constexpr double kNearPointFraction = 1e-9;
 /// Maximum central angle of an arc that is replaced by one side of a polygon, in radians.
 constexpr double kMaxStepRad = std::numbers::pi / 4.0;
@@ -30,15 +30,15 @@ double minus_sine(double x) {
          (1.0 - x2 / 20.0 * (1.0 - x2 / 42.0 * (1.0 - x2 / 72.0 * (1.0 - x2 / 110.0 * (1.0 - x2 / 156.0)))));
 }
 
-/// Polygon with n sides in place of an arc of radius 1. Its first and last corner are on the arc, and the other corners
-/// have the distance `radius` from the centre.
+/// Chain of sides that replaces an arc of radius 1. Its first and last corner are the ends of the arc. The other
+/// corners have the distance `radius` from the centre.
 struct ArcPolygon {
   int sides = 1;
   double radius = 1.0;
 };
 
-/// Returns the radius of the inner corners for which polygon and sector have equal areas.
-double radius_of_corners(double sweep_rad, int sides) {
+/// Returns the distance of the inner corners from the centre for which polygon and sector have equal areas.
+double radius_of_inner_corners(double sweep_rad, int sides) {
   const double step_rad = sweep_rad / sides;
   const double ratio = sweep_rad / std::sin(step_rad);  // about `sides`
   if (sides == 2) return 0.5 * ratio;
@@ -57,13 +57,14 @@ double deviation(double sweep_rad, const ArcPolygon& polygon) {
   return std::max({outside, at_end, polygon.sides > 2 ? inside : 0.0});
 }
 
+/// Returns the polygon of an arc with about the minimum number of sides.
 /// \param tolerance maximum deviation, relative to the radius
 ArcPolygon polygon_of_arc(double sweep_rad, double tolerance) {
   // For small steps, the end sides deviate by about step^2 / 8.
   const double estimate = sweep_rad / std::sqrt(8.0 * tolerance);
   int sides = std::max(2, static_cast<int>(std::ceil(sweep_rad / kMaxStepRad)));
   if (estimate > 4.0 * sides) sides = static_cast<int>(std::min(0.5 * estimate, 1e8));
-  const auto of = [&](int n) { return ArcPolygon{n, radius_of_corners(sweep_rad, n)}; };
+  const auto of = [&](int n) { return ArcPolygon{n, radius_of_inner_corners(sweep_rad, n)}; };
   while (deviation(sweep_rad, of(sides)) > tolerance && sides < 100'000'000) sides += 1 + sides / 64;
   return of(sides);
 }
@@ -114,6 +115,7 @@ std::optional<Vec2> self_contact(const PolygonLoop& loop, double near_mm) {
   return std::nullopt;
 }
 
+/// Returns a point near which the sides of two loops meet.
 std::optional<Vec2> contact(const PolygonLoop& one, const PolygonLoop& other, double near_mm) {
   for (std::size_t i = 0; i < one.size(); ++i)
     for (std::size_t j = 0; j < other.size(); ++j)
@@ -125,6 +127,7 @@ std::string at_text(const Vec2& p) {
   return fmt::format("x = {:.6g}, y = {:.6g} mm", p.x(), p.y());
 }
 
+/// Returns a fault if a side of a loop does not begin where the previous side ends.
 std::optional<OutlineFault> opening_of(const OutlineLoop& loop, double near_mm) {
   for (std::size_t k = 0; k < loop.size(); ++k) {
     const Vec2& next = loop[(k + 1) % loop.size()].from_mm;
@@ -153,6 +156,7 @@ OffsetCurve offset_curve(const OutlineSide& side, double by_mm) {
   return {false, side.centre_mm(), Vec2::UnitX(), side.radius_mm() - std::copysign(1.0, side.bulge) * by_mm};
 }
 
+/// Returns the points of intersection of two curves. Touching curves may have two equal points.
 std::vector<Vec2> intersections(const OffsetCurve& a, const OffsetCurve& b) {
   if (a.is_line && b.is_line) {
     const double sine = plane::cross(a.along, b.along);
@@ -177,13 +181,13 @@ std::vector<Vec2> intersections(const OffsetCurve& a, const OffsetCurve& b) {
   return {a.point_mm + at * between + aside, a.point_mm + at * between - aside};
 }
 
-/// Arc that rounds a corner, and where it touches the two sides, as fractions of the sides.
+/// Arc that rounds a corner.
 struct Fillet {
   Vec2 from_mm;
   Vec2 to_mm;
   double bulge;
-  double on_first;
-  double on_second;
+  double on_first;   ///< position of `from_mm` along the side before the corner, as a fraction of the side
+  double on_second;  ///< position of `to_mm` along the side after the corner, as a fraction of the side
 };
 
 /// Returns the point of a side that is nearest to the centre of a tangent circle.
@@ -206,6 +210,7 @@ double fraction_of(const OutlineSide& side, const Vec2& p) {
   return rad / sweep;
 }
 
+/// Returns the arc that rounds the corner between two sides, or nothing if there is no such arc.
 std::optional<Fillet> fillet_of(const OutlineSide& first, const OutlineSide& second, double radius_mm) {
   const Vec2 before = first.tangent_at(1.0);
   const Vec2 after = second.tangent_at(0.0);
@@ -231,10 +236,10 @@ std::optional<Fillet> fillet_of(const OutlineSide& first, const OutlineSide& sec
 
 /// Returns true if the second side continues the first one without a corner.
 bool is_smooth(const OutlineSide& first, const OutlineSide& second) {
-  constexpr double kSmooth = 1e-12;
+  constexpr double kMaxSine = 1e-12;
   const Vec2 before = first.tangent_at(1.0);
   const Vec2 after = second.tangent_at(0.0);
-  return std::abs(plane::cross(before, after)) < kSmooth && before.dot(after) > 0.0;
+  return std::abs(plane::cross(before, after)) < kMaxSine && before.dot(after) > 0.0;
 }
 
 }  // namespace
@@ -312,14 +317,14 @@ OutlineLoop circle(const Vec2& centre_mm, double radius_mm) {
 
 OutlineLoop with_rounded_corners(const OutlineLoop& loop, const std::vector<double>& radius_mm,
                                  std::optional<CornerFault>& fault) {
-  constexpr double kNothing = 1e-12;
+  constexpr double kFractionRounding = 1e-12;
   const std::size_t n = loop.size();
   std::vector<std::optional<Fillet>> fillets(n);
   for (std::size_t k = 0; k < n; ++k) {
     const OutlineSide& before = loop[(k + n - 1) % n];
     if (!(radius_mm[k] > 0.0) || is_smooth(before, loop[k])) continue;
     fillets[k] = fillet_of(before, loop[k], radius_mm[k]);
-    if (!fillets[k] || fillets[k]->on_first < -kNothing || fillets[k]->on_second > 1.0 + kNothing) {
+    if (!fillets[k] || fillets[k]->on_first < -kFractionRounding || fillets[k]->on_second > 1.0 + kFractionRounding) {
       fault = CornerFault{k};
       return loop;
     }
@@ -330,21 +335,21 @@ OutlineLoop with_rounded_corners(const OutlineLoop& loop, const std::vector<doub
     const std::optional<Fillet>& end = fillets[(k + 1) % n];
     const double from = start ? start->on_second : 0.0;
     const double to = end ? end->on_first : 1.0;
-    if (from > to + kNothing) {
+    if (from > to + kFractionRounding) {
       fault = CornerFault{radius_mm[k] >= radius_mm[(k + 1) % n] ? k : (k + 1) % n};
       return loop;
     }
     if (start) result.push_back({start->from_mm, start->to_mm, start->bulge});
-    if (to - from <= kNothing) continue;
+    if (to - from <= kFractionRounding) continue;
     result.push_back({start ? start->to_mm : loop[k].from_mm, end ? end->from_mm : loop[k].to_mm,
                       loop[k].is_arc() ? std::tan(0.25 * (to - from) * loop[k].sweep_rad()) : 0.0});
   }
-  // Fillets that fill a side completely meet at one point, up to rounding.
+  // If two fillets fill a side completely, they meet at one point. Rounding errors are removed.
   for (std::size_t k = 0; k < result.size(); ++k) result[k].to_mm = result[(k + 1) % result.size()].from_mm;
   return result;
 }
 
-double polygon_corner_count(const OutlineLoop& loop, double tolerance_mm) {
+double estimated_corner_count(const OutlineLoop& loop, double tolerance_mm) {
   double count = 0.0;
   for (const OutlineSide& side : loop) {
     const double estimate =

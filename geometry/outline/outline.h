@@ -16,8 +16,8 @@ namespace retrace::geometry {
 struct OutlineSide {
   Vec2 from_mm = Vec2::Zero();
   Vec2 to_mm = Vec2::Zero();
-  /// Tangent of a quarter of the arc's central angle, as in DXF files. 0: a straight line. A positive value is a
-  /// counter-clockwise arc, which is on the right of its chord.
+  /// Tangent of a quarter of the arc's central angle, as in DXF files. 0: a straight line. For a positive value, the
+  /// arc runs counter-clockwise from `from_mm` to `to_mm` and is on the right of its chord.
   double bulge = 0.0;
 
   bool is_arc() const { return bulge != 0.0; }
@@ -72,15 +72,16 @@ OutlineLoop with_rounded_corners(const OutlineLoop& loop, const std::vector<doub
                                  std::optional<CornerFault>& fault);
 
 /// Approximates a loop by a polygon that encloses the same area. All corners of the loop are corners of the polygon.
-/// The other corners are slightly outside of an arc, and the middles of the polygon's sides slightly inside of it.
+/// On an arc, the other corners are slightly outside, and the midpoints of the polygon's sides are slightly inside.
 /// \param tolerance_mm maximum distance between an arc and the polygon; > 0
 PolygonLoop equal_area_polygon(const OutlineLoop& loop, double tolerance_mm);
 
-/// Returns the number of corners of equal_area_polygon(), without computing the corners.
-double polygon_corner_count(const OutlineLoop& loop, double tolerance_mm);
+/// Returns the approximate number of corners of equal_area_polygon(), without computing the corners.
+double estimated_corner_count(const OutlineLoop& loop, double tolerance_mm);
 
-/// Returns the outline with its outer loop counter-clockwise and its holes clockwise. Loops may run in either direction
-/// and be in any order; the loop that encloses the largest area is the outer border.
+/// Returns an outline whose outer border runs counter-clockwise and whose holes run clockwise. The loop that encloses
+/// the largest area is the outer border.
+/// \param loops closed loops in any order and direction
 Outline oriented(std::vector<OutlineLoop> loops);
 
 /// Reason why an outline is not allowed.

@@ -34,13 +34,13 @@ double min_distance(const PolygonLoop& points, const PolygonLoop& loop) {
   return least;
 }
 
-/// Side of a loop that was moved to its left.
+/// Line of a side after the side was moved to its left.
 struct MovedSide {
   Vec2 point_mm;
   Vec2 along;  ///< unit vector
 };
 
-/// Returns the corners of moved sides. Corner k is the start of side k.
+/// Returns the intersections of consecutive moved sides. Corner k is the start of side k.
 PolygonLoop corners_of(const std::vector<MovedSide>& sides) {
   PolygonLoop corners;
   for (std::size_t k = 0; k < sides.size(); ++k) {
@@ -77,7 +77,7 @@ PolygonLoop moved_inward(const PolygonLoop& loop, double by_mm) {
   return {};
 }
 
-/// Returns a convex polygon without a strip along its sides.
+/// Returns the points of a convex polygon that are at least `by_mm` away from its sides.
 Polygon convex_inside(const Polygon& polygon, double by_mm, double tolerance_mm) {
   Polygon inside = polygon;
   for (std::size_t k = 0; k < polygon.size() && !inside.empty(); ++k) {
@@ -146,7 +146,8 @@ double perimeter(const Polygon& polygon) {
   return sum;
 }
 
-/// Returns the portions of a polygon inside a region, even if the polygon is completely inside.
+/// Returns the intersections of a polygon with the convex polygons of a region. Unlike clip(), they stay divided if the
+/// polygon is completely inside the region.
 std::vector<Polygon> portions(const Polygon& polygon, const ConvexRegion& region, double tolerance_mm) {
   const Rectangle box = bounding_box(polygon);
   std::vector<Polygon> inside;

@@ -1,6 +1,7 @@
 #pragma once
 
-// Covers a plane region of a closed mesh with triangles that share all vertices on its border.
+// Covers a plane region of a mesh with triangles. All vertices on the border of the region are used, so that the mesh
+// is closed.
 
 #include <cstdint>
 #include <utility>
@@ -14,8 +15,8 @@ namespace retrace::geometry {
 /// Vertex of a mesh and its position in plan.
 using PlacedVertex = std::pair<Vec2, std::uint32_t>;
 
-/// Adds triangles that cover convex polygons at a height.
-/// \param vertices all vertices on the border of the region at this height
+/// Adds triangles that cover convex polygons at the height of `vertices`.
+/// \param vertices all vertices of the mesh on the borders of the polygons
 /// \param size_mm size of an element, for tolerances
 /// \param faces_up true if the triangles face +z
 void add_cover(BoundaryMesh& mesh, const std::vector<Polygon>& polygons, const std::vector<PlacedVertex>& vertices,

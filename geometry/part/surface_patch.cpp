@@ -376,7 +376,8 @@ class PatchBuilder {
     }
   }
 
-  /// \param z heights of the corners: at the bottom above `from` and `to`, at the top above `to` and `from`
+  /// Adds a vertical facet between two vertices in plan, unless its height is 0 at both.
+  /// \param z heights of the corners: bottom at `from`, bottom at `to`, top at `to`, top at `from`
   void emit_side(std::uint32_t from, std::uint32_t to, const std::array<double, 4>& z, FacetRole role) {
     const bool has_from = z[3] - z[0] > tolerance_mm_;
     const bool has_to = z[2] - z[1] > tolerance_mm_;

@@ -63,11 +63,11 @@ struct SurfacePatch {
   std::vector<std::vector<std::uint32_t>> border_rim;
 };
 
-/// Borders of a part with an outline.
+/// Borders of a part with an outline, relative to the patch.
 struct PatchRim {
   std::vector<std::vector<Vec2>> borders;  ///< closed polygons; walls on their sides are border walls
-  /// Convex hull of the part, or empty. The sides of a part with notches or holes are then facets of the patch, except
-  /// for those on the hull.
+  /// Convex hull of a part with notches or holes, and empty for other parts. The sides of the part that are not on the
+  /// hull become facets of the patch.
   Polygon hull;
   double top_mm = 0.0;  ///< height of the entrance face, at which these facets end
 };

@@ -220,12 +220,8 @@ double divide(const BeamScene& scene, const Beam& whole, const Vec2& most_step, 
   return entered;
 }
 
-}  // namespace
-
-namespace {
-
-/// Divides the incident beam of a part with notches or holes. Its pieces are the regions of its symmetry. Returns the
-/// fraction of the light that has entered.
+/// Divides the incident beam of a part with notches or holes. Each polygon of its entrance face is one region of its
+/// symmetry. Returns the fraction of the light that has entered.
 double divide_pieces(const BeamScene& scene, const Vec2& most_step, BeamQueue& queue) {
   double face_mm2 = 0.0;
   for (const geometry::Polygon& piece : scene.part.entrance_pieces) face_mm2 += geometry::area(piece);

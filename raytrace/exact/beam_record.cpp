@@ -82,7 +82,7 @@ void BeamRecord::observe_entrance_reflection() const {
   front.centre_mm = scene_.centre_mm;
   if (scene_.setup.infinite()) return observer_(front);
   for (const geometry::Polygon& piece : geometry::entrance_polygons(scene_.part)) {
-    // All pieces of the face reflect the same wave. Their powers are in the ratio of their areas.
+    // The power that a polygon of the face reflects is proportional to its area.
     const double fraction =
         scene_.part.entrance_pieces.empty() ? 1.0 : geometry::area(piece) / scene_.part.entrance_area_mm2;
     ReturnedBeam portion = front;

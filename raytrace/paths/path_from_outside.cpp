@@ -118,7 +118,7 @@ bool PathWalker::arrive_from_above(State& state, double reach_mm, double toleran
   state.position += way * state.direction;
   state.position.z() = setup_.thickness_mm;
   if (setup_.infinite()) wrap(state);
-  // Light that meets no material at the height of the entrance face passes into a notch or a hole.
+  // Light beside the polygons of the entrance face enters a notch or a hole.
   if (!setup_.entrance_pieces.empty() && !setup_.is_over_piece(state.position.head<2>(), -tolerance_mm))
     return arrive_from_below(state);
   return arrive_at_entrance(state);

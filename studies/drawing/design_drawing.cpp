@@ -227,7 +227,7 @@ std::string zones_text(const Part& part) {
                      part.elements_partial);
 }
 
-/// Returns the centres of the cells of a zone. All cells are stored zone by zone in one patch.
+/// Returns the centres of the cells of a zone. One patch stores the cells of all zones, one zone after the other.
 std::vector<Vec2> centres_of_cells(const Part& part, std::size_t zone) {
   std::size_t first = 0;
   for (std::size_t k = 0; k < zone; ++k) first += part.zones[k].cells;

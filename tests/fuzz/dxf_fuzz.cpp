@@ -15,7 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     std::vector<geometry::OutlineLoop> loops =
         geometry::parse_dxf_outline(std::string_view(reinterpret_cast<const char*>(data), size), "fuzz.dxf", {});
     double corners = 0.0;
-    for (const geometry::OutlineLoop& loop : loops) corners += geometry::polygon_corner_count(loop, 0.01);
+    for (const geometry::OutlineLoop& loop : loops) corners += geometry::estimated_corner_count(loop, 0.01);
     if (corners > 200.0) return 0;
     std::optional<geometry::OutlineFault> fault;
     geometry::plan_region(geometry::oriented(std::move(loops)), 0.1, 0.01, fault);
