@@ -111,8 +111,10 @@ double Design::thickness_mm() const {
 
 namespace {
 
+/// Checks that a study supports the outline of a part.
 /// \param outline outline of the part, or null
-void refuse_outline(const Design& design, const geometry::PlanRegion* outline, const Capabilities& capabilities) {
+void require_outline_supported(const Design& design, const geometry::PlanRegion* outline,
+                               const Capabilities& capabilities) {
   if (outline == nullptr) return;
   if (!capabilities.outlines)
     throw InputError(
@@ -143,7 +145,7 @@ void require_supported(const Design& design, const Capabilities& capabilities) {
                             throw InputError(
                                 design.where(geometry::substrate_shape_key(*array.part.substrate)),
                                 what + " is not available for elements on a [substrate], only for elements on a plane");
-                          refuse_outline(design, array.part.array.outline.get(), capabilities);
+                          require_outline_supported(design, array.part.array.outline.get(), capabilities);
                         },
                         [&](const PartMesh&) { refuse_solid("part.mesh", "mesh"); },
                         [&](const Plate&) { refuse_solid("part.plate_mm", "plate"); },

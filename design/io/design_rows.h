@@ -43,6 +43,8 @@ inline constexpr schema::Kind kSize = schema::Number{kAboveZero, kPlausibleSize}
 inline constexpr std::string_view kKind = "element.kind";
 inline constexpr std::string_view kArrangement = "array.arrangement";
 inline constexpr std::string_view kExtent = "array.extent";
+inline constexpr schema::Words kSingle = {"single"};
+inline constexpr schema::Words kInfinite = {"infinite"};
 
 inline constexpr std::string_view kNotWithMesh =
     "not allowed together with a mesh or plate in [part], which determines all angles and edges";

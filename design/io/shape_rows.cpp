@@ -12,10 +12,8 @@ constexpr NumberRange kPlace{.low = -1e6, .high = 1e6};
 constexpr Words kBallArrangements = {"single", "packed"};
 constexpr auto kPacked = only(kBallArrangements, "packed");
 constexpr auto kOffset = only(geometry::kArrangementWords, "offset");
-constexpr auto kSingle = only(geometry::kArrangementWords, "single");
 constexpr Words kExtents = {"finite", "infinite"};
 constexpr Words kFinite = {"finite"};
-constexpr Words kInfinite = {"infinite"};
 constexpr Words kPartialElements = {"cut", "omit"};
 constexpr Words kSides = {"top", "bottom"};
 
