@@ -1,6 +1,9 @@
 #pragma once
 
-// Random outlines for tests: star-shaped polygons with arcs, rounded corners and holes, convex or not.
+// Outlines for tests: polygons with rounded corners, and random star-shaped outlines with arcs, rounded corners and
+// holes, convex or not.
+
+#include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
@@ -12,12 +15,20 @@
 
 namespace retrace::geometry {
 
-/// Returns a loop of straight sides.
+/// Returns a loop from its corners and the bulges of its sides. Without bulges, all sides are straight.
 inline OutlineLoop polygon_of_corners(const std::vector<Vec2>& corners, const std::vector<double>& bulges = {}) {
   OutlineLoop loop;
   for (std::size_t k = 0; k < corners.size(); ++k)
     loop.push_back({corners[k], corners[(k + 1) % corners.size()], bulges.empty() ? 0.0 : bulges[k]});
   return loop;
+}
+
+/// Returns a loop whose corners are all rounded with one radius.
+inline OutlineLoop rounded(const OutlineLoop& loop, double radius_mm) {
+  std::optional<CornerFault> fault;
+  OutlineLoop result = with_rounded_corners(loop, std::vector<double>(loop.size(), radius_mm), fault);
+  EXPECT_FALSE(fault);
+  return result;
 }
 
 /// Returns a random outline of about 2 `radius_mm` in size that fault_of_outline() allows.

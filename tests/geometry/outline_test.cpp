@@ -38,13 +38,6 @@ OutlineLoop rectangle(double x_mm, double y_mm) {
   return polygon_of_corners({{0, 0}, {x_mm, 0}, {x_mm, y_mm}, {0, y_mm}});
 }
 
-OutlineLoop rounded(const OutlineLoop& loop, double radius_mm) {
-  std::optional<CornerFault> fault;
-  OutlineLoop result = with_rounded_corners(loop, std::vector<double>(loop.size(), radius_mm), fault);
-  EXPECT_FALSE(fault);
-  return result;
-}
-
 bool is_refused(const std::vector<OutlineLoop>& loops) {
   std::optional<OutlineFault> fault;
   plan_region(oriented(loops), 0.0, 0.01, fault);

@@ -54,35 +54,32 @@ PartSpec hexagons(double aperture_mm = 0.6) {
   return finite(HexagonalCube{aperture_mm}, Arrangement::honeycomb, 0.0, 0.0, 0.5);
 }
 
-OutlineLoop rounded(const std::vector<Vec2>& corners, double radius_mm, const std::vector<double>& bulges = {}) {
-  std::optional<CornerFault> fault;
-  OutlineLoop loop =
-      with_rounded_corners(polygon_of_corners(corners, bulges), std::vector<double>(corners.size(), radius_mm), fault);
-  EXPECT_FALSE(fault);
-  return loop;
-}
-
 Outline oblique() {
-  return oriented({rounded({{0, 0}, {2.0, 0}, {2.6, 1.4}, {0.6, 1.4}}, 0.3)});
+  return oriented({rounded(polygon_of_corners({{0, 0}, {2.0, 0}, {2.6, 1.4}, {0.6, 1.4}}), 0.3)});
 }
 /// An L-shaped outline with rounded corners and a curved side.
 Outline bent() {
-  return oriented(
-      {rounded({{0, 0}, {2.2, 0}, {2.2, 1.0}, {1.0, 1.0}, {1.0, 2.0}, {0, 2.0}}, 0.15, {0.1, 0, 0, 0, 0, 0})});
+  return oriented({rounded(
+      polygon_of_corners({{0, 0}, {2.2, 0}, {2.2, 1.0}, {1.0, 1.0}, {1.0, 2.0}, {0, 2.0}}, {0.1, 0, 0, 0, 0, 0}),
+      0.15)});
 }
 Outline ring() {
   return oriented({circle({0, 0}, 1.2), circle({0.2, 0.1}, 0.4)});
 }
 
+/// Returns a rectangular part of 3.1 mm x 2.3 mm with margins of 0.1 mm.
+PartSpec rectangular_part(PartSpec spec) {
+  spec.array.x_length_mm = 3.1;
+  spec.array.y_length_mm = 2.3;
+  spec.array.x_offset_mm = spec.array.y_offset_mm = 0.1;
+  return spec;
+}
+
 TEST(OutlinePart, ARectangleIsTheRectangle) {
   for (const PartSpec& base : {prisms(), hexagons()}) {
-    PartSpec plain = base;
-    plain.array.x_length_mm = 3.1;
-    plain.array.y_length_mm = 2.3;
-    plain.array.x_offset_mm = plain.array.y_offset_mm = 0.1;
     const PartSpec outlined =
         with_outline(base, oriented({polygon_of_corners({{5, 1}, {8.1, 1}, {8.1, 3.3}, {5, 3.3}})}), 0.1);
-    const Part a = build_part(plain);
+    const Part a = build_part(rectangular_part(base));
     const Part b = build_part(outlined);
     EXPECT_EQ(a.elements_full, b.elements_full);
     EXPECT_EQ(a.elements_partial, b.elements_partial);
@@ -102,11 +99,7 @@ TEST(OutlinePart, ARectangleIsTheRectangle) {
 TEST(OutlinePart, AnOutlineThatIsAlmostARectangleGivesItsNumbers) {
   const double c = 1e-6;
   for (const PartSpec& base : {prisms(), hexagons()}) {
-    PartSpec plain = base;
-    plain.array.x_length_mm = 3.1;
-    plain.array.y_length_mm = 2.3;
-    plain.array.x_offset_mm = plain.array.y_offset_mm = 0.1;
-    const Part a = build_part(plain);
+    const Part a = build_part(rectangular_part(base));
     const Part b = build_part(with_outline(
         base, oriented({polygon_of_corners({{0, 0}, {3.1, 0}, {3.1, 2.3}, {c, 2.3}, {0, 2.3 - c}})}), 0.1));
     EXPECT_NEAR(a.retro_facet_area_mm2, b.retro_facet_area_mm2, 1e-6);
