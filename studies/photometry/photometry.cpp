@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <map>
 #include <numeric>
-#include <tuple>
 
 #include "core/error.h"
 #include "core/message_text.h"
@@ -16,6 +14,7 @@
 #include "studies/photometry/advice.h"
 #include "studies/photometry/coefficient_map.h"
 #include "studies/photometry/colour.h"
+#include "studies/photometry/measurement_plan.h"
 #include "studies/photometry/photometer.h"
 
 namespace retrace::studies {
@@ -24,8 +23,6 @@ namespace {
 /// Minimum diameter of the larger of the two apertures, source and receiver. If both were points, computed intensities
 /// would be infinite or 0.
 constexpr double kMinApertureArcmin = 0.006;
-// Distance to a limit, in standard errors, below which a reading is undetermined.
-constexpr double kErrorsOfAMargin = 2.0;
 // Number of spans of the spectrum for pictures. Each span has two wavelengths.
 constexpr std::size_t kPictureParts = 1;
 // Number of spans of the spectrum for preliminary readings. Each span has two wavelengths.
@@ -65,94 +62,9 @@ void check(const PhotometrySettings& settings) {
                                    shortest(settings.window_deg), shortest(point.observation_deg)));
 }
 
-/// Geometries that are measured (settings). Each direction of light has one setting with all its observation angles.
-struct Plan {
-  std::vector<PhotometerSetting> settings;
-  /// Readings of each test point, as pairs of the indices of setting and observation angle.
-  std::vector<std::vector<std::pair<std::size_t, std::size_t>>> readings_of_point;
-};
-
-std::size_t index_of(std::vector<double>& values, double value) {
-  const auto found = std::find(values.begin(), values.end(), value);
-  if (found != values.end()) return static_cast<std::size_t>(found - values.begin());
-  values.push_back(value);
-  return values.size() - 1;
-}
-
-/// Returns true if the entrance face reflects the lamp back to the lamp for perpendicular light.
-bool mirrors_source(const design::Design& design) {
-  return !design.balls() && !design.entrance && !design.idealisation.lossless_entrance;
-}
-
-/// Returns the angles V at which a test point or a colour is measured.
-template <class Point>
-std::vector<double> measured_v_deg(const Point& point, bool mirrors) {
-  return mirrors && !point.substitute_v_deg.empty() ? point.substitute_v_deg : std::vector{point.v_deg};
-}
-
-/// Returns the settings that are measured for the test points of a request.
-/// \param mirrors true if the entrance face reflects the lamp back to the lamp
-Plan plan_of(const PhotometrySettings& request, bool mirrors) {
-  Plan plan;
-  std::map<std::tuple<double, double, double>, std::size_t> known;
-  for (const TestPoint& point : request.test_plan.points) {
-    auto& readings = plan.readings_of_point.emplace_back();
-    for (const double v_deg : measured_v_deg(point, mirrors))
-      for (const double rotation_deg : request.rotation_deg) {
-        const auto [it, is_new] = known.try_emplace({v_deg, point.h_deg, rotation_deg}, plan.settings.size());
-        if (is_new) plan.settings.push_back({v_deg, point.h_deg, rotation_deg, {}, 0, request.window_power});
-        readings.emplace_back(it->second, index_of(plan.settings[it->second].observation_deg, point.observation_deg));
-      }
-  }
-  return plan;
-}
-
-/// Readings of all settings. An entry is empty if the setting was not measured.
-using Readings = std::vector<std::optional<PhotometerReading>>;
-
-/// Returns all readings of each test point, in the order of the points. A list is empty if its point was not measured.
-std::vector<std::vector<PhotometricPoint>> readings_of_points(const PhotometrySettings& request, const Plan& plan,
-                                                              const Readings& readings) {
-  std::vector<std::vector<PhotometricPoint>> of_points;
-  for (std::size_t k = 0; k < request.test_plan.points.size(); ++k) {
-    std::vector<PhotometricPoint>& of_point = of_points.emplace_back();
-    for (const auto& [setting, angle] : plan.readings_of_point[k]) {
-      if (!readings[setting]) continue;
-      const PhotometerReading& reading = *readings[setting];
-      PhotometricPoint point;
-      point.test_point = request.test_plan.points[k];
-      point.v_deg = plan.settings[setting].v_deg;
-      point.rotation_deg = plan.settings[setting].rotation_deg;
-      point.r_a = reading.r_a[angle];
-      point.r_l = reading.r_l[angle];
-      const auto in_mcd = [&](double r_a) {
-        return in_mcd_per_lx(r_a, PhotometricUnit::cd_per_lx_per_m2, request.area_cm2);
-      };
-      point.r_i_mcd_per_lx = in_mcd(point.r_a);
-      point.std_error_mcd_per_lx = in_mcd(reading.r_a_error[angle]);
-      point.limit_mcd_per_lx = in_mcd_per_lx(point.test_point.minimum, point.test_point.unit, request.area_cm2);
-      point.lacks_diffraction = reading.lacks_diffraction;
-      of_point.push_back(point);
-    }
-  }
-  return of_points;
-}
-
-/// Returns the reading with the minimum value for each test point that was measured.
-std::vector<PhotometricPoint> min_of(const std::vector<std::vector<PhotometricPoint>>& readings) {
-  std::vector<PhotometricPoint> points;
-  for (const std::vector<PhotometricPoint>& of_point : readings) {
-    if (of_point.empty()) continue;
-    PhotometricPoint least = *std::ranges::min_element(of_point, {}, &PhotometricPoint::r_a);
-    least.lacks_diffraction = std::ranges::any_of(of_point, &PhotometricPoint::lacks_diffraction);
-    points.push_back(least);
-  }
-  return points;
-}
-
 /// Returns settings for the far-field maps: one for each measured direction of light at the first rotation of the part,
 /// up to kMaxMaps.
-std::vector<PhotometerSetting> map_settings(const PhotometrySettings& request, const Plan& plan) {
+std::vector<PhotometerSetting> map_settings(const PhotometrySettings& request, const MeasurementPlan& plan) {
   std::vector<PhotometerSetting> settings;
   for (const PhotometerSetting& measured : plan.settings)
     if (measured.rotation_deg == request.rotation_deg.front() && settings.size() < kMaxMaps)
@@ -171,8 +83,8 @@ std::vector<PhotometerSetting> curve_settings(const PhotometrySettings& request)
   return settings;
 }
 
-bool add_pictures(const design::Design& design, const PhotometrySettings& request, const Plan& plan, bool exact,
-                  Progress* progress, const Cancellation* cancel, PhotometryResult& result) {
+bool add_pictures(const design::Design& design, const PhotometrySettings& request, const MeasurementPlan& plan,
+                  bool exact, Progress* progress, const Cancellation* cancel, PhotometryResult& result) {
   Photometer photometer(design, request, kPictureParts);
   if (!exact) photometer.use_monte_carlo();
   const std::vector<PhotometerSetting> maps = map_settings(request, plan);
@@ -191,18 +103,19 @@ bool add_pictures(const design::Design& design, const PhotometrySettings& reques
 
 /// Measures the readings of a design at all test points. Returns nothing if the measurement was cancelled.
 std::optional<std::vector<PhotometricPoint>> table_of(const Photometer& photometer, const PhotometrySettings& request,
-                                                      Plan plan, const Cancellation* cancel) {
+                                                      MeasurementPlan plan, const Cancellation* cancel) {
   for (PhotometerSetting& setting : plan.settings) setting.split = false;
   const auto readings = photometer.measure(plan.settings, nullptr, cancel);
   if (!readings) return std::nullopt;
-  return min_of(readings_of_points(request, plan, {readings->begin(), readings->end()}));
+  return smallest_readings(readings_of_points(request, plan, {readings->begin(), readings->end()}));
 }
 
 /// Measures the readings of changed designs. Directions of light are measured one after the other. Directions for which
 /// earlier designs failed come first.
 class TablesOfChanges {
  public:
-  TablesOfChanges(const PhotometrySettings& request, const Plan& plan, bool exact, const Cancellation* cancel)
+  TablesOfChanges(const PhotometrySettings& request, const MeasurementPlan& plan, bool exact,
+                  const Cancellation* cancel)
       : request_(request), plan_(plan), exact_(exact), cancel_(cancel), order_(plan.settings.size()) {
     for (PhotometerSetting& setting : plan_.settings) setting.split = false;
     std::iota(order_.begin(), order_.end(), 0U);
@@ -221,7 +134,7 @@ class TablesOfChanges {
       const auto measured = photometer.measure(settings, nullptr, cancel_);
       if (!measured) return std::nullopt;
       for (std::size_t k = 0; k < alike.size(); ++k) readings[alike[k].index] = (*measured)[k];
-      points = min_of(readings_of_points(request_, plan_, readings));
+      points = smallest_readings(readings_of_points(request_, plan_, readings));
       if (!(min_ratio(points) < enough)) continue;
       put_first(alike.front().index);
       break;
@@ -248,7 +161,7 @@ class TablesOfChanges {
   }
 
   const PhotometrySettings& request_;
-  Plan plan_;
+  MeasurementPlan plan_;
   bool exact_;
   const Cancellation* cancel_;
   std::vector<std::size_t> order_;  ///< order in which the settings are measured
@@ -294,45 +207,6 @@ std::string text_of(const NoDiffraction& reason) {
   return "";
 }
 
-std::string_view verdict_name(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::pass: return "pass";
-    case Verdict::unconfirmed: return "unconfirmed";
-    case Verdict::undetermined: return "undetermined";
-    case Verdict::fail: return "fail";
-  }
-  return {};
-}
-
-Verdict PhotometricPoint::verdict() const {
-  const bool reaches = r_i_mcd_per_lx >= limit_mcd_per_lx;
-  if (is_lower_bound) return reaches ? Verdict::pass : Verdict::undetermined;
-  const bool is_too_near = std::abs(r_i_mcd_per_lx - limit_mcd_per_lx) < kErrorsOfAMargin * std_error_mcd_per_lx;
-  if (lacks_diffraction || is_too_near) return Verdict::undetermined;
-  return reaches ? Verdict::pass : Verdict::fail;
-}
-
-Verdict verdict_of(const std::vector<PhotometricPoint>& points, const TestPlan& test_plan) {
-  const auto any = [&](Verdict verdict) {
-    return std::any_of(points.begin(), points.end(), [&](const PhotometricPoint& p) { return p.verdict() == verdict; });
-  };
-  for (const Verdict verdict : {Verdict::fail, Verdict::undetermined})
-    if (any(verdict)) return verdict;
-  const bool is_confirmed = std::none_of(points.begin(), points.end(), [](const PhotometricPoint& p) {
-    return p.test_point.status == LimitStatus::recalled;
-  });
-  return is_confirmed && test_plan.is_complete ? Verdict::pass : Verdict::unconfirmed;
-}
-
-Verdict area_verdict(const TestPlan& test_plan, double area_cm2) {
-  Verdict verdict = Verdict::pass;
-  for (const LimitArea& limit : test_plan.areas) {
-    if (!limit.holds(area_cm2)) return Verdict::fail;
-    if (limit.status == LimitStatus::recalled) verdict = Verdict::unconfirmed;
-  }
-  return verdict;
-}
-
 std::vector<design::Design> PhotometryResult::map_designs() const {
   std::vector<design::Design> designs = {design};
   if (request.compared) designs.push_back(request.compared->design);
@@ -348,7 +222,7 @@ struct PhotometryStudy::Prepared {
   design::Design design;
   PhotometrySettings request;
   std::unique_ptr<Photometer> photometer;
-  Plan plan;
+  MeasurementPlan plan;
 };
 
 PhotometryStudy::PhotometryStudy(design::Design design, PhotometrySettings settings)
@@ -363,7 +237,7 @@ PhotometryStudy::PhotometryStudy(design::Design design, PhotometrySettings setti
             design.source_name(), reference({"engine"})));
   if (settings.compared)  // refuses a design that the photometer does not support
     const Photometer ignored(settings.compared->design, settings_of_compared(settings), materials::kSpectralParts);
-  prepared_->plan = plan_of(settings, mirrors_source(design));
+  prepared_->plan = measurement_plan(settings, mirrors_source(design));
   prepared_->design = std::move(design);
   prepared_->request = std::move(settings);
 }
@@ -382,7 +256,7 @@ namespace {
 
 /// Replaces readings that lack diffraction by the readings of the mean field if these are above the limits. The mean
 /// field, which excludes scattered light, gives lower bounds. Returns false if the computation was cancelled.
-bool raise_to_mean_field(const Photometer& photometer, const PhotometrySettings& request, const Plan& plan,
+bool raise_to_mean_field(const Photometer& photometer, const PhotometrySettings& request, const MeasurementPlan& plan,
                          const Cancellation* cancel, std::vector<PhotometricPoint>& points) {
   const auto lacks = [](const PhotometricPoint& p) { return p.lacks_diffraction; };
   const std::optional<Photometer> mean_field = photometer.mean_field();
@@ -432,7 +306,7 @@ auto measure_within_budget(Photometer& photometer, const PhotometrySettings& req
 }
 
 std::optional<std::vector<PhotometerReading>> readings_of(Photometer& photometer, const PhotometrySettings& request,
-                                                          const Plan& plan, Progress* progress,
+                                                          const MeasurementPlan& plan, Progress* progress,
                                                           const Cancellation* cancel) {
   return measure_within_budget(photometer, request, progress,
                                [&](Progress& attempt) { return photometer.measure(plan.settings, &attempt, cancel); });
@@ -510,8 +384,8 @@ StageProgress stages_of(Progress* whole, const design::Design& design, const Pho
 }
 
 /// Adds a proposal for a change with which a failing design passes. Returns false if the computation was cancelled.
-bool add_change(const Photometer& photometer, const Plan& plan, Progress* progress, const Cancellation* cancel,
-                PhotometryResult& result) {
+bool add_change(const Photometer& photometer, const MeasurementPlan& plan, Progress* progress,
+                const Cancellation* cancel, PhotometryResult& result) {
   const design::Design& design = result.design;
   const PhotometrySettings& request = result.request;
   const bool is_asked = may_search_change(design, request) &&
@@ -568,7 +442,7 @@ PhotometryResult PhotometryStudy::run(Progress* progress, const Cancellation* ca
   if (readings) {
     for (const PhotometerReading& reading : *readings) result.directions.push_back(reading.direction);
     result.readings = readings_of_points(request, plan, {readings->begin(), readings->end()});
-    result.measured = min_of(result.readings);
+    result.measured = smallest_readings(result.readings);
     result.points = result.measured;
     result.complete = raise_to_mean_field(photometer, request, plan, cancel, result.points);
     result.verdict =
@@ -591,14 +465,14 @@ std::optional<PhotometricFirstAnswer> PhotometryStudy::first_answer(double ray_f
   PhotometrySettings request = prepared_->request;
   const auto rays = static_cast<double>(request.rays.value_or(kDefaultRaysPerDirection));
   request.rays = static_cast<std::uint64_t>(std::min(rays, std::max(kMinRaysOfFirstAnswer, ray_fraction * rays)));
-  Plan plan = prepared_->plan;
+  MeasurementPlan plan = prepared_->plan;
   for (PhotometerSetting& setting : plan.settings) setting.split = false;
   Photometer photometer(prepared_->design, request, kFirstAnswerParts);
   photometer.set_effort(Photometer::Effort::first_answer);
   const auto readings = readings_of(photometer, request, plan, nullptr, cancel);
   if (!readings) return std::nullopt;
   PhotometricFirstAnswer answer;
-  answer.points = min_of(readings_of_points(request, plan, {readings->begin(), readings->end()}));
+  answer.points = smallest_readings(readings_of_points(request, plan, {readings->begin(), readings->end()}));
   answer.wavelengths_nm = photometer.wavelengths_nm();
   answer.lacks_diffraction = request.diffraction && !photometer.has_diffraction();
   return answer;
