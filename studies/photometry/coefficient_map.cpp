@@ -10,29 +10,15 @@
 #include "core/error.h"
 #include "core/number_format.h"
 #include "studies/photometry/photometer.h"
+#include "studies/rre/angle_list.h"
 
 namespace retrace::studies {
 namespace {
 
 // Default grid.
-constexpr double kEntranceStepDeg = 5.0;
 constexpr double kLastEntranceDeg = 60.0;
+constexpr std::size_t kEntranceAngles = 13;
 constexpr std::size_t kObservationAngles = 41;
-// Angles that differ by less are equal.
-constexpr double kSameAngleOfMapDeg = 1e-9;
-
-std::vector<double> equidistant(double last, std::size_t count) {
-  std::vector<double> values;
-  for (std::size_t k = 0; k < count; ++k)
-    values.push_back(last * static_cast<double>(k) / static_cast<double>(count - 1));
-  return values;
-}
-
-void sort_without_repetition(std::vector<double>& values) {
-  std::ranges::sort(values);
-  values.erase(std::unique(values.begin(), values.end(), [](double a, double b) { return b - a < kSameAngleOfMapDeg; }),
-               values.end());
-}
 
 void check_count(const std::vector<double>& values, Field field) {
   if (values.size() < 2)
@@ -42,13 +28,11 @@ void check_count(const std::vector<double>& values, Field field) {
 }  // namespace
 
 CoefficientGrid resolve_grid(CoefficientGrid grid, double window_deg) {
-  if (grid.entrance_deg.empty())
-    grid.entrance_deg =
-        equidistant(kLastEntranceDeg, static_cast<std::size_t>(kLastEntranceDeg / kEntranceStepDeg) + 1);
+  if (grid.entrance_deg.empty()) grid.entrance_deg = equidistant(kLastEntranceDeg, kEntranceAngles);
   if (grid.observation_deg.empty()) grid.observation_deg = equidistant(window_deg, kObservationAngles);
   if (grid.presentation_deg.empty()) grid.presentation_deg = {0.0};
   for (std::vector<double>* const list : {&grid.entrance_deg, &grid.observation_deg, &grid.presentation_deg})
-    sort_without_repetition(*list);
+    sort_and_remove_repeated(*list);
   check_count(grid.entrance_deg, Field{"map_entrance_deg"});
   check_count(grid.observation_deg, Field{"map_observation_deg"});
   if (grid.observation_deg.back() > window_deg)

@@ -16,6 +16,7 @@
 #include "studies/photometry/colour.h"
 #include "studies/photometry/measurement_plan.h"
 #include "studies/photometry/photometer.h"
+#include "studies/rre/angle_list.h"
 
 namespace retrace::studies {
 namespace {
@@ -75,10 +76,8 @@ std::vector<PhotometerSetting> map_settings(const PhotometrySettings& request, c
 std::vector<PhotometerSetting> curve_settings(const PhotometrySettings& request) {
   std::vector<PhotometerSetting> settings;
   for (const double entrance_deg : kCurveEntranceDeg) {
-    PhotometerSetting setting{0.0, -entrance_deg, request.rotation_deg.front(), {}, 0, false};
-    for (std::size_t k = 0; k < kCurvePoints; ++k)
-      setting.observation_deg.push_back(request.window_deg * static_cast<double>(k) / (kCurvePoints - 1));
-    settings.push_back(std::move(setting));
+    settings.push_back(
+        {0.0, -entrance_deg, request.rotation_deg.front(), equidistant(request.window_deg, kCurvePoints), 0, false});
   }
   return settings;
 }

@@ -10,30 +10,18 @@
 
 #include "core/error.h"
 #include "core/number_format.h"
+#include "studies/rre/angle_list.h"
 
 namespace retrace::studies {
 namespace {
 
 // Default grid of directions.
-constexpr double kIncidenceStepDeg = 5.0;
 constexpr double kLastIncidenceDeg = 80.0;
-constexpr double kAzimuthStepDeg = 10.0;
+constexpr std::size_t kIncidences = 17;
+constexpr double kLastAzimuthDeg = 350.0;
+constexpr std::size_t kAzimuths = 36;
 // Maximum distance of adjacent azimuths. With larger distances, a map would show mainly interpolated values.
 constexpr double kMaxGapDeg = 120.0;
-// Angles that differ by less are equal.
-constexpr double kSameAngleDeg = 1e-9;
-
-std::vector<double> steps(double last, double step) {
-  std::vector<double> values;
-  for (int k = 0; k * step <= last; ++k) values.push_back(k * step);
-  return values;
-}
-
-void sort_and_remove_repeated(std::vector<double>& values) {
-  std::sort(values.begin(), values.end());
-  values.erase(std::unique(values.begin(), values.end(), [](double a, double b) { return b - a < kSameAngleDeg; }),
-               values.end());
-}
 
 double reduced_azimuth(double deg) {
   const double reduced = deg - 360.0 * std::floor(deg / 360.0);
@@ -81,8 +69,8 @@ void check_azimuths(const std::vector<double>& azimuth_deg) {
 void resolve_grid(RreSettings& settings) {
   if (!settings.incidence_spans.empty())
     throw InputError(Field{"incidence_deg"}, "a map needs a list of angles of incidence without automatic ranges");
-  if (settings.incidence_deg.empty()) settings.incidence_deg = steps(kLastIncidenceDeg, kIncidenceStepDeg);
-  if (settings.azimuth_deg.empty()) settings.azimuth_deg = steps(360.0 - kAzimuthStepDeg, kAzimuthStepDeg);
+  if (settings.incidence_deg.empty()) settings.incidence_deg = equidistant(kLastIncidenceDeg, kIncidences);
+  if (settings.azimuth_deg.empty()) settings.azimuth_deg = equidistant(kLastAzimuthDeg, kAzimuths);
   for (double& azimuth : settings.azimuth_deg) azimuth = reduced_azimuth(azimuth);
   sort_and_remove_repeated(settings.incidence_deg);
   sort_and_remove_repeated(settings.azimuth_deg);
