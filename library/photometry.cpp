@@ -17,35 +17,29 @@ namespace retrace {
 namespace {
 
 PhotometricPoint from_study(const studies::PhotometricPoint& point) {
-  PhotometricPoint told;
-  told.observation_deg = point.test_point.observation_deg;
-  told.v_deg = point.v_deg;
-  told.h_deg = point.test_point.h_deg;
-  told.rotation_deg = point.rotation_deg;
-  told.r_i_mcd_per_lx = point.r_i_mcd_per_lx;
-  told.r_a = point.r_a;
-  told.std_error_mcd_per_lx = point.std_error_mcd_per_lx;
-  told.limit_mcd_per_lx = point.limit_mcd_per_lx;
-  told.verdict = studies::verdict_name(point.verdict());
-  return told;
+  PhotometricPoint converted;
+  converted.observation_deg = point.test_point.observation_deg;
+  converted.v_deg = point.v_deg;
+  converted.h_deg = point.test_point.h_deg;
+  converted.rotation_deg = point.rotation_deg;
+  converted.r_i_mcd_per_lx = point.r_i_mcd_per_lx;
+  converted.r_a = point.r_a;
+  converted.std_error_mcd_per_lx = point.std_error_mcd_per_lx;
+  converted.limit_mcd_per_lx = point.limit_mcd_per_lx;
+  converted.verdict = studies::verdict_name(point.verdict());
+  return converted;
 }
 
 CoefficientMap from_study(const studies::CoefficientMap& map) {
-  CoefficientMap told;
-  told.design = map.design;
-  told.rotation_deg = map.rotation_deg;
-  told.presentation_deg = map.presentation_deg;
-  told.entrance_deg = map.entrance_deg;
-  told.observation_deg = map.observation_deg;
-  for (std::size_t k = 0; k < map.entrance_deg.size(); ++k) {
-    const auto row = [&](const std::vector<double>& values) {
-      const auto first = values.begin() + static_cast<std::ptrdiff_t>(map.index(k, 0));
-      return std::vector<double>(first, first + std::ssize(map.observation_deg));
-    };
-    told.r_a.push_back(row(map.r_a));
-    told.std_error.push_back(row(map.std_error));
-  }
-  return told;
+  CoefficientMap converted;
+  converted.design = map.design;
+  converted.rotation_deg = map.rotation_deg;
+  converted.presentation_deg = map.presentation_deg;
+  converted.entrance_deg = map.entrance_deg;
+  converted.observation_deg = map.observation_deg;
+  converted.r_a = map.rows(map.r_a);
+  converted.std_error = map.rows(map.std_error);
+  return converted;
 }
 
 /// Adds the maps over entrance and observation angle, and their drawings.
@@ -57,8 +51,8 @@ void add_maps(const std::shared_ptr<const studies::PhotometryResult>& found, Pho
 }
 
 /// \param compared design whose map is compared, or null
-PhotometryResult measured(const Design& design, const Design* compared, const PhotometryRequest& request,
-                          const Running& running) {
+PhotometryResult run_photometry(const Design& design, const Design* compared, const PhotometryRequest& request,
+                                const Running& running) {
   const design::Design& of_study = design.content().design;
   studies::PhotometrySettings settings = studies::resolve(request, of_study.substance.is_coloured());
   if (compared != nullptr)
@@ -85,13 +79,13 @@ PhotometryResult measured(const Design& design, const Design* compared, const Ph
 }  // namespace
 
 PhotometryResult photometry(const Design& design, const PhotometryRequest& request, const Running& running) {
-  return measured(design, nullptr, request, running);
+  return run_photometry(design, nullptr, request, running);
 }
 
 PhotometryResult photometry(const Design& design, const Design& compared, const PhotometryRequest& request,
                             const Running& running) {
   if (!request.map) throw InputError(Field{"map"}, "must be true for the comparison of two designs, got false");
-  return measured(design, &compared, request, running);
+  return run_photometry(design, &compared, request, running);
 }
 
 }  // namespace retrace

@@ -27,6 +27,15 @@ void check_count(const std::vector<double>& values, Field field) {
 
 }  // namespace
 
+std::vector<std::vector<double>> CoefficientMap::rows(const std::vector<double>& values) const {
+  std::vector<std::vector<double>> rows;
+  for (std::size_t k = 0; k < entrance_deg.size(); ++k) {
+    const auto first = values.begin() + static_cast<std::ptrdiff_t>(index(k, 0));
+    rows.emplace_back(first, first + std::ssize(observation_deg));
+  }
+  return rows;
+}
+
 CoefficientGrid resolve_grid(CoefficientGrid grid, double window_deg) {
   if (grid.entrance_deg.empty()) grid.entrance_deg = equidistant(kLastEntranceDeg, kEntranceAngles);
   if (grid.observation_deg.empty()) grid.observation_deg = equidistant(window_deg, kObservationAngles);

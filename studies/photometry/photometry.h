@@ -159,6 +159,9 @@ struct CoefficientMap {
   std::size_t index(std::size_t entrance, std::size_t observation) const {
     return entrance * observation_deg.size() + observation;
   }
+  /// Returns values with the indices [entrance][observation].
+  /// \param values `r_a` or `std_error`
+  std::vector<std::vector<double>> rows(const std::vector<double>& values) const;
 };
 
 /// Curve of R_A over the observation angle, for one entrance angle.

@@ -117,16 +117,6 @@ Json test_plan_json(const PhotometryResult& result) {
           {"limits_complete", asked.test_plan.is_complete}};
 }
 
-/// Returns the values of a map as lists, with the indices [entrance][observation].
-std::vector<std::vector<double>> rows_of(const CoefficientMap& map, const std::vector<double>& values) {
-  std::vector<std::vector<double>> rows;
-  for (std::size_t k = 0; k < map.entrance_deg.size(); ++k) {
-    const auto first = values.begin() + static_cast<std::ptrdiff_t>(map.index(k, 0));
-    rows.emplace_back(first, first + std::ssize(map.observation_deg));
-  }
-  return rows;
-}
-
 /// Adds the maps over entrance and observation angle to the document.
 void add_maps(const PhotometryResult& result, Json& json) {
   if (result.request.compared) {
@@ -141,8 +131,8 @@ void add_maps(const PhotometryResult& result, Json& json) {
                             {"presentation_deg", map.presentation_deg},
                             {"entrance_deg", map.entrance_deg},
                             {"observation_deg", map.observation_deg},
-                            {"r_a_cd_per_lx_m2", rows_of(map, map.r_a)},
-                            {"std_error_cd_per_lx_m2", rows_of(map, map.std_error)},
+                            {"r_a_cd_per_lx_m2", map.rows(map.r_a)},
+                            {"std_error_cd_per_lx_m2", map.rows(map.std_error)},
                             {"lacks_diffraction", map.lacks_diffraction}});
 }
 
@@ -315,7 +305,7 @@ std::string maps_csv(const std::vector<CoefficientMap>& maps, const std::string&
       for (const double angle : map.observation_deg) angles.push_back("observation_deg=" + shortest(angle));
       csv.row("design", "quantity", "rotation_deg", "presentation_deg", "entrance_deg", angles);
     }
-    const std::vector<std::vector<double>> rows = rows_of(map, map.r_a);
+    const std::vector<std::vector<double>> rows = map.rows(map.r_a);
     for (std::size_t k = 0; k < rows.size(); ++k) {
       std::vector<std::string> values;
       for (const double value : rows[k]) values.push_back(std::isfinite(value) ? shortest(factor * value) : "");
