@@ -221,6 +221,7 @@ struct PhotometryStudy::Prepared {
   design::Design design;
   PhotometrySettings request;
   std::unique_ptr<Photometer> photometer;
+  std::unique_ptr<Photometer> compared;  ///< photometer of the compared design, or null
   MeasurementPlan plan;
 };
 
@@ -234,8 +235,9 @@ PhotometryStudy::PhotometryStudy(design::Design design, PhotometrySettings setti
         fmt::format(
             "the engine exact requires plane and smooth faces, but the faces of {} scatter light: use {} montecarlo",
             design.source_name(), reference({"engine"})));
-  if (settings.compared)  // refuses a design that the photometer does not support
-    const Photometer ignored(settings.compared->design, settings_of_compared(settings), materials::kSpectralParts);
+  if (settings.compared)
+    prepared_->compared = std::make_unique<Photometer>(settings.compared->design, settings_of_compared(settings),
+                                                       materials::kSpectralParts);
   prepared_->plan = measurement_plan(settings, mirrors_source(design));
   prepared_->design = std::move(design);
   prepared_->request = std::move(settings);
@@ -313,8 +315,9 @@ std::optional<std::vector<PhotometerReading>> readings_of(Photometer& photometer
 
 /// Adds the maps of one design. Returns false if the computation was cancelled.
 /// \param design index of the design, see CoefficientMap
-bool add_design_maps(Photometer& photometer, const PhotometrySettings& request, std::size_t design, Progress* progress,
-                     const Cancellation* cancel, PhotometryResult& result) {
+bool add_design_maps(Photometer photometer, std::size_t design, Progress* progress, const Cancellation* cancel,
+                     PhotometryResult& result) {
+  const PhotometrySettings& request = result.request;
   std::optional<DesignMaps> measured = measure_within_budget(photometer, request, progress, [&](Progress& attempt) {
     return measure_maps(photometer, request, design, &attempt, cancel);
   });
@@ -327,18 +330,15 @@ bool add_design_maps(Photometer& photometer, const PhotometrySettings& request, 
 
 /// Adds the maps over entrance and observation angle if they are requested. Returns false if the computation was
 /// cancelled; the result then has no such maps.
-bool add_coefficient_maps(const Photometer& photometer, Progress* progress, const Cancellation* cancel,
-                          PhotometryResult& result) {
-  const PhotometrySettings& request = result.request;
-  if (!request.map_grid) return true;
-  Photometer own = photometer;
-  PartProgress first(progress, 0.0, request.compared ? 0.5 : 1.0);
-  bool is_complete = add_design_maps(own, request, 0, &first, cancel, result);
-  if (is_complete && request.compared) {
-    const PhotometrySettings of_compared = settings_of_compared(request);
-    Photometer compared(request.compared->design, of_compared, materials::kSpectralParts);
+/// \param compared photometer of the compared design, or null
+bool add_coefficient_maps(const Photometer& photometer, const Photometer* compared, Progress* progress,
+                          const Cancellation* cancel, PhotometryResult& result) {
+  if (!result.request.map_grid) return true;
+  PartProgress first(progress, 0.0, compared != nullptr ? 0.5 : 1.0);
+  bool is_complete = add_design_maps(photometer, 0, &first, cancel, result);
+  if (is_complete && compared != nullptr) {
     PartProgress second(progress, 0.5, 1.0);
-    is_complete = add_design_maps(compared, of_compared, 1, &second, cancel, result);
+    is_complete = add_design_maps(*compared, 1, &second, cancel, result);
   }
   if (!is_complete) {
     result.coefficient_maps.clear();
@@ -369,9 +369,9 @@ StageProgress stages_of(Progress* whole, const design::Design& design, const Pho
   const double colour = 1.0 + (measures_colour(request) ? 0.3 : 0.0);
   double maps = colour;
   if (request.map_grid) {
-    const std::size_t of_maps =
+    const std::size_t map_directions =
         request.rotation_deg.size() * request.map_grid->presentation_deg.size() * request.map_grid->entrance_deg.size();
-    maps += (request.compared ? 2.0 : 1.0) * static_cast<double>(of_maps) / static_cast<double>(directions);
+    maps += (request.compared ? 2.0 : 1.0) * static_cast<double>(map_directions) / static_cast<double>(directions);
   }
   const double pictures = maps + (request.pictures ? 0.3 : 0.0);
   const double change = pictures + (may_search_change(design, request) ? 1.0 : 0.0);
@@ -421,7 +421,7 @@ bool add_colour(const Photometer& photometer, Progress* progress, const Cancella
 
 PhotometryResult PhotometryStudy::run(Progress* progress, const Cancellation* cancel) const {
   const auto start = std::chrono::steady_clock::now();
-  const auto& [design, request, prepared_photometer, plan] = *prepared_;
+  const auto& [design, request, prepared_photometer, compared, plan] = *prepared_;
   Photometer photometer = *prepared_photometer;
   PhotometryResult result;
   result.design = design;
@@ -449,7 +449,7 @@ PhotometryResult PhotometryStudy::run(Progress* progress, const Cancellation* ca
     result.reason = reason_of(result.points, photometer);
   }
   if (result.complete) result.complete = add_colour(photometer, &stages.colour, cancel, result);
-  if (result.complete) result.complete = add_coefficient_maps(photometer, &stages.maps, cancel, result);
+  if (result.complete) result.complete = add_coefficient_maps(photometer, compared.get(), &stages.maps, cancel, result);
   if (request.map_grid && result.coefficient_maps.empty())
     result.warnings.push_back({"map_incomplete", "the maps of R_A are left out, because they are not finished"});
   if (result.complete && request.pictures)
