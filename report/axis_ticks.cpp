@@ -57,13 +57,6 @@ bool has_few_digits(int exponent) {
   return exponent >= -3 && exponent <= 4;
 }
 
-std::string power_with_superscript(int exponent) {
-  static constexpr const char* kDigits[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
-  std::string text = "10";
-  for (const char c : std::to_string(exponent)) text += c == '-' ? "⁻" : kDigits[c - '0'];
-  return text;
-}
-
 /// Returns the labels of ticks, with the number of digits that the step requires. Labels of very large and very small
 /// values have an exponent, which is the same for all labels.
 std::vector<std::string> tick_labels(const std::vector<double>& positions, NiceStep step) {
@@ -139,6 +132,13 @@ double previous_round_number(double value) {
   NiceStep step{1, static_cast<int>(std::floor(std::log10(value)))};
   while (step.next().times(1.0) <= value) step = step.next();
   return step.times(1.0);
+}
+
+std::string power_with_superscript(int exponent) {
+  static constexpr const char* kDigits[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+  std::string text = "10";
+  for (const char c : std::to_string(exponent)) text += c == '-' ? "⁻" : kDigits[c - '0'];
+  return text;
 }
 
 std::vector<std::string> decade_labels(const std::vector<int>& exponents) {

@@ -55,6 +55,9 @@ double next_round_number(double value);
 /// \pre value > 0
 double previous_round_number(double value);
 
+/// Returns a power of ten with its exponent as a superscript, such as "10²".
+std::string power_with_superscript(int exponent);
+
 /// Returns the labels of powers of ten on one axis. All labels have the same form: all digits, such as "100", if every
 /// exponent is from -3 to 4, and otherwise superscripts, such as "10²" and "10⁵".
 std::vector<std::string> decade_labels(const std::vector<int>& exponents);

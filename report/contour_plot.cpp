@@ -39,7 +39,7 @@ constexpr std::size_t kContourRows = 181;
 /// \param has_digits true: all digits are written; false: a power of ten is a superscript
 std::string level_label(int mantissa, int exponent, bool has_digits) {
   if (has_digits) return fixed(mantissa * std::pow(10.0, exponent), std::max(0, -exponent));
-  const std::string power = decade_labels({exponent, 9}).front();  // 9 makes the label a superscript
+  const std::string power = power_with_superscript(exponent);
   return mantissa == 1 ? power : fmt::format("{}·{}", mantissa, power);
 }
 
@@ -187,13 +187,8 @@ void draw_values_of(Canvas& canvas, const ContourPanel& panel, const ContourArea
                     const ContourLevels& levels) {
   const Size size{area.x.last - area.x.first, area.y.first - area.y.last};
   const std::vector<double> values = interpolated(panel, levels);
-  std::vector<double> from_top;
-  for (std::size_t row = kContourRows; row-- > 0;) {
-    const auto first = values.begin() + static_cast<std::ptrdiff_t>(row * kContourColumns);
-    from_top.insert(from_top.end(), first, first + static_cast<std::ptrdiff_t>(kContourColumns));
-  }
   canvas.clip(area.corner(), size);
-  draw_values(canvas, area.corner(), size, kContourColumns, from_top,
+  draw_values(canvas, area.corner(), size, kContourColumns, with_reversed_rows(values, kContourColumns),
               [&](double value) { return colour_of(levels, plot.scale, value); });
   draw_contours(canvas, values, area, plot, levels);
   canvas.end_clip();

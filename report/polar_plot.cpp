@@ -93,14 +93,9 @@ void draw_contours(Canvas& canvas, const PolarPanel& panel, Point centre, const 
 void draw_disc(Canvas& canvas, const PolarPanel& panel, Point centre, const PolarColours& colours) {
   const double radius = 0.5 * kDisc;
   if (panel.columns == 0) return;
-  std::vector<double> from_top;
-  for (std::size_t row = panel.columns; row-- > 0;) {
-    const auto first = panel.values.begin() + static_cast<std::ptrdiff_t>(row * panel.columns);
-    from_top.insert(from_top.end(), first, first + static_cast<std::ptrdiff_t>(panel.columns));
-  }
   canvas.clip(circle(centre, radius));
-  draw_values(canvas, {centre.x - radius, centre.y - radius}, {kDisc, kDisc}, panel.columns, from_top,
-              [&](double value) { return colours.colour(value); });
+  draw_values(canvas, {centre.x - radius, centre.y - radius}, {kDisc, kDisc}, panel.columns,
+              with_reversed_rows(panel.values, panel.columns), [&](double value) { return colours.colour(value); });
   if (!colours.is_logarithmic) draw_contours(canvas, panel, centre, colours);
   canvas.end_clip();
 }

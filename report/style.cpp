@@ -41,6 +41,16 @@ void draw_values(Canvas& canvas, Point corner, Size size, std::size_t columns, c
   canvas.image(corner, size, columns, pixels);
 }
 
+std::vector<double> with_reversed_rows(const std::vector<double>& values, std::size_t columns) {
+  std::vector<double> reversed;
+  reversed.reserve(values.size());
+  for (std::size_t row = values.size() / columns; row-- > 0;) {
+    const auto first = values.begin() + static_cast<std::ptrdiff_t>(row * columns);
+    reversed.insert(reversed.end(), first, first + static_cast<std::ptrdiff_t>(columns));
+  }
+  return reversed;
+}
+
 Canvas measuring_canvas() {
   return {Canvas::Format::png, {8.0, 8.0}, 1.0};
 }

@@ -84,6 +84,10 @@ void draw_within(Canvas& canvas, double width, Ellipsis ellipsis, Point baseline
 void draw_values(Canvas& canvas, Point corner, Size size, std::size_t columns, const std::vector<double>& values,
                  const std::function<Colour(double)>& colour);
 
+/// Returns the values of a grid in which the last row is the first one.
+/// \param columns number of values in a row, >= 1
+std::vector<double> with_reversed_rows(const std::vector<double>& values, std::size_t columns);
+
 /// Returns a small canvas for the computation of sizes of texts, which do not depend on the canvas.
 Canvas measuring_canvas();
 
