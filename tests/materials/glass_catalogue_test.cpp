@@ -7,7 +7,6 @@
 
 #include <cmath>
 #include <map>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,10 +14,13 @@
 #include "core/atomic_file.h"
 #include "core/text.h"
 #include "materials/io/material_library.h"
+#include "tests/support/lines.h"
 #include "tests/support/refusals.h"
 
 namespace retrace::materials::glass_catalogue_test {
 namespace {
+
+using testing::lines_of;
 
 const std::string kFile = std::string(RETRACE_SOURCE_DIR) + "/tests/data/glasses.agf";
 
@@ -154,13 +156,6 @@ TEST(GlassCatalogue, BadFilesAreRefusedWithTheirLine) {
                               {good + "ED 1\nCD 1 0.02\n", "x.agf:5: CD"},
                               {"NM x 2 0 1 1\nCD 1\nLD 0.4 0.7\n", "x.agf:2: CD"},
                               {"NM x 4 0 1 1\nCD 1 1\nLD 0.4 0.7\n", "x.agf:2: CD"}});
-}
-
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
 }
 
 std::string text_of(const std::vector<std::string>& lines) {

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <string>
 #include <string_view>
 
@@ -15,7 +14,9 @@
 #include "studies/photometry/io/photometry_files.h"
 #include "studies/photometry/photometer.h"
 #include "tests/studies/photometric_requests.h"
+#include "tests/support/cancel_at.h"
 #include "tests/support/closed_forms.h"
+#include "tests/support/lines.h"
 
 namespace retrace::studies::coefficient_map_test {
 namespace {
@@ -130,37 +131,16 @@ TEST(CoefficientMap, GridsAreCompletedAndChecked) {
   EXPECT_EQ(refused_field({{}, {0.2, 1.5}, {}}), "map_observation_deg");
 }
 
-/// Cancels a run when a fraction of the work is finished.
-class CancelAt : public Progress {
- public:
-  CancelAt(Cancellation& cancellation, double fraction) : cancellation_(cancellation), fraction_(fraction) {}
-  void at(double fraction) override {
-    if (fraction >= fraction_) cancellation_.request();
-  }
-
- private:
-  Cancellation& cancellation_;
-  double fraction_;
-};
-
 TEST(CoefficientMap, CancelledRunsHaveNoMaps) {
-  Cancellation cancellation;
-  CancelAt progress(cancellation, 0.4);
+  CancelAt progress(0.4);
   const PhotometryResult found =
-      PhotometryStudy(design_of(honeycomb(2.0)), map_request({})).run(&progress, &cancellation);
+      PhotometryStudy(design_of(honeycomb(2.0)), map_request({})).run(&progress, &progress.cancel);
   EXPECT_FALSE(found.complete);
   EXPECT_TRUE(found.coefficient_maps.empty());
   EXPECT_EQ(std::ranges::count(found.warnings, std::string_view("map_incomplete"), &Warning::id), 1);
   EXPECT_TRUE(coefficient_map_csv(found).empty());
   EXPECT_TRUE(coefficient_map_table(found).empty());
   EXPECT_FALSE(Json::parse(photometry_json(found)).contains("maps"));
-}
-
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
 }
 
 // The JSON document contains R_A. The CSV file contains the quantity that the standard limits: R_I is R_A times the

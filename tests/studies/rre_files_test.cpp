@@ -10,20 +10,16 @@
 #include <sstream>
 
 #include "core/version.h"
+#include "tests/support/lines.h"
 
 namespace retrace::studies::rre_files_test {
 namespace {
 
+using testing::lines_of;
+
 using Json = nlohmann::ordered_json;
 using raytrace::kAccountCount;
 using raytrace::kAccountNames;
-
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
-}
 
 /// Returns a result with some numbers that have a short decimal text and some that need all digits.
 RreResult some_result() {

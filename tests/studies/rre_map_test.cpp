@@ -14,6 +14,7 @@
 #include "core/error.h"
 #include "design/io/design_reader.h"
 #include "studies/rre/rre_request.h"
+#include "tests/support/cancel_at.h"
 
 namespace retrace::testing::rre_map_test {
 namespace {
@@ -107,22 +108,11 @@ TEST(RreMap, CountsTracedDirectionsOneTime) {
   EXPECT_EQ(map.rays, map.traced_directions * run(cubes("hexagonal_icc"), one).rays);
 }
 
-/// Cancels a run at the first progress.
-class CancelAtOnce : public Progress {
- public:
-  explicit CancelAtOnce(Cancellation& cancellation) : cancellation_(cancellation) {}
-  void at(double /*fraction*/) override { cancellation_.request(); }
-
- private:
-  Cancellation& cancellation_;
-};
-
 TEST(RreMap, CancelledRunsHaveNoMaps) {
-  Cancellation cancellation;
-  CancelAtOnce progress(cancellation);
+  CancelAt progress(0.0);
   const RreResult result = RreStudy({design::parse_design(cubes("hexagonal_icc"), "design")},
                                     resolve(map_request({0.0, 30.0, 60.0}, steps(350.0, 10.0))))
-                               .run(&progress, &cancellation);
+                               .run(&progress, &progress.cancel);
   EXPECT_FALSE(result.complete);
   EXPECT_TRUE(rre_maps(result).empty());
   EXPECT_EQ(std::ranges::count(result.warnings, std::string_view("map_incomplete"), &Warning::id), 1);

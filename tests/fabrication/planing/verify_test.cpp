@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -21,10 +20,13 @@
 #include "fabrication/post/post.h"
 #include "tests/fabrication/planing/findings.h"
 #include "tests/fabrication/planing/turned_lens.h"
+#include "tests/support/lines.h"
 #include "tests/support/refusals.h"
 
 namespace retrace::fabrication::verify_test {
 namespace {
+
+using testing::lines_of;
 
 using test::finds;
 
@@ -199,13 +201,6 @@ std::string with_line(std::string text, const std::string& line, const std::stri
   const std::size_t at = is_last ? text.rfind(line + "\n") : text.find(line + "\n");
   EXPECT_NE(at, std::string::npos) << line;
   return text.replace(at, line.size() + 1, other.empty() ? "" : other + "\n");
-}
-
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
 }
 
 const std::string kStarts[] = {"G97 S800 M3", "S800 M3", "G97 S800 M3", "M103", "M103", "M103"};

@@ -13,6 +13,7 @@
 #include "raytrace/paths/monte_carlo.h"
 #include "studies/image/detector_study.h"
 #include "studies/rre/rre.h"
+#include "tests/support/cancel_at.h"
 #include "tests/support/designs.h"
 #include "tests/support/return_frames.h"
 #include "tests/support/statistics.h"
@@ -314,19 +315,6 @@ TEST(DetectorStudy, RaysAreAddedUntilBinsAreSmall) {
   EXPECT_EQ(fixed.maps.rays, 1U << 14);
   EXPECT_FALSE(fixed.is_limit_reached);
 }
-
-/// Progress that cancels the computation when it reaches a fraction.
-class CancelAt : public Progress {
- public:
-  explicit CancelAt(double fraction) : fraction_(fraction) {}
-  void at(double fraction) override {
-    if (fraction >= fraction_) cancel.request();
-  }
-  Cancellation cancel;
-
- private:
-  double fraction_;
-};
 
 /// An interrupted run returns the maps of the finished replicates, if there are enough of them.
 TEST(DetectorStudy, FinishedReplicatesRemainAfterAnInterrupt) {
