@@ -183,8 +183,8 @@ void draw_contours(Canvas& canvas, const std::vector<double>& values, const Cont
   }
 }
 
-void draw_values_of(Canvas& canvas, const ContourPanel& panel, const ContourArea& area, const ContourPlot& plot,
-                    const ContourLevels& levels) {
+void draw_panel_values(Canvas& canvas, const ContourPanel& panel, const ContourArea& area, const ContourPlot& plot,
+                       const ContourLevels& levels) {
   const Size size{area.x.last - area.x.first, area.y.first - area.y.last};
   const std::vector<double> values = interpolated(panel, levels);
   canvas.clip(area.corner(), size);
@@ -207,10 +207,11 @@ void draw_panel(Canvas& canvas, const ContourPanel& panel, Point cell, const Con
   if (!panel.remark.empty())
     draw_within(canvas, layout.area.width, Ellipsis::end, {middle, corner.y - 8.0}, panel.remark, kContourRemarkFont,
                 kFaint, Align::centre);
-  draw_values_of(canvas, panel, area, plot, levels);
-  const auto most = [](double length, double each) { return std::max(2, static_cast<int>(length / each)); };
-  draw_x_ticks(canvas, kContourAxis, area.x, make_ticks(area.x.values, most(layout.area.width, 60.0)), bottom);
-  draw_y_ticks(canvas, kContourAxis, area.y, make_ticks(area.y.values, most(layout.area.height, 40.0)), corner.x);
+  draw_panel_values(canvas, panel, area, plot, levels);
+  const auto max_intervals = [](double length, double each) { return std::max(2, static_cast<int>(length / each)); };
+  draw_x_ticks(canvas, kContourAxis, area.x, make_ticks(area.x.values, max_intervals(layout.area.width, 60.0)), bottom);
+  draw_y_ticks(canvas, kContourAxis, area.y, make_ticks(area.y.values, max_intervals(layout.area.height, 40.0)),
+               corner.x);
   canvas.text({middle, bottom + 36.0}, plot.x_label, kContourLabelFont, kText, Align::centre);
   canvas.text({cell.x + 18.0, corner.y + 0.5 * layout.area.height}, plot.y_label, kContourLabelFont, kText,
               Align::centre, true);

@@ -27,10 +27,10 @@ struct PhotometricPoint {
 
 /// R_A over entrance and observation angle, for one design, rotation and presentation angle.
 struct CoefficientMap {
-  std::size_t design = 0;                      ///< 0: the design; 1: the compared design
-  double rotation_deg = 0.0;                   ///< rotation of the part about its normal
-  double presentation_deg = 0.0;               ///< angle about the source from the normal to the observer
-  std::vector<double> entrance_deg;            ///< ascending
+  std::size_t design = 0;            ///< 0: the design; 1: the compared design
+  double rotation_deg = 0.0;         ///< rotation of the part about its normal
+  double presentation_deg = 0.0;     ///< angle about the direction to the source; 0: observer on the side of the normal
+  std::vector<double> entrance_deg;  ///< ascending
   std::vector<double> observation_deg;         ///< ascending
   std::vector<std::vector<double>> r_a;        ///< in cd/(lx m^2), with the indices [entrance][observation]
   std::vector<std::vector<double>> std_error;  ///< as `r_a`

@@ -114,11 +114,11 @@ constexpr Row tone_row() {
 
 /// Checks the total number of pixels of one or more pictures of the same size.
 template <class Type>
-void check_pixels(const Type& request, std::size_t pictures, std::size_t most) {
-  if (request.columns * request.rows * pictures > most)
+void check_pixels(const Type& request, std::size_t pictures, std::size_t max_pixels) {
+  if (request.columns * request.rows * pictures > max_pixels)
     throw InputError(Field{"pixels"},
-                     fmt::format("must be at most {} pixels in total, got {}x{}{}", most, request.columns, request.rows,
-                                 pictures > 1 ? fmt::format(" for each of {} distances", pictures) : ""));
+                     fmt::format("must be at most {} pixels in total, got {}x{}{}", max_pixels, request.columns,
+                                 request.rows, pictures > 1 ? fmt::format(" for each of {} distances", pictures) : ""));
 }
 
 void check_camera(const void* object) {

@@ -48,8 +48,8 @@ struct CoefficientGrid {
 /// Design whose map is compared with that of the design of the study.
 struct ComparedDesign {
   design::Design design;
-  std::string dye;                                 ///< as PhotometrySettings::dye
-  materials::SpectralCurve dye_absorption_per_mm;  ///< as PhotometrySettings::dye_absorption_per_mm
+  std::string dye;                                 ///< name of the dye of this design; empty: no dye
+  materials::SpectralCurve dye_absorption_per_mm;  ///< absorption of this dye; empty: no dye
 };
 
 /// Settings of the study. resolve() in io/standard_reader.h makes them from a PhotometryRequest and reads the files of
@@ -256,7 +256,7 @@ struct PhotometryResult {
   /// requested, or if the run was cancelled before all of them were finished.
   std::vector<CoefficientMap> coefficient_maps;
   std::size_t map_directions = 0;         ///< number of directions of light of all maps
-  std::size_t traced_map_directions = 0;  ///< number of them that were traced; symmetric directions share one
+  std::size_t traced_map_directions = 0;  ///< number of traced directions; symmetric directions share one
   double elapsed_s = 0.0;
   Warnings warnings;
   bool complete = true;

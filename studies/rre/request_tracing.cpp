@@ -198,7 +198,7 @@ raytrace::Stokes mapped(raytrace::Stokes stokes, const SharedDirection& to_trace
 }
 
 /// Sets the results of a direction from those of an equivalent direction that was traced.
-/// \param is_shared value of Direction::is_shared
+/// \param is_shared false if the direction is the traced one itself, see Direction::is_shared
 void set_results(const Direction& traced, const SharedDirection& shared, bool is_shared, Direction& direction) {
   const RrePoint at = direction.at;
   direction = traced;
