@@ -6,10 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <map>
 #include <mutex>
-#include <numbers>
-#include <set>
 #include <string_view>
 
 #include "core/error.h"
@@ -19,19 +16,18 @@
 #include "design/engine_facts.h"
 #include "design/io/design_reader.h"
 #include "materials/io/spectrum_reader.h"
-#include "raytrace/observers/photometric_geometry.h"
 #include "requests/descriptions.h"
+#include "studies/image/camera_setup.h"
 #include "studies/image/io/background_reader.h"
 #include "studies/image/io/lamp_reader.h"
+#include "studies/image/pass_ledger.h"
 #include "studies/photometry/io/standard_reader.h"
 
 namespace retrace::studies {
 namespace {
 
-using geometry::Vec2, geometry::Vec3;
+using geometry::Vec3;
 
-// Ratio of the width that the picture shows to the width of the part.
-constexpr double kMargin = 1.15;
 // Number of spans of the spectrum for the light of the lamp, with two wavelengths each.
 constexpr std::size_t kSpans = 2;
 // Number of spans for the light of the surroundings in coloured parts. The paths of this light have different lengths,
@@ -44,140 +40,12 @@ constexpr double kMinWindow_deg = 2.0, kMaxWindow_deg = 10.0;
 constexpr double kMinRetroreflected = 1e-3;
 // Value of the field `dye` for a part without a dye.
 constexpr std::string_view kNoDye = "none";
-// Maximum luminance, in cd/m^2, of the lamp and the surroundings. OpenEXR files contain numbers up to 3.4e38.
-constexpr double kMaxLuminance = 1e30;
 // Part of the progress that the computation of the returned light takes.
 constexpr double kProgressOfLight = 0.3;
-
-std::array<double, 2> film_of(const CameraRequest& r) {
-  return r.film_mm.value_or(kDefaultFilmMm);
-}
-
-/// Checks the size of the sheet and the radius of the cylinder on which the sheet is mounted. The sheet may cover at
-/// most half of the circumference. Both values are allowed only for infinite parts.
-void check_film(const CameraRequest& r, bool is_infinite) {
-  if (!is_infinite) {
-    constexpr std::string_view need = "requires a design with array.extent = \"infinite\": ";
-    if (r.cylinder_mm)
-      throw InputError(Field{"cylinder_mm"}, fmt::format("{}finite parts are always plane in this version", need));
-    if (r.film_mm) throw InputError(Field{"film_mm"}, fmt::format("{}a finite part is shown in its own size", need));
-    return;
-  }
-  const double least = film_of(r)[0] / std::numbers::pi;
-  if (r.cylinder_mm && std::abs(*r.cylinder_mm) < least)
-    throw InputError(
-        Field{"cylinder_mm"},
-        fmt::format(
-            "must be at least {0} or at most -{0}, so that the sheet covers at most half of the cylinder, got {1}",
-            shortest(least), shortest(*r.cylinder_mm)));
-}
 
 std::optional<PhotometricLamp> lamp_of(const CameraRequest& r) {
   if (r.lamp.empty()) return std::nullopt;
   return read_lamp(r.lamp, Field{"lamp"});
-}
-
-Vec3 to_vec(const std::array<double, 3>& a) {
-  return {a[0], a[1], a[2]};
-}
-
-std::string text_of(const Vec3& p) {
-  return fmt::format("{},{},{}", shortest(p.x()), shortest(p.y()), shortest(p.z()));
-}
-
-bool is_inside(const geometry::Part& part, const Vec3& p) {
-  if (p.z() > part.thickness_mm || p.z() < -part.element_depth_mm) return false;
-  const geometry::Rectangle box = geometry::bounding_box(part.outline);
-  const Vec2 at = p.head<2>() + box.centre();
-  for (std::size_t k = 0; k < part.outline.size(); ++k) {
-    const Vec2& a = part.outline[k];
-    const Vec2 along = part.outline[(k + 1) % part.outline.size()] - a;
-    if (along.x() * (at.y() - a.y()) - along.y() * (at.x() - a.x()) < 0.0) return false;
-  }
-  return true;
-}
-
-/// Returns true if a point is on the side of the sheet where the body of the part is.
-bool is_behind(const raytrace::Film& film, double thickness_mm, const Vec3& p) {
-  if (!film.radius_mm) return p.z() <= thickness_mm;
-  const double from_axis = std::hypot(p.x(), p.z() - thickness_mm + *film.radius_mm);
-  return *film.radius_mm > 0.0 ? from_axis <= *film.radius_mm : from_axis >= -*film.radius_mm;
-}
-
-void check_position(const geometry::Part& part, const raytrace::CameraScene& scene, const Vec3& position, Field field,
-                    const char* what) {
-  const bool bad = scene.film ? is_behind(*scene.film, part.thickness_mm, position) : is_inside(part, position);
-  if (bad)
-    throw InputError(field,
-                     fmt::format("the {} must be outside the {}, got {} mm", what,
-                                 scene.film ? "body, in front of the entrance face" : "part", text_of(position)));
-  if (position == scene.view.target_mm) throw InputError(field, "must differ from the point that the camera looks at");
-}
-
-double shown_width(const CameraRequest& r, const geometry::Part& part) {
-  if (r.field_mm) return *r.field_mm;
-  const auto [film_x_mm, film_y_mm] = film_of(r);
-  const Vec2 size = part.period_mm ? Vec2(film_x_mm, film_y_mm) : geometry::bounding_box(part.outline).size();
-  const double aspect = static_cast<double>(r.columns) / static_cast<double>(r.rows);
-  return kMargin * std::max(size.x(), size.y() * aspect);
-}
-
-raytrace::CameraScene scene_of(const CameraRequest& r, const std::optional<PhotometricLamp>& lamp,
-                               const geometry::Part& part) {
-  raytrace::CameraScene scene;
-  const raytrace::PhotometricGeometry geometry =
-      raytrace::geometry_from({Angle::from_deg(r.v_deg), Angle::from_deg(r.h_deg)}, Angle::from_deg(r.observation_deg),
-                              Angle::from_deg(r.rotation_deg));
-  const raytrace::PhotometricDirections towards = raytrace::directions_of(geometry);
-  const Vec3 target(0.0, 0.0, part.thickness_mm);
-  const double distance_mm = 1e3 * r.distance_m;
-  scene.view.target_mm = target;
-  scene.view.eye_mm = r.eye_mm ? to_vec(*r.eye_mm) : Vec3(target + distance_mm * towards.to_observer);
-  scene.view.up = raytrace::return_frame(geometry).up;
-  scene.view.columns = r.columns;
-  scene.view.rows = r.rows;
-  scene.view.width_mm = shown_width(r, part);
-  scene.view.pupil = Angle::from_deg(r.pupil_arcmin / 60.0);
-  scene.lamp.position_mm = r.lamp_mm ? to_vec(*r.lamp_mm) : Vec3(target + distance_mm * towards.to_source);
-  const double lamp_m = 1e-3 * (scene.lamp.position_mm - target).norm();
-  scene.lamp.illuminance_lx =
-      lamp ? lamp->intensity.cd(from_aimed(-Vec3::UnitZ(), r.lamp_aim_deg)) / (lamp_m * lamp_m) : r.illuminance_lx;
-  scene.lamp.diameter = Angle::from_deg(r.lamp_arcmin / 60.0);
-  // A plane illuminated by a half space of uniform luminance L has the illuminance pi L.
-  scene.surroundings = {r.ambient_lx / std::numbers::pi, r.backlight_lx / std::numbers::pi};
-  const auto [film_x_mm, film_y_mm] = film_of(r);
-  if (part.period_mm) scene.film = raytrace::Film{film_x_mm, film_y_mm, r.cylinder_mm};
-  return scene;
-}
-
-double angle_deg(const Vec3& a, const Vec3& b) {
-  return Angle::from_rad(std::atan2(a.cross(b).norm(), a.dot(b))).deg();
-}
-
-/// The following functions return vectors from the target to the eye and to the lamp.
-Vec3 to_eye(const raytrace::CameraScene& scene) {
-  return scene.view.eye_mm - scene.view.target_mm;
-}
-
-Vec3 to_lamp(const raytrace::CameraScene& scene) {
-  return scene.lamp.position_mm - scene.view.target_mm;
-}
-
-/// Checks that the luminances of the lamp and the surroundings can be stored in picture files.
-/// \param has_file true if the intensity of the lamp comes from a file
-/// \throw InputError at the field that determines the luminance, if it is too large
-void check_luminances(const raytrace::CameraScene& scene, bool has_file) {
-  const double width_rad = std::max(scene.lamp.diameter.rad(), scene.view.pupil.rad());
-  const double lamp = scene.lamp.illuminance_lx / (0.25 * std::numbers::pi * width_rad * width_rad);
-  const auto check = [](double luminance, std::string_view field, std::string_view what) {
-    if (!(luminance > kMaxLuminance)) return;
-    throw InputError(Field{field}, fmt::format("the luminance of {} must be at most {} cd/m2, so that pictures can "
-                                               "contain it, got {:.3g} cd/m2",
-                                               what, shortest(kMaxLuminance), luminance));
-  };
-  check(scene.surroundings.entrance_side, "ambient_lx", "the surroundings");
-  check(scene.surroundings.back_side, "backlight_lx", "the surroundings");
-  check(lamp, has_file ? "lamp" : "illuminance_lx", "the lamp");
 }
 
 /// Returns the spectral absorption of the requested dye. Empty if no dye is requested.
@@ -249,86 +117,7 @@ CameraStudy::CameraStudy(design::Design design, CameraRequest request, raytrace:
       lights_.push_back(std::make_shared<const CameraLight>(dyed_, photometry, kSpans, response));
 }
 
-namespace {
-
-/// Returns the number of passes after which the noise is as low as requested. A pass adds one sample to every pixel.
-/// The noise is inversely proportional to the square root of the number of passes.
-double passes_needed(const raytrace::CameraImage& image, const CameraRequest& request) {
-  return image.passes * std::pow(image.relative_noise() / request.noise, 2.0);
-}
-
-/// Adds the passes of a picture in ascending order of their numbers, even if they are finished in another order.
-class PassLedger : public TaskLedger {
- public:
-  /// \param images receive the passes; the noise of the first one is compared with the request
-  PassLedger(const CameraRequest& request, std::vector<raytrace::CameraImage>& images, Progress* progress,
-             const std::function<void()>& after_pass)
-      : request_(request),
-        images_(images),
-        image_(images.front()),
-        progress_(progress),
-        after_pass_(after_pass),
-        goal_(request.passes.value_or(CameraStudy::kMaxPasses)),
-        max_ahead_(
-            std::max(kFewestAhead, kBytesAhead / (images.size() * image_.luminance.size() * 2 * sizeof(double)))) {}
-
-  std::optional<std::uint64_t> take() override {
-    if (is_finished_) return std::nullopt;
-    if (!given_back_.empty()) return given_back_.extract(given_back_.begin()).value();
-    if (next_ >= goal_ || next_ >= image_.passes + max_ahead_) return std::nullopt;
-    return next_++;
-  }
-  void give_back(std::uint64_t pass) override { given_back_.insert(pass); }
-  void finish(std::uint64_t pass, const std::string& bytes) override {
-    ahead_[pass] = bytes;
-    for (auto next = ahead_.find(image_.passes); !is_finished_ && next != ahead_.end();
-         next = ahead_.find(image_.passes)) {
-      add(numbers_of(next->second));
-      ahead_.erase(next);
-    }
-  }
-  bool is_finished() override { return is_finished_; }
-
-  void add(const std::vector<double>& pass) {
-    const auto length = static_cast<std::ptrdiff_t>(pass.size() / images_.size());
-    auto begin = pass.begin();
-    for (raytrace::CameraImage& image : images_) {
-      image.add({begin, begin + length});
-      begin += length;
-    }
-    if (after_pass_) after_pass_();
-    double share = static_cast<double>(image_.passes) / goal_;
-    is_finished_ = image_.passes == goal_;
-    if (!request_.passes) {
-      const double noise = image_.passes > 1 ? image_.relative_noise() : 1.0;
-      is_finished_ =
-          is_finished_ || (image_.passes >= CameraStudy::kMinPasses && noise <= request_.noise) ||
-          (image_.passes >= CameraStudy::kPassesToJudge && passes_needed(image_, request_) > CameraStudy::kMaxPasses);
-      share = image_.passes > 1 ? std::min(0.99, std::pow(request_.noise / std::max(noise, 1e-300), 2.0)) : 0.0;
-    }
-    furthest_ = std::max(furthest_, share);
-    if (progress_ != nullptr && !is_finished_) progress_->at(furthest_);
-  }
-
- private:
-  static constexpr std::size_t kFewestAhead = 8;
-  static constexpr std::size_t kBytesAhead = std::size_t{1} << 30U;
-
-  const CameraRequest& request_;
-  std::vector<raytrace::CameraImage>& images_;
-  raytrace::CameraImage& image_;
-  Progress* progress_;
-  const std::function<void()>& after_pass_;
-  std::uint32_t goal_;
-  std::size_t max_ahead_;  ///< maximum number of passes that are traced before an earlier one is finished
-  std::uint64_t next_ = 0;
-  std::set<std::uint64_t> given_back_;
-  std::map<std::uint64_t, std::string> ahead_;
-  double furthest_ = 0.0;
-  bool is_finished_ = false;
-};
-
-}  // namespace
+namespace {}  // namespace
 
 /// Tracers of all layers of a picture. The picture of a response is the sum of one or two layers: the light of the
 /// lamp, and that of the surroundings if the part is coloured.

@@ -3,7 +3,6 @@
 // Pictures of a part that is illuminated by a lamp and seen by an eye. `retrace image` runs this study if a camera is
 // requested.
 
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -23,9 +22,6 @@
 #include "studies/image/lamp.h"
 
 namespace retrace::studies {
-
-/// Default width and height, in mm, of the sheet that the picture shows for an infinite part.
-inline constexpr std::array<double, 2> kDefaultFilmMm = {100.0, 100.0};
 
 struct CameraResult : ImageResultBase {
   CameraRequest request;

@@ -8,6 +8,7 @@
 #include "core/json_text.h"
 #include "core/number_format.h"
 #include "design/io/design_json.h"
+#include "studies/image/camera_setup.h"
 
 namespace retrace::studies {
 namespace {
@@ -106,7 +107,7 @@ Json camera_content(const CameraResult& result) {
   json["backlight_lx"] = asked.backlight_lx;
   if (!asked.background.empty()) json["background"] = asked.background.filename().string();
   if (result.scene.film) {
-    json["film_mm"] = asked.film_mm.value_or(kDefaultFilmMm);
+    json["film_mm"] = film_of(asked);
     if (asked.cylinder_mm) json["cylinder_mm"] = *asked.cylinder_mm;
   }
   json["passes"] = result.image.passes;

@@ -1,0 +1,48 @@
+#pragma once
+
+// Positions and sizes of a camera picture: camera, lamp, surroundings and sheet of a request.
+
+#include <array>
+#include <optional>
+
+#include "core/field.h"
+#include "geometry/part/part.h"
+#include "geometry/vec.h"
+#include "raytrace/observers/camera.h"
+#include "requests/image.h"
+#include "studies/image/lamp.h"
+
+namespace retrace::studies {
+
+/// Returns the width and height, in mm, of the sheet that the picture shows for an infinite part.
+std::array<double, 2> film_of(const CameraRequest& request);
+
+/// Checks the size of the sheet and the radius of the cylinder on which the sheet is mounted. The sheet may cover at
+/// most half of the circumference. Both values are allowed only for infinite parts.
+/// \throw InputError at the field that is not allowed or out of range
+void check_film(const CameraRequest& request, bool is_infinite);
+
+/// Returns the scene of a request.
+/// \param lamp photometric data of the lamp; empty if the request contains its illuminance
+raytrace::CameraScene scene_of(const CameraRequest& request, const std::optional<PhotometricLamp>& lamp,
+                               const geometry::Part& part);
+
+/// Returns the angle between two vectors.
+double angle_deg(const geometry::Vec3& a, const geometry::Vec3& b);
+/// Returns the vector from the point that the camera looks at to the eye, in mm.
+geometry::Vec3 to_eye(const raytrace::CameraScene& scene);
+/// Returns the vector from the point that the camera looks at to the lamp, in mm.
+geometry::Vec3 to_lamp(const raytrace::CameraScene& scene);
+
+/// Checks that the camera or the lamp is outside of the part, and is not the point that the camera looks at.
+/// \param what name of the object in the message
+/// \throw InputError at `field`
+void check_position(const geometry::Part& part, const raytrace::CameraScene& scene, const geometry::Vec3& position,
+                    Field field, const char* what);
+
+/// Checks that the luminances of the lamp and the surroundings can be stored in picture files.
+/// \param has_file true if the intensity of the lamp comes from a file
+/// \throw InputError at the field that determines the luminance, if it is too large
+void check_luminances(const raytrace::CameraScene& scene, bool has_file);
+
+}  // namespace retrace::studies
