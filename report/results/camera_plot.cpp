@@ -126,15 +126,6 @@ std::string light_text(const CameraResult& result) {
   return text;
 }
 
-std::string name_of(const CameraResult& result) {
-  std::string name = design::short_name(result.design);
-  if (result.request.dye == "red" || result.request.dye == "amber")
-    name += ", " + result.request.dye;
-  else if (result.request.dye != "none")
-    name += ", dyed";
-  return name;
-}
-
 /// Returns the size of a picture on the canvas. Small pictures are enlarged by an integer factor.
 /// \param largest maximum width and height
 Size shown_size(const CameraResult& result, const Size& largest) {
@@ -168,7 +159,8 @@ double draw_tile(Canvas* canvas, const Canvas& metrics, const CameraResult& resu
   double y = corner.y + size.height + 18.0;
   if (canvas != nullptr) {
     const double bar = draw_length_bar(*canvas, result, {corner.x + width, y - 4.0}, size.width) + kGap;
-    for (const std::string& line : canvas->fitted(name_of(result), kNameFont, width - bar, 1, Ellipsis::middle))
+    for (const std::string& line :
+         canvas->fitted(name_with_dye(result.design, result.request.dye), kNameFont, width - bar, 1, Ellipsis::middle))
       canvas->text({corner.x, y}, line, kNameFont, kBright, Align::left);
   }
   for (const std::string& text : texts)

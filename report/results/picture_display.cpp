@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/number_format.h"
+#include "design/io/design_json.h"
 #include "report/axis_ticks.h"
 
 namespace retrace::report {
@@ -22,6 +23,11 @@ Colour displayed(std::array<double, 3> rgb, double intensity) {
     for (double& value : rgb) value = std::lerp(value / brightest, 1.0, paler);
   }
   return {srgb_byte(rgb[0]) / 255.0, srgb_byte(rgb[1]) / 255.0, srgb_byte(rgb[2]) / 255.0};
+}
+
+std::string name_with_dye(const design::Design& design, const std::string& dye) {
+  const bool is_named = dye == "red" || dye == "amber";
+  return design::short_name(design) + (dye == "none" ? "" : is_named ? ", " + dye : ", dyed");
 }
 
 std::string figure(double value) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <string>
 
+#include "design/design.h"
 #include "report/canvas.h"
 #include "report/colour_scale.h"
 
@@ -24,6 +25,10 @@ inline constexpr double kBarHeight = 10.0;
 /// become paler, and colours brighter than white approach white, as on photographic film.
 /// \param intensity luminance of the colour; 1 is white
 Colour displayed(std::array<double, 3> rgb, double intensity);
+
+/// Returns the name of a design and its dye as a caption.
+/// \param dye "none", "red", "amber" or the path of a file
+std::string name_with_dye(const design::Design& design, const std::string& dye);
 
 /// Returns a number as text with about four digits.
 std::string figure(double value);

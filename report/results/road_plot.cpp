@@ -59,9 +59,9 @@ std::string both(const double (&values)[2], int digits) {
 /// Returns the values of one reflector.
 std::string reflector_text(const RoadView& view, std::size_t k) {
   const studies::RoadReflector& r = view.reflectors[k];
-  const char* name = view.reflectors.size() == 1 ? "sign" : (k == 0 ? "left" : "right");
-  return fmt::format("{}: observation angle {}\u00b0, {} lx, {} cd/m\u00b2, {} cd", name, both(r.observation_deg, 2),
-                     figure(r.illuminance_lx[0] + r.illuminance_lx[1]), figure(r.luminance), figure(r.intensity_cd));
+  return fmt::format("{}: observation angle {}\u00b0, {} lx, {} cd/m\u00b2, {} cd", studies::reflector_name(view, k),
+                     both(r.observation_deg, 2), figure(r.illuminance_lx[0] + r.illuminance_lx[1]), figure(r.luminance),
+                     figure(r.intensity_cd));
 }
 
 std::string scene_text(const RoadResult& result) {
@@ -148,12 +148,6 @@ double draw_view(Canvas* canvas, const Canvas& metrics, const RoadResult& result
   return y - corner.y;
 }
 
-std::string name_of(const RoadResult& result) {
-  const std::string& dye = result.request.dye;
-  const bool is_named = dye == "red" || dye == "amber";
-  return design::short_name(result.design) + (dye == "none" ? "" : is_named ? ", " + dye : ", dyed");
-}
-
 ToneCurve road_tone(const RoadResult& result) {
   const Tone tone = tone_of(result.request.tone);
   if (result.request.exposure_ev) return tone_of_exposure(*result.request.exposure_ev, tone);
@@ -185,7 +179,7 @@ std::string drawn(const RoadResult& result, std::span<const RoadView> views, con
   const Size size{width, std::ceil(height)};
   Canvas canvas(Canvas::Format::png, size, kPixelsPerUnit);
   canvas.fill_rectangle({0.0, 0.0}, size, kPaper);
-  const std::string name = name_of(result);
+  const std::string name = name_with_dye(result.design, result.request.dye);
   const std::string title = name + ": what a driver sees at night";
   const bool fits = canvas.text_width(title, kTitleFont) <= width - 2.0 * kGap;
   for (const std::string& line :

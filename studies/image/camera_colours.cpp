@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "materials/io/spectrum_reader.h"
+
 namespace retrace::studies {
 namespace {
 
@@ -60,6 +62,11 @@ std::array<double, 3> CameraColours::rgb(double y, std::size_t pixel) const {
   const geometry::Vec3 scale = (cones * d65).cwiseQuotient(cones * white);
   const geometry::Vec3 rgb = rgb_of_xyz * cones.inverse() * scale.asDiagonal() * cones * xyz;
   return {rgb[0], rgb[1], rgb[2]};
+}
+
+materials::Tristimulus lamp_colour(PhotometricLight light) {
+  const materials::Tristimulus lamp = materials::tristimulus(lamp_power(light), materials::shipped_colour_matching());
+  return {lamp[0] / lamp[1], 1.0, lamp[2] / lamp[1]};
 }
 
 CameraColours colours_of(const std::vector<raytrace::CameraImage>& responses, const materials::Tristimulus& lamp) {

@@ -8,6 +8,7 @@
 
 #include "materials/chromaticity.h"
 #include "raytrace/observers/camera.h"
+#include "studies/photometry/photometer.h"
 
 namespace retrace::studies {
 
@@ -22,6 +23,10 @@ struct CameraColours {
   /// adapted to D65 (K. M. Lam 1985, "Bradford").
   std::array<double, 3> rgb(double y, std::size_t pixel) const;
 };
+
+/// Returns the tristimulus values of a lamp, with Y = 1.
+/// \pre `light` is not the design's own light
+materials::Tristimulus lamp_colour(PhotometricLight light);
 
 /// Returns the colours of a picture. The responses are traced separately, and their noise would appear as colours. Each
 /// pixel therefore gets the mean colour of its neighbourhood, whose size depends on the noise. This is hardly visible,

@@ -43,8 +43,6 @@ constexpr int kMaxCutoffSteps = 3;
 // Fraction of the progress for the mean luminance of geometrical optics, and fraction of the remaining progress for the
 // choice of the cut-off power.
 constexpr double kProgressOfMean = 0.6, kProgressOfCutoff = 0.3;
-// Luminance per illuminance, in cd/(lx m^2), below which the error is not reduced. A white matt surface has 0.32.
-constexpr double kDarkLuminance = 1e-3;
 // Maximum power whose diffraction may be missing, as a fraction of the incident power.
 constexpr double kMaxUndiffractedFraction = 1e-4;
 
@@ -268,7 +266,8 @@ class CameraLight::Grid {
       }
       if (!seen) return false;
       set_node(kCentre, view, seen->front());
-      const bool is_dark = nodes_.at(kCentre).luminance < kDarkLuminance;
+      // Without visible light, the error is not reduced.
+      const bool is_dark = nodes_.at(kCentre).luminance < kMinRetroreflected;
       if (is_dark || step == kMaxCutoffSteps || seen->front().relative_error() <= kResamplingError) return true;
       use(kCutoffStep * cutoff);
     }

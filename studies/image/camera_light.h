@@ -13,6 +13,10 @@
 
 namespace retrace::studies {
 
+/// Minimum luminance per illuminance, in cd/(lx m^2), at which retroreflected light is regarded as visible. A white
+/// matt surface has 0.32.
+inline constexpr double kMinRetroreflected = 1e-3;
+
 /// Light of the lamp as a receiver with one spectral response sees it.
 class CameraLight {
  public:

@@ -7,10 +7,8 @@
 #include <chrono>
 #include <cmath>
 #include <mutex>
-#include <string_view>
 
 #include "core/error.h"
-#include "core/named_file.h"
 #include "core/number_format.h"
 #include "core/task_progress.h"
 #include "design/engine_facts.h"
@@ -19,9 +17,9 @@
 #include "requests/descriptions.h"
 #include "studies/image/camera_setup.h"
 #include "studies/image/io/background_reader.h"
+#include "studies/image/io/dye_reader.h"
 #include "studies/image/io/lamp_reader.h"
 #include "studies/image/pass_ledger.h"
-#include "studies/photometry/io/standard_reader.h"
 
 namespace retrace::studies {
 namespace {
@@ -35,11 +33,6 @@ constexpr std::size_t kSpans = 2;
 constexpr std::size_t kSpansOfSurroundings = 12;
 // Range of the half angle around the lamp in which the returned light is diffracted, in degrees.
 constexpr double kMinWindow_deg = 2.0, kMaxWindow_deg = 10.0;
-// Minimum R_L in cd/(lx m^2) at which the eye is regarded as reached by retroreflected light. A white matt surface has
-// 0.32.
-constexpr double kMinRetroreflected = 1e-3;
-// Value of the field `dye` for a part without a dye.
-constexpr std::string_view kNoDye = "none";
 // Part of the progress that the computation of the returned light takes.
 constexpr double kProgressOfLight = 0.3;
 
@@ -48,20 +41,12 @@ std::optional<PhotometricLamp> lamp_of(const CameraRequest& r) {
   return read_lamp(r.lamp, Field{"lamp"});
 }
 
-/// Returns the spectral absorption of the requested dye. Empty if no dye is requested.
-materials::SpectralCurve dye_absorption_per_mm(const CameraRequest& r) {
-  const std::filesystem::path file = dye_file_of(r.dye, false, {});
-  if (file.empty()) return {};
-  return read_named(Field{"dye"}, [&] { return materials::read_spectral_absorption(file); });
-}
-
 PhotometrySettings photometry_of(const CameraRequest& r, const raytrace::CameraScene& scene) {
   PhotometrySettings settings;
   settings.area_cm2 = 1.0;
   settings.apertures = {scene.lamp.diameter, scene.view.pupil};
   settings.window_deg = std::clamp(angle_deg(to_eye(scene), to_lamp(scene)) + 1.0, kMinWindow_deg, kMaxWindow_deg);
   settings.light = light_from_name(r.light);
-  if (r.dye != kNoDye) settings.dye = r.dye;
   settings.diffraction = r.diffraction;
   settings.seed = r.seed;
   return settings;
@@ -89,7 +74,7 @@ CameraStudy::CameraStudy(design::Design design, CameraRequest request, raytrace:
                                       .wet_backs = true,
                                       .notches = false});
   lamp_ = lamp_of(request_);
-  const materials::SpectralCurve dye = dye_absorption_per_mm(request_);
+  const materials::SpectralCurve dye = read_dye(request_.dye);
   if (!background_) background_ = background_of(request_);
   if (!is_unpolarised(design_.light.polarisation))
     throw InputError({design_.source, 0, "light.polarisation"},
@@ -100,7 +85,7 @@ CameraStudy::CameraStudy(design::Design design, CameraRequest request, raytrace:
                      "image --detector");
   check_film(request_, design_.is_infinite());
   dyed_ = with_dye(design_, dye);
-  if (request_.dye != kNoDye) set_where(dyed_, "body.absorption_per_mm", {request_.dye, 0, "absorption_per_mm"});
+  if (!dye.values.empty()) set_where(dyed_, "body.absorption_per_mm", {request_.dye, 0, "absorption_per_mm"});
   model_ = design::make_model(dyed_, materials::MaterialLibrary::shipped());
   scene_ = scene_of(request_, lamp_, model_.part);
   scene_.discs = discs;
@@ -238,12 +223,6 @@ ComputeTask CameraStudy::passes() const {
 }
 
 namespace {
-
-/// Returns the tristimulus values of the lamp, with Y = 1.
-materials::Tristimulus lamp_colour(PhotometricLight light) {
-  const materials::Tristimulus lamp = materials::tristimulus(lamp_power(light), materials::shipped_colour_matching());
-  return {lamp[0] / lamp[1], 1.0, lamp[2] / lamp[1]};
-}
 
 /// Ledger of a process that was cancelled before its first pass.
 class NoPasses : public TaskLedger {

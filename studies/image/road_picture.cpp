@@ -132,12 +132,12 @@ class Painter {
   void background(const Surface& surface) {
     for_each_in_parallel(camera_.rows, [&](std::size_t row) {
       for (std::size_t k = row * camera_.columns; k < (row + 1) * camera_.columns; ++k)
-        blend(k, 1.0, surface(direction_of(k)));
+        blend(k, 1.0, surface(camera_.direction_of(k)));
     });
   }
   /// \param polygon convex polygon in the picture, in pixels
   void area(const Polygon& polygon, const Surface& surface) {
-    cover(polygon, [&](std::size_t k, double fraction) { blend(k, fraction, surface(direction_of(k))); });
+    cover(polygon, [&](std::size_t k, double fraction) { blend(k, fraction, surface(camera_.direction_of(k))); });
   }
   /// \param polygon convex polygon in the scene
   void solid(const std::vector<Vec3>& polygon, const Surface& surface) { area(projected(polygon), surface); }
@@ -160,7 +160,7 @@ class Painter {
       const double bright = std::clamp(of_pixel.bright, 0.0, of_pixel.all);
       blend(k, of_pixel.all, {});
       add_to(k, bright, light);
-      if (bright < of_pixel.all) add_to(k, of_pixel.all - bright, black_surface(direction_of(k)));
+      if (bright < of_pixel.all) add_to(k, of_pixel.all - bright, black_surface(camera_.direction_of(k)));
       pixels_.reflected[k] += bright * light.luminance;
     }
   }
@@ -170,10 +170,6 @@ class Painter {
   }
 
   const RoadCamera& camera() const { return camera_; }
-  Vec3 direction_of(std::size_t k) const {
-    return camera_.direction_at(
-        Vec2(static_cast<double>(k % camera_.columns) + 0.5, static_cast<double>(k / camera_.columns) + 0.5));
-  }
 
  private:
   void blend(std::size_t k, double fraction, const Light& light) {
@@ -349,7 +345,7 @@ class Surfaces {
       for_each_in_parallel(painter_.camera().rows, [&](std::size_t row) {
         const std::size_t columns = painter_.camera().columns;
         for (std::size_t pixel = row * columns; pixel < (row + 1) * columns; ++pixel) {
-          const Vec3 direction = painter_.direction_of(pixel);
+          const Vec3 direction = painter_.camera().direction_of(pixel);
           double sum = 0.0;
           for (const Glow& glow : glows)
             sum += glow.fraction * veil_per_lx((direction - glow.towards).squaredNorm(), least);
@@ -477,9 +473,12 @@ Vec3 RoadCamera::direction_at(const Vec2& position) const {
   return (forward + off.x() * right - off.y() * up).normalized();
 }
 
+Vec3 RoadCamera::direction_of(std::size_t k) const {
+  return direction_at(Vec2(static_cast<double>(k % columns) + 0.5, static_cast<double>(k / columns) + 0.5));
+}
+
 double RoadCamera::solid_angle(std::size_t k) const {
-  const Vec2 position(static_cast<double>(k % columns) + 0.5, static_cast<double>(k / columns) + 0.5);
-  return pixel * pixel * std::pow(direction_at(position).dot(forward), 3.0);
+  return pixel * pixel * std::pow(direction_of(k).dot(forward), 3.0);
 }
 
 RoadCamera camera_at(const RoadScene& s, double distance_m) {
@@ -502,6 +501,10 @@ RoadCamera camera_at(const RoadScene& s, double distance_m) {
   const double horizon = std::clamp(top / camera.pixel + 0.06 * rows, 0.42 * rows, 0.85 * rows);
   camera.ahead = {0.5 * static_cast<double>(s.columns), horizon};
   return camera;
+}
+
+const char* reflector_name(const RoadView& view, std::size_t k) {
+  return view.reflectors.size() == 1 ? "sign" : (k == 0 ? "left" : "right");
 }
 
 void draw_road(const RoadScene& scene, RoadView& view) {

@@ -35,6 +35,9 @@ struct RoadCamera {
   geometry::Vec2 position_of(const geometry::Vec3& point) const;
   /// Returns the direction, as a unit vector, in which a position of the picture is seen.
   geometry::Vec3 direction_at(const geometry::Vec2& position) const;
+  /// Returns the direction of the centre of a pixel.
+  /// \param k index of the pixel, row by row from the top
+  geometry::Vec3 direction_of(std::size_t k) const;
   /// Returns the solid angle of a pixel, in sr.
   /// \param k index of the pixel, row by row from the top
   double solid_angle(std::size_t k) const;
@@ -62,6 +65,10 @@ struct RoadView {
   RoadCamera inset_camera;  ///< camera that enlarges the last reflector
   RoadPixels inset;
 };
+
+/// Returns the name of a reflector in tables and captions: "left", "right" or "sign".
+/// \param k index of the reflector
+const char* reflector_name(const RoadView& view, std::size_t k);
 
 /// Computes the pictures of a view.
 /// \param view view whose distance is set and whose reflectors have been measured

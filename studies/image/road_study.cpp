@@ -6,15 +6,13 @@
 #include <optional>
 
 #include "core/error.h"
-#include "core/named_file.h"
 #include "core/srgb.h"
 #include "core/task_progress.h"
 #include "design/optical_model.h"
-#include "materials/io/spectrum_reader.h"
 #include "requests/descriptions.h"
 #include "studies/image/camera_colours.h"
+#include "studies/image/io/dye_reader.h"
 #include "studies/image/io/lamp_reader.h"
-#include "studies/photometry/io/standard_reader.h"
 #include "studies/photometry/photometer.h"
 
 namespace retrace::studies {
@@ -104,10 +102,7 @@ std::optional<std::array<double, 3>> tint_of(const design::Design& design, const
     response[k] = readings->front().r_a.front();
   }
   if (!(response[1] > 0.0)) return std::array{1.0, 1.0, 1.0};
-  const materials::Tristimulus lamp =
-      materials::tristimulus(lamp_power(photometry.light), materials::shipped_colour_matching());
-  const CameraColours colours{
-      {response[0] / response[1]}, {response[2] / response[1]}, {lamp[0] / lamp[1], 1.0, lamp[2] / lamp[1]}};
+  const CameraColours colours{{response[0] / response[1]}, {response[2] / response[1]}, lamp_colour(photometry.light)};
   return colours.rgb(1.0, 0);
 }
 
@@ -119,10 +114,8 @@ RoadStudy::RoadStudy(design::Design design, RoadRequest request)
   requests::check(request_);
   scene_ = scene_of(request_, outline_of(design_));
   if (!request_.lamp.empty()) scene_.lamp = read_lamp(request_.lamp, Field{"lamp"});
-  const std::filesystem::path dye = dye_file_of(request_.dye, false, {});
-  if (dye.empty()) return;
-  scene_.dye = request_.dye;
-  dye_absorption_per_mm_ = read_named(Field{"dye"}, [&] { return materials::read_spectral_absorption(dye); });
+  dye_absorption_per_mm_ = read_dye(request_.dye);
+  if (!dye_absorption_per_mm_.values.empty()) scene_.dye = request_.dye;
 }
 
 RoadResult RoadStudy::run(Progress* progress, const Cancellation* cancel) const {
@@ -140,7 +133,7 @@ RoadResult RoadStudy::run(Progress* progress, const Cancellation* cancel) const 
   for (const double distance_m : request_.distance_m) {
     photometry = photometry_at(scene_, distance_m, request_.seed);
     photometry.dye_absorption_per_mm = dye_absorption_per_mm_;
-    if (!dye_absorption_per_mm_.values.empty()) photometry.dye = scene_.dye;
+    photometry.dye = scene_.dye;
     Photometer photometer(design_, photometry, kSpansOfRoad);
     const std::vector<PhotometerSetting> settings = settings_of(scene_, distance_m);
     const auto done = static_cast<double>(result.views.size());

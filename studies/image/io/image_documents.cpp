@@ -210,10 +210,9 @@ std::string road_table(const RoadResult& result) {
   for (const RoadView& view : result.views)
     for (std::size_t k = 0; k < view.reflectors.size(); ++k) {
       const RoadReflector& r = view.reflectors[k];
-      const char* name = view.reflectors.size() == 1 ? "sign" : (k == 0 ? "left" : "right");
       table += fmt::format("{:>10} {:>10} {:>9} {:>9} {:>9} {:>9} {:>9} {:>12} {:>10}\n", shortest(view.distance_m),
-                           name, fixed_visible(r.observation_deg[0], 2), fixed_visible(r.observation_deg[1], 2),
-                           fixed(r.r_a[0], 2), fixed(r.r_a[1], 2),
+                           reflector_name(view, k), fixed_visible(r.observation_deg[0], 2),
+                           fixed_visible(r.observation_deg[1], 2), fixed(r.r_a[0], 2), fixed(r.r_a[1], 2),
                            fixed_visible(r.illuminance_lx[0] + r.illuminance_lx[1], 2), fixed(r.luminance, 2),
                            fixed_visible(r.intensity_cd, 3));
     }
