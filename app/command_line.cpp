@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
+#include <optional>
 #include <regex>
 
 #include "app/commands.h"
@@ -188,8 +189,12 @@ std::string names_of(std::span<const Command> all) {
   return in_words(names, "and");
 }
 
-/// Returns the error message for an unknown option. It names the most similar option of the command, if there is one.
-std::string unknown_option(const CLI::App& app, const std::string& word) {
+/// Returns the error message for the first unknown option of a command line, or nothing if there is none. The message
+/// names the most similar option of the command, if there is one.
+std::optional<std::string> unknown_option(const CLI::App& app) {
+  const std::vector<std::string> unknown = app.remaining(true);
+  const auto word = std::ranges::find_if(unknown, [](const std::string& text) { return text.starts_with('-'); });
+  if (word == unknown.end()) return std::nullopt;
   std::vector<std::string> options;
   const auto add_options_of = [&](const CLI::App& of) {
     for (const CLI::Option* const option : of.get_options())
@@ -198,16 +203,15 @@ std::string unknown_option(const CLI::App& app, const std::string& word) {
   add_options_of(app);
   for (const CLI::App* const command : app.get_subcommands()) add_options_of(*command);
   const std::vector<std::string_view> names(options.begin(), options.end());
-  const std::string_view similar = closest_match(std::string_view(word).substr(0, word.find('=')), names);
-  return "unknown option " + printable(word) + (similar.empty() ? "" : fmt::format(", did you mean {}?", similar));
+  const std::string_view similar = closest_match(std::string_view(*word).substr(0, word->find('=')), names);
+  return "unknown option " + printable(*word) + (similar.empty() ? "" : fmt::format(", did you mean {}?", similar));
 }
 
 /// Returns the error message for a command line with words that the command does not know, or an empty text if there
 /// are none.
 std::string unknown_word(const CLI::App& app) {
+  if (const auto option = unknown_option(app)) return *option;
   const std::vector<std::string> unknown = app.remaining(true);
-  const auto option = std::ranges::find_if(unknown, [](const std::string& word) { return word.starts_with('-'); });
-  if (option != unknown.end()) return unknown_option(app, *option);
   if (unknown.empty()) return {};
   const std::string_view what = app.get_subcommands().empty() ? "command" : "argument";
   return fmt::format("unknown {} {}", what, printable(unknown.front()));
@@ -217,9 +221,9 @@ std::string unknown_word(const CLI::App& app) {
 /// line contains an unknown option or command, the message names this word.
 /// \param otherwise message if the command line contains no unknown word
 std::string missing(const CLI::App& app, const std::string& otherwise) {
-  const std::string unknown = unknown_word(app);
-  if (unknown.starts_with("unknown option")) return unknown;
+  if (const auto option = unknown_option(app)) return *option;
   if (!app.get_subcommands().empty()) return otherwise;
+  const std::string unknown = unknown_word(app);
   return (unknown.empty() ? "a command is required" : unknown) + "; the commands are " + names_of(commands());
 }
 
