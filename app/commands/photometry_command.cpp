@@ -93,10 +93,12 @@ void warn_of_panels(studies::PhotometryResult& result) {
 
 /// Returns the tables for the terminal. Long tables are shortened if they are in the output folder.
 std::string text_of(const studies::PhotometryResult& result, const CommonOptions& common) {
+  constexpr std::size_t kFewRows = 8, kFewRowsWithMaps = 3, kFewMapTables = 1;
   const std::string table = studies::photometry_table(result) + studies::coefficient_map_table(result);
   if (is_shown_whole(table, common)) return table;
   const bool has_maps = !result.coefficient_maps.empty();
-  return studies::photometry_table(result, has_maps ? 3 : 8) + studies::coefficient_map_table(result, 1);
+  return studies::photometry_table(result, has_maps ? kFewRowsWithMaps : kFewRows) +
+         studies::coefficient_map_table(result, kFewMapTables);
 }
 
 /// Returns advice for a shorter run: options to change, with their current values.

@@ -51,12 +51,12 @@ void spread(const geometry::Part& part, const PixelGrid& grid, const Polygon& po
 }
 
 void add_direction(const DetectorSetting& setting, const Vec3& direction, double power, DetectorMaps& maps) {
-  if (const auto bin = setting.angles.bin_of(setting.frame.angles_rad(direction)))
+  const Vec2 angles_rad = setting.frame.angles_rad(direction);
+  if (const auto bin = setting.angles.bin_of(angles_rad))
     maps.per_sr.value[*bin] += power / setting.angles.solid_angle_sr(*bin);
   else
     maps.outside += power;
-  if (const auto ring = AngularRings::ring_at(setting.frame.angles_rad(direction).norm()))
-    maps.rings.power[*ring] += power;
+  if (const auto ring = AngularRings::ring_at(angles_rad.norm())) maps.rings.power[*ring] += power;
 }
 
 DetectorMaps empty_maps(const DetectorSetting& setting) {
@@ -67,17 +67,17 @@ DetectorMaps empty_maps(const DetectorSetting& setting) {
   return maps;
 }
 
-/// Power that one path adds to one pixel. There are few entries per path. They are added in the order of the paths, so
-/// that the sum does not depend on the number of threads.
+/// Power that one path adds to one pixel, ring or bin of directions. There are few entries per path. They are added in
+/// the order of the paths, so that the sum does not depend on the number of threads.
 struct Deposit {
-  std::uint32_t pixel = 0;
+  std::uint32_t index = 0;
   double power = 0.0;
 };
 struct Deposits {
   std::vector<Deposit> leaving;
   std::vector<Deposit> entering;
-  std::vector<Deposit> rings;   ///< indices of AngularRings
-  std::vector<Deposit> angles;  ///< bins of directions; the index after the last bin means outside of the grid
+  std::vector<Deposit> rings;   ///< indices of AngularRings::power
+  std::vector<Deposit> angles;  ///< indices of bins; the number of bins is the index of all other directions
   double in_cone = 0.0;
   double truncated = 0.0;
   double lost = 0.0;
@@ -254,11 +254,11 @@ struct DetectorSampler::Impl {
 
   void add(const Deposits& deposits, double weight) {
     const auto bins = static_cast<std::uint32_t>(setting.angles.size());
-    for (const Deposit& d : deposits.leaving) leaving.replicate()[d.pixel] += weight * d.power;
-    for (const Deposit& d : deposits.entering) entering.replicate()[d.pixel] += weight * d.power;
+    for (const Deposit& d : deposits.leaving) leaving.replicate()[d.index] += weight * d.power;
+    for (const Deposit& d : deposits.entering) entering.replicate()[d.index] += weight * d.power;
     for (const Deposit& d : deposits.angles)
-      (d.pixel < bins ? angles.replicate()[d.pixel] : sums.outside) += weight * d.power;
-    for (const Deposit& d : deposits.rings) sums.rings.power[d.pixel] += weight * d.power / per_replicate;
+      (d.index < bins ? angles.replicate()[d.index] : sums.outside) += weight * d.power;
+    for (const Deposit& d : deposits.rings) sums.rings.power[d.index] += weight * d.power / per_replicate;
     rre.replicate()[0] += weight * deposits.in_cone;
     sums.truncated += weight * deposits.truncated / per_replicate;
   }

@@ -60,7 +60,7 @@ PixelPyramid::PixelPyramid(std::size_t columns, std::size_t rows, const BinRule&
   }
 }
 
-void PixelPyramid::Level::take(const std::vector<double>& sums, double scale, double count) {
+void PixelPyramid::Level::add(const std::vector<double>& sums, double scale, double count) {
   for (std::size_t k = 0; k < sums.size(); ++k) {
     const double value = scale * sums[k] / pixels[k];
     const double off = value - mean[k];
@@ -74,7 +74,7 @@ void PixelPyramid::close(double scale) {
   std::vector<double> coarse;
   for (std::size_t l = 0; l < levels_.size(); ++l) {
     const std::vector<double>& sums = l == 0 ? sum_ : coarse;
-    levels_[l].take(sums, scale, count_);
+    levels_[l].add(sums, scale, count_);
     if (l + 1 < levels_.size()) coarse = halved(sums, levels_[l].columns, levels_[l].rows);
   }
   std::fill(sum_.begin(), sum_.end(), 0.0);

@@ -61,7 +61,10 @@ class PixelPyramid {
     std::vector<double> mean;     ///< mean of the pixels of each block (Welford 1962)
     std::vector<double> squares;  ///< sum of squared deviations over the replicates
 
-    void take(const std::vector<double>& sums, double scale, double count);
+    /// Adds a replicate.
+    /// \param sums sums over the pixels of each block, to be multiplied by `scale`
+    /// \param count number of replicates including this one
+    void add(const std::vector<double>& sums, double scale, double count);
   };
 
   /// Returns the indices of the blocks of the next finer level into which a block is divided; empty on the finest

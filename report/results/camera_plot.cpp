@@ -108,8 +108,8 @@ std::string geometry_text(const CameraResult& result) {
   const raytrace::CameraScene& scene = result.scene;
   const double eye_m = metres(scene.view.eye_mm, scene.view.target_mm);
   const double lamp_m = metres(scene.lamp.position_mm, scene.view.target_mm);
-  std::string text = fmt::format("distance {} m", figure(eye_m));
-  if (std::abs(lamp_m / eye_m - 1.0) > 1e-3) text += fmt::format(" (lamp {} m)", figure(lamp_m));
+  std::string text = fmt::format("distance {} m", rounded_text(eye_m));
+  if (std::abs(lamp_m / eye_m - 1.0) > 1e-3) text += fmt::format(" (lamp {} m)", rounded_text(lamp_m));
   text += fmt::format(", observation angle {}\u00b0, entrance angle {}\u00b0", fixed_visible(result.observation_deg, 2),
                       fixed_visible(result.entrance_deg, 2));
   if (result.request.rotation_deg != 0.0)
@@ -118,10 +118,10 @@ std::string geometry_text(const CameraResult& result) {
 }
 
 std::string light_text(const CameraResult& result) {
-  std::string text = fmt::format("{} lx", figure(result.scene.lamp.illuminance_lx));
+  std::string text = fmt::format("{} lx", rounded_text(result.scene.lamp.illuminance_lx));
   if (result.image.part_means.size() > 1)
-    text += fmt::format(", mean luminance {} cd/m\u00b2", figure(result.image.part_mean()));
-  if (result.r_a) text += fmt::format(", R_A {} cd/(lx m\u00b2)", figure(*result.r_a));
+    text += fmt::format(", mean luminance {} cd/m\u00b2", rounded_text(result.image.part_mean()));
+  if (result.r_a) text += fmt::format(", R_A {} cd/(lx m\u00b2)", rounded_text(*result.r_a));
   if (result.no_diffraction) text += ", without diffraction";
   return text;
 }

@@ -30,14 +30,14 @@ std::string name_with_dye(const design::Design& design, const std::string& dye) 
   return design::short_name(design) + (dye == "none" ? "" : is_named ? ", " + dye : ", dyed");
 }
 
-std::string figure(double value) {
+std::string rounded_text(double value) {
   if (value >= 100.0) return fixed(value, 0);
   return value >= 10.0 ? fixed(value, 1) : fixed_visible(value, 2);
 }
 
 std::string exposure_text(const ToneCurve& tone, bool is_given) {
-  return fmt::format("white is {} cd/m\u00b2 (EV100 {}, {}), {} tone curve", figure(tone.white), fixed(tone.ev100(), 1),
-                     is_given ? "given" : "automatic",
+  return fmt::format("white is {} cd/m\u00b2 (EV100 {}, {}), {} tone curve", rounded_text(tone.white),
+                     fixed(tone.ev100(), 1), is_given ? "given" : "automatic",
                      tone.tone == Tone::reinhard ? "Reinhard's" : (tone.tone == Tone::log ? "logarithmic" : "linear"));
 }
 

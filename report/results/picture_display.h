@@ -30,8 +30,9 @@ Colour displayed(std::array<double, 3> rgb, double intensity);
 /// \param dye "none", "red", "amber" or the path of a file
 std::string name_with_dye(const design::Design& design, const std::string& dye);
 
-/// Returns a number as text with about four digits.
-std::string figure(double value);
+/// Returns a number as text: without decimals if it is at least 100, with one decimal if it is at least 10, and
+/// otherwise as fixed_visible() with two decimals.
+std::string rounded_text(double value);
 
 /// Returns a sentence about the exposure and the tone curve of a picture.
 /// \param is_given true: the user gave the exposure

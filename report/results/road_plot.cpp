@@ -60,8 +60,8 @@ std::string both(const double (&values)[2], int digits) {
 std::string reflector_text(const RoadView& view, std::size_t k) {
   const studies::RoadReflector& r = view.reflectors[k];
   return fmt::format("{}: observation angle {}\u00b0, {} lx, {} cd/m\u00b2, {} cd", studies::reflector_name(view, k),
-                     both(r.observation_deg, 2), figure(r.illuminance_lx[0] + r.illuminance_lx[1]), figure(r.luminance),
-                     figure(r.intensity_cd));
+                     both(r.observation_deg, 2), rounded_text(r.illuminance_lx[0] + r.illuminance_lx[1]),
+                     rounded_text(r.luminance), rounded_text(r.intensity_cd));
 }
 
 std::string scene_text(const RoadResult& result) {

@@ -36,11 +36,11 @@ constexpr double kNearest = 0.5;         ///< distance from the eye at which sur
 
 /// Returns the luminance of light scattered in the eye, per illuminance at the pupil, in 1/sr. It is 10 divided by the
 /// squared angle in degrees (W. S. Stiles 1929, L. L. Holladay 1927; CIE 146:2002).
-/// \param theta squared angle from the source, in rad^2
-/// \param least squared angle below which the result is constant, in rad^2
-double veil_per_lx(double theta, double least) {
+/// \param angle2 squared angle from the source, in rad^2
+/// \param min_angle2 squared angle below which the result is constant, in rad^2
+double veil_per_lx(double angle2, double min_angle2) {
   constexpr double kDegPerRad = 180.0 / pi;
-  return 10.0 / (std::max(theta, least) * kDegPerRad * kDegPerRad);
+  return 10.0 / (std::max(angle2, min_angle2) * kDegPerRad * kDegPerRad);
 }
 
 /// Part of a reflector, as a source of light that is scattered in the eye.
@@ -258,7 +258,7 @@ class Surfaces {
   }
 
   void road() {
-    const double horizon = camera_of_horizon();
+    const double horizon = row_of_horizon();
     const double columns = static_cast<double>(painter_.camera().columns);
     const double rows = static_cast<double>(painter_.camera().rows);
     if (horizon < rows)
@@ -281,20 +281,20 @@ class Surfaces {
     const double roof = s_.car_tall;
     const double waist = 0.95;
     for (const double side : {-1.0, 1.0}) {
-      rear(rounded(box(side * (half - 0.17), 0.17, 0.105, 0.17), 0.04), kTyre, kGrey);
-      rear(rounded(box(side * (half + 0.02), 0.985, 0.075, 0.045), 0.035), kPaint, kNavy);
+      draw_diffuse(rounded(box(side * (half - 0.17), 0.17, 0.105, 0.17), 0.04), kTyre, kGrey);
+      draw_diffuse(rounded(box(side * (half + 0.02), 0.985, 0.075, 0.045), 0.035), kPaint, kNavy);
     }
-    rear(rounded(trapezoid(half - 0.05, 0.60, waist - 0.12, roof), 0.14), kPaint, kNavy);
-    rear(rounded(trapezoid(half - 0.16, 0.555, waist + 0.04, roof - 0.085), 0.07), kGlass, kGrey);
-    rear(rounded(trapezoid(half - 0.03, half - 0.02, 0.20, waist + 0.03), 0.09), kPaint, kNavy);
-    rear(rounded(trapezoid(half - 0.005, half - 0.005, 0.28, 0.80), 0.12), kPaint, kNavy);
+    draw_diffuse(rounded(trapezoid(half - 0.05, 0.60, waist - 0.12, roof), 0.14), kPaint, kNavy);
+    draw_diffuse(rounded(trapezoid(half - 0.16, 0.555, waist + 0.04, roof - 0.085), 0.07), kGlass, kGrey);
+    draw_diffuse(rounded(trapezoid(half - 0.03, half - 0.02, 0.20, waist + 0.03), 0.09), kPaint, kNavy);
+    draw_diffuse(rounded(trapezoid(half - 0.005, half - 0.005, 0.28, 0.80), 0.12), kPaint, kNavy);
     // Bumper with a dark lower part, joint of the tail gate, tail lamps and licence plate.
-    rear(rounded(trapezoid(half - 0.09, half - 0.04, 0.165, 0.31), 0.05), kPlastic, kGrey);
-    rear(box(0.0, 0.668, half - 0.03, 0.004), kPlastic, kGrey);
+    draw_diffuse(rounded(trapezoid(half - 0.09, half - 0.04, 0.165, 0.31), 0.05), kPlastic, kGrey);
+    draw_diffuse(box(0.0, 0.668, half - 0.03, 0.004), kPlastic, kGrey);
     for (const double side : {-1.0, 1.0})
-      rear(rounded(box(side * (half - 0.125), 0.815, 0.105, 0.085), 0.04), kTailLamp, kLens);
-    rear(rounded(box(0.0, 0.785, 0.285, 0.075), 0.02), kPlastic, kGrey);
-    rear(rounded(box(0.0, 0.785, 0.26, 0.055), 0.01), kPlate, kGrey);
+      draw_diffuse(rounded(box(side * (half - 0.125), 0.815, 0.105, 0.085), 0.04), kTailLamp, kLens);
+    draw_diffuse(rounded(box(0.0, 0.785, 0.285, 0.075), 0.02), kPlastic, kGrey);
+    draw_diffuse(rounded(box(0.0, 0.785, 0.26, 0.055), 0.01), kPlate, kGrey);
   }
 
   void sign() {
@@ -310,7 +310,7 @@ class Surfaces {
     painter_.solid(mast, [this, x, half, behind](const Vec3& d) {
       const Vec3 at = on_plane(d, behind);
       const double across = std::clamp((at.x() - x) / half, -1.0, 1.0);
-      return Painter::Light{kMast / pi * std::sqrt(1.0 - 0.95 * across * across) * lit(at), kGrey};
+      return Painter::Light{kMast / pi * std::sqrt(1.0 - 0.95 * across * across) * illuminance_at(at), kGrey};
     });
   }
 
@@ -322,7 +322,7 @@ class Surfaces {
         const Vec2 housing = size + Vec2(0.016, 0.016);
         Polygon frame = s_.outline;
         for (Vec2& point : frame) point = point.cwiseProduct(housing.cwiseQuotient(size));
-        rear(geometry::moved(frame, position), kPlastic, kGrey);
+        draw_diffuse(geometry::moved(frame, position), kPlastic, kGrey);
       }
       const auto placed = [&](const std::vector<Polygon>& polygons) {
         std::vector<std::vector<Vec3>> result;
@@ -336,19 +336,19 @@ class Surfaces {
 
   /// Adds the veil, which is light from the reflectors that is scattered in the eye.
   void veil() {
-    constexpr double kLeast_deg = 0.2;
+    constexpr double kMinAngle_deg = 0.2;
     for (std::size_t k = 0; k < s_.reflectors.size(); ++k) {
       const double at_pupil_lx = view_.reflectors.at(k).intensity_cd / (s_.reflectors[k] - eye_).squaredNorm();
       double cell_rad = 0.0;
       const std::vector<Glow> glows = glows_of(s_, s_.reflectors[k], eye_, cell_rad);
-      const double least = std::pow(std::max(kLeast_deg * pi / 180.0, cell_rad), 2.0);
+      const double min_angle2 = std::pow(std::max(kMinAngle_deg * pi / 180.0, cell_rad), 2.0);
       for_each_in_parallel(painter_.camera().rows, [&](std::size_t row) {
         const std::size_t columns = painter_.camera().columns;
         for (std::size_t pixel = row * columns; pixel < (row + 1) * columns; ++pixel) {
           const Vec3 direction = painter_.camera().direction_of(pixel);
           double sum = 0.0;
           for (const Glow& glow : glows)
-            sum += glow.fraction * veil_per_lx((direction - glow.towards).squaredNorm(), least);
+            sum += glow.fraction * veil_per_lx((direction - glow.towards).squaredNorm(), min_angle2);
           painter_.add_veil(pixel, {at_pupil_lx * sum, s_.tint});
         }
       });
@@ -363,7 +363,7 @@ class Surfaces {
   }
 
   /// Returns the row of the horizon. The camera has no roll, so that the horizon is horizontal in the picture.
-  double camera_of_horizon() const {
+  double row_of_horizon() const {
     const RoadCamera& camera = painter_.camera();
     const Vec3 level = Vec3(camera.forward.x(), 0.0, camera.forward.z()).normalized();
     return camera.position_of(Vec3(camera.eye + level)).y();
@@ -371,7 +371,7 @@ class Surfaces {
 
   /// Draws the outline of distant trees over the sky.
   void trees() {
-    const double horizon = camera_of_horizon();
+    const double horizon = row_of_horizon();
     const RoadCamera& camera = painter_.camera();
     const Painter::Surface dark = [](const Vec3&) { return Painter::Light{kTrees, kGrey}; };
     for (std::size_t column = 0; column < camera.columns; ++column) {
@@ -413,7 +413,7 @@ class Surfaces {
   Vec3 on_plane(const Vec3& d, double z) const { return eye_ + (z - eye_.z()) / d.z() * d; }
 
   /// Returns the illuminance in lx of a vertical surface that faces the driver.
-  double lit(const Vec3& at) const {
+  double illuminance_at(const Vec3& at) const {
     double sum = 0.5 * kNightLight;
     for (const Vec3& lamp : lamps_) sum += illuminance(s_, lamp, at) * (lamp - at).normalized().z();
     return sum;
@@ -423,11 +423,11 @@ class Surfaces {
   Painter::Surface diffuse(double reflectance, const Tint& colour) const {
     return [this, reflectance, tint = normalised(colour)](const Vec3& d) {
       const Vec3 at = on_plane(d, 0.0);
-      return Painter::Light{reflectance / pi * shading(at) * lit(at), tint};
+      return Painter::Light{reflectance / pi * shading(at) * illuminance_at(at), tint};
     };
   }
   /// Draws a diffuse surface in the plane of the reflectors.
-  void rear(const Polygon& polygon, double reflectance, const Tint& colour) {
+  void draw_diffuse(const Polygon& polygon, double reflectance, const Tint& colour) {
     painter_.solid(at_reflectors(polygon), diffuse(reflectance, colour));
   }
 

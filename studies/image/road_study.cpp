@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <optional>
+#include <span>
 
 #include "core/error.h"
 #include "core/srgb.h"
@@ -69,9 +70,11 @@ std::vector<PhotometerSetting> settings_of(const RoadScene& scene, double distan
 }
 
 /// Returns the results for one reflector.
-/// \param readings readings for the left and the right headlamp
+/// \param settings settings of the photometer for the left and the right headlamp
+/// \param readings readings with these settings
 RoadReflector reflector_of(const RoadScene& scene, double distance_m, const Vec3& position,
-                           const PhotometerSetting* settings, const PhotometerReading* readings) {
+                           std::span<const PhotometerSetting, 2> settings,
+                           std::span<const PhotometerReading, 2> readings) {
   RoadReflector reflector;
   const std::array<Vec3, 2> lamps = lamps_at(scene, distance_m);
   for (std::size_t lamp = 0; lamp < 2; ++lamp) {
@@ -126,7 +129,7 @@ RoadResult RoadStudy::run(Progress* progress, const Cancellation* cancel) const 
   result.scene = scene_;
   const bool is_coloured = !scene_.dye.empty() || design_.substance.is_coloured();
   const double end = is_coloured ? 1.0 - kProgressOfColour : 1.0;
-  const double share = end / static_cast<double>(request_.distance_m.size());
+  const double fraction = end / static_cast<double>(request_.distance_m.size());
   double brightest = 0.0;
   PhotometerSetting brightest_setting;
   PhotometrySettings photometry;
@@ -137,7 +140,7 @@ RoadResult RoadStudy::run(Progress* progress, const Cancellation* cancel) const 
     Photometer photometer(design_, photometry, kSpansOfRoad);
     const std::vector<PhotometerSetting> settings = settings_of(scene_, distance_m);
     const auto done = static_cast<double>(result.views.size());
-    PartProgress part(progress, share * done, share * (done + 1.0));
+    PartProgress part(progress, fraction * done, fraction * (done + 1.0));
     const auto readings = measured(photometer, settings, &part, cancel);
     if (!readings) {
       result.complete = false;
@@ -146,8 +149,9 @@ RoadResult RoadStudy::run(Progress* progress, const Cancellation* cancel) const 
     RoadView view;
     view.distance_m = distance_m;
     for (std::size_t k = 0; k < scene_.reflectors.size(); ++k)
-      view.reflectors.push_back(
-          reflector_of(scene_, distance_m, scene_.reflectors[k], &settings[2 * k], &(*readings)[2 * k]));
+      view.reflectors.push_back(reflector_of(scene_, distance_m, scene_.reflectors[k],
+                                             std::span(settings).subspan(2 * k).first<2>(),
+                                             std::span(*readings).subspan(2 * k).first<2>()));
     for (std::size_t k = 0; k < settings.size(); ++k)
       if ((*readings)[k].r_a.front() > brightest) {
         brightest = (*readings)[k].r_a.front();
