@@ -39,7 +39,7 @@ constexpr std::uint32_t kGuideStream = 15;
 constexpr std::size_t kPathsTogether = 4096;
 // Number of the training pass of a PixelGuide. A pass traces kPointsPerPass paths through every pixel. The passes of a
 // picture have smaller numbers.
-constexpr std::uint32_t kFirstPass = 0xffffffff;
+constexpr std::uint32_t kTrainingPass = 0xffffffff;
 // The picture is divided into rectangular tiles, and a PixelGuide has one map per tile. These are the minimum side
 // length of a tile in pixels and the maximum number of tiles along a side of the picture.
 constexpr std::size_t kTilePixels = 100;
@@ -221,7 +221,7 @@ struct CameraTracer::Impl {
   std::optional<CellArray> cells;  ///< set if paths are traced together by the cell engine
   std::vector<PathSetup> setups;   ///< indexed by wavelength
   std::vector<double> cumulative;
-  Vec3 middle;  ///< center of a sphere around the finite part
+  Vec3 middle;  ///< centre of a sphere around the finite part
   double radius_mm = 0.0;
   std::size_t tiles_along;          ///< number of tiles of the guide along a side of the picture
   std::optional<PixelGuide> guide;  ///< set after the training pass, which is not part of the picture
@@ -564,7 +564,7 @@ std::optional<CameraPass> CameraTracer::pass(std::uint32_t number, const Cancell
     h.levels.clear();
     h.has_learnt_all = false;
   }
-  if (!h.guide && !h.trace_and_learn(kFirstPass, cancel)) return std::nullopt;
+  if (!h.guide && !h.trace_and_learn(kTrainingPass, cancel)) return std::nullopt;
   if (number == 0) return h.trace_and_learn(0, cancel);
   if (!h.has_learnt_all && !h.trace_and_learn(0, cancel)) return std::nullopt;
   return h.trace(number, cancel);

@@ -27,7 +27,7 @@ std::string text_of_angles(const studies::CoefficientMap& map) {
                      shortest(map.presentation_deg));
 }
 
-/// Returns the panel for a map, without any marks on it.
+/// Returns the panel for a map, without marks of test points.
 /// \param factor factor by which the values of the map are multiplied
 ContourPanel panel_of(const studies::CoefficientMap& map, std::string title, double factor) {
   ContourPanel panel;
@@ -38,7 +38,7 @@ ContourPanel panel_of(const studies::CoefficientMap& map, std::string title, dou
   return panel;
 }
 
-/// Adds the test points that have the rotation of a map and an entrance angle in its plane.
+/// Marks the test points that have the rotation of a map and lie in the plane of its entrance angles.
 void add_marks(const studies::PhotometryResult& result, const studies::CoefficientMap& map, ContourPanel& panel) {
   constexpr double kSameAngleDeg = 1e-9;
   const auto is_in = [](const std::vector<double>& list, double value) {

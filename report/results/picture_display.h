@@ -34,7 +34,7 @@ std::string name_with_dye(const design::Design& design, const std::string& dye);
 /// otherwise as fixed_visible() with two decimals.
 std::string rounded_text(double value);
 
-/// Returns a sentence about the exposure and the tone curve of a picture.
+/// Returns a description of the exposure and the tone curve of a picture.
 /// \param is_given true: the user gave the exposure
 std::string exposure_text(const ToneCurve& tone, bool is_given);
 

@@ -56,7 +56,7 @@ std::string both(const double (&values)[2], int digits) {
   return left == right ? left : fmt::format("{} and {}", left, right);
 }
 
-/// Returns the values of one reflector.
+/// Returns the caption with the values of one reflector.
 std::string reflector_text(const RoadView& view, std::size_t k) {
   const studies::RoadReflector& r = view.reflectors[k];
   return fmt::format("{}: observation angle {}\u00b0, {} lx, {} cd/m\u00b2, {} cd", studies::reflector_name(view, k),

@@ -16,12 +16,12 @@
 
 namespace retrace::studies {
 
-/// Number of rays in a pass, and the maximum number of passes, if the request contains no number of rays.
+/// Number of rays in a pass, and maximum number of passes, if the request contains no number of rays.
 inline constexpr std::uint64_t kDetectorRaysPerPass = std::uint64_t{1} << 22;
 inline constexpr std::uint32_t kMaxDetectorPasses = 8;
-/// Fraction of the light that must be in small bins; until then, more rays are added. Maximum width of small bins, as a
-/// fraction of the width of the map.
+/// Fraction of the light that must be in small bins. More passes are traced until it is reached.
 inline constexpr double kLightInSmallBins = 0.9;
+/// Maximum width of small bins, as a fraction of the width of the map.
 inline constexpr double kSmallBin = 0.01;
 
 /// Fractions of the largest value of a map below which bins count as dark.

@@ -35,12 +35,12 @@ struct RoadScene {
   std::vector<geometry::Vec3> reflectors = {{-0.72, 0.6, 0.0}, {0.72, 0.6, 0.0}};  ///< centres
   /// Outline of each reflector or of the sign, relative to its centre; convex, counter-clockwise.
   geometry::Polygon outline = {{-0.06, -0.0125}, {0.06, -0.0125}, {0.06, 0.0125}, {-0.06, 0.0125}};
-  /// Black areas within the outline of a sign, and retroreflective areas within the black areas. The black line along
-  /// the border is the difference of two polygons. The symbol is within the inner one.
+  /// Black areas within the outline of a sign, and retroreflective areas within black areas. The black line along the
+  /// border is the first black area without the window in it; the symbol consists of black areas within this window.
   std::vector<geometry::Polygon> black, windows;
   double mast_height = 0.0;
   double mast_width = 0.08;
-  double car_width = 1.75, car_tall = 1.42;
+  double car_width = 1.75, car_tall = 1.42;  ///< of the car with the reflectors
 
   double lane_width = 3.5, line_width = 0.12;
   double dash_length = 4.0, dash_period = 12.0;  ///< length and period of the dashes left of the driver's lane
@@ -65,7 +65,7 @@ struct RoadScene {
   double area() const;
 };
 
-/// Places the reflectors of a request.
+/// Returns the scene of a request. The photometric data of the lamp, the dye and the tint are not set.
 /// \param design_outline_mm outline of a finite design; empty for an infinite design
 /// \throw InputError at the field of the request if a reflector is too large for the car, outside of the car or below
 ///        the road, if two reflectors overlap, or if the mast does not reach the sign
