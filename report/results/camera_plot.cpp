@@ -62,7 +62,7 @@ FloatPicture luminance_picture(const CameraResult& result) {
                      {"retrace:observation_deg", result.observation_deg},
                      {"retrace:entrance_deg", result.entrance_deg},
                      {"retrace:viewing_deg", result.viewing_deg},
-                     {"retrace:illuminance_lx", result.request.illuminance_lx},
+                     {"retrace:illuminance_lx", result.scene.lamp.illuminance_lx},
                      {"retrace:ambient_lx", result.request.ambient_lx},
                      {"retrace:lamp_arcmin", result.request.lamp_arcmin},
                      {"retrace:pupil_arcmin", result.request.pupil_arcmin},
@@ -245,8 +245,8 @@ ImagePlot false_colour_plot(const CameraResult& result) {
   ImagePlot plot;
   plot.title = design::short_name(result.design);
   plot.remarks.push_back(fmt::format("{} lx, observation angle {}°, entrance angle {}°",
-                                     shortest(result.request.illuminance_lx), fixed_visible(result.observation_deg, 2),
-                                     fixed_visible(result.entrance_deg, 2)));
+                                     rounded_text(result.scene.lamp.illuminance_lx),
+                                     fixed_visible(result.observation_deg, 2), fixed_visible(result.entrance_deg, 2)));
   if (result.image.part_means.size() > 1)
     plot.remarks.push_back(fmt::format("mean luminance of the part {} cd/m²", fixed(result.image.part_mean(), 3)));
   ImagePanel panel{"Luminance",

@@ -226,19 +226,41 @@ struct PhotometryStudy::Prepared {
   MeasurementPlan plan;
 };
 
-PhotometryStudy::PhotometryStudy(design::Design design, PhotometrySettings settings)
-    : prepared_(std::make_unique<Prepared>()) {
-  check(settings);
-  prepared_->photometer = std::make_unique<Photometer>(design, settings, materials::kSpectralParts);
-  if (settings.engine == raytrace::Engine::exact && !prepared_->photometer->is_exact())
+namespace {
+
+/// Checks that light is traced as beams if the engine "exact" is requested.
+/// \throw InputError if the faces of the design scatter light
+void require_exact(const Photometer& photometer, const design::Design& design, raytrace::Engine engine) {
+  if (engine == raytrace::Engine::exact && !photometer.is_exact())
     throw InputError(
         Field{"engine"},
         fmt::format(
             "the engine exact requires plane and smooth faces, but the faces of {} scatter light: use {} montecarlo",
             design.source_name(), reference({"engine"})));
-  if (settings.compared)
+}
+
+/// Adds a warning if diffraction is requested, but the photometer leaves it out.
+void warn_of_diffraction(const Photometer& photometer, const design::Design& design, const PhotometrySettings& request,
+                         Warnings& warnings) {
+  if (request.diffraction && !photometer.has_diffraction())
+    warnings.push_back(
+        {"no_diffraction", fmt::format("{}: the Monte-Carlo engine does not include diffraction, which is significant "
+                                       "for cells narrower than {} mm",
+                                       design.source_name(), fixed(photometer.min_undiffracted_mm(), 1))});
+}
+
+}  // namespace
+
+PhotometryStudy::PhotometryStudy(design::Design design, PhotometrySettings settings)
+    : prepared_(std::make_unique<Prepared>()) {
+  check(settings);
+  prepared_->photometer = std::make_unique<Photometer>(design, settings, materials::kSpectralParts);
+  require_exact(*prepared_->photometer, design, settings.engine);
+  if (settings.compared) {
     prepared_->compared = std::make_unique<Photometer>(settings.compared->design, settings_of_compared(settings),
                                                        materials::kSpectralParts);
+    require_exact(*prepared_->compared, settings.compared->design, settings.engine);
+  }
   prepared_->plan = measurement_plan(settings, mirrors_source(design));
   prepared_->design = std::move(design);
   prepared_->request = std::move(settings);
@@ -433,11 +455,11 @@ PhotometryResult PhotometryStudy::run(Progress* progress, const Cancellation* ca
   const auto readings = readings_of(photometer, request, plan, &stages.readings, cancel);
   result.engine = photometer.engine_name();
   result.has_diffraction = photometer.has_diffraction();
-  if (request.diffraction && !result.has_diffraction)
-    result.warnings.push_back(
-        {"no_diffraction", fmt::format("{}: the Monte-Carlo engine does not include diffraction, which is significant "
-                                       "for cells narrower than {} mm",
-                                       design.source_name(), fixed(photometer.min_undiffracted_mm(), 1))});
+  warn_of_diffraction(photometer, design, request, result.warnings);
+  if (compared) {
+    append(result.warnings, compared->warnings());
+    warn_of_diffraction(*compared, request.compared->design, request, result.warnings);
+  }
   result.complete = readings.has_value();
   if (readings) {
     for (const PhotometerReading& reading : *readings) result.directions.push_back(reading.direction);

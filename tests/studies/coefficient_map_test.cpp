@@ -17,6 +17,7 @@
 #include "tests/support/cancel_at.h"
 #include "tests/support/closed_forms.h"
 #include "tests/support/lines.h"
+#include "tests/support/refusals.h"
 
 namespace retrace::studies::coefficient_map_test {
 namespace {
@@ -107,6 +108,19 @@ TEST(CoefficientMap, RatiosOfEqualDesignsAreOne) {
   dark.r_a.assign(dark.r_a.size(), 0.0);
   for (const double value : ratio(dark, found.coefficient_maps[0]).r_a) EXPECT_TRUE(std::isnan(value));
   for (const double value : ratio(found.coefficient_maps[0], dark).r_a) EXPECT_EQ(value, 0.0);
+}
+
+// The engine and the warnings of the compared design are checked like those of the first one.
+TEST(CoefficientMap, ComparedDesignsAreChecked) {
+  design::Design rough = design_of(honeycomb(2.0));
+  rough.surface.texture = design::HarveyShackTexture{.roughness_sq_nm = 5.0, .correlation_length_um = 20.0};
+  PhotometrySettings request = map_request({{0.0, 10.0}, {0.1, 0.3}, {}});
+  request.compared = ComparedDesign{rough, {}, {}};
+  EXPECT_EQ(refusal_of([&] { PhotometryStudy(design_of(honeycomb(2.0)), request); }), "engine");
+  request.engine = raytrace::Engine::montecarlo;
+  request.rays = 4096;
+  const Warnings warnings = run(design_of(honeycomb(2.0)), request).warnings;
+  EXPECT_EQ(std::ranges::count(warnings, "no_diffraction", &Warning::id), 2);
 }
 
 TEST(CoefficientMap, GridsAreCompletedAndChecked) {
