@@ -1,6 +1,6 @@
 #pragma once
 
-// Texts for conditions between options or fields.
+// Texts that describe the dependencies between options or between fields.
 
 #include <span>
 #include <string>
@@ -12,9 +12,9 @@ namespace retrace {
 /// \param conjunction word before the last one: "and" or "or"
 std::string in_words(std::span<const std::string> words, std::string_view conjunction);
 
-/// Returns the text for a requirement that is met if at least one of `required` holds or at least one of `excluded` is
-/// not given. Examples are "requires --camera or --road", "not allowed together with --lamp" and "requires --engine
-/// exact if --cutoff is given". At least one of the lists is not empty.
+/// Returns the text for a requirement. It is met if at least one condition of `required` is satisfied or at least one
+/// condition of `excluded` is not satisfied. Examples are "requires --camera or --road", "not allowed together with
+/// --lamp" and "requires --engine exact if --cutoff is given". At least one of the lists is not empty.
 std::string requirement_text(std::span<const std::string> required, std::span<const std::string> excluded);
 
 }  // namespace retrace

@@ -1,6 +1,6 @@
 #pragma once
 
-// Symmetries of a design with its light: maps of directions that change no optical result.
+// Symmetries of a design and its illumination: transformations of directions that do not change any optical result.
 
 #include <Eigen/Core>
 #include <vector>

@@ -25,7 +25,8 @@ double percentile(std::vector<double> values, double share) {
 }  // namespace
 
 std::array<double, 3> light_colour(double fraction) {
-  // CIELAB with the hue angle 264 degrees, lightness 5 to 98 in equal steps, and the chroma of sRGB or less.
+  // Colours in CIELAB with the hue angle 264 degrees and lightness 5 to 98 in equal steps. The chroma is at most the
+  // largest chroma that sRGB can display.
   static constexpr std::array<std::array<double, 3>, 9> kScale = {{{0.000, 0.073, 0.138},
                                                                    {0.000, 0.171, 0.280},
                                                                    {0.000, 0.276, 0.432},

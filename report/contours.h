@@ -14,7 +14,7 @@ namespace retrace::report {
 /// A closed line ends at its first point. Cells with a corner value that is not finite contain no line.
 /// \param values values at the corners of the cells, row by row
 /// \param columns number of values in a row, >= 1
-/// \return points in units of the distance of two values: x is the column, y is the row
+/// \return points in units of the grid spacing: x is the column, y is the row
 std::vector<std::vector<Point>> contour_lines(const std::vector<double>& values, std::size_t columns, double level);
 
 }  // namespace retrace::report

@@ -38,7 +38,8 @@ struct MapPlot {
   std::string axis_unit;      ///< unit of the axes; "mm" gives the labels "x (mm)" and "y (mm)"
   std::string value_label;    ///< label of the colour bar, which starts at 0
   std::string hatched_label;  ///< meaning of hatched areas
-  double full_value = 1.0;    ///< upper end of the colour bar; a lower end is chosen if all values are below half of it
+  /// Upper end of the colour bar. A smaller value is used if no value of the map exceeds half of it.
+  double full_value = 1.0;
   std::vector<MapPanel> panels;
 };
 

@@ -22,7 +22,7 @@ struct EfficiencyPoint {
   double acceptance_half_angle_deg = 0.0;
   double rre = 0.0;
   double std_error = 0.0;
-  /// Value of the only key in which the designs differ. None if there is no such key, or if its values are no numbers.
+  /// Value of the only key in which the designs differ. None if there is no such key or its values are not numbers.
   std::optional<double> design_value = {};
 };
 

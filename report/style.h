@@ -84,7 +84,7 @@ void draw_within(Canvas& canvas, double width, Ellipsis ellipsis, Point baseline
 void draw_values(Canvas& canvas, Point corner, Size size, std::size_t columns, const std::vector<double>& values,
                  const std::function<Colour(double)>& colour);
 
-/// Returns the values of a grid in which the last row is the first one.
+/// Returns the values of a grid with its rows in reverse order.
 /// \param columns number of values in a row, >= 1
 std::vector<double> with_reversed_rows(const std::vector<double>& values, std::size_t columns);
 

@@ -76,7 +76,7 @@ OutlineLoop circle_of(const Document& document, std::string_view key, const std:
   return geometry::circle({values[0], values[1]}, values[2]);
 }
 
-/// Returns the border, and the holes of a DXF file.
+/// Returns the border of the outline. It is followed by the holes if the outline comes from a DXF file.
 std::vector<OutlineLoop> border_of(const Document& document) {
   if (document.has(kDxf)) {
     const auto [name, file, selection] = *outline_file(document);

@@ -25,7 +25,7 @@ struct PlanRegion {
   Rectangle box_mm;  ///< bounding box of the outer polygon
   Polygon hull;      ///< convex hull of the outer polygon, counter-clockwise
   ConvexRegion whole;
-  ConvexRegion elements;  ///< area within the margin; elements are cut at its borders
+  ConvexRegion elements;  ///< area enclosed by the margin; elements are cut off at its borders
   ConvexRegion margin;    ///< flat land between the outline and the elements; empty without a margin
 
   double area_mm2() const { return outline.area_mm2(); }

@@ -52,14 +52,14 @@ std::vector<double> unwound(const std::vector<Vec2>& points, const Vec2& centre)
   return angles;
 }
 
-/// Returns the mean of the points, which is inside their convex hull. If no centre is given, scattered points are first
-/// sorted by their angle about the mean.
+/// Returns the mean of the points, which is inside their convex hull.
 Vec2 inner_point(const std::vector<Vec2>& points) {
   Vec2 mean = Vec2::Zero();
   for (const Vec2& p : points) mean += p / static_cast<double>(points.size());
   return mean;
 }
 
+/// Sorts scattered points by their angle about a centre.
 void sort_by_angle(std::vector<Vec2>& points, const Vec2& centre) {
   std::sort(points.begin(), points.end(), [&](const Vec2& a, const Vec2& b) {
     return std::atan2(a.y() - centre.y(), a.x() - centre.x()) < std::atan2(b.y() - centre.y(), b.x() - centre.x());

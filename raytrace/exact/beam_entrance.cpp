@@ -133,7 +133,8 @@ void divide_by_step(const Vec2& step, Division& into) {
   }
 }
 
-/// Divides a beam into fragments, each of which represents its copies at all full periods of the array.
+/// Divides a beam into fragments. Each fragment also represents all its copies, which are displaced by multiples of the
+/// period of the array.
 /// \param most_step maximum size of a fragment
 /// \pre the entrance face is a rectangle with sides along the x and y axes
 void divide_by_period(const Vec2& period, const Vec2& most_step, Division& into) {
@@ -220,7 +221,7 @@ double divide(const BeamScene& scene, const Beam& whole, const Vec2& most_step, 
   return entered;
 }
 
-/// Divides the incident beam of a part with notches or holes. Each polygon of its entrance face is one region of its
+/// Divides the incident beam of a part with notches or holes. Polygon k of the entrance face is region k of the
 /// symmetry. Returns the fraction of the light that has entered.
 double divide_pieces(const BeamScene& scene, const Vec2& most_step, BeamQueue& queue) {
   double face_mm2 = 0.0;

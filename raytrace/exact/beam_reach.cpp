@@ -13,9 +13,9 @@ constexpr double kReachInElements = 4.0;
 // Maximum step length, in element sizes, of a beam that represents several copies. It is shorter than kReachInElements,
 // so that fewer copies reach a border within the step.
 constexpr double kReachOfShared = 2.0;
-// Maximum distance, in element sizes, to the point where the highest corner of a descending beam enters the layer of
-// elements. Up to this distance, a step is measured from this point. Otherwise, it is measured from the point where the
-// lowest corner enters the layer. A horizontal beam above the layer never enters it and meets no facet.
+// Maximum distance, in element sizes, at which the highest corner of a descending beam may enter the layer of elements.
+// Within this distance, a step is measured from the entrance of the highest corner, otherwise from that of the lowest
+// corner. A horizontal beam above the layer never enters it and meets no facet.
 constexpr double kFarInElements = 64.0;
 
 /// Returns the minimum and maximum distance from a beam's corners to the sides and, if it rises, to the entrance face.

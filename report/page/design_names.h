@@ -22,7 +22,7 @@ class DesignNames {
   explicit DesignNames(const ResultFolder& folder);
 
   bool are_several() const { return names_.size() > 1; }
-  /// Returns true if the folder has several designs, or if the document has several, which may be equal.
+  /// Returns true if the folder has several different designs, or if the document has several designs, even equal ones.
   bool are_several(const ResultDocument& document) const { return are_several() || labels_of(document) != nullptr; }
   std::size_t count() const { return names_.size(); }
   /// Returns the name of a design.

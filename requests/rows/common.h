@@ -34,7 +34,7 @@ inline constexpr schema::Condition kIsByRays[] = {schema::is("engine", kRayEngin
 inline constexpr Need kNeedExact[] = {kIsExact};
 inline constexpr Need kNeedRays[] = {kIsByRays};
 
-/// Names of the light of photometric computations.
+/// Names of the illuminants for photometric computations.
 inline constexpr std::string_view kPhotometricLights[] = {"a", "d65", "design"};
 
 /// Names of the dyes that are shipped with the program. The name "none" means no dye.

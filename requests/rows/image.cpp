@@ -75,7 +75,7 @@ constexpr Row kDetectorRows[] = {
      kNeedRays},
     seed_row<DetectorRequest>()};
 
-// Rows that are used for camera pictures and for road pictures.
+// Rows of the options that camera pictures and road pictures have in common.
 
 template <class Type>
 schema::Value pixels_of(const Type& request) {

@@ -36,7 +36,7 @@ struct RoadScene {
   /// Outline of each reflector or of the sign, relative to its centre; convex, counter-clockwise.
   geometry::Polygon outline = {{-0.06, -0.0125}, {0.06, -0.0125}, {0.06, 0.0125}, {-0.06, 0.0125}};
   /// Black areas within the outline of a sign, and retroreflective areas within black areas. The black line along the
-  /// border is the first black area without the window in it; the symbol consists of black areas within this window.
+  /// border is the first black area minus the first window. The symbol consists of black areas within this window.
   std::vector<geometry::Polygon> black, windows;
   double mast_height = 0.0;
   double mast_width = 0.08;

@@ -140,7 +140,7 @@ struct FarFieldMap {
   double h_deg = 0.0;
   double half_width_deg = 0.0;
   std::size_t columns = 0;  ///< number of columns, and of rows
-  std::vector<double> r_a;  ///< row by row from below, as seen from the source
+  std::vector<double> r_a;  ///< values row by row, bottom row first, as seen from the source
 };
 
 /// Coefficient of retroreflection R_A of one design over entrance and observation angle, at one rotation of the part

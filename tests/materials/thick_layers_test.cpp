@@ -1,5 +1,5 @@
-// Tests of incoherent layers, whose reflections add by power: closed forms, and means of coherent layers over their
-// fringes.
+// Tests of incoherent layers, whose reflections add in power and not in amplitude. The results are compared with closed
+// forms, and with coherent layers averaged over their fringes.
 #include <gtest/gtest.h>
 
 #include <array>

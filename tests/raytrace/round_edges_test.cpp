@@ -135,7 +135,7 @@ std::array<std::optional<Path>, 2> branches(const Path& path, Vec normal_out) {
   return {reflected, refracted};
 }
 
-/// Returns the RRE of infinite grooves for light across them, with evenly spaced rays.
+/// Returns the RRE of infinite grooves, traced with evenly spaced rays in the plane perpendicular to the grooves.
 double rre_of_circles(double root_mm, double rim_mm, double incidence_deg, int rays) {
   const Grooves grooves(root_mm, rim_mm);
   const double incidence = incidence_deg * std::numbers::pi / 180.0;

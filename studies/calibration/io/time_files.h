@@ -1,6 +1,6 @@
 #pragma once
 
-// Reads tables of program times, and writes the documents of their calibration.
+// Reads tables of program times, and writes the results of a calibration with these times.
 
 #include <filesystem>
 #include <string>

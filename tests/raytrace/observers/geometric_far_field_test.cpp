@@ -232,8 +232,8 @@ TEST(ApertureKernel, IsTheDensityOfTheDifferenceOfTwoDiscs) {
   EXPECT_NEAR(integral, 1.0, 1e-7);
 }
 
-/// The transform of a disc is 2 J1(x) / x. Near x = 0 it is a series, which must be as accurate up to its last
-/// argument.
+/// The transform of a disc is 2 J1(x) / x. Near x = 0, it is computed from a series, which must be equally
+/// accurate up to the largest x for which it is used.
 TEST(ApertureKernel, TransformOfADiscIsThatOfBessel) {
   EXPECT_EQ(disc_transform(0.0), 1.0);
   for (const double x : {1e-6, 1e-3, 0.005, 0.00999, 0.01001, 0.1, 1.0, 5.0})
